@@ -1,0 +1,15 @@
+# Compile options that every target of ours shares.
+function(palpate_target name)
+  target_compile_features(${name} PUBLIC cxx_std_20)
+  set_target_properties(${name} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
+  # Same input, same output, bit for bit: no fused multiply-add behind the source's back.
+  target_compile_options(${name} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -ffp-contract=off)
+  if(PALPATE_WERROR)
+    target_compile_options(${name} PRIVATE -Werror)
+  endif()
+  if(PALPATE_SANITIZE)
+    target_compile_options(${name} PRIVATE -fsanitize=${PALPATE_SANITIZE} -fno-omit-frame-pointer
+                                           -fno-sanitize-recover=all)
+    target_link_options(${name} PUBLIC -fsanitize=${PALPATE_SANITIZE})
+  endif()
+endfunction()

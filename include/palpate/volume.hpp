@@ -1,0 +1,116 @@
+// Stage 1, volume: samples on a regular grid and where that grid lies in space.
+// Needs the standard library and Eigen only. Files are read by io/, never here.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace palpate {
+
+using Vec3 = Eigen::Vector3d;
+using Mat3 = Eigen::Matrix3d;
+using Index3 = Eigen::Vector3i;
+
+/// How a sample is stored. Samples stay in this type for the life of the volume.
+enum class SampleType : std::uint8_t { uint8, int16, uint16, float32 };
+
+/// Bytes of one sample.
+std::size_t size_of(SampleType type);
+/// "uint8", "int16", "uint16" or "float32".
+std::string_view name_of(SampleType type);
+/// The inverse of name_of; throws std::invalid_argument with the accepted names.
+SampleType sample_type_from(std::string_view name);
+
+template <class T>
+constexpr SampleType sample_type_of();
+template <>
+constexpr SampleType sample_type_of<std::uint8_t>() {
+    return SampleType::uint8;
+}
+template <>
+constexpr SampleType sample_type_of<std::int16_t>() {
+    return SampleType::int16;
+}
+template <>
+constexpr SampleType sample_type_of<std::uint16_t>() {
+    return SampleType::uint16;
+}
+template <>
+constexpr SampleType sample_type_of<float>() {
+    return SampleType::float32;
+}
+
+/// The grid in physical space (LPS, millimetres).
+/// Sample (i, j, k) lies at origin + direction * (spacing * (i, j, k)); points given in such
+/// (possibly fractional) sample coordinates are in *index* space.
+struct Geometry {
+    Index3 size = Index3::Zero();          ///< samples along each axis; x runs fastest in memory
+    Vec3 spacing = Vec3::Ones();           ///< [mm] between neighbouring samples, > 0
+    Vec3 origin = Vec3::Zero();            ///< [mm] physical position of sample (0, 0, 0)
+    Mat3 direction = Mat3::Identity();     ///< columns: unit vectors of the index axes, orthonormal
+
+    bool operator==(const Geometry&) const = default;
+};
+
+/// Number of samples, as 64 bit.
+std::int64_t sample_count(const Geometry& geometry);
+/// index -> physical [mm].
+Vec3 physical_from_index(const Geometry& geometry, const Vec3& index);
+/// physical [mm] -> index. The direction is orthonormal, so its transpose is its inverse.
+Vec3 index_from_physical(const Geometry& geometry, const Vec3& physical);
+/// A displacement or force from physical axes to the grid's own axes (still mm or N), and back.
+Vec3 grid_axes_from_physical(const Geometry& geometry, const Vec3& physical);
+Vec3 physical_from_grid_axes(const Geometry& geometry, const Vec3& grid);
+/// The centre of the grid [mm, physical].
+Vec3 physical_centre(const Geometry& geometry);
+/// Throws std::invalid_argument, saying what is wrong, unless every size is >= 1, every spacing
+/// finite and > 0, the origin finite, and the direction orthonormal to 1e-4 (mirrored is allowed).
+void check(const Geometry& geometry);
+
+/// Immutable samples with their geometry and range. A cheap value: copies share the samples.
+class Volume {
+  public:
+    /// Takes ownership of `samples` (x fastest, then y, then z).
+    /// Throws std::invalid_argument if the geometry is not valid, the count of samples is not the
+    /// geometry's, or a float sample is not finite.
+    template <class T>
+    Volume(const Geometry& geometry, std::vector<T> samples);
+    /// Adopts samples that somebody else allocated (a mapped file, shared memory); the deleter of
+    /// `samples` gives them back. `bytes` is checked against the geometry. Throws as above.
+    Volume(const Geometry& geometry, SampleType type, std::shared_ptr<const void> samples,
+           std::size_t bytes);
+
+    const Geometry& geometry() const { return geometry_; }
+    SampleType type() const { return type_; }
+    /// Least and greatest sample, in the data's units.
+    double minimum() const { return minimum_; }
+    double maximum() const { return maximum_; }
+    /// maximum - minimum, or 1 for a constant volume: what tolerances are relative to.
+    double range() const { return maximum_ > minimum_ ? maximum_ - minimum_ : 1.0; }
+    /// The samples; T must be the stored type (std::invalid_argument otherwise).
+    template <class T>
+    std::span<const T> samples() const;
+    const void* data() const { return samples_.get(); }
+    std::size_t bytes() const;
+    /// One sample as double; the index must be inside the grid.
+    double sample(const Index3& index) const;
+
+  private:
+    Geometry geometry_;
+    SampleType type_ = SampleType::uint8;
+    std::shared_ptr<const void> samples_;
+    double minimum_ = 0;
+    double maximum_ = 0;
+};
+
+/// Reads an isovalue or density as people write it: "300" in the data's units, "53%" of the data's
+/// range. Throws std::invalid_argument for anything else, NaN and infinity included.
+double level_from_text(std::string_view text, const Volume& volume);
+
+}  // namespace palpate

@@ -1,0 +1,185 @@
+// Volume: geometry of a sampled grid, its samples and their range.
+#include "palpate/volume.hpp"
+
+#include <Eigen/LU>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <stdexcept>
+
+namespace palpate {
+namespace {
+
+struct Range {
+    double minimum, maximum;
+};
+
+template <class T>
+Range range_of(std::span<const T> samples) {
+    T low = std::numeric_limits<T>::max();
+    T high = std::numeric_limits<T>::lowest();
+    bool finite = true;
+    for (const T s : samples) {
+        low = s < low ? s : low;
+        high = s > high ? s : high;
+        if constexpr (std::is_floating_point_v<T>) finite &= std::isfinite(s);
+    }
+    if (!finite) {
+        throw std::invalid_argument(
+            "some samples are not finite (NaN or infinity): replace them, for example by the "
+            "background value");
+    }
+    return {static_cast<double>(low), static_cast<double>(high)};
+}
+
+template <class T>
+std::span<const T> span_of(const void* data, const Geometry& geometry) {
+    return {static_cast<const T*>(data), static_cast<std::size_t>(sample_count(geometry))};
+}
+
+/// Calls f with a value of the C++ type that `type` names.
+template <class F>
+auto with_type(SampleType type, F&& f) {
+    switch (type) {
+        case SampleType::uint8: return f(std::uint8_t{});
+        case SampleType::int16: return f(std::int16_t{});
+        case SampleType::uint16: return f(std::uint16_t{});
+        case SampleType::float32: break;
+    }
+    return f(float{});
+}
+
+}  // namespace
+
+std::size_t size_of(SampleType type) {
+    return with_type(type, [](auto s) { return sizeof s; });
+}
+
+std::string_view name_of(SampleType type) {
+    switch (type) {
+        case SampleType::uint8: return "uint8";
+        case SampleType::int16: return "int16";
+        case SampleType::uint16: return "uint16";
+        case SampleType::float32: break;
+    }
+    return "float32";
+}
+
+SampleType sample_type_from(std::string_view name) {
+    for (const auto type : {SampleType::uint8, SampleType::int16, SampleType::uint16,
+                            SampleType::float32}) {
+        if (name == name_of(type)) return type;
+    }
+    throw std::invalid_argument("unknown sample type '" + std::string(name) +
+                                "': use uint8, int16, uint16 or float32");
+}
+
+std::int64_t sample_count(const Geometry& geometry) {
+    return geometry.size.cast<std::int64_t>().prod();
+}
+
+Vec3 physical_from_index(const Geometry& g, const Vec3& index) {
+    return g.origin + g.direction * g.spacing.cwiseProduct(index);
+}
+
+Vec3 index_from_physical(const Geometry& g, const Vec3& physical) {
+    return (g.direction.transpose() * (physical - g.origin)).cwiseQuotient(g.spacing);
+}
+
+Vec3 grid_axes_from_physical(const Geometry& g, const Vec3& physical) {
+    return g.direction.transpose() * physical;
+}
+
+Vec3 physical_from_grid_axes(const Geometry& g, const Vec3& grid) { return g.direction * grid; }
+
+Vec3 physical_centre(const Geometry& g) {
+    return physical_from_index(g, 0.5 * (g.size.cast<double>() - Vec3::Ones()));
+}
+
+void check(const Geometry& g) {
+    if ((g.size.array() < 1).any()) {
+        throw std::invalid_argument("every size must be at least 1 sample");
+    }
+    if ((g.size.array() > 1 << 20).any()) {
+        throw std::invalid_argument("more than 1048576 samples along one axis");
+    }
+    if (!(g.spacing.array() > 0).all() || !g.spacing.allFinite()) {
+        throw std::invalid_argument("every spacing must be a finite number above 0 mm");
+    }
+    if (!g.origin.allFinite()) throw std::invalid_argument("the origin is not finite");
+    const Mat3 should_be_identity = g.direction.transpose() * g.direction;
+    if (!g.direction.allFinite() ||
+        !((should_be_identity - Mat3::Identity()).cwiseAbs().array() < 1e-4).all()) {
+        throw std::invalid_argument(
+            "the direction cosines are not orthonormal (a sheared or degenerate grid): resample "
+            "the volume on a rectangular grid");
+    }
+}
+
+template <class T>
+Volume::Volume(const Geometry& geometry, std::vector<T> samples) {
+    const std::size_t bytes = samples.size() * sizeof(T);
+    auto owner = std::make_shared<const std::vector<T>>(std::move(samples));
+    *this = Volume(geometry, sample_type_of<T>(), std::shared_ptr<const void>(owner, owner->data()),
+                   bytes);
+}
+template Volume::Volume(const Geometry&, std::vector<std::uint8_t>);
+template Volume::Volume(const Geometry&, std::vector<std::int16_t>);
+template Volume::Volume(const Geometry&, std::vector<std::uint16_t>);
+template Volume::Volume(const Geometry&, std::vector<float>);
+
+Volume::Volume(const Geometry& geometry, SampleType type, std::shared_ptr<const void> samples,
+               std::size_t bytes)
+    : geometry_(geometry), type_(type), samples_(std::move(samples)) {
+    check(geometry);
+    if (this->bytes() != bytes) {
+        throw std::invalid_argument("the geometry asks for " + std::to_string(this->bytes()) +
+                                    " bytes of samples, there are " + std::to_string(bytes));
+    }
+    const Range range = with_type(type, [&](auto s) {
+        return range_of(span_of<decltype(s)>(samples_.get(), geometry_));
+    });
+    minimum_ = range.minimum;
+    maximum_ = range.maximum;
+}
+
+std::size_t Volume::bytes() const {
+    return static_cast<std::size_t>(sample_count(geometry_)) * size_of(type_);
+}
+
+template <class T>
+std::span<const T> Volume::samples() const {
+    if (sample_type_of<T>() != type_) {
+        throw std::invalid_argument("the samples are stored as " + std::string(name_of(type_)));
+    }
+    return span_of<T>(samples_.get(), geometry_);
+}
+template std::span<const std::uint8_t> Volume::samples() const;
+template std::span<const std::int16_t> Volume::samples() const;
+template std::span<const std::uint16_t> Volume::samples() const;
+template std::span<const float> Volume::samples() const;
+
+double Volume::sample(const Index3& i) const {
+    const auto at = (std::int64_t{i[2]} * geometry_.size[1] + i[1]) * geometry_.size[0] + i[0];
+    return with_type(type_, [&](auto s) {
+        return static_cast<double>(static_cast<const decltype(s)*>(samples_.get())[at]);
+    });
+}
+
+double level_from_text(std::string_view text, const Volume& volume) {
+    const bool percent = !text.empty() && text.back() == '%';
+    const std::string_view digits = text.substr(0, text.size() - (percent ? 1 : 0));
+    double number = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+    if (error != std::errc{} || end != digits.data() + digits.size() || digits.empty() ||
+        !std::isfinite(number)) {
+        throw std::invalid_argument("'" + std::string(text) +
+                                    "' is not a level: give a number in the data's units (300) or "
+                                    "percent of its range (53%)");
+    }
+    if (!percent) return number;
+    return volume.minimum() + number / 100 * (volume.maximum() - volume.minimum());
+}
+
+}  // namespace palpate
