@@ -12,8 +12,8 @@ Field::Field(Volume volume, Solid solid, std::optional<double> background)
       data_(volume_.data()),
       row_(volume_.geometry().size[0]),
       slice_(row_ * volume_.geometry().size[1]),
-      background_(background.value_or(solid == Solid::above ? volume_.minimum()
-                                                            : volume_.maximum())),
+      background_(
+          background.value_or(solid == Solid::above ? volume_.minimum() : volume_.maximum())),
       sign_(solid == Solid::above ? 1 : -1),
       size_(volume_.geometry().size),
       type_(volume_.type()),
@@ -30,9 +30,9 @@ CellSamples Field::border_cell_of(const Index3& cell) const {
     for (int corner = 0; corner < 8; ++corner) {
         const Index3 at = cell + Index3(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
         const bool inside = (at.array() >= 0).all() && (at.array() < size_.array()).all();
-        samples[corner] =
-            inside ? static_cast<const T*>(data_)[at[0] + at[1] * row_ + at[2] * slice_]
-                   : background_;
+        samples[corner] = inside
+                              ? static_cast<const T*>(data_)[at[0] + at[1] * row_ + at[2] * slice_]
+                              : background_;
     }
     return samples;
 }
@@ -52,10 +52,14 @@ CellSamples Field::cell_of(const Index3& cell) const {
 
 CellSamples Field::cell(const Index3& cell) const {
     switch (type_) {
-        case SampleType::uint8: return cell_of<std::uint8_t>(cell);
-        case SampleType::int16: return cell_of<std::int16_t>(cell);
-        case SampleType::uint16: return cell_of<std::uint16_t>(cell);
-        case SampleType::float32: break;
+        case SampleType::uint8:
+            return cell_of<std::uint8_t>(cell);
+        case SampleType::int16:
+            return cell_of<std::int16_t>(cell);
+        case SampleType::uint16:
+            return cell_of<std::uint16_t>(cell);
+        case SampleType::float32:
+            break;
     }
     return cell_of<float>(cell);
 }

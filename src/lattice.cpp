@@ -8,7 +8,9 @@
 namespace palpate {
 namespace {
 
-constexpr bool has(unsigned mask, unsigned wall) { return mask >> wall & 1; }
+constexpr bool has(unsigned mask, unsigned wall) {
+    return mask >> wall & 1;
+}
 
 }  // namespace
 
@@ -77,16 +79,21 @@ LinearPiece piece_of(const Tetrahedron& t, const CellSamples& f) {
     const unsigned minus = plus ^ step_e;
     const double edge_sum = f[plus] + f[minus];
     const double face = (edge_sum + (f[plus ^ step_s] + f[minus ^ step_s])) * 0.25;
-    const double centre = (((f[0] + f[1]) + (f[2] + f[3])) + ((f[4] + f[5]) + (f[6] + f[7]))) * 0.125;
+    const double centre =
+        (((f[0] + f[1]) + (f[2] + f[3])) + ((f[4] + f[5]) + (f[6] + f[7]))) * 0.125;
     return {centre, {2 * (face - centre), 2 * (0.5 * edge_sum - face), f[plus] - f[minus]}};
 }
 
 Vec3 wall_normal(unsigned wall) {
     switch (wall) {
-        case wall_face: return {1, 0, 0};
-        case wall_edge: return {-1, 1, 0};
-        case wall_plus: return {0, -1, 1};
-        default: return {0, -1, -1};
+        case wall_face:
+            return {1, 0, 0};
+        case wall_edge:
+            return {-1, 1, 0};
+        case wall_plus:
+            return {0, -1, 1};
+        default:
+            return {0, -1, -1};
     }
 }
 
@@ -136,10 +143,14 @@ Tetrahedron across(const Tetrahedron& t, unsigned wall) {
 
 Vec3 reflect(const Vec3& v, unsigned wall) {
     switch (wall) {
-        case wall_face: return {-v[0], v[1], v[2]};
-        case wall_edge: return {v[1], v[0], v[2]};
-        case wall_plus: return {v[0], v[2], v[1]};
-        default: return {v[0], -v[2], -v[1]};
+        case wall_face:
+            return {-v[0], v[1], v[2]};
+        case wall_edge:
+            return {v[1], v[0], v[2]};
+        case wall_plus:
+            return {v[0], v[2], v[1]};
+        default:
+            return {v[0], -v[2], -v[1]};
     }
 }
 
@@ -180,8 +191,7 @@ Vec3 gradient_at(const Field& field, const Vec3& physical) {
     if (!(index.cwiseAbs().maxCoeff() <= farthest_index)) return Vec3::Zero();
     const auto tetrahedron = locate(index).tetrahedron;
     const LinearPiece piece = piece_of(tetrahedron, field.cell(tetrahedron.cell));
-    const Vec3 per_mm =
-        unfold(tetrahedron, piece.gradient).cwiseQuotient(field.geometry().spacing);
+    const Vec3 per_mm = unfold(tetrahedron, piece.gradient).cwiseQuotient(field.geometry().spacing);
     return physical_from_grid_axes(field.geometry(), per_mm);
 }
 

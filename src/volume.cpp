@@ -42,10 +42,14 @@ std::span<const T> span_of(const void* data, const Geometry& geometry) {
 template <class F>
 auto with_type(SampleType type, F&& f) {
     switch (type) {
-        case SampleType::uint8: return f(std::uint8_t{});
-        case SampleType::int16: return f(std::int16_t{});
-        case SampleType::uint16: return f(std::uint16_t{});
-        case SampleType::float32: break;
+        case SampleType::uint8:
+            return f(std::uint8_t{});
+        case SampleType::int16:
+            return f(std::int16_t{});
+        case SampleType::uint16:
+            return f(std::uint16_t{});
+        case SampleType::float32:
+            break;
     }
     return f(float{});
 }
@@ -58,17 +62,21 @@ std::size_t size_of(SampleType type) {
 
 std::string_view name_of(SampleType type) {
     switch (type) {
-        case SampleType::uint8: return "uint8";
-        case SampleType::int16: return "int16";
-        case SampleType::uint16: return "uint16";
-        case SampleType::float32: break;
+        case SampleType::uint8:
+            return "uint8";
+        case SampleType::int16:
+            return "int16";
+        case SampleType::uint16:
+            return "uint16";
+        case SampleType::float32:
+            break;
     }
     return "float32";
 }
 
 SampleType sample_type_from(std::string_view name) {
-    for (const auto type : {SampleType::uint8, SampleType::int16, SampleType::uint16,
-                            SampleType::float32}) {
+    for (const auto type :
+         {SampleType::uint8, SampleType::int16, SampleType::uint16, SampleType::float32}) {
         if (name == name_of(type)) return type;
     }
     throw std::invalid_argument("unknown sample type '" + std::string(name) +
@@ -91,7 +99,9 @@ Vec3 grid_axes_from_physical(const Geometry& g, const Vec3& physical) {
     return g.direction.transpose() * physical;
 }
 
-Vec3 physical_from_grid_axes(const Geometry& g, const Vec3& grid) { return g.direction * grid; }
+Vec3 physical_from_grid_axes(const Geometry& g, const Vec3& grid) {
+    return g.direction * grid;
+}
 
 Vec3 physical_centre(const Geometry& g) {
     return physical_from_index(g, 0.5 * (g.size.cast<double>() - Vec3::Ones()));
@@ -137,9 +147,8 @@ Volume::Volume(const Geometry& geometry, SampleType type, std::shared_ptr<const 
         throw std::invalid_argument("the geometry asks for " + std::to_string(this->bytes()) +
                                     " bytes of samples, there are " + std::to_string(bytes));
     }
-    const Range range = with_type(type, [&](auto s) {
-        return range_of(span_of<decltype(s)>(samples_.get(), geometry_));
-    });
+    const Range range = with_type(
+        type, [&](auto s) { return range_of(span_of<decltype(s)>(samples_.get(), geometry_)); });
     minimum_ = range.minimum;
     maximum_ = range.maximum;
 }

@@ -2,8 +2,8 @@
 // 2012, section 3). Nothing is stored per tetrahedron: where one is, is a cell and a frame.
 //
 // A tetrahedron is: cell centre, centre of one face, the two ends of one edge of that face. Its
-// walls are mirrors (planes x=k, y=k, z=k, x+-y=k, x+-z=k, y+-z=k in index space: the affine Coxeter
-// group of type B3), so the neighbour across a wall is a reflection and needs no table.
+// walls are mirrors (planes x=k, y=k, z=k, x+-y=k, x+-z=k, y+-z=k in index space: the affine
+// Coxeter group of type B3), so the neighbour across a wall is a reflection and needs no table.
 //
 // Folded coordinates: measured from the cell's centre in voxels, with the axes in the order and
 // sign of the frame: (ud, us, ue), ud towards the face, us towards the edge, ue along the edge. In
@@ -47,12 +47,12 @@ struct LatticePoint {
 /// A linear field in a tetrahedron, in folded coordinates: value(u) = centre + gradient . u
 /// (Eq. 2 and 3 of the paper without its matrix).
 struct LinearPiece {
-    double centre = 0;            ///< density at the cell's centre
+    double centre = 0;             ///< density at the cell's centre
     Vec3 gradient = Vec3::Zero();  ///< d density / d (ud, us, ue) [data units / voxel]
 
     double operator()(const Vec3& folded) const {
-        return centre + (gradient[0] * folded[0] + gradient[1] * folded[1] +
-                         gradient[2] * folded[2]);
+        return centre +
+               (gradient[0] * folded[0] + gradient[1] * folded[1] + gradient[2] * folded[2]);
     }
 };
 
@@ -78,19 +78,27 @@ LinearPiece piece_of(const Tetrahedron& tetrahedron, const CellSamples& samples)
 /// Slack of each wall: >= 0 inside, exactly 0 on the wall [voxel, not normalised].
 inline double slack(const Vec3& folded, unsigned wall) {
     switch (wall) {
-        case wall_face: return 0.5 - folded[0];
-        case wall_edge: return folded[0] - folded[1];
-        case wall_plus: return folded[1] - folded[2];
-        default: return folded[1] + folded[2];
+        case wall_face:
+            return 0.5 - folded[0];
+        case wall_edge:
+            return folded[0] - folded[1];
+        case wall_plus:
+            return folded[1] - folded[2];
+        default:
+            return folded[1] + folded[2];
     }
 }
 /// Rate at which a folded direction uses up that slack (> 0: towards the wall).
 inline double approach(const Vec3& folded_direction, unsigned wall) {
     switch (wall) {
-        case wall_face: return folded_direction[0];
-        case wall_edge: return folded_direction[1] - folded_direction[0];
-        case wall_plus: return folded_direction[2] - folded_direction[1];
-        default: return -folded_direction[1] - folded_direction[2];
+        case wall_face:
+            return folded_direction[0];
+        case wall_edge:
+            return folded_direction[1] - folded_direction[0];
+        case wall_plus:
+            return folded_direction[2] - folded_direction[1];
+        default:
+            return -folded_direction[1] - folded_direction[2];
     }
 }
 /// Outward normal of a wall in folded index coordinates.

@@ -50,10 +50,10 @@ constexpr SampleType sample_type_of<float>() {
 /// Sample (i, j, k) lies at origin + direction * (spacing * (i, j, k)); points given in such
 /// (possibly fractional) sample coordinates are in *index* space.
 struct Geometry {
-    Index3 size = Index3::Zero();          ///< samples along each axis; x runs fastest in memory
-    Vec3 spacing = Vec3::Ones();           ///< [mm] between neighbouring samples, > 0
-    Vec3 origin = Vec3::Zero();            ///< [mm] physical position of sample (0, 0, 0)
-    Mat3 direction = Mat3::Identity();     ///< columns: unit vectors of the index axes, orthonormal
+    Index3 size = Index3::Zero();       ///< samples along each axis; x runs fastest in memory
+    Vec3 spacing = Vec3::Ones();        ///< [mm] between neighbouring samples, > 0
+    Vec3 origin = Vec3::Zero();         ///< [mm] physical position of sample (0, 0, 0)
+    Mat3 direction = Mat3::Identity();  ///< columns: unit vectors of the index axes, orthonormal
 
     bool operator==(const Geometry&) const = default;
 };

@@ -1,0 +1,92 @@
+// Method paper: Fig. 4 of Corenthy et al. 2012 as published, the baseline that exact descent is
+// compared with. Its goal must satisfy the planes of all tetrahedra at the SCP at once (after
+// Ruspini et al. 1997): the intersection of their free sides, where the free space is the union.
+#include <cmath>
+
+#include "proxy/cone.hpp"
+#include "proxy/update.hpp"
+
+namespace palpate {
+namespace {
+
+/// The constraint planes of every tetrahedron that contains the SCP, normals in mm, index axes.
+HalfSpaces<48> constraint_planes(const Site& site, const Incident& incident, const Vec3& spacing) {
+    HalfSpaces<48> planes;
+    for (int i = 0; i < incident.count; ++i) {
+        const Tetrahedron& t = incident.tetrahedra[i];
+        const Vec3 normal = unfold(t, site.excess_in(t).gradient).cwiseQuotient(spacing);
+        bool known = dot(normal, normal) == 0;
+        for (int j = 0; j < planes.count; ++j) known |= planes.normal[j] == normal;
+        if (!known) planes.add(normal);
+    }
+    return planes;
+}
+
+/// The incident tetrahedron that a direction (index axes) points into.
+const Tetrahedron& tetrahedron_towards(const Incident& incident, unsigned on, const Vec3& way) {
+    for (int i = 0; i < incident.count; ++i) {
+        const Vec3 folded = fold(incident.tetrahedra[i], way);
+        bool inside = true;
+        for (unsigned w = 0; w < wall_count; ++w) {
+            if (on >> w & 1) inside &= approach(folded, w) <= 0;
+        }
+        if (inside) return incident.tetrahedra[i];
+    }
+    return incident.tetrahedra[0];  // not reached: the incident tetrahedra fill all directions
+}
+
+/// One step of the constrained mode: goal, then at most one tetrahedron towards it. False at the
+/// goal.
+bool step_constrained(Site& site, Course& course) {
+    const Vec3& spacing = course.geometry.spacing;
+    const Incident incident = incident_tetrahedra(site.point);
+    const HalfSpaces<48> planes = constraint_planes(site, incident, spacing);
+    const Vec3 h_mm = course.to_target(site).cwiseProduct(spacing);
+    const Vec3 to_goal_mm = project_on_cone(h_mm, planes).point;
+    const Vec3 to_goal = to_goal_mm.cwiseQuotient(spacing);
+    const Vec3 goal = index_of(site.point) + to_goal;
+    course.report(StepKind::goal, site, goal);
+    if (dot(to_goal_mm, to_goal_mm) <= 1e-18 * dot(spacing, spacing)) return false;
+    const unsigned on = walls_at(site.point.folded);
+    const Tetrahedron& towards = tetrahedron_towards(incident, on, to_goal);
+    const Vec3 folded = fold(towards, to_goal);
+    unsigned kept = 0;  // walls the motion runs along
+    for (unsigned w = 0; w < wall_count; ++w) {
+        if ((on >> w & 1) && approach(folded, w) == 0) kept |= 1U << w;
+    }
+    site.enter(towards);
+    slide(site, folded, kept, course);
+    course.report(StepKind::slide, site, goal);
+    return true;
+}
+
+}  // namespace
+
+ProxyUpdate update_paper(Proxy& proxy, const Field& field, const Vec3& hip,
+                         const ProxySettings& settings, StepObserver observer) {
+    Begin begin = begin_update(proxy, field, hip, settings, observer);
+    if (!begin.update) return refuse_update(proxy, field, hip);
+    Update& update = *begin.update;
+    Site& site = update.site;
+    Course& course = update.course;
+    if (begin.recovering) return finish_update(proxy, update, hip, Rest::recovering);
+    const double tolerance = surface_tolerance(field);
+    bool constrained = proxy.mode == Mode::constrained && site.excess_here() >= -tolerance;
+    while (course.budget > 0) {
+        if (!constrained) {
+            // The tetrahedron that the way leads into; the walk crosses walls by itself.
+            const WalkEnd end = walk(site, course.to_target(site), course);
+            course.report(StepKind::free_move, site);
+            if (end == WalkEnd::target) return finish_update(proxy, update, hip, Rest::at_target);
+            constrained = true;
+            continue;
+        }
+        if (!step_constrained(site, course)) {
+            return finish_update(proxy, update, hip, Rest::on_surface);
+        }
+        if (site.excess_here() < -tolerance) constrained = false;
+    }
+    return finish_update(proxy, update, hip, Rest::out_of_budget);
+}
+
+}  // namespace palpate

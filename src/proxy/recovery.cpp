@@ -1,0 +1,117 @@
+// Recovery: out of the solid after the isovalue or the field changed, or when a session starts
+// inside. See docs/proxy.md, "Recovery".
+#include <algorithm>
+#include <cmath>
+
+#include "proxy/cone.hpp"
+#include "proxy/update.hpp"
+
+namespace palpate {
+namespace {
+
+/// Steepest descent among the incident tetrahedra: a step in folded mm whose length is the slope
+/// [data units / mm] and the walls that hold it.
+struct Descent {
+    Tetrahedron tetrahedron;
+    Vec3 step_mm = Vec3::Zero();
+    unsigned walls = 0;
+    double slope_squared = 0;
+};
+
+Descent steepest_descent(const Site& site, const Vec3& spacing) {
+    const Incident incident = incident_tetrahedra(site.point);
+    const unsigned on = walls_at(site.point.folded);
+    Descent best;
+    for (int i = 0; i < incident.count; ++i) {
+        const Tetrahedron& t = incident.tetrahedra[i];
+        const Vec3 s = fold_lengths(t, spacing);
+        HalfSpaces<4> cone;
+        std::array<unsigned, 4> wall_of{};
+        for (unsigned w = 0; w < wall_count; ++w) {
+            if (!(on >> w & 1)) continue;
+            wall_of[cone.count] = w;
+            cone.add(wall_normal(w).cwiseQuotient(s));
+        }
+        const Vec3 down = -site.excess_in(t).gradient.cwiseQuotient(s);
+        const ConeProjection projection = project_on_cone(down, cone);
+        const double slope_squared = dot(projection.point, projection.point);
+        if (slope_squared <= best.slope_squared) continue;
+        best = {t, projection.point, 0, slope_squared};
+        for (const int a : projection.active) {
+            if (a >= 0) best.walls |= 1U << wall_of[a];
+        }
+    }
+    return best;
+}
+
+/// Descends until out (true), stuck on a plateau or in a local minimum, or out of budget.
+bool descend_out(Site& site, Course& course) {
+    const double tolerance = surface_tolerance(site.field);
+    const double flat = tolerance / course.geometry.spacing.maxCoeff();
+    while (course.budget > 0) {
+        const double excess = site.excess_here();
+        if (!(excess > tolerance)) return true;
+        const Descent descent = steepest_descent(site, course.geometry.spacing);
+        if (!(descent.slope_squared > flat * flat)) return false;
+        site.enter(descent.tetrahedron);
+        const Vec3 s = fold_lengths(descent.tetrahedron, course.geometry.spacing);
+        // Along the step the excess falls by slope^2 per unit: it is gone at excess / slope^2.
+        const Vec3 step = descent.step_mm.cwiseQuotient(s) * (excess / descent.slope_squared);
+        slide(site, step, descent.walls, course);
+        course.report(StepKind::recover, site);
+    }
+    return false;
+}
+
+constexpr double shell_thickness = 16;  // [voxel] searched along each direction at a time
+
+/// Looks for free space along 26 directions, a shell at a time. True when found and moved to.
+bool search_out(Site& site, Course& course, double& reach) {
+    const Index3& size = site.field.geometry().size;
+    const double farthest = 2 * size.cast<double>().norm() + 4 * shell_thickness;
+    const Vec3 from = index_of(site.point);
+    const Vec3& spacing = course.geometry.spacing;
+    const double unit = spacing.minCoeff();
+    while (course.budget > 0 && reach * unit <= farthest * spacing.maxCoeff()) {
+        LatticePoint nearest;
+        double least = std::numeric_limits<double>::infinity();
+        for (int direction = 0; direction < 27 && course.budget > 0; ++direction) {
+            const Vec3 axes(direction % 3 - 1, direction / 3 % 3 - 1, direction / 9 - 1);
+            if (direction == 13) continue;
+            const Vec3 per_unit = (axes / std::sqrt(dot(axes, axes))).cwiseQuotient(spacing) * unit;
+            const Vec3 start = from + reach * per_unit;
+            // The solid is the free side of the field with its sign turned.
+            Site probe(site.field, site.isovalue, -site.sign, locate(start));
+            Course silent{course.geometry, {}, start, course.budget};
+            const bool free_already = probe.excess_here() >= 0;
+            const WalkEnd end =
+                free_already ? WalkEnd::surface : walk(probe, per_unit * shell_thickness, silent);
+            course.budget = silent.budget;
+            if (end != WalkEnd::surface) continue;
+            const Vec3 way = (index_of(probe.point) - from).cwiseProduct(spacing);
+            if (dot(way, way) >= least) continue;
+            least = dot(way, way);
+            nearest = probe.point;
+        }
+        if (std::isfinite(least)) {
+            site.move_to(nearest);
+            course.report(StepKind::recover, site);
+            return true;
+        }
+        if (course.budget > 0) reach += shell_thickness;
+    }
+    if (course.budget > 0) reach = 0;  // nowhere free: look again in the next update
+    return false;
+}
+
+}  // namespace
+
+bool recover(Site& site, Course& course, double& reach) {
+    if (reach == 0 && descend_out(site, course)) return true;
+    if (course.budget <= 0) return false;
+    if (!search_out(site, course, reach)) return false;
+    reach = 0;
+    return true;
+}
+
+}  // namespace palpate

@@ -1,0 +1,154 @@
+// The walk from tetrahedron to tetrahedron. See docs/lattice.md for why it cannot lose its way.
+#include "proxy/site.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "proxy/cone.hpp"
+
+namespace palpate {
+namespace {
+
+constexpr unsigned no_wall = wall_count;
+
+/// How far along a folded direction the first wall is, if nearer than `farthest`. Walls of the mask
+/// are left out.
+struct Exit {
+    double t;
+    unsigned wall;
+};
+Exit first_exit(const Vec3& folded, const Vec3& direction, double farthest, unsigned without) {
+    Exit exit{farthest, no_wall};
+    for (unsigned wall = 0; wall < wall_count; ++wall) {
+        const double speed = approach(direction, wall);
+        if (speed <= 0 || (without >> wall & 1)) continue;
+        const double t = slack(folded, wall) / speed;
+        if (t < exit.t) exit = {t, wall};
+    }
+    return exit;
+}
+
+/// From deep in the background, the part of the way [0, left] that surely stays in it: up to half a
+/// voxel before the border of the padded grid. Spares the walk through empty space cell by cell.
+double way_through_background(const Site& site, const Vec3& displacement, double left) {
+    const Vec3 from = index_of(site.point);
+    const Index3& size = site.field.geometry().size;
+    double enter = 0;
+    double leave = left;
+    for (int a = 0; a < 3; ++a) {
+        const double low = -1.5 - from[a];
+        const double high = size[a] + 0.5 - from[a];
+        if (displacement[a] == 0) {
+            if (low > 0 || high < 0) return left;
+            continue;
+        }
+        const double t0 = low / displacement[a];
+        const double t1 = high / displacement[a];
+        enter = std::max(enter, std::min(t0, t1));
+        leave = std::min(leave, std::max(t0, t1));
+    }
+    return enter < leave ? enter : left;
+}
+
+}  // namespace
+
+Site::Site(const Field& f, double level, double s, const LatticePoint& at)
+    : field(f),
+      isovalue(level),
+      sign(s),
+      point(at),
+      samples(f.cell(at.tetrahedron.cell)),
+      excess(excess_from(at.tetrahedron, samples)) {}
+
+LinearPiece Site::excess_from(const Tetrahedron& tetrahedron, const CellSamples& cell) const {
+    LinearPiece piece = piece_of(tetrahedron, cell);
+    piece.centre = sign * (piece.centre - isovalue);
+    piece.gradient *= sign;
+    return piece;
+}
+
+LinearPiece Site::excess_in(const Tetrahedron& tetrahedron) const {
+    if (tetrahedron.cell == point.tetrahedron.cell) return excess_from(tetrahedron, samples);
+    return excess_from(tetrahedron, field.cell(tetrahedron.cell));
+}
+
+void Site::move_to(const LatticePoint& at) {
+    point = at;
+    samples = field.cell(at.tetrahedron.cell);
+    excess = excess_from(at.tetrahedron, samples);
+}
+
+void Site::enter(const Tetrahedron& tetrahedron) {
+    if (tetrahedron.cell != point.tetrahedron.cell) samples = field.cell(tetrahedron.cell);
+    point.tetrahedron = tetrahedron;
+    excess = excess_from(tetrahedron, samples);
+}
+
+void Site::cross(unsigned wall) {
+    point.tetrahedron = across(point.tetrahedron, wall);
+    if (wall == wall_face) samples = field.cell(point.tetrahedron.cell);
+    excess = excess_from(point.tetrahedron, samples);
+}
+
+Vec3 Course::to_target(const Site& site) const {
+    const Tetrahedron& t = site.point.tetrahedron;
+    const Vec3 from_centre = (target - t.cell.cast<double>()) - Vec3::Constant(0.5);
+    return from_centre - unfold(t, site.point.folded);
+}
+
+void Course::report_to_observer(StepKind kind, const Site& site, const Vec3& goal_index) const {
+    const Vec3 point = physical_from_index(geometry, index_of(site.point));
+    const Vec3 goal = physical_from_index(geometry, goal_index);
+    observer.on_step(Step{kind, point, goal, site.point.tetrahedron}, observer.context);
+}
+
+WalkEnd walk(Site& site, const Vec3& displacement, Course& course) {
+    Vec3 direction = fold(site.point.tetrahedron, displacement);
+    double left = 1;
+    while (course.budget-- > 0) {
+        if (site.field.is_background(site.point.tetrahedron.cell)) {
+            const double t = way_through_background(site, displacement, left);
+            if (t > 0) {
+                site.move_to(locate(index_of(site.point) + t * displacement));
+                direction = fold(site.point.tetrahedron, displacement);
+                left -= t;
+                ++course.tetrahedra;
+                if (left <= 0) return WalkEnd::target;
+                continue;
+            }
+        }
+        const Exit exit = first_exit(site.point.folded, direction, left, 0);
+        const double slope = dot(site.excess.gradient, direction);
+        if (slope > 0) {
+            const double hit = std::max(0.0, -site.excess_here() / slope);
+            if (hit <= exit.t) {
+                site.point.folded = snap(site.point.folded + hit * direction, 0);
+                course.tetrahedra += hit > 0;
+                return WalkEnd::surface;
+            }
+        }
+        course.tetrahedra += exit.t > 0;
+        if (exit.wall == no_wall) {
+            site.point.folded = snap(site.point.folded + exit.t * direction, 0);
+            return WalkEnd::target;
+        }
+        site.point.folded = snap(site.point.folded + exit.t * direction, 1U << exit.wall);
+        course.report(StepKind::cross, site);
+        site.cross(exit.wall);
+        direction = reflect(direction, exit.wall);
+        left -= exit.t;
+    }
+    return WalkEnd::out_of_budget;
+}
+
+bool slide(Site& site, const Vec3& step, unsigned walls, Course& course) {
+    --course.budget;
+    const Vec3 from = site.point.folded;
+    const Exit exit = first_exit(from, step, 1.0, walls_at(from));
+    const unsigned met = exit.wall == no_wall ? 0U : 1U << exit.wall;
+    site.point.folded = snap(from + exit.t * step, walls | met);
+    course.tetrahedra += exit.t > 0;
+    return met == 0;
+}
+
+}  // namespace palpate
