@@ -1,0 +1,292 @@
+// The isosurface as a mesh: closed and oriented whatever the data, on the isosurface, round the
+// solid and nothing else.
+#include "palpate/surface.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <numbers>
+#include <random>
+
+#include "palpate/lattice.hpp"
+#include "support/mesh_checks.hpp"
+
+using namespace palpate;
+
+namespace {
+
+Geometry grid(int x, int y, int z) {
+    Geometry geometry;
+    geometry.size = {x, y, z};
+    return geometry;
+}
+
+Geometry oblique(Geometry geometry) {
+    geometry.spacing = {0.5, 0.7, 2};
+    geometry.origin = {-120, 35, 410};
+    geometry.direction =
+        (Eigen::AngleAxisd(0.7, Vec3::UnitX()) * Eigen::AngleAxisd(-0.4, Vec3::UnitZ()))
+            .toRotationMatrix();
+    return geometry;
+}
+
+Geometry mirrored(Geometry geometry) {
+    geometry = oblique(geometry);
+    geometry.direction.col(1) *= -1;
+    return geometry;
+}
+
+/// Samples by a function of the generator.
+template <class T, class F>
+Volume random_volume(const Geometry& geometry, unsigned seed, F sample) {
+    std::mt19937_64 random(seed);
+    std::vector<T> samples(static_cast<std::size_t>(sample_count(geometry)));
+    for (T& s : samples) s = static_cast<T>(sample(random()));
+    return {geometry, std::move(samples)};
+}
+
+Volume noise(const Geometry& geometry, unsigned seed) {
+    return random_volume<std::uint8_t>(geometry, seed, [](auto r) { return r >> 40 & 255; });
+}
+
+Volume salt(const Geometry& geometry, unsigned seed) {
+    return random_volume<std::uint8_t>(geometry, seed,
+                                       [](auto r) { return (r >> 40) % 4 == 0 ? 255 : 0; });
+}
+
+/// radius - distance from the middle of the grid [mm].
+Volume ball(const Geometry& geometry, double radius) {
+    std::vector<float> samples;
+    const Vec3 middle = physical_centre(geometry);
+    for (int k = 0; k < geometry.size[2]; ++k) {
+        for (int j = 0; j < geometry.size[1]; ++j) {
+            for (int i = 0; i < geometry.size[0]; ++i) {
+                const Vec3 p = physical_from_index(geometry, {double(i), double(j), double(k)});
+                samples.push_back(static_cast<float>(radius - (p - middle).norm()));
+            }
+        }
+    }
+    return {geometry, std::move(samples)};
+}
+
+double uniform(std::mt19937_64& random, double low, double high) {
+    return low + (high - low) * (static_cast<double>(random() >> 11) * 0x1p-53);
+}
+
+Vec3 random_index(std::mt19937_64& random, const Geometry& geometry) {
+    Vec3 index;
+    for (int a = 0; a < 3; ++a) index[a] = uniform(random, -1, geometry.size[a]);
+    return index;
+}
+
+bool is_solid(const Field& field, double isovalue, double density) {
+    return field.sign() * (density - isovalue) > 0;
+}
+
+void expect_closed(const Field& field, double isovalue) {
+    const SurfaceMesh mesh = extract_surface(field, isovalue);
+    EXPECT_TRUE(mesh.complete);
+    EXPECT_FALSE(mesh.triangles.empty());
+    EXPECT_EQ(support::flaw_in_closed_mesh(mesh), "");
+    EXPECT_GT(enclosed_volume(mesh), 0);
+    // Euler: every closed orientable surface has an even characteristic.
+    const auto v = static_cast<std::int64_t>(mesh.vertices.size());
+    const auto f = static_cast<std::int64_t>(mesh.triangles.size());
+    EXPECT_EQ((v - f / 2) % 2, 0);
+}
+
+}  // namespace
+
+TEST(Surface, is_closed_and_oriented_on_noise_at_every_kind_of_isovalue) {
+    const Volume volume = noise(grid(24, 24, 24), 1);
+    for (const double isovalue : {0.0, 1.0, 64.0, 128.0, 128.5, 200.0, 254.0}) {
+        expect_closed(Field(volume), isovalue);
+    }
+    for (const double isovalue : {1.0, 128.0, 254.5, 255.0}) {
+        expect_closed(Field(volume, Solid::below), isovalue);
+    }
+}
+
+TEST(Surface, is_closed_on_salt_even_at_the_values_of_the_samples) {
+    const Volume volume = salt(grid(24, 24, 24), 2);
+    for (const double isovalue : {0.0, 63.75, 127.5, 254.0}) expect_closed(Field(volume), isovalue);
+    expect_closed(Field(volume, Solid::below), 255);
+    expect_closed(Field(volume, Solid::below), 127.5);
+}
+
+TEST(Surface, is_closed_on_volumes_one_voxel_thin) {
+    for (const Geometry& geometry : {grid(1, 1, 1), grid(1, 9, 8), grid(9, 1, 8), grid(9, 8, 1),
+                                     grid(1, 1, 9), grid(9, 1, 1), grid(2, 1, 2)}) {
+        std::vector<std::uint8_t> samples(static_cast<std::size_t>(sample_count(geometry)), 200);
+        samples[samples.size() / 2] = 90;
+        const Field field(Volume(geometry, std::move(samples)), Solid::above, 0);
+        expect_closed(field, 50);
+        expect_closed(field, 0);
+    }
+}
+
+TEST(Surface, is_closed_and_faces_outward_on_anisotropic_oblique_and_mirrored_grids) {
+    Geometry anisotropic = grid(12, 15, 9);
+    anisotropic.spacing = {0.5, 0.5, 2};
+    const auto sample = [](auto r) { return int(r >> 40 & 4095) - 1024; };
+    for (const Geometry& geometry :
+         {anisotropic, oblique(grid(12, 15, 9)), mirrored(grid(12, 15, 9))}) {
+        const auto volume = random_volume<std::int16_t>(geometry, 3, sample);
+        expect_closed(Field(volume), 300);
+        expect_closed(Field(volume, Solid::below), -500);
+    }
+}
+
+TEST(Surface, of_a_constant_volume_is_empty) {
+    const Volume volume(grid(5, 6, 7), std::vector<std::uint8_t>(210, 9));
+    for (const double isovalue : {8.0, 9.0, 10.0}) {
+        const SurfaceMesh mesh = extract_surface(Field(volume), isovalue);
+        EXPECT_TRUE(mesh.vertices.empty());
+        EXPECT_TRUE(mesh.triangles.empty());
+        EXPECT_EQ(enclosed_volume(mesh), 0);
+    }
+}
+
+TEST(Surface, stays_a_manifold_without_indices_in_32_bit_floats) {
+    for (const Geometry& geometry : {grid(24, 24, 24), oblique(grid(24, 24, 24))}) {
+        for (const double isovalue : {0.0, 128.0}) {
+            const SurfaceMesh mesh = extract_surface(Field(noise(geometry, 4)), isovalue);
+            const SurfaceMesh welded = support::welded_as_float(mesh);
+            EXPECT_EQ(welded.vertices.size(), mesh.vertices.size());
+            EXPECT_EQ(support::flaw_in_closed_mesh(welded), "");
+        }
+    }
+}
+
+TEST(Surface, has_every_vertex_on_the_isosurface_within_the_margin) {
+    for (const Geometry& geometry : {grid(16, 16, 16), mirrored(grid(16, 16, 16))}) {
+        const Field field(noise(geometry, 5));
+        for (const double isovalue : {128.0, 99.3}) {
+            const SurfaceMesh mesh = extract_surface(field, isovalue);
+            std::size_t exact = 0;
+            for (const Vec3& v : mesh.vertices) {
+                const double off = std::abs(value_at(field, v) - isovalue) / field.range();
+                ASSERT_LE(off, surface_margin);
+                exact += off < 1e-12;
+            }
+            // What is not exact was held off the end of its edge: few, and those only.
+            EXPECT_GT(exact, mesh.vertices.size() * 97 / 100);
+        }
+    }
+}
+
+TEST(Surface, winds_once_around_the_solid_and_not_around_the_free_space) {
+    for (const Geometry& geometry :
+         {grid(9, 8, 10), oblique(grid(9, 8, 10)), mirrored(grid(9, 8, 10))}) {
+        for (const Solid side : {Solid::above, Solid::below}) {
+            const Field field(noise(geometry, 6), side);
+            const SurfaceMesh mesh = extract_surface(field, 120);
+            std::mt19937_64 random(7);
+            int checked = 0;
+            for (int i = 0; i < 400; ++i) {
+                const Vec3 p = physical_from_index(geometry, random_index(random, geometry));
+                const double density = value_at(field, p);
+                // Nearer than the margin the mesh may pass on the other side of the point.
+                if (std::abs(density - 120) < 2 * surface_margin * field.range()) continue;
+                const Vec3 ray(uniform(random, -1, 1), uniform(random, -1, 1), 1);
+                ASSERT_EQ(support::winding(mesh, p, ray), is_solid(field, 120, density))
+                    << p.transpose();
+                ++checked;
+            }
+            EXPECT_GT(checked, 350);
+        }
+    }
+}
+
+TEST(Surface, encloses_the_volume_that_sampling_counts) {
+    const Geometry geometry = mirrored(grid(10, 10, 10));
+    const double box = 11 * 11 * 11 * geometry.spacing.prod();
+    for (const Volume& volume : {noise(geometry, 8), salt(geometry, 9)}) {
+        const Field field(volume);
+        const SurfaceMesh mesh = extract_surface(field, 100);
+        std::mt19937_64 random(10);
+        constexpr int count = 400000;
+        int solid = 0;
+        for (int i = 0; i < count; ++i) {
+            const Vec3 p = physical_from_index(geometry, random_index(random, geometry));
+            solid += is_solid(field, 100, value_at(field, p));
+        }
+        const double fraction = double(solid) / count;
+        // Four standard deviations of the count: 0.3 % of the box.
+        const double tolerance = 4 * std::sqrt(fraction * (1 - fraction) / count) * box;
+        EXPECT_NEAR(enclosed_volume(mesh), fraction * box, tolerance);
+    }
+}
+
+TEST(Surface, of_a_ball_encloses_its_volume_within_one_percent) {
+    Geometry geometry = grid(41, 41, 21);
+    geometry.spacing = {0.5, 0.5, 1};
+    const double exact = 4.0 / 3 * std::numbers::pi * 8 * 8 * 8;
+    for (const Mat3& direction : {Mat3(Mat3::Identity()), mirrored(geometry).direction}) {
+        geometry.direction = direction;
+        const SurfaceMesh mesh = extract_surface(Field(ball(geometry, 8)), 0);
+        EXPECT_EQ(support::flaw_in_closed_mesh(mesh), "");
+        EXPECT_NEAR(enclosed_volume(mesh), exact, 0.01 * exact);
+        // One sphere: V - E + F = 2.
+        EXPECT_EQ(mesh.vertices.size(), mesh.triangles.size() / 2 + 2);
+    }
+}
+
+TEST(Surface, closes_a_body_that_the_border_cuts) {
+    Geometry geometry = grid(21, 21, 11);
+    const Field field(ball(geometry, 9));  // a ball of 18 in a slab of 10
+    const SurfaceMesh mesh = extract_surface(field, 0);
+    EXPECT_EQ(support::flaw_in_closed_mesh(mesh), "");
+    for (const Vec3& v : mesh.vertices) {
+        EXPECT_GT(v[2], -1);
+        EXPECT_LT(v[2], 11);
+    }
+    const double slab = std::numbers::pi * 10 * (81 - 25.0 / 3);
+    EXPECT_GT(enclosed_volume(mesh), slab);
+    EXPECT_LT(enclosed_volume(mesh), 1.2 * slab);
+}
+
+TEST(Surface, bounds_the_free_space_where_the_background_is_solid) {
+    const Field field(ball(grid(21, 21, 21), 8), Solid::below);
+    const Field solid_outside(ball(grid(21, 21, 21), 8), Solid::below, -100);
+    const SurfaceMesh mesh = extract_surface(solid_outside, 0);
+    EXPECT_EQ(support::flaw_in_closed_mesh(mesh), "");
+    EXPECT_LT(enclosed_volume(mesh), 0);
+    EXPECT_GT(enclosed_volume(extract_surface(field, 0)), 0);
+}
+
+TEST(Surface, is_the_same_bit_for_bit_when_extracted_again) {
+    const Field field(noise(oblique(grid(16, 12, 14)), 11));
+    const SurfaceMesh a = extract_surface(field, 77);
+    const SurfaceMesh b = extract_surface(field, 77);
+    EXPECT_EQ(a.vertices, b.vertices);
+    EXPECT_EQ(a.triangles, b.triangles);
+}
+
+TEST(Surface, extraction_reports_progress_and_can_be_cancelled) {
+    const Field field(noise(grid(8, 8, 8), 12));
+    std::vector<double> seen;
+    SurfaceOptions options;
+    options.progress = [&](double fraction) {
+        seen.push_back(fraction);
+        return true;
+    };
+    EXPECT_TRUE(extract_surface(field, 100, options).complete);
+    EXPECT_TRUE(std::is_sorted(seen.begin(), seen.end()));
+    EXPECT_EQ(seen.front(), 0);
+    EXPECT_EQ(seen.back(), 1);
+    options.progress = [](double fraction) { return fraction < 0.5; };
+    const SurfaceMesh cancelled = extract_surface(field, 100, options);
+    EXPECT_FALSE(cancelled.complete);
+    EXPECT_TRUE(cancelled.vertices.empty());
+    EXPECT_TRUE(cancelled.triangles.empty());
+}
+
+TEST(Surface, extraction_refuses_what_it_cannot_do) {
+    const Field field(noise(grid(8, 8, 8), 13));
+    EXPECT_THROW(extract_surface(field, std::nan("")), std::invalid_argument);
+    SurfaceOptions options;
+    options.max_vertices = 100;
+    EXPECT_THROW(extract_surface(field, 100, options), std::length_error);
+}
