@@ -1,0 +1,99 @@
+// Stage 6, force: from hand and proxy to newtons (Corenthy et al. 2012, Eq. 4, and what a device
+// needs on top). Lengths in device mm, forces in N, time in s, all vectors in device axes.
+#pragma once
+
+#include <cstdint>
+
+#include "palpate/volume.hpp"
+
+namespace palpate {
+
+/// Pulls a free hand onto a near surface: 0 at the surface, `peak` halfway, 0 at `distance`.
+struct Magnet {
+    double distance = 0;  ///< [device mm] 0: off
+    double peak = 0;      ///< [N]
+};
+
+/// A bumpy surface by turning the contact force (bump mapping): a height field
+/// a sin(2 pi x / w) sin(2 pi y / w) sin(2 pi z / w) fixed in physical space.
+struct Texture {
+    double amplitude = 0;   ///< a [mm of physical space] 0: off
+    double wavelength = 2;  ///< w [mm of physical space]
+};
+
+struct ForceSettings {
+    double stiffness = 0.5;  ///< k [N/mm], Eq. 4: f = k (SCP - HIP)
+    double damping = 0;      ///< [N s/mm] against the hand's motion along the contact normal
+    double viscosity = 0;    ///< [N s/mm] of the medium, against all motion, in contact or not
+    Magnet magnet;
+    Texture texture;
+    double limit = 3.3;         ///< [N] most force asked for; a device's own limit holds besides
+    double rate_limit = 2000;   ///< [N/s] most change of force; dropping to zero on error is exempt
+    double ramp = 0.25;         ///< [s] from zero to full force at start and after every pause
+    double stale_after = 0.02;  ///< [s] between two device states: longer is a pause
+};
+
+/// What the device at hand can take.
+struct DeviceLimits {
+    double maximum_force = 3.3;  ///< [N] never exceeded, whatever is asked (Omni, Touch)
+    double rate = 1000;          ///< [Hz] of the servo loop
+    /// [N s/mm] of device and hand, physical. A sampled spring k is passive for
+    /// k / (2 rate) + damping <= this (Colgate and Schenkel 1994). 2.5 N s/m is a desktop device in
+    /// a light grip.
+    double physical_damping = 2.5e-3;
+};
+
+/// Largest stiffness [N/mm] these limits can render with this damping [N s/mm].
+double greatest_stiffness(const DeviceLimits& limits, double damping);
+/// Throws std::invalid_argument, naming the setting, its value and the accepted range, for numbers
+/// that are NaN, negative or cannot be rendered stably.
+void check(const ForceSettings& settings, const DeviceLimits& limits);
+
+/// What one tick brings to the force stage.
+struct ForceInput {
+    double time = 0;      ///< [s], strictly increasing
+    bool valid = true;    ///< false: device input stale or broken
+    bool enabled = true;  ///< false: forces off by the user
+    bool constrained = false;
+    Vec3 hand = Vec3::Zero();    ///< device position [device mm]
+    Vec3 pull = Vec3::Zero();    ///< SCP - HIP [device mm]
+    Vec3 normal = Vec3::Zero();  ///< unit, out of the solid; zero if unknown
+    double surface_distance =
+        -1;  ///< free: [device mm] to the surface against the normal; < 0 none
+    Vec3 texture_slope = Vec3::Zero();  ///< gradient of the texture's height at the SCP
+};
+
+/// Why a force is not simply what the settings ask for. Bits.
+enum ForceFlag : std::uint8_t {
+    force_limited = 1,       ///< cut to the maximum
+    force_rate_limited = 2,  ///< change of force cut
+    force_ramping = 4,       ///< in the ramp after a start or pause
+    force_stale = 8,         ///< input stale, invalid or going back in time: zero
+    force_not_finite = 16,   ///< some number was NaN or infinite: zero
+    force_off = 32,          ///< switched off: zero
+};
+
+/// State between ticks.
+struct ForceState {
+    bool started = false;
+    double time = 0;               ///< [s] of the last tick
+    double ramp_begin = 0;         ///< [s]
+    Vec3 hand = Vec3::Zero();      ///< [device mm]
+    Vec3 velocity = Vec3::Zero();  ///< [device mm/s], low-pass filtered
+    Vec3 force = Vec3::Zero();     ///< [N] as rendered
+};
+
+struct ForceResult {
+    Vec3 force = Vec3::Zero();  ///< [N], device axes
+    std::uint8_t flags = 0;     ///< ForceFlag bits
+};
+
+/// The force of one tick. Never throws; any doubt about the input gives zero at once, and the ramp
+/// starts anew.
+ForceResult render_force(ForceState& state, const ForceSettings& settings,
+                         const DeviceLimits& limits, const ForceInput& input);
+
+/// Gradient of the texture's height at a physical point [mm/mm], physical axes.
+Vec3 texture_slope(const Texture& texture, const Vec3& physical);
+
+}  // namespace palpate

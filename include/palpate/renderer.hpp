@@ -1,0 +1,69 @@
+// Stage 7, renderer: one call renders a tick, device state in, force and proxy out. A value: copy
+// it and there are two. Nothing in render() allocates, locks, does I/O or throws.
+#pragma once
+
+#include "palpate/force.hpp"
+#include "palpate/penetrability.hpp"
+
+namespace palpate {
+
+/// Where the device's workspace lies in the volume's physical space:
+/// physical = translation + scale * rotation * device.
+struct DeviceTransform {
+    Mat3 rotation = Mat3::Identity();  ///< orthonormal, device axes to physical axes
+    Vec3 translation = Vec3::Zero();   ///< [mm, physical] where the device's origin lies
+    double scale = 1;                  ///< physical mm per device mm, > 0
+};
+Vec3 physical_from_device(const DeviceTransform& transform, const Vec3& device);
+Vec3 device_from_physical(const DeviceTransform& transform, const Vec3& physical);
+/// Scale at which 1 mm of hand is `voxels` voxels (of the smallest spacing).
+double scale_for_voxels_per_mm(const Geometry& geometry, double voxels);
+
+/// What a device tells in a tick.
+struct DeviceState {
+    double time = 0;               ///< [s], strictly increasing
+    Vec3 position = Vec3::Zero();  ///< [device mm], device axes
+    bool valid = true;             ///< false: stale or broken input, forces go to zero
+};
+
+struct RendererSettings {
+    ProxyMethod method = &update_exact;
+    ProxySettings proxy;
+    Penetrability penetrability;
+    ForceSettings force;
+    DeviceLimits device;
+    DeviceTransform transform;
+    bool forces_on = true;
+};
+
+/// Everything between two ticks. Settings may be exchanged between ticks (through check() first);
+/// set `proxy.isovalue` to feel another level.
+struct Renderer {
+    Field field;
+    RendererSettings settings;
+    Proxy proxy;
+    ForceState force;
+};
+
+/// What one tick gave.
+struct Tick {
+    double time = 0;               ///< [s]
+    ProxyUpdate proxy;             ///< HIP, SCP, mode, density, isovalue, ... in physical space
+    Vec3 force = Vec3::Zero();     ///< [N], device axes
+    std::uint8_t force_flags = 0;  ///< ForceFlag bits
+    std::int64_t update_ns = 0;    ///< [ns] the proxy update alone, monotonic clock
+};
+
+/// Throws std::invalid_argument, saying what is wrong, for settings that cannot be rendered.
+void check(const RendererSettings& settings);
+/// A renderer ready for its first tick. Throws std::invalid_argument for an isovalue that is NaN or
+/// settings that do not pass check().
+Renderer make_renderer(Field field, double isovalue, const RendererSettings& settings = {});
+/// What is odd about feeling this level, in words, or empty: outside the data's range there is
+/// nothing to feel; at or beyond the background all of space outside the data is solid.
+std::string isovalue_warning(const Field& field, double isovalue);
+
+/// Renders one tick.
+Tick render(Renderer& renderer, const DeviceState& device, StepObserver observer = {});
+
+}  // namespace palpate

@@ -1,0 +1,157 @@
+// Force: spring, damping, viscosity, magnet, texture, and always the limits. See docs/force.md.
+#include "palpate/force.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+namespace palpate {
+namespace {
+
+/// Time constant of the velocity filter [s]: a 100 Hz low pass. Unfiltered, one encoder step of
+/// 0.05 mm at 1 kHz reads as 50 mm/s.
+constexpr double velocity_filter = 1 / (2 * std::numbers::pi * 100);
+
+void require(bool good, const char* setting, double value, const std::string& wanted) {
+    if (good) return;
+    throw std::invalid_argument(std::string(setting) + " = " + std::to_string(value) +
+                                ": must be " + wanted);
+}
+
+void require_not_negative(const char* setting, double value) {
+    require(value >= 0 && std::isfinite(value), setting, value, "finite and at least 0");
+}
+
+void require_positive(const char* setting, double value) {
+    require(value > 0 && std::isfinite(value), setting, value, "finite and above 0");
+}
+
+ForceResult stop(ForceState& state, std::uint8_t why) {
+    state = ForceState{};
+    return {Vec3::Zero(), why};
+}
+
+/// The contact force: the spring, turned by the texture, damped along the normal but never pulling
+/// the hand in.
+Vec3 contact_force(const ForceSettings& settings, const ForceInput& input, const Vec3& velocity) {
+    Vec3 force = settings.stiffness * input.pull;
+    const double strength = force.norm();
+    if (strength == 0) return force;
+    const Vec3 outward = force / strength;
+    const Vec3 slope = input.texture_slope - outward * outward.dot(input.texture_slope);
+    if (!slope.isZero(0)) force = strength * (outward - slope).normalized();
+    const double into = -velocity.dot(outward);
+    return force + outward * std::max(settings.damping * into, -strength);
+}
+
+Vec3 magnet_force(const Magnet& magnet, const ForceInput& input) {
+    const double d = input.surface_distance;
+    if (!(d > 0 && d < magnet.distance)) return Vec3::Zero();
+    const double along = d / magnet.distance;
+    return -input.normal * (magnet.peak * 4 * along * (1 - along));
+}
+
+/// Filters the velocity; `step` is the time since the last tick [s].
+void update_velocity(ForceState& state, const Vec3& hand, double step) {
+    const Vec3 measured = (hand - state.hand) / step;
+    state.velocity += (measured - state.velocity) * (step / (step + velocity_filter));
+}
+
+}  // namespace
+
+double greatest_stiffness(const DeviceLimits& limits, double damping) {
+    return std::max(0.0, 2 * limits.rate * (limits.physical_damping - damping));
+}
+
+void check(const ForceSettings& s, const DeviceLimits& limits) {
+    require(limits.rate >= 1 && limits.rate <= 1e5, "rate [Hz]", limits.rate, "1 to 100000");
+    require_positive("maximum force [N]", limits.maximum_force);
+    require_positive("physical damping [N s/mm]", limits.physical_damping);
+    require_not_negative("stiffness [N/mm]", s.stiffness);
+    require_not_negative("damping [N s/mm]", s.damping);
+    require_not_negative("viscosity [N s/mm]", s.viscosity);
+    require_not_negative("magnet distance [mm]", s.magnet.distance);
+    require_not_negative("magnet peak [N]", s.magnet.peak);
+    require_not_negative("texture amplitude [mm]", s.texture.amplitude);
+    require_positive("texture wavelength [mm]", s.texture.wavelength);
+    require_not_negative("force limit [N]", s.limit);
+    require(s.rate_limit > 0, "force rate limit [N/s]", s.rate_limit, "above 0 (inf: none)");
+    require_not_negative("force ramp [s]", s.ramp);
+    require(s.stale_after > 0, "stale time [s]", s.stale_after, "above 0 (inf: none)");
+    const double damping = s.damping + s.viscosity;
+    require(damping < limits.physical_damping, "damping + viscosity [N s/mm]", damping,
+            "below the physical damping of device and hand, " +
+                std::to_string(limits.physical_damping));
+    const double most = greatest_stiffness(limits, damping);
+    require(s.stiffness <= most, "stiffness [N/mm]", s.stiffness,
+            "at most " + std::to_string(most) + " at " + std::to_string(limits.rate) +
+                " Hz to be rendered stably");
+    // 4 peak / distance is the magnet's own stiffness where it is steepest.
+    if (s.magnet.distance > 0) {
+        require(4 * s.magnet.peak <= most * s.magnet.distance, "magnet peak [N]", s.magnet.peak,
+                "at most " + std::to_string(most * s.magnet.distance / 4) + " over this distance");
+    }
+}
+
+ForceResult render_force(ForceState& state, const ForceSettings& settings,
+                         const DeviceLimits& limits, const ForceInput& input) {
+    if (!input.enabled) return stop(state, force_off);
+    if (!input.valid) return stop(state, force_stale);
+    if (!std::isfinite(input.time) || !input.hand.allFinite() || !input.pull.allFinite()) {
+        return stop(state, force_not_finite);
+    }
+    double step = input.time - state.time;
+    std::uint8_t flags = 0;
+    if (!state.started || step > settings.stale_after) {
+        // A start, or the first tick after a pause: the ramp begins here, from zero.
+        if (state.started) flags |= force_stale;
+        state = ForceState{true, input.time, input.time, input.hand, Vec3::Zero(), Vec3::Zero()};
+        step = 0;
+    } else if (!(step > 0)) {
+        return stop(state, force_stale);
+    } else {
+        update_velocity(state, input.hand, step);
+    }
+
+    Vec3 force = input.constrained ? contact_force(settings, input, state.velocity)
+                                   : magnet_force(settings.magnet, input);
+    force -= settings.viscosity * state.velocity;
+    if (!force.allFinite()) return stop(state, force_not_finite);
+
+    const double since = input.time - state.ramp_begin;
+    if (since < settings.ramp) {
+        force *= since / settings.ramp;
+        flags |= force_ramping;
+    }
+    const double most = std::min(settings.limit, limits.maximum_force);
+    if (force.norm() > most) {
+        force *= most / force.norm();
+        flags |= force_limited;
+    }
+    const Vec3 change = force - state.force;
+    const double most_change =
+        std::isfinite(settings.rate_limit) ? settings.rate_limit * step : settings.rate_limit;
+    if (change.norm() > most_change) {
+        force = state.force + change * (most_change / change.norm());
+        flags |= force_rate_limited;
+    }
+    // Between two forces within a limit that has just been lowered, and against rounding.
+    if (force.norm() > most) force *= most / force.norm();
+    if (!force.allFinite()) return stop(state, force_not_finite);
+    state.time = input.time;
+    state.hand = input.hand;
+    state.force = force;
+    return {force, flags};
+}
+
+Vec3 texture_slope(const Texture& texture, const Vec3& p) {
+    if (texture.amplitude == 0) return Vec3::Zero();
+    const double w = 2 * std::numbers::pi / texture.wavelength;
+    const Vec3 s = (w * p).array().sin();
+    const Vec3 c = (w * p).array().cos();
+    return texture.amplitude * w * Vec3(c[0] * s[1] * s[2], s[0] * c[1] * s[2], s[0] * s[1] * c[2]);
+}
+
+}  // namespace palpate

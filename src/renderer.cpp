@@ -1,0 +1,121 @@
+// Renderer: device state -> HIP -> proxy -> penetrability -> force, once a tick.
+#include "palpate/renderer.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+
+namespace palpate {
+namespace {
+
+/// Pieces that the magnet may spend on looking for a surface.
+constexpr int magnet_budget = 512;
+
+/// Distance [physical mm] from a free SCP to the surface, against the normal of the field there;
+/// -1 if there is none within `reach`.
+double distance_to_surface(const Field& field, const ProxyUpdate& at, double reach) {
+    if (at.normal.isZero(0) || !std::isfinite(at.isovalue)) return -1;
+    const RayHit ray =
+        cast_ray(field, at.isovalue, at.scp, at.scp - reach * at.normal, magnet_budget);
+    return ray.hit ? (ray.point - at.scp).norm() : -1;
+}
+
+ForceInput force_input(const Renderer& renderer, const DeviceState& device, const ProxyUpdate& at) {
+    const DeviceTransform& transform = renderer.settings.transform;
+    const ForceSettings& force = renderer.settings.force;
+    const Mat3 to_device = transform.rotation.transpose();
+    ForceInput input;
+    input.time = device.time;
+    input.enabled = renderer.settings.forces_on;
+    input.valid =
+        device.valid && at.status != UpdateStatus::refused && at.status != UpdateStatus::recovering;
+    input.constrained = at.mode == Mode::constrained;
+    input.hand = device.position;
+    input.pull = to_device * (at.scp - at.hip) / transform.scale;
+    input.normal = to_device * at.normal;
+    if (input.constrained) {
+        input.texture_slope = to_device * texture_slope(force.texture, at.scp);
+    } else if (force.magnet.distance > 0 && force.magnet.peak > 0) {
+        const double reach = force.magnet.distance * transform.scale;
+        input.surface_distance = distance_to_surface(renderer.field, at, reach) / transform.scale;
+    }
+    return input;
+}
+
+}  // namespace
+
+Vec3 physical_from_device(const DeviceTransform& t, const Vec3& device) {
+    return t.translation + t.scale * (t.rotation * device);
+}
+
+Vec3 device_from_physical(const DeviceTransform& t, const Vec3& physical) {
+    return t.rotation.transpose() * (physical - t.translation) / t.scale;
+}
+
+double scale_for_voxels_per_mm(const Geometry& geometry, double voxels) {
+    return voxels * geometry.spacing.minCoeff();
+}
+
+void check(const RendererSettings& s) {
+    if (!s.method) throw std::invalid_argument("no proxy method is set");
+    check(s.force, s.device);
+    const Friction& friction = s.proxy.friction;
+    if (!(friction.dynamic_coefficient >= 0) ||
+        !(friction.static_coefficient >= friction.dynamic_coefficient) ||
+        !std::isfinite(friction.static_coefficient)) {
+        throw std::invalid_argument(
+            "friction: needs 0 <= dynamic coefficient <= static coefficient");
+    }
+    if (s.proxy.step_budget < 1) throw std::invalid_argument("the step budget must be at least 1");
+    const Mat3 r = s.transform.rotation.transpose() * s.transform.rotation - Mat3::Identity();
+    if (!(r.cwiseAbs().maxCoeff() < 1e-6) || !s.transform.translation.allFinite()) {
+        throw std::invalid_argument(
+            "device transform: rotation must be orthonormal, translation finite");
+    }
+    if (!(s.transform.scale > 0) || !std::isfinite(s.transform.scale)) {
+        throw std::invalid_argument("device transform: scale must be finite and above 0");
+    }
+}
+
+Renderer make_renderer(Field field, double isovalue, const RendererSettings& settings) {
+    check(settings);
+    if (std::isnan(isovalue)) throw std::invalid_argument("the isovalue is not a number");
+    Renderer renderer{std::move(field), settings, {}, {}};
+    renderer.proxy.isovalue = isovalue;
+    return renderer;
+}
+
+std::string isovalue_warning(const Field& field, double isovalue) {
+    const Volume& volume = field.volume();
+    const double s = field.sign();
+    const double most = s > 0 ? volume.maximum() : volume.minimum();
+    if (s * isovalue >= s * most && s * isovalue >= s * field.background()) {
+        return "the isovalue lies outside the data's range: nothing is solid, there is nothing to "
+               "feel";
+    }
+    if (s * isovalue < s * field.background()) {
+        return "the background outside the data is solid at this isovalue: all of space outside "
+               "the data will be felt as solid (choose another isovalue or --background)";
+    }
+    return {};
+}
+
+Tick render(Renderer& renderer, const DeviceState& device, StepObserver observer) {
+    const RendererSettings& settings = renderer.settings;
+    const Vec3 hip = physical_from_device(settings.transform, device.position);
+    Tick tick;
+    tick.time = device.time;
+    const auto begin = std::chrono::steady_clock::now();
+    tick.proxy = settings.method(renderer.proxy, renderer.field, hip, settings.proxy, observer);
+    const auto end = std::chrono::steady_clock::now();
+    tick.update_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(end - begin).count();
+    apply_penetrability(settings.penetrability, renderer.field, 1 / settings.transform.scale,
+                        renderer.proxy, tick.proxy, observer);
+    const ForceResult force = render_force(renderer.force, settings.force, settings.device,
+                                           force_input(renderer, device, tick.proxy));
+    tick.force = force.force;
+    tick.force_flags = force.flags;
+    return tick;
+}
+
+}  // namespace palpate
