@@ -12,4 +12,18 @@ function(palpate_target name)
                                            -fno-sanitize-recover=all)
     target_link_options(${name} PUBLIC -fsanitize=${PALPATE_SANITIZE})
   endif()
+  if(PALPATE_FUZZ)
+    # Coverage in the code under test; only the fuzz targets themselves link libFuzzer's main.
+    target_compile_options(${name} PRIVATE -fsanitize=fuzzer-no-link)
+    target_link_options(${name} PUBLIC -fsanitize=fuzzer-no-link)
+  endif()
+endfunction()
+
+# palpate_fuzz_target(NAME LIBRARIES...): NAME.cpp of the calling folder with libFuzzer's main.
+function(palpate_fuzz_target name)
+  add_executable(${name} ${name}.cpp)
+  palpate_target(${name})
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
+  target_link_options(${name} PRIVATE -fsanitize=fuzzer)
+  target_link_libraries(${name} PRIVATE palpate::palpate ${ARGN})
 endfunction()

@@ -1,0 +1,17 @@
+# What a person who types `cmake -B build` expects; a project that takes Palpate in decides itself.
+if(PROJECT_IS_TOP_LEVEL)
+  if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+    set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
+  endif()
+  set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+  find_program(PALPATE_CCACHE ccache)
+  mark_as_advanced(PALPATE_CCACHE)
+  if(PALPATE_CCACHE AND NOT DEFINED CMAKE_CXX_COMPILER_LAUNCHER)
+    set(CMAKE_C_COMPILER_LAUNCHER ${PALPATE_CCACHE})
+    set(CMAKE_CXX_COMPILER_LAUNCHER ${PALPATE_CCACHE})
+  endif()
+endif()
+if(PALPATE_FUZZ AND NOT CMAKE_CXX_COMPILER_ID MATCHES Clang)
+  message(FATAL_ERROR "PALPATE_FUZZ needs clang for its libFuzzer: use the preset `fuzz`, or "
+                      "configure an empty build directory with -DCMAKE_CXX_COMPILER=clang++.")
+endif()
