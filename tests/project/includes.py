@@ -1,0 +1,135 @@
+#!/usr/bin/env python3
+"""Rule 1: includes run one way. A stage of the core includes only stages above it, the core needs
+the standard library and Eigen, and each folder sees only the folders it may."""
+
+import re
+
+import repository
+
+# The flow. `surface` looks at the lattice from the side: no stage may include it.
+STAGES = ("volume field lattice proxy penetrability force renderer device servo snapshot "
+          "recording").split()
+OBSERVERS = {"surface": "lattice"}  # name -> last stage that it may include
+UMBRELLA = "palpate"                # include/palpate/palpate.hpp, for users of the library
+
+# Which of our folders each folder may include from. `tests` sees everything.
+MAY_SEE = {
+    "include": ("include",),
+    "src": ("include", "src"),
+    "baselines": ("include", "baselines"),
+    "scenes": ("include", "scenes"),
+    "devices": ("include", "devices"),
+    "io": ("include", "io", "scenes"),
+    "apps": ("include", "io", "baselines", "scenes", "devices", "apps"),
+    "evaluation": ("include", "io", "baselines", "scenes", "evaluation"),
+    "benchmarks": ("include", "io", "baselines", "scenes", "benchmarks", "tests"),
+    "examples": ("include", "io", "baselines", "scenes", "examples"),
+}
+# Folders that build from the standard library and Eigen alone.
+PURE = ("include", "src", "baselines", "scenes")
+
+INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]')
+STANDARD = re.compile(r"^[a-z_0-9]+$")
+
+
+def includes_of(path):
+    for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+        match = INCLUDE.match(line)
+        if match:
+            yield number, match.group(1)
+
+
+def resolve(root, path, name):
+    """The file of ours that an include names, relative to the root, or None."""
+    for base in (root / "include", root / "src", root, path.parent, root / "tests"):
+        target = (base / name).resolve()
+        if target.is_file() and root in target.parents:
+            return target.relative_to(root)
+    return None
+
+
+def stage_of(relative):
+    """include/palpate/NAME.hpp, src/NAME.cpp and src/NAME/... belong to stage NAME."""
+    below = relative.parts[2:] if relative.parts[0] == "include" else relative.parts[1:]
+    return below[0].split(".")[0]
+
+
+def against_the_flow(own, other):
+    """What is wrong when a file of stage `own` includes one of stage `other`, or None."""
+    if own == other or own == UMBRELLA:
+        return None
+    if other == UMBRELLA:
+        return "the core may not include palpate.hpp, which includes all of it"
+    if other in OBSERVERS:
+        return f"no stage may include {other}, which only observes"
+    last = OBSERVERS.get(own, own)
+    if STAGES.index(other) > STAGES.index(last):
+        return f"{own} may not include {other}, which comes after {last}"
+    return None
+
+
+def check_stage(relative):
+    name = stage_of(relative)
+    known = name in STAGES or name in OBSERVERS
+    if relative.parts[0] == "include":
+        known = known or name == UMBRELLA
+    return None if known else f"{name} is not a stage of the flow (tests/project/includes.py)"
+
+
+def check_include(root, path, name):
+    """What is wrong with one include, or None."""
+    relative = path.relative_to(root)
+    zone = relative.parts[0]
+    if ".." in name.split("/"):
+        return "includes name a path from the top, never .."
+    target = resolve(root, path, name)
+    if target is None:
+        outside = not (STANDARD.match(name) or name.startswith("Eigen/"))
+        if zone in PURE and (outside or name.startswith("palpate/")):
+            return f"{zone}/ needs the standard library and Eigen, nothing else"
+        return None
+    if zone == "tests":
+        return None
+    other = target.parts[0]
+    if other not in MAY_SEE[zone]:
+        return f"{zone}/ may not see {other}/"
+    if zone in ("include", "src"):
+        return against_the_flow(stage_of(relative), stage_of(target))
+    return None
+
+
+def check_umbrella(root):
+    """palpate.hpp includes every public header, the stages in the order of the flow."""
+    umbrella = root / "include/palpate/palpate.hpp"
+    if not umbrella.exists():
+        return []
+    listed = [name[len("palpate/"):-len(".hpp")] for _, name in includes_of(umbrella)
+              if name.startswith("palpate/")]
+    stages = [name for name in listed if name in STAGES]
+    problems = []
+    if stages != sorted(stages, key=STAGES.index):
+        problems.append("include/palpate/palpate.hpp: not in the order of the flow")
+    for header in sorted(umbrella.parent.glob("*.hpp")):
+        if header.stem not in listed + [UMBRELLA]:
+            problems.append(f"include/palpate/palpate.hpp: {header.name} is missing")
+    return problems
+
+
+def check(root):
+    problems = check_umbrella(root)
+    for path in repository.files(root, repository.CPP, (*MAY_SEE, "tests")):
+        relative = path.relative_to(root)
+        if relative.parts[0] in ("include", "src"):
+            wrong = check_stage(relative)
+            if wrong:
+                problems.append(f"{relative}: {wrong}")
+                continue
+        for number, name in includes_of(path):
+            wrong = check_include(root, path, name)
+            if wrong:
+                problems.append(f"{relative}:{number}: includes {name}: {wrong}")
+    return problems
+
+
+if __name__ == "__main__":
+    repository.finish(check(repository.root_from_arguments()), "includes run one way")
