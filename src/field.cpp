@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 namespace palpate {
@@ -22,46 +23,20 @@ Field::Field(Volume volume, Solid solid, std::optional<double> background)
     const double low = std::min(volume_.minimum(), background_);
     const double high = std::max(volume_.maximum(), background_);
     range_ = high > low ? high - low : 1.0;
+    // Samples far from zero (a float volume of 1e6 +- 1) cost digits in every sum of eight.
+    const double largest = std::max(std::abs(low), std::abs(high));
+    tolerance_ = std::max(1e-12 * range_, 8 * std::numeric_limits<double>::epsilon() * largest);
+    voxels_per_mm_ = volume_.geometry().spacing.cwiseInverse();
 }
 
-template <class T>
-CellSamples Field::border_cell_of(const Index3& cell) const {
+CellSamples Field::border_cell(const Index3& cell) const {
     CellSamples samples;
     for (int corner = 0; corner < 8; ++corner) {
         const Index3 at = cell + Index3(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
         const bool inside = (at.array() >= 0).all() && (at.array() < size_.array()).all();
-        samples[corner] = inside
-                              ? static_cast<const T*>(data_)[at[0] + at[1] * row_ + at[2] * slice_]
-                              : background_;
+        samples[corner] = inside ? volume_.sample(at) : background_;
     }
     return samples;
-}
-
-template <class T>
-CellSamples Field::cell_of(const Index3& cell) const {
-    // One unsigned comparison an axis covers both ends of the grid.
-    const bool interior = static_cast<unsigned>(cell[0]) < static_cast<unsigned>(size_[0] - 1) &&
-                          static_cast<unsigned>(cell[1]) < static_cast<unsigned>(size_[1] - 1) &&
-                          static_cast<unsigned>(cell[2]) < static_cast<unsigned>(size_[2] - 1);
-    if (!interior) return border_cell_of<T>(cell);
-    const T* p = static_cast<const T*>(data_) + (cell[0] + cell[1] * row_ + cell[2] * slice_);
-    const T* q = p + slice_;
-    return {double(p[0]), double(p[1]), double(p[row_]), double(p[row_ + 1]),
-            double(q[0]), double(q[1]), double(q[row_]), double(q[row_ + 1])};
-}
-
-CellSamples Field::cell(const Index3& cell) const {
-    switch (type_) {
-        case SampleType::uint8:
-            return cell_of<std::uint8_t>(cell);
-        case SampleType::int16:
-            return cell_of<std::int16_t>(cell);
-        case SampleType::uint16:
-            return cell_of<std::uint16_t>(cell);
-        case SampleType::float32:
-            break;
-    }
-    return cell_of<float>(cell);
 }
 
 }  // namespace palpate

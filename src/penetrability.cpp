@@ -106,8 +106,8 @@ void apply_penetrability(const Penetrability& p, const Field& field, double devi
     if (update.mode == Mode::constrained) {
         const Vec3 pull = update.scp - update.hip;
         const double length = pull.norm();
-        const Pressing pressing{update.isovalue, length * device_per_volume, update.scp, update.hip,
-                                update.normal};
+        const Pressing pressing{update.isovalue, length * device_per_volume, update.scp,
+                                update.hip};
         const double threshold = threshold_now(p, pressing);
         if (!(pressing.pull > threshold)) return;
         put_scp(proxy, update, field, update.hip + pull * (threshold / pressing.pull));

@@ -13,10 +13,10 @@ constexpr int magnet_budget = 512;
 
 /// Distance [physical mm] from a free SCP to the surface, against the normal of the field there;
 /// -1 if there is none within `reach`.
-double distance_to_surface(const Field& field, const ProxyUpdate& at, double reach) {
-    if (at.normal.isZero(0) || !std::isfinite(at.isovalue)) return -1;
-    const RayHit ray =
-        cast_ray(field, at.isovalue, at.scp, at.scp - reach * at.normal, magnet_budget);
+double distance_to_surface(const Field& field, const ProxyUpdate& at, const Vec3& normal,
+                           double reach) {
+    if (normal.isZero(0) || !std::isfinite(at.isovalue)) return -1;
+    const RayHit ray = cast_ray(field, at.isovalue, at.scp, at.scp - reach * normal, magnet_budget);
     return ray.hit ? (ray.point - at.scp).norm() : -1;
 }
 
@@ -32,12 +32,14 @@ ForceInput force_input(const Renderer& renderer, const DeviceState& device, cons
     input.constrained = at.mode == Mode::constrained;
     input.hand = device.position;
     input.pull = to_device * (at.scp - at.hip) / transform.scale;
-    input.normal = to_device * at.normal;
     if (input.constrained) {
         input.texture_slope = to_device * texture_slope(force.texture, at.scp);
     } else if (force.magnet.distance > 0 && force.magnet.peak > 0) {
         const double reach = force.magnet.distance * transform.scale;
-        input.surface_distance = distance_to_surface(renderer.field, at, reach) / transform.scale;
+        const Vec3 normal = normal_at(renderer.proxy, renderer.field);
+        const double distance = distance_to_surface(renderer.field, at, normal, reach);
+        input.normal = to_device * normal;
+        input.surface_distance = distance / transform.scale;
     }
     return input;
 }

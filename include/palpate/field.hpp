@@ -35,8 +35,26 @@ class Field {
     /// max - min of samples and background [data units], never 0: what tolerances are relative to.
     double range() const { return range_; }
 
+    /// By how much sign * (f - isovalue) may exceed 0 before a point counts as solid [data units]:
+    /// rounding, not geometry. A thousandth of what G1 and G2 (proxy.hpp) grant.
+    double tolerance() const { return tolerance_; }
+    /// 1 / spacing [voxel/mm].
+    const Vec3& voxels_per_mm() const { return voxels_per_mm_; }
+
     /// The samples of the cell whose lowest corner is `cell` (index space); any cell in space.
-    CellSamples cell(const Index3& cell) const;
+    CellSamples cell(const Index3& cell) const {
+        switch (type_) {
+            case SampleType::uint8:
+                return cell_of<std::uint8_t>(cell);
+            case SampleType::int16:
+                return cell_of<std::int16_t>(cell);
+            case SampleType::uint16:
+                return cell_of<std::uint16_t>(cell);
+            case SampleType::float32:
+                break;
+        }
+        return cell_of<float>(cell);
+    }
     /// True where all eight samples of `cell` are background.
     bool is_background(const Index3& cell) const {
         return (cell.array() < -1).any() || (cell.array() >= geometry().size.array()).any();
@@ -45,8 +63,7 @@ class Field {
   private:
     template <class T>
     CellSamples cell_of(const Index3& cell) const;
-    template <class T>
-    CellSamples border_cell_of(const Index3& cell) const;
+    CellSamples border_cell(const Index3& cell) const;
 
     Volume volume_;
     const void* data_ = nullptr;
@@ -54,10 +71,25 @@ class Field {
     std::ptrdiff_t slice_ = 0;  // samples between neighbours in z
     double background_ = 0;
     double range_ = 1;
+    double tolerance_ = 0;
+    Vec3 voxels_per_mm_;
     double sign_ = 1;
     Index3 size_;
     SampleType type_ = SampleType::uint8;
     Solid solid_ = Solid::above;
 };
+
+template <class T>
+inline CellSamples Field::cell_of(const Index3& cell) const {
+    // One unsigned comparison an axis covers both ends of the grid.
+    const bool interior = static_cast<unsigned>(cell[0]) < static_cast<unsigned>(size_[0] - 1) &&
+                          static_cast<unsigned>(cell[1]) < static_cast<unsigned>(size_[1] - 1) &&
+                          static_cast<unsigned>(cell[2]) < static_cast<unsigned>(size_[2] - 1);
+    if (!interior) return border_cell(cell);
+    const T* p = static_cast<const T*>(data_) + (cell[0] + cell[1] * row_ + cell[2] * slice_);
+    const T* q = p + slice_;
+    return {double(p[0]), double(p[1]), double(p[row_]), double(p[row_ + 1]),
+            double(q[0]), double(q[1]), double(q[row_]), double(q[row_ + 1])};
+}
 
 }  // namespace palpate

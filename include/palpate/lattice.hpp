@@ -10,8 +10,10 @@
 // them every tetrahedron is the same one: 1/2 >= ud >= us >= |ue|.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <utility>
 
 #include "palpate/field.hpp"
 
@@ -75,6 +77,10 @@ Vec3 fold_lengths(const Tetrahedron& tetrahedron, const Vec3& lengths);
 /// The linear field of a tetrahedron, from the samples of its cell.
 LinearPiece piece_of(const Tetrahedron& tetrahedron, const CellSamples& samples);
 
+/// True if `wall` is in a mask of walls (bit w stands for wall w).
+constexpr bool has(unsigned walls, unsigned wall) {
+    return walls >> wall & 1;
+}
 /// Slack of each wall: >= 0 inside, exactly 0 on the wall [voxel, not normalised].
 inline double slack(const Vec3& folded, unsigned wall) {
     switch (wall) {
@@ -128,5 +134,108 @@ double value_at(const Field& field, const Vec3& physical);
 /// Gradient at a physical point, in physical axes [data units / mm]. On a wall that of one of the
 /// tetrahedra that meet there.
 Vec3 gradient_at(const Field& field, const Vec3& physical);
+
+// Defined here because the servo thread spends its time in them.
+
+inline bool same_tetrahedron(const Tetrahedron& a, const Tetrahedron& b) {
+    return a.cell == b.cell && a.axis == b.axis && a.sign[0] == b.sign[0] && a.sign[1] == b.sign[1];
+}
+
+inline Vec3 fold(const Tetrahedron& t, const Vec3& v) {
+    return {t.sign[0] * v[t.axis[0]], t.sign[1] * v[t.axis[1]], t.sign[2] * v[t.axis[2]]};
+}
+
+inline Vec3 unfold(const Tetrahedron& t, const Vec3& folded) {
+    Vec3 v;
+    for (int i = 0; i < 3; ++i) v[t.axis[i]] = t.sign[i] * folded[i];
+    return v;
+}
+
+inline Vec3 fold_lengths(const Tetrahedron& t, const Vec3& lengths) {
+    return {lengths[t.axis[0]], lengths[t.axis[1]], lengths[t.axis[2]]};
+}
+
+inline LinearPiece piece_of(const Tetrahedron& t, const CellSamples& f) {
+    const auto bit = [&](int i) { return (t.sign[i] > 0 ? 1U : 0U) << t.axis[i]; };
+    const unsigned step_s = 1U << t.axis[1];
+    const unsigned step_e = 1U << t.axis[2];
+    const unsigned plus = bit(0) | bit(1) | bit(2);  // the edge's end towards +e
+    const unsigned minus = plus ^ step_e;
+    const double edge_sum = f[plus] + f[minus];
+    const double face = (edge_sum + (f[plus ^ step_s] + f[minus ^ step_s])) * 0.25;
+    const double centre =
+        (((f[0] + f[1]) + (f[2] + f[3])) + ((f[4] + f[5]) + (f[6] + f[7]))) * 0.125;
+    return {centre, {2 * (face - centre), 2 * (0.5 * edge_sum - face), f[plus] - f[minus]}};
+}
+
+inline unsigned walls_at(const Vec3& u) {
+    return unsigned(u[0] == 0.5) | unsigned(u[0] == u[1]) << wall_edge |
+           unsigned(u[1] == u[2]) << wall_plus | unsigned(u[1] == -u[2]) << wall_minus;
+}
+
+inline Vec3 snap(const Vec3& folded, unsigned walls) {
+    auto [d, s, e] = std::array{folded[0], folded[1], folded[2]};
+    d = has(walls, wall_face) ? 0.5 : std::clamp(d, 0.0, 0.5);
+    s = std::clamp(s, 0.0, d);
+    if (has(walls, wall_plus) && has(walls, wall_minus)) {
+        if (has(walls, wall_edge)) d = 0;
+        return {d, 0, 0};
+    }
+    if (has(walls, wall_edge)) s = d;
+    e = std::clamp(e, -s, s);
+    if (has(walls, wall_plus)) e = s;
+    if (has(walls, wall_minus)) e = -s;
+    return {d, s, e};
+}
+
+inline Tetrahedron across(const Tetrahedron& t, unsigned wall) {
+    Tetrahedron next = t;
+    switch (wall) {
+        case wall_face:
+            next.cell[t.axis[0]] += t.sign[0];
+            next.sign[0] = static_cast<std::int8_t>(-t.sign[0]);
+            break;
+        case wall_edge:
+            std::swap(next.axis[0], next.axis[1]);
+            std::swap(next.sign[0], next.sign[1]);
+            break;
+        case wall_plus:
+            std::swap(next.axis[1], next.axis[2]);
+            std::swap(next.sign[1], next.sign[2]);
+            break;
+        default:
+            std::swap(next.axis[1], next.axis[2]);
+            next.sign[1] = static_cast<std::int8_t>(-t.sign[2]);
+            next.sign[2] = static_cast<std::int8_t>(-t.sign[1]);
+            break;
+    }
+    return next;
+}
+
+inline Vec3 reflect(const Vec3& v, unsigned wall) {
+    switch (wall) {
+        case wall_face:
+            return {-v[0], v[1], v[2]};
+        case wall_edge:
+            return {v[1], v[0], v[2]};
+        case wall_plus:
+            return {v[0], v[2], v[1]};
+        default:
+            return {v[0], -v[2], -v[1]};
+    }
+}
+
+inline Vec3 wall_normal(unsigned wall) {
+    switch (wall) {
+        case wall_face:
+            return {1, 0, 0};
+        case wall_edge:
+            return {-1, 1, 0};
+        case wall_plus:
+            return {0, -1, 1};
+        default:
+            return {0, -1, -1};
+    }
+}
 
 }  // namespace palpate

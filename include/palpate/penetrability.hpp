@@ -22,7 +22,6 @@ struct Pressing {
     double isovalue;  ///< level felt now [data units]
     double pull;      ///< |SCP - HIP| [device mm]
     Vec3 scp, hip;    ///< [mm, physical]
-    Vec3 normal;      ///< unit, out of the solid, physical axes
 };
 /// A penetrability function: the penetration threshold PT [device mm] at which the surface gives
 /// way now; infinity holds for ever. Runs on the servo thread: it must not allocate, lock or throw.

@@ -104,6 +104,10 @@ ProxyUpdate update_paper(Proxy& proxy, const Field& field, const Vec3& hip,
 bool place(Proxy& proxy, const Field& field, const Vec3& hip, double isovalue,
            StepObserver observer = {});
 
+/// Unit normal of the level set at the SCP, out of the solid, physical axes; zero where the field
+/// is constant. On a wall that of one of the tetrahedra that meet there.
+Vec3 normal_at(const Proxy& proxy, const Field& field);
+
 /// Where a straight segment first meets the isosurface, walking the lattice exactly.
 struct RayHit {
     bool hit = false;
@@ -113,9 +117,5 @@ struct RayHit {
 /// `from` and `to` in mm, physical. A start inside the solid is a hit at `from`.
 RayHit cast_ray(const Field& field, double isovalue, const Vec3& from, const Vec3& to,
                 int step_budget = std::numeric_limits<int>::max());
-
-/// f may exceed the isovalue by this much before it counts as solid [data units]: rounding, not
-/// geometry. A thousandth of what G1 and G2 grant.
-double surface_tolerance(const Field& field);
 
 }  // namespace palpate

@@ -27,7 +27,6 @@ bool feasible(const Vec3& p, const HalfSpaces<Most>& cone, double h_length, int 
 
 template <int Most>
 ConeProjection project_on_cone(const Vec3& h, const HalfSpaces<Most>& cone) {
-    const double length = std::sqrt(dot(h, h));
     std::array<double, Most> pull;  // n . h
     bool inside = true;
     for (int i = 0; i < cone.count; ++i) {
@@ -35,6 +34,11 @@ ConeProjection project_on_cone(const Vec3& h, const HalfSpaces<Most>& cone) {
         inside &= pull[i] <= 0;
     }
     if (inside) return {h, {-1, -1}};
+    if (cone.count == 1) {  // inside a tetrahedron, in contact: the common case
+        const Vec3& n = cone.normal[0];
+        return {h - n * (pull[0] / dot(n, n)), {0, -1}};
+    }
+    const double length = std::sqrt(dot(h, h));
 
     ConeProjection best;
     double best_gain = 0;

@@ -1,5 +1,6 @@
 // Method exact: descent over the union of the incident tetrahedra's free cones (docs/proxy.md).
 #include <cmath>
+#include <utility>
 
 #include "proxy/cone.hpp"
 #include "proxy/update.hpp"
@@ -16,52 +17,54 @@ struct Move {
     bool straight = false;     ///< the way to the target itself is free here
 };
 
-/// The best move inside one incident tetrahedron: h projected on the cone of the walls that the SCP
-/// is on and, in contact, the isosurface.
-Move move_in(const Tetrahedron& t, const LinearPiece& excess, unsigned on, bool contact,
-             const Vec3& h_index, const Vec3& spacing) {
-    const Vec3 h = fold(t, h_index);
-    const Vec3& g = excess.gradient;
+/// The best move inside one incident tetrahedron: h (folded, voxel) projected on the cone of the
+/// walls that the SCP is on and, in contact, the isosurface with gradient g of the excess.
+Move move_in(const Tetrahedron& t, const Vec3& g, unsigned on, bool contact, const Vec3& h,
+             const Field& field) {
     const bool constrained = contact && (g[0] != 0 || g[1] != 0 || g[2] != 0);
-    bool inside = !constrained || dot(g, h) <= 0;
+    const double into = dot(g, h);
+    bool inside = !constrained || into <= 0;
     // Wall by wall the sign of `approach` is exact, so every direction has a tetrahedron that takes
     // it: no gap opens between neighbours.
     for (unsigned w = 0; w < wall_count; ++w) {
-        if (on >> w & 1) inside &= approach(h, w) <= 0;
+        if (has(on, w)) inside &= approach(h, w) <= 0;
     }
-    const Vec3 s = fold_lengths(t, spacing);
-    const Vec3 h_mm = h.cwiseProduct(s);
-    if (inside) return {t, h, 0, dot(h_mm, h_mm), true};
-
-    HalfSpaces<4> cone;
-    std::array<unsigned, 4> wall_of{};
-    for (unsigned w = 0; w < wall_count; ++w) {
-        if (!(on >> w & 1)) continue;
-        wall_of[cone.count] = w;
-        cone.add(wall_normal(w).cwiseQuotient(s));
+    const Vec3 mm = fold_lengths(t, field.geometry().spacing);
+    const Vec3 per_mm = fold_lengths(t, field.voxels_per_mm());
+    const auto gain = [&](const Vec3& step) {
+        const Vec3 step_mm = step.cwiseProduct(mm);
+        return dot(step_mm, step_mm);
+    };
+    if (inside) return {t, h, 0, gain(h), true};
+    if (on == 0) {  // by far the most frequent: one plane, no wall
+        // The normal in mm is g per_mm, and so is the way back to voxels: per_mm twice.
+        const Vec3 n = g.cwiseProduct(per_mm).cwiseProduct(per_mm);
+        const Vec3 step = h - n * (into / dot(g, n));
+        return {t, step, 0, gain(step)};
     }
-    const int walls = cone.count;
-    if (constrained) cone.add(g.cwiseQuotient(s));
-    const ConeProjection projection = project_on_cone(h_mm, cone);
-    Move move{t, projection.point.cwiseQuotient(s), 0, dot(projection.point, projection.point)};
-    for (const int a : projection.active) {
-        if (a >= 0 && a < walls) move.walls |= 1U << wall_of[a];
-    }
-    return move;
+    WalledCone cone(on, per_mm);
+    if (constrained) cone.half_spaces.add(g.cwiseProduct(per_mm));
+    const ConeProjection projection = project_on_cone(h.cwiseProduct(mm), cone.half_spaces);
+    return {t, projection.point.cwiseProduct(per_mm), cone.walls_of(projection),
+            dot(projection.point, projection.point)};
 }
 
-Move best_move(const Site& site, const Vec3& h_index, const Vec3& spacing) {
+/// The best move among all incident tetrahedra; h is the way to the target (folded, voxel).
+Move best_move(const Site& site, const Vec3& h) {
     const unsigned on = walls_at(site.point.folded);
-    const bool contact = site.excess_here() >= -surface_tolerance(site.field);
-    Move best = move_in(site.point.tetrahedron, site.excess, on, contact, h_index, spacing);
+    const bool contact = site.excess() >= -site.field.tolerance();
+    const Tetrahedron& own = site.point.tetrahedron;
+    Move best = move_in(own, site.sign * site.piece.gradient, on, contact, h, site.field);
     if (on == 0 || best.straight) return best;
-    const Incident incident = incident_tetrahedra(site.point);
-    for (int i = 1; i < incident.count; ++i) {
-        const Tetrahedron& t = incident.tetrahedra[i];
-        const Move move = move_in(t, site.excess_in(t), on, contact, h_index, spacing);
-        if (move.straight) return move;
-        if (move.gain > best.gain) best = move;
-    }
+    const Vec3 h_index = unfold(own, h);
+    bool first = true;
+    for_each_incident(site.point, [&](const Tetrahedron& t) {
+        if (std::exchange(first, false)) return false;  // its own is done
+        const Move move =
+            move_in(t, site.excess_gradient_in(t), on, contact, fold(t, h_index), site.field);
+        if (move.straight || move.gain > best.gain) best = move;
+        return best.straight;
+    });
     return best;
 }
 
@@ -94,13 +97,10 @@ Rest descend(Site& site, Course& course, const Friction& friction, Proxy& proxy)
     const Vec3 hip = course.target;
     bool friction_pending = friction.static_coefficient > 0 || friction.dynamic_coefficient > 0;
     while (course.budget > 0) {
-        const Move move = best_move(site, course.to_target(site), spacing);
+        const Move move = best_move(site, course.folded_to_target(site));
         if (move.straight) {
-            if (move.tetrahedron.cell != site.point.tetrahedron.cell ||
-                !same_tetrahedron(move.tetrahedron, site.point.tetrahedron)) {
-                site.enter(move.tetrahedron);
-            }
-            const WalkEnd end = walk(site, unfold(move.tetrahedron, move.step), course);
+            if (walls_at(site.point.folded) != 0) site.enter(move.tetrahedron);
+            const WalkEnd end = walk(site, move.step, course);
             course.report(StepKind::free_move, site);
             if (end == WalkEnd::target) {
                 return course.target == hip ? Rest::at_target : Rest::on_surface;
@@ -126,10 +126,10 @@ Rest descend(Site& site, Course& course, const Friction& friction, Proxy& proxy)
 
 ProxyUpdate update_exact(Proxy& proxy, const Field& field, const Vec3& hip,
                          const ProxySettings& settings, StepObserver observer) {
-    Begin begin = begin_update(proxy, field, hip, settings, observer);
-    if (!begin.update) return refuse_update(proxy, field, hip);
-    Update& update = *begin.update;
-    if (begin.recovering) return finish_update(proxy, update, hip, Rest::recovering);
+    const Vec3 target = index_from_physical(field.geometry(), hip);
+    if (!accepts(proxy, target)) return refuse_update(proxy, field, hip);
+    Update update(proxy, field, target, settings, observer);
+    if (update.recovering) return finish_update(proxy, update, hip, Rest::recovering);
     const Rest rest = descend(update.site, update.course, settings.friction, proxy);
     if (rest == Rest::at_target) proxy.sliding = false;
     return finish_update(proxy, update, hip, rest);

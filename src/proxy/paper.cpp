@@ -14,7 +14,7 @@ HalfSpaces<48> constraint_planes(const Site& site, const Incident& incident, con
     HalfSpaces<48> planes;
     for (int i = 0; i < incident.count; ++i) {
         const Tetrahedron& t = incident.tetrahedra[i];
-        const Vec3 normal = unfold(t, site.excess_in(t).gradient).cwiseQuotient(spacing);
+        const Vec3 normal = unfold(t, site.excess_gradient_in(t)).cwiseQuotient(spacing);
         bool known = dot(normal, normal) == 0;
         for (int j = 0; j < planes.count; ++j) known |= planes.normal[j] == normal;
         if (!known) planes.add(normal);
@@ -64,18 +64,18 @@ bool step_constrained(Site& site, Course& course) {
 
 ProxyUpdate update_paper(Proxy& proxy, const Field& field, const Vec3& hip,
                          const ProxySettings& settings, StepObserver observer) {
-    Begin begin = begin_update(proxy, field, hip, settings, observer);
-    if (!begin.update) return refuse_update(proxy, field, hip);
-    Update& update = *begin.update;
+    const Vec3 target = index_from_physical(field.geometry(), hip);
+    if (!accepts(proxy, target)) return refuse_update(proxy, field, hip);
+    Update update(proxy, field, target, settings, observer);
     Site& site = update.site;
     Course& course = update.course;
-    if (begin.recovering) return finish_update(proxy, update, hip, Rest::recovering);
-    const double tolerance = surface_tolerance(field);
-    bool constrained = proxy.mode == Mode::constrained && site.excess_here() >= -tolerance;
+    if (update.recovering) return finish_update(proxy, update, hip, Rest::recovering);
+    const double tolerance = field.tolerance();
+    bool constrained = proxy.mode == Mode::constrained && site.excess() >= -tolerance;
     while (course.budget > 0) {
         if (!constrained) {
             // The tetrahedron that the way leads into; the walk crosses walls by itself.
-            const WalkEnd end = walk(site, course.to_target(site), course);
+            const WalkEnd end = walk(site, course.folded_to_target(site), course);
             course.report(StepKind::free_move, site);
             if (end == WalkEnd::target) return finish_update(proxy, update, hip, Rest::at_target);
             constrained = true;
@@ -84,7 +84,7 @@ ProxyUpdate update_paper(Proxy& proxy, const Field& field, const Vec3& hip,
         if (!step_constrained(site, course)) {
             return finish_update(proxy, update, hip, Rest::on_surface);
         }
-        if (site.excess_here() < -tolerance) constrained = false;
+        if (site.excess() < -tolerance) constrained = false;
     }
     return finish_update(proxy, update, hip, Rest::out_of_budget);
 }

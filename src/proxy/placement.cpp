@@ -3,22 +3,38 @@
 
 namespace palpate {
 
+namespace {
+
+Vec3 normal_of(const Field& field, const Tetrahedron& t) {
+    const Vec3 gradient = unfold(t, piece_of(t, field.cell(t.cell)).gradient);
+    const Vec3 out = -field.sign() * gradient.cwiseProduct(field.voxels_per_mm());
+    const double length = out.norm();
+    if (!(length > 0)) return Vec3::Zero();
+    return physical_from_grid_axes(field.geometry(), out / length);
+}
+
+}  // namespace
+
+Vec3 normal_at(const Proxy& proxy, const Field& field) {
+    return normal_of(field, proxy.scp.tetrahedron);
+}
+
 bool place(Proxy& proxy, const Field& field, const Vec3& hip, double isovalue,
            StepObserver observer) {
     proxy = Proxy{};
     proxy.isovalue = isovalue;
     const Vec3 size = field.geometry().size.cast<double>();
     const int patience = 1000 + static_cast<int>(size.norm());
+    const Vec3 target = index_from_physical(field.geometry(), hip);
+    if (!accepts(proxy, target)) return false;
     for (int i = 0; i < patience; ++i) {
-        const Begin begin = begin_update(proxy, field, hip, {}, observer);
-        if (!begin.update) return false;
-        const bool out = !begin.recovering;
-        const bool moved = out && index_of(begin.update->site.point) != begin.update->course.target;
-        finish_update(proxy, *begin.update, hip,
-                      !out    ? Rest::recovering
-                      : moved ? Rest::on_surface
-                              : Rest::at_target);
-        if (out) return true;
+        const Update update(proxy, field, target, {}, observer);
+        const bool stayed = index_of(update.site.point) == target;
+        finish_update(proxy, update, hip,
+                      update.recovering ? Rest::recovering
+                      : stayed          ? Rest::at_target
+                                        : Rest::on_surface);
+        if (!update.recovering) return true;
     }
     return false;
 }
@@ -33,16 +49,13 @@ RayHit cast_ray(const Field& field, double isovalue, const Vec3& from, const Vec
         !(target.cwiseAbs().maxCoeff() <= farthest_index)) {
         return ray;
     }
-    Proxy proxy{.scp = locate(start), .scp_physical = from, .isovalue = isovalue, .placed = true};
-    Update update{Site(field, isovalue, field.sign(), proxy.scp),
-                  Course{geometry, {}, target, step_budget}};
-    Site& site = update.site;
-    ray.hit = site.excess_here() > 0 ||
-              walk(site, update.course.to_target(site), update.course) == WalkEnd::surface;
+    Site site(field, isovalue, field.sign(), locate(start));
+    Course course{geometry, {}, target, step_budget};
+    ray.hit =
+        site.excess() > 0 || walk(site, course.folded_to_target(site), course) == WalkEnd::surface;
     if (!ray.hit) return ray;
-    const ProxyUpdate at = finish_update(proxy, update, from, Rest::on_surface);
-    ray.point = at.scp;
-    ray.normal = at.normal;
+    ray.point = physical_from_index(geometry, index_of(site.point));
+    ray.normal = normal_of(field, site.point.tetrahedron);
     return ray;
 }
 

@@ -18,45 +18,36 @@ struct Descent {
     double slope_squared = 0;
 };
 
-Descent steepest_descent(const Site& site, const Vec3& spacing) {
-    const Incident incident = incident_tetrahedra(site.point);
+Descent steepest_descent(const Site& site) {
     const unsigned on = walls_at(site.point.folded);
     Descent best;
-    for (int i = 0; i < incident.count; ++i) {
-        const Tetrahedron& t = incident.tetrahedra[i];
-        const Vec3 s = fold_lengths(t, spacing);
-        HalfSpaces<4> cone;
-        std::array<unsigned, 4> wall_of{};
-        for (unsigned w = 0; w < wall_count; ++w) {
-            if (!(on >> w & 1)) continue;
-            wall_of[cone.count] = w;
-            cone.add(wall_normal(w).cwiseQuotient(s));
-        }
-        const Vec3 down = -site.excess_in(t).gradient.cwiseQuotient(s);
-        const ConeProjection projection = project_on_cone(down, cone);
+    for_each_incident(site.point, [&](const Tetrahedron& t) {
+        const Vec3 per_mm = fold_lengths(t, site.field.voxels_per_mm());
+        WalledCone cone(on, per_mm);
+        const Vec3 down = -site.excess_gradient_in(t).cwiseProduct(per_mm);
+        const ConeProjection projection = project_on_cone(down, cone.half_spaces);
         const double slope_squared = dot(projection.point, projection.point);
-        if (slope_squared <= best.slope_squared) continue;
-        best = {t, projection.point, 0, slope_squared};
-        for (const int a : projection.active) {
-            if (a >= 0) best.walls |= 1U << wall_of[a];
+        if (slope_squared > best.slope_squared) {
+            best = {t, projection.point, cone.walls_of(projection), slope_squared};
         }
-    }
+        return false;
+    });
     return best;
 }
 
 /// Descends until out (true), stuck on a plateau or in a local minimum, or out of budget.
 bool descend_out(Site& site, Course& course) {
-    const double tolerance = surface_tolerance(site.field);
+    const double tolerance = site.field.tolerance();
     const double flat = tolerance / course.geometry.spacing.maxCoeff();
     while (course.budget > 0) {
-        const double excess = site.excess_here();
+        const double excess = site.excess();
         if (!(excess > tolerance)) return true;
-        const Descent descent = steepest_descent(site, course.geometry.spacing);
+        const Descent descent = steepest_descent(site);
         if (!(descent.slope_squared > flat * flat)) return false;
         site.enter(descent.tetrahedron);
-        const Vec3 s = fold_lengths(descent.tetrahedron, course.geometry.spacing);
+        const Vec3 per_mm = fold_lengths(descent.tetrahedron, site.field.voxels_per_mm());
         // Along the step the excess falls by slope^2 per unit: it is gone at excess / slope^2.
-        const Vec3 step = descent.step_mm.cwiseQuotient(s) * (excess / descent.slope_squared);
+        const Vec3 step = descent.step_mm.cwiseProduct(per_mm) * (excess / descent.slope_squared);
         slide(site, step, descent.walls, course);
         course.report(StepKind::recover, site);
     }
@@ -83,9 +74,12 @@ bool search_out(Site& site, Course& course, double& reach) {
             // The solid is the free side of the field with its sign turned.
             Site probe(site.field, site.isovalue, -site.sign, locate(start));
             Course silent{course.geometry, {}, start, course.budget};
-            const bool free_already = probe.excess_here() >= 0;
+            const bool free_already = probe.excess() >= 0;
             const WalkEnd end =
-                free_already ? WalkEnd::surface : walk(probe, per_unit * shell_thickness, silent);
+                free_already
+                    ? WalkEnd::surface
+                    : walk(probe, fold(probe.point.tetrahedron, per_unit * shell_thickness),
+                           silent);
             course.budget = silent.budget;
             if (end != WalkEnd::surface) continue;
             const Vec3 way = (index_of(probe.point) - from).cwiseProduct(spacing);

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "proxy/cone.hpp"
-
 namespace palpate {
 namespace {
 
@@ -21,8 +19,9 @@ Exit first_exit(const Vec3& folded, const Vec3& direction, double farthest, unsi
     Exit exit{farthest, no_wall};
     for (unsigned wall = 0; wall < wall_count; ++wall) {
         const double speed = approach(direction, wall);
-        if (speed <= 0 || (without >> wall & 1)) continue;
-        const double t = slack(folded, wall) / speed;
+        const double room = slack(folded, wall);
+        if (speed * exit.t <= room || has(without, wall)) continue;
+        const double t = room / speed;
         if (t < exit.t) exit = {t, wall};
     }
     return exit;
@@ -52,50 +51,6 @@ double way_through_background(const Site& site, const Vec3& displacement, double
 
 }  // namespace
 
-Site::Site(const Field& f, double level, double s, const LatticePoint& at)
-    : field(f),
-      isovalue(level),
-      sign(s),
-      point(at),
-      samples(f.cell(at.tetrahedron.cell)),
-      excess(excess_from(at.tetrahedron, samples)) {}
-
-LinearPiece Site::excess_from(const Tetrahedron& tetrahedron, const CellSamples& cell) const {
-    LinearPiece piece = piece_of(tetrahedron, cell);
-    piece.centre = sign * (piece.centre - isovalue);
-    piece.gradient *= sign;
-    return piece;
-}
-
-LinearPiece Site::excess_in(const Tetrahedron& tetrahedron) const {
-    if (tetrahedron.cell == point.tetrahedron.cell) return excess_from(tetrahedron, samples);
-    return excess_from(tetrahedron, field.cell(tetrahedron.cell));
-}
-
-void Site::move_to(const LatticePoint& at) {
-    point = at;
-    samples = field.cell(at.tetrahedron.cell);
-    excess = excess_from(at.tetrahedron, samples);
-}
-
-void Site::enter(const Tetrahedron& tetrahedron) {
-    if (tetrahedron.cell != point.tetrahedron.cell) samples = field.cell(tetrahedron.cell);
-    point.tetrahedron = tetrahedron;
-    excess = excess_from(tetrahedron, samples);
-}
-
-void Site::cross(unsigned wall) {
-    point.tetrahedron = across(point.tetrahedron, wall);
-    if (wall == wall_face) samples = field.cell(point.tetrahedron.cell);
-    excess = excess_from(point.tetrahedron, samples);
-}
-
-Vec3 Course::to_target(const Site& site) const {
-    const Tetrahedron& t = site.point.tetrahedron;
-    const Vec3 from_centre = (target - t.cell.cast<double>()) - Vec3::Constant(0.5);
-    return from_centre - unfold(t, site.point.folded);
-}
-
 void Course::report_to_observer(StepKind kind, const Site& site, const Vec3& goal_index) const {
     const Vec3 point = physical_from_index(geometry, index_of(site.point));
     const Vec3 goal = physical_from_index(geometry, goal_index);
@@ -103,14 +58,15 @@ void Course::report_to_observer(StepKind kind, const Site& site, const Vec3& goa
 }
 
 WalkEnd walk(Site& site, const Vec3& displacement, Course& course) {
-    Vec3 direction = fold(site.point.tetrahedron, displacement);
+    Vec3 direction = displacement;
     double left = 1;
     while (course.budget-- > 0) {
         if (site.field.is_background(site.point.tetrahedron.cell)) {
-            const double t = way_through_background(site, displacement, left);
+            const Vec3 way = unfold(site.point.tetrahedron, direction);
+            const double t = way_through_background(site, way, left);
             if (t > 0) {
-                site.move_to(locate(index_of(site.point) + t * displacement));
-                direction = fold(site.point.tetrahedron, displacement);
+                site.move_to(locate(index_of(site.point) + t * way));
+                direction = fold(site.point.tetrahedron, way);
                 left -= t;
                 ++course.tetrahedra;
                 if (left <= 0) return WalkEnd::target;
@@ -118,14 +74,13 @@ WalkEnd walk(Site& site, const Vec3& displacement, Course& course) {
             }
         }
         const Exit exit = first_exit(site.point.folded, direction, left, 0);
-        const double slope = dot(site.excess.gradient, direction);
-        if (slope > 0) {
-            const double hit = std::max(0.0, -site.excess_here() / slope);
-            if (hit <= exit.t) {
-                site.point.folded = snap(site.point.folded + hit * direction, 0);
-                course.tetrahedra += hit > 0;
-                return WalkEnd::surface;
-            }
+        const double slope = site.slope(direction);
+        const double room = -site.excess();
+        if (slope > 0 && slope * exit.t > room) {
+            const double hit = std::max(0.0, room / slope);
+            site.point.folded = snap(site.point.folded + hit * direction, 0);
+            course.tetrahedra += hit > 0;
+            return WalkEnd::surface;
         }
         course.tetrahedra += exit.t > 0;
         if (exit.wall == no_wall) {

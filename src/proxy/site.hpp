@@ -2,34 +2,56 @@
 // and the straight walk from tetrahedron to tetrahedron that every method uses.
 #pragma once
 
+#include <bit>
+
 #include "palpate/proxy.hpp"
+#include "proxy/cone.hpp"
 
 namespace palpate {
 
-/// A lattice point, the samples of its cell and the excess field of its tetrahedron:
-/// excess(u) = sign * (f(u) - isovalue), > 0 in the solid.
+/// A lattice point with the samples of its cell and the linear field of its tetrahedron. Its
+/// excess, sign * (f - isovalue), is > 0 in the solid.
 struct Site {
-    Site(const Field& field, double isovalue, double sign, const LatticePoint& at);
+    Site(const Field& f, double level, double s, const LatticePoint& at)
+        : field(f), isovalue(level), sign(s), point(at) {
+        samples = f.cell(at.tetrahedron.cell);
+        piece = piece_of(at.tetrahedron, samples);
+    }
 
     const Field& field;
     double isovalue;
     double sign;
     LatticePoint point;
     CellSamples samples;
-    LinearPiece excess;
+    LinearPiece piece;
 
-    double excess_here() const { return excess(point.folded); }
+    double density() const { return piece(point.folded); }
+    double excess() const { return sign * (density() - isovalue); }
+    /// Rate of the excess along a folded direction.
+    double slope(const Vec3& folded) const { return sign * dot(piece.gradient, folded); }
+    /// Gradient of the excess [data units / voxel], folded, in an incident tetrahedron.
+    Vec3 excess_gradient_in(const Tetrahedron& t) const {
+        if (t.cell == point.tetrahedron.cell) return sign * piece_of(t, samples).gradient;
+        return sign * piece_of(t, field.cell(t.cell)).gradient;
+    }
     /// Continues from another point.
-    void move_to(const LatticePoint& at);
+    void move_to(const LatticePoint& at) {
+        point = at;
+        samples = field.cell(at.tetrahedron.cell);
+        piece = piece_of(at.tetrahedron, samples);
+    }
     /// Same point, another of its incident tetrahedra.
-    void enter(const Tetrahedron& tetrahedron);
+    void enter(const Tetrahedron& t) {
+        if (t.cell != point.tetrahedron.cell) samples = field.cell(t.cell);
+        point.tetrahedron = t;
+        piece = piece_of(t, samples);
+    }
     /// Same point, seen from across the wall that it is on.
-    void cross(unsigned wall);
-    /// The excess field of an incident tetrahedron.
-    LinearPiece excess_in(const Tetrahedron& tetrahedron) const;
-
-  private:
-    LinearPiece excess_from(const Tetrahedron& tetrahedron, const CellSamples& cell) const;
+    void cross(unsigned wall) {
+        point.tetrahedron = across(point.tetrahedron, wall);
+        if (wall == wall_face) samples = field.cell(point.tetrahedron.cell);
+        piece = piece_of(point.tetrahedron, samples);
+    }
 };
 
 /// Where an update goes and what it may still spend.
@@ -41,7 +63,16 @@ struct Course {
     int tetrahedra = 0;  ///< pieces with a length
 
     /// The way from the site to the target, index axes [voxel].
-    Vec3 to_target(const Site& site) const;
+    Vec3 to_target(const Site& site) const {
+        return unfold(site.point.tetrahedron, folded_to_target(site));
+    }
+    /// The same in the site's frame.
+    Vec3 folded_to_target(const Site& site) const {
+        const Tetrahedron& t = site.point.tetrahedron;
+        const Vec3 from_centre((target[0] - t.cell[0]) - 0.5, (target[1] - t.cell[1]) - 0.5,
+                               (target[2] - t.cell[2]) - 0.5);
+        return fold(t, from_centre) - site.point.folded;
+    }
     void report(StepKind kind, const Site& site) const {
         if (observer.on_step) report_to_observer(kind, site, target);
     }
@@ -53,9 +84,56 @@ struct Course {
     void report_to_observer(StepKind kind, const Site& site, const Vec3& goal_index) const;
 };
 
+/// The cone of the walls that a point is on, in folded millimetres; more half-spaces may be added.
+struct WalledCone {
+    WalledCone(unsigned on, const Vec3& voxels_per_mm) {
+        for (unsigned w = 0; w < wall_count; ++w) {
+            if (!has(on, w)) continue;
+            wall_of[half_spaces.count] = w;
+            half_spaces.add(wall_normal(w).cwiseProduct(voxels_per_mm));
+        }
+        walls = half_spaces.count;
+    }
+    /// Mask of the walls that a projection was put on.
+    unsigned walls_of(const ConeProjection& projection) const {
+        unsigned mask = 0;
+        for (const int a : projection.active) {
+            if (a >= 0 && a < walls) mask |= 1U << wall_of[a];
+        }
+        return mask;
+    }
+
+    HalfSpaces<4> half_spaces;
+    std::array<unsigned, 4> wall_of;
+    int walls = 0;
+};
+
+/// Visits the tetrahedra that contain a point, its own first, until `visit` returns true.
+template <class Visit>
+void for_each_incident(const LatticePoint& point, Visit&& visit) {
+    const unsigned on = walls_at(point.folded);
+    if (visit(point.tetrahedron) || on == 0) return;
+    const auto first = static_cast<unsigned>(std::countr_zero(on));
+    if (std::popcount(on) > 2) {
+        const Incident incident = incident_tetrahedra(point);
+        for (int i = 1; i < incident.count; ++i) {
+            if (visit(incident.tetrahedra[i])) return;
+        }
+        return;
+    }
+    // Round an edge its two mirrors take turns; a single wall has one other side.
+    const auto second = static_cast<unsigned>(std::bit_width(on) - 1);
+    Tetrahedron t = across(point.tetrahedron, first);
+    for (unsigned next = second; !same_tetrahedron(t, point.tetrahedron);
+         next = next == first ? second : first) {
+        if (visit(t)) return;
+        t = across(t, next);
+    }
+}
+
 enum class WalkEnd { target, surface, out_of_budget };
 
-/// Walks straight along `displacement` (index axes, voxel) through as many tetrahedra as needed,
+/// Walks straight along `displacement` (folded, voxel) through as many tetrahedra as needed,
 /// until its end or until the excess field would rise above zero.
 WalkEnd walk(Site& site, const Vec3& displacement, Course& course);
 

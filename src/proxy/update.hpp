@@ -2,29 +2,25 @@
 // and say how it ended.
 #pragma once
 
-#include <optional>
-
 #include "proxy/site.hpp"
 
 namespace palpate {
 
-/// An update under way: where the proxy is and what it may spend.
+/// False for a HIP (index space) that is not finite or absurdly far.
+bool accepts(const Proxy& proxy, const Vec3& hip_index);
+/// The result for such a HIP: nothing changed.
+ProxyUpdate refuse_update(const Proxy& proxy, const Field& field, const Vec3& hip);
+
+/// An update under way: where the proxy is and what it may spend. It begins with a proxy that is
+/// placed, and out of the solid unless `recovering`.
 struct Update {
+    Update(Proxy& proxy, const Field& field, const Vec3& hip_index, const ProxySettings& settings,
+           StepObserver observer);
+
     Site site;
     Course course;
-};
-
-/// Begins an update: nothing (with `refusal` filled) if the HIP is refused, else the site to go on
-/// from, out of the solid if `recovering` is false.
-struct Begin {
-    std::optional<Update> update;
     bool recovering = false;
 };
-Begin begin_update(Proxy& proxy, const Field& field, const Vec3& hip, const ProxySettings& settings,
-                   StepObserver observer);
-
-/// The result for a HIP that is not finite or absurdly far: nothing changed.
-ProxyUpdate refuse_update(const Proxy& proxy, const Field& field, const Vec3& hip);
 
 /// How a method's own part ended.
 enum class Rest { at_target, on_surface, out_of_budget, recovering };
