@@ -1,0 +1,57 @@
+// Reads tables of numbers: a header that names the columns, `#` comments, any line ends. Columns
+// are found by name. Private to io/; trajectory and trace are made of it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/error.hpp"
+
+namespace palpate::io {
+
+/// The whole of a text file. Throws InputError.
+std::string read_text(const std::filesystem::path& path);
+
+/// Walks through the rows of a CSV text. Blank lines and lines that start with # are skipped,
+/// spaces around cells and a byte order mark too. Quotes have no meaning. Errors are InputErrors
+/// that name the file and the line.
+class CsvReader {
+  public:
+    /// Reads the header. `text` must outlive the reader; `name` is what errors call it.
+    CsvReader(std::string_view text, std::string name);
+
+    bool has_column(std::string_view column) const;
+    /// Its number; a column that is missing or there twice is an error.
+    std::size_t column(std::string_view column) const;
+
+    /// Goes to the next row; false at the end. A row must have as many cells as the header.
+    bool next();
+    std::size_t line() const { return line_; }
+    std::string_view cell(std::size_t column) const { return cells_[column]; }
+    /// The cell as a number, NaN and infinity included.
+    double number(std::size_t column) const;
+    /// The cell as a number that is finite.
+    double finite_number(std::size_t column) const;
+    std::int64_t integer(std::size_t column) const;
+
+    /// Throws "NAME, line N: PROBLEM".
+    [[noreturn]] void fail(const std::string& problem) const;
+
+  private:
+    bool next_line();
+
+    std::string_view rest_;
+    std::string name_;
+    std::size_t line_ = 0;
+    std::vector<std::string_view> header_;
+    std::vector<std::string_view> cells_;
+};
+
+/// A piece of foreign text fit for a one-line message: short, in quotes, printable.
+std::string quoted(std::string_view text);
+
+}  // namespace palpate::io

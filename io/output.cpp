@@ -1,0 +1,177 @@
+// Atomic output over POSIX calls: streams report a full disk late or not at all.
+#include "io/output.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <system_error>
+
+namespace palpate::io {
+namespace {
+
+constexpr std::size_t buffer_bytes = std::size_t{1} << 20;
+
+std::string reason(int error) {
+    return std::generic_category().message(error);
+}
+
+/// What to do about it, for the errors that people meet.
+std::string remedy(int error) {
+    switch (error) {
+        case ENOSPC:
+        case EDQUOT:
+        case EFBIG:
+            return ": free some space or write elsewhere";
+        case EACCES:
+        case EPERM:
+        case EROFS:
+            return ": choose a place that you may write to";
+        case EPIPE:
+            return ": the program that reads it has ended";
+        case ENAMETOOLONG:
+            return ": choose a shorter name";
+        default:
+            return ": choose another place";
+    }
+}
+
+std::string because(int error) {
+    return reason(error) + remedy(error);
+}
+
+/// The file that a chain of links ends in; the path itself where there is none.
+std::filesystem::path followed(const std::filesystem::path& path) {
+    std::error_code error;
+    if (!std::filesystem::is_symlink(path, error)) return path;
+    const auto end = std::filesystem::canonical(path, error);
+    return error ? path : end;
+}
+
+/// File systems without fsync say so; that is no loss of data.
+bool synchronise(int descriptor) {
+    return ::fsync(descriptor) == 0 || errno == EINVAL || errno == ENOTSUP || errno == ENOSYS;
+}
+
+}  // namespace
+
+PendingFile::PendingFile(const std::filesystem::path& target) : target_(followed(target)) {
+    buffer_.reserve(buffer_bytes);
+    if (target_ == "-") {
+        target_ = "standard output";
+        descriptor_ = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3);
+        if (descriptor_ < 0) fail("cannot be written: " + because(errno));
+        return;
+    }
+    if (target_.empty()) throw OutputError("the output has no name: give one");
+    std::error_code error;
+    const auto status = std::filesystem::status(target_, error);
+    if (std::filesystem::is_directory(status) || !target_.has_filename()) {
+        fail("is a folder: name a file in it");
+    }
+    if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+        descriptor_ = ::open(target_.c_str(), O_WRONLY | O_CLOEXEC);
+        if (descriptor_ < 0) fail("cannot be opened for writing: " + because(errno));
+        return;
+    }
+    if (std::filesystem::exists(status) && ::access(target_.c_str(), W_OK) != 0) {
+        fail("exists and cannot be overwritten: " + because(errno));
+    }
+    open_temporary();
+}
+
+void PendingFile::open_temporary() {
+    static std::atomic<unsigned> count = 0;
+    auto folder = target_.parent_path();
+    if (folder.empty()) folder = ".";
+    std::error_code error;
+    if (!std::filesystem::is_directory(folder, error)) {
+        if (error && error != std::errc::no_such_file_or_directory) {
+            fail("cannot be written: " + because(error.value()));
+        }
+        fail(std::filesystem::exists(folder, error)
+                 ? "cannot be written: " + folder.string() + " is not a folder"
+                 : "cannot be written: the folder " + folder.string() +
+                       " does not exist: create it first");
+    }
+    // The mode that a plain open would give, or that of the file it replaces.
+    struct stat old {};
+    const bool replaces = ::stat(target_.c_str(), &old) == 0;
+    do {
+        temporary_ = folder / (".palpate-" + std::to_string(::getpid()) + "-" +
+                               std::to_string(count++) + ".part");
+        descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    } while (descriptor_ < 0 && errno == EEXIST);
+    if (descriptor_ < 0) {
+        const int problem = errno;
+        temporary_.clear();
+        fail("cannot be written: " + because(problem));
+    }
+    if (replaces && ::fchmod(descriptor_, old.st_mode & 07777) != 0) {
+        const int problem = errno;
+        fail("cannot be given the mode of the file it replaces: " + because(problem));
+    }
+}
+
+PendingFile::~PendingFile() {
+    discard();
+}
+
+void PendingFile::discard() noexcept {
+    if (descriptor_ >= 0) ::close(descriptor_);
+    descriptor_ = -1;
+    if (!temporary_.empty()) ::unlink(temporary_.c_str());
+    temporary_.clear();
+}
+
+void PendingFile::fail(const std::string& problem) {
+    discard();
+    throw OutputError(target_.string() + ": " + problem);
+}
+
+void PendingFile::write(std::string_view bytes) {
+    if (descriptor_ < 0) throw OutputError(target_.string() + ": is closed already");
+    while (!bytes.empty()) {
+        const auto part = bytes.substr(0, buffer_bytes - buffer_.size());
+        buffer_ += part;
+        bytes.remove_prefix(part.size());
+        if (buffer_.size() == buffer_bytes) flush();
+    }
+}
+
+void PendingFile::flush() {
+    std::string_view left = buffer_;
+    while (!left.empty()) {
+        const auto written = ::write(descriptor_, left.data(), left.size());
+        if (written < 0 && errno == EINTR) continue;
+        if (written < 0) fail("could not be written: " + because(errno));
+        left.remove_prefix(static_cast<std::size_t>(written));
+    }
+    buffer_.clear();
+}
+
+void PendingFile::commit() {
+    if (descriptor_ < 0) throw OutputError(target_.string() + ": is closed already");
+    flush();
+    const bool direct = temporary_.empty();
+    if (!direct && !synchronise(descriptor_)) fail("could not be written: " + because(errno));
+    const int closing = descriptor_;
+    descriptor_ = -1;
+    if (::close(closing) != 0 && errno != EINTR) fail("could not be written: " + because(errno));
+    if (direct) return;
+    if (::rename(temporary_.c_str(), target_.c_str()) != 0) {
+        fail("could not be put in place: " + because(errno));
+    }
+    temporary_.clear();
+    // So that the name, too, survives a power cut; the data is whole with or without.
+    auto folder = target_.parent_path();
+    if (folder.empty()) folder = ".";
+    const int parent = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (parent < 0) return;
+    synchronise(parent);
+    ::close(parent);
+}
+
+}  // namespace palpate::io

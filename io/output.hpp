@@ -1,0 +1,43 @@
+// Output that is whole or not there: written beside its target under a temporary name and renamed
+// when complete. Every writer of ours goes through it. POSIX.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "io/error.hpp"
+
+namespace palpate::io {
+
+/// A file being written. Unless commit() is reached, the target stays what it was and nothing is
+/// left behind. A target that exists and is no regular file (/dev/stdout, a pipe, /dev/full) and
+/// "-", the standard output, are written directly instead: such a thing cannot be replaced, and its
+/// reader is waiting. A symbolic link is followed. Everything here throws OutputError.
+class PendingFile {
+  public:
+    /// Opens the temporary file, so what cannot be written is known before the work is done.
+    explicit PendingFile(const std::filesystem::path& target);
+    ~PendingFile();
+    PendingFile(const PendingFile&) = delete;
+    PendingFile& operator=(const PendingFile&) = delete;
+
+    /// Appends; buffered.
+    void write(std::string_view bytes);
+    /// Flushes to the disk and puts the file in its target's place. Nothing can be written after.
+    void commit();
+
+  private:
+    void open_temporary();
+    void flush();
+    [[noreturn]] void fail(const std::string& problem);
+    void discard() noexcept;
+
+    std::filesystem::path target_;
+    std::filesystem::path temporary_;  // empty where the target is written directly
+    int descriptor_ = -1;
+    std::string buffer_;
+};
+
+}  // namespace palpate::io

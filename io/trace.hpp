@@ -1,0 +1,64 @@
+// What happened in a replay or a session, as CSV: the trace has one row per tick, the path the
+// corners of the way that the SCP took. Doubles read back bit for bit.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/error.hpp"
+#include "io/output.hpp"
+#include "palpate/volume.hpp"
+
+namespace palpate::io {
+
+/// One tick.
+struct TraceRow {
+    double t = 0;                ///< [s]
+    Vec3 hip = Vec3::Zero();     ///< [mm, physical]
+    Vec3 scp = Vec3::Zero();     ///< [mm, physical]
+    Vec3 force = Vec3::Zero();   ///< [N]
+    double density = 0;          ///< f(SCP) [data units]
+    double isovalue = 0;         ///< [data units]
+    bool constrained = false;    ///< mode: constrained or free
+    int tetrahedra = 0;          ///< how many the SCP moved through
+    std::int64_t update_ns = 0;  ///< time of this proxy update alone
+};
+
+/// Writes a trace row by row; the file appears with commit(). Throws OutputError.
+class TraceWriter {
+  public:
+    /// Each comment, at the head of the file, is one or more lines of text without the #.
+    explicit TraceWriter(const std::filesystem::path& path,
+                         const std::vector<std::string>& comments = {});
+    void add(const TraceRow& row);
+    void commit() { file_.commit(); }
+
+  private:
+    PendingFile file_;
+    std::string line_;
+};
+
+/// Writes a path: columns tick, x, y, z [mm, physical]. Throws OutputError.
+class PathWriter {
+  public:
+    explicit PathWriter(const std::filesystem::path& path,
+                        const std::vector<std::string>& comments = {});
+    /// The corners of a tick in order, its end included.
+    void add(std::int64_t tick, const Vec3& corner);
+    void commit() { file_.commit(); }
+
+  private:
+    PendingFile file_;
+    std::string line_;
+};
+
+/// Reads a trace back; columns are found by name, further ones ignored, and none of the contract's
+/// may be missing. NaN and infinity are read as they were written. Throws InputError.
+std::vector<TraceRow> read_trace(const std::filesystem::path& path);
+/// The same from text that errors call `name`.
+std::vector<TraceRow> parse_trace(std::string_view text, const std::string& name);
+
+}  // namespace palpate::io

@@ -1,0 +1,41 @@
+// Trajectories: the rows of a CSV table with their order checked.
+#include "io/trajectory.hpp"
+
+#include "io/csv.hpp"
+#include "io/number.hpp"
+
+namespace palpate::io {
+
+Trajectory parse_trajectory(std::string_view text, const std::string& name) {
+    CsvReader rows(text, name);
+    const std::size_t time = rows.column("t");
+    const bool plain = rows.has_column("x") || !rows.has_column("hip_x");
+    const std::string prefix = plain ? "" : "hip_";
+    const std::size_t x = rows.column(prefix + "x");
+    const std::size_t y = rows.column(prefix + "y");
+    const std::size_t z = rows.column(prefix + "z");
+
+    Trajectory trajectory;
+    while (rows.next()) {
+        const double t = rows.finite_number(time);
+        if (!trajectory.time.empty() && !(t > trajectory.time.back())) {
+            std::string before;
+            append_number(before, trajectory.time.back());
+            rows.fail("the time " + quoted(rows.cell(time)) + " does not come after " + before +
+                      ", that of the row before: sort the rows and remove doubles");
+        }
+        trajectory.time.push_back(t);
+        trajectory.position.emplace_back(rows.finite_number(x), rows.finite_number(y),
+                                         rows.finite_number(z));
+    }
+    if (trajectory.time.empty()) {
+        throw InputError(name + ": has a header and no rows: add at least one position");
+    }
+    return trajectory;
+}
+
+Trajectory read_trajectory(const std::filesystem::path& path) {
+    return parse_trajectory(read_text(path), path.string());
+}
+
+}  // namespace palpate::io

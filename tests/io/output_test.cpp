@@ -1,0 +1,186 @@
+// Output is whole or not there.
+#include "io/output.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+
+#include <csignal>
+#include <thread>
+
+#include "support/scratch_folder.hpp"
+
+using namespace palpate::io;
+using namespace palpate::support;
+
+namespace {
+
+using Names = std::vector<std::string>;
+
+std::string failure(const std::filesystem::path& target) {
+    return message_of<OutputError>([&] {
+        PendingFile file(target);
+        file.write("text");
+        file.commit();
+    });
+}
+
+}  // namespace
+
+TEST(Output, appears_only_when_committed) {
+    const ScratchFolder folder;
+    PendingFile file(folder / "a.csv");
+    file.write("one ");
+    file.write("two");
+    EXPECT_FALSE(std::filesystem::exists(folder / "a.csv"));
+    file.commit();
+    EXPECT_EQ(bytes_of(folder / "a.csv"), "one two");
+    EXPECT_EQ(folder.names(), Names{"a.csv"});
+}
+
+TEST(Output, leaves_nothing_behind_and_the_old_file_whole_without_a_commit) {
+    const ScratchFolder folder;
+    put_bytes(folder / "a.csv", "old");
+    {
+        PendingFile file(folder / "a.csv");
+        file.write(std::string(5 << 20, 'x'));
+        EXPECT_EQ(folder.names().size(), 2U);
+    }
+    EXPECT_EQ(folder.names(), Names{"a.csv"});
+    EXPECT_EQ(bytes_of(folder / "a.csv"), "old");
+    try {
+        PendingFile file(folder / "b.csv");
+        throw std::runtime_error("interrupted");
+    } catch (const std::runtime_error&) {
+    }
+    EXPECT_EQ(folder.names(), Names{"a.csv"});
+}
+
+TEST(Output, replaces_a_file_and_keeps_its_mode) {
+    const ScratchFolder folder;
+    put_bytes(folder / "a.csv", "old");
+    std::filesystem::permissions(folder / "a.csv", std::filesystem::perms{0640});
+    PendingFile file(folder / "a.csv");
+    file.write("new");
+    file.commit();
+    EXPECT_EQ(bytes_of(folder / "a.csv"), "new");
+    EXPECT_EQ(std::filesystem::status(folder / "a.csv").permissions(),
+              std::filesystem::perms{0640});
+}
+
+TEST(Output, has_the_mode_of_any_new_file) {
+    const ScratchFolder folder;
+    const mode_t before = ::umask(027);
+    PendingFile file(folder / "a.csv");
+    file.commit();
+    ::umask(before);
+    EXPECT_EQ(std::filesystem::status(folder / "a.csv").permissions(),
+              std::filesystem::perms{0640});
+}
+
+TEST(Output, larger_than_its_buffer_is_whole) {
+    const ScratchFolder folder;
+    std::string expected;
+    PendingFile file(folder / "a.bin");
+    for (int i = 0; i < 300; ++i) {
+        const std::string part(static_cast<std::size_t>(i * 97), static_cast<char>(i));
+        expected += part;
+        file.write(part);
+    }
+    const std::string large(3'000'001, 'l');
+    file.write(large);
+    file.commit();
+    EXPECT_EQ(bytes_of(folder / "a.bin"), expected + large);
+}
+
+TEST(Output, into_two_files_of_one_folder_at_once_keeps_them_apart) {
+    const ScratchFolder folder;
+    PendingFile a(folder / "same.csv");
+    PendingFile b(folder / "same.csv");
+    a.write("a");
+    b.write("b");
+    b.commit();
+    a.commit();
+    EXPECT_EQ(bytes_of(folder / "same.csv"), "a");
+    EXPECT_EQ(folder.names(), Names{"same.csv"});
+}
+
+TEST(Output, to_a_folder_or_into_one_that_is_missing_says_so_in_one_line) {
+    const ScratchFolder folder;
+    put_bytes(folder / "file", "");
+    const std::string is_folder = failure(folder.path());
+    EXPECT_TRUE(contains(is_folder, "is a folder")) << is_folder;
+    EXPECT_TRUE(contains(failure(folder.path() / ""), "is a folder"));
+    const std::string missing = failure(folder / "none" / "a.csv");
+    EXPECT_TRUE(contains(missing, "the folder " + (folder / "none").string() + " does not exist"))
+        << missing;
+    const std::string through_file = failure(folder / "file" / "a.csv");
+    EXPECT_TRUE(contains(through_file, "ot a")) << through_file;
+    EXPECT_TRUE(contains(failure(folder / std::string(300, 'n')), "a shorter name"));
+    for (const auto& message : {is_folder, missing, through_file, failure("")}) {
+        EXPECT_EQ(message.find('\n'), std::string::npos);
+    }
+    EXPECT_EQ(folder.names(), Names{"file"});
+}
+
+TEST(Output, to_a_full_disk_is_an_error_and_leaves_the_device_alone) {
+    const ScratchFolder folder;
+    std::filesystem::create_symlink("/dev/full", folder / "full.csv");
+    const std::string message = failure(folder / "full.csv");
+    EXPECT_TRUE(contains(message, "No space left")) << message;
+    EXPECT_TRUE(std::filesystem::is_symlink(folder / "full.csv"));
+    EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
+}
+
+TEST(Output, past_the_limit_of_a_file_is_an_error_and_leaves_nothing_behind) {
+    const ScratchFolder folder;
+    rlimit old{};
+    ::getrlimit(RLIMIT_FSIZE, &old);
+    const auto old_action = std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit small{1 << 20, old.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &small);
+    const std::string message = message_of<OutputError>([&] {
+        PendingFile file(folder / "a.bin");
+        for (int i = 0; i < 100; ++i) file.write(std::string(100'000, 'x'));
+        file.commit();
+    });
+    ::setrlimit(RLIMIT_FSIZE, &old);
+    std::signal(SIGXFSZ, old_action);
+    EXPECT_TRUE(contains(message, "File too large")) << message;
+    EXPECT_TRUE(folder.names().empty());
+}
+
+TEST(Output, follows_a_symbolic_link_to_the_file_it_names) {
+    const ScratchFolder folder;
+    put_bytes(folder / "real.csv", "old");
+    std::filesystem::create_symlink("real.csv", folder / "link.csv");
+    PendingFile file(folder / "link.csv");
+    file.write("new");
+    file.commit();
+    EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.csv"));
+    EXPECT_EQ(bytes_of(folder / "real.csv"), "new");
+}
+
+TEST(Output, goes_straight_into_a_pipe) {
+    const ScratchFolder folder;
+    ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+    std::string received;
+    std::thread reader([&] { received = bytes_of(folder / "pipe"); });
+    {
+        PendingFile file(folder / "pipe");
+        file.write("through");
+        file.commit();
+    }
+    reader.join();
+    EXPECT_EQ(received, "through");
+    EXPECT_EQ(folder.names(), Names{"pipe"});
+}
+
+TEST(Output, to_a_dash_is_standard_output) {
+    testing::internal::CaptureStdout();
+    PendingFile file("-");
+    file.write("to the terminal\n");
+    file.commit();
+    EXPECT_EQ(testing::internal::GetCapturedStdout(), "to the terminal\n");
+    EXPECT_FALSE(std::filesystem::exists("-"));
+}
