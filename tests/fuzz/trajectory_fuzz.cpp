@@ -1,0 +1,43 @@
+// Any text is a trajectory that keeps its promises or a one-line InputError; the same for a trace.
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+#include "io/trace.hpp"
+#include "io/trajectory.hpp"
+
+namespace {
+
+void require(bool promise) {
+    if (!promise) std::abort();
+}
+
+void require_one_line(std::string_view message) {
+    require(message.starts_with("text") && message.size() < 1000);
+    for (const char c : message) require(c >= ' ' && c <= '~');
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const std::string_view text(reinterpret_cast<const char*>(data), size);
+    try {
+        const auto trajectory = palpate::io::parse_trajectory(text, "text");
+        require(!trajectory.time.empty());
+        require(trajectory.time.size() == trajectory.position.size());
+        for (std::size_t i = 0; i < trajectory.time.size(); ++i) {
+            require(std::isfinite(trajectory.time[i]) && trajectory.position[i].allFinite());
+            require(i == 0 || trajectory.time[i] > trajectory.time[i - 1]);
+        }
+    } catch (const palpate::io::InputError& error) {
+        require_one_line(error.what());
+    }
+    try {
+        for (const auto& row : palpate::io::parse_trace(text, "text")) require(row.tetrahedra >= 0);
+    } catch (const palpate::io::InputError& error) {
+        require_one_line(error.what());
+    }
+    return 0;
+}
