@@ -1,0 +1,69 @@
+#!/usr/bin/env bash
+# Installs the Debian packages that Palpate is built with (Debian 12).
+set -euo pipefail
+
+usage() {
+    cat <<'TEXT'
+usage: scripts/install_packages.sh [GROUP...]
+
+Installs the Debian 12 packages that Palpate is built with, as root or with sudo. What is there
+already is left alone; when nothing is missing, apt is not run at all.
+
+groups (default: all)
+  core     compiler, CMake, Eigen, GoogleTest, Google Benchmark, Python for the rule checks
+  io       core, and what reads and writes files: ITK, VTK, CLI11, fmt, JSON, PNG, zlib, gnuplot
+  viewer   io, and VTK's and Qt's windows
+  dev      clang, its sanitizers and fuzzer, clang-format, clang-tidy, shellcheck
+  all      everything above
+TEXT
+}
+
+core=(g++ cmake ninja-build ccache libeigen3-dev libgtest-dev libgmock-dev libbenchmark-dev python3)
+io=("${core[@]}" libinsighttoolkit5-dev libvtk9-dev libcli11-dev libfmt-dev nlohmann-json3-dev
+    libpng-dev zlib1g-dev gnuplot-nox)
+viewer=("${io[@]}" libvtk9-qt-dev)
+dev=(git clang clang-format-14 clang-tidy libclang-rt-14-dev shellcheck)
+
+wanted=()
+for group in "${@:-all}"; do
+    case "$group" in
+        core) wanted+=("${core[@]}") ;;
+        io) wanted+=("${io[@]}") ;;
+        viewer) wanted+=("${viewer[@]}") ;;
+        dev) wanted+=("${dev[@]}") ;;
+        all) wanted+=("${viewer[@]}" "${dev[@]}") ;;
+        -h | --help) usage; exit 0 ;;
+        *) echo "install_packages.sh: no group '$group'" >&2; usage >&2; exit 2 ;;
+    esac
+done
+
+if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
+    echo "install_packages.sh: this system has no apt; install what these Debian packages hold:" >&2
+    printf '%s\n' "${wanted[@]}" | sort -u >&2
+    exit 1
+fi
+
+missing=()
+while read -r package; do
+    status=$(dpkg-query -W -f='${db:Status-Status}\n' "$package" 2>/dev/null || true)
+    # A package of two architectures has a line for each.
+    grep -qx installed <<<"$status" || missing+=("$package")
+done < <(printf '%s\n' "${wanted[@]}" | sort -u)
+
+if [ ${#missing[@]} -eq 0 ]; then
+    echo "packages: everything is there (${*:-all})"
+    exit 0
+fi
+
+as_root=()
+if [ "$(id -u)" -ne 0 ]; then
+    if ! command -v sudo >/dev/null; then
+        echo "install_packages.sh: run it as root, or install sudo; missing: ${missing[*]}" >&2
+        exit 1
+    fi
+    as_root=(sudo)
+fi
+echo "packages: installing ${missing[*]}"
+"${as_root[@]}" apt-get update
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+    apt-get install -y --no-install-recommends "${missing[@]}"

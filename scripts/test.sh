@@ -1,0 +1,59 @@
+#!/usr/bin/env bash
+# Builds Palpate and runs its tests, from nothing but a Debian 12 system.
+set -euo pipefail
+
+usage() {
+    cat <<'TEXT'
+usage: scripts/test.sh [--no-packages] [PRESET] [CTEST OPTION...]
+
+Installs the packages that are missing, builds a preset in build/PRESET and runs its tests.
+
+presets (default: dev)
+  dev      optimised, assertions on, warnings are errors
+  release  what is installed
+  clang    release with clang
+  core     the core alone: standard library and Eigen, no ITK, no VTK
+  asan     address and undefined-behaviour sanitizers
+  tsan     thread sanitizer
+
+  --no-packages   do not look for packages; use what is there
+
+example: scripts/test.sh asan -R Surface
+TEXT
+}
+
+packages=yes
+preset=dev
+while [ $# -gt 0 ]; do
+    case "$1" in
+        -h | --help) usage; exit 0 ;;
+        --no-packages) packages=no; shift ;;
+        dev | release | clang | core | asan | tsan) preset=$1; shift; break ;;
+        -*) break ;;
+        *) echo "test.sh: no preset '$1'" >&2; usage >&2; exit 2 ;;
+    esac
+done
+
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+if [ "$packages" = yes ]; then
+    case "$preset" in
+        core) scripts/install_packages.sh core ;;
+        clang) scripts/install_packages.sh io dev ;;
+        *) scripts/install_packages.sh io ;;
+    esac
+fi
+
+# gcc 12's thread sanitizer cannot place its shadow memory where the kernel randomises addresses
+# widely; test programs run during the build too, so all of it runs without.
+fixed=()
+if [ "$preset" = tsan ] && setarch --addr-no-randomize true 2>/dev/null; then
+    fixed=(setarch --addr-no-randomize)
+fi
+
+echo "== configure ($preset)"
+cmake --preset "$preset"
+echo "== build ($preset)"
+"${fixed[@]}" cmake --build --preset "$preset" --parallel "$(nproc)"
+echo "== test ($preset)"
+"${fixed[@]}" ctest --preset "$preset" "$@"
