@@ -18,12 +18,3 @@ function(palpate_target name)
     target_link_options(${name} PUBLIC -fsanitize=fuzzer-no-link)
   endif()
 endfunction()
-
-# palpate_fuzz_target(NAME LIBRARIES...): NAME.cpp of the calling folder with libFuzzer's main.
-function(palpate_fuzz_target name)
-  add_executable(${name} ${name}.cpp)
-  palpate_target(${name})
-  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
-  target_link_options(${name} PRIVATE -fsanitize=fuzzer)
-  target_link_libraries(${name} PRIVATE palpate::palpate ${ARGN})
-endfunction()
