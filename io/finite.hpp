@@ -1,0 +1,38 @@
+// Samples that are not finite have no place in a field: this puts the least finite one there.
+// Shared by the raw reader and the helper program.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+
+namespace palpate::io {
+
+/// Replaces NaN and infinities by the least finite sample; returns how many there were (all of
+/// them, unchanged, if none is finite).
+inline std::uint64_t replace_non_finite(std::span<float> samples) {
+    float least = std::numeric_limits<float>::infinity();
+    std::uint64_t count = 0;
+    for (const float s : samples) {
+        if (!std::isfinite(s)) {
+            ++count;
+        } else if (s < least) {
+            least = s;
+        }
+    }
+    if (count == 0 || count == samples.size()) return count;
+    for (float& s : samples) {
+        if (!std::isfinite(s)) s = least;
+    }
+    return count;
+}
+
+/// The note that goes with it.
+inline std::string non_finite_note(std::uint64_t count) {
+    return std::to_string(count) + (count == 1 ? " sample was" : " samples were") +
+           " not finite (NaN or infinity) and became the least finite value";
+}
+
+}  // namespace palpate::io

@@ -1,0 +1,240 @@
+// What the readers inside the helper program share; see the header.
+#include "io/helper/decode.hpp"
+
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+#include <cstring>
+#include <limits>
+
+#include "io/finite.hpp"
+#include "io/helper/protocol.hpp"
+
+namespace palpate::io {
+namespace {
+
+template <class F>
+auto with_stored(Stored stored, F&& f) {
+    switch (stored) {
+        case Stored::int8:
+            return f(std::int8_t{});
+        case Stored::uint8:
+            return f(std::uint8_t{});
+        case Stored::int16:
+            return f(std::int16_t{});
+        case Stored::uint16:
+            return f(std::uint16_t{});
+        case Stored::int32:
+            return f(std::int32_t{});
+        case Stored::uint32:
+            return f(std::uint32_t{});
+        case Stored::int64:
+            return f(std::int64_t{});
+        case Stored::uint64:
+            return f(std::uint64_t{});
+        case Stored::float32:
+            return f(float{});
+        case Stored::float64:
+            break;
+    }
+    return f(double{});
+}
+
+template <class F>
+void with_kept(SampleType type, F&& f) {
+    switch (type) {
+        case SampleType::uint8:
+            return f(std::uint8_t{});
+        case SampleType::int16:
+            return f(std::int16_t{});
+        case SampleType::uint16:
+            return f(std::uint16_t{});
+        case SampleType::float32:
+            return f(float{});
+    }
+}
+
+void say(const nlohmann::json& what) {
+    const std::string line = line_from(what);
+    // The caller may be gone; then there is nobody to tell.
+    [[maybe_unused]] const auto written = write(report_descriptor, line.data(), line.size());
+}
+
+std::string gigabytes(double bytes) {
+    return text_of(bytes / 1e9) + " GB";
+}
+
+}  // namespace
+
+std::size_t size_of(Stored stored) {
+    return with_stored(stored, [](auto s) { return sizeof s; });
+}
+
+std::string name_of(Stored stored) {
+    static const char* const names[] = {"int8",   "uint8", "int16",  "uint16",  "int32",
+                                        "uint32", "int64", "uint64", "float32", "float64"};
+    return names[static_cast<int>(stored)];
+}
+
+SampleType kept_as(Stored stored) {
+    switch (stored) {
+        case Stored::uint8:
+            return SampleType::uint8;
+        case Stored::int8:
+        case Stored::int16:
+            return SampleType::int16;
+        case Stored::uint16:
+            return SampleType::uint16;
+        default:
+            return SampleType::float32;
+    }
+}
+
+void note_conversion(Stored stored, std::vector<std::string>& notes) {
+    const std::string kept(name_of(kept_as(stored)));
+    if (kept == name_of(stored)) return;
+    notes.push_back("samples of type " + name_of(stored) + " became " + kept +
+                    (stored == Stored::int8 ? "" : " (exact to about 7 digits)"));
+}
+
+void convert(Stored stored, const std::byte* from, std::size_t stride, SampleType type,
+             std::byte* to, std::size_t count) {
+    with_stored(stored, [&](auto source) {
+        with_kept(type, [&](auto target) {
+            using From = decltype(source);
+            using To = decltype(target);
+            for (std::size_t i = 0; i < count; ++i) {
+                From value;
+                std::memcpy(&value, from + i * stride * sizeof(From), sizeof value);
+                const To kept = static_cast<To>(value);
+                std::memcpy(to + i * sizeof(To), &kept, sizeof kept);
+            }
+        });
+    });
+}
+
+std::pair<double, double> range_of(Stored stored, std::span<const std::byte> samples) {
+    return with_stored(stored, [&](auto type) {
+        using T = decltype(type);
+        std::pair<double, double> range{std::numeric_limits<double>::infinity(),
+                                        -std::numeric_limits<double>::infinity()};
+        for (std::size_t at = 0; at + sizeof(T) <= samples.size(); at += sizeof(T)) {
+            T value;
+            std::memcpy(&value, samples.data() + at, sizeof value);
+            const auto number = static_cast<double>(value);
+            range.first = number < range.first ? number : range.first;
+            range.second = number > range.second ? number : range.second;
+        }
+        return range;
+    });
+}
+
+std::span<std::byte> shared_samples(std::uint64_t bytes) {
+    if (ftruncate(samples_descriptor, static_cast<off_t>(bytes)) != 0) {
+        throw Failure("no memory for " + gigabytes(static_cast<double>(bytes)) +
+                      " of samples; use a smaller volume");
+    }
+    void* at = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, samples_descriptor, 0);
+    if (at == MAP_FAILED) {
+        throw Failure("no memory for " + gigabytes(static_cast<double>(bytes)) +
+                      " of samples; use a smaller volume");
+    }
+    return {static_cast<std::byte*>(at), bytes};
+}
+
+std::uint64_t checked_bytes(std::span<const std::int64_t> sizes, std::size_t bytes_per_sample,
+                            std::uint64_t file_bytes, const Request& request) {
+    double bytes = static_cast<double>(bytes_per_sample);
+    for (const std::int64_t s : sizes) {
+        if (s < 1 || s > 1 << 20) {
+            throw Failure("its header gives the size " + text_of(sizes) +
+                          ", which is not possible; the header is damaged");
+        }
+        bytes *= static_cast<double>(s);
+    }
+    if (bytes > 1100.0 * static_cast<double>(file_bytes) + 1e6) {
+        throw Failure("its header says " + text_of(sizes) + " samples (" + gigabytes(bytes) +
+                      "), the file has only " + std::to_string(file_bytes) +
+                      " bytes; it is cut off or its header is damaged: copy it again");
+    }
+    if (bytes > static_cast<double>(request.memory_limit)) {
+        throw Failure("its " + text_of(sizes) + " samples need " + gigabytes(bytes) +
+                      " of memory, the limit is " +
+                      gigabytes(static_cast<double>(request.memory_limit)) +
+                      "; crop or downsample it");
+    }
+    return static_cast<std::uint64_t>(bytes);
+}
+
+int checked_time_step(const Request& request, std::int64_t steps) {
+    if (request.time_step < 0 || request.time_step >= steps) {
+        throw Failure("there is no time step " + std::to_string(request.time_step) + ": it has " +
+                      std::to_string(steps) +
+                      (steps == 1 ? ", number 0" : ", numbered from 0; choose one of them"));
+    }
+    return request.time_step;
+}
+
+void finish(Result& result, const Request& request, std::span<std::byte> samples) {
+    if (request.spacing) result.geometry.spacing = *request.spacing;
+    try {
+        check(result.geometry);
+    } catch (const std::invalid_argument& e) {
+        throw Failure(e.what());
+    }
+    if (result.type != SampleType::float32) return;
+    const std::span<float> floats{reinterpret_cast<float*>(samples.data()),
+                                  samples.size() / sizeof(float)};
+    const auto count = replace_non_finite(floats);
+    if (count == floats.size()) {
+        throw Failure("none of its samples is a finite number; export it again");
+    }
+    if (count > 0) result.notes.push_back(non_finite_note(count));
+}
+
+void say_progress(double fraction) {
+    say({{"progress", fraction}});
+}
+void say_doing(const std::string& what) {
+    say({{"doing", what}});
+}
+
+std::string text_of(std::span<const std::int64_t> sizes) {
+    std::string text;
+    for (const auto s : sizes) {
+        if (!text.empty()) text += 'x';
+        text += std::to_string(s);
+    }
+    return text;
+}
+
+std::string quoted(const std::filesystem::path& file) {
+    std::string text = "'";
+    text += file.filename().string();
+    text += '\'';
+    return text;
+}
+
+std::string text_of(double number) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.6g", number);
+    return text;
+}
+
+std::string lower(std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return text;
+}
+
+std::string trimmed(const std::string& text) {
+    const char* const blank = " \t\r\n";
+    const auto begin = text.find_first_not_of(blank);
+    if (begin == std::string::npos) return {};
+    return text.substr(begin, text.find_last_not_of(blank) - begin + 1);
+}
+
+}  // namespace palpate::io

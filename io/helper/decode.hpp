@@ -1,0 +1,87 @@
+// What the readers inside the helper program share: the request, the result, and how samples of any
+// type get into the memory that the caller will adopt. No format's library is needed here.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "palpate/volume.hpp"
+
+namespace palpate::io {
+
+/// Ends the job. what() says what is wrong and what to do; the caller puts the file's name before.
+class Failure : public std::runtime_error {
+  public:
+    using std::runtime_error::runtime_error;
+};
+
+struct Request {
+    std::filesystem::path path;
+    std::string series;
+    int time_step = 0;
+    std::uint64_t memory_limit = UINT64_MAX;  ///< [bytes]
+    std::optional<Vec3> spacing;              ///< [mm] instead of the file's
+};
+
+struct Result {
+    std::string format;
+    Geometry geometry;
+    SampleType type = SampleType::uint8;
+    int time_steps = 1;
+    std::vector<std::string> notes;
+};
+
+/// How a file stores a sample.
+enum class Stored { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
+
+std::size_t size_of(Stored stored);
+std::string name_of(Stored stored);
+/// The type its samples have in a Volume.
+SampleType kept_as(Stored stored);
+/// Appends a note if that is another type.
+void note_conversion(Stored stored, std::vector<std::string>& notes);
+
+/// Converts `count` samples, `stride` samples apart at `from`; `to` has room for them.
+void convert(Stored stored, const std::byte* from, std::size_t stride, SampleType type,
+             std::byte* to, std::size_t count);
+
+/// Least and greatest of some samples (NaN left out; +inf, -inf if there are none).
+std::pair<double, double> range_of(Stored stored, std::span<const std::byte> samples);
+
+/// The memory that the caller adopts, sized and mapped. Throws Failure if there is not enough.
+/// May be called again with another size: only the last one counts.
+std::span<std::byte> shared_samples(std::uint64_t bytes);
+
+/// Bytes of a grid, checked before anything is allocated: no size below 1 or above 2^20, the whole
+/// within the limit. `file_bytes` is what holds it; no compression packs better than 1100 : 1.
+std::uint64_t checked_bytes(std::span<const std::int64_t> sizes, std::size_t bytes_per_sample,
+                            std::uint64_t file_bytes, const Request& request);
+
+/// Which volume of a 4-D file; throws Failure that says how many there are.
+int checked_time_step(const Request& request, std::int64_t steps);
+
+/// Geometry and finite samples; the requested spacing is put in. Throws Failure.
+void finish(Result& result, const Request& request, std::span<std::byte> samples);
+
+/// Tells the caller how far it is, and what with (for the message, should it crash).
+void say_progress(double fraction);
+void say_doing(const std::string& what);
+
+/// "301x324x56"
+std::string text_of(std::span<const std::int64_t> sizes);
+/// A file's name without its folder, in quotes.
+std::string quoted(const std::filesystem::path& file);
+/// A number as people write it.
+std::string text_of(double number);
+/// Lower case, and without spaces around it.
+std::string lower(std::string text);
+std::string trimmed(const std::string& text);
+
+}  // namespace palpate::io

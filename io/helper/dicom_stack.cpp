@@ -1,0 +1,273 @@
+// From a pile of DICOM slices to a regular grid; see the header and docs/io.md.
+#include "io/helper/dicom_stack.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace palpate::io {
+namespace {
+
+constexpr double same_place_mm = 0.005;
+constexpr double even_mm = 0.01;       // rounding in the files' decimals
+constexpr double even_part = 0.02;     // of the spacing
+constexpr double shift_pixels = 0.05;  // more is gantry tilt
+
+std::string key_of(const DicomSlice& s) {
+    std::string key = s.series_uid + "|" + std::to_string(s.rows) + "x" + std::to_string(s.columns);
+    for (const auto& v : {s.row, s.column, s.pixel}) {
+        if (!v) continue;
+        for (int i = 0; i < 3; ++i) {
+            key += '|';
+            key += std::to_string(std::lround((*v)[i] * 1000));
+        }
+    }
+    return key;
+}
+
+/// The slices in order along the normal; all those at one place are one group.
+using Groups = std::vector<std::vector<PlacedSlice>>;
+
+Groups groups_of(const DicomSeries& series, const Vec3& normal) {
+    std::vector<PlacedSlice> placed;
+    for (std::size_t i = 0; i < series.slices.size(); ++i) {
+        placed.push_back({i, normal.dot(*series.slices[i].position), 0, 0});
+    }
+    std::stable_sort(placed.begin(), placed.end(),
+                     [](const auto& a, const auto& b) { return a.along < b.along; });
+    Groups groups;
+    for (const PlacedSlice& p : placed) {
+        if (groups.empty() || p.along - groups.back().front().along > same_place_mm) {
+            groups.emplace_back();
+        }
+        groups.back().push_back(p);
+    }
+    for (auto& group : groups) {
+        std::stable_sort(group.begin(), group.end(), [&](const auto& a, const auto& b) {
+            const auto& x = series.slices[a.slice];
+            const auto& y = series.slices[b.slice];
+            return std::pair(x.acquisition, x.instance) < std::pair(y.acquisition, y.instance);
+        });
+    }
+    return groups;
+}
+
+void choose_time_step(const Groups& groups, const Request& request, Stack& stack) {
+    const std::size_t steps = groups.front().size();
+    for (const auto& group : groups) {
+        if (group.size() == steps) continue;
+        throw Failure("some of its slices lie at the same place (" + std::to_string(group.size()) +
+                      " here, " + std::to_string(steps) +
+                      " there): the series is incomplete or mixed; export it again");
+    }
+    const int step = checked_time_step(request, static_cast<std::int64_t>(steps));
+    stack.time_steps = static_cast<int>(steps);
+    for (const auto& group : groups) stack.slices.push_back(group[static_cast<std::size_t>(step)]);
+    if (steps > 1) {
+        stack.notes.push_back("time step " + std::to_string(step) + " of " + std::to_string(steps) +
+                              " (0 to " + std::to_string(steps - 1) + ") was taken");
+    }
+}
+
+/// The distance between the grid's slices, and whether every slice lies on one of them.
+struct Steps {
+    double spacing = 1;
+    std::size_t count = 1;
+    double tolerance = 0;  ///< [mm] a slice this near to a grid slice is taken as it is
+};
+
+Steps steps_of(Stack& stack) {
+    std::vector<double> gaps;
+    for (std::size_t i = 1; i < stack.slices.size(); ++i) {
+        gaps.push_back(stack.slices[i].along - stack.slices[i - 1].along);
+    }
+    std::vector<double> sorted = gaps;
+    std::sort(sorted.begin(), sorted.end());
+    const double median = sorted[sorted.size() / 2];
+    const double total = stack.slices.back().along;
+    const double tolerance = std::max(even_mm, even_part * median);
+    if (sorted.back() - median <= tolerance && median - sorted.front() <= tolerance) {
+        return {total / static_cast<double>(gaps.size()), gaps.size() + 1, 0.5 * median};
+    }
+    double steps = 0;
+    bool multiples = true;
+    for (const double gap : gaps) {
+        const double k = std::max(1.0, std::round(gap / median));
+        multiples = multiples && std::abs(gap - k * median) <= 0.1 * median;
+        steps += k;
+    }
+    if (!multiples) steps = std::max(1.0, std::round(total / median));
+    if (steps > 4.0 * static_cast<double>(stack.slices.size())) {
+        throw Failure("its " + std::to_string(stack.slices.size()) + " slices are spread over " +
+                      text_of(total) + " mm, mostly gaps; give a complete series");
+    }
+    const auto count = static_cast<std::size_t>(steps) + 1;
+    const double spacing = total / steps;
+    if (multiples) {
+        stack.notes.push_back(std::to_string(count - stack.slices.size()) + " of " +
+                              std::to_string(count) +
+                              " slices are missing: filled by interpolation between their "
+                              "neighbours, do not trust what is felt there");
+        return {spacing, count, 0.2 * spacing};
+    }
+    stack.notes.push_back("its slices are not evenly spaced (" + text_of(sorted.front()) + " to " +
+                          text_of(sorted.back()) + " mm): interpolated every " + text_of(spacing) +
+                          " mm");
+    return {spacing, count, even_part * spacing};
+}
+
+void fill_grid(const Steps& steps, Stack& stack) {
+    std::size_t below = 0;
+    for (std::size_t k = 0; k < steps.count; ++k) {
+        const double at = static_cast<double>(k) * steps.spacing;
+        while (below + 1 < stack.slices.size() && stack.slices[below + 1].along <= at) ++below;
+        const std::size_t above = std::min(below + 1, stack.slices.size() - 1);
+        const double before = at - stack.slices[below].along;
+        const double after = stack.slices[above].along - at;
+        GridSlice slice{below, above, 0};
+        if (after < before && std::abs(after) <= steps.tolerance) {
+            slice = {above, above, 0};
+        } else if (std::abs(before) > steps.tolerance && above != below) {
+            slice.weight = before / (before + after);
+        }
+        stack.grid.push_back(slice);
+    }
+}
+
+void find_shear(const DicomSeries& series, const Vec3& row, const Vec3& column, Stack& stack) {
+    const DicomSlice& first = series.slices[stack.slices.front().slice];
+    double last_u = 0, last_v = 0, worst = 0;
+    for (PlacedSlice& p : stack.slices) {
+        const Vec3 d = *series.slices[p.slice].position - *first.position;
+        p.u = row.dot(d) / (*first.pixel)[0];
+        p.v = column.dot(d) / (*first.pixel)[1];
+        stack.first_u = std::min(stack.first_u, p.u);
+        stack.first_v = std::min(stack.first_v, p.v);
+        last_u = std::max(last_u, p.u);
+        last_v = std::max(last_v, p.v);
+        worst = std::max({worst, std::abs(p.u), std::abs(p.v)});
+    }
+    if (worst <= shift_pixels) {
+        stack.first_u = stack.first_v = 0;
+        return;
+    }
+    const Vec3 whole = *series.slices[stack.slices.back().slice].position - *first.position;
+    const double angle =
+        std::atan2(std::hypot(row.dot(whole), column.dot(whole)), stack.slices.back().along);
+    stack.sheared = true;
+    stack.notes.push_back("its slices are shifted against each other (gantry tilt of " +
+                          text_of(std::round(angle * 1800 / 3.14159265358979) / 10) +
+                          " degrees): straightened by interpolation within the slices");
+    const auto more = [](double low, double high) {
+        return static_cast<int>(std::ceil(high - low - 1e-6));
+    };
+    const int wide = more(stack.first_u, last_u), high = more(stack.first_v, last_v);
+    if (wide > 2 * first.columns || high > 2 * first.rows) {
+        throw Failure("its slices are shifted by more than their own size; give another series");
+    }
+    stack.geometry.size[0] += wide;
+    stack.geometry.size[1] += high;
+}
+
+/// Slices without position or orientation: a plain pile in the order of their numbers.
+void pile_up(const DicomSeries& series, const Request& request, Stack& stack) {
+    for (std::size_t i = 0; i < series.slices.size(); ++i) stack.slices.push_back({i, 0, 0, 0});
+    std::stable_sort(stack.slices.begin(), stack.slices.end(), [&](const auto& a, const auto& b) {
+        return series.slices[a.slice].instance < series.slices[b.slice].instance;
+    });
+    for (std::size_t i = 0; i < stack.slices.size(); ++i) stack.grid.push_back({i, i, 0});
+    checked_time_step(request, 1);
+    stack.notes.emplace_back("its slices say nothing of their position: piled up by their numbers");
+}
+
+void set_single_spacing(const DicomSlice& slice, Stack& stack) {
+    stack.geometry.spacing[2] = slice.thickness > 0 ? slice.thickness : 1;
+    if (!(slice.thickness > 0)) {
+        stack.notes.emplace_back("it gives no distance between slices: 1 mm was taken");
+    }
+}
+
+}  // namespace
+
+std::vector<DicomSeries> series_of(std::vector<DicomSlice> slices) {
+    std::map<std::string, DicomSeries> sorted;
+    for (DicomSlice& s : slices) {
+        DicomSeries& series = sorted[key_of(s)];
+        series.uid = s.series_uid;
+        series.description = s.description;
+        series.modality = s.modality;
+        series.slices.push_back(std::move(s));
+    }
+    std::vector<DicomSeries> all;
+    for (auto& [key, series] : sorted) all.push_back(std::move(series));
+    return all;
+}
+
+const DicomSeries& choose_series(const std::vector<DicomSeries>& all, const std::string& chosen) {
+    if (all.size() == 1 && chosen.empty()) return all.front();
+    std::vector<const DicomSeries*> matching;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (chosen == std::to_string(i + 1) || chosen == all[i].uid) matching.push_back(&all[i]);
+    }
+    if (matching.size() == 1) return *matching.front();
+    std::string text = chosen.empty()     ? "has " + std::to_string(all.size()) + " DICOM series"
+                       : matching.empty() ? "has no DICOM series '" + chosen + "'"
+                                          : "has several DICOM series '" + chosen + "'";
+    text += "; choose one with --series NUMBER (or its UID):";
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const DicomSeries& s = all[i];
+        const DicomSlice& one = s.slices.front();
+        text += "\n  " + std::to_string(i + 1) + "  " + std::to_string(s.slices.size()) +
+                (s.slices.size() == 1 ? " slice of " : " slices of ") +
+                std::to_string(one.columns) + "x" + std::to_string(one.rows) + "  " + s.modality +
+                " '" + s.description + "'  " + s.uid;
+    }
+    throw Failure(text);
+}
+
+Stack stack_slices(const DicomSeries& series, const Request& request) {
+    Stack stack;
+    const DicomSlice& any = series.slices.front();
+    stack.geometry.size = {any.columns, any.rows, 1};
+    const bool placed = std::all_of(series.slices.begin(), series.slices.end(),
+                                    [](const auto& s) { return s.position && s.row && s.column; });
+    DicomSeries scaled = series;  // with a pixel size, come what may
+    if (!any.pixel) {
+        stack.notes.emplace_back("it gives no pixel spacing: 1 mm was taken");
+        for (auto& s : scaled.slices) s.pixel = Vec3(1, 1, 0);
+    }
+    stack.geometry.spacing.head<2>() = scaled.slices.front().pixel->head<2>();
+    if (!placed) {
+        pile_up(scaled, request, stack);
+        set_single_spacing(any, stack);
+        stack.geometry.size[2] = static_cast<int>(stack.slices.size());
+        return stack;
+    }
+    const Vec3 row = any.row->normalized();
+    const Vec3 column = (*any.column - row * row.dot(*any.column)).normalized();
+    if (!(std::abs(row.dot(any.column->normalized())) < 1e-3)) {
+        throw Failure("its row and column directions are not at right angles; export it again");
+    }
+    const Vec3 normal = row.cross(column);
+    choose_time_step(groups_of(scaled, normal), request, stack);
+    const double start = stack.slices.front().along;
+    for (PlacedSlice& p : stack.slices) p.along -= start;
+    find_shear(scaled, row, column, stack);
+    if (stack.slices.size() > 1) {
+        const Steps steps = steps_of(stack);
+        fill_grid(steps, stack);
+        stack.geometry.spacing[2] = steps.spacing;
+    } else {
+        stack.grid.push_back({0, 0, 0});
+        set_single_spacing(any, stack);
+    }
+    stack.geometry.size[2] = static_cast<int>(stack.grid.size());
+    stack.geometry.direction << row, column, normal;
+    const DicomSlice& first = scaled.slices[stack.slices.front().slice];
+    stack.geometry.origin = *first.position + row * (stack.first_u * stack.geometry.spacing[0]) +
+                            column * (stack.first_v * stack.geometry.spacing[1]);
+    return stack;
+}
+
+}  // namespace palpate::io

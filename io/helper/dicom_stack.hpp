@@ -1,0 +1,60 @@
+// From a pile of DICOM slices to a regular grid: which slices there are, in what order they lie,
+// what is missing, and how far they are shifted against each other. Knows no library.
+#pragma once
+
+#include "io/helper/decode.hpp"
+
+namespace palpate::io {
+
+/// What the header of one slice says.
+struct DicomSlice {
+    std::filesystem::path file;
+    std::string series_uid, description, modality;
+    int rows = 0, columns = 0, frames = 1;
+    int instance = 0, acquisition = 0;
+    std::optional<Vec3> position;     ///< [mm, LPS] centre of the first pixel
+    std::optional<Vec3> row, column;  ///< unit vectors along a row and along a column
+    std::optional<Vec3> pixel;        ///< [mm] between columns, between rows, 0
+    double thickness = 0;             ///< [mm] between slices or of one; 0 if not given
+};
+
+/// Slices that belong together: one series UID, one size, one orientation.
+struct DicomSeries {
+    std::string uid, description, modality;
+    std::vector<DicomSlice> slices;
+};
+
+/// Sorts slices into series, in the order of their UIDs.
+std::vector<DicomSeries> series_of(std::vector<DicomSlice> slices);
+
+/// The series that `chosen` names by number (from 1) or UID, or the only one there is. Otherwise
+/// throws Failure whose first line says what to do and whose further lines list the series.
+const DicomSeries& choose_series(const std::vector<DicomSeries>& all, const std::string& chosen);
+
+/// One slice in its place.
+struct PlacedSlice {
+    std::size_t slice = 0;  ///< which of the series
+    double along = 0;       ///< [mm] from the first slice, along the normal
+    double u = 0, v = 0;    ///< shift within the plane against the first slice [pixels]
+};
+
+/// A grid slice: a slice as it is, or two of them mixed (the second with `weight`).
+struct GridSlice {
+    std::size_t first = 0, second = 0;  ///< which of Stack::slices
+    double weight = 0;
+};
+
+struct Stack {
+    Geometry geometry;
+    std::vector<PlacedSlice> slices;  ///< of the chosen time step, in order along the normal
+    std::vector<GridSlice> grid;      ///< one for every slice of the geometry
+    double first_u = 0, first_v = 0;  ///< where the grid's column 0 and row 0 lie [pixels]
+    bool sheared = false;             ///< gantry tilt: the slices' shifts have to be undone
+    int time_steps = 1;
+    std::vector<std::string> notes;
+};
+
+/// Throws Failure where no sensible grid exists.
+Stack stack_slices(const DicomSeries& series, const Request& request);
+
+}  // namespace palpate::io

@@ -1,0 +1,207 @@
+// palpate-io-helper: reads or writes one volume with the formats' libraries and reports; what it
+// says is described in protocol.hpp. It exists so that a library's crash is not the caller's.
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <new>
+
+#include "io/helper/protocol.hpp"
+#include "io/helper/readers.hpp"
+
+#include <sys/mman.h>
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define PALPATE_SANITIZED 1
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define PALPATE_SANITIZED 1
+#endif
+#endif
+
+namespace palpate::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+// What a writer leaves in its folder, for the signal handler, which may not allocate.
+char unfinished[3][4096];
+char unfinished_folder[4096];
+
+extern "C" void clean_up_and_go(int signal_number) {
+    for (const auto& file : unfinished) {
+        if (file[0] != '\0') unlink(file);
+    }
+    if (unfinished_folder[0] != '\0') rmdir(unfinished_folder);
+    signal(signal_number, SIG_DFL);
+    raise(signal_number);
+}
+
+/// Goes with the caller, leaves no core file, and takes no more memory than it may.
+void limit_this_process(std::uint64_t memory) {
+    prctl(PR_SET_PDEATHSIG, SIGTERM);
+    if (getppid() == 1) std::exit(1);  // the caller died before that line
+    const rlimit none{0, 0};
+    setrlimit(RLIMIT_CORE, &none);
+#ifndef PALPATE_SANITIZED  // a sanitizer's shadow is address space too
+    // Room for what a library holds besides: the file's 4-D samples, slices before they are put
+    // together.
+    const rlim_t space = 3 * memory + (rlim_t{2} << 30);
+    const rlimit limit{space, space};
+    if (memory < UINT64_MAX / 4) setrlimit(RLIMIT_AS, &limit);
+#else
+    (void)memory;
+#endif
+}
+
+bool ends_with(const std::string& text, const std::string& end) {
+    return text.size() >= end.size() &&
+           text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+std::string extension_of(const fs::path& path) {
+    const std::string name = lower(path.filename().string());
+    return ends_with(name, ".nii.gz") ? ".nii.gz" : lower(path.extension().string());
+}
+
+Result read_folder(const Request& request) {
+    bool dicom = false, tiff = false, folders = false;
+    for (const auto& entry : fs::directory_iterator(request.path)) {
+        folders |= entry.is_directory();
+        if (!entry.is_regular_file()) continue;
+        dicom = dicom || looks_like_dicom(entry.path());
+        tiff = tiff || looks_like_tiff(entry.path());
+    }
+    if (dicom) return read_dicom_folder(request);
+    if (tiff) return read_tiff_folder(request);
+    throw Failure(std::string("is a folder with no DICOM or TIFF slices in it; ") +
+                  (folders ? "give one of the folders in it, or a volume file"
+                           : "give a volume file or another folder"));
+}
+
+Result read(const Request& request) {
+    if (fs::is_directory(request.path)) return read_folder(request);
+    const std::string extension = extension_of(request.path);
+    if (extension == ".nrrd" || extension == ".nhdr") return read_nrrd(request);
+    if (extension == ".mha" || extension == ".mhd") return read_meta_image(request);
+    if (extension == ".nii" || extension == ".nii.gz") return read_nifti(request);
+    if (extension == ".vti") return read_vti(request);
+    if (extension == ".tif" || extension == ".tiff") return read_tiff_file(request);
+    if (extension == ".dcm" || extension == ".dicom" || extension == ".ima" ||
+        looks_like_dicom(request.path)) {
+        return read_dicom_file(request);
+    }
+    throw Failure(
+        "has no extension of a known format (nrrd, nhdr, mha, mhd, nii, nii.gz, dcm, tif, vti); if "
+        "it holds nothing but samples, give --dims WxHxD and --type");
+}
+
+nlohmann::json run_read(const fs::path& path, const nlohmann::json& asked) {
+    Request request;
+    request.path = path;
+    request.series = asked.at("series").get<std::string>();
+    request.time_step = asked.at("time_step").get<int>();
+    request.memory_limit = asked.at("memory").get<std::uint64_t>();
+    if (asked.contains("spacing")) request.spacing = vec3_from(asked["spacing"]);
+    limit_this_process(request.memory_limit);
+    const Result result = read(request);
+    return {{"geometry", json_from(result.geometry)},
+            {"type", name_of(result.type)},
+            {"format", result.format},
+            {"time_steps", result.time_steps},
+            {"notes", result.notes}};
+}
+
+void remember_unfinished(const fs::path& path) {
+    const auto keep = [](char* to, const std::string& text) {
+        std::snprintf(to, sizeof unfinished[0], "%s", text.c_str());
+    };
+    keep(unfinished[0], path.string());
+    keep(unfinished[1], fs::path(path).replace_extension(".raw").string());
+    keep(unfinished[2], fs::path(path).replace_extension(".zraw").string());
+    keep(unfinished_folder, path.parent_path().string());
+    for (const int s : {SIGINT, SIGTERM, SIGHUP}) signal(s, clean_up_and_go);
+}
+
+nlohmann::json run_write(const fs::path& path, const nlohmann::json& asked) {
+    remember_unfinished(path);
+    const Geometry geometry = geometry_from(asked.at("geometry"));
+    const SampleType type = sample_type_from(asked.at("type").get<std::string>());
+    const bool compress = asked.at("compress").get<bool>();
+    check(geometry);
+    const auto bytes = static_cast<std::size_t>(sample_count(geometry)) * size_of(type);
+    limit_this_process(std::max<std::uint64_t>(bytes, 1 << 30));
+    void* const samples = mmap(nullptr, bytes, PROT_READ, MAP_SHARED, samples_descriptor, 0);
+    if (samples == MAP_FAILED) throw std::bad_alloc();
+    const std::string extension = extension_of(path);
+    static const char* const known[] = {".nrrd", ".nhdr",   ".mha", ".mhd",
+                                        ".nii",  ".nii.gz", ".vti"};
+    if (std::find(std::begin(known), std::end(known), extension) == std::end(known)) {
+        throw Failure(
+            "has no extension of a format that can be written; use .nrrd, .nhdr, .mha, "
+            ".mhd, .nii, .nii.gz or .vti");
+    }
+    if (extension == ".vti") {
+        write_vti(path, geometry, type, samples, compress);
+    } else {
+        write_with_itk(path, extension, geometry, type, samples,
+                       compress || extension == ".nii.gz");
+    }
+    return nlohmann::json::object();
+}
+
+/// One line of whatever a library says.
+std::string one_line(std::string text) {
+    std::string line;
+    for (const char c : text) {
+        const bool blank = c == '\n' || c == '\r' || c == '\t' || c == ' ';
+        if (!blank) line += c;
+        if (blank && !line.empty() && line.back() != ' ') line += ' ';
+    }
+    const auto colon = line.find("): ");  // "itk::ERROR: NrrdImageIO(0x55..): what is wrong"
+    if (line.rfind("itk::ERROR", 0) == 0 || line.find("itk::ERROR") != std::string::npos) {
+        if (colon != std::string::npos) line = line.substr(colon + 3);
+    }
+    return trimmed(line).substr(0, 300);
+}
+
+void say(const nlohmann::json& what) {
+    const std::string line = line_from(what);
+    [[maybe_unused]] const auto written = write(report_descriptor, line.data(), line.size());
+}
+
+int run(int argc, char** argv) {
+    if (argc != 4) {
+        std::fputs("palpate-io-helper is started by palpate; there is nothing to do by hand\n",
+                   stderr);
+        return 2;
+    }
+    try {
+        const auto asked = nlohmann::json::parse(argv[3]);
+        const bool reading = std::strcmp(argv[1], "read") == 0;
+        say({{"done", reading ? run_read(argv[2], asked) : run_write(argv[2], asked)}});
+        return 0;
+    } catch (const Failure& e) {
+        say({{"error", e.what()}});
+    } catch (const std::bad_alloc&) {
+        say({{"error", "not enough memory; crop or downsample the volume"}});
+    } catch (const std::exception& e) {
+        say({{"error", "the format's library refused it (" + one_line(e.what()) +
+                           "); it is damaged or of a kind that is not read"}});
+    }
+    return 1;
+}
+
+}  // namespace
+}  // namespace palpate::io
+
+int main(int argc, char** argv) {
+    const int status = palpate::io::run(argc, argv);
+    // No destructors of the libraries: some of them crash on what a damaged file left behind.
+    std::_Exit(status);
+}

@@ -1,0 +1,151 @@
+// NIfTI-1: our own reading of the 348-byte header, in either byte order, packed or not.
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <map>
+
+#include "io/helper/headers.hpp"
+#include "io/inflate.hpp"
+
+namespace palpate::io {
+namespace {
+
+constexpr std::size_t header_bytes = 348;
+
+/// The header's bytes, and numbers from them.
+struct Header {
+    std::array<std::byte, header_bytes> bytes{};
+    bool swapped = false;
+
+    template <class T>
+    T number(std::size_t offset) const {
+        std::array<std::byte, sizeof(T)> raw;
+        std::copy_n(bytes.begin() + static_cast<std::ptrdiff_t>(offset), sizeof(T), raw.begin());
+        if (swapped) std::reverse(raw.begin(), raw.end());
+        return std::bit_cast<T>(raw);
+    }
+    std::string magic() const {
+        const auto* text = reinterpret_cast<const char*>(bytes.data()) + 344;
+        return {text, strnlen(text, 4)};
+    }
+};
+
+struct Unpacked {
+    Header header;
+    std::uint64_t bytes = 0;  ///< of the whole file, unpacked
+};
+
+/// One pass over the file: the checksum, the length and the header.
+Unpacked unpack(const Request& request) {
+    Unpacked file;
+    std::size_t have = 0;
+    const ByteSink keep_header = [&](std::span<const std::byte> chunk) {
+        const std::size_t take = std::min(chunk.size(), header_bytes - have);
+        std::copy_n(chunk.begin(), take,
+                    file.header.bytes.begin() + static_cast<std::ptrdiff_t>(have));
+        have += take;
+    };
+    if (is_gzip(request.path)) {
+        try {
+            file.bytes = inflate_checked(
+                request.path, {0, UINT64_MAX, std::max<std::uint64_t>(request.memory_limit, 1)},
+                keep_header);
+        } catch (const DamagedStream& e) {
+            throw Failure(std::string(e.what()) + "; copy or download it again");
+        }
+    } else {
+        std::ifstream in(request.path, std::ios::binary);
+        std::array<std::byte, header_bytes> start{};
+        in.read(reinterpret_cast<char*>(start.data()), header_bytes);
+        keep_header({start.data(), static_cast<std::size_t>(in.gcount())});
+        file.bytes = std::filesystem::file_size(request.path);
+    }
+    if (have < header_bytes) {
+        throw Failure("is too short for a NIfTI header (" + std::to_string(have) +
+                      " bytes); copy or download it again");
+    }
+    return file;
+}
+
+void check_kind(Header& header) {
+    if (header.number<std::int32_t>(0) != 348) header.swapped = true;
+    if (header.number<std::int32_t>(0) == 540) {
+        throw Failure("is a NIfTI-2 file, which is not read; save it as NIfTI-1 or NRRD");
+    }
+    if (header.number<std::int32_t>(0) != 348) {
+        throw Failure("is not a NIfTI file (its first number is not 348); check its name");
+    }
+    if (header.magic() == "ni1") {
+        throw Failure("is one half of a .hdr/.img pair; save it as one .nii file");
+    }
+    if (header.magic() != "n+1") {
+        throw Failure("has no NIfTI magic (perhaps an Analyze file); save it as .nii");
+    }
+}
+
+Stored stored_from(std::int16_t type) {
+    static const std::map<int, Stored> types = {
+        {2, Stored::uint8},    {4, Stored::int16},    {8, Stored::int32},    {16, Stored::float32},
+        {64, Stored::float64}, {256, Stored::int8},   {512, Stored::uint16}, {768, Stored::uint32},
+        {1024, Stored::int64}, {1280, Stored::uint64}};
+    const auto found = types.find(type);
+    if (found == types.end()) {
+        const std::string what = type == 128 || type == 2304 ? "colours"
+                                 : type == 32 || type == 1792
+                                     ? "complex numbers"
+                                     : "samples of type " + std::to_string(type);
+        throw Failure("it has " + what + ", which cannot be felt; save it as int16 or float32");
+    }
+    return found->second;
+}
+
+}  // namespace
+
+HeaderFacts check_nifti(const Request& request) {
+    Unpacked file = unpack(request);
+    Header& header = file.header;
+    check_kind(header);
+    HeaderFacts facts;
+    facts.stored = stored_from(header.number<std::int16_t>(70));
+    if (header.number<std::int16_t>(72) != static_cast<int>(8 * size_of(facts.stored))) {
+        throw Failure("its header's bits a sample do not fit its type; the header is damaged");
+    }
+    const int axes = header.number<std::int16_t>(40);
+    if (axes < 1 || axes > 7) {
+        throw Failure("its header gives " + std::to_string(axes) + " axes; the header is damaged");
+    }
+    for (std::size_t a = 1; a <= static_cast<std::size_t>(axes); ++a) {
+        const auto size = header.number<std::int16_t>(40 + 2 * a);
+        facts.sizes.push_back(size);
+        const auto spacing = header.number<float>(76 + 4 * a);
+        if (a <= 3 && size > 1) check_spacing(spacing, "pixdim");
+    }
+    const std::uint64_t bytes =
+        checked_bytes(facts.sizes, size_of(facts.stored), file.bytes, request);
+    const float offset = header.number<float>(108);
+    if (!(offset >= 348 && offset < 1e9F)) {
+        throw Failure("its header puts the samples at byte " + text_of(double{offset}) +
+                      "; the header is damaged");
+    }
+    const auto start = std::min(static_cast<std::uint64_t>(offset), file.bytes);
+    // The stream is checked already: what is left is to compare sizes.
+    if (file.bytes - start < bytes || file.bytes - start > bytes + 4096) {
+        throw Failure("its header asks for " + std::to_string(bytes) +
+                      " bytes of samples, there are " + std::to_string(file.bytes - start) +
+                      "; it is cut off or its header is wrong: copy it again");
+    }
+    while (facts.sizes.size() > 3 && facts.sizes.back() == 1) facts.sizes.pop_back();
+    if (facts.sizes.size() > 4) {
+        throw Failure("it has " + text_of(facts.sizes) +
+                      " samples in more than 4 axes (vectors?); save one volume of it");
+    }
+    if (header.number<std::int16_t>(252) == 0 && header.number<std::int16_t>(254) == 0) {
+        facts.notes.push_back("its header says nothing of its orientation in the body");
+    }
+    return facts;
+}
+
+}  // namespace palpate::io

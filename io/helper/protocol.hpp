@@ -1,0 +1,51 @@
+// What the library and its helper program say to each other, in one place so that both agree.
+//   palpate-io-helper read PATH REQUEST       samples come back in descriptor 3
+//   palpate-io-helper write PATH REQUEST      samples are given in descriptor 3
+// REQUEST is JSON. Lines of JSON come back on descriptor 4: {"progress":0.5}, {"doing":"a file"},
+// and at the end {"error":"..."} or {"done":{...}}. Doubles in JSON survive to the bit.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "palpate/volume.hpp"
+
+namespace palpate::io {
+
+constexpr int samples_descriptor = 3;
+constexpr int report_descriptor = 4;
+
+inline nlohmann::json json_from(const Vec3& v) {
+    return {v[0], v[1], v[2]};
+}
+
+inline Vec3 vec3_from(const nlohmann::json& j) {
+    return {j.at(0).get<double>(), j.at(1).get<double>(), j.at(2).get<double>()};
+}
+
+inline nlohmann::json json_from(const Geometry& g) {
+    return {{"size", {g.size[0], g.size[1], g.size[2]}},
+            {"spacing", json_from(g.spacing)},
+            {"origin", json_from(g.origin)},
+            {"axes",
+             {json_from(Vec3(g.direction.col(0))), json_from(Vec3(g.direction.col(1))),
+              json_from(Vec3(g.direction.col(2)))}}};
+}
+
+inline Geometry geometry_from(const nlohmann::json& j) {
+    Geometry g;
+    for (int i = 0; i < 3; ++i) {
+        g.size[i] = j.at("size").at(static_cast<std::size_t>(i)).get<int>();
+        g.direction.col(i) = vec3_from(j.at("axes").at(static_cast<std::size_t>(i)));
+    }
+    g.spacing = vec3_from(j.at("spacing"));
+    g.origin = vec3_from(j.at("origin"));
+    return g;
+}
+
+/// One line, whatever bytes a file's name or a library's message has.
+inline std::string line_from(const nlohmann::json& j) {
+    return j.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace palpate::io

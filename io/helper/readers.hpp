@@ -1,0 +1,30 @@
+// The readers and the writers of the helper program, one source file a format family.
+#pragma once
+
+#include <string>
+
+#include "io/helper/decode.hpp"
+
+namespace palpate::io {
+
+/// Each reads request.path into the shared samples, or throws Failure or its library's exception.
+Result read_nrrd(const Request& request);
+Result read_meta_image(const Request& request);
+Result read_nifti(const Request& request);
+Result read_dicom_file(const Request& request);
+Result read_dicom_folder(const Request& request);
+Result read_tiff_file(const Request& request);
+Result read_tiff_folder(const Request& request);
+Result read_vti(const Request& request);
+
+/// DICOM's four letters after 128 bytes.
+bool looks_like_dicom(const std::filesystem::path& file);
+bool looks_like_tiff(const std::filesystem::path& file);
+
+/// Writes the shared samples to `path`, in the format that its extension names.
+void write_with_itk(const std::filesystem::path& path, const std::string& extension,
+                    const Geometry& geometry, SampleType type, const void* samples, bool compress);
+void write_vti(const std::filesystem::path& path, const Geometry& geometry, SampleType type,
+               const void* samples, bool compress);
+
+}  // namespace palpate::io

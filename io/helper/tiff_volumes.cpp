@@ -1,0 +1,312 @@
+// TIFF stacks with libtiff itself: one file of many pages, or a folder of numbered slices. ITK's
+// reader takes a cut-off file for a whole one; libtiff says so.
+#include <tiffio.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstdarg>
+#include <cstring>
+#include <fstream>
+#include <memory>
+
+#include "io/helper/readers.hpp"
+#include "io/inflate.hpp"
+
+namespace palpate::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string first_error;
+
+extern "C" void keep_error(const char*, const char* format, va_list arguments) {
+    if (!first_error.empty()) return;
+    char text[200];
+    std::vsnprintf(text, sizeof text, format, arguments);
+    first_error = text;
+}
+
+[[noreturn]] void fail_damaged(const fs::path& file) {
+    throw Failure(quoted(file) + " is damaged or cut off (" +
+                  (first_error.empty() ? "libtiff" : first_error) + "); copy it again");
+}
+
+struct Page {
+    std::uint32_t width = 0, height = 0;
+    Stored stored = Stored::uint8;
+    bool operator==(const Page&) const = default;
+};
+
+using Tiff = std::unique_ptr<TIFF, decltype(&TIFFClose)>;
+
+Tiff open(const fs::path& file) {
+    TIFFSetErrorHandler(keep_error);
+    TIFFSetWarningHandler(nullptr);
+    Tiff tiff(TIFFOpen(file.c_str(), "rM"), &TIFFClose);  // M: not mapped, a short file is an error
+    if (!tiff) {
+        throw Failure(quoted(file) + " is no TIFF file or is damaged (" + first_error +
+                      "); check its name or copy it again");
+    }
+    return tiff;
+}
+
+Stored stored_from(std::uint16_t bits, std::uint16_t format, const fs::path& file) {
+    const bool is_signed = format == SAMPLEFORMAT_INT;
+    if (format == SAMPLEFORMAT_IEEEFP && bits == 32) return Stored::float32;
+    if (format == SAMPLEFORMAT_IEEEFP && bits == 64) return Stored::float64;
+    if (is_signed || format == SAMPLEFORMAT_UINT || format == SAMPLEFORMAT_VOID) {
+        if (bits == 8) return is_signed ? Stored::int8 : Stored::uint8;
+        if (bits == 16) return is_signed ? Stored::int16 : Stored::uint16;
+        if (bits == 32) return is_signed ? Stored::int32 : Stored::uint32;
+    }
+    throw Failure(quoted(file) + " has samples of " + std::to_string(bits) +
+                  " bits of a kind that is not read; save it with 8 or 16 bits");
+}
+
+Page page_of(TIFF* tiff, const fs::path& file, std::vector<std::string>& notes) {
+    std::uint16_t samples = 1, bits = 1, format = SAMPLEFORMAT_UINT, photometric = 0;
+    Page page;
+    TIFFGetField(tiff, TIFFTAG_IMAGEWIDTH, &page.width);
+    TIFFGetField(tiff, TIFFTAG_IMAGELENGTH, &page.height);
+    TIFFGetFieldDefaulted(tiff, TIFFTAG_SAMPLESPERPIXEL, &samples);
+    TIFFGetFieldDefaulted(tiff, TIFFTAG_BITSPERSAMPLE, &bits);
+    TIFFGetFieldDefaulted(tiff, TIFFTAG_SAMPLEFORMAT, &format);
+    TIFFGetField(tiff, TIFFTAG_PHOTOMETRIC, &photometric);
+    if (samples != 1 || photometric == PHOTOMETRIC_PALETTE || photometric == PHOTOMETRIC_RGB) {
+        throw Failure(quoted(file) + " has colours (" + std::to_string(samples) +
+                      " values a sample); save it in grey");
+    }
+    const char* const white = "its zero means white: values were taken as they are";
+    if (photometric == PHOTOMETRIC_MINISWHITE &&
+        std::find(notes.begin(), notes.end(), white) == notes.end()) {
+        notes.emplace_back(white);
+    }
+    page.stored = stored_from(bits, format, file);
+    return page;
+}
+
+/// libtiff stops when it has enough bytes, before zlib's checksum; this goes on to it.
+void check_deflate(TIFF* tiff, const fs::path& file, std::uint32_t piece, bool tiled) {
+    std::uint16_t compression = 0;
+    TIFFGetField(tiff, TIFFTAG_COMPRESSION, &compression);
+    if (compression != COMPRESSION_ADOBE_DEFLATE && compression != COMPRESSION_DEFLATE) return;
+    const std::uint64_t bytes = TIFFGetStrileByteCount(tiff, piece);
+    if (bytes > fs::file_size(file)) fail_damaged(file);
+    std::vector<std::byte> raw(bytes);
+    const auto size = static_cast<tmsize_t>(bytes);
+    const tmsize_t got = tiled ? TIFFReadRawTile(tiff, piece, raw.data(), size)
+                               : TIFFReadRawStrip(tiff, piece, raw.data(), size);
+    if (got != size) fail_damaged(file);
+    try {
+        inflate_checked(raw, {});
+    } catch (const DamagedStream& e) {
+        throw Failure(quoted(file) + ": " + e.what() + "; copy it again");
+    }
+}
+
+void read_strips(TIFF* tiff, const fs::path& file, const Page& page, std::byte* to) {
+    const std::size_t row = page.width * size_of(page.stored);
+    std::uint32_t rows = page.height;
+    TIFFGetFieldDefaulted(tiff, TIFFTAG_ROWSPERSTRIP, &rows);
+    rows = std::clamp<std::uint32_t>(rows, 1, page.height);
+    for (std::uint32_t strip = 0, y = 0; y < page.height; ++strip, y += rows) {
+        check_deflate(tiff, file, strip, false);
+        const auto bytes = static_cast<tmsize_t>(std::min(rows, page.height - y) * row);
+        if (TIFFReadEncodedStrip(tiff, strip, to + y * row, bytes) != bytes) fail_damaged(file);
+    }
+}
+
+void read_tiles(TIFF* tiff, const fs::path& file, const Page& page, std::byte* to,
+                const Request& request) {
+    std::uint32_t width = 0, height = 0;
+    TIFFGetField(tiff, TIFFTAG_TILEWIDTH, &width);
+    TIFFGetField(tiff, TIFFTAG_TILELENGTH, &height);
+    const std::int64_t sizes[] = {width, height};
+    const std::size_t sample = size_of(page.stored);
+    std::vector<std::byte> tile(checked_bytes(sizes, sample, UINT64_MAX, request));
+    const auto bytes = static_cast<tmsize_t>(tile.size());
+    if (TIFFTileSize(tiff) != bytes) fail_damaged(file);
+    for (std::uint32_t y = 0; y < page.height; y += height) {
+        for (std::uint32_t x = 0; x < page.width; x += width) {
+            const std::uint32_t number = TIFFComputeTile(tiff, x, y, 0, 0);
+            check_deflate(tiff, file, number, true);
+            if (TIFFReadEncodedTile(tiff, number, tile.data(), bytes) != bytes) fail_damaged(file);
+            const std::size_t columns = std::min(width, page.width - x);
+            for (std::uint32_t r = 0; r < std::min(height, page.height - y); ++r) {
+                std::memcpy(to + ((y + r) * std::size_t{page.width} + x) * sample,
+                            tile.data() + r * std::size_t{width} * sample, columns * sample);
+            }
+        }
+    }
+}
+
+/// One page of one file.
+struct Slice {
+    fs::path file;
+    std::uint32_t page = 0;
+};
+
+/// The pages that are slices: thumbnails and masks are left out.
+std::vector<Slice> pages_of(const fs::path& file) {
+    const Tiff tiff = open(file);
+    std::vector<Slice> slices;
+    for (std::uint32_t page = 0;; ++page) {
+        std::uint32_t kind = 0;
+        TIFFGetField(tiff.get(), TIFFTAG_SUBFILETYPE, &kind);
+        if ((kind & (FILETYPE_REDUCEDIMAGE | FILETYPE_MASK)) == 0) slices.push_back({file, page});
+        if (slices.size() > 1 << 20) fail_damaged(file);
+        if (!first_error.empty()) fail_damaged(file);
+        if (TIFFReadDirectory(tiff.get()) == 0) break;
+    }
+    if (!first_error.empty() || slices.empty()) fail_damaged(file);
+    return slices;
+}
+
+Result read_slices(const std::vector<Slice>& slices, const Request& request) {
+    Result result;
+    Page first;
+    std::span<std::byte> samples;
+    std::vector<std::byte> page_samples;
+    Tiff tiff(nullptr, &TIFFClose);
+    for (std::size_t i = 0; i < slices.size(); ++i) {
+        const Slice& slice = slices[i];
+        say_doing(slice.file.filename().string());
+        if (i == 0 || slice.file != slices[i - 1].file) tiff = open(slice.file);
+        if (slice.page != TIFFCurrentDirectory(tiff.get()) && TIFFReadDirectory(tiff.get()) == 0) {
+            fail_damaged(slice.file);
+        }
+        while (slice.page != TIFFCurrentDirectory(tiff.get())) {
+            if (TIFFReadDirectory(tiff.get()) == 0) fail_damaged(slice.file);
+        }
+        const Page page = page_of(tiff.get(), slice.file, result.notes);
+        if (i == 0) {
+            first = page;
+            const std::int64_t sizes[] = {page.width, page.height,
+                                          static_cast<std::int64_t>(slices.size())};
+            const std::int64_t plane[] = {page.width, page.height};
+            checked_bytes(plane, size_of(page.stored), fs::file_size(slice.file), request);
+            result.type = kept_as(page.stored);
+            samples =
+                shared_samples(checked_bytes(sizes, size_of(result.type), UINT64_MAX, request));
+            page_samples.resize(std::size_t{page.width} * page.height * size_of(page.stored));
+        }
+        if (!(page == first)) {
+            throw Failure("its slice " + std::to_string(i) + " is " + std::to_string(page.width) +
+                          "x" + std::to_string(page.height) + " of " + name_of(page.stored) +
+                          ", the first " + std::to_string(first.width) + "x" +
+                          std::to_string(first.height) + " of " + name_of(first.stored) +
+                          "; put slices of one kind together");
+        }
+        if (TIFFIsTiled(tiff.get()) != 0) {
+            read_tiles(tiff.get(), slice.file, page, page_samples.data(), request);
+        } else {
+            read_strips(tiff.get(), slice.file, page, page_samples.data());
+        }
+        if (!first_error.empty()) fail_damaged(slice.file);
+        const std::size_t count = std::size_t{page.width} * page.height;
+        convert(page.stored, page_samples.data(), 1, result.type,
+                samples.data() + i * count * size_of(result.type), count);
+        say_progress(static_cast<double>(i + 1) / static_cast<double>(slices.size()));
+    }
+    note_conversion(first.stored, result.notes);
+    result.geometry.size = {static_cast<int>(first.width), static_cast<int>(first.height),
+                            static_cast<int>(slices.size())};
+    if (!request.spacing) {
+        result.notes.emplace_back(
+            "TIFF does not tell the distance between slices: a spacing of 1 mm was taken along "
+            "every axis; give --spacing X,Y,Z");
+    }
+    checked_time_step(request, 1);
+    finish(result, request, samples);
+    return result;
+}
+
+bool is_digit(char c) {
+    return std::isdigit(static_cast<unsigned char>(c)) != 0;
+}
+
+/// slice2 before slice10.
+bool numbered_before(const fs::path& a, const fs::path& b) {
+    const std::string x = a.filename().string(), y = b.filename().string();
+    std::size_t i = 0, j = 0;
+    while (i < x.size() && j < y.size()) {
+        if (is_digit(x[i]) && is_digit(y[j])) {
+            const auto number = [](const std::string& s, std::size_t& at) {
+                while (at < s.size() && s[at] == '0') ++at;
+                const std::size_t begin = at;
+                while (at < s.size() && is_digit(s[at])) ++at;
+                return s.substr(begin, at - begin);
+            };
+            const std::string m = number(x, i), n = number(y, j);
+            if (m.size() != n.size()) return m.size() < n.size();
+            if (m != n) return m < n;
+        } else {
+            if (x[i] != y[j]) return x[i] < y[j];
+            ++i;
+            ++j;
+        }
+    }
+    return x.size() - i < y.size() - j;
+}
+
+/// The last number in a name, or -1.
+long number_of(const fs::path& file) {
+    const std::string stem = file.stem().string();
+    const auto end = stem.find_last_of("0123456789");
+    if (end == std::string::npos) return -1;
+    std::size_t begin = end;
+    while (begin > 0 && is_digit(stem[begin - 1])) --begin;
+    return end - begin > 8 ? -1 : std::stol(stem.substr(begin, end - begin + 1));
+}
+
+void note_gaps(const std::vector<fs::path>& files, std::vector<std::string>& notes) {
+    long missing = 0;
+    for (std::size_t i = 1; i < files.size(); ++i) {
+        const long step = number_of(files[i]) - number_of(files[i - 1]);
+        if (step > 1) missing += step - 1;
+    }
+    // A constant step (every second number) is a way of naming, not a gap.
+    const long all = number_of(files.back()) - number_of(files.front());
+    const auto gaps = static_cast<long>(files.size()) - 1;
+    if (missing > 0 && gaps > 0 && all != gaps * (number_of(files[1]) - number_of(files[0]))) {
+        notes.push_back(std::to_string(missing) +
+                        " numbers are missing among its slices' names: the slices were put "
+                        "together without a gap, so lengths across it are too short");
+    }
+}
+
+}  // namespace
+
+bool looks_like_tiff(const fs::path& file) {
+    const std::string extension = lower(file.extension().string());
+    return extension == ".tif" || extension == ".tiff";
+}
+
+Result read_tiff_file(const Request& request) {
+    Result result = read_slices(pages_of(request.path), request);
+    result.format = "TIFF";
+    return result;
+}
+
+Result read_tiff_folder(const Request& request) {
+    std::vector<fs::path> files;
+    for (const auto& entry : fs::directory_iterator(request.path)) {
+        if (entry.is_regular_file() && looks_like_tiff(entry.path())) files.push_back(entry.path());
+    }
+    std::sort(files.begin(), files.end(), numbered_before);
+    std::vector<Slice> slices;
+    for (const fs::path& file : files) {
+        const auto pages = pages_of(file);
+        if (pages.size() != 1 && files.size() > 1) {
+            throw Failure(quoted(file) + " has " + std::to_string(pages.size()) +
+                          " pages in a folder of slices; give that file alone");
+        }
+        slices.insert(slices.end(), pages.begin(), pages.end());
+    }
+    Result result = read_slices(slices, request);
+    result.format = "TIFF slices";
+    note_gaps(files, result.notes);
+    return result;
+}
+
+}  // namespace palpate::io

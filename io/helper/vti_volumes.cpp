@@ -1,0 +1,245 @@
+// VTI with VTK's XML reader and writer.
+#include <vtkCellData.h>
+#include <vtkDataArray.h>
+#include <vtkImageData.h>
+#include <vtkInformation.h>
+#include <vtkMatrix3x3.h>
+#include <vtkNew.h>
+#include <vtkObjectFactory.h>
+#include <vtkOutputWindow.h>
+#include <vtkPointData.h>
+#include <vtkStreamingDemandDrivenPipeline.h>
+#include <vtkUnsignedCharArray.h>
+#include <vtkXMLImageDataReader.h>
+#include <vtkXMLImageDataWriter.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+
+#include "io/helper/readers.hpp"
+
+namespace palpate::io {
+namespace {
+
+/// VTK reports errors to a window and goes on; this one remembers the first.
+class ErrorKeeper : public vtkOutputWindow {
+  public:
+    static ErrorKeeper* New();
+    vtkTypeMacro(ErrorKeeper, vtkOutputWindow) void DisplayText(const char*) override {}
+    void DisplayErrorText(const char* text) override { keep(text); }
+    void DisplayWarningText(const char*) override {}
+    const std::string& first() const { return first_; }
+
+  private:
+    void keep(const char* text) {
+        if (!first_.empty()) return;
+        // "ERROR: In file, line n\nvtkClass (0x...): what is wrong\n"
+        const std::string all = trimmed(text);
+        const auto colon = all.find("): ");
+        first_ = trimmed(colon == std::string::npos ? all : all.substr(colon + 3));
+        first_ = first_.substr(0, std::min<std::size_t>(first_.find('\n'), 160));
+    }
+    std::string first_;
+};
+vtkStandardNewMacro(ErrorKeeper)
+
+    void check_errors(const ErrorKeeper& errors) {
+    if (errors.first().empty()) return;
+    throw Failure("is damaged or no VTI file (" + errors.first() +
+                  "); copy it again or export it again");
+}
+
+/// The first and the last tag; VTK takes raw data that are cut off for whole ones.
+void check_ends(const Request& request) {
+    std::ifstream in(request.path, std::ios::binary);
+    std::string text(4096, '\0');
+    in.read(text.data(), static_cast<std::streamsize>(text.size()));
+    text.resize(static_cast<std::size_t>(in.gcount()));
+    if (text.find("<VTKFile") == std::string::npos || text.find("ImageData") == std::string::npos) {
+        throw Failure("is not a VTI file (no VTKFile of type ImageData in it); check its name");
+    }
+    const auto size = static_cast<std::streamoff>(std::filesystem::file_size(request.path));
+    in.clear();
+    in.seekg(std::max<std::streamoff>(0, size - 256));
+    text.assign(std::istreambuf_iterator<char>(in), {});
+    const std::string last = "</VTKFile>";
+    const std::string end = trimmed(text);
+    if (end.size() < last.size() || end.substr(end.size() - last.size()) != last) {
+        throw Failure("it is cut off (no </VTKFile> at its end); copy or download it again");
+    }
+}
+
+Stored stored_from(int type) {
+    switch (type) {
+        case VTK_CHAR:
+        case VTK_SIGNED_CHAR:
+            return Stored::int8;
+        case VTK_UNSIGNED_CHAR:
+            return Stored::uint8;
+        case VTK_SHORT:
+            return Stored::int16;
+        case VTK_UNSIGNED_SHORT:
+            return Stored::uint16;
+        case VTK_INT:
+            return Stored::int32;
+        case VTK_UNSIGNED_INT:
+            return Stored::uint32;
+        case VTK_LONG:
+        case VTK_LONG_LONG:
+        case VTK_ID_TYPE:
+            return Stored::int64;
+        case VTK_UNSIGNED_LONG:
+        case VTK_UNSIGNED_LONG_LONG:
+            return Stored::uint64;
+        case VTK_FLOAT:
+            return Stored::float32;
+        case VTK_DOUBLE:
+            return Stored::float64;
+        default:
+            throw Failure("its sample type is not read; save it as Float32");
+    }
+}
+
+int vtk_type(SampleType type) {
+    switch (type) {
+        case SampleType::uint8:
+            return VTK_UNSIGNED_CHAR;
+        case SampleType::int16:
+            return VTK_SHORT;
+        case SampleType::uint16:
+            return VTK_UNSIGNED_SHORT;
+        case SampleType::float32:
+            break;
+    }
+    return VTK_FLOAT;
+}
+
+/// The active scalars, else the first array with one value a sample.
+vtkDataArray* choose_array(vtkDataSetAttributes* data, std::vector<std::string>& notes) {
+    vtkDataArray* chosen = data->GetScalars();
+    for (int i = 0; chosen == nullptr && i < data->GetNumberOfArrays(); ++i) {
+        vtkDataArray* const array = data->GetArray(i);
+        if (array != nullptr && array->GetNumberOfComponents() == 1) chosen = array;
+    }
+    if (chosen != nullptr && data->GetNumberOfArrays() > 1) {
+        notes.push_back("it has " + std::to_string(data->GetNumberOfArrays()) + " arrays; '" +
+                        (chosen->GetName() ? chosen->GetName() : "") + "' was taken");
+    }
+    return chosen;
+}
+
+Geometry geometry_of(vtkImageData& image, bool at_cells) {
+    Geometry g;
+    int extent[6];
+    image.GetExtent(extent);
+    const vtkMatrix3x3* const direction = image.GetDirectionMatrix();
+    Vec3 first;
+    for (int a = 0; a < 3; ++a) {
+        const int samples = extent[2 * a + 1] - extent[2 * a] + 1;
+        g.size[a] = at_cells ? std::max(1, samples - 1) : samples;
+        g.spacing[a] = image.GetSpacing()[a];
+        g.origin[a] = image.GetOrigin()[a];
+        first[a] = extent[2 * a] + (at_cells && samples > 1 ? 0.5 : 0.0);
+        for (int r = 0; r < 3; ++r) g.direction(r, a) = direction->GetElement(r, a);
+    }
+    // VTK's origin is where index 0 lies, which need not be the first sample.
+    if (first != Vec3::Zero()) g.origin = physical_from_index(g, first);
+    return g;
+}
+
+void check_size(vtkXMLImageDataReader& reader, const Request& request) {
+    int extent[6];
+    reader.UpdateInformation();
+    reader.GetOutputInformation(0)->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent);
+    std::vector<std::int64_t> sizes;
+    for (int a = 0; a < 3; ++a) {
+        sizes.push_back(std::int64_t{extent[2 * a + 1]} - extent[2 * a] + 1);
+    }
+    checked_bytes(sizes, 1, std::filesystem::file_size(request.path), request);
+}
+
+}  // namespace
+
+Result read_vti(const Request& request) {
+    check_ends(request);
+    const vtkNew<ErrorKeeper> errors;
+    vtkOutputWindow::SetInstance(errors);
+    const vtkNew<vtkXMLImageDataReader> reader;
+    reader->SetFileName(request.path.c_str());
+    check_size(*reader, request);
+    check_errors(*errors);
+    reader->Update();
+    check_errors(*errors);
+    say_progress(0.7);
+
+    Result result;
+    result.format = "VTI";
+    vtkImageData& image = *reader->GetOutput();
+    vtkDataArray* array = choose_array(image.GetPointData(), result.notes);
+    const bool at_cells = array == nullptr;
+    if (at_cells) {
+        array = choose_array(image.GetCellData(), result.notes);
+        result.notes.emplace_back(
+            "its samples belong to cells: they were put at the cells' centres");
+    }
+    if (array == nullptr) throw Failure("has no samples in it; export it again");
+    if (array->GetNumberOfComponents() != 1) {
+        throw Failure("it has " + std::to_string(array->GetNumberOfComponents()) +
+                      " values a sample (colours or vectors); give a volume with one");
+    }
+    checked_time_step(request, 1);
+    result.geometry = geometry_of(image, at_cells);
+    for (int a = 0; a < 3; ++a) {
+        if (result.geometry.size[a] == 1 && !(result.geometry.spacing[a] > 0)) {
+            result.geometry.spacing[a] = 1;
+        }
+    }
+    const auto count = static_cast<std::size_t>(sample_count(result.geometry));
+    if (static_cast<std::size_t>(array->GetNumberOfTuples()) != count) {
+        throw Failure("it has " + std::to_string(array->GetNumberOfTuples()) +
+                      " samples, its grid " + std::to_string(count) +
+                      "; it is damaged: export it again");
+    }
+    const Stored stored = stored_from(array->GetDataType());
+    result.type = kept_as(stored);
+    note_conversion(stored, result.notes);
+    const auto samples = shared_samples(count * size_of(result.type));
+    convert(stored, static_cast<const std::byte*>(array->GetVoidPointer(0)), 1, result.type,
+            samples.data(), count);
+    finish(result, request, samples);
+    return result;
+}
+
+void write_vti(const std::filesystem::path& path, const Geometry& geometry, SampleType type,
+               const void* samples, bool compress) {
+    const vtkNew<ErrorKeeper> errors;
+    vtkOutputWindow::SetInstance(errors);
+    const vtkNew<vtkImageData> image;
+    image->SetDimensions(geometry.size[0], geometry.size[1], geometry.size[2]);
+    image->SetSpacing(geometry.spacing[0], geometry.spacing[1], geometry.spacing[2]);
+    image->SetOrigin(geometry.origin[0], geometry.origin[1], geometry.origin[2]);
+    for (int r = 0; r < 3; ++r) {
+        for (int a = 0; a < 3; ++a) {
+            image->GetDirectionMatrix()->SetElement(r, a, geometry.direction(r, a));
+        }
+    }
+    const auto array =
+        vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(vtk_type(type)));
+    array->SetName("density");
+    // The writer only reads; VTK has no interface for constant memory. 1: it is not VTK's to free.
+    array->SetVoidArray(const_cast<void*>(samples), sample_count(geometry), 1);
+    image->GetPointData()->SetScalars(array);
+    const vtkNew<vtkXMLImageDataWriter> writer;
+    writer->SetFileName(path.c_str());
+    writer->SetInputData(image);
+    writer->SetDataModeToAppended();
+    writer->EncodeAppendedDataOff();
+    writer->SetHeaderTypeToUInt64();
+    if (!compress) writer->SetCompressorTypeToNone();
+    if (writer->Write() == 0 || !errors->first().empty()) {
+        throw Failure("could not be written (" + errors->first() + "); is the disk full?");
+    }
+}
+
+}  // namespace palpate::io

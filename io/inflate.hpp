@@ -1,0 +1,40 @@
+// Unpacks gzip and zlib streams to their very end, so that their checksums are verified: the
+// libraries that read volumes skip that. Needs zlib only.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <stdexcept>
+
+namespace palpate::io {
+
+/// A stream that is damaged, ends early or is too long; what() says which, without a file's name.
+class DamagedStream : public std::runtime_error {
+  public:
+    using std::runtime_error::runtime_error;
+};
+
+/// Where a compressed stream lies in a file.
+struct StreamPlace {
+    std::uint64_t offset = 0;            ///< first byte of the stream
+    std::uint64_t length = UINT64_MAX;   ///< bytes, or up to the end of the file
+    std::uint64_t at_most = UINT64_MAX;  ///< unpacked bytes; more is an error (a guard on bombs)
+};
+
+using ByteSink = std::function<void(std::span<const std::byte>)>;
+
+/// Unpacks the gzip (any number of members) or zlib stream in `file`, hands the bytes to `sink` in
+/// order (it may be empty) and returns how many there were. Throws DamagedStream.
+std::uint64_t inflate_checked(const std::filesystem::path& file, const StreamPlace& place,
+                              const ByteSink& sink);
+
+/// The same for a stream in memory.
+std::uint64_t inflate_checked(std::span<const std::byte> stream, const ByteSink& sink);
+
+/// True for a file that starts with gzip's two magic bytes.
+bool is_gzip(const std::filesystem::path& file);
+
+}  // namespace palpate::io

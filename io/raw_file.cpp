@@ -1,0 +1,141 @@
+// Headerless files; see the header.
+#include "io/raw_file.hpp"
+
+#include <sys/mman.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <fstream>
+#include <memory>
+
+#include "io/finite.hpp"
+#include "io/inflate.hpp"
+
+namespace palpate::io {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "raw files are little-endian");
+
+std::string layout_text(const RawLayout& raw) {
+    return std::to_string(raw.size[0]) + "x" + std::to_string(raw.size[1]) + "x" +
+           std::to_string(raw.size[2]) + " of " + std::string(name_of(raw.type)) +
+           (raw.skip > 0 ? " after " + std::to_string(raw.skip) + " bytes" : "");
+}
+
+/// Anonymous memory: given back to the system at once when the volume goes.
+std::shared_ptr<std::byte> allocate(std::size_t bytes) {
+    void* at = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (at == MAP_FAILED) throw std::bad_alloc();
+    return {static_cast<std::byte*>(at), [bytes](std::byte* mapped) { munmap(mapped, bytes); }};
+}
+
+/// Puts a stream of bytes into the samples: skips some, fills, and counts the rest.
+class Filler {
+  public:
+    Filler(std::byte* samples, std::uint64_t bytes, std::uint64_t skip, const Progress& progress)
+        : samples_(samples), bytes_(bytes), skip_(skip), progress_(progress) {}
+
+    void operator()(std::span<const std::byte> chunk) {
+        const std::uint64_t begin = std::max(seen_, skip_);
+        const std::uint64_t end = std::min(seen_ + chunk.size(), skip_ + bytes_);
+        if (begin < end) {
+            std::memcpy(samples_ + (begin - skip_), chunk.data() + (begin - seen_), end - begin);
+        }
+        seen_ += chunk.size();
+        if (progress_ && bytes_ > 0) {
+            progress_(
+                std::min(1.0, static_cast<double>(seen_) / static_cast<double>(skip_ + bytes_)));
+        }
+    }
+
+  private:
+    std::byte* samples_;
+    std::uint64_t bytes_, skip_;
+    const Progress& progress_;
+    std::uint64_t seen_ = 0;
+};
+
+void read_plain(const std::filesystem::path& path, Filler& fill) {
+    std::ifstream in(path, std::ios::binary);
+    std::vector<std::byte> chunk(1 << 20);
+    while (in) {
+        in.read(reinterpret_cast<char*>(chunk.data()), static_cast<std::streamsize>(chunk.size()));
+        fill({chunk.data(), static_cast<std::size_t>(in.gcount())});
+    }
+    if (in.bad()) throw InputError(path.string() + ": reading failed; check the disk");
+}
+
+void check_size(const std::filesystem::path& path, const RawLayout& raw, std::uint64_t expected,
+                std::uint64_t found, bool unpacked) {
+    if (found == expected) return;
+    throw InputError(path.string() + ": " + (unpacked ? "unpacks to " : "has ") +
+                     std::to_string(found) + " bytes, but " + layout_text(raw) + " needs " +
+                     std::to_string(expected) + "; correct --dims or --type");
+}
+
+/// Bytes from the first of the file to the last sample; refuses layouts that make no sense.
+std::uint64_t expected_bytes(const std::filesystem::path& path, const RawLayout& raw,
+                             std::uint64_t limit) {
+    Geometry geometry;
+    geometry.size = raw.size;
+    geometry.spacing = raw.spacing;
+    try {
+        check(geometry);
+    } catch (const std::invalid_argument& e) {
+        throw InputError(path.string() + ": " + layout_text(raw) + ": " + e.what());
+    }
+    const auto samples = static_cast<double>(sample_count(geometry));
+    const double bytes = samples * static_cast<double>(size_of(raw.type));
+    if (bytes > static_cast<double>(limit)) {
+        throw InputError(path.string() + ": " + layout_text(raw) +
+                         " needs more memory than there is; correct --dims or use a machine with "
+                         "more memory");
+    }
+    return raw.skip + static_cast<std::uint64_t>(sample_count(geometry)) * size_of(raw.type);
+}
+
+}  // namespace
+
+VolumeFile read_raw(const std::filesystem::path& path, const ReadOptions& options) {
+    RawLayout raw = *options.raw;
+    if (options.spacing) raw.spacing = *options.spacing;
+    if (options.time_step != 0) {
+        throw InputError(path.string() + ": a raw file holds one volume; use time step 0");
+    }
+    const std::uint64_t expected = expected_bytes(path, raw, options.memory_limit_bytes);
+    const std::uint64_t bytes = expected - raw.skip;
+    const bool packed = is_gzip(path);
+    if (!packed) {
+        check_size(path, raw, expected, std::filesystem::file_size(path), false);
+    }
+    const auto samples = allocate(bytes);
+    Filler fill(samples.get(), bytes, raw.skip, options.progress);
+    if (packed) {
+        std::uint64_t found = 0;
+        try {
+            found = inflate_checked(path, {}, std::ref(fill));
+        } catch (const DamagedStream& e) {
+            throw InputError(path.string() + ": " + e.what() + "; copy or download it again");
+        }
+        check_size(path, raw, expected, found, true);
+    } else {
+        read_plain(path, fill);
+    }
+    std::vector<std::string> notes;
+    if (raw.type == SampleType::float32) {
+        const auto count =
+            replace_non_finite({reinterpret_cast<float*>(samples.get()), bytes / sizeof(float)});
+        if (count == bytes / sizeof(float)) {
+            throw InputError(path.string() + ": no sample is a finite number; check --type");
+        }
+        if (count > 0) notes.push_back(non_finite_note(count));
+    }
+    Geometry geometry;
+    geometry.size = raw.size;
+    geometry.spacing = raw.spacing;
+    return {Volume(geometry, raw.type, samples, bytes), packed ? "raw, gzip" : "raw", 1,
+            std::move(notes)};
+}
+
+}  // namespace palpate::io

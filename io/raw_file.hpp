@@ -1,0 +1,12 @@
+// Headerless files: the caller says what is in them. Private to io/; needs zlib only.
+#pragma once
+
+#include "io/volume_file.hpp"
+
+namespace palpate::io {
+
+/// Reads options.raw's layout from `path`. The file must hold exactly its bytes: skip + samples.
+/// Throws InputError.
+VolumeFile read_raw(const std::filesystem::path& path, const ReadOptions& options);
+
+}  // namespace palpate::io

@@ -1,0 +1,176 @@
+// Reading and writing volumes: what is checked before a library sees the file, and the way to the
+// helper program and back.
+#include "io/volume_file.hpp"
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstring>
+#include <fstream>
+#include <system_error>
+
+#include "io/helper/protocol.hpp"
+#include "io/helper_process.hpp"
+#include "io/raw_file.hpp"
+
+namespace palpate::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::uint64_t machine_memory() {
+    return static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) *
+           static_cast<std::uint64_t>(sysconf(_SC_PAGE_SIZE));
+}
+
+/// What can be said about a path without knowing its format.
+void check_readable(const fs::path& path) {
+    const std::string name = path.empty() ? "(no name)" : path.string();
+    std::error_code error;
+    const fs::file_status status = fs::status(path, error);
+    if (status.type() == fs::file_type::not_found) {
+        throw InputError(name + ": does not exist; check the name");
+    }
+    if (status.type() == fs::file_type::none) {
+        throw InputError(name + ": " + error.message() + "; check the name and its permissions");
+    }
+    if (status.type() != fs::file_type::regular && status.type() != fs::file_type::directory) {
+        throw InputError(name + ": is neither a file nor a folder; give a volume file");
+    }
+    const bool folder = status.type() == fs::file_type::directory;
+    if (access(path.c_str(), folder ? R_OK | X_OK : R_OK) != 0) {
+        throw InputError(name + ": " + std::strerror(errno) + "; check its permissions");
+    }
+    if (!folder && fs::file_size(path, error) == 0) {
+        throw InputError(name + ": is empty (0 bytes); copy or download it again");
+    }
+}
+
+VolumeFile volume_from(const nlohmann::json& done, const Descriptor& samples) {
+    const Geometry geometry = geometry_from(done.at("geometry"));
+    const SampleType type = sample_type_from(done.at("type").get<std::string>());
+    check(geometry);
+    const auto bytes = static_cast<std::size_t>(sample_count(geometry)) * size_of(type);
+    struct stat status {};
+    if (fstat(samples.number(), &status) != 0 || status.st_size != static_cast<off_t>(bytes)) {
+        throw std::invalid_argument("the helper process gave too few samples");
+    }
+    return {Volume(geometry, type, map_shared(samples, bytes), bytes),
+            done.at("format").get<std::string>(), done.at("time_steps").get<int>(),
+            done.at("notes").get<std::vector<std::string>>()};
+}
+
+}  // namespace
+
+VolumeFile read_volume(const fs::path& path, const ReadOptions& options) {
+    check_readable(path);
+    ReadOptions limited = options;
+    if (limited.memory_limit_bytes == 0) limited.memory_limit_bytes = machine_memory();
+    if (options.raw) {
+        if (fs::is_directory(path)) {
+            throw InputError(path.string() + ": is a folder; --dims and --type are for one file");
+        }
+        return read_raw(path, limited);
+    }
+    nlohmann::json request = {{"series", options.series},
+                              {"time_step", options.time_step},
+                              {"memory", limited.memory_limit_bytes}};
+    if (options.spacing) request["spacing"] = json_from(*options.spacing);
+    try {
+        const Descriptor samples = shared_memory();
+        const HelperJob job{options.helper,
+                            {"read", path.string(), line_from(request)},
+                            &samples,
+                            options.progress,
+                            options.time_limit_s};
+        const HelperResult result = run_helper(job);
+        if (!result.failure.empty()) throw InputError(path.string() + ": " + result.failure);
+        return volume_from(result.done, samples);
+    } catch (const std::system_error& e) {
+        throw InputError(path.string() + ": " + e.what());
+    } catch (const std::invalid_argument& e) {
+        throw InputError(path.string() + ": " + e.what());
+    } catch (const nlohmann::json::exception&) {
+        throw InputError(path.string() +
+                         ": the helper process gave no sensible answer; check that "
+                         "palpate-io-helper belongs to this version of Palpate");
+    }
+}
+
+namespace {
+
+/// A folder beside the output where it is made under its own name; a file moves out of it when it
+/// is complete. (A temporary name would not do: headers name their data files.)
+class Workshop {
+  public:
+    explicit Workshop(const fs::path& output) : output_(output) {
+        static std::atomic<unsigned> count{0};
+        const fs::path parent = output.has_parent_path() ? output.parent_path() : fs::path(".");
+        folder_ = parent / (".palpate-" + std::to_string(getpid()) + "-" +
+                            std::to_string(count.fetch_add(1)));
+        std::error_code error;
+        if (!fs::is_directory(parent, error)) {
+            throw OutputError(output.string() + ": its folder does not exist; create it first");
+        }
+        if (fs::is_directory(output, error)) {
+            throw OutputError(output.string() + ": is a folder; give a file name");
+        }
+        fs::remove_all(folder_, error);  // of a process with our number that was killed
+        if (!fs::create_directory(folder_, error)) {
+            throw OutputError(output.string() + ": cannot write there (" + error.message() +
+                              "); choose another folder");
+        }
+    }
+    ~Workshop() {
+        std::error_code error;
+        fs::remove_all(folder_, error);
+    }
+    Workshop(const Workshop&) = delete;
+    Workshop& operator=(const Workshop&) = delete;
+
+    fs::path inside() const { return folder_ / output_.filename(); }
+
+    /// Data files first: a header never points to data that are not there.
+    void move_out() const {
+        std::vector<fs::path> made;
+        for (const auto& entry : fs::directory_iterator(folder_)) {
+            if (entry.path() != inside()) made.push_back(entry.path());
+        }
+        made.push_back(inside());
+        const fs::path parent = folder_.parent_path();
+        for (const fs::path& file : made) fs::rename(file, parent / file.filename());
+    }
+
+  private:
+    fs::path output_, folder_;
+};
+
+}  // namespace
+
+void write_volume(const Volume& volume, const fs::path& path, const WriteOptions& options) {
+    const Workshop workshop(path);
+    const nlohmann::json request = {{"geometry", json_from(volume.geometry())},
+                                    {"type", name_of(volume.type())},
+                                    {"compress", options.compress}};
+    try {
+        const Descriptor samples = shared_memory();
+        if (ftruncate(samples.number(), static_cast<off_t>(volume.bytes())) != 0) {
+            throw std::system_error(errno, std::generic_category(), "no memory");
+        }
+        std::memcpy(map_shared(samples, volume.bytes()).get(), volume.data(), volume.bytes());
+        const HelperJob job{options.helper,
+                            {"write", workshop.inside().string(), line_from(request)},
+                            &samples,
+                            options.progress,
+                            options.time_limit_s};
+        const HelperResult result = run_helper(job);
+        if (!result.failure.empty()) throw OutputError(path.string() + ": " + result.failure);
+        workshop.move_out();
+    } catch (const std::system_error& e) {
+        throw OutputError(path.string() + ": " + e.what());
+    }
+}
+
+}  // namespace palpate::io

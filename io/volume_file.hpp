@@ -1,0 +1,82 @@
+// Volumes from files and back: NRRD, MetaImage, NIfTI, DICOM, TIFF, VTI and raw.
+// The formats' libraries run in a helper process, never in the caller's: a damaged file that
+// crashes or hangs a library is an InputError here. Needs the core, nlohmann-json and zlib only.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/error.hpp"
+#include "palpate/volume.hpp"
+
+namespace palpate::io {
+
+/// Called from the calling thread with the part of the work that is done, 0 to 1, at least ten
+/// times a second. If it throws, the work stops, nothing is left behind, and the exception goes on
+/// to the caller: that is how to cancel.
+using Progress = std::function<void(double fraction)>;
+
+/// What a headerless file holds. Samples are little-endian, x fastest, then y, then z.
+struct RawLayout {
+    Index3 size = Index3::Zero();
+    SampleType type = SampleType::uint8;
+    Vec3 spacing = Vec3::Ones();  ///< [mm]
+    std::uint64_t skip = 0;       ///< bytes before the first sample (after unpacking a .gz)
+};
+
+struct ReadOptions {
+    /// Read the file as headerless samples, whatever its name; gzip is unpacked.
+    std::optional<RawLayout> raw;
+    /// Used instead of the spacing that the file gives or lacks [mm].
+    std::optional<Vec3> spacing;
+    /// Which DICOM series: its UID, or its number in the list that the error message gives.
+    std::string series;
+    /// Which volume of a 4-D file, counted from 0.
+    int time_step = 0;
+    Progress progress;
+    /// The program palpate-io-helper. Empty: the environment's PALPATE_IO_HELPER, else beside the
+    /// running program, in its build tree or in the installed libexec folder.
+    std::filesystem::path helper;
+    /// Most memory the samples may take [bytes]; 0: what this machine has.
+    std::uint64_t memory_limit_bytes = 0;
+    /// The helper is ended after this long [s].
+    double time_limit_s = 600;
+};
+
+/// A volume and what there is to say about how it was read.
+struct VolumeFile {
+    Volume volume;
+    std::string format;  ///< "NRRD", "DICOM series", ...
+    int time_steps = 1;  ///< how many volumes the file holds
+    std::vector<std::string>
+        notes;  ///< one sentence each: conversions, gaps, tilt, missing spacing
+};
+
+/// Reads a file, or a folder of DICOM or TIFF slices. Physical space is LPS, mm. Samples of uint8,
+/// int16, uint16 and float32 keep their type; int8 becomes int16, anything wider float32, with a
+/// note. Samples that are not finite become the least finite one, with a note.
+/// The volume holds the samples once; nothing else stays in memory.
+/// Throws InputError. Its message is one line, but for a folder with several DICOM series and none
+/// chosen, where lines that list them follow.
+VolumeFile read_volume(const std::filesystem::path& path, const ReadOptions& options = {});
+
+struct WriteOptions {
+    /// Pack the samples with zlib (NRRD, MetaImage, VTI). NIfTI is packed when named .nii.gz.
+    bool compress = false;
+    Progress progress;
+    std::filesystem::path helper;  ///< as in ReadOptions
+    double time_limit_s = 600;     ///< as in ReadOptions
+};
+
+/// Writes .nrrd, .nhdr, .mha, .mhd, .nii, .nii.gz or .vti, by the extension. The file appears under
+/// its name only when it is complete (.nhdr and .mhd: their .raw or .zraw before the header).
+/// MetaImage and VTI keep the geometry to the bit, NRRD to the last bit, NIfTI as 32-bit floats.
+/// Throws OutputError; what was there before is then still there.
+void write_volume(const Volume& volume, const std::filesystem::path& path,
+                  const WriteOptions& options = {});
+
+}  // namespace palpate::io
