@@ -1,0 +1,171 @@
+// What is written is what is read: samples, type, spacing, origin and direction, in every format.
+#include <zlib.h>
+
+#include "volume_support.hpp"
+
+namespace palpate::io::test {
+namespace {
+
+struct Precision {
+    double spacing, origin, direction;
+};
+
+Precision precision_of(const std::string& extension) {
+    if (extension == ".nii" || extension == ".nii.gz") return {1e-6, 1e-4, 1e-6};  // 32-bit floats
+    if (extension == ".nrrd" || extension == ".nhdr")
+        return {1e-14, 0, 1e-14};  // one vector an axis
+    return {0, 0, 0};
+}
+
+void expect_same(const Geometry& read, const Geometry& written, const Precision& precision) {
+    EXPECT_EQ(read.size, written.size);
+    EXPECT_LE((read.spacing - written.spacing).cwiseAbs().maxCoeff(), precision.spacing);
+    EXPECT_LE((read.origin - written.origin).cwiseAbs().maxCoeff(), precision.origin);
+    EXPECT_LE((read.direction - written.direction).cwiseAbs().maxCoeff(), precision.direction);
+}
+
+class RoundTrip : public testing::TestWithParam<std::string> {};
+
+TEST_P(RoundTrip, keeps_every_type_spacing_and_direction) {
+    const std::string& extension = GetParam();
+    const ScratchFolder folder;
+    std::mt19937 random(20240611);
+    for (const auto type :
+         {SampleType::uint8, SampleType::int16, SampleType::uint16, SampleType::float32}) {
+        for (int round = 0; round < 6; ++round) {
+            const Volume volume = random_volume(
+                random, type, random_geometry(random, round % 2 == 1, round % 3 == 2));
+            const auto path = folder / ("volume" + extension);
+            WriteOptions options;
+            options.compress = round >= 3;
+            write_volume(volume, path, options);
+            const VolumeFile file = read_volume(path);
+            EXPECT_TRUE(same_samples(file.volume, volume)) << name_of(type) << " round " << round;
+            expect_same(file.volume.geometry(), volume.geometry(), precision_of(extension));
+            EXPECT_EQ(file.notes, std::vector<std::string>{});
+            EXPECT_EQ(file.time_steps, 1);
+            std::filesystem::remove_all(path);
+        }
+    }
+}
+
+TEST_P(RoundTrip, keeps_an_axis_aligned_grid_to_the_bit_or_to_32_bits) {
+    const std::string& extension = GetParam();
+    const ScratchFolder folder;
+    std::mt19937 random(7);
+    Geometry g = random_geometry(random, false, false);
+    g.spacing = Vec3(0.390625, 0.5, 1.25);
+    g.origin = Vec3(-12.5, 100.25, 3);
+    const auto path = folder / ("volume" + extension);
+    write_volume(random_volume<std::int16_t>(random, g), path);
+    expect_same(read_volume(path).volume.geometry(), g, {0, 0, 0});
+}
+
+TEST_P(RoundTrip, keeps_grids_that_are_one_sample_thick) {
+    const std::string& extension = GetParam();
+    const ScratchFolder folder;
+    std::mt19937 random(8);
+    for (const Index3& size : {Index3(7, 5, 1), Index3(1, 6, 4), Index3(1, 1, 1)}) {
+        Geometry g = random_geometry(random, false, false);
+        g.size = size;
+        const Volume volume = random_volume<std::uint16_t>(random, g);
+        const auto path = folder / ("volume" + extension);
+        write_volume(volume, path);
+        const VolumeFile file = read_volume(path);
+        EXPECT_TRUE(same_samples(file.volume, volume));
+        expect_same(file.volume.geometry(), g, precision_of(extension));
+    }
+}
+
+TEST_P(RoundTrip, a_second_write_replaces_the_first_and_leaves_only_the_file) {
+    const std::string& extension = GetParam();
+    const ScratchFolder folder;
+    std::mt19937 random(9);
+    const Geometry g = random_geometry(random, false, false);
+    const auto path = folder / ("volume" + extension);
+    write_volume(random_volume<std::uint8_t>(random, g), path);
+    const Volume second = random_volume<std::uint8_t>(random, g);
+    write_volume(second, path);
+    EXPECT_TRUE(same_samples(read_volume(path).volume, second));
+    const bool two_files = extension == ".mhd" || extension == ".nhdr";
+    EXPECT_EQ(folder.names().size(), two_files ? 2U : 1U);
+}
+
+INSTANTIATE_TEST_SUITE_P(formats, RoundTrip,
+                         testing::Values(".nrrd", ".nhdr", ".mha", ".mhd", ".nii", ".nii.gz",
+                                         ".vti"),
+                         [](const auto& tested) {
+                             std::string name = tested.param.substr(1);
+                             name.erase(std::remove(name.begin(), name.end(), '.'), name.end());
+                             return name;
+                         });
+
+TEST(write_volume, refuses_a_name_without_a_known_extension) {
+    const ScratchFolder folder;
+    std::mt19937 random(1);
+    const Volume volume =
+        random_volume<std::uint8_t>(random, random_geometry(random, false, false));
+    for (const char* name : {"volume", "volume.txt", "volume.tif", "volume.gz"}) {
+        const auto path = folder / name;
+        const std::string message = message_of<OutputError>([&] { write_volume(volume, path); });
+        EXPECT_TRUE(one_line_about(message, path)) << message;
+        EXPECT_TRUE(contains(message, ".nrrd")) << message;
+    }
+    EXPECT_EQ(folder.names(), std::vector<std::string>{});
+}
+
+TEST(write_volume, says_so_if_the_folder_is_missing_or_the_name_is_a_folder) {
+    const ScratchFolder folder;
+    std::mt19937 random(1);
+    const Volume volume =
+        random_volume<std::uint8_t>(random, random_geometry(random, false, false));
+    const auto missing = folder / "no/such/volume.nrrd";
+    EXPECT_TRUE(contains(message_of<OutputError>([&] { write_volume(volume, missing); }),
+                         "create it first"));
+    EXPECT_TRUE(contains(message_of<OutputError>([&] { write_volume(volume, folder.path()); }),
+                         "is a folder"));
+}
+
+TEST(write_volume, leaves_the_old_file_and_nothing_else_if_it_cannot_write) {
+    const ScratchFolder folder;
+    std::mt19937 random(1);
+    Geometry g = random_geometry(random, false, false);
+    const auto path = folder / "volume.nii";
+    put_bytes(path, "as it was");
+    g.size = Index3(40000, 1, 1);  // NIfTI's sizes have 16 bits
+    const Volume volume = random_volume<std::uint8_t>(random, g);
+    EXPECT_TRUE(one_line_about(message_of<OutputError>([&] { write_volume(volume, path); }), path));
+    EXPECT_EQ(bytes_of(path), "as it was");
+    EXPECT_EQ(folder.names(), std::vector<std::string>{"volume.nii"});
+}
+
+TEST(write_volume, full_disk_is_an_error_and_leaves_nothing) {
+    if (!std::filesystem::exists("/proc/self/exe")) GTEST_SKIP() << "needs /proc";
+    const ScratchFolder folder;
+    std::mt19937 random(1);
+    Geometry g;
+    g.size = Index3(64, 64, 64);
+    const Volume volume = random_volume<std::int16_t>(random, g);
+    // A helper whose files may have no more than 64 blocks of 1 kB.
+    const auto small = folder / "small-disk";
+    const char* const helper = std::getenv("PALPATE_IO_HELPER");
+    const std::string real = helper != nullptr
+                                 ? helper
+                                 : (std::filesystem::read_symlink("/proc/self/exe").parent_path() /
+                                    "../../io/helper/palpate-io-helper")
+                                       .string();
+    put_bytes(small, "#!/bin/bash\nulimit -f 64\ntrap '' XFSZ\nexec '" + real + "' \"$@\"\n");
+    std::filesystem::permissions(small, std::filesystem::perms::owner_all);
+    for (const char* name : {"a.nrrd", "a.nhdr", "a.mha", "a.mhd", "a.nii", "a.nii.gz", "a.vti"}) {
+        WriteOptions options;
+        options.helper = small;
+        const auto path = folder / name;
+        const std::string message =
+            message_of<OutputError>([&] { write_volume(volume, path, options); });
+        EXPECT_TRUE(one_line_about(message, path)) << message;
+        EXPECT_EQ(folder.names(), std::vector<std::string>{"small-disk"}) << name;
+    }
+}
+
+}  // namespace
+}  // namespace palpate::io::test
