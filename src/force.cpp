@@ -2,7 +2,9 @@
 #include "palpate/force.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 #include <stdexcept>
 #include <string>
@@ -13,11 +15,20 @@ namespace {
 /// Time constant of the velocity filter [s]: a 100 Hz low pass. Unfiltered, one encoder step of
 /// 0.05 mm at 1 kHz reads as 50 mm/s.
 constexpr double velocity_filter = 1 / (2 * std::numbers::pi * 100);
+/// No hand is faster [mm/s]. What measures faster is a glitch, and counts as this much: unbounded,
+/// one false position would hold the filtered velocity up for tens of ticks.
+constexpr double fastest_hand = 1e4;
+
+std::string text_of(double value) {
+    std::array<char, 32> text;
+    std::snprintf(text.data(), text.size(), "%.6g", value);
+    return text.data();
+}
 
 void require(bool good, const char* setting, double value, const std::string& wanted) {
     if (good) return;
-    throw std::invalid_argument(std::string(setting) + " = " + std::to_string(value) +
-                                ": must be " + wanted);
+    throw std::invalid_argument(std::string(setting) + " = " + text_of(value) + ": must be " +
+                                wanted);
 }
 
 void require_not_negative(const char* setting, double value) {
@@ -42,8 +53,9 @@ Vec3 contact_force(const ForceSettings& settings, const ForceInput& input, const
     const Vec3 outward = force / strength;
     const Vec3 slope = input.texture_slope - outward * outward.dot(input.texture_slope);
     if (!slope.isZero(0)) force = strength * (outward - slope).normalized();
+    // Damping takes back no more than pushes out: of a turned force that is less than its strength.
     const double into = -velocity.dot(outward);
-    return force + outward * std::max(settings.damping * into, -strength);
+    return force + outward * std::max(settings.damping * into, -force.dot(outward));
 }
 
 Vec3 magnet_force(const Magnet& magnet, const ForceInput& input) {
@@ -53,9 +65,39 @@ Vec3 magnet_force(const Magnet& magnet, const ForceInput& input) {
     return -input.normal * (magnet.peak * 4 * along * (1 - along));
 }
 
+/// The ramp, the maximum and the rate. Written so that a setting that is NaN or negative, which
+/// check() would have refused, gives no force or a NaN that the caller catches, never a larger one.
+Vec3 within_limits(Vec3 force, const ForceState& state, const ForceSettings& settings,
+                   const DeviceLimits& limits, double since, double step, std::uint8_t& flags) {
+    if (!(since >= settings.ramp)) {
+        force *= since / settings.ramp;
+        flags |= force_ramping;
+    }
+    const double least = std::min(settings.limit, limits.maximum_force);
+    const double most = least > 0 && limits.maximum_force > 0 ? least : 0;
+    if (force.norm() > most) {
+        force *= most / force.norm();
+        flags |= force_limited;
+    }
+    const Vec3 change = force - state.force;
+    const double most_change =
+        std::isfinite(settings.rate_limit) ? settings.rate_limit * step : settings.rate_limit;
+    if (!(change.norm() <= most_change)) {
+        force = state.force + change * (std::max(most_change, 0.0) / change.norm());
+        flags |= force_rate_limited;
+    }
+    // Between two forces within a limit that has just been lowered, and against rounding.
+    if (force.norm() > most) force *= most / force.norm();
+    return force;
+}
+
 /// Filters the velocity; `step` is the time since the last tick [s].
 void update_velocity(ForceState& state, const Vec3& hand, double step) {
-    const Vec3 measured = (hand - state.hand) / step;
+    Vec3 measured = (hand - state.hand) / step;
+    const double speed = measured.stableNorm();
+    if (!(speed <= fastest_hand)) {
+        measured = std::isfinite(speed) ? Vec3(measured * (fastest_hand / speed)) : Vec3::Zero();
+    }
     state.velocity += (measured - state.velocity) * (step / (step + velocity_filter));
 }
 
@@ -82,16 +124,15 @@ void check(const ForceSettings& s, const DeviceLimits& limits) {
     require(s.stale_after > 0, "stale time [s]", s.stale_after, "above 0 (inf: none)");
     const double damping = s.damping + s.viscosity;
     require(damping < limits.physical_damping, "damping + viscosity [N s/mm]", damping,
-            "below the physical damping of device and hand, " +
-                std::to_string(limits.physical_damping));
+            "below the physical damping of device and hand, " + text_of(limits.physical_damping));
     const double most = greatest_stiffness(limits, damping);
-    require(s.stiffness <= most, "stiffness [N/mm]", s.stiffness,
-            "at most " + std::to_string(most) + " at " + std::to_string(limits.rate) +
-                " Hz to be rendered stably");
+    require(
+        s.stiffness <= most, "stiffness [N/mm]", s.stiffness,
+        "at most " + text_of(most) + " at " + text_of(limits.rate) + " Hz to be rendered stably");
     // 4 peak / distance is the magnet's own stiffness where it is steepest.
     if (s.magnet.distance > 0) {
         require(4 * s.magnet.peak <= most * s.magnet.distance, "magnet peak [N]", s.magnet.peak,
-                "at most " + std::to_string(most * s.magnet.distance / 4) + " over this distance");
+                "at most " + text_of(most * s.magnet.distance / 4) + " over this distance");
     }
 }
 
@@ -104,7 +145,7 @@ ForceResult render_force(ForceState& state, const ForceSettings& settings,
     }
     double step = input.time - state.time;
     std::uint8_t flags = 0;
-    if (!state.started || step > settings.stale_after) {
+    if (!state.started || !(step <= settings.stale_after)) {
         // A start, or the first tick after a pause: the ramp begins here, from zero.
         if (state.started) flags |= force_stale;
         state = ForceState{true, input.time, input.time, input.hand, Vec3::Zero(), Vec3::Zero()};
@@ -118,27 +159,10 @@ ForceResult render_force(ForceState& state, const ForceSettings& settings,
     Vec3 force = input.constrained ? contact_force(settings, input, state.velocity)
                                    : magnet_force(settings.magnet, input);
     force -= settings.viscosity * state.velocity;
-    if (!force.allFinite()) return stop(state, force_not_finite);
-
-    const double since = input.time - state.ramp_begin;
-    if (since < settings.ramp) {
-        force *= since / settings.ramp;
-        flags |= force_ramping;
-    }
-    const double most = std::min(settings.limit, limits.maximum_force);
-    if (force.norm() > most) {
-        force *= most / force.norm();
-        flags |= force_limited;
-    }
-    const Vec3 change = force - state.force;
-    const double most_change =
-        std::isfinite(settings.rate_limit) ? settings.rate_limit * step : settings.rate_limit;
-    if (change.norm() > most_change) {
-        force = state.force + change * (most_change / change.norm());
-        flags |= force_rate_limited;
-    }
-    // Between two forces within a limit that has just been lowered, and against rounding.
-    if (force.norm() > most) force *= most / force.norm();
+    // Of a force whose square overflows neither length nor direction are to be had.
+    if (!std::isfinite(force.squaredNorm())) return stop(state, force_not_finite);
+    force =
+        within_limits(force, state, settings, limits, input.time - state.ramp_begin, step, flags);
     if (!force.allFinite()) return stop(state, force_not_finite);
     state.time = input.time;
     state.hand = input.hand;
