@@ -17,6 +17,14 @@ void check_threshold(double threshold) {
     }
 }
 
+void check_range(const DensityRange& range) {
+    if (!(range.low <= range.high)) {
+        throw std::invalid_argument("a range of interest needs low <= high, not " +
+                                    std::to_string(range.low) + " to " +
+                                    std::to_string(range.high));
+    }
+}
+
 /// The level felt at a density, walking from the free side: the density itself inside a range of
 /// interest, else the near end of the next range.
 struct Level {
@@ -71,13 +79,7 @@ Penetrability penetrability_ranges(double threshold, std::span<const DensityRang
     check_threshold(threshold);
     if (ranges.empty()) throw std::invalid_argument("no range of interest is given");
     std::vector<DensityRange> sorted(ranges.begin(), ranges.end());
-    for (const DensityRange& range : sorted) {
-        if (!(range.low <= range.high)) {
-            throw std::invalid_argument("a range of interest needs low <= high, not " +
-                                        std::to_string(range.low) + " to " +
-                                        std::to_string(range.high));
-        }
-    }
+    for (const DensityRange& range : sorted) check_range(range);
     std::ranges::sort(sorted, {}, &DensityRange::low);
     std::vector<DensityRange> disjoint;
     for (const DensityRange& range : sorted) {
@@ -97,6 +99,25 @@ Penetrability penetrability_ranges(double threshold, std::span<const DensityRang
     p.range_count = static_cast<int>(disjoint.size());
     std::ranges::copy(disjoint, p.ranges.begin());
     return p;
+}
+
+void check(const Penetrability& p, Solid solid) {
+    if (!p.on) return;
+    check_threshold(p.threshold);
+    if (p.range_count < 1 || p.range_count > Penetrability::most_ranges) {
+        throw std::invalid_argument("penetrability needs 1 to 16 ranges of interest, not " +
+                                    std::to_string(p.range_count));
+    }
+    for (int i = 0; i < p.range_count; ++i) {
+        const DensityRange& range = p.ranges[i];
+        check_range(range);
+        if (i == 0) continue;
+        const DensityRange& before = p.ranges[i - 1];
+        if (solid == Solid::above ? before.high < range.low : range.high < before.low) continue;
+        throw std::invalid_argument(
+            "the ranges of interest are not in the order in which the hand meets them, or overlap "
+            "(penetrability_ranges() sorts and merges them)");
+    }
 }
 
 void apply_penetrability(const Penetrability& p, const Field& field, double device_per_volume,

@@ -53,6 +53,10 @@ Penetrability penetrability_threshold(double threshold, double minimum, Solid so
 Penetrability penetrability_ranges(double threshold, std::span<const DensityRange> ranges,
                                    Solid solid = Solid::above);
 
+/// Throws std::invalid_argument, saying what is wrong, for a value that is on and was not made by
+/// the functions above for this side: PT NaN or below 0, ranges out of order, none, too many.
+void check(const Penetrability& penetrability, Solid solid);
+
 /// Applied after a proxy update (Fig. 7): lets the proxy give way and re-levels it. Changes `proxy`
 /// (SCP, isovalue, mode) and brings `update` in line. `device_per_volume`: device mm per mm of
 /// physical space. Updates that are not `done` pass unchanged.
