@@ -44,6 +44,18 @@ ForceInput force_input(const Renderer& renderer, const DeviceState& device, cons
     return input;
 }
 
+/// The update of a tick without a position to trust: nothing moves.
+ProxyUpdate no_update(const Proxy& proxy, const Field& field, const Vec3& hip) {
+    ProxyUpdate update;
+    update.status = UpdateStatus::refused;
+    update.mode = proxy.mode;
+    update.hip = hip;
+    update.scp = proxy.scp_physical;
+    update.isovalue = proxy.isovalue;
+    if (proxy.placed) update.density = value_at(field, proxy.scp);
+    return update;
+}
+
 }  // namespace
 
 Vec3 physical_from_device(const DeviceTransform& t, const Vec3& device) {
@@ -61,6 +73,9 @@ double scale_for_voxels_per_mm(const Geometry& geometry, double voxels) {
 void check(const RendererSettings& s) {
     if (!s.method) throw std::invalid_argument("no proxy method is set");
     check(s.force, s.device);
+    const auto& ranges = s.penetrability.ranges;
+    const bool falling = s.penetrability.range_count > 1 && ranges[1].low < ranges[0].low;
+    check(s.penetrability, falling ? Solid::below : Solid::above);
     const Friction& friction = s.proxy.friction;
     if (!(friction.dynamic_coefficient >= 0) ||
         !(friction.static_coefficient >= friction.dynamic_coefficient) ||
@@ -70,7 +85,8 @@ void check(const RendererSettings& s) {
     }
     if (s.proxy.step_budget < 1) throw std::invalid_argument("the step budget must be at least 1");
     const Mat3 r = s.transform.rotation.transpose() * s.transform.rotation - Mat3::Identity();
-    if (!(r.cwiseAbs().maxCoeff() < 1e-6) || !s.transform.translation.allFinite()) {
+    // maxCoeff() alone may pass over a NaN.
+    if (!r.allFinite() || r.cwiseAbs().maxCoeff() >= 1e-6 || !s.transform.translation.allFinite()) {
         throw std::invalid_argument(
             "device transform: rotation must be orthonormal, translation finite");
     }
@@ -81,6 +97,7 @@ void check(const RendererSettings& s) {
 
 Renderer make_renderer(Field field, double isovalue, const RendererSettings& settings) {
     check(settings);
+    check(settings.penetrability, field.solid());
     if (std::isnan(isovalue)) throw std::invalid_argument("the isovalue is not a number");
     Renderer renderer{std::move(field), settings, {}, {}};
     renderer.proxy.isovalue = isovalue;
@@ -108,7 +125,9 @@ Tick render(Renderer& renderer, const DeviceState& device, StepObserver observer
     Tick tick;
     tick.time = device.time;
     const auto begin = std::chrono::steady_clock::now();
-    tick.proxy = settings.method(renderer.proxy, renderer.field, hip, settings.proxy, observer);
+    tick.proxy = device.valid ? settings.method(renderer.proxy, renderer.field, hip, settings.proxy,
+                                                observer)
+                              : no_update(renderer.proxy, renderer.field, hip);
     const auto end = std::chrono::steady_clock::now();
     tick.update_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(end - begin).count();
     apply_penetrability(settings.penetrability, renderer.field, 1 / settings.transform.scale,

@@ -23,7 +23,7 @@ double scale_for_voxels_per_mm(const Geometry& geometry, double voxels);
 struct DeviceState {
     double time = 0;               ///< [s], strictly increasing
     Vec3 position = Vec3::Zero();  ///< [device mm], device axes
-    bool valid = true;             ///< false: stale or broken input, forces go to zero
+    bool valid = true;             ///< false: stale or broken input; no force, and the proxy stays
 };
 
 struct RendererSettings {
@@ -55,15 +55,20 @@ struct Tick {
 };
 
 /// Throws std::invalid_argument, saying what is wrong, for settings that cannot be rendered.
+/// Whether several ranges of interest are in the order of the field's solid side is left to
+/// check(Penetrability, Solid), which make_renderer() calls as well.
 void check(const RendererSettings& settings);
 /// A renderer ready for its first tick. Throws std::invalid_argument for an isovalue that is NaN or
 /// settings that do not pass check().
 Renderer make_renderer(Field field, double isovalue, const RendererSettings& settings = {});
 /// What is odd about feeling this level, in words, or empty: outside the data's range there is
-/// nothing to feel; at or beyond the background all of space outside the data is solid.
+/// nothing to feel; where the background lies on its solid side, so does all of space outside the
+/// data.
 std::string isovalue_warning(const Field& field, double isovalue);
 
-/// Renders one tick.
+/// Renders one tick. Input that is not valid or not finite, or absurdly far, leaves the proxy as it
+/// is (UpdateStatus::refused) and gives no force; so does a time that is not finite or did not
+/// advance, but then the proxy has followed.
 Tick render(Renderer& renderer, const DeviceState& device, StepObserver observer = {});
 
 }  // namespace palpate
