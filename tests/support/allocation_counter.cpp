@@ -1,0 +1,56 @@
+// Replaces the global operator new by one that counts. See allocation_counter.hpp.
+#include "support/allocation_counter.hpp"
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+namespace {
+
+std::atomic<std::int64_t> count{0};
+
+void* counted(std::size_t size) noexcept {
+    count.fetch_add(1, std::memory_order_relaxed);
+    return std::malloc(size == 0 ? 1 : size);
+}
+
+void* counted(std::size_t size, std::align_val_t alignment) noexcept {
+    count.fetch_add(1, std::memory_order_relaxed);
+    const auto a = static_cast<std::size_t>(alignment);
+    return std::aligned_alloc(a, (size + a) / a * a);  // a multiple of a, never 0
+}
+
+void* or_throw(void* memory) {
+    if (!memory) throw std::bad_alloc();
+    return memory;
+}
+
+}  // namespace
+
+namespace palpate::support {
+
+std::int64_t allocation_count() {
+    return count.load();
+}
+
+}  // namespace palpate::support
+
+// The array and nothrow forms of the standard library call these.
+void* operator new(std::size_t size) {
+    return or_throw(counted(size));
+}
+void* operator new(std::size_t size, std::align_val_t alignment) {
+    return or_throw(counted(size, alignment));
+}
+void operator delete(void* memory) noexcept {
+    std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+    std::free(memory);
+}
+void operator delete(void* memory, std::align_val_t) noexcept {
+    std::free(memory);
+}
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
+    std::free(memory);
+}

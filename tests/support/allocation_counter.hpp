@@ -1,0 +1,12 @@
+// Counts what the program asks of the heap. Link allocation_counter.cpp, once a program: it
+// replaces the global operator new.
+#pragma once
+
+#include <cstdint>
+
+namespace palpate::support {
+
+/// Calls of operator new so far, by all threads.
+std::int64_t allocation_count();
+
+}  // namespace palpate::support
