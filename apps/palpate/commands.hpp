@@ -1,0 +1,21 @@
+// The commands of the program `palpate`, one file each. Every add_*() declares a subcommand with
+// its options; what it does runs from CLI11's callback and reports problems by throwing.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace palpate::app {
+
+void add_info(CLI::App& app);
+void add_replay(CLI::App& app);
+void add_extract(CLI::App& app);
+void add_demo(CLI::App& app);
+
+/// Thrown where Ctrl-C was seen: open files are dropped by unwinding (exit status 130).
+struct Interrupted {};
+/// True once SIGINT or SIGTERM has come.
+bool interrupted();
+/// Throws Interrupted if so.
+void stop_if_interrupted();
+
+}  // namespace palpate::app

@@ -1,0 +1,252 @@
+// palpate demo: the main job with nothing given. A simulated hand explores a volume; a picture, a
+// figure, the trace and a report stay in a folder.
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <limits>
+#include <memory>
+
+#include "apps/palpate/commands.hpp"
+#include "apps/palpate/picture.hpp"
+#include "apps/palpate/plot.hpp"
+#include "apps/palpate/progress.hpp"
+#include "apps/palpate/render_options.hpp"
+#include "apps/palpate/session.hpp"
+#include "apps/palpate/statistics.hpp"
+#include "apps/palpate/volume_options.hpp"
+#include "scenes/motions.hpp"
+
+namespace palpate::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr Colour bone{226, 205, 175};
+constexpr Colour hip_colour{0, 114, 178};  // blue and vermilion: told apart by everybody
+constexpr Colour scp_colour{213, 94, 0};
+constexpr int picture_width = 900;
+constexpr int picture_height = 720;
+
+struct DemoOptions {
+    VolumeOptions volume;
+    FieldOptions field;
+    RenderOptions render;
+    std::string motion = "explore";
+    scenes::MotionSettings hand;
+    std::string output = "palpate-demo";
+};
+
+struct Demo {
+    LoadedVolume loaded;
+    Field field;
+    double isovalue;
+    io::Trajectory trajectory;
+    std::vector<io::TraceRow> rows;
+    SessionSummary summary;
+};
+
+/// For a file without --isovalue: the first level that its histogram suggests.
+double demo_isovalue(const LoadedVolume& loaded, const Field& field, FieldOptions options) {
+    if (options.isovalue.empty() && !loaded.isovalue) {
+        const std::vector<double> levels = suggested_isovalues(histogram_of(loaded.volume, 256));
+        if (levels.empty()) {
+            throw std::invalid_argument(loaded.name +
+                                        ": the data are constant, there is nothing to feel");
+        }
+        options.isovalue = fmt::format("{}", levels.front());
+    }
+    return isovalue_of(loaded, field, options);
+}
+
+io::Trajectory simulate_hand(const DemoOptions& options, const Field& field, double isovalue) {
+    io::Trajectory trajectory;
+    for (const auto& sample : scenes::make_motion(options.motion, field, isovalue, options.hand)) {
+        trajectory.time.push_back(sample.t);
+        trajectory.position.push_back(sample.position);
+    }
+    return trajectory;
+}
+
+void write_trajectory(const io::Trajectory& trajectory, const fs::path& path) {
+    io::PendingFile file(path);
+    file.write("t,x,y,z\n");
+    for (std::size_t i = 0; i < trajectory.time.size(); ++i) {
+        const Vec3& p = trajectory.position[i];
+        file.write(fmt::format("{},{},{},{}\n", trajectory.time[i], p[0], p[1], p[2]));
+    }
+    file.commit();
+}
+
+/// Renders the motion; trajectory, trace and path go to files on the way.
+void feel(Demo& demo, const DemoOptions& options, const fs::path& folder) {
+    RendererSettings settings = render_settings(options.render, demo.field, demo.isovalue);
+    settings.device.maximum_force = options.render.force.limit;
+    Renderer renderer = make_renderer(demo.field, demo.isovalue, settings);
+    write_trajectory(demo.trajectory, folder / "trajectory.csv");
+    io::TraceWriter trace(folder / "trace.csv");
+    io::PathWriter path(folder / "path.csv");
+    ProgressBar bar("feeling", options.volume.quiet);
+    demo.rows.reserve(demo.trajectory.time.size());
+    SessionSinks sinks;
+    sinks.row = [&](const io::TraceRow& row) {
+        trace.add(row);
+        demo.rows.push_back(row);
+    };
+    sinks.corner = [&](std::int64_t tick, const Vec3& p) { path.add(tick, p); };
+    sinks.progress = [&](double fraction) { bar.at(fraction); };
+    demo.summary = run_session(renderer, demo.trajectory, sinks);
+    trace.commit();
+    path.commit();
+}
+
+/// Where the hand touched, on average; NaN if it never did.
+Vec3 mean_contact(const std::vector<io::TraceRow>& rows) {
+    Vec3 sum = Vec3::Zero();
+    int count = 0;
+    for (const io::TraceRow& row : rows) {
+        if (row.constrained) sum += row.scp;
+        count += row.constrained;
+    }
+    return sum / count;
+}
+
+void draw(const Demo& demo, bool quiet, const fs::path& path) {
+    Picture picture(picture_width, picture_height);
+    ProgressBar bar("drawing", quiet);
+    const Vec3 towards = mean_contact(demo.rows) - physical_centre(demo.field.geometry());
+    const Camera camera = camera_for(demo.field, demo.isovalue, towards);
+    draw_isosurface(picture, camera, demo.field, demo.isovalue, bone,
+                    [&](double fraction) { bar.at(fraction); });
+    const double bias = 0.5 * demo.field.geometry().spacing.maxCoeff();
+    std::vector<Vec3> hip;
+    for (const io::TraceRow& row : demo.rows) hip.push_back(row.hip);
+    draw_line(picture, camera, hip, hip_colour, 0, 1);
+    // The SCP in contact only: where it is free it is the HIP.
+    std::vector<Vec3> touch;
+    for (const io::TraceRow& row : demo.rows) {
+        if (row.constrained) {
+            touch.push_back(row.scp);
+            continue;
+        }
+        draw_line(picture, camera, touch, scp_colour, bias, 3);
+        touch.clear();
+    }
+    draw_line(picture, camera, touch, scp_colour, bias, 3);
+    write_png(picture, path);
+}
+
+/// Depth, force and density over time, from the trace that was just written.
+bool plot_trace(const fs::path& folder, const fs::path& figure) {
+    std::string trace = (folder / "trace.csv").string();
+    for (std::size_t at = 0; (at = trace.find('\'', at)) != std::string::npos; at += 2) {
+        trace.insert(at, 1, '\'');
+    }
+    return plot(
+        fmt::format(
+            "set datafile separator ','\nset datafile commentschars '#'\nf = '{}'\n"
+            "set multiplot layout 3,1\nset lmargin 12\nset grid\nset key off\n"
+            "set ylabel 'depth |SCP - HIP| [mm]'\n"
+            "plot f using (column('t')):(sqrt((column('scp_x')-column('hip_x'))**2+"
+            "(column('scp_y')-column('hip_y'))**2+(column('scp_z')-column('hip_z'))**2)) "
+            "with lines lc rgb '#0072B2'\n"
+            "set ylabel 'force [N]'\n"
+            "plot f using (column('t')):(sqrt(column('force_x')**2+column('force_y')**2+"
+            "column('force_z')**2)) with lines lc rgb '#D55E00'\n"
+            "set ylabel 'density at the SCP'\nset xlabel 'time [s]'\nset key bottom right\n"
+            "plot f using (column('t')):(column('density')) with lines lc rgb '#009E73' title "
+            "'density', f using (column('t')):(column('isovalue')) with lines dt 2 lc rgb "
+            "'#000000' title 'isovalue'\nunset multiplot\n",
+            trace),
+        figure);
+}
+
+void write_report(const Demo& demo, const DemoOptions& options, bool plotted,
+                  const fs::path& path) {
+    const Geometry& g = demo.field.geometry();
+    std::string html = fmt::format(
+        "<!DOCTYPE html>\n<html lang=\"en\"><meta charset=\"utf-8\"><title>Palpate demo</title>\n"
+        "<style>body{{font-family:sans-serif;max-width:60em;margin:2em auto}}img{{max-width:100%}}"
+        "</style>\n<h1>Palpate demo</h1>\n"
+        "<p>A simulated hand ({}, {:g} s, {:g} mm/s, {:g} mm deep, {:g} Hz) felt the surface at "
+        "isovalue {:g} of <b>{}</b> ({} x {} x {} samples of {}).</p>\n",
+        options.motion, options.hand.duration_s, options.hand.speed_mm_s, options.hand.depth_mm,
+        options.hand.rate_hz, demo.isovalue, demo.loaded.name, g.size[0], g.size[1], g.size[2],
+        name_of(demo.loaded.volume.type()));
+    html += fmt::format("<pre>{}</pre>\n", summary_text(demo.summary));
+    html +=
+        "<p><img src=\"surface.png\" alt=\"The isosurface with the way of the hand\"><br>"
+        "Blue: the hand (HIP). Vermilion: the proxy (SCP) in contact.</p>\n";
+    if (plotted) {
+        html += "<p><img src=\"session.png\" alt=\"Depth, force and density over time\"></p>\n";
+    }
+    html +=
+        "<p>Data: <a href=\"trajectory.csv\">trajectory.csv</a> (the hand), <a "
+        "href=\"trace.csv\">trace.csv</a> (a row a tick), <a href=\"path.csv\">path.csv</a> (the "
+        "way of the SCP).</p>\n</html>\n";
+    io::PendingFile file(path);
+    file.write(html);
+    file.commit();
+}
+
+void make_folder(const fs::path& folder) {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error || !fs::is_directory(folder)) {
+        throw io::OutputError(folder.string() +
+                              ": the folder could not be made: choose another with --output");
+    }
+}
+
+void run_demo(const DemoOptions& options) {
+    LoadedVolume loaded = load(options.volume);
+    const Field field = make_field(loaded, options.field);
+    const double isovalue = demo_isovalue(loaded, field, options.field);
+    Demo demo{std::move(loaded), field, isovalue, {}, {}, {}};
+    demo.trajectory = simulate_hand(options, field, isovalue);
+    const fs::path folder = options.output;
+    make_folder(folder);
+    feel(demo, options, folder);
+    draw(demo, options.volume.quiet, folder / "surface.png");
+    const bool plotted =
+        plot_trace(folder, folder / "session.png") && plot_trace(folder, folder / "session.svg");
+    stop_if_interrupted();
+    write_report(demo, options, plotted, folder / "report.html");
+    if (options.volume.quiet) return;
+    fmt::print("A simulated hand felt {} at isovalue {:g}.\n{}", demo.loaded.name, demo.isovalue,
+               summary_text(demo.summary));
+    if (!plotted) fmt::print("No figure over time: gnuplot is not installed.\n");
+    fmt::print("Results: {} (open report.html)\n", folder.string());
+}
+
+}  // namespace
+
+void add_demo(CLI::App& app) {
+    auto options = std::make_shared<DemoOptions>();
+    options->volume.volume = "synthetic:shepp-logan";
+    CLI::App* command =
+        app.add_subcommand("demo", "A simulated hand explores a volume; pictures and a report");
+    command->footer(
+        "Examples:\n  palpate demo\n  palpate demo lobster.nrrd --isovalue 35 --motion circle");
+    options->volume.add_to(*command, true);
+    options->field.add_to(*command);
+    options->render.add_to(*command);
+    command->add_option("--motion", options->motion, "Motion of the hand")
+        ->check(CLI::IsMember(scenes::motion_names()))
+        ->capture_default_str();
+    command->add_option("--duration", options->hand.duration_s, "Length [s]")
+        ->capture_default_str();
+    command->add_option("--speed", options->hand.speed_mm_s, "Speed of the hand [mm/s]")
+        ->capture_default_str();
+    command->add_option("--depth", options->hand.depth_mm, "How deep the hand presses [mm]")
+        ->capture_default_str();
+    command->add_option("--seed", options->hand.seed, "Seed of the hand's motion")
+        ->capture_default_str();
+    command->add_option("-o,--output", options->output, "Folder for the results")
+        ->capture_default_str();
+    command->callback([options] {
+        options->hand.rate_hz = options->render.rate;
+        run_demo(*options);
+    });
+}
+
+}  // namespace palpate::app

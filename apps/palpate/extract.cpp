@@ -1,0 +1,70 @@
+// palpate extract: the whole isosurface as a watertight mesh, for looking at.
+#include <fmt/format.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "apps/palpate/commands.hpp"
+#include "apps/palpate/progress.hpp"
+#include "apps/palpate/volume_options.hpp"
+#include "io/mesh_file.hpp"
+#include "palpate/surface.hpp"
+
+namespace palpate::app {
+namespace {
+
+struct ExtractOptions {
+    VolumeOptions volume;
+    FieldOptions field;
+    std::string output;
+    bool json = false;
+};
+
+void extract(const ExtractOptions& options) {
+    (void)io::mesh_format_from(options.output);  // refuse before the work, not after it
+    const LoadedVolume loaded = load(options.volume);
+    const Field field = make_field(loaded, options.field);
+    const double isovalue = isovalue_of(loaded, field, options.field);
+    SurfaceMesh mesh;
+    {
+        ProgressBar bar("extracting", options.volume.quiet);
+        SurfaceOptions surface;
+        surface.progress = [&](double fraction) {
+            bar.at(fraction);
+            return true;
+        };
+        mesh = extract_surface(field, isovalue, surface);
+    }
+    io::write_mesh(mesh, options.output);
+    stop_if_interrupted();
+    if (options.json) {
+        const nlohmann::ordered_json json{{"isovalue", isovalue},
+                                          {"vertices", mesh.vertices.size()},
+                                          {"triangles", mesh.triangles.size()},
+                                          {"enclosed_volume_mm3", enclosed_volume(mesh)}};
+        fmt::print("{}\n", json.dump(2));
+    } else if (!options.volume.quiet) {
+        fmt::print("{}: isovalue {}, {} vertices, {} triangles, encloses {:.6g} mm3\n",
+                   options.output, isovalue, mesh.vertices.size(), mesh.triangles.size(),
+                   enclosed_volume(mesh));
+    }
+}
+
+}  // namespace
+
+void add_extract(CLI::App& app) {
+    auto options = std::make_shared<ExtractOptions>();
+    CLI::App* command =
+        app.add_subcommand("extract", "Write the whole isosurface as a watertight mesh");
+    command->footer(
+        "Marching tetrahedra over the lattice that the proxy walks; coordinates are LPS, mm.\n\n"
+        "Example:\n  palpate extract head.nrrd --isovalue 1200 --output skull.ply");
+    options->volume.add_to(*command);
+    options->field.add_to(*command);
+    command->add_option("-o,--output", options->output, "Mesh to write: .ply, .stl, .obj or .vtp")
+        ->required();
+    command->add_flag("--json", options->json, "Print the summary as JSON");
+    command->callback([options] { extract(*options); });
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,146 @@
+// palpate info: what a volume is, and which of its levels may be worth feeling.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "apps/palpate/commands.hpp"
+#include "apps/palpate/statistics.hpp"
+#include "apps/palpate/volume_options.hpp"
+
+namespace palpate::app {
+namespace {
+
+constexpr int fine_bins = 256;  // for the suggestions and JSON
+constexpr int text_bins = 16;
+constexpr int bar_width = 40;
+
+/// Where each index axis runs to, anatomically: "L P S" for an axis-aligned LPS grid.
+std::string orientation(const Geometry& geometry) {
+    constexpr const char* towards[3][2] = {{"L", "R"}, {"P", "A"}, {"S", "I"}};
+    std::string text;
+    for (int axis = 0; axis < 3; ++axis) {
+        int most = 0;
+        geometry.direction.col(axis).cwiseAbs().maxCoeff(&most);
+        if (axis > 0) text += ' ';
+        text += towards[most][geometry.direction(most, axis) < 0];
+    }
+    return text;
+}
+
+bool is_oblique(const Geometry& geometry) {
+    return ((geometry.direction.cwiseAbs().array() > 1e-6) &&
+            (geometry.direction.cwiseAbs().array() < 1 - 1e-6))
+        .any();
+}
+
+std::string size_text(std::size_t bytes) {
+    const auto b = static_cast<double>(bytes);
+    return b < 1e6 ? fmt::format("{:.1f} kB", b / 1e3) : fmt::format("{:.1f} MB", b / 1e6);
+}
+
+nlohmann::ordered_json json_of(const LoadedVolume& loaded, const Histogram& histogram,
+                               const std::vector<double>& suggested) {
+    const Volume& volume = loaded.volume;
+    const Geometry& g = volume.geometry();
+    const auto list = [](const auto& v) { return nlohmann::json::array({v[0], v[1], v[2]}); };
+    nlohmann::json direction = nlohmann::json::array();
+    for (int axis = 0; axis < 3; ++axis) direction.push_back(list(Vec3(g.direction.col(axis))));
+    return {{"name", loaded.name},
+            {"format", loaded.format},
+            {"size", list(g.size)},
+            {"type", name_of(volume.type())},
+            {"spacing_mm", list(g.spacing)},
+            {"origin_mm", list(g.origin)},
+            {"direction", direction},
+            {"orientation", orientation(g)},
+            {"minimum", volume.minimum()},
+            {"maximum", volume.maximum()},
+            {"mean", histogram.mean},
+            {"standard_deviation", histogram.deviation},
+            {"memory_bytes", volume.bytes()},
+            {"time_steps", loaded.time_steps},
+            {"histogram",
+             {{"low", histogram.low}, {"high", histogram.high}, {"counts", histogram.counts}}},
+            {"suggested_isovalues", suggested},
+            {"notes", loaded.notes}};
+}
+
+void print_histogram(const Histogram& fine) {
+    // Bars on a logarithmic scale: air outnumbers everything else in most scans.
+    const std::size_t group = (fine.counts.size() + text_bins - 1) / text_bins;
+    const double width = (fine.high - fine.low) / static_cast<double>(fine.counts.size());
+    std::vector<std::int64_t> coarse;
+    for (std::size_t i = 0; i < fine.counts.size(); i += group) {
+        std::int64_t sum = 0;
+        for (std::size_t j = i; j < std::min(i + group, fine.counts.size()); ++j) {
+            sum += fine.counts[j];
+        }
+        coarse.push_back(sum);
+    }
+    const double most = std::log1p(static_cast<double>(*std::ranges::max_element(coarse)));
+    fmt::print("histogram (bars logarithmic)\n");
+    for (std::size_t i = 0; i < coarse.size(); ++i) {
+        const double low = fine.low + width * static_cast<double>(i * group);
+        const auto bar =
+            static_cast<int>(std::lround(bar_width * std::log1p(double(coarse[i])) / most));
+        fmt::print("  from {:<10.6g} {:<{}} {}\n", low, std::string(std::size_t(bar), '#'),
+                   bar_width, coarse[i]);
+    }
+}
+
+void print_text(const LoadedVolume& loaded, const Histogram& histogram,
+                const std::vector<double>& suggested) {
+    const Volume& volume = loaded.volume;
+    const Geometry& g = volume.geometry();
+    const Vec3 extent = g.size.cast<double>().cwiseProduct(g.spacing);
+    fmt::print("{}\n", loaded.name);
+    fmt::print("format       {}\n", loaded.format);
+    fmt::print("size         {} x {} x {} samples, {}\n", g.size[0], g.size[1], g.size[2],
+               name_of(volume.type()));
+    if (loaded.time_steps > 1) fmt::print("time steps   {}\n", loaded.time_steps);
+    fmt::print("spacing      {:g} x {:g} x {:g} mm\n", g.spacing[0], g.spacing[1], g.spacing[2]);
+    fmt::print("extent       {:g} x {:g} x {:g} mm\n", extent[0], extent[1], extent[2]);
+    fmt::print("origin       {:g}, {:g}, {:g} mm (LPS)\n", g.origin[0], g.origin[1], g.origin[2]);
+    fmt::print("orientation  axes run towards {}{}\n", orientation(g),
+               is_oblique(g) ? " (oblique)" : "");
+    fmt::print("range        {:g} to {:g}, mean {:.4g}, standard deviation {:.4g}\n",
+               volume.minimum(), volume.maximum(), histogram.mean, histogram.deviation);
+    fmt::print("memory       {}\n", size_text(volume.bytes()));
+    std::string levels;
+    for (const double level : suggested) {
+        const double part = (level - volume.minimum()) / volume.range();
+        levels += fmt::format("{}{:.6g} ({:.0f}%)", levels.empty() ? "" : ", ", level, 100 * part);
+    }
+    fmt::print("isovalues    {}\n",
+               levels.empty() ? "none: the data are constant" : "try " + levels);
+    print_histogram(histogram);
+}
+
+}  // namespace
+
+void add_info(CLI::App& app) {
+    auto options = std::make_shared<VolumeOptions>();
+    auto json = std::make_shared<bool>(false);
+    CLI::App* command = app.add_subcommand("info", "Say what a volume is");
+    command->footer(
+        "Examples:\n  palpate info head.nrrd\n  palpate info dicom-folder --json\n"
+        "  palpate info samples.raw --dims 256x256x113 --type uint16 --spacing 1,1,2");
+    options->add_to(*command);
+    command->add_flag("--json", *json, "Print JSON");
+    command->callback([options, json] {
+        const LoadedVolume loaded = load(*options);
+        const Histogram histogram = histogram_of(loaded.volume, fine_bins);
+        std::vector<double> suggested = suggested_isovalues(histogram);
+        if (loaded.isovalue) suggested.insert(suggested.begin(), *loaded.isovalue);
+        if (*json) {
+            fmt::print("{}\n", json_of(loaded, histogram, suggested).dump(2));
+        } else {
+            print_text(loaded, histogram, suggested);
+        }
+    });
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,45 @@
+// The progress bar.
+#include "apps/palpate/progress.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "apps/palpate/commands.hpp"
+
+namespace palpate::app {
+namespace {
+
+using namespace std::chrono_literals;
+constexpr auto patience = 400ms;  // shorter work shows no bar
+constexpr auto redraw = 100ms;
+constexpr int width = 30;
+
+}  // namespace
+
+ProgressBar::ProgressBar(std::string label, bool quiet)
+    : label_(std::move(label)),
+      begin_(std::chrono::steady_clock::now()),
+      last_(begin_),
+      show_(!quiet && ::isatty(STDERR_FILENO)) {}
+
+ProgressBar::~ProgressBar() {
+    if (drawn_) std::fputs("\r\033[K", stderr);
+}
+
+void ProgressBar::at(double fraction) {
+    stop_if_interrupted();
+    const auto now = std::chrono::steady_clock::now();
+    if (!show_ || now - begin_ < patience || now - last_ < redraw) return;
+    last_ = now;
+    drawn_ = true;
+    const double part = std::clamp(fraction, 0.0, 1.0);
+    const int full = static_cast<int>(part * width);
+    const std::string line = fmt::format("\r{} [{:#<{}}{:.<{}}] {:3.0f} %", label_, "", full, "",
+                                         width - full, 100 * part);
+    std::fputs(line.c_str(), stderr);
+}
+
+}  // namespace palpate::app

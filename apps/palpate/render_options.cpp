@@ -1,0 +1,108 @@
+// How to feel: options of method, penetrability and force.
+#include "apps/palpate/render_options.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+#include <map>
+#include <stdexcept>
+
+#include "baselines/gradient.hpp"
+
+namespace palpate::app {
+namespace {
+
+const std::map<std::string, ProxyMethod>& methods() {
+    static const std::map<std::string, ProxyMethod> all{
+        {"exact", &update_exact},
+        {"paper", &update_paper},
+        {"gradient", &baselines::update_gradient},
+        {"gradient-improved", &baselines::update_gradient_improved}};
+    return all;
+}
+
+DensityRange range_from(const std::string& text, const Volume& volume) {
+    const auto colon = text.find(':');
+    if (colon == std::string::npos) {
+        throw std::invalid_argument("--range " + text + ": LOW:HIGH is needed, as in 300:700");
+    }
+    return {level_from_text(text.substr(0, colon), volume),
+            level_from_text(text.substr(colon + 1), volume)};
+}
+
+Penetrability penetrability_of(const RenderOptions& options, const Field& field, double isovalue) {
+    if (options.penetrability == "off") return no_penetrability();
+    if (options.penetrability == "threshold") {
+        const double minimum =
+            options.minimum.empty() ? isovalue : level_from_text(options.minimum, field.volume());
+        return penetrability_threshold(options.threshold, minimum, field.solid());
+    }
+    if (options.ranges.empty()) {
+        throw std::invalid_argument("--penetrability ranges needs at least one --range LOW:HIGH");
+    }
+    std::vector<DensityRange> ranges;
+    for (const std::string& text : options.ranges)
+        ranges.push_back(range_from(text, field.volume()));
+    return penetrability_ranges(options.threshold, ranges, field.solid());
+}
+
+}  // namespace
+
+void RenderOptions::add_to(CLI::App& command) {
+    std::vector<std::string> names;
+    for (const auto& [name, function] : methods()) names.push_back(name);
+    command.add_option("--method", method, "Proxy method")
+        ->check(CLI::IsMember(names))
+        ->capture_default_str();
+    command.add_option("--penetrability", penetrability, "Pressing through")
+        ->check(CLI::IsMember({"off", "threshold", "ranges"}))
+        ->capture_default_str();
+    command.add_option("--threshold", threshold, "Penetration threshold PT [device mm]")
+        ->capture_default_str();
+    command.add_option("--minimum", minimum, "Least level felt (default: the isovalue)");
+    command.add_option("--range", ranges, "Range of interest, LOW:HIGH; may be given again")
+        ->type_name("LOW:HIGH");
+    command.add_option("-k,--stiffness", force.stiffness, "Stiffness [N/mm]")
+        ->capture_default_str();
+    command.add_option("--damping", force.damping, "Damping along the normal [N s/mm]");
+    command.add_option("--viscosity", force.viscosity, "Viscosity of the medium [N s/mm]");
+    command.add_option("--friction", friction, "Friction coefficients: STATIC[,DYNAMIC]")
+        ->delimiter(',')
+        ->expected(1, 2);
+    command.add_option("--magnet", magnet, "Snap to near surfaces: DISTANCE [mm],PEAK [N]")
+        ->delimiter(',')
+        ->expected(2);
+    command.add_option("--texture", texture, "Bumps: AMPLITUDE,WAVELENGTH [mm]")
+        ->delimiter(',')
+        ->expected(2);
+    command.add_option("--force-limit", force.limit, "Largest force [N]")->capture_default_str();
+    command.add_option("--force-rate", force.rate_limit, "Largest change of force [N/s]")
+        ->capture_default_str();
+    command.add_option("--ramp", force.ramp, "Ramp of the force from zero at the start [s]")
+        ->capture_default_str();
+    command.add_option("--rate", rate, "Rate of the loop the forces are meant for [Hz]")
+        ->capture_default_str();
+    command.add_option("--scale", scale, "Physical mm per mm of hand")->capture_default_str();
+    command.add_option("--step-budget", step_budget, "Most tetrahedra an update may enter")
+        ->capture_default_str();
+}
+
+RendererSettings render_settings(const RenderOptions& options, const Field& field,
+                                 double isovalue) {
+    RendererSettings settings;
+    settings.method = methods().at(options.method);
+    settings.proxy.step_budget = options.step_budget;
+    if (!options.friction.empty()) {
+        settings.proxy.friction = {options.friction.front(), options.friction.back()};
+    }
+    settings.penetrability = penetrability_of(options, field, isovalue);
+    settings.force = options.force;
+    if (!options.magnet.empty()) settings.force.magnet = {options.magnet[0], options.magnet[1]};
+    if (!options.texture.empty()) settings.force.texture = {options.texture[0], options.texture[1]};
+    settings.device.rate = options.rate;
+    settings.transform.scale = options.scale;
+    check(settings);
+    return settings;
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,31 @@
+// The options that say how to feel: proxy method, penetrability, force.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "palpate/renderer.hpp"
+
+namespace palpate::app {
+
+struct RenderOptions {
+    std::string method = "exact";
+    std::string penetrability = "off";
+    double threshold = 1;  ///< PT [device mm]
+    std::string minimum;
+    std::vector<std::string> ranges;
+    std::vector<double> friction, magnet, texture;
+    double rate = 1000;  ///< [Hz]
+    double scale = 1;    ///< physical mm per device mm
+    int step_budget = ProxySettings{}.step_budget;
+    ForceSettings force;
+
+    void add_to(CLI::App& command);
+};
+
+/// The settings asked for; `isovalue` is the least level felt where no --minimum is given.
+/// Throws std::invalid_argument, through check(), for what cannot be rendered.
+RendererSettings render_settings(const RenderOptions& options, const Field& field, double isovalue);
+
+}  // namespace palpate::app

@@ -1,0 +1,88 @@
+// palpate replay: a recorded motion of the hand over a volume, off line, deterministic.
+#include <fmt/format.h>
+
+#include <limits>
+#include <memory>
+#include <optional>
+
+#include "apps/palpate/commands.hpp"
+#include "apps/palpate/progress.hpp"
+#include "apps/palpate/render_options.hpp"
+#include "apps/palpate/session.hpp"
+#include "apps/palpate/volume_options.hpp"
+
+namespace palpate::app {
+namespace {
+
+struct ReplayOptions {
+    VolumeOptions volume;
+    FieldOptions field;
+    RenderOptions render;
+    std::string trajectory, output, path;
+    bool json = false;
+};
+
+/// What a reader of the file needs to know to make it again.
+std::vector<std::string> head(const ReplayOptions& options, double isovalue) {
+    return {fmt::format("palpate {} replay: {}, isovalue {}, method {}, penetrability {}",
+                        PALPATE_VERSION, options.volume.volume, isovalue, options.render.method,
+                        options.render.penetrability)};
+}
+
+void replay(const ReplayOptions& options) {
+    const io::Trajectory trajectory = io::read_trajectory(options.trajectory);
+    const LoadedVolume loaded = load(options.volume);
+    const Field field = make_field(loaded, options.field);
+    const double isovalue = isovalue_of(loaded, field, options.field);
+    RendererSettings settings = render_settings(options.render, field, isovalue);
+    // No device is at hand, and a recording has no pauses: only the limit asked for holds.
+    settings.device.maximum_force = options.render.force.limit;
+    settings.force.stale_after = std::numeric_limits<double>::infinity();
+    Renderer renderer = make_renderer(field, isovalue, settings);
+
+    io::TraceWriter trace(options.output, head(options, isovalue));
+    std::optional<io::PathWriter> path;
+    if (!options.path.empty()) path.emplace(options.path, head(options, isovalue));
+    ProgressBar bar("replaying", options.volume.quiet);
+    SessionSinks sinks;
+    sinks.row = [&](const io::TraceRow& row) { trace.add(row); };
+    if (path) sinks.corner = [&](std::int64_t tick, const Vec3& p) { path->add(tick, p); };
+    sinks.progress = [&](double fraction) { bar.at(fraction); };
+    const SessionSummary summary = run_session(renderer, trajectory, sinks);
+    stop_if_interrupted();
+    trace.commit();
+    if (path) path->commit();
+    if (options.json) {
+        fmt::print("{}", summary_json(summary));
+    } else if (!options.volume.quiet && options.output != "-") {
+        fmt::print("{}", summary_text(summary));
+    }
+}
+
+}  // namespace
+
+void add_replay(CLI::App& app) {
+    auto options = std::make_shared<ReplayOptions>();
+    CLI::App* command = app.add_subcommand("replay", "Render a recorded motion of the hand");
+    command->footer(
+        "The trajectory is CSV with columns t,x,y,z (s, mm in the volume's physical space); a "
+        "trace "
+        "serves too.\nThe ramp and the limit on the change of force, which a live session has, are "
+        "off unless asked for.\n\n"
+        "Example:\n  palpate replay head.nrrd --trajectory hand.csv --isovalue 500 --output "
+        "trace.csv --path path.csv");
+    options->render.force.ramp = 0;
+    options->render.force.rate_limit = std::numeric_limits<double>::infinity();
+    options->volume.add_to(*command);
+    command->add_option("--trajectory", options->trajectory, "Motion of the hand (CSV)")
+        ->required();
+    command->add_option("-o,--output", options->output, "Trace to write (CSV; - for standard out)")
+        ->required();
+    command->add_option("--path", options->path, "Path of the SCP to write (CSV)");
+    options->field.add_to(*command);
+    options->render.add_to(*command);
+    command->add_flag("--json", options->json, "Print the summary as JSON");
+    command->callback([options] { replay(*options); });
+}
+
+}  // namespace palpate::app

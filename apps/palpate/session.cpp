@@ -1,0 +1,132 @@
+// Off-line rendering of a motion.
+#include "apps/palpate/session.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+namespace palpate::app {
+namespace {
+
+constexpr std::int64_t ticks_between_progress = 1024;
+
+/// Passes the corners of the SCP's polyline on. A crossed wall is no corner, nor is a goal.
+struct PathTap {
+    const SessionSinks* sinks;
+    std::int64_t tick = 0;
+
+    static void on_step(const Step& step, void* context) {
+        if (step.kind == StepKind::cross || step.kind == StepKind::goal) return;
+        const auto& tap = *static_cast<const PathTap*>(context);
+        tap.sinks->corner(tap.tick, step.point);
+    }
+};
+
+io::TraceRow row_of(const Tick& tick) {
+    return {tick.time,
+            tick.proxy.hip,
+            tick.proxy.scp,
+            tick.force,
+            tick.proxy.density,
+            tick.proxy.isovalue,
+            tick.proxy.mode == Mode::constrained,
+            tick.proxy.tetrahedra,
+            tick.update_ns};
+}
+
+void add_to_summary(SessionSummary& summary, const Tick& tick, double range) {
+    ++summary.ticks;
+    summary.out_of_budget += tick.proxy.status == UpdateStatus::out_of_budget;
+    summary.mean_tetrahedra += tick.proxy.tetrahedra;
+    summary.mean_ns += static_cast<double>(tick.update_ns);
+    summary.largest_force = std::max(summary.largest_force, tick.force.norm());
+    if (tick.proxy.mode == Mode::constrained) {
+        ++summary.constrained;
+        summary.worst_surface_error =
+            std::max(summary.worst_surface_error,
+                     std::abs(tick.proxy.density - tick.proxy.isovalue) / range);
+    }
+}
+
+void finish(SessionSummary& summary, std::vector<std::int64_t>& times) {
+    const auto n = static_cast<double>(summary.ticks);
+    summary.mean_tetrahedra /= n;
+    summary.mean_ns /= n;
+    std::ranges::sort(times);
+    const auto at = [&](double part) {
+        return times[static_cast<std::size_t>(part * static_cast<double>(times.size() - 1))];
+    };
+    summary.p50_ns = at(0.5);
+    summary.p99_ns = at(0.99);
+    summary.p999_ns = at(0.999);
+    summary.max_ns = times.back();
+}
+
+}  // namespace
+
+SessionSummary run_session(Renderer& renderer, const io::Trajectory& trajectory,
+                           const SessionSinks& sinks) {
+    const Vec3& first = trajectory.position.front();
+    if (!place(renderer.proxy, renderer.field, first, renderer.proxy.isovalue)) {
+        throw std::invalid_argument(
+            "no free space was found at this isovalue: everything is solid; choose another "
+            "isovalue or --background");
+    }
+    SessionSummary summary;
+    std::vector<std::int64_t> times;
+    times.reserve(trajectory.time.size());
+    PathTap tap{&sinks};
+    const StepObserver observer =
+        sinks.corner ? StepObserver{&PathTap::on_step, &tap} : StepObserver{};
+    if (sinks.corner) sinks.corner(0, renderer.proxy.scp_physical);
+    const auto count = static_cast<std::int64_t>(trajectory.time.size());
+    for (std::int64_t i = 0; i < count; ++i) {
+        tap.tick = i;
+        const auto at = static_cast<std::size_t>(i);
+        const Vec3 hand =
+            device_from_physical(renderer.settings.transform, trajectory.position[at]);
+        const Tick tick = render(renderer, {trajectory.time[at], hand, true}, observer);
+        if (sinks.row) sinks.row(row_of(tick));
+        times.push_back(tick.update_ns);
+        add_to_summary(summary, tick, renderer.field.range());
+        if (sinks.progress && i % ticks_between_progress == 0) {
+            sinks.progress(static_cast<double>(i) / static_cast<double>(count));
+        }
+    }
+    finish(summary, times);
+    return summary;
+}
+
+std::string summary_text(const SessionSummary& s) {
+    return fmt::format(
+        "ticks {}, in contact {} ({:.1f} %), out of step budget {}\n"
+        "largest |density - isovalue| in contact {:.2g} of the data's range\n"
+        "largest force {:.3g} N\n"
+        "tetrahedra an update {:.2f}\n"
+        "proxy update [ns]: mean {:.0f}, p50 {}, p99 {}, p99.9 {}, max {}\n",
+        s.ticks, s.constrained,
+        100.0 * static_cast<double>(s.constrained) / static_cast<double>(s.ticks), s.out_of_budget,
+        s.worst_surface_error, s.largest_force, s.mean_tetrahedra, s.mean_ns, s.p50_ns, s.p99_ns,
+        s.p999_ns, s.max_ns);
+}
+
+std::string summary_json(const SessionSummary& s) {
+    const nlohmann::ordered_json json{{"ticks", s.ticks},
+                                      {"constrained", s.constrained},
+                                      {"out_of_budget", s.out_of_budget},
+                                      {"worst_surface_error", s.worst_surface_error},
+                                      {"largest_force_n", s.largest_force},
+                                      {"mean_tetrahedra", s.mean_tetrahedra},
+                                      {"update_ns",
+                                       {{"mean", s.mean_ns},
+                                        {"p50", s.p50_ns},
+                                        {"p99", s.p99_ns},
+                                        {"p99.9", s.p999_ns},
+                                        {"max", s.max_ns}}}};
+    return json.dump(2) + "\n";
+}
+
+}  // namespace palpate::app

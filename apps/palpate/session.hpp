@@ -1,0 +1,45 @@
+// Rendering a recorded or simulated motion of the hand off line: the same ticks as a live session,
+// as fast as they go.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "io/trace.hpp"
+#include "io/trajectory.hpp"
+#include "palpate/renderer.hpp"
+
+namespace palpate::app {
+
+/// What a session gave, in numbers.
+struct SessionSummary {
+    std::int64_t ticks = 0;
+    std::int64_t constrained = 0;
+    std::int64_t out_of_budget = 0;
+    double worst_surface_error = 0;  ///< largest |density - isovalue| / range in contact
+    double largest_force = 0;        ///< [N]
+    double mean_tetrahedra = 0;
+    /// Time of a proxy update [ns].
+    double mean_ns = 0;
+    std::int64_t p50_ns = 0, p99_ns = 0, p999_ns = 0, max_ns = 0;
+};
+
+/// Where the ticks go; either may be empty.
+struct SessionSinks {
+    std::function<void(const io::TraceRow&)> row;
+    std::function<void(std::int64_t tick, const Vec3& corner)> corner;  ///< of the SCP's path [mm]
+    std::function<void(double fraction)> progress;
+};
+
+/// Renders each position of the trajectory (physical space) in order. The proxy is placed first: at
+/// the first position if that is free, else where recovery finds. Throws std::invalid_argument if
+/// no free point exists at this isovalue; Interrupted through the progress sink.
+SessionSummary run_session(Renderer& renderer, const io::Trajectory& trajectory,
+                           const SessionSinks& sinks);
+
+/// The summary as lines of text for people, and as JSON.
+std::string summary_text(const SessionSummary& summary);
+std::string summary_json(const SessionSummary& summary);
+
+}  // namespace palpate::app

@@ -1,0 +1,158 @@
+// Which volume, which level: options and loading.
+#include "apps/palpate/volume_options.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+
+#include "apps/palpate/progress.hpp"
+#include "io/volume_file.hpp"
+#include "palpate/renderer.hpp"
+#include "scenes/volumes.hpp"
+
+namespace palpate::app {
+namespace {
+
+constexpr std::string_view synthetic_prefix = "synthetic:";
+
+io::RawLayout raw_layout(const VolumeOptions& options) {
+    if (options.dims.empty() || options.type.empty()) {
+        throw std::invalid_argument(
+            "a raw volume needs both --dims WxHxD and --type uint8|int16|uint16|float32");
+    }
+    io::RawLayout layout;
+    const Vec3 size = three_numbers(options.dims, 'x', "--dims");
+    for (int a = 0; a < 3; ++a) {
+        if (size[a] < 1 || size[a] > 1e6 || size[a] != std::floor(size[a])) {
+            throw std::invalid_argument("--dims " + options.dims +
+                                        ": three whole numbers of at least 1, as in 256x256x113");
+        }
+    }
+    layout.size = size.cast<int>();
+    layout.type = sample_type_from(options.type);
+    layout.skip = options.skip;
+    return layout;
+}
+
+LoadedVolume make_synthetic(const VolumeOptions& options) {
+    std::optional<SampleType> type;
+    if (!options.type.empty()) type = sample_type_from(options.type);
+    if (!options.dims.empty() || !options.spacing.empty()) {
+        throw std::invalid_argument(
+            "--dims and --spacing are for files; a synthetic volume's size is part of its name: "
+            "synthetic:NAME:WxHxD");
+    }
+    scenes::Scene scene = scenes::make_volume(options.volume, type);
+    return {scene.volume, options.volume, "synthetic (" + scene.description + ")", 1,
+            {},           scene.isovalue};
+}
+
+LoadedVolume read_file(const VolumeOptions& options) {
+    io::ReadOptions read;
+    if (!options.dims.empty() || !options.type.empty()) read.raw = raw_layout(options);
+    if (!options.spacing.empty()) {
+        const Vec3 spacing = three_numbers(options.spacing, ',', "--spacing");
+        if (!(spacing.array() > 0).all()) {
+            throw std::invalid_argument("--spacing " + options.spacing +
+                                        ": every spacing must be above 0 mm");
+        }
+        read.spacing = spacing;
+        if (read.raw) read.raw->spacing = spacing;
+    }
+    read.series = options.series;
+    read.time_step = options.time_step;
+    ProgressBar bar("reading " + options.volume, options.quiet);
+    read.progress = [&](double fraction) { bar.at(fraction); };
+    io::VolumeFile file = io::read_volume(options.volume, read);
+    return {std::move(file.volume), options.volume,        std::move(file.format),
+            file.time_steps,        std::move(file.notes), {}};
+}
+
+}  // namespace
+
+Vec3 three_numbers(const std::string& text, char separator, const char* what) {
+    Vec3 numbers;
+    const char* at = text.data();
+    const char* const end = at + text.size();
+    bool good = true;
+    for (int i = 0; i < 3 && good; ++i) {
+        if (i > 0) good = at != end && *at++ == separator;
+        const auto [next, error] = std::from_chars(at, end, numbers[i]);
+        good = good && error == std::errc{} && std::isfinite(numbers[i]);
+        at = next;
+    }
+    if (!good || at != end) {
+        throw std::invalid_argument(fmt::format("{} {}: three numbers separated by '{}' are needed",
+                                                what, text, separator));
+    }
+    return numbers;
+}
+
+void VolumeOptions::add_to(CLI::App& command, bool optional) {
+    auto* positional =
+        command.add_option("VOLUME", volume, "File, folder, or synthetic:NAME[:WxHxD]");
+    if (!optional) positional->required();
+    command.add_option("--dims", dims, "Size of a raw file in samples: WxHxD")->type_name("WxHxD");
+    command.add_option("--type", type,
+                       "Sample type of a raw file (or a synthetic volume): uint8, int16, uint16, "
+                       "float32");
+    command.add_option("--spacing", spacing, "Spacing [mm], for files that give none: X,Y,Z")
+        ->type_name("X,Y,Z");
+    command.add_option("--skip", skip, "Bytes of header to skip in a raw file");
+    command.add_option("--series", series, "DICOM series: its number in the list, or its UID");
+    command.add_option("--time-step", time_step, "Which volume of a 4-D file, from 0")
+        ->check(CLI::NonNegativeNumber);
+    command.add_flag("-q,--quiet", quiet, "No progress, no notes");
+}
+
+LoadedVolume load(const VolumeOptions& options) {
+    LoadedVolume loaded =
+        options.volume.starts_with(synthetic_prefix) ? make_synthetic(options) : read_file(options);
+    if (!options.quiet) {
+        for (const std::string& note : loaded.notes) {
+            fmt::print(stderr, "palpate: note: {}: {}\n", loaded.name, note);
+        }
+    }
+    return loaded;
+}
+
+void FieldOptions::add_to(CLI::App& command) {
+    command.add_option("-i,--isovalue", isovalue,
+                       "Level to feel, in the data's units (300) or percent of its range (53%)");
+    command.add_option("--solid", solid, "Which side of the level is solid: above, below")
+        ->check(CLI::IsMember({"above", "below"}))
+        ->capture_default_str();
+    command.add_option("--background", background,
+                       "Level outside the data (default: the data's minimum; its maximum for "
+                       "--solid below)");
+}
+
+Field make_field(const LoadedVolume& loaded, const FieldOptions& options) {
+    std::optional<double> background;
+    if (!options.background.empty()) {
+        background = level_from_text(options.background, loaded.volume);
+    }
+    return Field(loaded.volume, options.solid == "below" ? Solid::below : Solid::above, background);
+}
+
+double isovalue_of(const LoadedVolume& loaded, const Field& field, const FieldOptions& options) {
+    if (options.isovalue.empty() && !loaded.isovalue) {
+        throw std::invalid_argument(
+            fmt::format("--isovalue is needed: which level of {} to feel; palpate info {} suggests "
+                        "some",
+                        loaded.name, loaded.name));
+    }
+    const double isovalue = options.isovalue.empty()
+                                ? *loaded.isovalue
+                                : level_from_text(options.isovalue, loaded.volume);
+    const std::string warning = isovalue_warning(field, isovalue);
+    if (!warning.empty()) {
+        fmt::print(stderr, "palpate: warning: isovalue {} (data {} to {}): {}\n", isovalue,
+                   loaded.volume.minimum(), loaded.volume.maximum(), warning);
+    }
+    return isovalue;
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,56 @@
+// The options that say which volume, which side of it is solid and which level to feel; and loading
+// it, from a file or synthetic.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "palpate/field.hpp"
+
+namespace palpate::app {
+
+struct VolumeOptions {
+    std::string volume;
+    std::string dims, type, spacing;  ///< for raw files
+    std::uint64_t skip = 0;           ///< [bytes] header to skip in a raw file
+    std::string series;               ///< DICOM series UID or number
+    int time_step = 0;
+    bool quiet = false;
+
+    /// Declares VOLUME and its options on a command. An `optional` VOLUME has a default.
+    void add_to(CLI::App& command, bool optional = false);
+};
+
+/// A volume and what is known of it.
+struct LoadedVolume {
+    Volume volume;
+    std::string name;
+    std::string format;
+    int time_steps = 1;
+    std::vector<std::string> notes;
+    std::optional<double> isovalue;  ///< a good one, of a synthetic volume
+};
+
+/// Reads or makes the volume, with a progress bar; prints what there is to note on standard error
+/// unless quiet. Throws std::invalid_argument (wrong use) and io::InputError.
+LoadedVolume load(const VolumeOptions& options);
+
+struct FieldOptions {
+    std::string isovalue;
+    std::string solid = "above";
+    std::string background;
+
+    void add_to(CLI::App& command);
+};
+
+/// The field that the options ask for.
+Field make_field(const LoadedVolume& loaded, const FieldOptions& options);
+/// The isovalue asked for, else the synthetic volume's own; std::invalid_argument if there is none.
+/// Prints a warning on standard error where there is nothing to feel.
+double isovalue_of(const LoadedVolume& loaded, const Field& field, const FieldOptions& options);
+/// "WxHxD" or "X,Y,Z" as three numbers; std::invalid_argument names `what`.
+Vec3 three_numbers(const std::string& text, char separator, const char* what);
+
+}  // namespace palpate::app
