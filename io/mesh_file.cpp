@@ -94,9 +94,8 @@ void write_obj(const SurfaceMesh& mesh, PendingFile& file) {
 /// One array of a VTP file: its XML element, and where its data will lie.
 std::string vtp_array(const std::string& type, const std::string& attributes, std::uint64_t& offset,
                       std::uint64_t bytes) {
-    const std::string element = "<DataArray type=\"" + type + "\" " + attributes +
-                                " format=\"appended\" offset=\"" + std::to_string(offset) +
-                                "\"/>\n";
+    std::string element = "<DataArray type=\"" + type + "\" " + attributes +
+                          " format=\"appended\" offset=\"" + std::to_string(offset) + "\"/>\n";
     offset += sizeof bytes + bytes;
     return element;
 }

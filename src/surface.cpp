@@ -249,7 +249,7 @@ class Extraction {
             for (int i = 0; i < 4; ++i) mask |= unsigned{solid[node[i]]} << i;
             const Piece& piece = partition.pieces[t][mask];
             for (int i = 0; i < piece.triangles; ++i) {
-                const Edge* edge = piece.edges.data() + 3 * i;
+                const Edge* edge = &piece.edges[i == 0 ? 0 : 3];
                 std::uint32_t b = vertex[edge[1]];
                 std::uint32_t c = vertex[edge[2]];
                 if (mirrored_) std::swap(b, c);
