@@ -56,8 +56,8 @@ fs::path find_program(const fs::path& wanted) {
     const char* const name = "palpate-io-helper";
     std::error_code error;
     const fs::path here = fs::read_symlink("/proc/self/exe", error).parent_path();
-    for (const fs::path& folder : {here, here / "../libexec/palpate", here / "../io/helper",
-                                   here / "../../io/helper",  // the last two: a build tree
+    for (const fs::path& folder : {here, here / "../libexec/palpate",
+                                   here / "../../io/helper",  // in a build tree
                                    fs::path(PALPATE_LIBEXEC)}) {
         if (access((folder / name).c_str(), X_OK) == 0) return folder / name;
     }
