@@ -6,9 +6,12 @@
 #include <utility>
 
 namespace palpate {
+
 LatticePoint locate(const Vec3& index) {
     LatticePoint point;
-    auto& [cell, axis, sign] = point.tetrahedron;
+    auto& cell = point.tetrahedron.cell;
+    auto& axis = point.tetrahedron.axis;
+    auto& sign = point.tetrahedron.sign;
     Vec3 size;
     for (int a = 0; a < 3; ++a) {
         const double low = std::floor(index[a]);
