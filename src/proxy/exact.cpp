@@ -1,5 +1,6 @@
 // Method exact: descent over the union of the incident tetrahedra's free cones (docs/proxy.md).
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "proxy/cone.hpp"
@@ -50,9 +51,8 @@ Move move_in(const Tetrahedron& t, const Vec3& g, unsigned on, bool contact, con
 }
 
 /// The best move among all incident tetrahedra; h is the way to the target (folded, voxel).
-Move best_move(const Site& site, const Vec3& h) {
+Move best_move(const Site& site, const Vec3& h, bool contact) {
     const unsigned on = walls_at(site.point.folded);
-    const bool contact = site.excess() >= -site.field.tolerance();
     const Tetrahedron& own = site.point.tetrahedron;
     Move best = move_in(own, site.sign * site.piece.gradient, on, contact, h, site.field);
     if (on == 0 || best.straight) return best;
@@ -90,14 +90,42 @@ bool apply_friction(const Friction& friction, Proxy& proxy, const Site& site, co
     return true;
 }
 
+/// Rounding leaves an SCP beside the vertex or edge that it slid to, where it does not see all the
+/// tetrahedra of that corner and rests behind a bump as low as rounding. So before it rests it
+/// looks from the corner of the walls nearer than this [voxel]; f changes by at most 4 ranges a
+/// voxel, so going there keeps G1 and G2.
+constexpr double hair = 1e-10;
+/// What it must gain there; much more than going there can cost, so that it cannot go in circles.
+constexpr double least_corner_gain = 1e-12;
+
+/// Puts the SCP on the walls that it is within a hair of, if it can go on from there.
+std::optional<Move> move_from_corner(Site& site, const Course& course, double enough) {
+    unsigned near = 0;
+    for (unsigned w = 0; w < wall_count; ++w) {
+        near |= unsigned(slack(site.point.folded, w) <= hair) << w;
+    }
+    if (near == walls_at(site.point.folded)) return std::nullopt;
+    Site corner = site;
+    corner.point.folded = snap(site.point.folded, near);
+    const Move move = best_move(corner, course.folded_to_target(corner), true);
+    if (!(move.gain > enough)) return std::nullopt;
+    site.point = corner.point;
+    return move;
+}
+
 Rest descend(Site& site, Course& course, const Friction& friction, Proxy& proxy) {
     const Vec3& spacing = course.geometry.spacing;
     const double shortest = spacing.minCoeff();
     const double enough = least_gain * shortest * shortest;
+    const double enough_at_corner = least_corner_gain * shortest * shortest;
+    std::optional<Move> from_corner;
     const Vec3 hip = course.target;
     bool friction_pending = friction.static_coefficient > 0 || friction.dynamic_coefficient > 0;
     while (course.budget > 0) {
-        const Move move = best_move(site, course.folded_to_target(site));
+        const bool contact = site.excess() >= -site.field.tolerance();
+        const Move move =
+            from_corner ? *from_corner : best_move(site, course.folded_to_target(site), contact);
+        from_corner.reset();
         if (move.straight) {
             if (walls_at(site.point.folded) != 0) site.enter(move.tetrahedron);
             const WalkEnd end = walk(site, move.step, course);
@@ -112,12 +140,19 @@ Rest descend(Site& site, Course& course, const Friction& friction, Proxy& proxy)
             if (!apply_friction(friction, proxy, site, move, course)) return Rest::on_surface;
             continue;
         }
-        if (move.gain <= enough) return Rest::on_surface;
+        if (move.gain <= enough) {
+            from_corner = move_from_corner(site, course, enough_at_corner);
+            if (!from_corner) return Rest::on_surface;
+            continue;
+        }
         site.enter(move.tetrahedron);
         const bool at_minimum = slide(site, move.step, move.walls, course);
         course.report(StepKind::slide, site);
         // Inside a tetrahedron the minimum over its cone is the minimum: nothing else is incident.
-        if (at_minimum && walls_at(site.point.folded) == 0) return Rest::on_surface;
+        if (at_minimum && walls_at(site.point.folded) == 0) {
+            from_corner = move_from_corner(site, course, enough_at_corner);
+            if (!from_corner) return Rest::on_surface;
+        }
     }
     return Rest::out_of_budget;
 }
