@@ -10,6 +10,7 @@
 #include <fstream>
 #include <set>
 
+#include "io/helper/dicom_check.hpp"
 #include "io/helper/dicom_stack.hpp"
 #include "io/helper/headers.hpp"
 #include "io/helper/readers.hpp"
@@ -50,7 +51,19 @@ class Tags {
     gdcm::StringFilter strings_;
 };
 
+/// As many bytes as rows, columns and bits ask for?
+void check_pixels(const DicomSlice& s, const DicomExtent& extent, Tags& tags) {
+    if (!extent.pixel_data) return;  // compressed: the decoder counts
+    const double needed = static_cast<double>(s.rows) * s.columns * s.frames *
+                          tags.number(0x0028, 0x0002, 1) * tags.number(0x0028, 0x0100, 16) / 8;
+    if (static_cast<double>(*extent.pixel_data) >= needed) return;
+    throw Failure(quoted(s.file) + " has " + std::to_string(*extent.pixel_data) +
+                  " bytes of samples, its header asks for " + text_of(needed) +
+                  "; it is damaged: copy or export it again");
+}
+
 DicomSlice slice_from(const fs::path& file) {
+    const DicomExtent extent = check_dicom(file);
     Tags tags(file);
     DicomSlice s;
     s.file = file;
@@ -78,6 +91,14 @@ DicomSlice slice_from(const fs::path& file) {
     }
     s.thickness = tags.number(0x0018, 0x0088, 0);
     if (!(s.thickness > 0)) s.thickness = tags.number(0x0018, 0x0050, 0);
+    if (s.rows < 1 || s.columns < 1) {
+        // Reports, plans and the folder's index have no rows; an image that has none is cut off.
+        if (has_no_image(extent.sop_class)) return s;
+        throw Failure(quoted(file) +
+                      " gives no size of its image; it is cut off or damaged: copy "
+                      "or export it again");
+    }
+    check_pixels(s, extent, tags);
     return s;
 }
 
@@ -318,7 +339,6 @@ Result read_dicom_folder(const Request& request) {
     for (const fs::path& file : files) {
         say_doing(file.filename().string());
         DicomSlice slice = slice_from(file);
-        // Reports, annotations and the folder's index have no rows: not what is looked for.
         if (slice.rows > 0 && slice.columns > 0) slices.push_back(std::move(slice));
     }
     if (slices.empty())

@@ -71,11 +71,17 @@ Unpacked unpack(const Request& request) {
 }
 
 void check_kind(Header& header) {
-    if (header.number<std::int32_t>(0) != 348) header.swapped = true;
-    if (header.number<std::int32_t>(0) == 540) {
+    const auto either_way = [&](std::int32_t number) {
+        for (const bool swapped : {false, true}) {
+            header.swapped = swapped;
+            if (header.number<std::int32_t>(0) == number) return true;
+        }
+        return false;
+    };
+    if (either_way(540)) {
         throw Failure("is a NIfTI-2 file, which is not read; save it as NIfTI-1 or NRRD");
     }
-    if (header.number<std::int32_t>(0) != 348) {
+    if (!either_way(348)) {
         throw Failure("is not a NIfTI file (its first number is not 348); check its name");
     }
     if (header.magic() == "ni1") {

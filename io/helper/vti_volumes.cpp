@@ -122,6 +122,7 @@ vtkDataArray* choose_array(vtkDataSetAttributes* data, std::vector<std::string>&
         vtkDataArray* const array = data->GetArray(i);
         if (array != nullptr && array->GetNumberOfComponents() == 1) chosen = array;
     }
+    if (chosen == nullptr) chosen = data->GetArray(0);  // to be refused with a reason
     if (chosen != nullptr && data->GetNumberOfArrays() > 1) {
         notes.push_back("it has " + std::to_string(data->GetNumberOfArrays()) + " arrays; '" +
                         (chosen->GetName() ? chosen->GetName() : "") + "' was taken");

@@ -1,0 +1,135 @@
+// Headerless files: read by the layout that the caller gives, or refused with both numbers.
+#include <zlib.h>
+
+#include <limits>
+
+#include "volume_support.hpp"
+
+namespace palpate::io::test {
+namespace {
+
+std::string raw_bytes(const Volume& volume) {
+    return {static_cast<const char*>(volume.data()), volume.bytes()};
+}
+
+void put_gzip(const std::filesystem::path& path, const std::string& bytes) {
+    gzFile file = gzopen(path.c_str(), "wb6");
+    gzwrite(file, bytes.data(), static_cast<unsigned>(bytes.size()));
+    gzclose(file);
+}
+
+ReadOptions options_for(const Volume& volume, std::uint64_t skip = 0) {
+    ReadOptions options;
+    options.raw = RawLayout{volume.geometry().size, volume.type(), volume.geometry().spacing, skip};
+    return options;
+}
+
+TEST(raw_file, every_type_is_read_plain_packed_and_after_a_header) {
+    const ScratchFolder folder;
+    std::mt19937 random(21);
+    for (const auto type :
+         {SampleType::uint8, SampleType::int16, SampleType::uint16, SampleType::float32}) {
+        Geometry g = random_geometry(random, false, false);
+        g.origin.setZero();
+        const Volume volume = random_volume(random, type, g);
+        for (const std::string& header : {std::string(), std::string(37, 'h')}) {
+            put_bytes(folder / "a.raw", header + raw_bytes(volume));
+            put_gzip(folder / "a.raw.gz", header + raw_bytes(volume));
+            for (const char* name : {"a.raw", "a.raw.gz"}) {
+                const VolumeFile file =
+                    read_volume(folder / name, options_for(volume, header.size()));
+                EXPECT_TRUE(same_samples(file.volume, volume)) << name;
+                EXPECT_EQ(file.volume.geometry(), g);
+            }
+        }
+    }
+}
+
+TEST(raw_file, a_wrong_size_is_said_with_both_numbers) {
+    const ScratchFolder folder;
+    std::mt19937 random(22);
+    Geometry g;
+    g.size = Index3(10, 9, 8);
+    const Volume volume = random_volume<std::int16_t>(random, g);
+    const std::string bytes = raw_bytes(volume);
+    for (const std::string& wrong : {bytes + "x", bytes.substr(1), std::string("x")}) {
+        put_bytes(folder / "a.raw", wrong);
+        put_gzip(folder / "a.gz", wrong);
+        for (const char* name : {"a.raw", "a.gz"}) {
+            const std::string message = refusal(folder / name, options_for(volume));
+            EXPECT_TRUE(one_line_about(message, folder / name)) << message;
+            EXPECT_TRUE(contains(message, std::to_string(wrong.size()))) << message;
+            EXPECT_TRUE(contains(message, "1440")) << message;
+        }
+    }
+}
+
+TEST(raw_file, a_layout_that_makes_no_sense_is_refused) {
+    const ScratchFolder folder;
+    put_bytes(folder / "a.raw", "12345678");
+    const auto with = [&](const Index3& size, const Vec3& spacing) {
+        ReadOptions options;
+        options.raw = RawLayout{size, SampleType::uint8, spacing, 0};
+        return refusal(folder / "a.raw", options);
+    };
+    EXPECT_TRUE(contains(with({0, 1, 8}, Vec3::Ones()), "at least 1"));
+    EXPECT_TRUE(contains(with({-2, -2, 2}, Vec3::Ones()), "at least 1"));
+    EXPECT_TRUE(contains(with({100000, 100000, 100000}, Vec3::Ones()), "memory"));
+    EXPECT_TRUE(contains(with({2000000000, 1, 1}, Vec3::Ones()), "1048576"));
+    EXPECT_TRUE(contains(with({2, 2, 2}, Vec3(1, -1, 1)), "spacing"));
+    EXPECT_TRUE(contains(with({2, 2, 2}, Vec3(1, NAN, 1)), "spacing"));
+}
+
+TEST(raw_file, a_damaged_gzip_is_refused) {
+    const ScratchFolder folder;
+    std::mt19937 random(23);
+    Geometry g;
+    g.size = Index3(20, 20, 20);
+    const Volume volume = random_volume<std::uint8_t>(random, g);
+    put_gzip(folder / "a.gz", raw_bytes(volume));
+    const std::string whole = bytes_of(folder / "a.gz");
+    for (int i = 0; i < 200; ++i) {
+        std::string damaged = whole;
+        const std::size_t at = 10 + random() % (whole.size() - 10);
+        if (i % 2 == 0) {
+            damaged[at] = static_cast<char>(damaged[at] ^ (1 << random() % 8));
+        } else {
+            damaged.resize(at);
+        }
+        put_bytes(folder / "a.gz", damaged);
+        EXPECT_TRUE(one_line_about(refusal(folder / "a.gz", options_for(volume)), folder / "a.gz"));
+    }
+    put_bytes(folder / "a.gz", whole + "rubbish");
+    EXPECT_TRUE(contains(refusal(folder / "a.gz", options_for(volume)), "something else"));
+}
+
+TEST(raw_file, samples_that_are_not_finite_become_the_least_finite_one) {
+    const ScratchFolder folder;
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const float infinity = std::numeric_limits<float>::infinity();
+    const float samples[] = {3, nan, -2, infinity, -infinity, 7, 1, 0};
+    const std::string bytes(reinterpret_cast<const char*>(samples), sizeof samples);
+    put_bytes(folder / "a.raw", bytes);
+    ReadOptions options;
+    options.raw = RawLayout{{2, 2, 2}, SampleType::float32, Vec3::Ones(), 0};
+    const VolumeFile file = read_volume(folder / "a.raw", options);
+    EXPECT_EQ(file.volume.minimum(), -2);
+    EXPECT_EQ(file.volume.maximum(), 7);
+    EXPECT_EQ(file.volume.sample({1, 0, 0}), -2);
+    EXPECT_TRUE(contains(all_notes(file), "3 samples were not finite"));
+    put_bytes(folder / "a.raw", std::string(32, '\xff'));
+    EXPECT_TRUE(contains(refusal(folder / "a.raw", options), "no sample is a finite number"));
+}
+
+TEST(raw_file, the_spacing_option_wins_and_a_folder_is_refused) {
+    const ScratchFolder folder;
+    put_bytes(folder / "a.raw", "12345678");
+    ReadOptions options;
+    options.raw = RawLayout{{2, 2, 2}, SampleType::uint8, Vec3::Ones(), 0};
+    options.spacing = Vec3(1, 2, 3);
+    EXPECT_EQ(read_volume(folder / "a.raw", options).volume.geometry().spacing, Vec3(1, 2, 3));
+    EXPECT_TRUE(contains(refusal(folder.path(), options), "is a folder"));
+}
+
+}  // namespace
+}  // namespace palpate::io::test

@@ -1,0 +1,226 @@
+// TIFF stacks: pages of one file, numbered slices of a folder, and what is refused of them.
+#include <zlib.h>
+
+#include <vector>
+
+#include "volume_support.hpp"
+
+namespace palpate::io::test {
+namespace {
+
+/// One page as our tests write it: one strip, little-endian.
+struct TestPage {
+    int width = 4, height = 3;
+    int bits = 8, format = 1;  ///< SampleFormat: 1 unsigned, 2 signed, 3 float
+    int samples_per_pixel = 1;
+    bool deflate = false;
+    int kind = 0;  ///< NewSubfileType; 1: a thumbnail
+    std::string samples;
+};
+
+TestPage counting_page(int first) {
+    TestPage page;
+    for (int i = 0; i < 12; ++i) page.samples += static_cast<char>(first + i);
+    return page;
+}
+
+std::string deflated(const std::string& bytes) {
+    uLongf size = compressBound(bytes.size());
+    std::string packed(size, '\0');
+    compress(reinterpret_cast<Bytef*>(packed.data()), &size,
+             reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
+    packed.resize(size);
+    return packed;
+}
+
+std::string tiff_bytes(const std::vector<TestPage>& pages) {
+    std::string file = "II" + little<std::uint16_t>(42) + little<std::uint32_t>(0);
+    std::size_t link = 4;  // where the offset of the next page goes
+    for (const TestPage& page : pages) {
+        const std::string data = page.deflate ? deflated(page.samples) : page.samples;
+        const auto data_at = static_cast<std::uint32_t>(file.size());
+        file += data;
+        if (file.size() % 2 == 1) file += '\0';
+        file.replace(link, 4, little(static_cast<std::uint32_t>(file.size())));
+        std::string entries;
+        std::uint16_t count = 0;
+        const auto entry = [&](std::uint16_t tag, std::uint32_t value) {
+            entries +=
+                little(tag) + little<std::uint16_t>(4) + little<std::uint32_t>(1) + little(value);
+            ++count;
+        };
+        entry(254, static_cast<std::uint32_t>(page.kind));
+        entry(256, static_cast<std::uint32_t>(page.width));
+        entry(257, static_cast<std::uint32_t>(page.height));
+        entry(258, static_cast<std::uint32_t>(page.bits));
+        entry(259, page.deflate ? 8 : 1);
+        entry(262, page.samples_per_pixel == 3 ? 2 : 1);
+        entry(273, data_at);
+        entry(277, static_cast<std::uint32_t>(page.samples_per_pixel));
+        entry(278, static_cast<std::uint32_t>(page.height));
+        entry(279, static_cast<std::uint32_t>(data.size()));
+        entry(339, static_cast<std::uint32_t>(page.format));
+        file += little(count) + entries;
+        link = file.size();
+        file += little<std::uint32_t>(0);
+    }
+    return file;
+}
+
+TEST(tiff, pages_become_slices_plain_and_packed) {
+    const ScratchFolder folder;
+    for (const bool deflate : {false, true}) {
+        std::vector<TestPage> pages;
+        for (int z = 0; z < 5; ++z) pages.push_back(counting_page(12 * z));
+        for (auto& page : pages) page.deflate = deflate;
+        put_bytes(folder / "a.tif", tiff_bytes(pages));
+        const VolumeFile file = read_volume(folder / "a.tif");
+        ASSERT_EQ(file.volume.geometry().size, Index3(4, 3, 5));
+        EXPECT_EQ(file.volume.geometry().spacing, Vec3::Ones());
+        EXPECT_EQ(file.volume.type(), SampleType::uint8);
+        for (int i = 0; i < 60; ++i) {
+            EXPECT_EQ(file.volume.sample({i % 4, i / 4 % 3, i / 12}), i);
+        }
+        EXPECT_TRUE(contains(all_notes(file), "1 mm was taken")) << all_notes(file);
+    }
+}
+
+TEST(tiff, types_are_kept_and_the_spacing_option_is_taken) {
+    const ScratchFolder folder;
+    const auto read = [&](int bits, int format, const std::string& samples) {
+        TestPage page;
+        page.width = 2;
+        page.height = 1;
+        page.bits = bits;
+        page.format = format;
+        page.samples = samples;
+        put_bytes(folder / "a.tiff", tiff_bytes({page}));
+        ReadOptions options;
+        options.spacing = Vec3(1, 2, 3);
+        return read_volume(folder / "a.tiff", options);
+    };
+    const VolumeFile a = read(16, 1, little<std::uint16_t>(60000) + little<std::uint16_t>(1));
+    EXPECT_EQ(a.volume.type(), SampleType::uint16);
+    EXPECT_EQ(a.volume.maximum(), 60000);
+    EXPECT_EQ(a.volume.geometry().spacing, Vec3(1, 2, 3));
+    EXPECT_EQ(a.notes, std::vector<std::string>{});
+    const VolumeFile b = read(16, 2, little<std::int16_t>(-7) + little<std::int16_t>(1));
+    EXPECT_EQ(b.volume.type(), SampleType::int16);
+    EXPECT_EQ(b.volume.minimum(), -7);
+    const VolumeFile c = read(32, 3, little(0.25F) + little(-1.5F));
+    EXPECT_EQ(c.volume.type(), SampleType::float32);
+    EXPECT_EQ(c.volume.minimum(), -1.5);
+    const VolumeFile d = read(32, 2, little<std::int32_t>(-70000) + little<std::int32_t>(5));
+    EXPECT_EQ(d.volume.minimum(), -70000);
+    EXPECT_TRUE(contains(all_notes(d), "int32 became float32"));
+}
+
+TEST(tiff, a_folder_of_slices_is_put_together_in_the_order_of_their_numbers) {
+    const ScratchFolder folder;
+    for (const int z : {10, 9, 8, 2, 1, 0, 7, 6, 5, 4, 3}) {
+        put_bytes(folder / ("slice" + std::to_string(z) + ".tif"), tiff_bytes({counting_page(z)}));
+    }
+    const VolumeFile file = read_volume(folder.path());
+    EXPECT_EQ(file.format, "TIFF slices");
+    ASSERT_EQ(file.volume.geometry().size, Index3(4, 3, 11));
+    for (int z = 0; z < 11; ++z) EXPECT_EQ(file.volume.sample({0, 0, z}), z);
+    EXPECT_FALSE(contains(all_notes(file), "missing"));
+    std::filesystem::remove(folder / "slice4.tif");
+    EXPECT_TRUE(contains(all_notes(read_volume(folder.path())), "1 numbers are missing"));
+}
+
+TEST(tiff, thumbnails_are_left_out) {
+    const ScratchFolder folder;
+    TestPage thumbnail = counting_page(0);
+    thumbnail.kind = 1;
+    thumbnail.width = 2;
+    thumbnail.height = 2;
+    thumbnail.samples.resize(4);
+    put_bytes(folder / "a.tif", tiff_bytes({counting_page(3), thumbnail, counting_page(5)}));
+    EXPECT_EQ(read_volume(folder / "a.tif").volume.geometry().size, Index3(4, 3, 2));
+}
+
+TEST(tiff, colours_odd_bits_and_mixed_slices_are_refused) {
+    const ScratchFolder folder;
+    TestPage colours = counting_page(0);
+    colours.width = 4;
+    colours.height = 1;
+    colours.samples_per_pixel = 3;
+    put_bytes(folder / "a.tif", tiff_bytes({colours}));
+    EXPECT_TRUE(contains(refusal(folder / "a.tif"), "colours"));
+    TestPage bits = counting_page(0);
+    bits.bits = 1;
+    put_bytes(folder / "a.tif", tiff_bytes({bits}));
+    EXPECT_TRUE(contains(refusal(folder / "a.tif"), "1 bits"));
+    TestPage narrow = counting_page(0);
+    narrow.width = 3;
+    narrow.samples.resize(9);
+    put_bytes(folder / "a.tif", tiff_bytes({counting_page(0), narrow}));
+    EXPECT_TRUE(contains(refusal(folder / "a.tif"), "slices of one kind"));
+    TestPage huge = counting_page(0);
+    huge.width = huge.height = 1000000;
+    put_bytes(folder / "a.tif", tiff_bytes({huge}));
+    EXPECT_TRUE(one_line_about(refusal(folder / "a.tif"), folder / "a.tif"));
+}
+
+TEST(tiff, truncated_and_flipped_files_are_refused_or_give_a_valid_volume) {
+    const ScratchFolder folder;
+    std::mt19937 random(51);
+    TestPage page;
+    page.width = 40;
+    page.height = 30;
+    for (int i = 0; i < 1200; ++i) page.samples += static_cast<char>(random() % 50);
+    for (const bool deflate : {false, true}) {
+        page.deflate = deflate;
+        const std::string whole = tiff_bytes({page, page, page});
+        put_bytes(folder / "a.tif", whole);
+        ASSERT_EQ(read_volume(folder / "a.tif").volume.geometry().size[2], 3);
+        for (int i = 0; i < 40; ++i) {
+            std::string damaged = whole;
+            const std::size_t at = 8 + random() % (whole.size() - 8);
+            const bool cut = i % 2 == 0;
+            if (cut) damaged.resize(at);
+            if (!cut) damaged[at] = static_cast<char>(damaged[at] ^ (1 << random() % 8));
+            put_bytes(folder / "a.tif", damaged);
+            try {
+                check(read_volume(folder / "a.tif").volume.geometry());
+                EXPECT_FALSE(cut) << at << " of " << whole.size();
+            } catch (const InputError& e) {
+                EXPECT_TRUE(one_line_about(e.what(), folder / "a.tif")) << e.what();
+            }
+        }
+    }
+}
+
+TEST(tiff, a_flipped_byte_of_packed_samples_is_refused) {
+    const ScratchFolder folder;
+    std::mt19937 random(52);
+    TestPage page;
+    page.width = 40;
+    page.height = 30;
+    page.deflate = true;
+    for (int i = 0; i < 1200; ++i) page.samples += static_cast<char>(random() % 50);
+    const std::string whole = tiff_bytes({page});
+    const std::size_t packed = deflated(page.samples).size();
+    for (int i = 0; i < 30; ++i) {
+        std::string damaged = whole;
+        const std::size_t at = 8 + random() % packed;
+        damaged[at] = static_cast<char>(damaged[at] ^ (1 << random() % 8));
+        put_bytes(folder / "a.tif", damaged);
+        EXPECT_TRUE(one_line_about(refusal(folder / "a.tif"), folder / "a.tif")) << at;
+    }
+}
+
+TEST(tiff, noise_and_text_are_refused) {
+    const ScratchFolder folder;
+    std::mt19937 random(53);
+    std::string noise = "II*";
+    for (int i = 0; i < 3000; ++i) noise += static_cast<char>(random());
+    for (const std::string& bytes : {std::string("a letter"), noise, std::string(1000, '\0')}) {
+        put_bytes(folder / "a.tif", bytes);
+        EXPECT_TRUE(one_line_about(refusal(folder / "a.tif"), folder / "a.tif"));
+    }
+}
+
+}  // namespace
+}  // namespace palpate::io::test
