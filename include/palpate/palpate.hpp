@@ -1,0 +1,20 @@
+// Everything, in the order of the flow of data. One tick:
+//
+//   volume -> field -> lattice --+
+//                penetrability --+--> proxy -> force -> device
+//                      renderer: one call for proxy..force
+//
+// surface (the whole isosurface as a mesh) observes volume, field and lattice.
+#pragma once
+
+// The order is the flow of data, not the alphabet.
+// clang-format off
+#include "palpate/volume.hpp"
+#include "palpate/field.hpp"
+#include "palpate/lattice.hpp"
+#include "palpate/proxy.hpp"
+#include "palpate/penetrability.hpp"
+#include "palpate/force.hpp"
+#include "palpate/renderer.hpp"
+#include "palpate/surface.hpp"
+// clang-format on
