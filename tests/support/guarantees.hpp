@@ -102,7 +102,7 @@ class Guarantees {
         tally_.most_pieces = std::max(tally_.most_pieces, r.tetrahedra);
         tally_.pieces.push_back(r.tetrahedra);
         count_place(proxy);
-        ASSERT_TRUE(r.scp.allFinite() && r.normal.allFinite() && std::isfinite(r.density))
+        ASSERT_TRUE(r.scp.allFinite() && proxy.scp.folded.allFinite() && std::isfinite(r.density))
             << "G5: not a number";
         ASSERT_LE(r.tetrahedra, settings_.step_budget) << "G5: more pieces than the budget";
         ASSERT_EQ(r.scp, proxy.scp_physical);
@@ -147,7 +147,8 @@ class Guarantees {
             from = step.point;
         }
         // The place inside the solid is where recovery starts, if nothing moved after it.
-        const double rounding = 1e-12 * (1 + r.scp.cwiseAbs().maxCoeff());
+        const double rounding =
+            1e-12 * (1 + r.scp.cwiseAbs().maxCoeff() + before.scp_physical.cwiseAbs().maxCoeff());
         if (!path_.empty() || before.placed) {
             EXPECT_LE((from - r.scp).norm(), rounding) << "the reported path ends elsewhere";
         }
@@ -204,12 +205,13 @@ class Guarantees {
     /// G3: to the HIP, along the surface, and anywhere.
     void check_locally_optimal(const Proxy& proxy, const Vec3& hip, const ProxyUpdate& r) {
         const Vec3 h = hip - r.scp;
-        const Vec3 along = h - r.normal * r.normal.dot(h);
+        const Vec3 normal = normal_at(proxy, field_);
+        const Vec3 along = h - normal * normal.dot(h);
         check_motion(proxy, hip, h);
         check_motion(proxy, hip, along);
         for (int i = 0; i < promises_.motions; ++i) {
             Vec3 v = random_.direction();
-            if (i % 2 == 1) v -= r.normal * r.normal.dot(v);
+            if (i % 2 == 1) v -= normal * normal.dot(v);
             if (v.dot(h) < 0) v = -v;
             check_motion(proxy, hip, v);
         }
