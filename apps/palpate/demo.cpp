@@ -1,7 +1,9 @@
 // palpate demo: the main job with nothing given. A simulated hand explores a volume; a picture, a
 // figure, the trace and a report stay in a folder.
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <limits>
 #include <memory>
@@ -80,7 +82,8 @@ void write_trajectory(const io::Trajectory& trajectory, const fs::path& path) {
 /// Renders the motion; trajectory, trace and path go to files on the way.
 void feel(Demo& demo, const DemoOptions& options, const fs::path& folder) {
     RendererSettings settings = render_settings(options.render, demo.field, demo.isovalue);
-    settings.device.maximum_force = options.render.force.limit;
+    settings.device.maximum_force = std::max(settings.device.maximum_force, settings.force.limit);
+    settings.force.stale_after = std::numeric_limits<double>::infinity();  // at any --rate
     Renderer renderer = make_renderer(demo.field, demo.isovalue, settings);
     write_trajectory(demo.trajectory, folder / "trajectory.csv");
     io::TraceWriter trace(folder / "trace.csv");
@@ -136,28 +139,41 @@ void draw(const Demo& demo, bool quiet, const fs::path& path) {
 }
 
 /// Depth, force and density over time, from the trace that was just written.
-bool plot_trace(const fs::path& folder, const fs::path& figure) {
+bool plot_trace(const fs::path& folder, const fs::path& figure, std::size_t rows) {
+    constexpr std::size_t most_points = 20'000;  // gnuplot takes a minute for a million
     std::string trace = (folder / "trace.csv").string();
     for (std::size_t at = 0; (at = trace.find('\'', at)) != std::string::npos; at += 2) {
         trace.insert(at, 1, '\'');
     }
     return plot(
         fmt::format(
-            "set datafile separator ','\nset datafile commentschars '#'\nf = '{}'\n"
+            "set datafile separator ','\nset datafile commentschars '#'\nf = '{}'\nn = {}\n"
             "set multiplot layout 3,1\nset lmargin 12\nset grid\nset key off\n"
             "set ylabel 'depth |SCP - HIP| [mm]'\n"
-            "plot f using (column('t')):(sqrt((column('scp_x')-column('hip_x'))**2+"
+            "plot f every n using (column('t')):(sqrt((column('scp_x')-column('hip_x'))**2+"
             "(column('scp_y')-column('hip_y'))**2+(column('scp_z')-column('hip_z'))**2)) "
             "with lines lc rgb '#0072B2'\n"
             "set ylabel 'force [N]'\n"
-            "plot f using (column('t')):(sqrt(column('force_x')**2+column('force_y')**2+"
+            "plot f every n using (column('t')):(sqrt(column('force_x')**2+column('force_y')**2+"
             "column('force_z')**2)) with lines lc rgb '#D55E00'\n"
             "set ylabel 'density at the SCP'\nset xlabel 'time [s]'\nset key bottom right\n"
-            "plot f using (column('t')):(column('density')) with lines lc rgb '#009E73' title "
-            "'density', f using (column('t')):(column('isovalue')) with lines dt 2 lc rgb "
+            "plot f every n using (column('t')):(column('density')) with lines lc rgb '#009E73' "
+            "title "
+            "'density', f every n using (column('t')):(column('isovalue')) with lines dt 2 lc rgb "
             "'#000000' title 'isovalue'\nunset multiplot\n",
-            trace),
+            trace, 1 + rows / most_points),
         figure);
+}
+
+std::string html_text(const std::string& text) {
+    std::string html;
+    for (const char c : text) {
+        if (c == '&') html += "&amp;";
+        if (c == '<') html += "&lt;";
+        if (c == '>') html += "&gt;";
+        if (c != '&' && c != '<' && c != '>') html += c;
+    }
+    return html;
 }
 
 void write_report(const Demo& demo, const DemoOptions& options, bool plotted,
@@ -170,8 +186,8 @@ void write_report(const Demo& demo, const DemoOptions& options, bool plotted,
         "<p>A simulated hand ({}, {:g} s, {:g} mm/s, {:g} mm deep, {:g} Hz) felt the surface at "
         "isovalue {:g} of <b>{}</b> ({} x {} x {} samples of {}).</p>\n",
         options.motion, options.hand.duration_s, options.hand.speed_mm_s, options.hand.depth_mm,
-        options.hand.rate_hz, demo.isovalue, demo.loaded.name, g.size[0], g.size[1], g.size[2],
-        name_of(demo.loaded.volume.type()));
+        options.hand.rate_hz, demo.isovalue, html_text(demo.loaded.name), g.size[0], g.size[1],
+        g.size[2], name_of(demo.loaded.volume.type()));
     html += fmt::format("<pre>{}</pre>\n", summary_text(demo.summary));
     html +=
         "<p><img src=\"surface.png\" alt=\"The isosurface with the way of the hand\"><br>"
@@ -188,14 +204,51 @@ void write_report(const Demo& demo, const DemoOptions& options, bool plotted,
     file.commit();
 }
 
-void make_folder(const fs::path& folder) {
-    std::error_code error;
-    fs::create_directories(folder, error);
-    if (error || !fs::is_directory(folder)) {
-        throw io::OutputError(folder.string() +
-                              ": the folder could not be made: choose another with --output");
+/// The results are made in a hidden folder inside the one asked for and appear there together, at
+/// the end: an interrupted demo leaves nothing that could be taken for results.
+class ResultFolder {
+  public:
+    explicit ResultFolder(const fs::path& folder) : folder_(folder) {
+        std::error_code error;
+        is_new_ = fs::create_directories(folder_, error);
+        if (folder_.empty() || error || !fs::is_directory(folder_)) {
+            throw io::OutputError("'" + folder.string() +
+                                  "': this folder could not be made: choose another with --output");
+        }
+        part_ = folder_ / fmt::format(".palpate-{}.part", ::getpid());
+        if (!fs::create_directory(part_, error) && error) {
+            if (is_new_) fs::remove(folder_, error);
+            throw io::OutputError(folder.string() + ": nothing can be written in this folder (" +
+                                  error.message() + "): choose another with --output");
+        }
     }
-}
+    ~ResultFolder() {
+        std::error_code ignored;
+        fs::remove_all(part_, ignored);
+        if (is_new_ && !complete_) fs::remove(folder_, ignored);
+    }
+    ResultFolder(const ResultFolder&) = delete;
+    ResultFolder& operator=(const ResultFolder&) = delete;
+
+    const fs::path& part() const { return part_; }
+    void complete() {
+        for (const auto& entry : fs::directory_iterator(part_)) {
+            std::error_code error;
+            const fs::path target = folder_ / entry.path().filename();
+            fs::rename(entry.path(), target, error);
+            if (error) {
+                throw io::OutputError(target.string() + ": could not be put in place: " +
+                                      error.message() + ": remove it, or choose another --output");
+            }
+        }
+        complete_ = true;
+    }
+
+  private:
+    fs::path folder_, part_;
+    bool is_new_ = false;
+    bool complete_ = false;
+};
 
 void run_demo(const DemoOptions& options) {
     LoadedVolume loaded = load(options.volume);
@@ -203,19 +256,20 @@ void run_demo(const DemoOptions& options) {
     const double isovalue = demo_isovalue(loaded, field, options.field);
     Demo demo{std::move(loaded), field, isovalue, {}, {}, {}};
     demo.trajectory = simulate_hand(options, field, isovalue);
-    const fs::path folder = options.output;
-    make_folder(folder);
+    ResultFolder results(options.output);
+    const fs::path& folder = results.part();
     feel(demo, options, folder);
     draw(demo, options.volume.quiet, folder / "surface.png");
-    const bool plotted =
-        plot_trace(folder, folder / "session.png") && plot_trace(folder, folder / "session.svg");
+    const bool plotted = plot_trace(folder, folder / "session.png", demo.rows.size()) &&
+                         plot_trace(folder, folder / "session.svg", demo.rows.size());
     stop_if_interrupted();
     write_report(demo, options, plotted, folder / "report.html");
+    results.complete();
     if (options.volume.quiet) return;
     fmt::print("A simulated hand felt {} at isovalue {:g}.\n{}", demo.loaded.name, demo.isovalue,
                summary_text(demo.summary));
     if (!plotted) fmt::print("No figure over time: gnuplot is not installed.\n");
-    fmt::print("Results: {} (open report.html)\n", folder.string());
+    fmt::print("Results: {} (open report.html)\n", options.output);
 }
 
 }  // namespace
@@ -240,6 +294,7 @@ void add_demo(CLI::App& app) {
     command->add_option("--depth", options->hand.depth_mm, "How deep the hand presses [mm]")
         ->capture_default_str();
     command->add_option("--seed", options->hand.seed, "Seed of the hand's motion")
+        ->check(flaw_in_count)
         ->capture_default_str();
     command->add_option("-o,--output", options->output, "Folder for the results")
         ->capture_default_str();

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "apps/palpate/commands.hpp"
 #include "apps/palpate/statistics.hpp"
@@ -38,6 +39,7 @@ bool is_oblique(const Geometry& geometry) {
 
 std::string size_text(std::size_t bytes) {
     const auto b = static_cast<double>(bytes);
+    if (b < 1e3) return fmt::format("{} bytes", bytes);
     return b < 1e6 ? fmt::format("{:.1f} kB", b / 1e3) : fmt::format("{:.1f} MB", b / 1e6);
 }
 
@@ -66,6 +68,11 @@ nlohmann::ordered_json json_of(const LoadedVolume& loaded, const Histogram& hist
              {{"low", histogram.low}, {"high", histogram.high}, {"counts", histogram.counts}}},
             {"suggested_isovalues", suggested},
             {"notes", loaded.notes}};
+}
+
+/// A file's name need not be UTF-8; JSON must be.
+std::string json_text(const nlohmann::ordered_json& json) {
+    return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 void print_histogram(const Histogram& fine) {
@@ -103,7 +110,8 @@ void print_text(const LoadedVolume& loaded, const Histogram& histogram,
     if (loaded.time_steps > 1) fmt::print("time steps   {}\n", loaded.time_steps);
     fmt::print("spacing      {:g} x {:g} x {:g} mm\n", g.spacing[0], g.spacing[1], g.spacing[2]);
     fmt::print("extent       {:g} x {:g} x {:g} mm\n", extent[0], extent[1], extent[2]);
-    fmt::print("origin       {:g}, {:g}, {:g} mm (LPS)\n", g.origin[0], g.origin[1], g.origin[2]);
+    fmt::print("origin       {:g}, {:g}, {:g} mm (LPS)\n", g.origin[0] + 0.0, g.origin[1] + 0.0,
+               g.origin[2] + 0.0);  // no -0
     fmt::print("orientation  axes run towards {}{}\n", orientation(g),
                is_oblique(g) ? " (oblique)" : "");
     fmt::print("range        {:g} to {:g}, mean {:.4g}, standard deviation {:.4g}\n",
@@ -134,9 +142,12 @@ void add_info(CLI::App& app) {
         const LoadedVolume loaded = load(*options);
         const Histogram histogram = histogram_of(loaded.volume, fine_bins);
         std::vector<double> suggested = suggested_isovalues(histogram);
-        if (loaded.isovalue) suggested.insert(suggested.begin(), *loaded.isovalue);
+        const std::optional<double>& own = loaded.isovalue;  // a tiny grid may miss its range
+        if (own && *own > loaded.volume.minimum() && *own < loaded.volume.maximum()) {
+            suggested.insert(suggested.begin(), *own);
+        }
         if (*json) {
-            fmt::print("{}\n", json_of(loaded, histogram, suggested).dump(2));
+            fmt::print("{}\n", json_text(json_of(loaded, histogram, suggested)));
         } else {
             print_text(loaded, histogram, suggested);
         }

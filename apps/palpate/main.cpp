@@ -1,9 +1,13 @@
 // The program `palpate`: reads the command line, turns every failure into one clear line and the
 // exit status of the contract.
+#include <fcntl.h>
+
 #include <csignal>
 #include <cstdio>
+#include <iostream>
 #include <new>
 #include <stdexcept>
+#include <string>
 
 #include "apps/palpate/commands.hpp"
 #include "io/error.hpp"
@@ -23,6 +27,43 @@ int fail(const char* what, int status) {
     return status;
 }
 
+/// A standard stream that is closed would give its number, and then its text, to the next file that
+/// is opened. In its place: one that cannot be written, so that this is an error and no damage.
+void occupy_closed_streams() {
+    for (int number = 0; number < 3; ++number) {
+        if (::fcntl(number, F_GETFD) >= 0) continue;
+        (void)::open("/dev/null", number == 0 ? O_WRONLY : O_RDONLY);  // takes the lowest number
+    }
+}
+
+int finish_output() {
+    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return done;
+    return fail("standard output: could not be written", bad_output);
+}
+
+/// What is wrong with the command line. CLI11 calls a misspelt command or option a missing one.
+std::string complaint(const CLI::App& app, const CLI::ParseError& error) {
+    const auto chosen = app.get_subcommands();
+    const auto left = app.remaining(true);
+    std::string text = error.what();
+    const bool misnamed = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr ||
+                          dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
+    if (misnamed && !left.empty()) {
+        const std::string& word = left.front();
+        if (word.size() > 1 && word[0] == '-') {
+            text = "there is no option " + word;
+        } else if (chosen.empty()) {
+            text = "there is no command '" + word + "'";
+        } else {
+            text = "'" + word + "' is one argument too many";
+        }
+    } else if (chosen.empty() && misnamed) {
+        text = "a command is needed, as in palpate demo";
+    }
+    return text + " (see palpate " + (chosen.empty() ? "" : chosen.front()->get_name() + " ") +
+           "--help)";
+}
+
 int run(int argc, char** argv) {
     CLI::App app(
         "Feel the surfaces inside volumetric data.\n\n"
@@ -40,15 +81,19 @@ int run(int argc, char** argv) {
     palpate::app::add_replay(app);
     palpate::app::add_extract(app);
     palpate::app::add_demo(app);
+    for (CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+        command->set_version_flag("--version", "palpate " PALPATE_VERSION);
+    }
     try {
         app.parse(argc, argv);
+    } catch (const CLI::Success& e) {  // --help, --version
+        (void)app.exit(e);
+        std::cout.flush();
+        return finish_output();
     } catch (const CLI::ParseError& e) {
-        if (e.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(e);
-        std::fprintf(stderr, "palpate: %s (see palpate --help)\n", e.what());
-        return wrong_use;
+        return fail(complaint(app, e).c_str(), wrong_use);
     }
-    if (std::fflush(stdout) != 0) return fail("standard output: could not be written", bad_output);
-    return done;
+    return finish_output();
 }
 
 }  // namespace
@@ -66,11 +111,15 @@ void stop_if_interrupted() {
 }  // namespace palpate::app
 
 int main(int argc, char** argv) {
+    occupy_closed_streams();
     std::signal(SIGINT, on_signal);
     std::signal(SIGTERM, on_signal);
+    std::signal(SIGPIPE, SIG_IGN);  // a reader that has gone is a failed write, cleaned up after
     try {
         return run(argc, argv);
     } catch (const palpate::io::InputError& e) {
+        // Ctrl-C reaches the helper process as well, and its end may be seen first.
+        if (palpate::app::interrupted()) return fail("interrupted", stopped);
         return fail(e.what(), bad_input);
     } catch (const palpate::io::OutputError& e) {
         return fail(e.what(), bad_output);
@@ -81,6 +130,7 @@ int main(int argc, char** argv) {
     } catch (const std::bad_alloc&) {
         return fail("not enough memory: use a smaller volume, or one of fewer bits", bad_input);
     } catch (const std::exception& e) {
+        if (std::ferror(stdout) != 0) return finish_output();
         return fail(e.what(), bad_input);
     }
 }

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "baselines/gradient.hpp"
+#include "io/number.hpp"
 
 namespace palpate::app {
 namespace {
@@ -21,6 +22,19 @@ const std::map<std::string, ProxyMethod>& methods() {
     return all;
 }
 
+/// "0.5,0.3", or "0.5" for both.
+Friction friction_from(const std::string& text) {
+    const auto comma = text.find(',');
+    const auto still = io::number_from<double>(text.substr(0, comma));
+    const auto moving =
+        comma == std::string::npos ? still : io::number_from<double>(text.substr(comma + 1));
+    if (!still || !moving) {
+        throw std::invalid_argument("--friction " + text +
+                                    ": one or two numbers are needed, as in 0.5 or 0.5,0.3");
+    }
+    return {*still, *moving};
+}
+
 DensityRange range_from(const std::string& text, const Volume& volume) {
     const auto colon = text.find(':');
     if (colon == std::string::npos) {
@@ -30,12 +44,25 @@ DensityRange range_from(const std::string& text, const Volume& volume) {
             level_from_text(text.substr(colon + 1), volume)};
 }
 
+/// An option that would do nothing is a misunderstanding.
+void refuse_idle_options(const RenderOptions& options) {
+    const auto refuse = [](const std::string& option, const std::string& mode) {
+        throw std::invalid_argument(option + " does nothing without --penetrability " + mode);
+    };
+    const std::string& mode = options.penetrability;
+    if (options.threshold && mode == "off") refuse("--threshold", "threshold (or ranges)");
+    if (!options.minimum.empty() && mode != "threshold") refuse("--minimum", "threshold");
+    if (!options.ranges.empty() && mode != "ranges") refuse("--range", "ranges");
+}
+
 Penetrability penetrability_of(const RenderOptions& options, const Field& field, double isovalue) {
+    refuse_idle_options(options);
     if (options.penetrability == "off") return no_penetrability();
+    const double threshold = options.threshold.value_or(1);
     if (options.penetrability == "threshold") {
         const double minimum =
             options.minimum.empty() ? isovalue : level_from_text(options.minimum, field.volume());
-        return penetrability_threshold(options.threshold, minimum, field.solid());
+        return penetrability_threshold(threshold, minimum, field.solid());
     }
     if (options.ranges.empty()) {
         throw std::invalid_argument("--penetrability ranges needs at least one --range LOW:HIGH");
@@ -43,7 +70,7 @@ Penetrability penetrability_of(const RenderOptions& options, const Field& field,
     std::vector<DensityRange> ranges;
     for (const std::string& text : options.ranges)
         ranges.push_back(range_from(text, field.volume()));
-    return penetrability_ranges(options.threshold, ranges, field.solid());
+    return penetrability_ranges(threshold, ranges, field.solid());
 }
 
 }  // namespace
@@ -57,23 +84,25 @@ void RenderOptions::add_to(CLI::App& command) {
     command.add_option("--penetrability", penetrability, "Pressing through")
         ->check(CLI::IsMember({"off", "threshold", "ranges"}))
         ->capture_default_str();
-    command.add_option("--threshold", threshold, "Penetration threshold PT [device mm]")
-        ->capture_default_str();
+    command.add_option("--threshold", threshold, "Penetration threshold PT [device mm] (1)");
     command.add_option("--minimum", minimum, "Least level felt (default: the isovalue)");
+    // Without allow_extra_args(false) this would take VOLUME for one more range.
     command.add_option("--range", ranges, "Range of interest, LOW:HIGH; may be given again")
+        ->allow_extra_args(false)
         ->type_name("LOW:HIGH");
     command.add_option("-k,--stiffness", force.stiffness, "Stiffness [N/mm]")
         ->capture_default_str();
     command.add_option("--damping", force.damping, "Damping along the normal [N s/mm]");
     command.add_option("--viscosity", force.viscosity, "Viscosity of the medium [N s/mm]");
-    command.add_option("--friction", friction, "Friction coefficients: STATIC[,DYNAMIC]")
-        ->delimiter(',')
-        ->expected(1, 2);
+    command.add_option("--friction", friction, "Friction coefficients; dynamic at most static")
+        ->type_name("STATIC[,DYNAMIC]");
     command.add_option("--magnet", magnet, "Snap to near surfaces: DISTANCE [mm],PEAK [N]")
         ->delimiter(',')
+        ->type_name("D,P")
         ->expected(2);
     command.add_option("--texture", texture, "Bumps: AMPLITUDE,WAVELENGTH [mm]")
         ->delimiter(',')
+        ->type_name("A,W")
         ->expected(2);
     command.add_option("--force-limit", force.limit, "Largest force [N]")->capture_default_str();
     command.add_option("--force-rate", force.rate_limit, "Largest change of force [N/s]")
@@ -93,7 +122,7 @@ RendererSettings render_settings(const RenderOptions& options, const Field& fiel
     settings.method = methods().at(options.method);
     settings.proxy.step_budget = options.step_budget;
     if (!options.friction.empty()) {
-        settings.proxy.friction = {options.friction.front(), options.friction.back()};
+        settings.proxy.friction = friction_from(options.friction);
     }
     settings.penetrability = penetrability_of(options, field, isovalue);
     settings.force = options.force;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,10 +13,11 @@ namespace palpate::app {
 struct RenderOptions {
     std::string method = "exact";
     std::string penetrability = "off";
-    double threshold = 1;  ///< PT [device mm]
+    std::optional<double> threshold;  ///< PT [device mm], 1 if not given
     std::string minimum;
     std::vector<std::string> ranges;
-    std::vector<double> friction, magnet, texture;
+    std::string friction;  ///< STATIC[,DYNAMIC]
+    std::vector<double> magnet, texture;
     double rate = 1000;  ///< [Hz]
     double scale = 1;    ///< physical mm per device mm
     int step_budget = ProxySettings{}.step_budget;

@@ -1,11 +1,13 @@
 // palpate replay: a recorded motion of the hand over a volume, off line, deterministic.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 #include <memory>
 #include <optional>
 
 #include "apps/palpate/commands.hpp"
+#include "apps/palpate/outputs.hpp"
 #include "apps/palpate/progress.hpp"
 #include "apps/palpate/render_options.hpp"
 #include "apps/palpate/session.hpp"
@@ -30,13 +32,20 @@ std::vector<std::string> head(const ReplayOptions& options, double isovalue) {
 }
 
 void replay(const ReplayOptions& options) {
+    check_outputs({options.volume.volume, options.trajectory}, {options.output, options.path});
+    const bool table_on_standard_output =
+        is_standard_output(options.output) || is_standard_output(options.path);
+    if (options.json && table_on_standard_output) {
+        throw std::invalid_argument(
+            "--json and a table would both go to standard output: give the table a file");
+    }
     const io::Trajectory trajectory = io::read_trajectory(options.trajectory);
     const LoadedVolume loaded = load(options.volume);
     const Field field = make_field(loaded, options.field);
     const double isovalue = isovalue_of(loaded, field, options.field);
     RendererSettings settings = render_settings(options.render, field, isovalue);
     // No device is at hand, and a recording has no pauses: only the limit asked for holds.
-    settings.device.maximum_force = options.render.force.limit;
+    settings.device.maximum_force = std::max(settings.device.maximum_force, settings.force.limit);
     settings.force.stale_after = std::numeric_limits<double>::infinity();
     Renderer renderer = make_renderer(field, isovalue, settings);
 
@@ -54,7 +63,7 @@ void replay(const ReplayOptions& options) {
     if (path) path->commit();
     if (options.json) {
         fmt::print("{}", summary_json(summary));
-    } else if (!options.volume.quiet && options.output != "-") {
+    } else if (!options.volume.quiet && !table_on_standard_output) {
         fmt::print("{}", summary_text(summary));
     }
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
 
 namespace palpate::app {
@@ -13,15 +14,23 @@ namespace {
 
 constexpr std::int64_t ticks_between_progress = 1024;
 
-/// Passes the corners of the SCP's polyline on. A crossed wall is no corner, nor is a goal.
+/// Passes the corners of the SCP's polyline on. A crossed wall is no corner, nor is a goal. The
+/// last corner of a tick is held back for its SCP, from which it differs by rounding: that is
+/// computed in index space, and where the SCP has reached the HIP it is the HIP, bit for bit.
 struct PathTap {
     const SessionSinks* sinks;
     std::int64_t tick = 0;
+    std::optional<Vec3> last = {};
 
     static void on_step(const Step& step, void* context) {
         if (step.kind == StepKind::cross || step.kind == StepKind::goal) return;
-        const auto& tap = *static_cast<const PathTap*>(context);
-        tap.sinks->corner(tap.tick, step.point);
+        auto& tap = *static_cast<PathTap*>(context);
+        if (tap.last) tap.sinks->corner(tap.tick, *tap.last);
+        tap.last = step.point;
+    }
+    void end_tick(const Vec3& scp) {
+        if (last) sinks->corner(tick, scp);
+        last.reset();
     }
 };
 
@@ -89,6 +98,7 @@ SessionSummary run_session(Renderer& renderer, const io::Trajectory& trajectory,
         const Vec3 hand =
             device_from_physical(renderer.settings.transform, trajectory.position[at]);
         const Tick tick = render(renderer, {trajectory.time[at], hand, true}, observer);
+        tap.end_tick(tick.proxy.scp);
         if (sinks.row) sinks.row(row_of(tick));
         times.push_back(tick.update_ns);
         add_to_summary(summary, tick, renderer.field.range());

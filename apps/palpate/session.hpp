@@ -25,7 +25,7 @@ struct SessionSummary {
     std::int64_t p50_ns = 0, p99_ns = 0, p999_ns = 0, max_ns = 0;
 };
 
-/// Where the ticks go; either may be empty.
+/// Where the ticks go; any may be empty. The last corner of a tick is its SCP, bit for bit.
 struct SessionSinks {
     std::function<void(const io::TraceRow&)> row;
     std::function<void(std::int64_t tick, const Vec3& corner)> corner;  ///< of the SCP's path [mm]

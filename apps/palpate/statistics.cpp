@@ -40,6 +40,7 @@ Histogram histogram_of(const Volume& volume, int bins) {
         const double width = std::max(1.0, std::ceil(values / bins));
         bins = static_cast<int>(std::ceil(values / width));
         h.high = h.low + width * bins;
+        h.whole_numbers = true;
     }
     h.counts.assign(static_cast<std::size_t>(bins), 0);
     switch (volume.type()) {
@@ -86,9 +87,19 @@ std::vector<double> suggested_isovalues(const Histogram& h) {
             }
         }
     }
+    // Any cut in a gap is as good: its middle is farthest from both classes. (In a mask of 0 and 1
+    // the level must be between them, or nothing is solid.)
     const double width = (h.high - h.low) / static_cast<double>(n);
-    std::vector<double> levels{h.low + width * static_cast<double>(cut[0])};
-    if (cut[1] != cut[0]) levels.push_back(h.low + width * static_cast<double>(cut[1]));
+    const double bin_middle = h.whole_numbers ? 0.5 * (width - 1) : 0.5 * width;
+    std::vector<double> levels;
+    for (const std::size_t c : cut) {
+        std::size_t below = c - 1;
+        std::size_t above = c;
+        while (below > 0 && h.counts[below] == 0) --below;
+        while (above + 1 < n && h.counts[above] == 0) ++above;
+        const double level = h.low + bin_middle + 0.5 * width * static_cast<double>(below + above);
+        if (levels.empty() || level > levels.back()) levels.push_back(level);
+    }
     return levels;
 }
 

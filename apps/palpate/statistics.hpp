@@ -12,6 +12,7 @@ struct Histogram {
     double low = 0, high = 0;  ///< [data units] ends of the first and last bin
     std::vector<std::int64_t> counts;
     double mean = 0, deviation = 0;  ///< of the samples [data units]
+    bool whole_numbers = false;      ///< each bin holds (high - low) / bins whole numbers
 };
 
 /// One pass over the samples.

@@ -90,6 +90,11 @@ Vec3 three_numbers(const std::string& text, char separator, const char* what) {
     return numbers;
 }
 
+std::string flaw_in_count(const std::string& text) {
+    const bool digits = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+    return digits ? "" : text + " is not a whole number from 0";
+}
+
 void VolumeOptions::add_to(CLI::App& command, bool optional) {
     auto* positional =
         command.add_option("VOLUME", volume, "File, folder, or synthetic:NAME[:WxHxD]");
@@ -100,10 +105,11 @@ void VolumeOptions::add_to(CLI::App& command, bool optional) {
                        "float32");
     command.add_option("--spacing", spacing, "Spacing [mm], for files that give none: X,Y,Z")
         ->type_name("X,Y,Z");
-    command.add_option("--skip", skip, "Bytes of header to skip in a raw file");
+    command.add_option("--skip", skip, "Bytes of header to skip in a raw file")
+        ->check(flaw_in_count);
     command.add_option("--series", series, "DICOM series: its number in the list, or its UID");
     command.add_option("--time-step", time_step, "Which volume of a 4-D file, from 0")
-        ->check(CLI::NonNegativeNumber);
+        ->check(flaw_in_count);
     command.add_flag("-q,--quiet", quiet, "No progress, no notes");
 }
 

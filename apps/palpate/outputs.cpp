@@ -1,0 +1,50 @@
+// Comparison of files by what they are, not by how they are written.
+#include "apps/palpate/outputs.hpp"
+
+#include <filesystem>
+#include <stdexcept>
+
+namespace palpate::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// True for two names of one file, through links and relative paths. Neither need exist.
+bool same_file(const std::string& a, const std::string& b) {
+    std::error_code error;
+    if (is_standard_output(a) || is_standard_output(b)) {
+        return is_standard_output(a) && is_standard_output(b);
+    }
+    if (fs::exists(a, error) && fs::exists(b, error)) {
+        return fs::is_regular_file(a, error) && fs::equivalent(a, b, error);
+    }
+    return fs::weakly_canonical(a, error) == fs::weakly_canonical(b, error);
+}
+
+}  // namespace
+
+bool is_standard_output(const std::string& name) {
+    return name == "-" || name == "/dev/stdout" || name == "/dev/fd/1";
+}
+
+void check_outputs(const std::vector<std::string>& inputs,
+                   const std::vector<std::string>& outputs) {
+    for (std::size_t i = 0; i < outputs.size(); ++i) {
+        if (outputs[i].empty()) continue;
+        for (const std::string& input : inputs) {
+            if (!input.empty() && same_file(outputs[i], input)) {
+                throw std::invalid_argument(outputs[i] +
+                                            " is an input and would be replaced: "
+                                            "choose another output");
+            }
+        }
+        for (std::size_t j = 0; j < i; ++j) {
+            if (!outputs[j].empty() && same_file(outputs[i], outputs[j])) {
+                throw std::invalid_argument("two outputs go to " + outputs[i] +
+                                            ": give each its own");
+            }
+        }
+    }
+}
+
+}  // namespace palpate::app
