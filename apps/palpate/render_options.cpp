@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <limits>
 #include <map>
 #include <stdexcept>
@@ -22,17 +23,19 @@ const std::map<std::string, ProxyMethod>& methods() {
     return all;
 }
 
-/// "0.5,0.3", or "0.5" for both.
-Friction friction_from(const std::string& text) {
+/// "0.5,0.3" as two numbers; "0.5" as twice the same where one is enough.
+std::array<double, 2> two_numbers(const std::string& option, const std::string& text,
+                                  bool one_is_enough = false) {
     const auto comma = text.find(',');
-    const auto still = io::number_from<double>(text.substr(0, comma));
-    const auto moving =
-        comma == std::string::npos ? still : io::number_from<double>(text.substr(comma + 1));
-    if (!still || !moving) {
-        throw std::invalid_argument("--friction " + text +
-                                    ": one or two numbers are needed, as in 0.5 or 0.5,0.3");
+    const auto first = io::number_from<double>(text.substr(0, comma));
+    const auto second =
+        comma == std::string::npos ? first : io::number_from<double>(text.substr(comma + 1));
+    if (!first || !second || (comma == std::string::npos && !one_is_enough)) {
+        throw std::invalid_argument(
+            fmt::format("{} {}: {} separated by a comma, as in 0.5,0.3", option, text,
+                        one_is_enough ? "one number, or two" : "two numbers"));
     }
-    return {*still, *moving};
+    return {*first, *second};
 }
 
 DensityRange range_from(const std::string& text, const Volume& volume) {
@@ -97,13 +100,8 @@ void RenderOptions::add_to(CLI::App& command) {
     command.add_option("--friction", friction, "Friction coefficients; dynamic at most static")
         ->type_name("STATIC[,DYNAMIC]");
     command.add_option("--magnet", magnet, "Snap to near surfaces: DISTANCE [mm],PEAK [N]")
-        ->delimiter(',')
-        ->type_name("D,P")
-        ->expected(2);
-    command.add_option("--texture", texture, "Bumps: AMPLITUDE,WAVELENGTH [mm]")
-        ->delimiter(',')
-        ->type_name("A,W")
-        ->expected(2);
+        ->type_name("D,P");
+    command.add_option("--texture", texture, "Bumps: AMPLITUDE,WAVELENGTH [mm]")->type_name("A,W");
     command.add_option("--force-limit", force.limit, "Largest force [N]")->capture_default_str();
     command.add_option("--force-rate", force.rate_limit, "Largest change of force [N/s]")
         ->capture_default_str();
@@ -122,12 +120,19 @@ RendererSettings render_settings(const RenderOptions& options, const Field& fiel
     settings.method = methods().at(options.method);
     settings.proxy.step_budget = options.step_budget;
     if (!options.friction.empty()) {
-        settings.proxy.friction = friction_from(options.friction);
+        const auto [still, moving] = two_numbers("--friction", options.friction, true);
+        settings.proxy.friction = {still, moving};
     }
     settings.penetrability = penetrability_of(options, field, isovalue);
     settings.force = options.force;
-    if (!options.magnet.empty()) settings.force.magnet = {options.magnet[0], options.magnet[1]};
-    if (!options.texture.empty()) settings.force.texture = {options.texture[0], options.texture[1]};
+    if (!options.magnet.empty()) {
+        const auto [distance, peak] = two_numbers("--magnet", options.magnet);
+        settings.force.magnet = {distance, peak};
+    }
+    if (!options.texture.empty()) {
+        const auto [amplitude, wavelength] = two_numbers("--texture", options.texture);
+        settings.force.texture = {amplitude, wavelength};
+    }
     settings.device.rate = options.rate;
     settings.transform.scale = options.scale;
     check(settings);

@@ -16,8 +16,9 @@ struct RenderOptions {
     std::optional<double> threshold;  ///< PT [device mm], 1 if not given
     std::string minimum;
     std::vector<std::string> ranges;
-    std::string friction;  ///< STATIC[,DYNAMIC]
-    std::vector<double> magnet, texture;
+    /// STATIC[,DYNAMIC]; DISTANCE,PEAK; AMPLITUDE,WAVELENGTH. As text: CLI11 would take a VOLUME
+    /// that follows for one more number.
+    std::string friction, magnet, texture;
     double rate = 1000;  ///< [Hz]
     double scale = 1;    ///< physical mm per device mm
     int step_budget = ProxySettings{}.step_budget;
