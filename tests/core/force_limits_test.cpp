@@ -168,6 +168,9 @@ TEST(Force, limits_hold_even_for_settings_that_check_refuses) {
                 ASSERT_TRUE(r.force.allFinite()) << bad << " in " << which;
                 ASSERT_LE(r.force.norm(), std::min(device, 3.3 + 1e9 * (which == 3)) * rounding)
                     << bad << " in " << which;
+                if (which > 2) {
+                    ASSERT_GE(r.force[2], 0) << "pulls in: " << bad << " in " << which;
+                }
             }
         }
     }

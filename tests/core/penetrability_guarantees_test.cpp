@@ -153,7 +153,8 @@ TEST(Penetrability, a_minimum_for_dark_bodies_is_a_maximum) {
 }
 
 TEST(Penetrability, ranges_are_sorted_and_merged_in_the_order_the_hand_meets_them) {
-    const std::array<DensityRange, 5> ranges{{{40, 50}, {10, 15}, {45, 60}, {12, 20}, {20, 25}}};
+    const std::array<DensityRange, 6> ranges{
+        {{40, 60}, {10, 15}, {45, 50}, {12, 20}, {13, 14}, {20, 25}}};
     const Penetrability above = penetrability_ranges(1, ranges);
     ASSERT_EQ(above.range_count, 2);
     EXPECT_TRUE(above.on);

@@ -202,7 +202,7 @@ TEST(Renderer, the_magnet_draws_a_hand_onto_a_sphere_and_joins_the_contact_smoot
     const scenes::Scene scene = scenes::make_volume("sphere:64x64x64", SampleType::float32);
     RendererSettings settings = at_once();
     settings.force.magnet = {3, 0.6};
-    settings.transform.scale = 2;
+    settings.transform = {oblique_direction(), Vec3(5, -6, 7), 2};
     Renderer renderer = make_renderer(Field(scene.volume), scene.isovalue, settings);
     const Vec3 along = Vec3(1, 0.4, -0.3).normalized();
     const Field field(scene.volume);
@@ -210,9 +210,9 @@ TEST(Renderer, the_magnet_draws_a_hand_onto_a_sphere_and_joins_the_contact_smoot
     ASSERT_TRUE(surface.hit);
     int i = 0;
     double peak = 0, peak_at = 0, last = 0;
-    Vec3 outward = along;
+    const Vec3 outward = settings.transform.rotation.transpose() * along;
     for (double d = 3.5; d > -0.2; d -= 0.005, ++i) {  // [device mm] above the surface
-        const Vec3 hand = (surface.point + 2 * d * along) / 2;
+        const Vec3 hand = device_from_physical(settings.transform, surface.point + 2 * d * along);
         const Tick at = render(renderer, {i * tick, hand, true});
         const double strength = at.force.norm();
         if (at.proxy.density == field.background()) continue;  // no gradient, no magnet
