@@ -27,8 +27,7 @@ ForceInput force_input(const Renderer& renderer, const DeviceState& device, cons
     ForceInput input;
     input.time = device.time;
     input.enabled = renderer.settings.forces_on;
-    input.valid =
-        device.valid && at.status != UpdateStatus::refused && at.status != UpdateStatus::recovering;
+    input.valid = at.status != UpdateStatus::refused && at.status != UpdateStatus::recovering;
     input.constrained = at.mode == Mode::constrained;
     input.hand = device.position;
     input.pull = to_device * (at.scp - at.hip) / transform.scale;
