@@ -23,8 +23,10 @@ struct Texture {
 
 struct ForceSettings {
     double stiffness = 0.5;  ///< k [N/mm], Eq. 4: f = k (SCP - HIP)
-    double damping = 0;      ///< [N s/mm] against the hand's motion along the contact normal
-    double viscosity = 0;    ///< [N s/mm] of the medium, against all motion, in contact or not
+    /// [N s/mm] against the hand's motion along the contact normal; takes back at most what pushes
+    /// out, so it never pulls the hand in
+    double damping = 0;
+    double viscosity = 0;  ///< [N s/mm] of the medium, against all motion, in contact or not
     Magnet magnet;
     Texture texture;
     double limit = 3.3;         ///< [N] most force asked for; a device's own limit holds besides
@@ -79,7 +81,7 @@ struct ForceState {
     double time = 0;               ///< [s] of the last tick
     double ramp_begin = 0;         ///< [s]
     Vec3 hand = Vec3::Zero();      ///< [device mm]
-    Vec3 velocity = Vec3::Zero();  ///< [device mm/s], low-pass filtered
+    Vec3 velocity = Vec3::Zero();  ///< [device mm/s], low-pass filtered; at most 10 m/s counts
     Vec3 force = Vec3::Zero();     ///< [N] as rendered
 };
 
@@ -89,7 +91,8 @@ struct ForceResult {
 };
 
 /// The force of one tick. Never throws; any doubt about the input gives zero at once, and the ramp
-/// starts anew.
+/// starts anew. Settings that check() would refuse give no force beyond `limits` either.
+/// The limit holds at once where it is lowered: that fall, and every stop, is exempt from the rate.
 ForceResult render_force(ForceState& state, const ForceSettings& settings,
                          const DeviceLimits& limits, const ForceInput& input);
 

@@ -34,7 +34,9 @@ struct Penetrability {
     static constexpr int most_ranges = 16;
 
     bool on = false;
-    double threshold = 1;  ///< PT [device mm] where there is no function: force never exceeds k PT
+    /// PT [device mm] where there is no function: the spring (Eq. 4) never exceeds k PT. What other
+    /// effects add (damping on the way in, viscosity) comes on top.
+    double threshold = 1;
     PenetrabilityFunction function = nullptr;
     const void* context = nullptr;  ///< given to `function`; must outlive its use
     /// Disjoint and in the order in which the hand meets them (rising; falling for solid below).
@@ -42,7 +44,8 @@ struct Penetrability {
     int range_count = 1;
 };
 
-/// Off: the level felt stays what it is now.
+/// Off: the level felt stays what it is now. Past the last range that is infinity, where nothing
+/// is ever felt: set `proxy.isovalue` then.
 Penetrability no_penetrability();
 /// Threshold: gives way at PT [device mm]; no level outside `minimum` is felt, that is below it, or
 /// above it where `solid` is below. Throws std::invalid_argument unless PT >= 0.
@@ -62,7 +65,9 @@ void check(const Penetrability& penetrability, Solid solid);
 /// physical space. Updates that are not `done` pass unchanged.
 ///
 /// With penetrability on, G1 and G2 hold for the level felt at the end of the tick: the stretch
-/// that the SCP gives way along is a passage through the solid, reported as StepKind::press.
+/// that the SCP gives way along is a passage through the solid, reported as StepKind::press. A
+/// press that ends between two ranges leaves a free SCP PT away from the HIP; the next update
+/// closes up. Past the last range the isovalue is infinity (minus infinity where `solid` is below).
 void apply_penetrability(const Penetrability& penetrability, const Field& field,
                          double device_per_volume, Proxy& proxy, ProxyUpdate& update,
                          StepObserver observer = {});
