@@ -130,9 +130,11 @@ Rest descend(Site& site, Course& course, const Friction& friction, Proxy& proxy)
             if (walls_at(site.point.folded) != 0) site.enter(move.tetrahedron);
             const WalkEnd end = walk(site, move.step, course);
             course.report(StepKind::free_move, site);
-            if (end == WalkEnd::target) {
-                return course.target == hip ? Rest::at_target : Rest::on_surface;
-            }
+            if (end != WalkEnd::target) continue;
+            if (course.target == hip) return Rest::at_target;
+            // Friction pulled the target back to where nothing is touched: there it holds nothing.
+            course.target = hip;
+            friction_pending = true;
             continue;
         }
         if (friction_pending) {
