@@ -72,11 +72,9 @@ struct ProxyUpdate {
     Mode mode = Mode::free;
     Vec3 hip = Vec3::Zero();  ///< [mm, physical]
     Vec3 scp = Vec3::Zero();  ///< [mm, physical]; equal to hip bit for bit when it was reached
-    Vec3 normal =
-        Vec3::Zero();     ///< unit, out of the solid, physical axes; zero where f is constant
-    double density = 0;   ///< f(SCP) [data units]
-    double isovalue = 0;  ///< [data units]
-    int tetrahedra = 0;   ///< through how many the SCP moved
+    double density = 0;       ///< f(SCP) [data units]
+    double isovalue = 0;      ///< [data units]
+    int tetrahedra = 0;       ///< through how many the SCP moved
 };
 
 /// A proxy method: moves the proxy for one HIP [mm, physical]. All methods have this form, so a
