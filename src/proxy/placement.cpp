@@ -27,9 +27,13 @@ bool place(Proxy& proxy, const Field& field, const Vec3& hip, double isovalue,
     const int patience = 1000 + static_cast<int>(size.norm());
     const Vec3 target = index_from_physical(field.geometry(), hip);
     if (!accepts(proxy, target)) return false;
+    const LatticePoint start = locate(target);
     for (int i = 0; i < patience; ++i) {
         const Update update(proxy, field, target, {}, observer);
-        const bool stayed = index_of(update.site.point) == target;
+        // Not by coordinates: those of a point just below zero do not come back bit for bit.
+        const LatticePoint& at = update.site.point;
+        const bool stayed =
+            same_tetrahedron(at.tetrahedron, start.tetrahedron) && at.folded == start.folded;
         finish_update(proxy, update, hip,
                       update.recovering ? Rest::recovering
                       : stayed          ? Rest::at_target

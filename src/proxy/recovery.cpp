@@ -54,19 +54,28 @@ bool descend_out(Site& site, Course& course) {
     return false;
 }
 
-constexpr double shell_thickness = 16;  // [voxel] searched along each direction at a time
+constexpr double thickest_shell = 16;    // [voxel] searched along each direction at a time
+constexpr double thinnest_shell = 0.25;  // needs a budget of some 100 pieces
+
+/// A shell that the budget lasts for along all 26 directions (fewer than 8 walls a voxel, and two
+/// pieces a probe): one that is given up half way would be begun again by every later update.
+double shell_within(int budget) {
+    return std::min(thickest_shell, (budget / 26 - 2) / 8.0);
+}
 
 /// Looks for free space along 26 directions, a shell at a time. True when found and moved to.
 bool search_out(Site& site, Course& course, double& reach) {
     const Index3& size = site.field.geometry().size;
-    const double farthest = 2 * size.cast<double>().norm() + 4 * shell_thickness;
+    const double farthest = 2 * size.cast<double>().norm() + 4 * thickest_shell;
     const Vec3 from = index_of(site.point);
     const Vec3& spacing = course.geometry.spacing;
     const double unit = spacing.minCoeff();
-    while (course.budget > 0 && reach * unit <= farthest * spacing.maxCoeff()) {
+    while (reach * unit <= farthest * spacing.maxCoeff()) {
+        const double shell_thickness = shell_within(course.budget);
+        if (shell_thickness < thinnest_shell) return false;
         LatticePoint nearest;
         double least = std::numeric_limits<double>::infinity();
-        for (int direction = 0; direction < 27 && course.budget > 0; ++direction) {
+        for (int direction = 0; direction < 27; ++direction) {
             const Vec3 axes(direction % 3 - 1, direction / 3 % 3 - 1, direction / 9 - 1);
             if (direction == 13) continue;
             const Vec3 per_unit = (axes / std::sqrt(dot(axes, axes))).cwiseQuotient(spacing) * unit;
@@ -92,9 +101,9 @@ bool search_out(Site& site, Course& course, double& reach) {
             course.report(StepKind::recover, site);
             return true;
         }
-        if (course.budget > 0) reach += shell_thickness;
+        reach += shell_thickness;
     }
-    if (course.budget > 0) reach = 0;  // nowhere free: look again in the next update
+    reach = 0;  // nowhere free: look again in the next update
     return false;
 }
 
