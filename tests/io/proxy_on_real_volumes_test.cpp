@@ -1,0 +1,61 @@
+// The proxy's guarantees G1-G5 on scanned data: noise, plateaus, values equal to the isovalue, thin
+// slices. Needs the data folder beside the project; skipped without it.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "io/volume_file.hpp"
+#include "support/fields.hpp"
+#include "support/guarantees.hpp"
+#include "support/hand.hpp"
+
+using namespace palpate;
+using namespace palpate::support;
+
+namespace {
+
+struct Scan {
+    const char* file;
+    double isovalue;
+    Solid solid = Solid::above;
+};
+
+class ProxyOnRealVolumes : public testing::TestWithParam<Scan> {};
+
+}  // namespace
+
+TEST_P(ProxyOnRealVolumes, keeps_its_guarantees) {
+    const Scan scan = GetParam();
+    const auto path = std::filesystem::path(PALPATE_DATA_FOLDER) / scan.file;
+    if (!std::filesystem::exists(path)) GTEST_SKIP() << scan.file << " is not here";
+    const Field field(io::read_volume(path).volume, scan.solid);
+    // Little outside, much sliding, and strokes and jumps through everything.
+    Hand hand(field.geometry(), 5, {.slide = 8, .stroke = 3, .jump = 1, .margin = -1});
+    Guarantees checked(field, &update_exact);
+    Proxy proxy;
+    proxy.isovalue = scan.isovalue;
+    constexpr int updates = scaled(100000);
+    for (int i = 0; i < updates && !HasFailure(); ++i) {
+        SCOPED_TRACE(std::string(scan.file) + " update " + std::to_string(i));
+        checked.update(proxy, hand.next());
+    }
+    checked.print(scan.file);
+    EXPECT_GT(checked.tally().constrained_share(), 0.05);
+    EXPECT_GT(checked.tally().long_moves, updates / 50);
+    EXPECT_GT(checked.tally().motions, checked.tally().constrained);
+    EXPECT_EQ(checked.tally().recovering, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Scans, ProxyOnRealVolumes,
+    testing::Values(Scan{"lobster.nrrd", 35}, Scan{"lobster.nrrd", 110}, Scan{"orange.nrrd", 15},
+                    Scan{"orange.nrrd", 60}, Scan{"daisy_pollen.nrrd", 40},
+                    Scan{"daisy_pollen.nrrd", 100}, Scan{"cthead_unc.nrrd", 500},
+                    Scan{"cthead_unc.nrrd", 1200}, Scan{"cthead_unc.nrrd", 500, Solid::below},
+                    Scan{"iguana.nii.gz", 120}),
+    [](const auto& scan) {
+        std::string name = scan.param.file;
+        for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
+        return name + "_at_" + std::to_string(static_cast<int>(scan.param.isovalue)) +
+               (scan.param.solid == Solid::below ? "_below" : "");
+    });
