@@ -1,0 +1,228 @@
+// Volume: samples keep their type and their place; geometry that makes no sense is refused.
+#include "palpate/volume.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "support/fields.hpp"
+
+using namespace palpate;
+using namespace palpate::support;
+
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
+template <class T>
+class VolumeOf : public testing::Test {};
+using SampleTypes = testing::Types<std::uint8_t, std::int16_t, std::uint16_t, float>;
+TYPED_TEST_SUITE(VolumeOf, SampleTypes);
+
+Volume made(const Geometry& geometry) {
+    const auto count = static_cast<std::size_t>(std::max<std::int64_t>(0, sample_count(geometry)));
+    return Volume(geometry, std::vector<std::uint8_t>(count));
+}
+
+/// What a refusal says.
+template <class F>
+std::string refusal(F&& make) {
+    try {
+        make();
+    } catch (const std::invalid_argument& error) {
+        return error.what();
+    }
+    return {};
+}
+
+}  // namespace
+
+TYPED_TEST(VolumeOf, keeps_type_bytes_and_order_of_its_samples) {
+    const Geometry geometry = grid({3, 4, 5});
+    std::vector<TypeParam> samples(60);
+    for (std::size_t i = 0; i < samples.size(); ++i) samples[i] = static_cast<TypeParam>(2 * i + 1);
+    const TypeParam* data = samples.data();
+    const Volume volume(geometry, std::move(samples));
+    EXPECT_EQ(volume.type(), sample_type_of<TypeParam>());
+    EXPECT_EQ(size_of(volume.type()), sizeof(TypeParam));
+    EXPECT_EQ(volume.bytes(), 60 * sizeof(TypeParam));
+    EXPECT_EQ(volume.data(), data) << "copied instead of taken";
+    EXPECT_EQ(volume.template samples<TypeParam>().data(), data);
+    EXPECT_EQ(volume.template samples<TypeParam>().size(), 60U);
+    for (int z = 0; z < 5; ++z) {
+        for (int y = 0; y < 4; ++y) {
+            for (int x = 0; x < 3; ++x) {
+                EXPECT_EQ(volume.sample({x, y, z}), 2 * (x + 3 * (y + 4 * z)) + 1);
+            }
+        }
+    }
+    EXPECT_EQ(volume.minimum(), 1);
+    EXPECT_EQ(volume.maximum(), 119);
+    EXPECT_EQ(volume.range(), 118);
+    const Volume copy = volume;
+    EXPECT_EQ(copy.data(), data) << "a copy shares the samples";
+}
+
+TYPED_TEST(VolumeOf, adopts_samples_without_copying_and_gives_them_back) {
+    const Geometry geometry = grid({2, 2, 2});
+    int given_back = 0;
+    auto* data = new TypeParam[8]{1, 2, 3, 4, 5, 6, 7, 8};
+    {
+        const std::shared_ptr<const void> owner(data, [&](const void* p) {
+            delete[] static_cast<const TypeParam*>(p);
+            ++given_back;
+        });
+        const Volume volume(geometry, sample_type_of<TypeParam>(), owner, 8 * sizeof(TypeParam));
+        EXPECT_EQ(volume.data(), data);
+        EXPECT_EQ(volume.sample({1, 1, 1}), 8);
+        EXPECT_EQ(volume.range(), 7);
+        EXPECT_EQ(given_back, 0);
+    }
+    EXPECT_EQ(given_back, 1);
+}
+
+TYPED_TEST(VolumeOf, holds_the_extremes_of_its_type) {
+    constexpr TypeParam low = std::numeric_limits<TypeParam>::lowest();
+    constexpr TypeParam high = std::numeric_limits<TypeParam>::max();
+    const Volume volume(grid({2, 1, 1}), std::vector<TypeParam>{high, low});
+    EXPECT_EQ(volume.minimum(), static_cast<double>(low));
+    EXPECT_EQ(volume.maximum(), static_cast<double>(high));
+    EXPECT_EQ(volume.sample({0, 0, 0}), static_cast<double>(high));
+    EXPECT_EQ(volume.sample({1, 0, 0}), static_cast<double>(low));
+}
+
+TYPED_TEST(VolumeOf, gives_its_samples_as_their_own_type_only) {
+    const Volume volume(grid({2, 1, 1}), std::vector<TypeParam>{1, 2});
+    if constexpr (!std::is_same_v<TypeParam, float>) {
+        EXPECT_THROW(volume.template samples<float>(), std::invalid_argument);
+    } else {
+        EXPECT_THROW(volume.template samples<std::uint8_t>(), std::invalid_argument);
+    }
+}
+
+TEST(Volume, of_one_value_has_range_one) {
+    EXPECT_EQ(Volume(grid({2, 2, 2}), std::vector<float>(8, -7)).range(), 1);
+}
+
+TEST(Volume, names_sample_types_both_ways) {
+    for (const SampleType type :
+         {SampleType::uint8, SampleType::int16, SampleType::uint16, SampleType::float32}) {
+        EXPECT_EQ(sample_type_from(name_of(type)), type);
+    }
+    EXPECT_NE(refusal([] { sample_type_from("double"); }).find("uint8, int16"), std::string::npos);
+    EXPECT_THROW(sample_type_from(""), std::invalid_argument);
+}
+
+TEST(Volume, refuses_a_wrong_count_of_samples) {
+    for (const std::size_t count : {0, 1, 7, 9, 64}) {
+        EXPECT_THROW(Volume(grid({2, 2, 2}), std::vector<std::int16_t>(count)),
+                     std::invalid_argument);
+    }
+    const auto data = std::make_shared<std::array<float, 8>>();
+    EXPECT_THROW(Volume(grid({2, 2, 2}), SampleType::float32, data, 31), std::invalid_argument);
+    EXPECT_THROW(Volume(grid({2, 2, 2}), SampleType::float32, data, 33), std::invalid_argument);
+}
+
+TEST(Volume, refuses_float_samples_that_are_not_finite) {
+    for (const double bad : {not_a_number, infinite, -infinite}) {
+        for (const std::size_t at : {0, 3, 7}) {
+            std::vector<float> samples(8, 1);
+            samples[at] = static_cast<float>(bad);
+            EXPECT_NE(refusal([&] {
+                          Volume(grid({2, 2, 2}), samples);
+                      }).find("not finite"),
+                      std::string::npos);
+        }
+    }
+}
+
+TEST(Volume, refuses_geometry_that_makes_no_sense_and_says_what_is_wrong) {
+    for (const int bad : {0, -1, -1000, (1 << 20) + 1}) {
+        for (int axis = 0; axis < 3; ++axis) {
+            Geometry geometry = grid({2, 2, 2});
+            geometry.size[axis] = bad;
+            EXPECT_THROW(check(geometry), std::invalid_argument);
+        }
+    }
+    for (const double bad : {0.0, -1.0, infinite, -infinite, not_a_number}) {
+        for (int axis = 0; axis < 3; ++axis) {
+            Geometry geometry = grid({2, 2, 2});
+            geometry.spacing[axis] = bad;
+            EXPECT_NE(refusal([&] { made(geometry); }).find("spacing"), std::string::npos) << bad;
+        }
+    }
+    for (const double bad : {infinite, -infinite, not_a_number}) {
+        for (int axis = 0; axis < 3; ++axis) {
+            Geometry geometry = grid({2, 2, 2});
+            geometry.origin[axis] = bad;
+            EXPECT_NE(refusal([&] { made(geometry); }).find("origin"), std::string::npos);
+            geometry = grid({2, 2, 2});
+            geometry.direction(axis, 1) = bad;
+            EXPECT_NE(refusal([&] { made(geometry); }).find("direction"), std::string::npos);
+        }
+    }
+}
+
+TEST(Volume, refuses_sheared_scaled_and_degenerate_directions_and_accepts_rotated_and_mirrored) {
+    Geometry geometry = grid({2, 2, 2}, Vec3::Ones(), Vec3::Zero(), oblique_direction());
+    EXPECT_NO_THROW(made(geometry));
+    geometry.direction.col(1) *= -1;
+    EXPECT_NO_THROW(made(geometry));
+    geometry.direction(0, 0) += 1e-5;  // what six digits in a file's header leave
+    EXPECT_NO_THROW(made(geometry));
+    Mat3 sheared = Mat3::Identity();
+    sheared(0, 1) = 0.01;
+    const std::vector<Mat3> refused{sheared, 2 * Mat3::Identity(), Mat3::Zero(), Mat3::Ones()};
+    for (const Mat3& direction : refused) {
+        geometry.direction = direction;
+        EXPECT_NE(refusal([&] { made(geometry); }).find("orthonormal"), std::string::npos);
+    }
+}
+
+TEST(Volume, index_and_physical_space_are_each_others_inverse) {
+    const Geometry geometry = grid({5, 6, 7}, {0.5, 0.7, 2}, {-100, 30, 7}, oblique_direction());
+    Random random(91);
+    for (int i = 0; i < 1000; ++i) {
+        const Vec3 index = random.point(-10, 20);
+        const Vec3 physical = physical_from_index(geometry, index);
+        EXPECT_LE((index_from_physical(geometry, physical) - index).norm(), 1e-12);
+        // Written out: the columns of the direction are the index axes in physical space.
+        const Vec3 expected = geometry.origin + 0.5 * index[0] * geometry.direction.col(0) +
+                              0.7 * index[1] * geometry.direction.col(1) +
+                              2.0 * index[2] * geometry.direction.col(2);
+        EXPECT_LE((physical - expected).norm(), 1e-12);
+        const Vec3 v = random.direction();
+        const Vec3 back = physical_from_grid_axes(geometry, grid_axes_from_physical(geometry, v));
+        EXPECT_LE((back - v).norm(), 1e-14);
+    }
+    EXPECT_EQ(physical_from_index(geometry, Vec3::Zero()), geometry.origin);
+    EXPECT_LE((physical_centre(geometry) - physical_from_index(geometry, {2, 2.5, 3})).norm(),
+              1e-12);
+}
+
+TEST(Level, is_read_as_people_write_it) {
+    const Volume volume(grid({2, 1, 1}), std::vector<std::int16_t>{-1000, 3000});
+    EXPECT_EQ(level_from_text("300", volume), 300);
+    EXPECT_EQ(level_from_text("-12.5", volume), -12.5);
+    EXPECT_EQ(level_from_text("-1e3", volume), -1000);
+    EXPECT_EQ(level_from_text("1E+2", volume), 100);
+    EXPECT_EQ(level_from_text("50%", volume), 1000);
+    EXPECT_DOUBLE_EQ(level_from_text("53%", volume), 1120);
+    EXPECT_EQ(level_from_text("0%", volume), -1000);
+    EXPECT_EQ(level_from_text("100%", volume), 3000);
+    // Out of the range is a level too: there is just nothing to feel at it.
+    EXPECT_EQ(level_from_text("1e6", volume), 1e6);
+}
+
+TEST(Level, that_is_not_a_number_is_refused_with_the_text_in_the_message) {
+    const Volume volume(grid({2, 1, 1}), std::vector<std::int16_t>{-1000, 3000});
+    for (const char* bad : {"",    "%",   "abc",   "nan",    "NaN",  "inf",  "-inf", "infinity",
+                            "5%%", "%5",  "1e999", "1e999%", "3 00", " 300", "300 ", "0x10",
+                            "1,5", "--3", "3e",    "300HU",  "5 %",  "nan%"}) {
+        std::string quoted(1, '\'');
+        quoted.append(bad).push_back('\'');
+        const std::string what = refusal([&] { level_from_text(bad, volume); });
+        EXPECT_NE(what.find(quoted), std::string::npos) << bad;
+    }
+}
