@@ -57,7 +57,11 @@ class Field {
     }
     /// True where all eight samples of `cell` are background.
     bool is_background(const Index3& cell) const {
-        return (cell.array() < -1).any() || (cell.array() >= geometry().size.array()).any();
+        // One unsigned comparison an axis covers both ends, here and in cell_of().
+        const auto beyond = [&](int a) {
+            return static_cast<unsigned>(cell[a] + 1) > static_cast<unsigned>(size_[a]);
+        };
+        return beyond(0) || beyond(1) || beyond(2);
     }
 
   private:

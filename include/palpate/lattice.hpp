@@ -169,8 +169,9 @@ inline LinearPiece piece_of(const Tetrahedron& t, const CellSamples& f) {
 }
 
 inline unsigned walls_at(const Vec3& u) {
-    return unsigned(u[0] == 0.5) | unsigned(u[0] == u[1]) << wall_edge |
-           unsigned(u[1] == u[2]) << wall_plus | unsigned(u[1] == -u[2]) << wall_minus;
+    // No folded point is beyond a wall, so >= says the same as ==, in half the instructions.
+    return unsigned(u[0] >= 0.5) | unsigned(u[1] >= u[0]) << wall_edge |
+           unsigned(u[2] >= u[1]) << wall_plus | unsigned(-u[2] >= u[1]) << wall_minus;
 }
 
 inline Vec3 snap(const Vec3& folded, unsigned walls) {

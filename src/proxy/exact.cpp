@@ -18,13 +18,28 @@ struct Move {
     bool straight = false;     ///< the way to the target itself is free here
 };
 
-/// The best move inside one incident tetrahedron: h (folded, voxel) projected on the cone of the
-/// walls that the SCP is on and, in contact, the isosurface with gradient g of the excess.
+/// The move of an SCP that is on no wall, by far the most frequent case: one plane at most.
+/// h is the way to the target (folded, voxel).
+Move move_inside(const Site& site, bool contact, const Vec3& h) {
+    const Tetrahedron& t = site.point.tetrahedron;
+    const Vec3 g = site.sign * site.piece.gradient;
+    const double into = dot(g, h);
+    if (!contact || into <= 0) return {.tetrahedron = t, .step = h, .straight = true};
+    const Vec3 mm = fold_lengths(t, site.field.geometry().spacing);
+    const Vec3 per_mm = fold_lengths(t, site.field.voxels_per_mm());
+    // The normal in mm is g per_mm, and so is the way back to voxels: per_mm twice.
+    const Vec3 n = g.cwiseProduct(per_mm).cwiseProduct(per_mm);
+    const Vec3 step = h - n * (into / dot(g, n));
+    const Vec3 step_mm = step.cwiseProduct(mm);
+    return {.tetrahedron = t, .step = step, .gain = dot(step_mm, step_mm)};
+}
+
+/// The best move inside one of several incident tetrahedra: h (in its frame) projected on the cone
+/// of the walls that the SCP is on and, in contact, the isosurface with gradient g of the excess.
 Move move_in(const Tetrahedron& t, const Vec3& g, unsigned on, bool contact, const Vec3& h,
              const Field& field) {
     const bool constrained = contact && (g[0] != 0 || g[1] != 0 || g[2] != 0);
-    const double into = dot(g, h);
-    bool inside = !constrained || into <= 0;
+    bool inside = !constrained || dot(g, h) <= 0;
     // Wall by wall the sign of `approach` is exact, so every direction has a tetrahedron that takes
     // it: no gap opens between neighbours.
     for (unsigned w = 0; w < wall_count; ++w) {
@@ -32,30 +47,22 @@ Move move_in(const Tetrahedron& t, const Vec3& g, unsigned on, bool contact, con
     }
     const Vec3 mm = fold_lengths(t, field.geometry().spacing);
     const Vec3 per_mm = fold_lengths(t, field.voxels_per_mm());
-    const auto gain = [&](const Vec3& step) {
-        const Vec3 step_mm = step.cwiseProduct(mm);
-        return dot(step_mm, step_mm);
-    };
-    if (inside) return {t, h, 0, gain(h), true};
-    if (on == 0) {  // by far the most frequent: one plane, no wall
-        // The normal in mm is g per_mm, and so is the way back to voxels: per_mm twice.
-        const Vec3 n = g.cwiseProduct(per_mm).cwiseProduct(per_mm);
-        const Vec3 step = h - n * (into / dot(g, n));
-        return {t, step, 0, gain(step)};
-    }
+    const Vec3 h_mm = h.cwiseProduct(mm);
+    if (inside) return {t, h, 0, dot(h_mm, h_mm), true};
     WalledCone cone(on, per_mm);
     if (constrained) cone.half_spaces.add(g.cwiseProduct(per_mm));
-    const ConeProjection projection = project_on_cone(h.cwiseProduct(mm), cone.half_spaces);
+    const ConeProjection projection = project_on_cone(h_mm, cone.half_spaces);
     return {t, projection.point.cwiseProduct(per_mm), cone.walls_of(projection),
             dot(projection.point, projection.point)};
 }
 
-/// The best move among all incident tetrahedra; h is the way to the target (folded, voxel).
-Move best_move(const Site& site, const Vec3& h, bool contact) {
-    const unsigned on = walls_at(site.point.folded);
+/// The best move among all incident tetrahedra of an SCP that is on these walls; h is the way to
+/// the target (folded, voxel).
+Move best_move(const Site& site, unsigned on, bool contact, const Vec3& h) {
+    if (on == 0) return move_inside(site, contact, h);
     const Tetrahedron& own = site.point.tetrahedron;
     Move best = move_in(own, site.sign * site.piece.gradient, on, contact, h, site.field);
-    if (on == 0 || best.straight) return best;
+    if (best.straight) return best;
     const Vec3 h_index = unfold(own, h);
     bool first = true;
     for_each_incident(site.point, [&](const Tetrahedron& t) {
@@ -107,7 +114,8 @@ std::optional<Move> move_from_corner(Site& site, const Course& course, double en
     if (near == walls_at(site.point.folded)) return std::nullopt;
     Site corner = site;
     corner.point.folded = snap(site.point.folded, near);
-    const Move move = best_move(corner, course.folded_to_target(corner), true);
+    const unsigned on = walls_at(corner.point.folded);
+    const Move move = best_move(corner, on, true, course.folded_to_target(corner));
     if (!(move.gain > enough)) return std::nullopt;
     site.point = corner.point;
     return move;
@@ -122,12 +130,13 @@ Rest descend(Site& site, Course& course, const Friction& friction, Proxy& proxy)
     const Vec3 hip = course.target;
     bool friction_pending = friction.static_coefficient > 0 || friction.dynamic_coefficient > 0;
     while (course.budget > 0) {
+        const unsigned on = walls_at(site.point.folded);
         const bool contact = site.excess() >= -site.field.tolerance();
-        const Move move =
-            from_corner ? *from_corner : best_move(site, course.folded_to_target(site), contact);
+        const Move move = from_corner ? *from_corner
+                                      : best_move(site, on, contact, course.folded_to_target(site));
         from_corner.reset();
         if (move.straight) {
-            if (walls_at(site.point.folded) != 0) site.enter(move.tetrahedron);
+            if (on != 0) site.enter(move.tetrahedron);
             const WalkEnd end = walk(site, move.step, course);
             course.report(StepKind::free_move, site);
             if (end != WalkEnd::target) continue;
@@ -147,8 +156,8 @@ Rest descend(Site& site, Course& course, const Friction& friction, Proxy& proxy)
             if (!from_corner) return Rest::on_surface;
             continue;
         }
-        site.enter(move.tetrahedron);
-        const bool at_minimum = slide(site, move.step, move.walls, course);
+        if (on != 0) site.enter(move.tetrahedron);
+        const bool at_minimum = slide(site, move.step, on, move.walls, course);
         course.report(StepKind::slide, site);
         // Inside a tetrahedron the minimum over its cone is the minimum: nothing else is incident.
         if (at_minimum && walls_at(site.point.folded) == 0) {

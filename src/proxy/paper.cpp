@@ -55,7 +55,7 @@ bool step_constrained(Site& site, Course& course) {
         if ((on >> w & 1) && approach(folded, w) == 0) kept |= 1U << w;
     }
     site.enter(towards);
-    slide(site, folded, kept, course);
+    slide(site, folded, on, kept, course);
     course.report(StepKind::slide, site, goal);
     return true;
 }

@@ -48,7 +48,7 @@ bool descend_out(Site& site, Course& course) {
         const Vec3 per_mm = fold_lengths(descent.tetrahedron, site.field.voxels_per_mm());
         // Along the step the excess falls by slope^2 per unit: it is gone at excess / slope^2.
         const Vec3 step = descent.step_mm.cwiseProduct(per_mm) * (excess / descent.slope_squared);
-        slide(site, step, descent.walls, course);
+        slide(site, step, walls_at(site.point.folded), descent.walls, course);
         course.report(StepKind::recover, site);
     }
     return false;

@@ -96,10 +96,10 @@ WalkEnd walk(Site& site, const Vec3& displacement, Course& course) {
     return WalkEnd::out_of_budget;
 }
 
-bool slide(Site& site, const Vec3& step, unsigned walls, Course& course) {
+bool slide(Site& site, const Vec3& step, unsigned on, unsigned walls, Course& course) {
     --course.budget;
     const Vec3 from = site.point.folded;
-    const Exit exit = first_exit(from, step, 1.0, walls_at(from));
+    const Exit exit = first_exit(from, step, 1.0, on);
     const unsigned met = exit.wall == no_wall ? 0U : 1U << exit.wall;
     site.point.folded = snap(from + exit.t * step, walls | met);
     course.tetrahedra += exit.t > 0;

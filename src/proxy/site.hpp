@@ -13,10 +13,12 @@ namespace palpate {
 /// excess, sign * (f - isovalue), is > 0 in the solid.
 struct Site {
     Site(const Field& f, double level, double s, const LatticePoint& at)
-        : field(f), isovalue(level), sign(s), point(at) {
-        samples = f.cell(at.tetrahedron.cell);
-        piece = piece_of(at.tetrahedron, samples);
-    }
+        : field(f),
+          isovalue(level),
+          sign(s),
+          point(at),
+          samples(f.cell(at.tetrahedron.cell)),
+          piece(piece_of(at.tetrahedron, samples)) {}
 
     const Field& field;
     double isovalue;
@@ -138,7 +140,8 @@ enum class WalkEnd { target, surface, out_of_budget };
 WalkEnd walk(Site& site, const Vec3& displacement, Course& course);
 
 /// Moves inside the site's tetrahedron along `step` (folded, voxel), at most to its end or to a
-/// wall that the point is not on yet. `walls` are held exactly. True if the end was reached.
-bool slide(Site& site, const Vec3& step, unsigned walls, Course& course);
+/// wall other than those that the point is `on`. `walls` are held exactly. True if the end was
+/// reached.
+bool slide(Site& site, const Vec3& step, unsigned on, unsigned walls, Course& course);
 
 }  // namespace palpate

@@ -39,9 +39,19 @@ bool accepts(const Proxy& proxy, const Vec3& hip_index) {
     return hip_index.cwiseAbs().maxCoeff() <= farthest_index && !std::isnan(proxy.isovalue);
 }
 
+namespace {
+
+/// Where the update starts; the first one of a proxy places it at its HIP.
+const LatticePoint& start_of(Proxy& proxy, const Vec3& hip_index) {
+    if (!proxy.placed) proxy.scp = locate(hip_index);
+    return proxy.scp;
+}
+
+}  // namespace
+
 Update::Update(Proxy& proxy, const Field& field, const Vec3& hip_index,
                const ProxySettings& settings, StepObserver observer)
-    : site(field, proxy.isovalue, field.sign(), proxy.placed ? proxy.scp : locate(hip_index)),
+    : site(field, proxy.isovalue, field.sign(), start_of(proxy, hip_index)),
       course{field.geometry(), observer, hip_index, settings.step_budget} {
     if (!proxy.placed) course.report(StepKind::place, site);
     proxy.placed = true;
@@ -64,17 +74,15 @@ ProxyUpdate finish_update(Proxy& proxy, const Update& update, const Vec3& hip, R
                          (rest == Rest::out_of_budget && site.excess() >= -site.field.tolerance())
                      ? Mode::constrained
                      : Mode::free;
-    ProxyUpdate result;
-    result.status = rest == Rest::recovering      ? UpdateStatus::recovering
-                    : rest == Rest::out_of_budget ? UpdateStatus::out_of_budget
-                                                  : UpdateStatus::done;
-    result.mode = proxy.mode;
-    result.hip = hip;
-    result.scp = proxy.scp_physical;
-    result.density = site.density();
-    result.isovalue = proxy.isovalue;
-    result.tetrahedra = update.course.tetrahedra;
-    return result;
+    return {.status = rest == Rest::recovering      ? UpdateStatus::recovering
+                      : rest == Rest::out_of_budget ? UpdateStatus::out_of_budget
+                                                    : UpdateStatus::done,
+            .mode = proxy.mode,
+            .hip = hip,
+            .scp = proxy.scp_physical,
+            .density = site.density(),
+            .isovalue = proxy.isovalue,
+            .tetrahedra = update.course.tetrahedra};
 }
 
 }  // namespace palpate
