@@ -18,13 +18,21 @@ bool same_file(const std::string& a, const std::string& b) {
     if (fs::exists(a, error) && fs::exists(b, error)) {
         return fs::is_regular_file(a, error) && fs::equivalent(a, b, error);
     }
-    return fs::weakly_canonical(a, error) == fs::weakly_canonical(b, error);
+    // Made absolute first: a relative name that does not exist would stay relative.
+    return fs::weakly_canonical(fs::absolute(a), error) ==
+           fs::weakly_canonical(fs::absolute(b), error);
 }
 
 }  // namespace
 
 bool is_standard_output(const std::string& name) {
     return name == "-" || name == "/dev/stdout" || name == "/dev/fd/1";
+}
+
+bool is_stream(const std::string& name) {
+    std::error_code error;
+    return is_standard_output(name) ||
+           (fs::exists(name, error) && !fs::is_regular_file(name, error));
 }
 
 void check_outputs(const std::vector<std::string>& inputs,

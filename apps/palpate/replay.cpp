@@ -59,8 +59,11 @@ void replay(const ReplayOptions& options) {
     sinks.progress = [&](double fraction) { bar.at(fraction); };
     const SessionSummary summary = run_session(renderer, trajectory, sinks);
     stop_if_interrupted();
+    // A stream may fail, a rename hardly: first the stream, so that no file stays if it does.
+    const bool path_first = path && is_stream(options.path);
+    if (path_first) path->commit();
     trace.commit();
-    if (path) path->commit();
+    if (path && !path_first) path->commit();
     if (options.json) {
         fmt::print("{}", summary_json(summary));
     } else if (!options.volume.quiet && !table_on_standard_output) {
