@@ -1,0 +1,114 @@
+// palpate demo: the files it promises, and none that it does not.
+#include <png.h>
+
+#include "apps/program.hpp"
+#include "io/trace.hpp"
+#include "io/trajectory.hpp"
+
+namespace palpate::app::test {
+namespace {
+
+const std::string quick = "demo synthetic:sphere:20x20x20 --duration 0.5 ";
+
+bool is_picture(const std::filesystem::path& path) {
+    png_image image{};
+    image.version = PNG_IMAGE_VERSION;
+    if (png_image_begin_read_from_file(&image, path.c_str()) == 0) return false;
+    image.format = PNG_FORMAT_RGB;
+    std::vector<png_byte> pixels(PNG_IMAGE_SIZE(image));
+    if (png_image_finish_read(&image, nullptr, pixels.data(), 0, nullptr) == 0) return false;
+    const auto [least, most] = std::minmax_element(pixels.begin(), pixels.end());
+    return image.width > 100 && image.height > 100 && *least != *most;
+}
+
+void expect_results(const std::filesystem::path& folder, std::size_t ticks) {
+    EXPECT_TRUE(is_picture(folder / "surface.png"));
+    EXPECT_EQ(io::read_trajectory(folder / "trajectory.csv").time.size(), ticks);
+    EXPECT_EQ(io::read_trace(folder / "trace.csv").size(), ticks);
+    EXPECT_TRUE(std::filesystem::exists(folder / "path.csv"));
+    const std::string report = support::bytes_of(folder / "report.html");
+    // Everything that the report names is there.
+    for (const std::string attribute : {"src=\"", "href=\""}) {
+        for (auto at = report.find(attribute); at != std::string::npos;
+             at = report.find(attribute, at + 1)) {
+            const auto begin = at + attribute.size();
+            const std::string name = report.substr(begin, report.find('"', begin) - begin);
+            EXPECT_TRUE(std::filesystem::exists(folder / name)) << name;
+        }
+    }
+    EXPECT_TRUE(contains(report, "surface.png") && contains(report, "trace.csv"));
+    if (std::filesystem::exists(folder / "session.png")) {  // where gnuplot is installed
+        EXPECT_TRUE(is_picture(folder / "session.png"));
+        EXPECT_TRUE(contains(report, "session.png"));
+    }
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+        EXPECT_FALSE(contains(entry.path().filename().string(), ".part")) << entry.path();
+    }
+}
+
+TEST(Demo, LeavesItsResultsInAFolderItNames) {
+    const ScratchFolder folder;
+    const Outcome outcome = palpate(folder, quick);
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(outcome.err, "");
+    EXPECT_TRUE(contains(outcome.out, "Results: palpate-demo")) << outcome.out;
+    EXPECT_EQ(folder.names(), std::vector<std::string>{"palpate-demo"});
+    expect_results(folder / "palpate-demo", 501);
+    int felt = 0;
+    for (const auto& row : io::read_trace(folder / "palpate-demo/trace.csv")) {
+        felt += row.constrained;
+    }
+    EXPECT_GT(felt, 50);
+}
+
+TEST(Demo, FeelsARealVolumeAtALevelOfItsOwnChoice) {
+    SKIP_WITHOUT("fuel_small.nrrd");
+    const ScratchFolder folder;
+    const Outcome outcome =
+        palpate(folder, Words{"demo", data_file("fuel_small.nrrd").string(), "--duration", "1",
+                              "--motion", "slide", "-o", "my <results> & 'more'"});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    expect_results(folder / "my <results> & 'more'", 1001);
+}
+
+TEST(Demo, AnExistingFolderIsUsedAgainAndOtherFilesStay) {
+    const ScratchFolder folder;
+    std::filesystem::create_directory(folder / "out");
+    support::put_bytes(folder / "out/mine.txt", "mine");
+    ASSERT_EQ(palpate(folder, quick + "-o out -q").status, 0);
+    expect_results(folder / "out", 501);
+    ASSERT_EQ(palpate(folder, quick + "-o out -q --rate 100 --motion tap").status, 0);
+    expect_results(folder / "out", 51);
+    EXPECT_EQ(support::bytes_of(folder / "out/mine.txt"), "mine");
+}
+
+TEST(Demo, HasForcesAtAnyRate) {
+    const ScratchFolder folder;
+    ASSERT_EQ(palpate(folder, quick + "-o out -q --rate 20 -k 0.05").status, 0);
+    double most = 0;
+    for (const auto& row : io::read_trace(folder / "out/trace.csv")) {
+        most = std::max(most, row.force.norm());
+    }
+    EXPECT_GT(most, 0.01);
+}
+
+TEST(Demo, AFolderThatCannotBeMadeIsAnError) {
+    const ScratchFolder folder;
+    support::put_bytes(folder / "file", "x");
+    for (const std::string name : {"file", "file/inside", "/proc/palpate", "/dev/full/x"}) {
+        expect_failure(palpate(folder, quick + "-o " + name), 5, name);
+    }
+    expect_failure(palpate(folder, words_of(quick) + Words{"-o", ""}), 5, "--output");
+    EXPECT_EQ(folder.names(), std::vector<std::string>{"file"});
+}
+
+TEST(Demo, ReportsShowTheNameOfTheVolumeAsText) {
+    SKIP_WITHOUT("fuel_small.nrrd");
+    const ScratchFolder folder;
+    std::filesystem::copy(data_file("fuel_small.nrrd"), folder / "a<b>&c.nrrd");
+    ASSERT_EQ(palpate(folder, "demo a<b>&c.nrrd -i 30 --duration 0.2 -o out").status, 0);
+    EXPECT_TRUE(contains(support::bytes_of(folder / "out/report.html"), "a&lt;b&gt;&amp;c.nrrd"));
+}
+
+}  // namespace
+}  // namespace palpate::app::test

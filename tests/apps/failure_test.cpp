@@ -1,0 +1,245 @@
+// Bad input, streams that cannot be written, and signals: one line, the right status, nothing left.
+#include "apps/program.hpp"
+#include "io/trace.hpp"
+
+namespace palpate::app::test {
+namespace {
+
+namespace fs = std::filesystem;
+using support::bytes_of;
+using support::put_bytes;
+
+/// Every command that reads a volume refuses this one and writes nothing.
+void expect_refused(const ScratchFolder& folder, const Words& volume, const std::string& reason) {
+    put_trajectory(folder);
+    fs::create_directory(folder / "results");
+    for (const std::string command :
+         {"info", "replay --trajectory t.csv -i 5 -o results/a.csv --path results/p.csv",
+          "extract -i 5 -o results/a.ply", "demo -o results/demo"}) {
+        const Outcome outcome = palpate(folder, words_of(command) + volume);
+        expect_failure(outcome, 3, reason);
+        EXPECT_TRUE(contains(outcome.err, volume[0])) << outcome.err;
+    }
+    EXPECT_TRUE(fs::is_empty(folder / "results"));
+}
+
+TEST(BadInput, AFileThatIsNotThere) {
+    const ScratchFolder folder;
+    expect_refused(folder, {"missing.nrrd"}, "does not exist");
+}
+
+TEST(BadInput, AnEmptyFile) {
+    const ScratchFolder folder;
+    put_bytes(folder / "empty.nrrd", "");
+    expect_refused(folder, {"empty.nrrd"}, "is empty");
+}
+
+TEST(BadInput, TextThatCallsItselfNrrd) {
+    const ScratchFolder folder;
+    put_bytes(folder / "text.nrrd", "Dear reader,\nthis is a letter.\n");
+    expect_refused(folder, {"text.nrrd"}, "is not a NRRD file");
+}
+
+TEST(BadInput, AnUnknownExtension) {
+    const ScratchFolder folder;
+    put_bytes(folder / "a.xyz", "samples");
+    expect_refused(folder, {"a.xyz"}, "--dims");
+}
+
+TEST(BadInput, AFolderWithoutSlices) {
+    const ScratchFolder folder;
+    fs::create_directory(folder / "holiday");
+    put_bytes(folder / "holiday/a.txt", "x");
+    expect_refused(folder, {"holiday"}, "no DICOM or TIFF slices");
+}
+
+TEST(BadInput, ARawFileOfAnotherSize) {
+    const ScratchFolder folder;
+    put_bytes(folder / "a.raw", std::string(26, 'x'));
+    expect_refused(folder, words_of("a.raw --dims 3x3x3 --type uint8"), "has 26 bytes");
+}
+
+TEST(BadInput, FilesCutShort) {
+    const std::string nrrd = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 4\nencoding: raw\n\n";
+    const std::string mha =
+        "ObjectType = Image\nNDims = 3\nDimSize = 4 4 4\nElementType = MET_UCHAR\n"
+        "ElementDataFile = LOCAL\n";
+    std::string nifti(352, '\0');
+    const auto put16 = [&](std::size_t at, char value) { nifti[at] = value; };
+    nifti[0] = '\x5C';  // 348
+    nifti[1] = '\x01';
+    for (const auto& [at, value] :
+         {std::pair{40, 3}, {42, 4}, {44, 4}, {46, 4}, {70, 2}, {72, 8}}) {
+        put16(std::size_t(at), char(value));
+    }
+    const float one = 1;
+    const float offset = 352;
+    for (const std::size_t at : {76, 80, 84, 88}) nifti.replace(at, 4, (const char*)&one, 4);
+    nifti.replace(108, 4, reinterpret_cast<const char*>(&offset), 4);
+    nifti.replace(344, 3, "n+1");
+    for (const auto& [name, head] : {std::pair{"a.nrrd", nrrd}, {"a.mha", mha}, {"a.nii", nifti}}) {
+        const ScratchFolder folder;
+        std::string samples(64, '\1');
+        samples[5] = '\7';
+        put_bytes(folder / name, head + samples);
+        EXPECT_EQ(palpate(folder, std::string("info ") + name).status, 0) << name;
+        put_bytes(folder / name, head + samples.substr(0, 40));
+        expect_refused(folder, {name}, name);
+    }
+}
+
+TEST(BadInput, AWrongSpacingOrSizeOfARawFileIsWrongUse) {
+    const ScratchFolder folder;
+    put_bytes(folder / "a.raw", std::string(27, 'x'));
+    const std::string raw = "info a.raw --type uint8 --dims ";
+    for (const std::string words :
+         {"3x3x3 --spacing 0,1,1", "3x3x3 --spacing -1,1,1", "3x3x3 --spacing 1,1",
+          "3x3x3 --spacing nan,1,1", "0x1x1", "3x3", "axbxc", "1.5x2x9", "-3x-3x3"}) {
+        expect_failure(palpate(folder, raw + words), 2, "--");
+    }
+    expect_failure(palpate(folder, "info a.raw --dims 3x3x3"), 2, "--type");
+    EXPECT_EQ(palpate(folder, raw + "3x3x3").status, 0);
+}
+
+TEST(BadInput, ATrajectoryIsRefusedByTheLine) {
+    const ScratchFolder folder;
+    const std::pair<std::string, std::string> cases[] = {
+        {"t,x,y,z\n0,1,2,3\n# note\n1,2,three,4\n", "line 4: 'three'"},
+        {"t,x,y,z\n0,1,2,3\n0,1,2,3\n", "line 3: the time '0'"},
+        {"t,x,y,z\n0,1,2,nan\n", "line 2: 'nan'"},
+        {"t,x,y,z\n0,1,2\n", "line 2: there are 3 cells"},
+        {"t;x;y;z\n0;1;2;3\n", "no column 't'"},
+        {"t,x,y\n0,1,2\n", "no column 'z'"},
+        {"t,x,y,z\n", "no rows"},
+        {"", "is empty"},
+        {std::string("\0\1\2", 3), "not a text file"}};
+    for (const auto& [text, reason] : cases) {
+        put_bytes(folder / "t.csv", text);
+        const Outcome outcome =
+            palpate(folder, "replay synthetic:sphere:9x9x9 --trajectory t.csv -o a.csv");
+        expect_failure(outcome, 3, reason);
+        EXPECT_TRUE(contains(outcome.err, "t.csv")) << outcome.err;
+    }
+    expect_failure(palpate(folder, "replay synthetic:sphere --trajectory no.csv -o a.csv"), 3,
+                   "no.csv: cannot be opened");
+    expect_failure(palpate(folder, "replay synthetic:sphere --trajectory . -o a.csv"), 3,
+                   "is a folder");
+    EXPECT_EQ(folder.names(), std::vector<std::string>{"t.csv"});
+}
+
+TEST(BadOutput, StandardOutputThatIsClosedOrFullIsNoSuccess) {
+    const ScratchFolder folder;
+    put_trajectory(folder);
+    for (const std::string line :
+         {"--help", "--version", "info --help", "info synthetic:noise:9x9x9",
+          "info synthetic:noise --json", "extract synthetic:sphere:9x9x9 -o a.ply",
+          "replay synthetic:sphere:24x24x24 --trajectory t.csv -o a.csv",
+          "replay synthetic:sphere:24x24x24 --trajectory t.csv -o -",
+          "demo synthetic:sphere:9x9x9 --duration 0.1"}) {
+        for (const Stdout to : {Stdout::closed, Stdout::full}) {
+            const Outcome outcome = palpate(folder, line, to);
+            EXPECT_EQ(outcome.status, 5) << line;
+            EXPECT_TRUE(is_one_line(outcome.err) && contains(outcome.err, "standard output"))
+                << line << ": " << outcome.err;
+        }
+    }
+    // What was asked for besides is whole all the same.
+    EXPECT_EQ(io::read_trace(folder / "a.csv").size(), 6U);
+}
+
+TEST(BadOutput, AReaderThatHasGoneLeavesNoTemporaryFile) {
+    const ScratchFolder folder;
+    put_trajectory(folder);
+    ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+    // The pipe has a reader until the program writes: it opens, and ends.
+    Running replay(
+        words_of("replay synthetic:sphere:24x24x24 --trajectory t.csv -o pipe --path p.csv"),
+        folder.path());
+    const int reader = ::open((folder / "pipe").c_str(), O_RDONLY);
+    ::close(reader);
+    const Outcome outcome = replay.finish();
+    if (outcome.status == 0) GTEST_SKIP() << "it had written before the reader was gone";
+    expect_failure(outcome, 5, "has ended");
+    EXPECT_EQ(folder.names(), (std::vector<std::string>{"pipe", "t.csv"}));
+}
+
+TEST(BadOutput, PlacesThatCannotBeWrittenAreNamed) {
+    const ScratchFolder folder;
+    put_trajectory(folder);
+    fs::create_directory(folder / "folder");
+    const auto before = folder.names();
+    const std::string replay = "replay synthetic:sphere:24x24x24 --trajectory t.csv -o ";
+    expect_failure(palpate(folder, replay + "missing/a.csv"), 5, "missing does not exist");
+    expect_failure(palpate(folder, replay + "folder"), 5, "is a folder");
+    expect_failure(palpate(folder, replay + "folder/"), 5, "is a folder");
+    expect_failure(palpate(folder, replay + "t.csv/a.csv"), 5, "t.csv");
+    expect_failure(palpate(folder, replay + "/dev/full"), 5, "No space left");
+    expect_failure(palpate(folder, replay + "a.csv --path missing/p.csv"), 5, "missing");
+    expect_failure(palpate(folder, replay + "a.csv --path /dev/full"), 5, "No space left");
+    EXPECT_EQ(folder.names(), before);
+}
+
+class Signal : public testing::TestWithParam<int> {
+  protected:
+    void expect_interrupted(Running& program, const ScratchFolder& folder,
+                            const std::vector<std::string>& left) {
+        const Outcome outcome = program.finish(GetParam());
+        expect_failure(outcome, 130, "interrupted");
+        EXPECT_FALSE(program.left_a_process());
+        EXPECT_EQ(folder.names(), left);
+    }
+};
+
+bool has_part(const fs::path& folder) {
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(folder, error)) {
+        if (contains(entry.path().filename().string(), ".part")) return true;
+    }
+    return false;
+}
+
+TEST_P(Signal, InAReplayLeavesNoFile) {
+    const ScratchFolder folder;
+    std::string text = "t,x,y,z\n";
+    for (int i = 0; i < 400'000; ++i) {
+        text += std::to_string(i) + (i % 2 != 0 ? ",-20,0.1,0\n" : ",-5,0.1,0\n");
+    }
+    put_bytes(folder / "t.csv", text);
+    Running replay(
+        words_of("replay synthetic:sphere:24x24x24 --trajectory t.csv -o a.csv --path p.csv"),
+        folder.path());
+    ASSERT_TRUE(comes_true([&] { return has_part(folder.path()); }));
+    expect_interrupted(replay, folder, {"t.csv"});
+}
+
+TEST_P(Signal, InAnExtractionLeavesNoFile) {
+    const ScratchFolder folder;
+    Running extract(words_of("extract synthetic:noise:160x160x160 -o a.ply"), folder.path());
+    ASSERT_TRUE(comes_true([&] { return extract.catches(GetParam()); }));
+    expect_interrupted(extract, folder, {});
+}
+
+TEST_P(Signal, InADemoLeavesNoFolder) {
+    const ScratchFolder folder;
+    Running demo(words_of("demo synthetic:sphere:24x24x24 --duration 100 -o out"), folder.path());
+    ASSERT_TRUE(comes_true([&] { return has_part(folder / "out"); }));
+    expect_interrupted(demo, folder, {});
+}
+
+TEST_P(Signal, WhileAFileIsReadEndsTheReaderAsWell) {
+    const ScratchFolder folder;
+    put_bytes(folder / "a.nii", std::string(1000, 'x'));
+    put_bytes(folder / "slow-reader", "#!/bin/sh\ntouch reading\nexec sleep 100\n");
+    fs::permissions(folder / "slow-reader", fs::perms::owner_all);
+    ::setenv("PALPATE_IO_HELPER", (folder / "slow-reader").c_str(), 1);
+    Running info(words_of("info a.nii"), folder.path());
+    ::unsetenv("PALPATE_IO_HELPER");
+    ASSERT_TRUE(comes_true([&] { return fs::exists(folder / "reading"); }));
+    expect_interrupted(info, folder, {"a.nii", "reading", "slow-reader"});
+}
+
+INSTANTIATE_TEST_SUITE_P(Failure, Signal, testing::Values(SIGINT, SIGTERM),
+                         [](const auto& test) { return test.param == SIGINT ? "INT" : "TERM"; });
+
+}  // namespace
+}  // namespace palpate::app::test

@@ -1,0 +1,151 @@
+// palpate info: what it says of synthetic and of real volumes.
+#include <nlohmann/json.hpp>
+
+#include "apps/program.hpp"
+
+namespace palpate::app::test {
+namespace {
+
+using nlohmann::json;
+
+json info(const ScratchFolder& folder, const Words& words) {
+    const Outcome outcome = palpate(folder, Words{"info", "--json"} + words);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return json::parse(outcome.out, nullptr, false);
+}
+
+TEST(Info, TellsSizeTypePlaceAndRangeOfASyntheticVolume) {
+    const ScratchFolder folder;
+    const json j = info(folder, {"synthetic:cylinder"});
+    EXPECT_EQ(j["size"], json({100, 100, 30}));
+    EXPECT_EQ(j["type"], "float32");
+    EXPECT_EQ(j["spacing_mm"], json({1.0, 1.0, 1.0}));
+    EXPECT_EQ(j["origin_mm"], json({-49.5, -49.5, -14.5}));
+    EXPECT_EQ(j["orientation"], "L P S");
+    EXPECT_EQ(j["memory_bytes"], 4 * 100 * 100 * 30);
+    EXPECT_EQ(j["time_steps"], 1);
+    EXPECT_EQ(j["minimum"], 0);
+    std::int64_t sum = 0;
+    for (const auto& count : j["histogram"]["counts"]) sum += count.get<std::int64_t>();
+    EXPECT_EQ(sum, 100 * 100 * 30);
+}
+
+TEST(Info, SuggestsIsovaluesInsideTheRangeOfEveryScene) {
+    const ScratchFolder folder;
+    for (const std::string name : {"cylinder", "sphere", "torus", "plane", "shell",
+                                   "marschner-lobb", "shepp-logan", "noise"}) {
+        for (const std::string type : {"uint8", "int16", "uint16", "float32"}) {
+            const json j = info(folder, {"synthetic:" + name + ":20x21x22", "--type", type});
+            EXPECT_EQ(j["type"], type);
+            EXPECT_GE(j["suggested_isovalues"].size(), 1U) << name << " " << type;
+            for (const double level : j["suggested_isovalues"]) {
+                EXPECT_GT(level, j["minimum"].get<double>()) << name << " " << type;
+                EXPECT_LT(level, j["maximum"].get<double>()) << name << " " << type;
+            }
+        }
+    }
+}
+
+TEST(Info, SuggestsTheMiddleForAMask) {
+    const ScratchFolder folder;
+    support::put_bytes(folder / "mask.raw", std::string("\0\0\1\1\1\0\0\1", 8));
+    support::put_bytes(folder / "full.raw", std::string("\0\0\xFF\xFF\xFF\0\0\xFF", 8));
+    const Words layout{"--dims", "2x2x2", "--type", "uint8"};
+    EXPECT_EQ(info(folder, Words{"mask.raw"} + layout)["suggested_isovalues"], json({0.5}));
+    EXPECT_EQ(info(folder, Words{"full.raw"} + layout)["suggested_isovalues"], json({127.5}));
+}
+
+TEST(Info, HasNothingToSuggestForConstantData) {
+    const ScratchFolder folder;
+    support::put_bytes(folder / "one.raw", std::string(8, '\7'));
+    EXPECT_EQ(info(folder, words_of("one.raw --dims 2x2x2 --type uint8"))["suggested_isovalues"],
+              json::array());
+    const Outcome text = palpate(folder, "info one.raw --dims 2x2x2 --type uint8");
+    EXPECT_EQ(text.status, 0);
+    EXPECT_TRUE(contains(text.out, "the data are constant")) << text.out;
+    EXPECT_EQ(palpate(folder, "info synthetic:noise:1x1x1").status, 0);
+}
+
+TEST(Info, SaysTheSameAsTextForPeople) {
+    const ScratchFolder folder;
+    const Outcome text = palpate(folder, "info synthetic:cylinder");
+    EXPECT_EQ(text.status, 0);
+    EXPECT_EQ(text.err, "");
+    for (const std::string part :
+         {"synthetic:cylinder\n", "100 x 100 x 30 samples, float32", "1 x 1 x 1 mm",
+          "100 x 100 x 30 mm", "towards L P S", "1.2 MB", "isovalues    try ", "histogram"}) {
+        EXPECT_TRUE(contains(text.out, part)) << part << " is not in\n" << text.out;
+    }
+}
+
+TEST(Info, NamesWithBlanksQuotesAndBytesThatAreNoTextAreFine) {
+    const ScratchFolder folder;
+    for (const std::string name : {"a b.raw", "it's \"q\".raw",
+                                   "b\xFF"
+                                   "d.raw",
+                                   "-dash.raw"}) {
+        support::put_bytes(folder / name, std::string(8, '\7'));
+        const json j = info(folder, {"./" + name, "--dims", "2x2x2", "--type", "uint8"});
+        EXPECT_EQ(j["size"], json({2, 2, 2})) << name;
+    }
+}
+
+struct Known {
+    std::string name;
+    json size;
+    std::string type;
+    double minimum, maximum;
+    std::vector<double> spacing;
+    std::string orientation;
+};
+
+class RealVolume : public testing::TestWithParam<Known> {};
+
+TEST_P(RealVolume, HasTheValuesItsSourceGives) {
+    const Known& known = GetParam();
+    SKIP_WITHOUT(known.name);
+    const ScratchFolder folder;
+    const json j = info(folder, {data_file(known.name).string()});
+    EXPECT_EQ(j["size"], known.size);
+    EXPECT_EQ(j["type"], known.type);
+    EXPECT_EQ(j["minimum"], known.minimum);
+    EXPECT_EQ(j["maximum"], known.maximum);
+    EXPECT_EQ(j["orientation"], known.orientation);
+    for (int a = 0; a < 3; ++a) EXPECT_NEAR(j["spacing_mm"][a], known.spacing[a], 1e-5);
+    const int bytes = known.type == "uint8" ? 1 : 2;
+    EXPECT_EQ(j["memory_bytes"], known.size[0].get<int>() * known.size[1].get<int>() *
+                                     known.size[2].get<int>() * bytes);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Info, RealVolume,
+    testing::Values(
+        Known{"lobster.nrrd", {301, 324, 56}, "uint8", 0, 255, {1, 1, 1.4}, "L P S"},
+        Known{"orange.nrrd", {256, 256, 64}, "uint8", 0, 228, {0.390625, 0.390625, 1}, "L P S"},
+        Known{"cthead_unc.nrrd", {256, 256, 113}, "uint16", 0, 3272, {1, 1, 2}, "L P S"},
+        Known{"anatomical_be.nii", {33, 41, 25}, "int16", -610, 30393, {2, 2, 2}, "L A S"},
+        Known{"HeadMRVolume.mhd", {48, 62, 42}, "uint8", 0, 255, {4, 4, 4}, "L P S"},
+        Known{"dicom_sphere", {86, 86, 63}, "uint16", 0, 3752, {2.23256, 2.23256, 2.2}, "P I R"}));
+
+TEST(Info, ReadsThePackedRawFileLikeTheNrrd) {
+    SKIP_WITHOUT("lobster.nrrd");
+    SKIP_WITHOUT("lobster_301x324x56_uint8.raw.gz");
+    const ScratchFolder folder;
+    const json raw = info(folder, Words{data_file("lobster_301x324x56_uint8.raw.gz").string()} +
+                                      words_of("--dims 301x324x56 --type uint8 --spacing 1,1,1.4"));
+    const json nrrd = info(folder, {data_file("lobster.nrrd").string()});
+    EXPECT_EQ(raw["histogram"], nrrd["histogram"]);
+    EXPECT_EQ(raw["spacing_mm"], nrrd["spacing_mm"]);
+}
+
+TEST(Info, NotesGoToStandardErrorAndQuietSilencesThem) {
+    SKIP_WITHOUT("fmri_headturn_4d.nrrd");
+    const ScratchFolder folder;
+    const std::string file = data_file("fmri_headturn_4d.nrrd").string();
+    EXPECT_TRUE(contains(palpate(folder, Words{"info", file}).err, "note: "));
+    EXPECT_EQ(palpate(folder, Words{"info", file, "--quiet"}).err, "");
+    EXPECT_EQ(info(folder, {file, "--time-step", "5"})["time_steps"], 6);
+}
+
+}  // namespace
+}  // namespace palpate::app::test

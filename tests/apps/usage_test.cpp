@@ -1,0 +1,155 @@
+// Help, version, wrong words and wrong settings.
+#include "apps/program.hpp"
+
+namespace palpate::app::test {
+namespace {
+
+constexpr const char* commands[] = {"info", "replay", "extract", "demo"};
+
+TEST(Usage, EveryCommandHasHelpWithAnExample) {
+    const ScratchFolder folder;
+    const Outcome all = palpate(folder, "--help");
+    EXPECT_EQ(all.status, 0);
+    for (const std::string command : commands) {
+        EXPECT_TRUE(contains(all.out, "\n  " + command)) << command;
+        const Outcome help = palpate(folder, command + " --help");
+        EXPECT_EQ(help.status, 0) << command;
+        EXPECT_EQ(help.err, "");
+        EXPECT_TRUE(contains(help.out, "Example")) << command;
+        EXPECT_TRUE(contains(help.out, "\n  palpate " + command)) << command;
+    }
+}
+
+TEST(Usage, EveryCommandTellsTheVersion) {
+    const ScratchFolder folder;
+    for (const std::string command : {"", "info ", "replay ", "extract ", "demo "}) {
+        const Outcome version = palpate(folder, command + "--version");
+        EXPECT_EQ(version.status, 0) << command;
+        EXPECT_EQ(version.out, "palpate " PALPATE_VERSION "\n") << command;
+    }
+}
+
+struct Case {
+    std::string words, reason;
+};
+
+class WrongWords : public testing::TestWithParam<Case> {};
+
+TEST_P(WrongWords, AreRefusedInOneLineThatNamesThem) {
+    const ScratchFolder folder;
+    put_trajectory(folder);
+    const auto before = folder.names();
+    expect_failure(palpate(folder, GetParam().words), 2, GetParam().reason);
+    EXPECT_EQ(folder.names(), before);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Usage, WrongWords,
+    testing::Values(Case{"", "a command is needed"}, Case{"feel", "no command 'feel'"},
+                    Case{"INFO synthetic:noise:4x4x4", "no command 'INFO'"},
+                    Case{"--fast", "no option --fast"}, Case{"info", "VOLUME is required"},
+                    Case{"info --fast", "no option --fast"},
+                    Case{"info synthetic:noise:4x4x4 --fast 3", "palpate info --help"},
+                    Case{"info synthetic:noise:4x4x4 second", "'second' is one argument too many"},
+                    Case{"replay synthetic:noise:4x4x4 -o a.csv", "--trajectory is required"},
+                    Case{"replay synthetic:noise:4x4x4 --trajectory t.csv", "--output is required"},
+                    Case{"extract synthetic:noise:4x4x4", "--output is required"},
+                    Case{"info synthetic:bagel", "'bagel'"},
+                    Case{"info synthetic:noise:0x4x4", "'0x4x4'"},
+                    Case{"info synthetic:noise:4x4", "'4x4'"},
+                    Case{"info synthetic:noise:99999x99999x99999", "the limit is"},
+                    Case{"info synthetic:noise --dims 4x4x4", "--dims"},
+                    Case{"info synthetic:noise --type int64", "'int64'"},
+                    Case{"info synthetic:noise --type", "--type"},
+                    Case{"info synthetic:noise --time-step -1", "-1 is not a whole number"},
+                    Case{"info synthetic:noise --time-step 1.5", "1.5 is not a whole number"},
+                    Case{"info synthetic:noise --skip -1", "-1 is not a whole number"},
+                    Case{"demo synthetic:noise --seed -1", "-1 is not a whole number"},
+                    Case{"demo synthetic:noise --motion dance", "dance"},
+                    Case{"demo synthetic:noise --duration -1", "0 s or more"},
+                    Case{"demo synthetic:noise --duration 1e12", "at most 100 million samples"},
+                    Case{"demo synthetic:noise --speed 0", "speed above 0"},
+                    Case{"demo synthetic:noise --depth -1", "depth of 0 mm or more"},
+                    Case{"extract synthetic:sphere -o a.ply -i 1 --solid left", "left"}));
+
+class WrongSettings : public testing::TestWithParam<Case> {};
+
+TEST_P(WrongSettings, AreRefusedWithTheReasonAndLeaveNothing) {
+    const ScratchFolder folder;
+    put_trajectory(folder);
+    const auto before = folder.names();
+    const std::string line =
+        "replay synthetic:sphere:24x24x24 --trajectory t.csv -o a.csv --path p.csv ";
+    expect_failure(palpate(folder, line + GetParam().words), 2, GetParam().reason);
+    EXPECT_EQ(folder.names(), before);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Usage, WrongSettings,
+    testing::Values(
+        Case{"--isovalue nan", "'nan' is not a level"}, Case{"--isovalue inf", "'inf'"},
+        Case{"--isovalue abc", "'abc' is not a level"}, Case{"--isovalue 5%%", "'5%%'"},
+        Case{"--isovalue", "--isovalue"}, Case{"--background nan", "'nan'"},
+        Case{"--method magic", "magic"}, Case{"--stiffness 1000", "at most 5 at 1000 Hz"},
+        Case{"--stiffness -1", "at least 0"}, Case{"--stiffness nan", "nan"},
+        Case{"--stiffness abc", "abc"}, Case{"--scale 0", "scale must be finite and above 0"},
+        Case{"--scale -1", "scale"}, Case{"--scale nan", "scale"},
+        Case{"--friction 0.2,0.5", "dynamic coefficient <= static"}, Case{"--friction -1", "0 <="},
+        Case{"--friction a", "--friction a"}, Case{"--friction 1,2,3", "--friction 1,2,3"},
+        Case{"--penetrability maybe", "maybe"},
+        Case{"--penetrability threshold --threshold -1", "at least 0 mm"},
+        Case{"--penetrability threshold --threshold nan", "nan"},
+        Case{"--penetrability ranges", "--range LOW:HIGH"},
+        Case{"--penetrability ranges --range 5", "LOW:HIGH is needed"},
+        Case{"--penetrability ranges --range 5:3", "low <= high"},
+        Case{"--penetrability ranges --range a:b", "'a'"},
+        Case{"--range 1:2", "does nothing without"}, Case{"--threshold 2", "does nothing without"},
+        Case{"--minimum 3", "does nothing without"}, Case{"--force-limit -1", "at least 0"},
+        Case{"--force-limit nan", "nan"}, Case{"--force-rate 0", "above 0"},
+        Case{"--ramp -1", "at least 0"}, Case{"--rate 0", "1 to 100000"},
+        Case{"--step-budget 0", "at least 1"}, Case{"--texture 1", "two numbers"},
+        Case{"--texture 1,0", "wavelength"}, Case{"--magnet 1,100", "magnet peak"},
+        Case{"--magnet x,1", "two numbers"}, Case{"--damping 9", "physical damping"},
+        Case{"--path q.csv", "--path"}, Case{"-o b.csv", "--output"}));
+
+TEST(Usage, OptionsOfSeveralValuesDoNotSwallowTheVolume) {
+    const ScratchFolder folder;
+    put_trajectory(folder);
+    for (const std::string options :
+         {"--friction 0.5", "--friction 0.5,0.3", "--penetrability ranges --range 100:150",
+          "--magnet 1,0.5", "--texture 0.1,2"}) {
+        const Outcome done = palpate(
+            folder, "replay " + options + " synthetic:sphere:24x24x24 --trajectory t.csv -o a.csv");
+        EXPECT_EQ(done.status, 0) << options << ": " << done.err;
+    }
+}
+
+TEST(Usage, AnIsovalueOutsideTheRangeIsWarnedAboutAndDone) {
+    const ScratchFolder folder;
+    put_trajectory(folder);
+    const Outcome feel = palpate(
+        folder, "replay synthetic:sphere:24x24x24 --trajectory t.csv -o a.csv --isovalue 300");
+    EXPECT_EQ(feel.status, 0);
+    EXPECT_TRUE(is_one_line(feel.err) && contains(feel.err, "warning: isovalue 300")) << feel.err;
+    EXPECT_TRUE(contains(feel.out, "in contact 0 "));
+    const Outcome mesh =
+        palpate(folder, "extract synthetic:sphere:24x24x24 -o a.ply --isovalue 300");
+    EXPECT_EQ(mesh.status, 0);
+    EXPECT_TRUE(contains(mesh.err, "warning: isovalue 300")) << mesh.err;
+    EXPECT_TRUE(contains(mesh.out, " 0 triangles"));
+}
+
+TEST(Usage, WhereAllOfSpaceIsSolidThereIsNoReplayAndNoFile) {
+    const ScratchFolder folder;
+    put_trajectory(folder);
+    for (const std::string command : {"replay synthetic:sphere:9x9x9 --trajectory t.csv -o a.csv",
+                                      "demo synthetic:sphere:9x9x9 -o out"}) {
+        const Outcome outcome = palpate(folder, command + " --isovalue -5");
+        EXPECT_EQ(outcome.status, 2);
+        EXPECT_TRUE(contains(outcome.err, "everything is solid")) << outcome.err;
+        EXPECT_EQ(folder.names(), std::vector<std::string>{"t.csv"});
+    }
+}
+
+}  // namespace
+}  // namespace palpate::app::test
