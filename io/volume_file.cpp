@@ -74,7 +74,8 @@ VolumeFile read_volume(const fs::path& path, const ReadOptions& options) {
         }
         return read_raw(path, limited);
     }
-    nlohmann::json request = {{"series", options.series},
+    nlohmann::json request = {{"caller", getpid()},
+                              {"series", options.series},
                               {"time_step", options.time_step},
                               {"memory", limited.memory_limit_bytes}};
     if (options.spacing) request["spacing"] = json_from(*options.spacing);
@@ -101,11 +102,11 @@ VolumeFile read_volume(const fs::path& path, const ReadOptions& options) {
 
 namespace {
 
-/// A folder beside the output where it is made under its own name; a file moves out of it when it
-/// is complete. (A temporary name would not do: headers name their data files.)
+/// The folder beside the output where the helper makes it. The helper creates it, empties it and
+/// removes it, signals included; this is for the helper that crashed.
 class Workshop {
   public:
-    explicit Workshop(const fs::path& output) : output_(output) {
+    explicit Workshop(const fs::path& output) {
         static std::atomic<unsigned> count{0};
         const fs::path parent = output.has_parent_path() ? output.parent_path() : fs::path(".");
         folder_ = parent / (".palpate-" + std::to_string(getpid()) + "-" +
@@ -118,10 +119,6 @@ class Workshop {
             throw OutputError(output.string() + ": is a folder; give a file name");
         }
         fs::remove_all(folder_, error);  // of a process with our number that was killed
-        if (!fs::create_directory(folder_, error)) {
-            throw OutputError(output.string() + ": cannot write there (" + error.message() +
-                              "); choose another folder");
-        }
     }
     ~Workshop() {
         std::error_code error;
@@ -130,28 +127,18 @@ class Workshop {
     Workshop(const Workshop&) = delete;
     Workshop& operator=(const Workshop&) = delete;
 
-    fs::path inside() const { return folder_ / output_.filename(); }
-
-    /// Data files first: a header never points to data that are not there.
-    void move_out() const {
-        std::vector<fs::path> made;
-        for (const auto& entry : fs::directory_iterator(folder_)) {
-            if (entry.path() != inside()) made.push_back(entry.path());
-        }
-        made.push_back(inside());
-        const fs::path parent = folder_.parent_path();
-        for (const fs::path& file : made) fs::rename(file, parent / file.filename());
-    }
+    const fs::path& folder() const { return folder_; }
 
   private:
-    fs::path output_, folder_;
+    fs::path folder_;
 };
 
 }  // namespace
 
 void write_volume(const Volume& volume, const fs::path& path, const WriteOptions& options) {
     const Workshop workshop(path);
-    const nlohmann::json request = {{"geometry", json_from(volume.geometry())},
+    const nlohmann::json request = {{"caller", getpid()},
+                                    {"geometry", json_from(volume.geometry())},
                                     {"type", name_of(volume.type())},
                                     {"compress", options.compress}};
     try {
@@ -160,14 +147,14 @@ void write_volume(const Volume& volume, const fs::path& path, const WriteOptions
             throw std::system_error(errno, std::generic_category(), "no memory");
         }
         std::memcpy(map_shared(samples, volume.bytes()).get(), volume.data(), volume.bytes());
-        const HelperJob job{options.helper,
-                            {"write", workshop.inside().string(), line_from(request)},
-                            &samples,
-                            options.progress,
-                            options.time_limit_s};
+        const HelperJob job{
+            options.helper,
+            {"write", path.string(), line_from(request), workshop.folder().string()},
+            &samples,
+            options.progress,
+            options.time_limit_s};
         const HelperResult result = run_helper(job);
         if (!result.failure.empty()) throw OutputError(path.string() + ": " + result.failure);
-        workshop.move_out();
     } catch (const std::system_error& e) {
         throw OutputError(path.string() + ": " + e.what());
     }

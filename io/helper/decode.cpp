@@ -12,6 +12,7 @@
 
 #include "io/finite.hpp"
 #include "io/helper/protocol.hpp"
+#include "io/helper/report.hpp"
 
 namespace palpate::io {
 namespace {
@@ -55,12 +56,6 @@ void with_kept(SampleType type, F&& f) {
         case SampleType::float32:
             return f(float{});
     }
-}
-
-void say(const nlohmann::json& what) {
-    const std::string line = line_from(what);
-    // The caller may be gone; then there is nobody to tell.
-    [[maybe_unused]] const auto written = write(report_descriptor, line.data(), line.size());
 }
 
 std::string gigabytes(double bytes) {
@@ -196,10 +191,10 @@ void finish(Result& result, const Request& request, std::span<std::byte> samples
 }
 
 void say_progress(double fraction) {
-    say({{"progress", fraction}});
+    report({{"progress", fraction}});
 }
 void say_doing(const std::string& what) {
-    say({{"doing", what}});
+    report({{"doing", what}});
 }
 
 std::string text_of(std::span<const std::int64_t> sizes) {

@@ -106,6 +106,11 @@ Layout layout_of(const itk::ImageIOBase& io, const HeaderFacts& facts, std::int6
         layout.stride = static_cast<std::size_t>(components);
         layout.step_offset = 1;
     } else {
+        if (facts.list_axis && *facts.list_axis + 1 != facts.sizes.size()) {
+            throw Failure(
+                "its time axis is not the last one; put it last (unu permute) or mark "
+                "it as a list");
+        }
         layout.step_offset = static_cast<std::size_t>(volume);
     }
     layout.steps = total / volume;

@@ -1,5 +1,6 @@
 // palpate-io-helper: reads or writes one volume with the formats' libraries and reports; what it
 // says is described in protocol.hpp. It exists so that a library's crash is not the caller's.
+#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -9,12 +10,12 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <new>
 
 #include "io/helper/protocol.hpp"
 #include "io/helper/readers.hpp"
-
-#include <sys/mman.h>
+#include "io/helper/report.hpp"
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define PALPATE_SANITIZED 1
@@ -43,15 +44,16 @@ extern "C" void clean_up_and_go(int signal_number) {
 }
 
 /// Goes with the caller, leaves no core file, and takes no more memory than it may.
-void limit_this_process(std::uint64_t memory) {
+void limit_this_process(const nlohmann::json& asked, std::uint64_t memory) {
     prctl(PR_SET_PDEATHSIG, SIGTERM);
-    if (getppid() == 1) std::exit(1);  // the caller died before that line
+    if (getppid() != asked.at("caller").get<pid_t>()) raise(SIGTERM);  // it died before that line
     const rlimit none{0, 0};
     setrlimit(RLIMIT_CORE, &none);
+    // If memory runs out all the same, this process goes, not the one that a person touches.
+    std::ofstream("/proc/self/oom_score_adj") << 1000;
 #ifndef PALPATE_SANITIZED  // a sanitizer's shadow is address space too
-    // Room for what a library holds besides: the file's 4-D samples, slices before they are put
-    // together.
-    const rlim_t space = 3 * memory + (rlim_t{2} << 30);
+    // Besides the samples: the programs' code, and the copy that some libraries make.
+    const rlim_t space = memory + (rlim_t{2} << 30);
     const rlimit limit{space, space};
     if (memory < UINT64_MAX / 4) setrlimit(RLIMIT_AS, &limit);
 #else
@@ -108,7 +110,7 @@ nlohmann::json run_read(const fs::path& path, const nlohmann::json& asked) {
     request.time_step = asked.at("time_step").get<int>();
     request.memory_limit = asked.at("memory").get<std::uint64_t>();
     if (asked.contains("spacing")) request.spacing = vec3_from(asked["spacing"]);
-    limit_this_process(request.memory_limit);
+    limit_this_process(asked, request.memory_limit);
     const Result result = read(request);
     return {{"geometry", json_from(result.geometry)},
             {"type", name_of(result.type)},
@@ -117,25 +119,60 @@ nlohmann::json run_read(const fs::path& path, const nlohmann::json& asked) {
             {"notes", result.notes}};
 }
 
-void remember_unfinished(const fs::path& path) {
-    const auto keep = [](char* to, const std::string& text) {
-        std::snprintf(to, sizeof unfinished[0], "%s", text.c_str());
-    };
-    keep(unfinished[0], path.string());
-    keep(unfinished[1], fs::path(path).replace_extension(".raw").string());
-    keep(unfinished[2], fs::path(path).replace_extension(".zraw").string());
-    keep(unfinished_folder, path.parent_path().string());
-    for (const int s : {SIGINT, SIGTERM, SIGHUP}) signal(s, clean_up_and_go);
-}
+/// Where a file is made: under its own name, since headers name their data files, in a folder of
+/// its own, since nobody may see it unfinished.
+class Workshop {
+  public:
+    Workshop(const fs::path& folder, const fs::path& target)
+        : folder_(folder), target_(target), inside_(folder / target.filename()) {
+        remember(unfinished[0], inside_);
+        remember(unfinished[1], fs::path(inside_).replace_extension(".raw"));
+        remember(unfinished[2], fs::path(inside_).replace_extension(".zraw"));
+        remember(unfinished_folder, folder);
+        for (const int s : {SIGINT, SIGTERM, SIGHUP}) signal(s, clean_up_and_go);
+    }
 
-nlohmann::json run_write(const fs::path& path, const nlohmann::json& asked) {
-    remember_unfinished(path);
+    void open() const {
+        std::error_code error;
+        fs::create_directory(folder_, error);
+        if (error) {
+            throw Failure("cannot be written there (" + error.message() +
+                          "); choose another folder");
+        }
+    }
+    const fs::path& inside() const { return inside_; }
+
+    /// Data files first: a header never points to data that are not there.
+    void move_out() const {
+        std::vector<fs::path> made;
+        for (const auto& entry : fs::directory_iterator(folder_)) {
+            if (entry.path() != inside_) made.push_back(entry.path());
+        }
+        made.push_back(inside_);
+        for (const fs::path& file : made) {
+            std::error_code error;
+            fs::rename(file, target_.parent_path() / file.filename(), error);
+            if (error) throw Failure("cannot be put in its place (" + error.message() + ")");
+        }
+        fs::remove(folder_);
+    }
+
+  private:
+    static void remember(char* to, const fs::path& path) {
+        std::snprintf(to, sizeof unfinished_folder, "%s", path.c_str());
+    }
+    fs::path folder_, target_, inside_;
+};
+
+nlohmann::json run_write(const fs::path& path, const nlohmann::json& asked,
+                         const fs::path& folder) {
+    const Workshop workshop(folder, path);
     const Geometry geometry = geometry_from(asked.at("geometry"));
     const SampleType type = sample_type_from(asked.at("type").get<std::string>());
     const bool compress = asked.at("compress").get<bool>();
     check(geometry);
     const auto bytes = static_cast<std::size_t>(sample_count(geometry)) * size_of(type);
-    limit_this_process(std::max<std::uint64_t>(bytes, 1 << 30));
+    limit_this_process(asked, std::max<std::uint64_t>(4 * bytes, 1 << 30));
     void* const samples = mmap(nullptr, bytes, PROT_READ, MAP_SHARED, samples_descriptor, 0);
     if (samples == MAP_FAILED) throw std::bad_alloc();
     const std::string extension = extension_of(path);
@@ -143,15 +180,17 @@ nlohmann::json run_write(const fs::path& path, const nlohmann::json& asked) {
                                         ".nii",  ".nii.gz", ".vti"};
     if (std::find(std::begin(known), std::end(known), extension) == std::end(known)) {
         throw Failure(
-            "has no extension of a format that can be written; use .nrrd, .nhdr, .mha, "
-            ".mhd, .nii, .nii.gz or .vti");
+            "has no extension of a format that can be written; use .nrrd, .nhdr, .mha, .mhd, .nii, "
+            ".nii.gz or .vti");
     }
+    workshop.open();
     if (extension == ".vti") {
-        write_vti(path, geometry, type, samples, compress);
+        write_vti(workshop.inside(), geometry, type, samples, compress);
     } else {
-        write_with_itk(path, extension, geometry, type, samples,
+        write_with_itk(workshop.inside(), extension, geometry, type, samples,
                        compress || extension == ".nii.gz");
     }
+    workshop.move_out();
     return nlohmann::json::object();
 }
 
@@ -170,29 +209,26 @@ std::string one_line(std::string text) {
     return trimmed(line).substr(0, 300);
 }
 
-void say(const nlohmann::json& what) {
-    const std::string line = line_from(what);
-    [[maybe_unused]] const auto written = write(report_descriptor, line.data(), line.size());
-}
-
 int run(int argc, char** argv) {
-    if (argc != 4) {
+    const bool reading = argc == 4 && std::strcmp(argv[1], "read") == 0;
+    const bool writing = argc == 5 && std::strcmp(argv[1], "write") == 0;
+    if (!reading && !writing) {
         std::fputs("palpate-io-helper is started by palpate; there is nothing to do by hand\n",
                    stderr);
         return 2;
     }
     try {
         const auto asked = nlohmann::json::parse(argv[3]);
-        const bool reading = std::strcmp(argv[1], "read") == 0;
-        say({{"done", reading ? run_read(argv[2], asked) : run_write(argv[2], asked)}});
+        report({{"done", reading ? run_read(argv[2], asked) : run_write(argv[2], asked, argv[4])}});
         return 0;
     } catch (const Failure& e) {
-        say({{"error", e.what()}});
+        report({{"error", e.what()}});
     } catch (const std::bad_alloc&) {
-        say({{"error", "not enough memory; crop or downsample the volume"}});
+        report({{"error", "not enough memory; crop or downsample the volume"}});
     } catch (const std::exception& e) {
-        say({{"error", "the format's library refused it (" + one_line(e.what()) +
-                           "); it is damaged or of a kind that is not read"}});
+        report({{"error", "the format's library refused it (" + one_line(e.what()) + "); " +
+                              (reading ? "it is damaged or of a kind that is not read"
+                                       : "is the disk full?")}});
     }
     return 1;
 }

@@ -1,6 +1,7 @@
 // What the library and its helper program say to each other, in one place so that both agree.
 //   palpate-io-helper read PATH REQUEST       samples come back in descriptor 3
-//   palpate-io-helper write PATH REQUEST      samples are given in descriptor 3
+//   palpate-io-helper write PATH REQUEST FOLDER   samples are given in descriptor 3; FOLDER, beside
+//                                             PATH, is created for the unfinished file and removed
 // REQUEST is JSON. Lines of JSON come back on descriptor 4: {"progress":0.5}, {"doing":"a file"},
 // and at the end {"error":"..."} or {"done":{...}}. Doubles in JSON survive to the bit.
 #pragma once

@@ -158,6 +158,15 @@ TEST(nrrd, time_steps_are_picked_wherever_their_axis_is) {
     EXPECT_TRUE(contains(refusal(folder / "c.nrrd", options), "it has 1"));
 }
 
+TEST(nrrd, a_time_axis_in_front_is_refused_and_not_taken_for_space) {
+    const ScratchFolder folder;
+    EXPECT_TRUE(contains(refusal_of(folder, "a.nrrd",
+                                    "NRRD0004\ntype: uint8\ndimension: 4\nsizes: 3 2 2 2\n"
+                                    "encoding: raw\nkinds: time domain domain domain\n\n" +
+                                        counting(24)),
+                         "put it last"));
+}
+
 TEST(nrrd, vectors_and_colours_are_refused) {
     const ScratchFolder folder;
     for (const char* kind : {"vector", "3-color", "RGB-color"}) {

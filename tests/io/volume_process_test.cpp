@@ -154,8 +154,7 @@ TEST_F(HelperProcess, several_threads_may_read_at_once) {
 }
 
 TEST_F(HelperProcess, ends_with_its_caller_and_takes_its_unfinished_file_along) {
-    // A caller that is killed while the helper writes: the helper is stopped first, so that it is
-    // surely at work, and goes on when its caller is dead.
+    // A caller that is killed while the helper starts or writes.
     Geometry g;
     g.size = Index3(400, 400, 200);
     const Volume volume(g, std::vector<std::uint8_t>(32000000, 7));
@@ -183,6 +182,40 @@ TEST_F(HelperProcess, ends_with_its_caller_and_takes_its_unfinished_file_along) 
         std::this_thread::sleep_for(std::chrono::milliseconds(50));
     }
     FAIL() << "something is left: " << folder_.names().front();
+}
+
+TEST_F(HelperProcess, ctrl_c_at_any_moment_of_writing_leaves_the_whole_file_or_nothing) {
+    Geometry g;
+    g.size = Index3(200, 200, 100);
+    const Volume volume(g, std::vector<std::uint8_t>(4000000, 7));
+    int interrupted = 0;
+    for (int round = 0; round < 12; ++round) {
+        std::filesystem::remove(folder_ / "big.nrrd");
+        const pid_t caller = fork();
+        if (caller == 0) {
+            setsid();  // a terminal's Ctrl-C goes to the whole group, so to the helper too
+            WriteOptions options;
+            options.compress = true;
+            write_volume(volume, folder_ / "big.nrrd", options);
+            _exit(0);
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(2 + 8 * round));
+        kill(-caller, SIGINT);
+        int status = 0;
+        waitpid(caller, &status, 0);
+        interrupted += WIFSIGNALED(status) ? 1 : 0;
+        // The helper is not ours to wait for; it has moments to clean up.
+        for (int tries = 0; tries < 100 && folder_.names().front()[0] == '.'; ++tries) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        }
+        for (const std::string& name : folder_.names()) {
+            ASSERT_TRUE(name == "a.nrrd" || name == "big.nrrd") << name << " in round " << round;
+        }
+        if (std::filesystem::exists(folder_ / "big.nrrd")) {
+            EXPECT_TRUE(same_samples(read_volume(folder_ / "big.nrrd").volume, volume));
+        }
+    }
+    EXPECT_GT(interrupted, 0);
 }
 
 TEST_F(HelperProcess, the_memory_limit_is_kept_and_said) {
