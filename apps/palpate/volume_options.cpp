@@ -3,12 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
-#include <cmath>
 #include <cstdio>
 
 #include "apps/palpate/progress.hpp"
-#include "io/volume_file.hpp"
+#include "io/raw_options.hpp"
 #include "palpate/renderer.hpp"
 #include "scenes/volumes.hpp"
 
@@ -16,25 +14,6 @@ namespace palpate::app {
 namespace {
 
 constexpr std::string_view synthetic_prefix = "synthetic:";
-
-io::RawLayout raw_layout(const VolumeOptions& options) {
-    if (options.dims.empty() || options.type.empty()) {
-        throw std::invalid_argument(
-            "a raw volume needs both --dims WxHxD and --type uint8|int16|uint16|float32");
-    }
-    io::RawLayout layout;
-    const Vec3 size = three_numbers(options.dims, 'x', "--dims");
-    for (int a = 0; a < 3; ++a) {
-        if (size[a] < 1 || size[a] > 1e6 || size[a] != std::floor(size[a])) {
-            throw std::invalid_argument("--dims " + options.dims +
-                                        ": three whole numbers of at least 1, as in 256x256x113");
-        }
-    }
-    layout.size = size.cast<int>();
-    layout.type = sample_type_from(options.type);
-    layout.skip = options.skip;
-    return layout;
-}
 
 LoadedVolume make_synthetic(const VolumeOptions& options) {
     std::optional<SampleType> type;
@@ -51,16 +30,10 @@ LoadedVolume make_synthetic(const VolumeOptions& options) {
 
 LoadedVolume read_file(const VolumeOptions& options) {
     io::ReadOptions read;
-    if (!options.dims.empty() || !options.type.empty()) read.raw = raw_layout(options);
-    if (!options.spacing.empty()) {
-        const Vec3 spacing = three_numbers(options.spacing, ',', "--spacing");
-        if (!(spacing.array() > 0).all()) {
-            throw std::invalid_argument("--spacing " + options.spacing +
-                                        ": every spacing must be above 0 mm");
-        }
-        read.spacing = spacing;
-        if (read.raw) read.raw->spacing = spacing;
+    if (!options.dims.empty() || !options.type.empty()) {
+        read.raw = io::raw_layout_from(options.dims, options.type, options.spacing, options.skip);
     }
+    if (!options.spacing.empty()) read.spacing = io::spacing_from(options.spacing);
     read.series = options.series;
     read.time_step = options.time_step;
     ProgressBar bar("reading " + options.volume, options.quiet);
@@ -71,24 +44,6 @@ LoadedVolume read_file(const VolumeOptions& options) {
 }
 
 }  // namespace
-
-Vec3 three_numbers(const std::string& text, char separator, const char* what) {
-    Vec3 numbers;
-    const char* at = text.data();
-    const char* const end = at + text.size();
-    bool good = true;
-    for (int i = 0; i < 3 && good; ++i) {
-        if (i > 0) good = at != end && *at++ == separator;
-        const auto [next, error] = std::from_chars(at, end, numbers[i]);
-        good = good && error == std::errc{} && std::isfinite(numbers[i]);
-        at = next;
-    }
-    if (!good || at != end) {
-        throw std::invalid_argument(fmt::format("{} {}: three numbers separated by '{}' are needed",
-                                                what, text, separator));
-    }
-    return numbers;
-}
 
 std::string flaw_in_count(const std::string& text) {
     const bool digits = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;

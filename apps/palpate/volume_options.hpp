@@ -53,7 +53,5 @@ double isovalue_of(const LoadedVolume& loaded, const Field& field, const FieldOp
 /// Empty for a whole number from 0, else what is wrong: a check for CLI11, which takes -1 for
 /// 2^64-1.
 std::string flaw_in_count(const std::string& text);
-/// "WxHxD" or "X,Y,Z" as three numbers; std::invalid_argument names `what`.
-Vec3 three_numbers(const std::string& text, char separator, const char* what);
 
 }  // namespace palpate::app
