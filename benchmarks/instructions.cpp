@@ -1,0 +1,91 @@
+// A driver for instructions.sh: runs a number of updates of one case and prints a hash of where the
+// proxy was. Counted with two numbers of updates, the difference is the cost of the updates alone.
+#include <bit>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+
+#include "benchmarks/hand.hpp"
+
+using namespace palpate;
+using namespace palpate::benchmarks;
+
+namespace {
+
+struct Case {
+    const char* name;
+    const char* method;
+    Touch (*touch)();
+};
+
+template <SampleType type, int tenths_voxel_per_mm, int depth>
+Touch cylinder() {
+    return cylinder_touch(type, 0.1 * tenths_voxel_per_mm, depth);
+}
+
+/// What the loop round the updates costs, to be taken off the others.
+ProxyUpdate no_update(Proxy&, const Field&, const Vec3& hip, const ProxySettings&, StepObserver) {
+    return {.scp = hip};
+}
+
+constexpr Case cases[] = {
+    {"nothing", "nothing", cylinder<SampleType::uint8, 5, 1>},
+    {"contact/uint8/0.5", "exact", cylinder<SampleType::uint8, 5, 1>},
+    {"contact/uint8/3", "exact", cylinder<SampleType::uint8, 30, 1>},
+    {"contact/float32/0.5", "exact", cylinder<SampleType::float32, 5, 1>},
+    {"contact/float32/3", "exact", cylinder<SampleType::float32, 30, 1>},
+    {"free/uint8/0.5", "exact", cylinder<SampleType::uint8, 5, -3>},
+    {"free/uint8/3", "exact", cylinder<SampleType::uint8, 30, -3>},
+    {"free/float32/0.5", "exact", cylinder<SampleType::float32, 5, -3>},
+    {"free/float32/3", "exact", cylinder<SampleType::float32, 30, -3>},
+    {"noise/float32/3", "exact", [] { return noise_touch(SampleType::float32, 3); }},
+    {"paper/uint8/0.5", "paper", cylinder<SampleType::uint8, 5, 1>},
+    {"gradient/uint8/0.5", "gradient", cylinder<SampleType::uint8, 5, 1>},
+    {"gradient-improved/uint8/0.5", "gradient-improved", cylinder<SampleType::uint8, 5, 1>},
+};
+
+/// FNV-1a over the bits of a point.
+void mix(std::uint64_t& hash, const Vec3& point) {
+    for (int a = 0; a < 3; ++a) {
+        hash = (hash ^ std::bit_cast<std::uint64_t>(point[a])) * 0x100000001b3U;
+    }
+}
+
+void run(const Case& chosen, long updates) {
+    const Touch touch = chosen.touch();
+    const bool idle = std::strcmp(chosen.method, "nothing") == 0;
+    const ProxyMethod method = idle ? no_update : method_named(chosen.method);
+    Proxy proxy;
+    proxy.isovalue = touch.isovalue;
+    place(proxy, touch.field, touch.path.front(), touch.isovalue);
+    Stroke stroke(touch.path);
+    std::uint64_t hash = 0xcbf29ce484222325U;
+    for (long i = 0; i < updates; ++i) {
+        mix(hash, method(proxy, touch.field, stroke.next(), {}, {}).scp);
+    }
+    std::printf("%-28s %ld updates, hash of the SCPs %016llx\n", chosen.name, updates,
+                static_cast<unsigned long long>(hash));
+}
+
+}  // namespace
+
+/// Without arguments: every case once. With `--list`: their names. Else CASE UPDATES.
+int main(int argc, char** argv) {
+    if (argc == 2 && std::strcmp(argv[1], "--list") == 0) {
+        for (const Case& c : cases) std::puts(c.name);
+        return 0;
+    }
+    if (argc == 3) {
+        for (const Case& c : cases) {
+            if (std::strcmp(c.name, argv[1]) != 0) continue;
+            run(c, std::atol(argv[2]));
+            return 0;
+        }
+        std::fprintf(stderr, "no case '%s'; --list names them\n", argv[1]);
+        return 2;
+    }
+    for (const Case& c : cases) run(c, 100000);
+    return 0;
+}
