@@ -20,7 +20,7 @@ TEXT
 
 core=(g++ cmake ninja-build ccache libeigen3-dev libgtest-dev libgmock-dev libbenchmark-dev python3)
 io=("${core[@]}" libinsighttoolkit5-dev libvtk9-dev libcli11-dev libfmt-dev nlohmann-json3-dev
-    libpng-dev zlib1g-dev gnuplot-nox)
+    libgdcm-dev libtiff-dev libpng-dev zlib1g-dev gnuplot-nox)
 viewer=("${io[@]}" libvtk9-qt-dev)
 dev=(git clang clang-format-14 clang-tidy libclang-rt-14-dev shellcheck)
 

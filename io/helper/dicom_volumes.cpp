@@ -98,6 +98,11 @@ DicomSlice slice_from(const fs::path& file) {
                       " gives no size of its image; it is cut off or damaged: copy "
                       "or export it again");
     }
+    // Siemens packs a whole volume into one flat image, side by side.
+    if (tags.text(0x0008, 0x0008).find("MOSAIC") != std::string::npos) {
+        throw Failure(quoted(file) +
+                      " is a mosaic of slices; convert it to NIfTI (dcm2niix) and give that file");
+    }
     check_pixels(s, extent, tags);
     return s;
 }

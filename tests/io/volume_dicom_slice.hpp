@@ -12,6 +12,7 @@ namespace palpate::io::test {
 
 struct TestSlice {
     std::string kind = "1.2.840.10008.5.1.4.1.1.2";  ///< SOP class; CT
+    std::string image_type = "ORIGINAL\\PRIMARY";
     std::string series = "1.2.3.4";
     std::string description = "TEST";
     int number = 1;
@@ -70,6 +71,7 @@ inline std::string dicom_bytes(const TestSlice& slice) {
     DicomBytes length;
     length.text(2, 0, "UL", little(static_cast<std::uint32_t>(meta.bytes().size())));
     DicomBytes data;
+    data.text(8, 8, "CS", slice.image_type);
     data.text(8, 0x16, "UI", slice.kind, '\0');
     data.text(8, 0x18, "UI", instance, '\0');
     data.text(8, 0x60, "CS", "CT");

@@ -243,6 +243,15 @@ TEST(dicom, slices_without_a_position_are_piled_up_by_number_and_that_is_said) {
     EXPECT_TRUE(contains(all_notes(file), "pixel spacing"));
 }
 
+TEST(dicom, a_mosaic_of_slices_is_refused_with_what_to_do) {
+    const ScratchFolder folder;
+    TestSlice slice = slice_at(1, 0);
+    slice.image_type = "ORIGINAL\\PRIMARY\\M\\MOSAIC";
+    put_slice(folder / "1.dcm", slice);
+    EXPECT_TRUE(one_line_about(refusal(folder / "1.dcm"), folder / "1.dcm"));
+    EXPECT_TRUE(contains(refusal(folder / "1.dcm"), "convert it to NIfTI"));
+}
+
 TEST(dicom, colours_and_bad_spacings_are_refused) {
     const ScratchFolder folder;
     TestSlice slice = slice_at(1, 0);
