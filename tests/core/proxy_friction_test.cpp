@@ -181,7 +181,7 @@ TEST(Friction, does_not_hold_a_hand_that_leaves_the_surface) {
             ASSERT_LE((r.scp - r.hip).norm(), 1e-9);
             lifted += proxy.mode == Mode::free && before.mode == Mode::constrained;
         }
-        EXPECT_GT(lifted, 10);
+        EXPECT_GT(lifted, scaled(20000) / 2000);
     }
 }
 
