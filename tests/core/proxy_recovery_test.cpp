@@ -122,6 +122,38 @@ TEST(Recovery, leads_downhill_where_the_gradient_leads_out) {
     EXPECT_GT(paths, scaled(4000) / 20);
 }
 
+TEST(Recovery, starts_in_the_direction_in_which_the_field_falls_steepest_per_millimetre) {
+    for (const TestField& test :
+         {noise_field(), anisotropic_field(), noise_field(7, Solid::below)}) {
+        const Geometry& geometry = test.field.geometry();
+        Random random(59);
+        int compared = 0;
+        for (int i = 0; i < scaled(2000); ++i) {
+            // Samples, edges and walls, where up to 48 tetrahedra offer a way.
+            const Vec3 index = (2 * random.point(2, 13)).array().round() / 2;
+            const Vec3 hip = physical_from_index(geometry, index);
+            Proxy proxy;
+            proxy.isovalue = test.isovalue;
+            if (excess_at(test.field, hip, test.isovalue) < 0.02) continue;
+            RecoverPath path;
+            update_exact(proxy, test.field, hip, {}, path.observer());
+            const double first = path.points.empty() ? 0 : (path.points[0] - hip).norm();
+            // Longer than a tetrahedron is the search after descent found no way down.
+            if (first == 0 || first > geometry.spacing.minCoeff()) continue;
+            const double from = excess_at(test.field, hip, test.isovalue);
+            const double slope =
+                (from - excess_at(test.field, path.points[0], test.isovalue)) / first;
+            ++compared;
+            for (int k = 0; k < 300; ++k) {
+                const Vec3 to = hip + 1e-4 * random.direction();
+                const double other = (from - excess_at(test.field, to, test.isovalue)) / 1e-4;
+                ASSERT_LE(other, slope + 1e-7) << test.name << " seed 59 start " << i;
+            }
+        }
+        EXPECT_GT(compared, scaled(2000) / 10);
+    }
+}
+
 TEST(Recovery, goes_to_the_nearest_wall_of_a_plateau) {
     const Field field = block_field(24, 4, 19);
     Random random(55);
