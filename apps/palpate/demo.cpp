@@ -26,8 +26,6 @@ namespace fs = std::filesystem;
 constexpr Colour bone{226, 205, 175};
 constexpr Colour hip_colour{0, 114, 178};  // blue and vermilion: told apart by everybody
 constexpr Colour scp_colour{213, 94, 0};
-constexpr int picture_width = 900;
-constexpr int picture_height = 720;
 
 struct DemoOptions {
     VolumeOptions volume;
@@ -35,6 +33,7 @@ struct DemoOptions {
     RenderOptions render;
     std::string motion = "explore";
     scenes::MotionSettings hand;
+    int picture_width = 900;  ///< [pixels]
     std::string output = "palpate-demo";
 };
 
@@ -113,8 +112,7 @@ Vec3 mean_contact(const std::vector<io::TraceRow>& rows) {
     return sum / count;
 }
 
-void draw(const Demo& demo, bool quiet, const fs::path& path) {
-    Picture picture(picture_width, picture_height);
+void draw(const Demo& demo, Picture picture, bool quiet, const fs::path& path) {
     ProgressBar bar("drawing", quiet);
     const Vec3 towards = mean_contact(demo.rows) - physical_centre(demo.field.geometry());
     const Camera camera = camera_for(demo.field, demo.isovalue, towards);
@@ -259,7 +257,8 @@ void run_demo(const DemoOptions& options) {
     ResultFolder results(options.output);
     const fs::path& folder = results.part();
     feel(demo, options, folder);
-    draw(demo, options.volume.quiet, folder / "surface.png");
+    const int width = options.picture_width;
+    draw(demo, Picture(width, width * 4 / 5), options.volume.quiet, folder / "surface.png");
     const bool plotted = plot_trace(folder, folder / "session.png", demo.rows.size()) &&
                          plot_trace(folder, folder / "session.svg", demo.rows.size());
     stop_if_interrupted();
@@ -295,6 +294,9 @@ void add_demo(CLI::App& app) {
         ->capture_default_str();
     command->add_option("--seed", options->hand.seed, "Seed of the hand's motion")
         ->check(flaw_in_count)
+        ->capture_default_str();
+    command->add_option("--picture", options->picture_width, "Width of the picture [pixels]")
+        ->check(CLI::Range(16, 8192))
         ->capture_default_str();
     command->add_option("-o,--output", options->output, "Folder for the results")
         ->capture_default_str();

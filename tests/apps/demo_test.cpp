@@ -8,7 +8,7 @@
 namespace palpate::app::test {
 namespace {
 
-const std::string quick = "demo synthetic:sphere:20x20x20 --duration 0.5 ";
+const std::string quick = "demo synthetic:sphere:20x20x20 --duration 0.5 --picture 150 ";
 
 bool is_picture(const std::filesystem::path& path) {
     png_image image{};
@@ -64,9 +64,9 @@ TEST(Demo, LeavesItsResultsInAFolderItNames) {
 TEST(Demo, FeelsARealVolumeAtALevelOfItsOwnChoice) {
     SKIP_WITHOUT("fuel_small.nrrd");
     const ScratchFolder folder;
-    const Outcome outcome =
-        palpate(folder, Words{"demo", data_file("fuel_small.nrrd").string(), "--duration", "1",
-                              "--motion", "slide", "-o", "my <results> & 'more'"});
+    const Outcome outcome = palpate(
+        folder, Words{"demo", data_file("fuel_small.nrrd").string(), "--duration", "1", "--picture",
+                      "150", "--motion", "slide", "-o", "my <results> & 'more'"});
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     expect_results(folder / "my <results> & 'more'", 1001);
 }
@@ -106,7 +106,8 @@ TEST(Demo, ReportsShowTheNameOfTheVolumeAsText) {
     SKIP_WITHOUT("fuel_small.nrrd");
     const ScratchFolder folder;
     std::filesystem::copy(data_file("fuel_small.nrrd"), folder / "a<b>&c.nrrd");
-    ASSERT_EQ(palpate(folder, "demo a<b>&c.nrrd -i 30 --duration 0.2 -o out").status, 0);
+    ASSERT_EQ(palpate(folder, "demo a<b>&c.nrrd -i 30 --duration 0.2 --picture 120 -o out").status,
+              0);
     EXPECT_TRUE(contains(support::bytes_of(folder / "out/report.html"), "a&lt;b&gt;&amp;c.nrrd"));
 }
 

@@ -135,7 +135,7 @@ TEST(BadOutput, StandardOutputThatIsClosedOrFullIsNoSuccess) {
           "info synthetic:noise --json", "extract synthetic:sphere:9x9x9 -o a.ply",
           "replay synthetic:sphere:24x24x24 --trajectory t.csv -o a.csv",
           "replay synthetic:sphere:24x24x24 --trajectory t.csv -o -",
-          "demo synthetic:sphere:9x9x9 --duration 0.1"}) {
+          "demo synthetic:sphere:9x9x9 --duration 0.1 --picture 120"}) {
         for (const Stdout to : {Stdout::closed, Stdout::full}) {
             const Outcome outcome = palpate(folder, line, to);
             EXPECT_EQ(outcome.status, 5) << line;

@@ -41,8 +41,9 @@ bool same_but_for_time(const std::vector<io::TraceRow>& a, const std::vector<io:
 
 /// `palpate demo`'s own motion, 1001 rows, as t.csv.
 void put_demo_trajectory(const ScratchFolder& folder) {
-    const Outcome demo =
-        palpate(folder, "demo synthetic:sphere:24x24x24 --duration 1 --motion press -o demo -q");
+    const Outcome demo = palpate(
+        folder,
+        "demo synthetic:sphere:24x24x24 --duration 1 --motion press --picture 120 -o demo -q");
     ASSERT_EQ(demo.status, 0) << demo.err;
     std::filesystem::copy(folder / "demo/trajectory.csv", folder / "t.csv");
 }

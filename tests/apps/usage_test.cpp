@@ -143,7 +143,7 @@ TEST(Usage, WhereAllOfSpaceIsSolidThereIsNoReplayAndNoFile) {
     const ScratchFolder folder;
     put_trajectory(folder);
     for (const std::string command : {"replay synthetic:sphere:9x9x9 --trajectory t.csv -o a.csv",
-                                      "demo synthetic:sphere:9x9x9 -o out"}) {
+                                      "demo synthetic:sphere:9x9x9 --picture 120 -o out"}) {
         const Outcome outcome = palpate(folder, command + " --isovalue -5");
         EXPECT_EQ(outcome.status, 2);
         EXPECT_TRUE(contains(outcome.err, "everything is solid")) << outcome.err;
