@@ -5,6 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "proxy/update.hpp"
+
 namespace palpate {
 namespace {
 
@@ -41,18 +43,6 @@ ForceInput force_input(const Renderer& renderer, const DeviceState& device, cons
         input.surface_distance = distance / transform.scale;
     }
     return input;
-}
-
-/// The update of a tick without a position to trust: nothing moves.
-ProxyUpdate no_update(const Proxy& proxy, const Field& field, const Vec3& hip) {
-    ProxyUpdate update;
-    update.status = UpdateStatus::refused;
-    update.mode = proxy.mode;
-    update.hip = hip;
-    update.scp = proxy.scp_physical;
-    update.isovalue = proxy.isovalue;
-    if (proxy.placed) update.density = value_at(field, proxy.scp);
-    return update;
 }
 
 }  // namespace
@@ -126,7 +116,8 @@ Tick render(Renderer& renderer, const DeviceState& device, StepObserver observer
     const auto begin = std::chrono::steady_clock::now();
     tick.proxy = device.valid ? settings.method(renderer.proxy, renderer.field, hip, settings.proxy,
                                                 observer)
-                              : no_update(renderer.proxy, renderer.field, hip);
+                              // No position to trust: nothing moves.
+                              : refuse_update(renderer.proxy, renderer.field, hip);
     const auto end = std::chrono::steady_clock::now();
     tick.update_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(end - begin).count();
     apply_penetrability(settings.penetrability, renderer.field, 1 / settings.transform.scale,

@@ -116,6 +116,9 @@ void RenderOptions::add_to(CLI::App& command) {
 
 RendererSettings render_settings(const RenderOptions& options, const Field& field,
                                  double isovalue) {
+    if (!options.friction.empty() && options.method != "exact") {
+        throw std::invalid_argument("--friction is for --method exact; the others have none");
+    }
     RendererSettings settings;
     settings.method = methods().at(options.method);
     settings.proxy.step_budget = options.step_budget;

@@ -24,13 +24,6 @@ struct ReplayOptions {
     bool json = false;
 };
 
-/// What a reader of the file needs to know to make it again.
-std::vector<std::string> head(const ReplayOptions& options, double isovalue) {
-    return {fmt::format("palpate {} replay: {}, isovalue {}, method {}, penetrability {}",
-                        PALPATE_VERSION, options.volume.volume, isovalue, options.render.method,
-                        options.render.penetrability)};
-}
-
 void replay(const ReplayOptions& options) {
     check_outputs({options.volume.volume, options.trajectory}, {options.output, options.path});
     const bool table_on_standard_output =
@@ -49,9 +42,9 @@ void replay(const ReplayOptions& options) {
     settings.force.stale_after = std::numeric_limits<double>::infinity();
     Renderer renderer = make_renderer(field, isovalue, settings);
 
-    io::TraceWriter trace(options.output, head(options, isovalue));
+    io::TraceWriter trace(options.output);
     std::optional<io::PathWriter> path;
-    if (!options.path.empty()) path.emplace(options.path, head(options, isovalue));
+    if (!options.path.empty()) path.emplace(options.path);
     ProgressBar bar("replaying", options.volume.quiet);
     SessionSinks sinks;
     sinks.row = [&](const io::TraceRow& row) { trace.add(row); };

@@ -49,10 +49,14 @@ io::TraceRow row_of(const Tick& tick) {
 void add_to_summary(SessionSummary& summary, const Tick& tick, double range) {
     ++summary.ticks;
     summary.out_of_budget += tick.proxy.status == UpdateStatus::out_of_budget;
+    summary.recovering += tick.proxy.status == UpdateStatus::recovering;
+    summary.refused += tick.proxy.status == UpdateStatus::refused;
     summary.mean_tetrahedra += tick.proxy.tetrahedra;
     summary.mean_ns += static_cast<double>(tick.update_ns);
     summary.largest_force = std::max(summary.largest_force, tick.force.norm());
-    if (tick.proxy.mode == Mode::constrained) {
+    const bool felt =
+        tick.proxy.status == UpdateStatus::done || tick.proxy.status == UpdateStatus::out_of_budget;
+    if (felt && tick.proxy.mode == Mode::constrained) {
         ++summary.constrained;
         summary.worst_surface_error =
             std::max(summary.worst_surface_error,
@@ -97,7 +101,14 @@ SessionSummary run_session(Renderer& renderer, const io::Trajectory& trajectory,
         const auto at = static_cast<std::size_t>(i);
         const Vec3 hand =
             device_from_physical(renderer.settings.transform, trajectory.position[at]);
-        const Tick tick = render(renderer, {trajectory.time[at], hand, true}, observer);
+        const DeviceState device{trajectory.time[at], hand, true};
+        // A renderer is a value: a copy of it is watched, so that the time of the update is that of
+        // the update and nothing else.
+        if (sinks.corner) {
+            Renderer watched = renderer;
+            render(watched, device, observer);
+        }
+        const Tick tick = render(renderer, device);
         tap.end_tick(tick.proxy.scp);
         if (sinks.row) sinks.row(row_of(tick));
         times.push_back(tick.update_ns);
@@ -112,21 +123,23 @@ SessionSummary run_session(Renderer& renderer, const io::Trajectory& trajectory,
 
 std::string summary_text(const SessionSummary& s) {
     return fmt::format(
-        "ticks {}, in contact {} ({:.1f} %), out of step budget {}\n"
+        "ticks {}, in contact {} ({:.1f} %), out of step budget {}, recovering {}, refused {}\n"
         "largest |density - isovalue| in contact {:.2g} of the data's range\n"
         "largest force {:.3g} N\n"
         "tetrahedra an update {:.2f}\n"
         "proxy update [ns]: mean {:.0f}, p50 {}, p99 {}, p99.9 {}, max {}\n",
         s.ticks, s.constrained,
         100.0 * static_cast<double>(s.constrained) / static_cast<double>(s.ticks), s.out_of_budget,
-        s.worst_surface_error, s.largest_force, s.mean_tetrahedra, s.mean_ns, s.p50_ns, s.p99_ns,
-        s.p999_ns, s.max_ns);
+        s.recovering, s.refused, s.worst_surface_error, s.largest_force, s.mean_tetrahedra,
+        s.mean_ns, s.p50_ns, s.p99_ns, s.p999_ns, s.max_ns);
 }
 
 std::string summary_json(const SessionSummary& s) {
     const nlohmann::ordered_json json{{"ticks", s.ticks},
                                       {"constrained", s.constrained},
                                       {"out_of_budget", s.out_of_budget},
+                                      {"recovering", s.recovering},
+                                      {"refused", s.refused},
                                       {"worst_surface_error", s.worst_surface_error},
                                       {"largest_force_n", s.largest_force},
                                       {"mean_tetrahedra", s.mean_tetrahedra},

@@ -16,7 +16,9 @@ namespace palpate::app {
 struct SessionSummary {
     std::int64_t ticks = 0;
     std::int64_t constrained = 0;
-    std::int64_t out_of_budget = 0;
+    std::int64_t out_of_budget = 0;  ///< updates that went on in the next tick
+    std::int64_t recovering = 0;     ///< still on their way out of the solid: no force
+    std::int64_t refused = 0;        ///< positions absurdly far: no force, nothing changed
     double worst_surface_error = 0;  ///< largest |density - isovalue| / range in contact
     double largest_force = 0;        ///< [N]
     double mean_tetrahedra = 0;

@@ -23,6 +23,9 @@ LoadedVolume make_synthetic(const VolumeOptions& options) {
             "--dims and --spacing are for files; a synthetic volume's size is part of its name: "
             "synthetic:NAME:WxHxD");
     }
+    if (!options.series.empty() || options.time_step != 0 || options.skip != 0) {
+        throw std::invalid_argument("--series, --time-step and --skip are for files");
+    }
     scenes::Scene scene = scenes::make_volume(options.volume, type);
     return {scene.volume, options.volume, "synthetic (" + scene.description + ")", 1,
             {},           scene.isovalue};
@@ -58,7 +61,9 @@ void VolumeOptions::add_to(CLI::App& command, bool optional) {
     command.add_option("--type", type,
                        "Sample type of a raw file (or a synthetic volume): uint8, int16, uint16, "
                        "float32");
-    command.add_option("--spacing", spacing, "Spacing [mm], for files that give none: X,Y,Z")
+    command
+        .add_option("--spacing", spacing,
+                    "Spacing [mm] instead of what the file gives or lacks: X,Y,Z")
         ->type_name("X,Y,Z");
     command.add_option("--skip", skip, "Bytes of header to skip in a raw file")
         ->check(flaw_in_count);

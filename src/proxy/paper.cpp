@@ -28,7 +28,7 @@ const Tetrahedron& tetrahedron_towards(const Incident& incident, unsigned on, co
         const Vec3 folded = fold(incident.tetrahedra[i], way);
         bool inside = true;
         for (unsigned w = 0; w < wall_count; ++w) {
-            if (on >> w & 1) inside &= approach(folded, w) <= 0;
+            if (has(on, w)) inside &= approach(folded, w) <= 0;
         }
         if (inside) return incident.tetrahedra[i];
     }
@@ -52,7 +52,7 @@ bool step_constrained(Site& site, Course& course) {
     const Vec3 folded = fold(towards, to_goal);
     unsigned kept = 0;  // walls the motion runs along
     for (unsigned w = 0; w < wall_count; ++w) {
-        if ((on >> w & 1) && approach(folded, w) == 0) kept |= 1U << w;
+        if (has(on, w) && approach(folded, w) == 0) kept |= 1U << w;
     }
     site.enter(towards);
     slide(site, folded, on, kept, course);

@@ -193,6 +193,34 @@ TEST(ProxyPaper, keeps_the_proxy_on_the_free_side_and_on_the_surface) {
     }
 }
 
+TEST(ProxyPaper, shows_its_steps_goal_by_goal_along_a_plane) {
+    // Fig. 5: free to the surface, then a goal before each slide, the last one where the SCP is.
+    const Field plane = plane_field();
+    Proxy proxy;
+    ASSERT_TRUE(place(proxy, plane, Vec3(8, 8, 16), 15.3));
+    update_paper(proxy, plane, Vec3(8.3, 8.1, 15));
+    std::vector<Step> steps;
+    const StepObserver observer{[](const Step& step, void* context) {
+                                    static_cast<std::vector<Step>*>(context)->push_back(step);
+                                },
+                                &steps};
+    const Vec3 scp = update_paper(proxy, plane, Vec3(14, 11, 12), {}, observer).scp;
+    int goals = 0;
+    int slides = 0;
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+        goals += steps[i].kind == StepKind::goal;
+        if (steps[i].kind != StepKind::slide) continue;
+        ++slides;
+        ASSERT_GT(i, 0U);
+        EXPECT_EQ(steps[i - 1].kind, StepKind::goal);
+        EXPECT_EQ(steps[i - 1].goal, steps[i].goal);
+    }
+    EXPECT_GT(slides, 3);
+    EXPECT_EQ(goals, slides + 1);
+    ASSERT_EQ(steps.back().kind, StepKind::goal);
+    EXPECT_LE((steps.back().goal - scp).norm(), 1e-8);
+}
+
 TEST(ProxyPaper, ends_where_exact_descent_does_on_a_plane_and_sticks_on_a_convex_ridge) {
     const Field plane = plane_field();
     Random random(46);

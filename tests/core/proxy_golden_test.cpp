@@ -1,10 +1,8 @@
 // Proxy: same input, same output, bit for bit. The hash of seeded trajectories is the same at every
 // optimisation level and with every compiler that keeps IEEE arithmetic (-ffp-contract=off).
 //
-// Checked by hand with g++ 12 and clang++ 14, each at -O0 and -O3, by building this program with
-//   CXX=clang++ CXXFLAGS=-O0 cmake -B build-golden -G Ninja -DPALPATE_IO=OFF
-// and running core_tests --gtest_filter=Golden.*. A change of the method changes the hashes: read
-// the new ones off the failure, after the other proxy tests have passed.
+// scripts/golden.sh runs this with g++ and clang++, each at -O0 and -O3. A change of the method
+// changes the hashes: read the new ones off the failure, after the other proxy tests have passed.
 #include <gtest/gtest.h>
 
 #include "support/fields.hpp"
