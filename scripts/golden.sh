@@ -26,14 +26,14 @@ for compiler in g++ clang++; do
         cmake -S . -B "$build" -G Ninja -DCMAKE_CXX_COMPILER="$compiler" \
             -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG="-$level" \
             -DPALPATE_IO=OFF -DPALPATE_VIEWER=OFF >/dev/null
-        cmake --build "$build" --parallel "$(nproc)" --target core_tests | tail -n 1
-        result=$("$build/tests/core/core_tests" --gtest_brief=1 --gtest_filter='*olden*') || {
+        cmake --build "$build" --parallel "$(nproc)" --target golden_tests | tail -n 1
+        result=$("$build/tests/core/golden_tests" --gtest_brief=1 --gtest_filter='*olden*') || {
             echo "$result"
             exit 1
         }
         # GoogleTest is content when a filter matches nothing; we are not.
         if grep -q 'PASSED.* 0 tests' <<<"$result"; then
-            echo "golden.sh: core_tests has no test with 'golden' in its name" >&2
+            echo "golden.sh: golden_tests has no test with 'golden' in its name" >&2
             exit 1
         fi
         tail -n 1 <<<"$result"
