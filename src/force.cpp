@@ -122,6 +122,8 @@ void check(const ForceSettings& s, const DeviceLimits& limits) {
     require(s.rate_limit > 0, "force rate limit [N/s]", s.rate_limit, "above 0 (inf: none)");
     require_not_negative("force ramp [s]", s.ramp);
     require(s.stale_after > 0, "stale time [s]", s.stale_after, "above 0 (inf: none)");
+    require(s.start_below >= 0, "force to start below [N]", s.start_below,
+            "at least 0 (inf: start at any)");
     const double damping = s.damping + s.viscosity;
     require(damping < limits.physical_damping, "damping + viscosity [N s/mm]", damping,
             "below the physical damping of device and hand, " + text_of(limits.physical_damping));
@@ -148,7 +150,10 @@ ForceResult render_force(ForceState& state, const ForceSettings& settings,
     if (!state.started || !(step <= settings.stale_after)) {
         // A start, or the first tick after a pause: the ramp begins here, from zero.
         if (state.started) flags |= force_stale;
-        state = ForceState{true, input.time, input.time, input.hand, Vec3::Zero(), Vec3::Zero()};
+        state = ForceState{};
+        state.started = true;
+        state.time = state.ramp_begin = input.time;
+        state.hand = input.hand;
         step = 0;
     } else if (!(step > 0)) {
         return stop(state, force_stale);
@@ -161,6 +166,15 @@ ForceResult render_force(ForceState& state, const ForceSettings& settings,
     force -= settings.viscosity * state.velocity;
     // Of a force whose square overflows neither length nor direction are to be had.
     if (!std::isfinite(force.squaredNorm())) return stop(state, force_not_finite);
+    state.waiting |= input.released;
+    if (state.waiting) {
+        state.ramp_begin = input.time;
+        state.waiting = input.released || !(force.norm() <= settings.start_below);
+        if (state.waiting) {
+            force.setZero();
+            flags |= force_waiting;
+        }
+    }
     force =
         within_limits(force, state, settings, limits, input.time - state.ramp_begin, step, flags);
     if (!force.allFinite()) return stop(state, force_not_finite);

@@ -28,7 +28,8 @@ ForceInput force_input(const Renderer& renderer, const DeviceState& device, cons
     const Mat3 to_device = transform.rotation.transpose();
     ForceInput input;
     input.time = device.time;
-    input.enabled = renderer.settings.forces_on;
+    input.enabled = renderer.settings.forces_on && device.armed;
+    input.released = device.released;
     input.valid = at.status != UpdateStatus::refused && at.status != UpdateStatus::recovering;
     input.constrained = at.mode == Mode::constrained;
     input.hand = device.position;

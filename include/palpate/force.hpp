@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #include "palpate/volume.hpp"
 
@@ -33,6 +34,9 @@ struct ForceSettings {
     double rate_limit = 2000;   ///< [N/s] most change of force; dropping to zero on error is exempt
     double ramp = 0.25;         ///< [s] from zero to full force at start and after every pause
     double stale_after = 0.02;  ///< [s] between two device states: longer is a pause
+    /// [N] After a start, a pause or a release, no force until the wanted one is at most this: a
+    /// hand that starts inside a solid is not thrown out. Infinity: do not wait.
+    double start_below = std::numeric_limits<double>::infinity();
 };
 
 /// What the device at hand can take.
@@ -56,6 +60,8 @@ struct ForceInput {
     double time = 0;      ///< [s], strictly increasing
     bool valid = true;    ///< false: device input stale or broken
     bool enabled = true;  ///< false: forces off by the user
+    /// True: let go within the rate limit, and start anew (start_below, ramp) once this ends.
+    bool released = false;
     bool constrained = false;
     Vec3 hand = Vec3::Zero();    ///< device position [device mm]
     Vec3 pull = Vec3::Zero();    ///< SCP - HIP [device mm]
@@ -73,11 +79,14 @@ enum ForceFlag : std::uint8_t {
     force_stale = 8,         ///< input stale, invalid or going back in time: zero
     force_not_finite = 16,   ///< some number was NaN or infinite: zero
     force_off = 32,          ///< switched off: zero
+    force_waiting = 64,      ///< released, or waiting for a small force to start with
+    force_overrun = 128,     ///< the tick took too long: zero
 };
 
 /// State between ticks.
 struct ForceState {
     bool started = false;
+    bool waiting = true;           ///< for a small enough force to start with
     double time = 0;               ///< [s] of the last tick
     double ramp_begin = 0;         ///< [s]
     Vec3 hand = Vec3::Zero();      ///< [device mm]

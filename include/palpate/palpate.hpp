@@ -16,5 +16,10 @@
 #include "palpate/penetrability.hpp"
 #include "palpate/force.hpp"
 #include "palpate/renderer.hpp"
+#include "palpate/exchange.hpp"
+#include "palpate/latency.hpp"
+#include "palpate/device.hpp"
+#include "palpate/session.hpp"
+#include "palpate/servo.hpp"
 #include "palpate/surface.hpp"
 // clang-format on

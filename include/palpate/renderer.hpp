@@ -24,6 +24,8 @@ struct DeviceState {
     double time = 0;               ///< [s], strictly increasing
     Vec3 position = Vec3::Zero();  ///< [device mm], device axes
     bool valid = true;             ///< false: stale or broken input; no force, and the proxy stays
+    bool armed = true;             ///< false: a dead-man switch is open; no force at once
+    bool released = false;         ///< true: let go of the force, see ForceInput::released
 };
 
 struct RendererSettings {

@@ -7,8 +7,8 @@ import re
 import repository
 
 # The flow. `surface` looks at the lattice from the side: no stage may include it.
-STAGES = ("volume field lattice proxy penetrability force renderer device servo snapshot "
-          "recording").split()
+STAGES = ("volume field lattice proxy penetrability force renderer exchange latency device "
+          "session servo").split()
 OBSERVERS = {"surface": "lattice"}  # name -> last stage that it may include
 UMBRELLA = "palpate"                # include/palpate/palpate.hpp, for users of the library
 
@@ -18,15 +18,18 @@ MAY_SEE = {
     "src": ("include", "src"),
     "baselines": ("include", "baselines"),
     "scenes": ("include", "scenes"),
-    "devices": ("include", "devices"),
+    "devices": ("include", "io", "scenes", "devices"),
     "io": ("include", "io", "scenes"),
     "apps": ("include", "io", "baselines", "scenes", "devices", "apps"),
     "evaluation": ("include", "io", "baselines", "scenes", "evaluation"),
-    "benchmarks": ("include", "io", "baselines", "scenes", "benchmarks", "tests"),
+    "benchmarks": ("include", "io", "baselines", "scenes", "devices", "benchmarks", "tests"),
     "examples": ("include", "io", "baselines", "scenes", "examples"),
 }
 # Folders that build from the standard library and Eigen alone.
 PURE = ("include", "src", "baselines", "scenes")
+
+# What a stage needs of the system beyond the standard library, in its sources only.
+SYSTEM = {"servo": ("pthread.h", "sched.h", "sys/mman.h", "sys/prctl.h")}
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]')
 STANDARD = re.compile(r"^[a-z_0-9]+$")
@@ -84,7 +87,8 @@ def check_include(root, path, name):
         return "includes name a path from the top, never .."
     target = resolve(root, path, name)
     if target is None:
-        outside = not (STANDARD.match(name) or name.startswith("Eigen/"))
+        system = zone == "src" and name in SYSTEM.get(stage_of(relative), ())
+        outside = not (STANDARD.match(name) or name.startswith("Eigen/") or system)
         if zone in PURE and (outside or name.startswith("palpate/")):
             return f"{zone}/ needs the standard library and Eigen, nothing else"
         return None

@@ -8,14 +8,17 @@
 namespace {
 
 std::atomic<std::int64_t> count{0};
+thread_local std::int64_t thread_count = 0;
 
 void* counted(std::size_t size) noexcept {
     count.fetch_add(1, std::memory_order_relaxed);
+    ++thread_count;
     return std::malloc(size == 0 ? 1 : size);
 }
 
 void* counted(std::size_t size, std::align_val_t alignment) noexcept {
     count.fetch_add(1, std::memory_order_relaxed);
+    ++thread_count;
     const auto a = static_cast<std::size_t>(alignment);
     return std::aligned_alloc(a, (size + a) / a * a);  // a multiple of a, never 0
 }
@@ -31,6 +34,10 @@ namespace palpate::support {
 
 std::int64_t allocation_count() {
     return count.load();
+}
+
+std::int64_t thread_allocation_count() {
+    return thread_count;
 }
 
 }  // namespace palpate::support

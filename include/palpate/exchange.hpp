@@ -1,0 +1,139 @@
+// Stage 8, exchange: how threads hand values to each other without waiting. Everything between the
+// servo thread and the rest (snapshots, commands, recordings, devices) goes through these two.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <new>
+#include <optional>
+#include <type_traits>
+
+namespace palpate {
+
+/// The newest of a stream of values: one thread puts, any number of threads get. Neither waits,
+/// locks or allocates. T is plain data that owns nothing, for it is copied byte by byte.
+///
+/// A ring of slots, each with a sequence number that tells a reader whether what it has copied was
+/// written over meanwhile. The bytes are atomic words: no race in the sense of the language, and no
+/// fence that a thread sanitizer could not see. A word is stored with release after the slot was
+/// marked, so a reader that meets a newer word (acquire) also meets the newer mark.
+template <class T>
+requires std::is_trivially_destructible_v<T>
+class Newest {
+  public:
+    /// By one thread only.
+    void put(const T& value) noexcept {
+        const std::uint64_t number = count_.load(std::memory_order_relaxed) + 1;
+        Slot& slot = slots_[number % slot_count];
+        std::array<std::uint64_t, word_count> bytes{};
+        std::memcpy(bytes.data(), static_cast<const void*>(&value), sizeof(T));
+        slot.number.store(0, std::memory_order_relaxed);
+        for (std::size_t i = 0; i < word_count; ++i) {
+            slot.words[i].store(bytes[i], std::memory_order_release);
+        }
+        slot.number.store(number, std::memory_order_release);
+        count_.store(number, std::memory_order_release);
+    }
+
+    /// The newest value; nothing if none was put yet. Takes a bounded number of attempts: nothing,
+    /// too, for a reader that was overtaken by a whole ring of values each time.
+    std::optional<T> get() const noexcept {
+        for (int attempt = 0; attempt < attempts; ++attempt) {
+            const std::uint64_t number = count_.load(std::memory_order_acquire);
+            if (number == 0) return std::nullopt;
+            const Slot& slot = slots_[number % slot_count];
+            if (slot.number.load(std::memory_order_acquire) != number) continue;
+            std::array<std::uint64_t, word_count> bytes;
+            for (std::size_t i = 0; i < word_count; ++i) {
+                bytes[i] = slot.words[i].load(std::memory_order_acquire);
+            }
+            if (slot.number.load(std::memory_order_relaxed) != number) continue;
+            std::optional<T> value(std::in_place);
+            std::memcpy(static_cast<void*>(&*value), bytes.data(), sizeof(T));
+            return value;
+        }
+        return std::nullopt;
+    }
+
+    /// How many values were put so far.
+    std::uint64_t count() const noexcept { return count_.load(std::memory_order_acquire); }
+
+  private:
+    static constexpr std::size_t word_count = (sizeof(T) + 7) / 8;
+    static constexpr std::size_t slot_count = 4;
+    static constexpr int attempts = 16;
+
+    struct Slot {
+        std::atomic<std::uint64_t> number{0};
+        std::array<std::atomic<std::uint64_t>, word_count> words{};
+    };
+
+    alignas(64) std::atomic<std::uint64_t> count_{0};
+    alignas(64) std::array<Slot, slot_count> slots_{};
+};
+
+/// A bounded queue: any number of threads push, one thread pops. Neither waits, locks or, after
+/// construction, allocates. In the order in which the pushes took their places (Vyukov's bounded
+/// queue).
+// The padding keeps the two sides off each other's cache lines.
+template <class T>
+class Queue {  // NOLINT(clang-analyzer-optin.performance.Padding)
+  public:
+    /// Room for at least `capacity` values. Throws std::bad_alloc.
+    explicit Queue(std::size_t capacity) {
+        std::size_t size = 2;
+        while (size < capacity) size *= 2;
+        mask_ = size - 1;
+        cells_ = std::make_unique<Cell[]>(size);
+        for (std::size_t i = 0; i < size; ++i) cells_[i].turn.store(i, std::memory_order_relaxed);
+    }
+
+    /// False, and nothing happens, if the queue is full.
+    bool push(const T& value) noexcept(std::is_nothrow_copy_assignable_v<T>) {
+        std::size_t place = tail_.load(std::memory_order_relaxed);
+        for (;;) {
+            Cell& cell = cells_[place & mask_];
+            const std::size_t turn = cell.turn.load(std::memory_order_acquire);
+            if (turn == place) {
+                if (tail_.compare_exchange_weak(place, place + 1, std::memory_order_relaxed)) {
+                    cell.value = value;
+                    cell.turn.store(place + 1, std::memory_order_release);
+                    return true;
+                }
+            } else if (turn < place) {
+                return false;
+            } else {
+                place = tail_.load(std::memory_order_relaxed);
+            }
+        }
+    }
+
+    /// The oldest value, or nothing. By one thread only.
+    std::optional<T> pop() noexcept(std::is_nothrow_copy_constructible_v<T>) {
+        Cell& cell = cells_[head_ & mask_];
+        if (cell.turn.load(std::memory_order_acquire) != head_ + 1) return std::nullopt;
+        std::optional<T> value(cell.value);
+        cell.turn.store(head_ + mask_ + 1, std::memory_order_release);
+        ++head_;
+        return value;
+    }
+
+    std::size_t capacity() const noexcept { return mask_ + 1; }
+
+  private:
+    struct Cell {
+        std::atomic<std::size_t> turn{0};
+        T value{};
+    };
+
+    std::size_t mask_ = 0;
+    std::unique_ptr<Cell[]> cells_;
+    alignas(64) std::atomic<std::size_t> tail_{0};
+    alignas(64) std::size_t head_ = 0;  // of the popping thread
+};
+
+}  // namespace palpate

@@ -1,0 +1,98 @@
+// Stage 11, session: a live tick. What the servo thread does between reading a device and writing
+// to it, as a value without clock or thread, so that a recording gives the same ticks again.
+#pragma once
+
+#include <variant>
+
+#include "palpate/device.hpp"
+#include "palpate/renderer.hpp"
+
+namespace palpate {
+
+struct SessionSettings {
+    /// Bits of the device's buttons: while any of them is held, the volume hangs on the hand (the
+    /// clutch), and forces are let go.
+    std::uint32_t clutch_buttons = 0;
+    /// While none of these is held there is no force (a dead-man switch); 0: no such switch.
+    std::uint32_t deadman_buttons = 0;
+    /// [device mm/s] No hand is faster: a position that it could not have reached since the last
+    /// good one is broken input until it could have.
+    double fastest_hand = 1e4;
+    /// [s] A tick that takes longer gives no force, and the next ones start anew.
+    double overrun = 0.02;
+};
+
+/// Asks of a running session; each is applied between two ticks.
+namespace command {
+struct Isovalue {
+    double isovalue;  ///< [data units]
+};
+struct Freeze {
+    bool on;  ///< hand and proxy stand still for the session, forces are let go
+};
+struct Clutch {
+    bool on;  ///< as a clutch button
+};
+struct Forces {
+    bool on;
+};
+/// Another scale about the SCP: neither the proxy nor the force changes with it.
+struct Scale {
+    double scale;  ///< physical mm per device mm, > 0
+};
+}  // namespace command
+/// A new DeviceTransform may move the HIP: forces are let go and start anew.
+using Command =
+    std::variant<command::Isovalue, command::Freeze, command::Clutch, command::Forces,
+                 command::Scale, ForceSettings, Friction, Penetrability, DeviceTransform>;
+
+/// Everything between two ticks. A value: copied, and given the same readings and commands, both
+/// go on alike, bit for bit.
+struct Session {
+    Renderer renderer;
+    SessionSettings settings;
+    bool frozen = false;    ///< from the first accepted position on
+    bool clutched = false;  ///< by command
+
+    // What the last ticks left.
+    bool seen = false;                  ///< a position was accepted
+    double seen_at = 0;                 ///< [s] when the last one was
+    Vec3 hand = Vec3::Zero();           ///< [device mm] the last one
+    Vec3 frozen_hand = Vec3::Zero();    ///< [device mm] where the hand was when it was frozen
+    Mat3 tool = Mat3::Identity();       ///< the last orientation while the clutch was closed
+    bool holding = false;               ///< the clutch was closed in the last tick
+    Vec3 held_hip = Vec3::Zero();       ///< [mm, physical] at the moment it closed
+    Mat3 held_tool = Mat3::Identity();  ///< tool axes to physical axes at that moment
+};
+
+/// What a live tick gave.
+struct SessionTick {
+    Tick tick;  ///< time, proxy, force as it goes to the device
+    DeviceReading device;
+    DeviceTransform transform;  ///< in use in this tick
+    bool frozen = false;
+    bool clutched = false;
+};
+
+/// Throws std::invalid_argument for settings out of range.
+void check(const SessionSettings& settings);
+/// Throws std::invalid_argument, saying what is wrong, for a command that this session could not
+/// carry out. `settings` are the session's; its rate and device limits count.
+void check(const Command& command, const RendererSettings& settings, Solid solid);
+
+/// Carries out a command that passed check(). Never throws or allocates.
+void apply(Session& session, const Command& command) noexcept;
+
+/// One tick at a time [s] after the last. Never throws or allocates. No force for input that is not
+/// ready, older than the force settings' `stale_after`, not finite or not plausible.
+SessionTick advance(Session& session, double time, const DeviceReading& reading) noexcept;
+
+/// Takes the force of a tick back because it came too late, and starts anew.
+void let_go(Session& session, SessionTick& tick) noexcept;
+
+/// The tick that a recorded one should be if the session was in the same state: advance() with its
+/// time and reading, and let_go() where its force was taken back. The same bits, or something is
+/// wrong.
+SessionTick repeat(Session& session, const SessionTick& recorded) noexcept;
+
+}  // namespace palpate

@@ -1,0 +1,235 @@
+// Servo: the loop, its clock and its counters. Once running it does nothing but compute, read
+// clocks and sleep: tests/core/quiet.
+#include "palpate/servo.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <ctime>
+#include <stdexcept>
+
+#include "servo/privileges.hpp"
+
+namespace palpate {
+namespace {
+
+constexpr std::int64_t second_ns = 1'000'000'000;
+/// Commands carried out between two ticks; more wait, so that a flood cannot stall the loop.
+constexpr int commands_per_tick = 16;
+/// From the start of the thread to its first tick [ns].
+constexpr std::int64_t settle_ns = 1'000'000;
+/// Between two looks at whether the thread has started.
+constexpr auto poll = std::chrono::microseconds(100);
+
+std::int64_t now_ns(clockid_t clock) {
+    timespec t{};
+    clock_gettime(clock, &t);
+    return t.tv_sec * second_ns + t.tv_nsec;
+}
+
+void sleep_until(std::int64_t ns) {
+    const timespec t{ns / second_ns, ns % second_ns};
+    while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr) == EINTR) {
+    }
+}
+
+void add(std::atomic<std::int64_t>& counter, std::int64_t amount) {
+    counter.store(counter.load(std::memory_order_relaxed) + amount, std::memory_order_relaxed);
+}
+
+}  // namespace
+
+const char* name_of(TickCause cause) {
+    switch (cause) {
+        case TickCause::none:
+            return "none";
+        case TickCause::machine:
+            return "the machine";
+        case TickCause::device:
+            return "the device";
+        case TickCause::proxy:
+            return "the proxy update";
+        case TickCause::other:
+            return "the rest of the tick";
+    }
+    return "unknown";
+}
+
+/// The servo thread's own: when ticks are due and how they went. Times in ns.
+struct Servo::Clock {
+    std::int64_t period;
+    std::int64_t zero;  // session time 0
+    std::int64_t due;   // the next tick
+    std::int64_t last_start = 0;
+    WorstTick worst = {};
+};
+
+/// Of one tick: when it began, and how long its parts took.
+struct Servo::Stamps {
+    std::int64_t start;
+    std::int64_t compute;  // CPU time of all of it
+    std::int64_t device;
+    std::int64_t proxy;
+
+    TickCause cause(std::int64_t lateness, std::int64_t work) const {
+        // A device that waits does not compute: that is not the machine's doing.
+        if (work > lateness && 2 * device >= work) return TickCause::device;
+        // What the machine took: waking late, and time in which the thread did not run.
+        if (lateness + std::max<std::int64_t>(0, work - compute) >= compute) {
+            return TickCause::machine;
+        }
+        const std::int64_t other = work - device - proxy;
+        if (device >= std::max(proxy, other)) return TickCause::device;
+        return proxy >= other ? TickCause::proxy : TickCause::other;
+    }
+};
+
+Servo::Servo(Session session, Device& device, const ServoSettings& settings)
+    : session_(std::move(session)),
+      device_(device),
+      settings_(settings),
+      start_(session_.renderer.settings),
+      solid_(session_.renderer.field.solid()),
+      commands_(settings.command_room) {
+    check(session_.renderer.settings);
+    check(session_.settings);
+    if (!(settings.rate >= 250 && settings.rate <= 8000)) {
+        throw std::invalid_argument("the servo's rate must be 250 to 8000 Hz");
+    }
+    if (session_.renderer.settings.device.rate > settings.rate) {
+        throw std::invalid_argument(
+            "the device settings count on a faster loop than the servo's: springs would not be "
+            "stable");
+    }
+    if (settings.priority < 1 || settings.priority > 99) {
+        throw std::invalid_argument("the servo's priority must be 1 to 99");
+    }
+}
+
+Servo::~Servo() {
+    stop();
+}
+
+void Servo::start() {
+    if (thread_.joinable() || ready_) throw std::logic_error("a servo is started once");
+    thread_ = std::jthread([this] { run(); });
+    // Once, until memory is locked: not worth a lock of its own.
+    while (!ready_.load(std::memory_order_acquire)) std::this_thread::sleep_for(poll);
+}
+
+void Servo::stop() noexcept {
+    stopping_.store(true, std::memory_order_release);
+    if (thread_.joinable()) thread_.join();
+}
+
+bool Servo::send(const Command& command) {
+    check(command, start_, solid_);
+    return commands_.push(command);
+}
+
+ServoReport Servo::report() const noexcept {
+    ServoReport report;
+    report.ticks = ticks_.load(std::memory_order_relaxed);
+    report.missed = missed_.load(std::memory_order_relaxed);
+    report.overruns = overruns_.load(std::memory_order_relaxed);
+    report.unrecorded = unrecorded_.load(std::memory_order_relaxed);
+    report.period = period_.summary();
+    report.lateness = lateness_.summary();
+    report.work = work_.summary();
+    report.compute = compute_.summary();
+    report.worst = worst_.get().value_or(WorstTick{});
+    return report;
+}
+
+void Servo::run() noexcept {
+    try {
+        privileges_ = settings_.real_time ? ask_for_real_time(settings_.priority)
+                                          : std::vector<std::string>{"real time: not asked for"};
+    } catch (...) {  // no memory for the words; the loop needs none
+    }
+    ready_.store(true, std::memory_order_release);
+    Clock clock{static_cast<std::int64_t>(static_cast<double>(second_ns) / settings_.rate), 0, 0};
+    clock.zero = clock.due = now_ns(CLOCK_MONOTONIC) + settle_ns;
+    while (!stopping_.load(std::memory_order_acquire)) {
+        sleep_until(clock.due);
+        tick(clock);
+    }
+    device_.write(Vec3::Zero(), 1e-9 * static_cast<double>(now_ns(CLOCK_MONOTONIC) - clock.zero));
+}
+
+void Servo::tick(Clock& clock) noexcept {
+    const std::int64_t start = now_ns(CLOCK_MONOTONIC);
+    const std::int64_t compute_start = now_ns(CLOCK_THREAD_CPUTIME_ID);
+    const std::int64_t number = ticks_.load(std::memory_order_relaxed);
+    const double time = 1e-9 * static_cast<double>(start - clock.zero);
+
+    obey();
+    const std::int64_t before_read = now_ns(CLOCK_MONOTONIC);
+    const DeviceReading reading = device_.read(time);
+    const std::int64_t after_read = now_ns(CLOCK_MONOTONIC);
+    SessionTick result = advance(session_, time, reading);
+    const std::int64_t before_write = now_ns(CLOCK_MONOTONIC);
+    if (1e-9 * static_cast<double>(before_write - start) > session_.settings.overrun) {
+        let_go(session_, result);
+        add(overruns_, 1);
+    }
+    device_.write(result.tick.force, time);
+    const std::int64_t after_write = now_ns(CLOCK_MONOTONIC);
+    publish(number, result);
+    record(result);
+
+    count(clock, number,
+          {.start = start,
+           .compute = now_ns(CLOCK_THREAD_CPUTIME_ID) - compute_start,
+           .device = (after_read - before_read) + (after_write - before_write),
+           .proxy = result.tick.update_ns});
+}
+
+void Servo::count(Clock& clock, std::int64_t number, const Stamps& stamps) noexcept {
+    const std::int64_t end = now_ns(CLOCK_MONOTONIC);
+    const WorstTick tick{number, stamps.start - clock.due, end - stamps.start, stamps.compute,
+                         stamps.cause(stamps.start - clock.due, end - stamps.start)};
+    lateness_.add(tick.lateness_ns);
+    work_.add(tick.work_ns);
+    compute_.add(tick.compute_ns);
+    if (number > 0) period_.add(stamps.start - clock.last_start);
+    clock.last_start = stamps.start;
+    if (tick.lateness_ns + tick.work_ns > clock.worst.lateness_ns + clock.worst.work_ns) {
+        clock.worst = tick;
+        worst_.put(tick);
+    }
+    // A tick that ends after the next was due has missed it; ticks due meanwhile are not made up.
+    const std::int64_t late = (end - clock.due) / clock.period;
+    add(missed_, late);
+    clock.due += clock.period * std::max<std::int64_t>(1, late);
+    add(ticks_, 1);
+}
+
+void Servo::obey() noexcept {
+    for (int i = 0; i < commands_per_tick; ++i) {
+        const std::optional<Command> command = commands_.pop();
+        if (!command) return;
+        apply(session_, *command);
+        record(*command);
+    }
+}
+
+void Servo::record(const SessionEvent& event) noexcept {
+    if (settings_.recorder && !settings_.recorder->push(event)) add(unrecorded_, 1);
+}
+
+void Servo::publish(std::int64_t number, const SessionTick& tick) noexcept {
+    const RendererSettings& settings = session_.renderer.settings;
+    Snapshot snapshot;
+    snapshot.number = number;
+    snapshot.session = tick;
+    snapshot.tetrahedron = session_.renderer.proxy.scp.tetrahedron;
+    snapshot.normal = normal_at(session_.renderer.proxy, session_.renderer.field);
+    snapshot.stiffness = settings.force.stiffness;
+    snapshot.penetrability_on = settings.penetrability.on;
+    snapshot.forces_on = settings.forces_on;
+    snapshot.missed = missed_.load(std::memory_order_relaxed);
+    snapshot_.put(snapshot);
+}
+
+}  // namespace palpate

@@ -1,0 +1,13 @@
+// What an operating system can do for a real-time thread, and what it says when it will not.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace palpate {
+
+/// Asks, for the calling thread, for SCHED_FIFO, for memory that stays in place and for exact
+/// timers. A sentence for each: what was granted, or what was not and what to set.
+std::vector<std::string> ask_for_real_time(int priority);
+
+}  // namespace palpate

@@ -1,0 +1,161 @@
+// Session: which input counts, what the clutch does, and how commands change things.
+#include "palpate/session.hpp"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace palpate {
+namespace {
+
+/// Farther from its origin no device reaches [device mm].
+constexpr double farthest_hand = 1e4;
+
+/// Whether a hand could have come here since the last good position.
+bool plausible(const Session& session, double time, const Vec3& position) {
+    if (!position.allFinite() || !(position.cwiseAbs().maxCoeff() <= farthest_hand)) return false;
+    if (!session.seen) return true;
+    const double way = (position - session.hand).norm();
+    return way <= session.settings.fastest_hand * (time - session.seen_at);
+}
+
+/// A rotation freed of what rounding in a device's orientation adds, clutch after clutch.
+Mat3 orthonormal(const Mat3& m) {
+    Mat3 r;
+    r.col(0) = m.col(0).normalized();
+    r.col(1) = (m.col(1) - r.col(0) * r.col(0).dot(m.col(1))).normalized();
+    r.col(2) = r.col(0).cross(r.col(1));
+    return r;
+}
+
+bool is_rotation(const Mat3& m) {
+    return m.allFinite() && (m.transpose() * m - Mat3::Identity()).cwiseAbs().maxCoeff() < 1e-6 &&
+           m.determinant() > 0;
+}
+
+/// Moves and turns the volume so that HIP and tool stay where they were in it.
+void hold(Session& session, const Mat3& tool, const Vec3& position) {
+    DeviceTransform& transform = session.renderer.settings.transform;
+    if (!session.holding) {
+        session.held_hip = physical_from_device(transform, position);
+        session.held_tool = transform.rotation * tool;
+    }
+    transform.rotation = orthonormal(session.held_tool * tool.transpose());
+    transform.translation = session.held_hip - transform.scale * (transform.rotation * position);
+}
+
+/// Scales about the SCP: its device position stays, and with it the pull in device mm.
+void scale_about_scp(Renderer& renderer, double scale) {
+    DeviceTransform& transform = renderer.settings.transform;
+    if (renderer.proxy.placed) {
+        const Vec3& scp = renderer.proxy.scp_physical;
+        transform.translation = scp + scale / transform.scale * (transform.translation - scp);
+    }
+    transform.scale = scale;
+}
+
+}  // namespace
+
+void check(const SessionSettings& s) {
+    if (!(s.fastest_hand > 0)) {
+        throw std::invalid_argument("the fastest hand [mm/s] must be above 0 (inf: any)");
+    }
+    if (!(s.overrun > 0)) {
+        throw std::invalid_argument("the longest tick [s] must be above 0 (inf: any)");
+    }
+}
+
+void check(const Command& command, const RendererSettings& settings, Solid solid) {
+    RendererSettings changed = settings;
+    if (const auto* to = std::get_if<command::Isovalue>(&command)) {
+        if (std::isnan(to->isovalue)) throw std::invalid_argument("the isovalue is not a number");
+    } else if (const auto* force = std::get_if<ForceSettings>(&command)) {
+        changed.force = *force;
+    } else if (const auto* friction = std::get_if<Friction>(&command)) {
+        changed.proxy.friction = *friction;
+    } else if (const auto* penetrability = std::get_if<Penetrability>(&command)) {
+        check(*penetrability, solid);
+    } else if (const auto* transform = std::get_if<DeviceTransform>(&command)) {
+        changed.transform = *transform;
+    } else if (const auto* scale = std::get_if<command::Scale>(&command)) {
+        changed.transform.scale = scale->scale;
+    }
+    check(changed);
+}
+
+void apply(Session& session, const Command& command) noexcept {
+    RendererSettings& settings = session.renderer.settings;
+    if (const auto* to = std::get_if<command::Isovalue>(&command)) {
+        session.renderer.proxy.isovalue = to->isovalue;
+    } else if (const auto* freeze = std::get_if<command::Freeze>(&command)) {
+        if (freeze->on && !session.frozen) session.frozen_hand = session.hand;
+        session.frozen = freeze->on;
+    } else if (const auto* clutch = std::get_if<command::Clutch>(&command)) {
+        session.clutched = clutch->on;
+    } else if (const auto* forces = std::get_if<command::Forces>(&command)) {
+        settings.forces_on = forces->on;
+    } else if (const auto* scale = std::get_if<command::Scale>(&command)) {
+        scale_about_scp(session.renderer, scale->scale);
+        session.holding = false;  // what was held was held at the other scale
+    } else if (const auto* force = std::get_if<ForceSettings>(&command)) {
+        settings.force = *force;
+    } else if (const auto* friction = std::get_if<Friction>(&command)) {
+        settings.proxy.friction = *friction;
+    } else if (const auto* penetrability = std::get_if<Penetrability>(&command)) {
+        settings.penetrability = *penetrability;
+    } else if (const auto* transform = std::get_if<DeviceTransform>(&command)) {
+        settings.transform = *transform;
+        session.holding = false;
+        session.renderer.force.waiting = true;
+    }
+}
+
+SessionTick advance(Session& session, double time, const DeviceReading& reading) noexcept {
+    const SessionSettings& settings = session.settings;
+    const bool fresh = reading.age <= session.renderer.settings.force.stale_after;
+    DeviceState state;
+    state.time = time;
+    state.valid = reading.status == DeviceStatus::ready && fresh &&
+                  plausible(session, time, reading.position);
+    state.armed = settings.deadman_buttons == 0 || (reading.buttons & settings.deadman_buttons);
+    const bool clutched = session.clutched || (reading.buttons & settings.clutch_buttons) != 0;
+    state.released = session.frozen || clutched;
+
+    if (state.valid) {
+        if (!session.seen) session.frozen_hand = reading.position;
+        session.seen = true;
+        session.seen_at = time;
+        session.hand = reading.position;
+    }
+    const bool hangs = clutched && !session.frozen;
+    if (hangs && state.valid) {
+        // An orientation that is none for a moment turns nothing.
+        if (is_rotation(reading.orientation)) session.tool = reading.orientation;
+        hold(session, session.tool, reading.position);
+    }
+    session.holding = hangs && (state.valid || session.holding);
+    state.position = session.frozen ? session.frozen_hand : reading.position;
+    SessionTick result;
+    result.tick = render(session.renderer, state);
+    result.device = reading;
+    result.transform = session.renderer.settings.transform;
+    result.frozen = session.frozen;
+    result.clutched = clutched;
+    return result;
+}
+
+void let_go(Session& session, SessionTick& tick) noexcept {
+    session.renderer.force = ForceState{};
+    tick.tick.force.setZero();
+    tick.tick.force_flags |= force_overrun;
+}
+
+SessionTick repeat(Session& session, const SessionTick& recorded) noexcept {
+    SessionTick tick = advance(session, recorded.tick.time, recorded.device);
+    if (recorded.tick.force_flags & force_overrun) let_go(session, tick);
+    return tick;
+}
+
+}  // namespace palpate

@@ -1,0 +1,326 @@
+// Servo: the loop on its own thread, commands in, snapshots and recordings out, forces zero when
+// anything is wrong. No wall-clock maximum is asserted: the machine may stall.
+#include "palpate/servo.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <thread>
+#include <vector>
+
+#include "support/scripted_device.hpp"
+#include "support/stroke.hpp"
+
+using namespace palpate;
+using namespace palpate::support;
+using namespace std::chrono_literals;
+
+namespace {
+
+/// Until it holds, at most for ten seconds.
+bool soon(auto&& condition) {
+    const auto end = std::chrono::steady_clock::now() + 10s;
+    while (!condition()) {
+        if (std::chrono::steady_clock::now() > end) return false;
+        std::this_thread::sleep_for(1ms);
+    }
+    return true;
+}
+
+Session ramp_session(const RendererSettings& settings = {}) {
+    return {make_renderer(ramp_field(), 30, settings), {}};
+}
+
+/// Presses 1 mm into the ramp's level 30 and rests there.
+DeviceReading press(double time) {
+    return ready_at(at_depth(29 + std::min(2.0, 20 * time)));
+}
+
+TEST(Servo, renders_at_its_rate_and_counts) {
+    ScriptedDevice device(&press);
+    Servo servo(ramp_session(), device, {.rate = 1000});
+    EXPECT_FALSE(servo.snapshot());
+    servo.start();
+    EXPECT_EQ(servo.privileges().size(), 2U);
+    ASSERT_TRUE(soon([&] { return servo.report().ticks >= 1000; }));
+    servo.stop();
+    const ServoReport report = servo.report();
+    EXPECT_EQ(report.period.count, static_cast<std::uint64_t>(report.ticks - 1));
+    EXPECT_EQ(report.compute.count, static_cast<std::uint64_t>(report.ticks));
+    EXPECT_NEAR(static_cast<double>(report.period.p50), 1e6, 2e5);
+    EXPECT_LE(report.compute.p50, report.work.max);
+    EXPECT_GE(report.worst.tick, 0);
+    EXPECT_NE(report.worst.cause, TickCause::none);
+    EXPECT_EQ(device.reads(), report.ticks);
+    EXPECT_EQ(device.writes(), report.ticks + 1);  // and the zero at the end
+}
+
+TEST(Servo, is_started_once) {
+    ScriptedDevice device(&press);
+    Servo servo(ramp_session(), device);
+    servo.start();
+    EXPECT_THROW(servo.start(), std::logic_error);
+    servo.stop();
+    EXPECT_THROW(servo.start(), std::logic_error);
+}
+
+TEST(Servo, forces_rise_from_zero_and_end_at_zero) {
+    ScriptedDevice device(&press);
+    Servo servo(ramp_session(), device);
+    servo.start();
+    ASSERT_TRUE(soon([&] { return device.force().norm() > 0.49; }));
+    EXPECT_LT(device.force()[2], 0);  // outwards
+    servo.stop();
+    EXPECT_EQ(device.force(), Vec3(0, 0, 0));
+}
+
+TEST(Servo, destroying_it_ends_at_zero_too) {
+    ScriptedDevice device(&press);
+    {
+        Servo servo(ramp_session(), device);
+        servo.start();
+        ASSERT_TRUE(soon([&] { return device.force().norm() > 0.1; }));
+    }
+    EXPECT_EQ(device.force(), Vec3(0, 0, 0));
+}
+
+TEST(Servo, a_device_that_fails_in_contact_gets_no_force) {
+    std::atomic<DeviceStatus> status{DeviceStatus::ready};
+    ScriptedDevice device([&](double time) {
+        DeviceReading reading = press(time);
+        reading.status = status;
+        return reading;
+    });
+    Servo servo(ramp_session(), device);
+    servo.start();
+    ASSERT_TRUE(soon([&] { return device.force().norm() > 0.4; }));
+    status = DeviceStatus::lost;
+    const std::int64_t then = device.reads();
+    ASSERT_TRUE(soon([&] { return device.reads() >= then + 2; }));
+    EXPECT_EQ(device.force(), Vec3(0, 0, 0));
+    EXPECT_EQ(servo.snapshot()->session.device.status, DeviceStatus::lost);
+}
+
+TEST(Servo, a_tick_that_takes_too_long_takes_its_force_back) {
+    std::atomic<bool> stall{false};
+    ScriptedDevice device([&](double time) {
+        if (stall.exchange(false)) std::this_thread::sleep_for(60ms);
+        return press(time);
+    });
+    Queue<SessionEvent> recorder(1 << 14);
+    Servo servo(ramp_session(), device, {.recorder = &recorder});
+    servo.start();
+    ASSERT_TRUE(soon([&] { return device.force().norm() > 0.4; }));
+    stall = true;
+    ASSERT_TRUE(soon([&] { return servo.report().overruns >= 1; }));
+    servo.stop();
+    EXPECT_GE(servo.report().missed, 50);
+    EXPECT_GE(servo.report().worst.work_ns, 50'000'000);
+    // The device slept; unless the machine was later still, it is the device's doing.
+    const WorstTick worst = servo.report().worst;
+    const bool machine = worst.lateness_ns >= 10'000'000;
+    EXPECT_EQ(worst.cause, machine ? worst.cause : TickCause::device);
+    bool found = false;
+    while (const auto event = recorder.pop()) {
+        const auto* tick = std::get_if<SessionTick>(&*event);
+        if (!tick || !(tick->tick.force_flags & force_overrun)) continue;
+        found = true;
+        EXPECT_EQ(tick->tick.force, Vec3(0, 0, 0));
+    }
+    EXPECT_TRUE(found);
+}
+
+TEST(Servo, ticks_that_were_due_during_a_stall_are_not_made_up) {
+    std::atomic<bool> stall{false};
+    ScriptedDevice device([&](double time) {
+        if (stall.exchange(false)) std::this_thread::sleep_for(60ms);
+        return press(time);
+    });
+    Queue<SessionEvent> recorder(1 << 14);
+    Servo servo(ramp_session(), device, {.recorder = &recorder});
+    servo.start();
+    ASSERT_TRUE(soon([&] { return servo.report().ticks >= 50; }));
+    stall = true;
+    ASSERT_TRUE(soon([&] { return servo.report().missed >= 50; }));
+    servo.stop();
+    double last = -1;
+    int close = 0;  // ticks that follow at once; a burst would be 50 of them
+    while (const auto event = recorder.pop()) {
+        const double time = std::get<SessionTick>(*event).tick.time;
+        close += time - last < 0.3e-3;
+        last = time;
+    }
+    EXPECT_LT(close, 20);
+}
+
+TEST(Servo, a_flood_of_commands_is_spread_over_ticks) {
+    ScriptedDevice device(&press);
+    Queue<SessionEvent> recorder(1 << 14);
+    Servo servo(ramp_session(), device, {.command_room = 64, .recorder = &recorder});
+    for (int i = 0; i < 40; ++i) ASSERT_TRUE(servo.send(command::Isovalue{30.0 + i}));
+    servo.start();
+    ASSERT_TRUE(soon([&] { return servo.report().ticks >= 4; }));
+    servo.stop();
+    std::vector<int> commands(1);  // before each tick
+    while (const auto event = recorder.pop()) {
+        if (std::holds_alternative<SessionTick>(*event)) {
+            commands.push_back(0);
+        } else {
+            ++commands.back();
+        }
+    }
+    ASSERT_GE(commands.size(), 4U);
+    EXPECT_EQ((std::vector<int>{commands[0], commands[1], commands[2], commands[3]}),
+              (std::vector<int>{16, 16, 8, 0}));
+}
+
+TEST(Servo, tells_the_device_from_the_proxy_and_the_machine) {
+    ScriptedDevice device([&](double time) {
+        // Busy, so that it is CPU time and not the machine's.
+        const auto end = std::chrono::steady_clock::now() + 200us;
+        while (std::chrono::steady_clock::now() < end) {
+        }
+        return press(time);
+    });
+    RendererSettings settings;
+    settings.device.rate = 500;
+    Servo servo(ramp_session(settings), device, {.rate = 500});
+    servo.start();
+    ASSERT_TRUE(soon([&] { return servo.report().ticks >= 200; }));
+    servo.stop();
+    EXPECT_GE(servo.report().compute.p50, 150'000);
+    EXPECT_NE(servo.report().worst.cause, TickCause::proxy);
+    std::set<std::string> names;
+    for (int c = 0; c <= static_cast<int>(TickCause::other); ++c) {
+        names.insert(name_of(static_cast<TickCause>(c)));
+    }
+    EXPECT_EQ(names.size(), 5U);
+}
+
+TEST(Servo, commands_take_effect_and_show_in_snapshots) {
+    ScriptedDevice device(&press);
+    Servo servo(ramp_session(), device);
+    servo.start();
+    EXPECT_TRUE(servo.send(command::Isovalue{30.5}));
+    ASSERT_TRUE(soon([&] {
+        const auto seen = servo.snapshot();
+        return seen && seen->session.tick.proxy.isovalue == 30.5;
+    }));
+    ForceSettings force;
+    force.stiffness = 1.25;
+    EXPECT_TRUE(servo.send(force));
+    EXPECT_TRUE(servo.send(command::Forces{false}));
+    ASSERT_TRUE(soon([&] { return servo.snapshot()->stiffness == 1.25; }));
+    ASSERT_TRUE(soon([&] { return !servo.snapshot()->forces_on; }));
+    ASSERT_TRUE(soon([&] { return device.force().isZero(0); }));
+    EXPECT_TRUE(servo.send(penetrability_threshold(1, 0)));
+    ASSERT_TRUE(soon([&] { return servo.snapshot()->penetrability_on; }));
+    const Snapshot seen = *servo.snapshot();
+    EXPECT_NEAR((seen.normal - Vec3(0, 0, -1)).norm(), 0, 1e-12);
+}
+
+TEST(Servo, refuses_commands_that_cannot_be_carried_out_and_says_when_it_has_no_room) {
+    ScriptedDevice device(&press);
+    Servo servo(ramp_session(), device, {.command_room = 4});
+    ForceSettings hard;
+    hard.stiffness = 1000;
+    EXPECT_THROW(servo.send(hard), std::invalid_argument);
+    EXPECT_THROW(servo.send(command::Isovalue{std::numeric_limits<double>::quiet_NaN()}),
+                 std::invalid_argument);
+    for (int i = 0; i < 4; ++i) EXPECT_TRUE(servo.send(command::Isovalue{30}));
+    EXPECT_FALSE(servo.send(command::Isovalue{30}));  // it does not run yet
+}
+
+TEST(Servo, settings_that_cannot_be_run_are_refused) {
+    ScriptedDevice device(&press);
+    EXPECT_THROW(Servo(ramp_session(), device, {.rate = 249}), std::invalid_argument);
+    EXPECT_THROW(Servo(ramp_session(), device, {.rate = 8001}), std::invalid_argument);
+    EXPECT_THROW(Servo(ramp_session(), device, {.priority = 0}), std::invalid_argument);
+    EXPECT_THROW(Servo(ramp_session(), device, {.rate = 500}), std::invalid_argument);
+    Session session = ramp_session();
+    session.renderer.settings.force.stiffness = -1;
+    EXPECT_THROW(Servo(session, device), std::invalid_argument);
+}
+
+TEST(Servo, what_was_recorded_gives_the_same_ticks_again_bit_for_bit) {
+    ScriptedDevice device([](double time) {
+        return ready_at(at_depth(31 + 2 * std::sin(40 * time)) + Vec3(std::sin(9 * time), 0, 0));
+    });
+    const Session begin = ramp_session();
+    Queue<SessionEvent> recorder(1 << 14);
+    Servo servo(begin, device, {.rate = 4000, .recorder = &recorder});
+    servo.start();
+    const Penetrability threshold = penetrability_threshold(0.8, 20);
+    for (int round = 0; servo.report().ticks < 4000; ++round) {
+        servo.send(command::Isovalue{28.0 + round % 5});
+        servo.send(command::Scale{1 + 0.1 * (round % 3)});
+        if (round % 7 == 3) servo.send(threshold);
+        if (round % 7 == 6) servo.send(no_penetrability());
+        if (round % 11 == 5) servo.send(command::Freeze{round % 2 == 0});
+        std::this_thread::sleep_for(5ms);
+    }
+    servo.stop();
+    EXPECT_EQ(servo.report().unrecorded, 0);
+
+    Session session = begin;
+    std::int64_t ticks = 0, commands = 0, felt = 0;
+    while (const auto event = recorder.pop()) {
+        if (const auto* command = std::get_if<Command>(&*event)) {
+            apply(session, *command);
+            ++commands;
+            continue;
+        }
+        const auto& recorded = std::get<SessionTick>(*event);
+        const SessionTick again = repeat(session, recorded);
+        ASSERT_EQ(again.tick.force, recorded.tick.force) << "tick " << ticks;
+        ASSERT_EQ(again.tick.proxy.scp, recorded.tick.proxy.scp) << "tick " << ticks;
+        ASSERT_EQ(again.tick.proxy.isovalue, recorded.tick.proxy.isovalue);
+        ASSERT_EQ(again.tick.force_flags, recorded.tick.force_flags);
+        felt += !again.tick.force.isZero(0);
+        ++ticks;
+    }
+    EXPECT_EQ(ticks, servo.report().ticks);
+    EXPECT_GT(commands, 10);
+    EXPECT_GT(felt, 50);
+}
+
+TEST(Servo, a_recorder_that_is_full_is_counted_and_holds_nothing_up) {
+    ScriptedDevice device(&press);
+    Queue<SessionEvent> recorder(8);
+    Servo servo(ramp_session(), device, {.recorder = &recorder});
+    servo.start();
+    EXPECT_TRUE(soon([&] { return servo.report().unrecorded >= 100; }));
+}
+
+TEST(Servo, any_number_of_observers_see_ticks_that_only_go_forward) {
+    ScriptedDevice device(&press);
+    Servo servo(ramp_session(), device, {.rate = 4000});
+    std::atomic<bool> done{false};
+    std::atomic<std::int64_t> back{0}, seen{0};
+    std::vector<std::jthread> observers;
+    for (int i = 0; i < 3; ++i) {
+        observers.emplace_back([&] {
+            std::int64_t last = -1;
+            while (!done) {
+                const auto snapshot = servo.snapshot();
+                if (!snapshot) continue;
+                ++seen;
+                back += snapshot->number < last;
+                // Position and time belong together.
+                back += snapshot->session.device.position !=
+                        press(snapshot->session.tick.time).position;
+                last = snapshot->number;
+            }
+        });
+    }
+    servo.start();
+    EXPECT_TRUE(soon([&] { return servo.report().ticks >= 500 && seen >= 500; }));
+    done = true;
+    observers.clear();
+    EXPECT_EQ(back, 0);
+}
+
+}  // namespace

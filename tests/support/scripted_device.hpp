@@ -1,0 +1,52 @@
+// A device whose hand moves by a function of time and whose forces are remembered: for tests of
+// what drives devices. It can be told to misbehave.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <functional>
+
+#include "palpate/device.hpp"
+
+namespace palpate::support {
+
+class ScriptedDevice : public Device {
+  public:
+    explicit ScriptedDevice(std::function<DeviceReading(double)> script)
+        : script_(std::move(script)) {}
+
+    DeviceInfo info() const override { return {}; }
+    DeviceReading read(double time) noexcept override {
+        reads_.fetch_add(1);
+        return script_(time);
+    }
+    void write(const Vec3& force, double) noexcept override {
+        for (std::size_t a = 0; a < 3; ++a)
+            force_[a].store(stopped_ ? 0 : force[static_cast<int>(a)]);
+        const double most = most_.load();
+        if (force.norm() > most) most_.store(force.norm());
+        writes_.fetch_add(1);
+    }
+    void stop() noexcept override { stopped_ = true; }
+
+    Vec3 force() const { return {force_[0].load(), force_[1].load(), force_[2].load()}; }
+    double largest_force() const { return most_.load(); }
+    std::int64_t reads() const { return reads_.load(); }
+    std::int64_t writes() const { return writes_.load(); }
+
+  private:
+    std::function<DeviceReading(double)> script_;
+    std::array<std::atomic<double>, 3> force_{};
+    std::atomic<double> most_{0};
+    std::atomic<std::int64_t> reads_{0}, writes_{0};
+    std::atomic<bool> stopped_{false};
+};
+
+inline DeviceReading ready_at(const Vec3& position) {
+    DeviceReading reading;
+    reading.position = position;
+    reading.status = DeviceStatus::ready;
+    return reading;
+}
+
+}  // namespace palpate::support
