@@ -70,8 +70,12 @@ std::string read_text(const std::filesystem::path& path) {
     }
 }
 
-CsvReader::CsvReader(std::string_view text, std::string name)
-    : rest_(text), name_(std::move(name)) {
+std::string_view whole_lines(std::string_view text) {
+    return text.substr(0, text.rfind('\n') + 1);  // npos + 1 is 0
+}
+
+CsvReader::CsvReader(std::string_view text, std::string name, CommentSink comments)
+    : comments_(std::move(comments)), rest_(text), name_(std::move(name)) {
     if (rest_.starts_with("\xEF\xBB\xBF")) rest_.remove_prefix(3);
     if (text.find('\0') != std::string_view::npos) {
         throw InputError(name_ + ": is not a text file: give a CSV file with a header line");
@@ -86,7 +90,11 @@ bool CsvReader::next_line() {
         const auto text = trimmed(rest_.substr(0, end));
         rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
         ++line_;
-        if (text.empty() || text[0] == '#') continue;
+        if (text.empty()) continue;
+        if (text[0] == '#') {
+            if (comments_) comments_(text.substr(1));
+            continue;
+        }
         split(text, cells_);
         return true;
     }

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,13 +17,18 @@ namespace palpate::io {
 /// The whole of a text file. Throws InputError.
 std::string read_text(const std::filesystem::path& path);
 
+/// Text without a last line that has no end: of a file that was cut off while it was written.
+std::string_view whole_lines(std::string_view text);
+
 /// Walks through the rows of a CSV text. Blank lines and lines that start with # are skipped,
 /// spaces around cells and a byte order mark too. Quotes have no meaning. Errors are InputErrors
 /// that name the file and the line.
 class CsvReader {
   public:
+    /// Gets each comment as it is passed, without its #.
+    using CommentSink = std::function<void(std::string_view)>;
     /// Reads the header. `text` must outlive the reader; `name` is what errors call it.
-    CsvReader(std::string_view text, std::string name);
+    CsvReader(std::string_view text, std::string name, CommentSink comments = {});
 
     bool has_column(std::string_view column) const;
     /// Its number; a column that is missing or there twice is an error.
@@ -31,6 +37,7 @@ class CsvReader {
     /// Goes to the next row; false at the end. A row must have as many cells as the header.
     bool next();
     std::size_t line() const { return line_; }
+    std::size_t bytes_left() const { return rest_.size(); }
     std::string_view cell(std::size_t column) const { return cells_[column]; }
     /// The cell as a number, NaN and infinity included.
     double number(std::size_t column) const;
@@ -44,6 +51,7 @@ class CsvReader {
   private:
     bool next_line();
 
+    CommentSink comments_;
     std::string_view rest_;
     std::string name_;
     std::size_t line_ = 0;

@@ -10,7 +10,7 @@
 
 #include "io/error.hpp"
 #include "io/output.hpp"
-#include "palpate/volume.hpp"
+#include "palpate/renderer.hpp"
 
 namespace palpate::io {
 
@@ -26,6 +26,8 @@ struct TraceRow {
     int tetrahedra = 0;          ///< how many the SCP moved through
     std::int64_t update_ns = 0;  ///< time of this proxy update alone
 };
+
+TraceRow trace_row(const Tick& tick);
 
 /// Writes a trace row by row; the file appears with commit(). Throws OutputError.
 class TraceWriter {

@@ -129,7 +129,9 @@ class Workshop {
         remember(unfinished[1], fs::path(inside_).replace_extension(".raw"));
         remember(unfinished[2], fs::path(inside_).replace_extension(".zraw"));
         remember(unfinished_folder, folder);
-        for (const int s : {SIGINT, SIGTERM, SIGHUP}) signal(s, clean_up_and_go);
+        // SIGPIPE: a dying caller's pipes close before its death is announced (PR_SET_PDEATHSIG),
+        // and a report between the two would end this process with its file left behind.
+        for (const int s : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) signal(s, clean_up_and_go);
     }
 
     void open() const {

@@ -1,0 +1,177 @@
+// Recordings in: the head, then commands and ticks in the order in which they took effect.
+#include <deque>
+#include <limits>
+
+#include "io/recording_head.hpp"
+#include "io/trace_columns.hpp"
+
+namespace palpate::io {
+namespace {
+
+/// The comment lines before the table: the mark with the format's number, then JSON.
+RecordingHead read_head(const std::string& comments, const std::string& name) {
+    const auto fail = [&](const std::string& problem) -> void {
+        throw InputError(name + ": " + problem);
+    };
+    const auto first_end = comments.find('\n');
+    const std::string_view first(comments.data(), std::min(first_end, comments.size()));
+    if (!first.starts_with(recording_mark)) {
+        fail("is no recording: its first line is not '#" + std::string(recording_mark) +
+             "1'; record one with palpate touch --record");
+    }
+    const auto format = number_from<int>(first.substr(recording_mark.size()));
+    if (!format || *format < 1) fail("the format of the recording is not a number");
+    if (*format > recording_format) {
+        fail("is a recording of format " + std::to_string(*format) +
+             ", made by a later version: use that");
+    }
+    try {
+        return head_from_json(Json::parse(comments.substr(first.size())));
+    } catch (const Json::exception&) {
+        fail("the head is not valid JSON: the file was changed or cut off");
+    } catch (const std::invalid_argument& e) {
+        fail(std::string("the head is not valid: ") + e.what());
+    }
+    return {};
+}
+
+}  // namespace
+
+struct RecordingReader::Rows {
+    std::string text;
+    std::string name;
+    bool in_head = true;  // its comments are those of the head
+    std::deque<SessionEvent> waiting;
+    bool complete = false;
+    std::int64_t lost = 0;
+    CsvReader csv;
+    TraceColumns trace;
+    VectorColumns position;
+    std::size_t status, force_flags, device_status, buttons, age, frozen, clutched;
+    std::array<std::size_t, 9> tool;
+
+    Rows(std::string whole, std::string called)
+        : text(std::move(whole)),
+          name(std::move(called)),
+          csv(whole_lines(text), name, [this](std::string_view comment) { on_comment(comment); }),
+          trace(csv),
+          position(csv, "device"),
+          status(csv.column("status")),
+          force_flags(csv.column("force_flags")),
+          device_status(csv.column("device_status")),
+          buttons(csv.column("buttons")),
+          age(csv.column("age")),
+          frozen(csv.column("frozen")),
+          clutched(csv.column("clutched")) {
+        in_head = false;
+        std::size_t i = 0;
+        for (const char r : {'x', 'y', 'z'}) {
+            for (const char c : {'x', 'y', 'z'})
+                tool[i++] = csv.column(std::string("tool_") + r + c);
+        }
+    }
+
+    void on_comment(std::string_view comment) {
+        if (in_head) return;
+        if (comment.starts_with(command_mark)) {
+            try {
+                waiting.emplace_back(
+                    command_from_json(Json::parse(comment.substr(command_mark.size()))));
+            } catch (const std::exception&) {  // JSON's own, or what is wrong with a member
+                csv.fail("the command " + quoted(comment) + " is not valid");
+            }
+        } else if (comment.starts_with(end_mark)) {
+            const Json end = Json::parse(comment.substr(end_mark.size()), nullptr, false);
+            complete = end.is_object();
+            if (complete) lost = end.value("lost", std::int64_t{0});
+        }
+    }
+
+    std::int64_t code(std::size_t column, std::int64_t largest) const {
+        const std::int64_t value = csv.integer(column);
+        if (value < 0 || value > largest) {
+            csv.fail(quoted(csv.cell(column)) + " is out of range: at most " +
+                     std::to_string(largest));
+        }
+        return value;
+    }
+
+    SessionTick tick() const {
+        const TraceRow row = trace.read(csv);
+        SessionTick result;
+        Tick& tick = result.tick;
+        tick.time = row.t;
+        tick.proxy = {static_cast<UpdateStatus>(code(status, 3)),
+                      row.constrained ? Mode::constrained : Mode::free,
+                      row.hip,
+                      row.scp,
+                      row.density,
+                      row.isovalue,
+                      row.tetrahedra};
+        tick.force = row.force;
+        tick.force_flags = static_cast<std::uint8_t>(code(force_flags, 255));
+        tick.update_ns = row.update_ns;
+        result.device.status = static_cast<DeviceStatus>(
+            code(device_status, static_cast<std::int64_t>(DeviceStatus::finished)));
+        result.device.position = position.read(csv);
+        result.device.buttons =
+            static_cast<std::uint32_t>(code(buttons, std::numeric_limits<std::uint32_t>::max()));
+        result.device.age = csv.number(age);
+        for (int i = 0; i < 9; ++i) {
+            result.device.orientation(i / 3, i % 3) = csv.number(tool[static_cast<std::size_t>(i)]);
+        }
+        result.frozen = code(frozen, 1) == 1;
+        result.clutched = code(clutched, 1) == 1;
+        return result;
+    }
+};
+
+RecordingReader::RecordingReader(const std::filesystem::path& path)
+    : RecordingReader(read_text(path), path.string()) {}
+
+RecordingReader::RecordingReader(std::string text, const std::string& name) {
+    // The head is looked at first: a table of another kind is told so, not which columns it lacks.
+    std::string head;
+    try {
+        const CsvReader table(whole_lines(text), name, [&](std::string_view comment) {
+            head += comment;
+            head += '\n';
+        });
+    } catch (const InputError&) {
+        if (!head.starts_with(recording_mark)) read_head(head, name);
+        throw;
+    }
+    head_ = read_head(head, name);
+    rows_ = std::make_unique<Rows>(std::move(text), name);
+}
+
+RecordingReader::~RecordingReader() = default;
+
+std::optional<SessionEvent> RecordingReader::next() {
+    if (rows_->waiting.empty() && rows_->csv.next()) {
+        rows_->waiting.emplace_back(rows_->tick());
+    }
+    if (rows_->waiting.empty()) return std::nullopt;
+    SessionEvent event = rows_->waiting.front();
+    rows_->waiting.pop_front();
+    return event;
+}
+
+std::size_t RecordingReader::line() const {
+    return rows_->csv.line();
+}
+
+double RecordingReader::progress() const {
+    const auto size = static_cast<double>(rows_->text.size());
+    return size > 0 ? 1 - static_cast<double>(rows_->csv.bytes_left()) / size : 1;
+}
+
+bool RecordingReader::complete() const {
+    return rows_->complete;
+}
+
+std::int64_t RecordingReader::lost() const {
+    return rows_->lost;
+}
+
+}  // namespace palpate::io

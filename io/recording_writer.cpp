@@ -1,0 +1,184 @@
+// Recordings out: a thread takes events from the servo's queue and appends lines to a file.
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <system_error>
+
+#include "io/recording_head.hpp"
+#include "io/trace_columns.hpp"
+
+namespace palpate::io {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto between_writes = 100ms;
+constexpr auto between_syncs = 500ms;
+constexpr std::size_t buffer_bytes = std::size_t{1} << 20;
+
+constexpr std::string_view session_columns =
+    ",status,force_flags,device_status,device_x,device_y,device_z,buttons,age,"
+    "tool_xx,tool_xy,tool_xz,tool_yx,tool_yy,tool_yz,tool_zx,tool_zy,tool_zz,frozen,clutched";
+
+std::string reason(int error) {
+    return std::generic_category().message(error);
+}
+
+void append_tick(std::string& text, const SessionTick& tick) {
+    append_row(text, trace_row(tick.tick));
+    append_cell(text, static_cast<std::int64_t>(tick.tick.proxy.status));
+    append_cell(text, static_cast<std::int64_t>(tick.tick.force_flags));
+    append_cell(text, static_cast<std::int64_t>(tick.device.status));
+    append_cells(text, tick.device.position);
+    append_cell(text, static_cast<std::int64_t>(tick.device.buttons));
+    append_cell(text, tick.device.age);
+    for (int r = 0; r < 3; ++r) append_cells(text, tick.device.orientation.row(r));
+    append_cell(text, static_cast<std::int64_t>(tick.frozen));
+    append_cell(text, static_cast<std::int64_t>(tick.clutched));
+    text += '\n';
+}
+
+std::string head_text(const RecordingHead& head) {
+    std::string text = "#";
+    text += recording_mark;
+    append_number(text, std::int64_t{recording_format});
+    text += "\n# ";
+    // A name that is not UTF-8 must not keep a session from being recorded.
+    for (const char c : to_json(head).dump(1, ' ', true, Json::error_handler_t::replace)) {
+        text += c;
+        if (c == '\n') text += "# ";
+    }
+    text += '\n';
+    text += trace_header;
+    text += session_columns;
+    return text + '\n';
+}
+
+/// Room for the ticks of eight seconds, and commands among them.
+std::size_t room_for(double rate) {
+    return static_cast<std::size_t>(8 * rate);
+}
+
+}  // namespace
+
+RecordingWriter::RecordingWriter(const std::filesystem::path& path, const RecordingHead& head)
+    : path_(path), queue_(room_for(head.rate)) {
+    buffer_.reserve(buffer_bytes);
+    std::error_code error;
+    const auto status = std::filesystem::status(path, error);
+    if (std::filesystem::is_regular_file(status)) {
+        throw OutputError(path.string() +
+                          ": exists; a recording never replaces a file: choose another name");
+    }
+    const bool stream = std::filesystem::exists(status) && !std::filesystem::is_directory(status);
+    descriptor_ =
+        ::open(path.c_str(), O_WRONLY | O_CLOEXEC | (stream ? 0 : O_CREAT | O_EXCL), 0666);
+    if (descriptor_ < 0) {
+        throw OutputError(path.string() + ": cannot be written: " + reason(errno) +
+                          ": choose another place");
+    }
+    seekable_ = !stream;
+    buffer_ = head_text(head);
+    flush();
+    if (const std::string wrong = problem(); !wrong.empty()) {
+        close();
+        if (seekable_) ::unlink(path_.c_str());
+        throw OutputError(wrong);
+    }
+    thread_ = std::jthread([this] { run(); });
+    syncer_ = std::jthread([this] { sync(); });
+}
+
+RecordingWriter::~RecordingWriter() {
+    done_ = true;
+    if (thread_.joinable()) thread_.join();
+    if (syncer_.joinable()) syncer_.join();
+    close();
+}
+
+std::string RecordingWriter::problem() const {
+    const std::scoped_lock lock(mutex_);
+    return problem_;
+}
+
+void RecordingWriter::finish(std::int64_t lost) {
+    done_ = true;
+    if (thread_.joinable()) thread_.join();
+    if (syncer_.joinable()) syncer_.join();
+    buffer_ += "#";
+    buffer_ += end_mark;
+    buffer_ += Json{{"ticks", ticks()}, {"lost", lost}}.dump() + "\n";
+    flush();
+    (void)::fdatasync(descriptor_);
+    close();
+    if (const std::string wrong = problem(); !wrong.empty()) throw OutputError(wrong);
+}
+
+void RecordingWriter::run() {
+    for (;;) {
+        const bool last = done_;  // before draining, so that what came before it is drained
+        drain();
+        flush();
+        if (last) return;
+        std::this_thread::sleep_for(between_writes);
+    }
+}
+
+/// A thread of its own: a disk that is busy for seconds must not keep the queue from being emptied.
+void RecordingWriter::sync() {
+    auto last = std::chrono::steady_clock::now();
+    while (!done_) {
+        std::this_thread::sleep_for(between_writes);
+        if (std::chrono::steady_clock::now() - last < between_syncs) continue;
+        (void)::fdatasync(descriptor_);  // pipes have no disk; a write tells what is wrong
+        last = std::chrono::steady_clock::now();
+    }
+}
+
+void RecordingWriter::drain() {
+    while (const auto event = queue_.pop()) {
+        if (const auto* tick = std::get_if<SessionTick>(&*event)) {
+            append_tick(buffer_, *tick);
+            ticks_.fetch_add(1, std::memory_order_relaxed);
+        } else {
+            buffer_ += "#";
+            buffer_ += command_mark;
+            buffer_ += to_json(std::get<Command>(*event)).dump() + "\n";
+        }
+        if (buffer_.size() > buffer_bytes) flush();
+    }
+}
+
+void RecordingWriter::flush() {
+    if (!problem().empty()) buffer_.clear();
+    std::string_view rest = buffer_;
+    while (!rest.empty()) {
+        const ssize_t count = ::write(descriptor_, rest.data(), rest.size());
+        if (count < 0 && errno == EINTR) continue;
+        if (count <= 0) break;
+        rest.remove_prefix(static_cast<std::size_t>(count));
+    }
+    const int error = errno;
+    const std::string_view done(buffer_.data(), buffer_.size() - rest.size());
+    written_ += static_cast<std::int64_t>(done.rfind('\n') + 1);  // npos + 1 is 0
+    if (!rest.empty()) {
+        // What is there ends with a whole line. Should that fail, readers leave a torn line out.
+        if (seekable_) (void)!::ftruncate(descriptor_, written_);
+        const std::scoped_lock lock(mutex_);
+        const bool full = error == ENOSPC || error == EDQUOT || error == EFBIG;
+        problem_ = path_.string() + ": recording stopped: " + reason(error) +
+                   (full ? ": free some space" : ": record to another place") +
+                   "; what was recorded before is kept";
+    }
+    buffer_.clear();
+}
+
+void RecordingWriter::close() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+    descriptor_ = -1;
+}
+
+}  // namespace palpate::io

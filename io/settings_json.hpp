@@ -1,0 +1,28 @@
+// Settings and commands as JSON. Private to io/. Numbers read back bit for bit; infinities are
+// "inf" and "-inf", which JSON has no number for.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "palpate/session.hpp"
+
+namespace palpate::io {
+
+using Json = nlohmann::ordered_json;
+
+/// All but `method` and a penetrability function and its context.
+Json to_json(const RendererSettings& settings);
+Json to_json(const SessionSettings& settings);
+/// One member, named after the command.
+Json to_json(const Command& command);
+
+/// Members that are missing leave the default. Throw std::invalid_argument, naming the member, for
+/// one of the wrong kind; and for a command that there is not.
+void from_json(const Json& json, RendererSettings& settings);
+void from_json(const Json& json, SessionSettings& settings);
+Command command_from_json(const Json& json);
+
+double number_from_json(const Json& json, const char* name);
+Json number_to_json(double value);
+
+}  // namespace palpate::io

@@ -1,0 +1,49 @@
+// The columns of a trace, written and read. Private to io/; traces and recordings are made of them.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "io/csv.hpp"
+#include "io/number.hpp"
+#include "io/trace.hpp"
+
+namespace palpate::io {
+
+inline constexpr std::string_view trace_header =
+    "t,hip_x,hip_y,hip_z,scp_x,scp_y,scp_z,force_x,force_y,force_z,"
+    "density,isovalue,mode,tetrahedra,update_ns";
+
+template <class T>
+void append_cell(std::string& line, T value) {
+    if (!line.empty() && line.back() != '\n') line += ',';
+    append_number(line, value);
+}
+
+inline void append_cells(std::string& line, const Vec3& v) {
+    for (int a = 0; a < 3; ++a) append_cell(line, v[a]);
+}
+
+/// Appends the cells of a row, without the end of the line.
+void append_row(std::string& text, const TraceRow& row);
+
+/// Columns NAME_x, NAME_y, NAME_z.
+struct VectorColumns {
+    std::size_t x, y, z;
+
+    VectorColumns(const CsvReader& rows, const std::string& name);
+    Vec3 read(const CsvReader& rows) const;
+};
+
+/// Where the columns of the contract are in a table. Throws InputError if one is missing.
+struct TraceColumns {
+    explicit TraceColumns(const CsvReader& rows);
+    TraceRow read(const CsvReader& rows) const;
+
+  private:
+    std::size_t t_;
+    VectorColumns hip_, scp_, force_;
+    std::size_t density_, isovalue_, mode_, tetrahedra_, update_ns_;
+};
+
+}  // namespace palpate::io
