@@ -1,0 +1,50 @@
+// The table of devices.
+#include "devices/devices.hpp"
+
+#include <array>
+#include <stdexcept>
+
+#include "devices/forcedimension/forcedimension.hpp"
+#include "devices/haply/haply.hpp"
+#include "devices/openhaptics/openhaptics.hpp"
+#include "devices/recorded/recorded.hpp"
+#include "devices/simulated/simulated.hpp"
+#include "devices/spacenav/spacenav.hpp"
+
+namespace palpate::devices {
+namespace {
+
+struct Backend {
+    const char* name;
+    DeviceFinding (*find)();
+    std::unique_ptr<Device> (*open)(const DeviceChoice&, const DeviceScene&);
+};
+
+constexpr std::array<Backend, 6> backends{{
+    {"simulated", &find_simulated, &open_simulated},
+    {"recorded", &find_recorded, &open_recorded},
+    {"haply", &find_haply, &open_haply},
+    {"openhaptics", &find_openhaptics, &open_openhaptics},
+    {"forcedimension", &find_forcedimension, &open_forcedimension},
+    {"spacenav", &find_spacenav, &open_spacenav},
+}};
+
+}  // namespace
+
+std::vector<DeviceFinding> find_devices() {
+    std::vector<DeviceFinding> findings;
+    for (const Backend& backend : backends) findings.push_back(backend.find());
+    return findings;
+}
+
+std::unique_ptr<Device> open_device(const DeviceChoice& choice, const DeviceScene& scene) {
+    std::string names;
+    for (const Backend& backend : backends) {
+        if (choice.name == backend.name) return backend.open(choice, scene);
+        names += (names.empty() ? "" : ", ") + std::string(backend.name);
+    }
+    throw std::invalid_argument("there is no device '" + choice.name + "'; there are: " + names +
+                                " (palpate devices tells which can be had)");
+}
+
+}  // namespace palpate::devices

@@ -1,0 +1,81 @@
+// Finding the functions, and the table of models.
+#include "devices/forcedimension/dhd.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+namespace palpate::devices::forcedimension {
+namespace {
+
+const char* const install =
+    "install Force Dimension's SDK for Linux (libdrd.so.3, libdhd.so.3) where the loader finds it, "
+    "or tell where it is: library=PATH";
+
+std::vector<std::string> names(const std::string& path) {
+    if (!path.empty()) return {path};
+    return {"libdrd.so.3", "libdrd.so", "libdhd.so.3", "libdhd.so"};
+}
+
+// clang-format off
+constexpr Model models[] = {
+    // type            N  N/mm   mm
+    {33,  "omega.3",  12, 5,     55, false},
+    {34,  "omega.6",  12, 5,     55, true},
+    {36,  "omega.6",  12, 5,     55, true},
+    {35,  "omega.7",  12, 5,     55, true},
+    {37,  "omega.7",  12, 5,     55, true},
+    {60,  "Falcon",    8, 3,     40, false},
+    {63,  "delta.3",  20, 5,    100, false},
+    {64,  "delta.6",  20, 5,    100, true},
+    {104, "sigma.7",  12, 4,     55, true},
+    {105, "sigma.7",  12, 4,     55, true},
+    {108, "lambda.7", 12, 4,     55, true},
+    {109, "lambda.7", 12, 4,     55, true},
+    {203, "lambda.3", 12, 4,     55, false},
+    {206, "sigma.3",  12, 4,     55, false},
+};
+// clang-format on
+/// The least that any of them can do.
+constexpr Model any_model{0, "Force Dimension device", 8, 3, 40, false};
+
+}  // namespace
+
+const Model& model_of(int system_type) {
+    const auto found = std::ranges::find(models, system_type, &Model::type);
+    return found == std::end(models) ? any_model : *found;
+}
+
+Dhd::Dhd(const std::string& path) : library(names(path), install) {
+    library.need(get_device_count, "dhdGetDeviceCount");
+    library.need(dhd_open, "dhdOpenID");
+    library.need(dhd_close, "dhdClose");
+    library.need(stop, "dhdStop");
+    library.need(enable_force, "dhdEnableForce");
+    library.need(get_system_type, "dhdGetSystemType");
+    library.need(get_status, "dhdGetStatus");
+    library.need(get_position, "dhdGetPosition");
+    library.need(get_orientation, "dhdGetOrientationFrame");
+    library.need(get_buttons, "dhdGetButtonMask");
+    library.need(set_force, "dhdSetForce");
+    library.need(set_brakes, "dhdSetBrakes");
+    library.need(set_gravity_compensation, "dhdSetGravityCompensation");
+    library.need(error_get_last, "dhdErrorGetLast");
+    library.need(error_get_last_text, "dhdErrorGetLastStr");
+    library.take(get_system_name, "dhdGetSystemName");
+    library.take(get_serial_number, "dhdGetSerialNumber");
+    library.take(get_version, "dhdGetSDKVersion");
+    library.take(set_max_force, "dhdSetMaxForce");
+    library.take(set_watchdog, "dhdSetWatchdog");
+    library.take(get_watchdog, "dhdGetWatchdog");
+    library.take(drd_open, "drdOpenID");
+    library.take(drd_close, "drdClose");
+    library.take(drd_is_initialised, "drdIsInitialized");
+    library.take(drd_initialise, "drdAutoInit");
+}
+
+std::string Dhd::error_words() const {
+    const char* words = error_get_last_text();
+    return words && *words ? words : "error " + std::to_string(error_get_last());
+}
+
+}  // namespace palpate::devices::forcedimension

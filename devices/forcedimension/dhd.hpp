@@ -1,0 +1,78 @@
+// The part of Force Dimension's SDK that is used here, in our own words: its numbers, and its
+// functions as pointers into the vendor's library. Every call names its device.
+#pragma once
+
+#include <string>
+
+#include "devices/vendor_library.hpp"
+
+namespace palpate::devices::forcedimension {
+
+namespace error {
+constexpr int communication = 2, no_driver = 4, no_device = 5, timeout = 7, not_ready = 12;
+}
+/// Places in what get_status() fills.
+namespace status {
+constexpr int initialised = 3, force = 5, force_off_cause = 14;
+constexpr int count = 32;  // more than any version has
+}  // namespace status
+/// Why the device itself has switched its force off.
+enum class ForceOff : int { none, button, velocity, watchdog, software, usb, deadman };
+
+/// What kind of device this is; figures from public drivers.
+struct Model {
+    int type;
+    const char* name;
+    double force;      ///< [N]
+    double stiffness;  ///< [N/mm]
+    double reach;      ///< [mm] half an edge of the usable cube round the origin
+    bool has_wrist;
+};
+const Model& model_of(int system_type);
+
+/// The functions. Angles, torques and grippers are not used. Negative results are errors; positive
+/// ones tell of the time guard (1) or of a motor at its limit (2), and all is well.
+struct Dhd {
+    /// Opens `path`; if that is empty, libdrd.so.3, which holds or brings along all of libdhd.so.3,
+    /// or else that one alone. Never both: each could have a device table of its own. Throws
+    /// DeviceError.
+    explicit Dhd(const std::string& path);
+
+    VendorLibrary library;
+
+    int (*get_device_count)();
+    int (*dhd_open)(char index);
+    int (*dhd_close)(char id);
+    int (*stop)(char id);
+    int (*enable_force)(unsigned char on, char id);
+    int (*get_system_type)(char id);
+    int (*get_status)(int*, char id);
+    int (*get_position)(double*, double*, double*, char id);  // [m]
+    int (*get_orientation)(double (*)[3], char id);           // rows
+    unsigned int (*get_buttons)(char id);
+    int (*set_force)(double, double, double, char id);  // [N]
+    int (*set_brakes)(int on, char id);
+    int (*set_gravity_compensation)(int on, char id);
+    int (*error_get_last)();  // of the calling thread, as is the next
+    const char* (*error_get_last_text)();
+
+    // Null where the library has none.
+    const char* (*get_system_name)(char id);
+    int (*get_serial_number)(unsigned short*, char id);
+    void (*get_version)(int*, int*, int*, int*);
+    int (*set_max_force)(double, char id);
+    int (*set_watchdog)(unsigned char eighths_of_ms, char id);
+    int (*get_watchdog)(unsigned char*, char id);
+    int (*drd_open)(char index);
+    int (*drd_close)(char id);
+    bool (*drd_is_initialised)(char id);
+    int (*drd_initialise)(char id);
+
+    bool has_drd() const { return drd_open && drd_close && drd_is_initialised && drd_initialise; }
+    int open(char index) const { return has_drd() ? drd_open(index) : dhd_open(index); }
+    void close(char id) const { has_drd() ? drd_close(id) : dhd_close(id); }
+    /// The calling thread's last error in words.
+    std::string error_words() const;
+};
+
+}  // namespace palpate::devices::forcedimension

@@ -1,0 +1,305 @@
+// The loop: look after the device, read it, send the force; and what is wrong in words.
+#include "devices/forcedimension/dhd_device.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <ctime>
+#include <limits>
+
+namespace palpate::devices::forcedimension {
+namespace {
+
+constexpr std::int64_t period = 250'000;            // [ns] 4 kHz at most
+constexpr std::int64_t between_looks = 20'000'000;  // [ns]
+// In eighths of a millisecond: without a force for so long, the device drops it by itself.
+constexpr unsigned char watchdog = 240;
+
+/// The library's x points to the person, y to the right, z up.
+Mat3 axes() {
+    Mat3 m;
+    m << 0, 1, 0, 0, 0, 1, 1, 0, 0;
+    return m;
+}
+
+std::array<char, 128> clipped(std::string_view text) {
+    std::array<char, 128> characters{};
+    std::ranges::copy(text.substr(0, characters.size() - 1), characters.begin());
+    return characters;
+}
+
+void sleep_until(std::int64_t time) {
+    const timespec until{static_cast<time_t>(time / 1'000'000'000),
+                         static_cast<long>(time % 1'000'000'000)};
+    while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == EINTR) {
+    }
+}
+
+DeviceStatus status_of(Trouble::Kind kind) {
+    switch (kind) {
+        case Trouble::Kind::none:
+            return DeviceStatus::ready;
+        case Trouble::Kind::initialising:
+        case Trouble::Kind::uninitialised:
+            return DeviceStatus::uncalibrated;
+        case Trouble::Kind::lost:
+            return DeviceStatus::lost;
+        default:
+            return DeviceStatus::fault;
+    }
+}
+
+std::string words_of(ForceOff cause) {
+    switch (cause) {
+        case ForceOff::button:
+            return "force is switched off at the device: press its force button";
+        case ForceOff::velocity:
+            return "the device was moved faster than it allows and has switched its force off: "
+                   "press its force button";
+        case ForceOff::watchdog:
+            return "the device waited too long for a force and has switched it off; it is being "
+                   "switched on again";
+        case ForceOff::deadman:
+            return "the device's dead-man switch is open";
+        default:
+            return "the device has switched its force off (cause " +
+                   std::to_string(static_cast<int>(cause)) + "): press its force button";
+    }
+}
+
+}  // namespace
+
+Opened::Opened(const Dhd& dhd, int index) : dhd_(dhd) {
+    const int count = dhd.get_device_count();
+    if (count <= index) {
+        throw DeviceError(
+            (count <= 0 ? "no device" : "no device with index=" + std::to_string(index)) + " (" +
+            std::to_string(std::max(0, count)) +
+            " found): connect it and switch it on; your account must be able to open its USB "
+            "device (the SDK's udev rule, 51-forcedimension.rules)");
+    }
+    const int id = dhd.open(static_cast<char>(index));
+    if (id < 0) {
+        throw DeviceError("cannot open device " + std::to_string(index) + ": " + dhd.error_words() +
+                          ": does another program use it? Your account must be able to open its "
+                          "USB device (the SDK's udev rule, 51-forcedimension.rules)");
+    }
+    id_ = static_cast<char>(id);
+}
+
+Opened::~Opened() {
+    dhd_.stop(id_);
+    dhd_.close(id_);
+}
+
+DhdDevice::DhdDevice(const std::string& library, const Settings& settings)
+    : dhd_(library),
+      opened_(dhd_, settings.index),
+      id_(opened_.id()),
+      model_(model_of(dhd_.get_system_type(id_))),
+      info_(ask(settings)) {
+    if (settings.initialise && !dhd_.has_drd()) {
+        throw DeviceError("autoinit=yes: " + dhd_.library.path() +
+                          " cannot initialise devices: install libdrd.so.3 beside it, or "
+                          "library=PATH of that one");
+    }
+    thread_ = std::thread([this, itself = settings.initialise] { run(itself); });
+}
+
+DhdDevice::~DhdDevice() {
+    link_.stop();
+    quit_.store(true);
+    thread_.join();
+}
+
+DeviceInfo DhdDevice::ask(const Settings& settings) const {
+    DeviceInfo info;
+    info.name = "forcedimension";
+    const char* name = dhd_.get_system_name ? dhd_.get_system_name(id_) : nullptr;
+    info.model = name && *name ? name : model_.name;
+    unsigned short serial = 0;
+    if (dhd_.get_serial_number && dhd_.get_serial_number(&serial, id_) >= 0) {
+        info.model += ", serial number " + std::to_string(serial);
+    }
+    info.limits.maximum_force = model_.force;
+    info.limits.rate = std::min(settings.rate, 1e9 / period);
+    info.stiffness = model_.stiffness;
+    info.workspace_low = Vec3::Constant(-model_.reach);
+    info.workspace_high = Vec3::Constant(model_.reach);
+    info.has_orientation = model_.has_wrist;
+    info.buttons = model_.type == 60 ? 4 : 1;
+    return info;
+}
+
+void DhdDevice::run(bool itself) {
+    ask_for_real_time_thread();
+    if (itself) initialise();
+    std::int64_t next = monotonic_ns();
+    while (!quit_) {
+        tick();
+        next = std::max(next + period, monotonic_ns());
+        sleep_until(next);
+    }
+    dhd_.set_force(0, 0, 0, id_);
+    if (old_watchdog_) dhd_.set_watchdog(*old_watchdog_, id_);
+}
+
+void DhdDevice::initialise() {
+    if (dhd_.drd_is_initialised(id_)) return;
+    Trouble trouble;
+    trouble.kind = Trouble::Kind::initialising;
+    report(trouble, {});
+    if (dhd_.drd_initialise(id_) < 0) init_words_ = clipped(dhd_.error_words());
+}
+
+void DhdDevice::tick() noexcept {
+    const std::int64_t begun = monotonic_ns();
+    if (begun >= next_look_) {
+        look_after_device();
+        next_look_ = begun + between_looks;
+    }
+    DeviceReading reading;
+    Trouble trouble = read_device(reading);
+    if (trouble.kind == Trouble::Kind::none) trouble = state_;
+
+    const std::int64_t now = monotonic_ns();
+    gate_.note(trouble.kind == Trouble::Kind::none, now);
+    const Vec3 force = axes().transpose() * gate_.pass(link_.force(), model_.force, now);
+    if (dhd_.set_force(force[0], force[1], force[2], id_) < 0 &&
+        trouble.kind == Trouble::Kind::none) {
+        trouble = failure();
+        gate_.note(false, now);
+    }
+    reading.age = 1e-9 * static_cast<double>(monotonic_ns() - begun);
+    report(trouble, reading);
+}
+
+void DhdDevice::look_after_device() noexcept {
+    std::array<int, status::count> told{};
+    state_ = {};
+    if (dhd_.get_status(told.data(), id_) < 0) {
+        state_ = failure();
+        return;
+    }
+    const bool initialised =
+        dhd_.has_drd() ? dhd_.drd_is_initialised(id_) : told[status::initialised] != 0;
+    if (!initialised) {
+        is_on_ = false;
+        state_.kind = Trouble::Kind::uninitialised;
+        state_.words = init_words_;
+        return;
+    }
+    if (!is_on_) {
+        is_on_ = switch_on();
+        if (!is_on_) state_ = failure();
+        return;
+    }
+    // A device that does not tell why its force is off may not tell of its force at all.
+    const auto cause = static_cast<ForceOff>(told[status::force_off_cause]);
+    if (told[status::force] != 0 || cause == ForceOff::none) return;
+    state_.kind = Trouble::Kind::force_off;
+    state_.cause = cause;
+    if (cause == ForceOff::watchdog) dhd_.enable_force(1, id_);
+}
+
+bool DhdDevice::switch_on() noexcept {
+    // What a model has not, it refuses; only the force itself is needed.
+    if (dhd_.set_max_force) dhd_.set_max_force(model_.force, id_);
+    dhd_.set_brakes(0, id_);
+    if (dhd_.enable_force(1, id_) < 0) return false;
+    dhd_.set_gravity_compensation(1, id_);
+    if (!dhd_.set_watchdog) return true;
+    unsigned char old = 0;
+    if (!old_watchdog_ && dhd_.get_watchdog && dhd_.get_watchdog(&old, id_) >= 0) {
+        old_watchdog_ = old;
+    }
+    dhd_.set_watchdog(watchdog, id_);
+    return true;
+}
+
+Trouble DhdDevice::read_device(DeviceReading& reading) noexcept {
+    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+    double x = unknown, y = unknown, z = unknown;
+    if (dhd_.get_position(&x, &y, &z, id_) < 0) return failure();
+    reading.position = 1000 * (axes() * Vec3(x, y, z));
+    if (model_.has_wrist) {
+        double rows[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+        if (dhd_.get_orientation(rows, id_) < 0) return failure();
+        Mat3 frame;
+        for (int row = 0; row < 3; ++row) {
+            for (int column = 0; column < 3; ++column) frame(row, column) = rows[row][column];
+        }
+        if (frame.allFinite()) reading.orientation = axes() * frame * axes().transpose();
+    }
+    reading.buttons = dhd_.get_buttons(id_) & 0xFFFFU;
+    Trouble trouble;
+    if (!is_position(reading.position)) trouble.kind = Trouble::Kind::not_a_position;
+    return trouble;
+}
+
+Trouble DhdDevice::failure() const noexcept {
+    Trouble trouble;
+    switch (dhd_.error_get_last()) {
+        case error::communication:
+        case error::no_driver:
+        case error::no_device:
+        case error::timeout:
+        case error::not_ready:
+            trouble.kind = Trouble::Kind::lost;
+            break;
+        default:
+            trouble.kind = Trouble::Kind::error;
+    }
+    const char* words = dhd_.error_get_last_text();
+    trouble.words = clipped(words ? words : "");
+    return trouble;
+}
+
+void DhdDevice::report(const Trouble& trouble, const DeviceReading& reading) noexcept {
+    if (trouble != last_told_) {
+        last_told_ = trouble;
+        trouble_.put(trouble);
+    }
+    if (trouble.kind == Trouble::Kind::none) {
+        DeviceReading ready = reading;
+        ready.status = DeviceStatus::ready;
+        link_.report(ready);
+    } else {
+        link_.report(status_of(trouble.kind));
+    }
+}
+
+std::string DhdDevice::problem() const {
+    const Trouble trouble = trouble_.get().value_or(Trouble{});
+    const std::string words = trouble.words.data();
+    switch (trouble.kind) {
+        case Trouble::Kind::initialising:
+            return "the device is initialising itself: it moves; keep your hands off";
+        case Trouble::Kind::uninitialised:
+            return (words.empty() ? "not initialised"
+                                  : "it could not initialise itself (" + words + ")") +
+                   ": put its calibration pole into the calibration pit until the light stops "
+                   "blinking (a Falcon: pull the grip out and push it in all the way), or open it "
+                   "with autoinit=yes, which moves it";
+        case Trouble::Kind::not_a_position:
+            return "the library tells a position that cannot be: initialise the device again";
+        case Trouble::Kind::force_off:
+            return words_of(trouble.cause);
+        case Trouble::Kind::error:
+            return "the library reports: " + words;
+        case Trouble::Kind::lost:
+            return "no connection to the device (" + words +
+                   "): check cable and power; if it does not come back, start again";
+        case Trouble::Kind::none:
+            break;
+    }
+    switch (link_.read().status) {
+        case DeviceStatus::starting:
+            return "the device has not told a position yet";
+        case DeviceStatus::stale:
+            return "the library takes too long: its last position is more than 20 ms old";
+        default:
+            return {};
+    }
+}
+
+}  // namespace palpate::devices::forcedimension

@@ -1,0 +1,100 @@
+// The device: opened, and a thread of its own that talks to it.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <thread>
+
+#include "devices/forcedimension/dhd.hpp"
+#include "devices/link.hpp"
+
+namespace palpate::devices::forcedimension {
+
+struct Settings {
+    int index = 0;            ///< of the device, as the library counts them
+    bool initialise = false;  ///< let it find its reference by itself, by which it moves
+    double rate = 1000;       ///< [Hz] of the servo
+};
+
+/// What is wrong with the device, as its own thread found it.
+struct Trouble {
+    enum class Kind : std::uint8_t {
+        none,
+        initialising,    ///< it is moving by itself
+        uninitialised,   ///< `words`: why its own attempt failed, if there was one
+        not_a_position,  ///< what the library tells is none
+        force_off,       ///< the device has switched its force off
+        error,           ///< a call failed: `words`
+        lost,            ///< and that because there is no talking to the device
+    };
+    Kind kind = Kind::none;
+    ForceOff cause = ForceOff::none;
+    std::array<char, 128> words{};
+
+    bool operator==(const Trouble&) const = default;
+};
+
+/// A device of the library's, ours until this goes. Throws DeviceError.
+class Opened {
+  public:
+    Opened(const Dhd& dhd, int index);
+    ~Opened();
+    Opened(const Opened&) = delete;
+    Opened& operator=(const Opened&) = delete;
+
+    char id() const { return id_; }
+
+  private:
+    const Dhd& dhd_;
+    char id_ = 0;
+};
+
+class DhdDevice final : public Device {
+  public:
+    DhdDevice(const std::string& library, const Settings& settings);
+    ~DhdDevice() override;
+
+    DeviceInfo info() const override { return info_; }
+    std::string problem() const override;
+    DeviceReading read(double) noexcept override { return link_.read(); }
+    void write(const Vec3& force, double) noexcept override { link_.write(force); }
+    void stop() noexcept override { link_.stop(); }
+
+  private:
+    DeviceInfo ask(const Settings& settings) const;
+
+    // All of these are the thread's.
+    void run(bool initialise);
+    void initialise();
+    void tick() noexcept;
+    void look_after_device() noexcept;
+    bool switch_on() noexcept;
+    Trouble read_device(DeviceReading& reading) noexcept;
+    Trouble failure() const noexcept;
+    void report(const Trouble& trouble, const DeviceReading& reading) noexcept;
+
+    const Dhd dhd_;
+    const Opened opened_;
+    const char id_;
+    const Model model_;
+    const DeviceInfo info_;
+    Link link_;
+    Newest<Trouble> trouble_;
+    std::atomic<bool> quit_{false};
+
+    // The thread's.
+    ForceGate gate_;
+    Trouble last_told_;
+    Trouble state_;  // found by looking after the device
+    std::array<char, 128> init_words_{};
+    bool is_on_ = false;          // brakes off, force on
+    std::int64_t next_look_ = 0;  // [ns]
+    std::optional<unsigned char> old_watchdog_;
+
+    std::thread thread_;
+};
+
+}  // namespace palpate::devices::forcedimension

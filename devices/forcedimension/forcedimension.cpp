@@ -1,0 +1,67 @@
+// Options and errors of the device `forcedimension`.
+#include "devices/forcedimension/forcedimension.hpp"
+
+#include <cmath>
+
+#include "devices/forcedimension/dhd_device.hpp"
+
+namespace palpate::devices {
+namespace {
+
+std::string version_of(const forcedimension::Dhd& dhd) {
+    if (!dhd.get_version) return {};
+    int major = 0, minor = 0, release = 0, revision = 0;
+    dhd.get_version(&major, &minor, &release, &revision);
+    return " " + std::to_string(major) + "." + std::to_string(minor) + "." +
+           std::to_string(release);
+}
+
+}  // namespace
+
+DeviceFinding forcedimension::find(const std::string& library) {
+    DeviceFinding finding;
+    finding.name = "forcedimension";
+    finding.options = "index=0,autoinit=no,library=libdrd.so.3 or libdhd.so.3";
+    try {
+        const Dhd dhd(library);
+        const std::string sdk = "Force Dimension SDK" + version_of(dhd) + ", " + dhd.library.path();
+        const int count = dhd.get_device_count();
+        finding.found = count > 0;
+        if (finding.found) {
+            finding.what = std::to_string(count) + (count == 1 ? " device; " : " devices; ") + sdk;
+        } else {
+            finding.missing = "no device (" + sdk +
+                              "): connect it and switch it on; your account must be able to open "
+                              "its USB device (the SDK's udev rule, 51-forcedimension.rules)";
+        }
+    } catch (const std::exception& error) {
+        finding.missing = error.what();
+    }
+    return finding;
+}
+
+DeviceFinding find_forcedimension() {
+    return forcedimension::find("");
+}
+
+std::unique_ptr<Device> open_forcedimension(const DeviceChoice& choice, const DeviceScene& scene) {
+    DeviceOptions options(choice, "index");
+    const double index = options.number("index", 0, 0, 100);
+    if (index != std::floor(index)) {
+        throw std::invalid_argument("device " + choice.name + ": index=" + std::to_string(index) +
+                                    ": a whole number is needed");
+    }
+    forcedimension::Settings settings;
+    settings.index = static_cast<int>(index);
+    settings.initialise = options.flag("autoinit", false);
+    settings.rate = scene.rate;
+    const std::string library = options.text("library", "");
+    options.finish();
+    try {
+        return std::make_unique<forcedimension::DhdDevice>(library, settings);
+    } catch (const DeviceError& error) {
+        throw DeviceError("device " + choice.name + ": " + error.what());
+    }
+}
+
+}  // namespace palpate::devices

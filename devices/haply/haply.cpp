@@ -1,0 +1,102 @@
+// Options and errors of the device `haply`.
+#include "devices/haply/haply.hpp"
+
+#include <cmath>
+#include <cstdlib>
+#include <thread>
+#include <utility>
+
+#include "devices/haply/inverse3.hpp"
+#include "io/number.hpp"
+
+namespace palpate::devices {
+namespace {
+
+using namespace std::chrono_literals;
+
+std::string usual_host() {
+    const char* host = std::getenv("HAPLY_WS_HOST");
+    return host && *host ? host : "localhost";
+}
+
+double usual_port() {
+    const char* given = std::getenv("HAPLY_WS_PORT");
+    if (!given || !*given) return 10001;
+    const auto port = io::number_from<int>(given);
+    if (port && *port >= 1 && *port <= 65535) return *port;
+    throw std::invalid_argument("device haply: HAPLY_WS_PORT=" + std::string(given) +
+                                ": a number from 1 to 65535 is needed");
+}
+
+haply::Address address_from(const std::string& host, double port) {
+    if (port != std::floor(port)) {
+        throw std::invalid_argument("device haply: port=" + std::to_string(port) +
+                                    ": a whole number is needed");
+    }
+    return haply::look_up(host, static_cast<std::uint16_t>(port));
+}
+
+}  // namespace
+
+DeviceFinding find_haply() {
+    DeviceFinding finding;
+    finding.name = "haply";
+    finding.options =
+        "host=localhost,port=10001,device=ID (the first),force_key=values "
+        "(values|vector),axes=xz-y,"
+        "calibrated=ask (ask|assume),timeout=2";
+    try {
+        const haply::Address address = address_from(usual_host(), usual_port());
+        haply::Talk talk;
+        finding.missing = start_talk(talk, address, "", haply::Clock::now() + 250ms);
+        if (!finding.missing.empty()) return finding;
+        finding.found = !talk.state.device_id.empty();
+        const std::string place = address.host + ":" + std::to_string(address.port);
+        if (finding.found) {
+            finding.what = talk.state.model + ", Inverse Service at " + place;
+        } else {
+            finding.missing = no_device(talk, address);
+        }
+        talk.socket.close(haply::Clock::now() + 50ms);
+    } catch (const std::exception& error) {
+        finding.missing = error.what();
+    }
+    return finding;
+}
+
+std::unique_ptr<Device> open_haply(const DeviceChoice& choice, const DeviceScene& scene) {
+    DeviceOptions options(choice, "host");
+    const std::string host = options.text("host", usual_host());
+    const double port = options.number("port", usual_port(), 1, 65535);
+    haply::Settings settings;
+    settings.device = options.text("device", "");
+    settings.force_key = options.one_of("force_key", "values", {"values", "vector"}) == "values"
+                             ? haply::ForceKey::values
+                             : haply::ForceKey::vector;
+    settings.axes = haply::axes_from(options.text("axes", "xz-y"));
+    settings.assume_calibrated = options.one_of("calibrated", "ask", {"ask", "assume"}) == "assume";
+    settings.timeout = options.number("timeout", settings.timeout, 0.1, 5);
+    settings.rate = scene.rate;
+    options.finish();
+
+    haply::Address address = address_from(host, port);
+    if (address.numeric.empty()) {
+        throw DeviceError("device haply: no host '" + host +
+                          "': host=NAME is where Haply's Inverse Service runs, usually localhost");
+    }
+    // A service that is just being started gets its second.
+    const auto deadline = haply::Clock::now() + 1s;
+    haply::Talk talk;
+    std::string wrong;
+    for (;;) {
+        wrong = start_talk(talk, address, settings.device, deadline);
+        if (wrong.empty() || haply::Clock::now() + 100ms > deadline) break;
+        std::this_thread::sleep_for(100ms);
+    }
+    if (wrong.empty() && talk.state.device_id.empty()) wrong = no_device(talk, address);
+    if (!wrong.empty()) throw DeviceError("device haply: " + wrong);
+    return std::make_unique<haply::Inverse3>(std::move(settings), std::move(address),
+                                             std::move(talk));
+}
+
+}  // namespace palpate::devices

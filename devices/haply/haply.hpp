@@ -1,0 +1,17 @@
+// Haply Inverse3, through Haply's Inverse Service (WebSocket and JSON on the loopback).
+#pragma once
+
+#include "devices/backend.hpp"
+
+namespace palpate::devices {
+
+/// Asks at the usual address (HAPLY_WS_HOST, HAPLY_WS_PORT, otherwise localhost:10001); takes at
+/// most about 0.3 s. Never throws for what it finds.
+DeviceFinding find_haply();
+
+/// Connects within about a second and takes the first state of the device; losses later on are
+/// answered by connecting again. Throws std::invalid_argument for wrong options, DeviceError where
+/// nothing listens or the service has no such device.
+std::unique_ptr<Device> open_haply(const DeviceChoice& choice, const DeviceScene& scene);
+
+}  // namespace palpate::devices

@@ -1,0 +1,105 @@
+// The device: a thread of its own that asks the Inverse Service, and a link to the servo.
+#pragma once
+
+#include <atomic>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "devices/haply/protocol.hpp"
+#include "devices/haply/socket.hpp"
+#include "devices/link.hpp"
+#include "devices/vendor_library.hpp"
+
+namespace palpate::devices::haply {
+
+struct Settings {
+    std::string device;  ///< device_id; empty: the first
+    ForceKey force_key = ForceKey::values;
+    Mat3 axes = axes_from("xz-y");
+    bool assume_calibrated = false;  ///< whatever the service says of it
+    double timeout = 2;              ///< [s] behind with its answers: the connection is given up
+    double rate = 1000;              ///< [Hz] of the servo
+};
+
+/// A connection and what was learnt on it.
+struct Talk {
+    Socket socket{longest_message};
+    ServiceState state;
+};
+/// Connects and takes the first message, which tells what is attached. Empty, or what is wrong.
+std::string start_talk(Talk& talk, const Address& address, const std::string& device,
+                       Clock::time_point deadline);
+/// What is wrong where start_talk() worked but did not find the device.
+std::string no_device(const Talk& talk, const Address& address);
+
+/// Counts questions and answers. The service answers each message with one, so an answer is no
+/// older than its question; how many are missing tells whether the service keeps up.
+class Questions {
+  public:
+    void asked(Clock::time_point now);
+    /// When the question that this answers was asked; one that nobody asked answers the last.
+    Clock::time_point answered();
+    std::uint64_t missing() const { return asked_ - answered_; }
+    Clock::time_point last() const { return last_; }
+    /// How long there was always an answer missing.
+    Clock::duration behind(Clock::time_point now) const;
+
+  private:
+    std::array<Clock::time_point, 1024> times_{};
+    std::uint64_t asked_ = 0, answered_ = 0;
+    Clock::time_point last_, behind_since_;
+};
+
+class Inverse3 final : public Device {
+  public:
+    /// `talk` has found the device.
+    Inverse3(Settings settings, Address address, Talk talk);
+    ~Inverse3() override;
+
+    DeviceInfo info() const override;
+    std::string problem() const override;
+    DeviceReading read(double) noexcept override { return link_.read(); }
+    void write(const Vec3& force, double) noexcept override { link_.write(force); }
+    void stop() noexcept override { link_.stop(); }
+
+  private:
+    // All of these are the thread's.
+    void run(Talk talk);
+    std::string converse(Talk& talk);
+    bool ask(Talk& talk, Questions& questions);
+    void take(Talk& talk, const Received& received, Clock::time_point asked);
+    void report_state(ServiceState& state, Clock::time_point asked);
+    void say_goodbye(Talk& talk);
+    std::optional<Talk> reconnect();
+    Vec3 force(Clock::time_point now);
+    void tell(std::string_view problem);
+    void tell_identity(const ServiceState& state);
+
+    struct Problem {
+        std::array<char, 400> text;
+    };
+    struct Identity {
+        std::array<char, 128> model;
+        bool has_grip;
+    };
+
+    const Settings settings_;
+    const Address address_;
+    const std::string service_;  // in words
+    Link link_;
+    Newest<Problem> problem_;
+    Newest<Identity> identity_;
+    std::atomic<bool> quit_{false};
+
+    // The thread's.
+    std::string told_;
+    bool told_grip_ = false;
+    Clock::time_point measured_at_;  // the newest position, at the earliest
+    ForceGate gate_;
+    Clock::duration wait_;  // before the next attempt to connect
+
+    std::thread thread_;
+};
+
+}  // namespace palpate::devices::haply

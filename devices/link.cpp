@@ -1,0 +1,69 @@
+// The two newest values and their ages.
+#include "devices/link.hpp"
+
+#include <pthread.h>
+#include <sched.h>
+#include <sys/prctl.h>
+
+#include <algorithm>
+
+namespace palpate::devices {
+
+std::int64_t monotonic_ns() noexcept {
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(
+               std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+}
+
+void ask_for_real_time_thread() noexcept {
+    ::prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
+    sched_param parameter{};
+    parameter.sched_priority = 81;
+    ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &parameter);
+}
+
+DeviceReading Link::read() const noexcept {
+    const auto report = reading_.get();
+    if (!report) return {};
+    DeviceReading reading = report->reading;
+    reading.age +=
+        1e-9 * static_cast<double>(std::max<std::int64_t>(0, monotonic_ns() - report->at));
+    if (reading.status == DeviceStatus::ready && !(reading.age <= Device::longest_force)) {
+        reading.status = DeviceStatus::stale;
+    }
+    return reading;
+}
+
+void Link::write(const Vec3& force) noexcept {
+    force_.put({{force[0], force[1], force[2]}, monotonic_ns()});
+}
+
+void Link::report(const DeviceReading& reading) noexcept {
+    last_ = reading;
+    reading_.put({reading, monotonic_ns()});
+}
+
+void Link::report(DeviceStatus status) noexcept {
+    last_.status = status;
+    last_.age = 0;
+    reading_.put({last_, monotonic_ns()});
+}
+
+Vec3 Link::force() const noexcept {
+    if (stopped()) return Vec3::Zero();
+    const auto newest = force_.get();
+    if (!newest) return Vec3::Zero();
+    const double age = 1e-9 * static_cast<double>(monotonic_ns() - newest->at);
+    const Vec3 force(newest->force[0], newest->force[1], newest->force[2]);
+    return age <= Device::longest_force && force.allFinite() ? force : Vec3(Vec3::Zero());
+}
+
+void Link::stop() noexcept {
+    stopped_.store(true, std::memory_order_release);
+}
+
+bool Link::stopped() const noexcept {
+    return stopped_.load(std::memory_order_acquire);
+}
+
+}  // namespace palpate::devices

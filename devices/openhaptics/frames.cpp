@@ -1,0 +1,152 @@
+// A frame, and what its errors mean.
+#include "devices/openhaptics/frames.hpp"
+
+#include <limits>
+
+namespace palpate::devices::openhaptics {
+namespace {
+
+constexpr std::int64_t error_lasts = 1'000'000'000;      // [ns] after it was last reported
+constexpr std::int64_t between_updates = 1'000'000'000;  // [ns] of the calibration
+
+Trouble trouble_of(unsigned int code) {
+    using Kind = Trouble::Kind;
+    if (code == error::communication || code == error::communication_setup) {
+        return {Kind::lost, code};
+    }
+    return {code == error::device_fault ? Kind::broken : Kind::passing, code};
+}
+
+/// Columns of the driver's matrix are the tool's axes in the device's.
+Mat3 orientation_of(const double (&transform)[16]) {
+    Mat3 axes;
+    for (int column = 0; column < 3; ++column) {
+        for (int row = 0; row < 3; ++row) axes(row, column) = transform[4 * column + row];
+    }
+    return axes.allFinite() ? axes : Mat3(Mat3::Identity());
+}
+
+}  // namespace
+
+DeviceStatus status_of(Trouble::Kind kind) {
+    switch (kind) {
+        case Trouble::Kind::none:
+            return DeviceStatus::ready;
+        case Trouble::Kind::needs_update:
+        case Trouble::Kind::needs_person:
+            return DeviceStatus::uncalibrated;
+        case Trouble::Kind::lost:
+            return DeviceStatus::lost;
+        case Trouble::Kind::not_a_position:
+        case Trouble::Kind::passing:
+        case Trouble::Kind::broken:
+            break;
+    }
+    return DeviceStatus::fault;
+}
+
+unsigned int Frames::callback(void* frames) {
+    return static_cast<Frames*>(frames)->frame();
+}
+
+Trouble Frames::trouble() const {
+    return trouble_.get().value_or(Trouble{});
+}
+
+unsigned int Frames::frame() noexcept {
+    const bool last = end_.load() || for_good();
+    const std::int64_t begun = monotonic_ns();
+    hd_.begin_frame(setup_.device);
+    DeviceReading reading;
+    Trouble trouble = read_device(reading);
+
+    std::int64_t now = monotonic_ns();
+    if (error_.kind == Trouble::Kind::passing && now >= error_until_) {
+        error_ = {};
+        force_output(true);
+    }
+    if (error_.kind != Trouble::Kind::none) trouble = error_;
+    gate_.note(trouble.kind == Trouble::Kind::none && !last, now);
+    const Vec3 force = gate_.pass(link_.force(), setup_.most_force, now);
+    hd_.set_double(parameter::force, force.data());
+    hd_.end_frame(setup_.device);
+
+    take_errors();
+    if (error_.kind != Trouble::Kind::none) trouble = error_;
+    now = monotonic_ns();
+    reading.age = 1e-9 * static_cast<double>(now - begun);
+    report(trouble, reading);
+    if (trouble.kind == Trouble::Kind::needs_update && now >= next_update_) {
+        next_update_ = now + between_updates;
+        hd_.update_calibration(setup_.styles & automatic ? automatic : inkwell);
+        hd_.take_error();  // what it refuses stays uncalibrated
+    }
+    if (!last) return callback_again;
+    ended_.store(true);
+    return callback_done;
+}
+
+Trouble Frames::read_device(DeviceReading& reading) noexcept {
+    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+    double position[3] = {unknown, unknown, unknown};
+    double transform[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+    int buttons = 0;
+    hd_.get_double(parameter::position, position);
+    hd_.get_double(parameter::transform, transform);
+    hd_.get_int(parameter::buttons, &buttons);
+    reading.position = Vec3(position[0], position[1], position[2]);
+    reading.orientation = orientation_of(transform);
+    reading.buttons = static_cast<std::uint32_t>(buttons) & 0xFU;
+
+    const unsigned int calibration = hd_.check_calibration();
+    if (calibration != calibrated) {
+        // An update moves nothing, but it shifts the positions: no force while one is due. Zeroing
+        // encoders is right in one pose only, so that is nothing to do unasked.
+        const bool by_itself = (setup_.styles & (automatic | inkwell)) != 0;
+        return {calibration == needs_update && by_itself ? Trouble::Kind::needs_update
+                                                         : Trouble::Kind::needs_person,
+                0};
+    }
+    return {is_position(reading.position) ? Trouble::Kind::none : Trouble::Kind::not_a_position, 0};
+}
+
+bool Frames::for_good() const noexcept {
+    return error_.kind == Trouble::Kind::lost || error_.kind == Trouble::Kind::broken;
+}
+
+void Frames::take_errors() noexcept {
+    for (int i = 0; i < Hd::most_errors; ++i) {
+        const unsigned int code = hd_.get_error().code;
+        if (code == 0) return;
+        const Trouble found = trouble_of(code);
+        error_until_ = monotonic_ns() + error_lasts;
+        if (!for_good()) error_ = found;
+        force_output(false);
+    }
+}
+
+void Frames::force_output(bool on) noexcept {
+    if (on == force_output_) return;
+    force_output_ = on;
+    if (on) {
+        hd_.enable(openhaptics::force_output);
+    } else {
+        hd_.disable(openhaptics::force_output);
+    }
+}
+
+void Frames::report(Trouble trouble, const DeviceReading& reading) noexcept {
+    if (trouble != last_told_) {
+        last_told_ = trouble;
+        trouble_.put(trouble);
+    }
+    if (trouble.kind == Trouble::Kind::none) {
+        DeviceReading ready = reading;
+        ready.status = DeviceStatus::ready;
+        link_.report(ready);
+    } else {
+        link_.report(status_of(trouble.kind));
+    }
+}
+
+}  // namespace palpate::devices::openhaptics

@@ -1,0 +1,79 @@
+// What runs in the driver's servo loop: a frame a call, reading in, force out.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <utility>
+
+#include "devices/link.hpp"
+#include "devices/openhaptics/hd.hpp"
+
+namespace palpate::devices::openhaptics {
+
+/// What is wrong with the device, as its own thread found it.
+struct Trouble {
+    enum class Kind : std::uint8_t {
+        none,
+        needs_update,    ///< calibration that waits for the driver
+        needs_person,    ///< calibration that waits for somebody's hand
+        not_a_position,  ///< what the driver tells is none
+        passing,         ///< an error; over once it has not come back for a while
+        lost,            ///< communication has broken off: for good
+        broken,          ///< the device reports a fault: for good
+    };
+    Kind kind = Kind::none;
+    unsigned int code = 0;  ///< of the driver's error
+
+    bool operator==(const Trouble&) const = default;
+};
+DeviceStatus status_of(Trouble::Kind kind);
+
+class Frames {
+  public:
+    struct Setup {
+        Handle device = no_handle;
+        double most_force = 0;    ///< [N]
+        unsigned int styles = 0;  ///< of calibration, bits
+    };
+    Frames(std::shared_ptr<const Hd> hd, const Setup& setup)
+        : library_(std::move(hd)), hd_(*library_), setup_(setup) {}
+
+    /// For the driver's scheduler; `frames` points to one of these.
+    static unsigned int callback(void* frames);
+
+    Link& link() { return link_; }
+    const Link& link() const { return link_; }
+    /// Any thread.
+    Trouble trouble() const;
+
+    /// Any thread: the next frame sends zero force and is the last.
+    void end() noexcept { end_.store(true); }
+    /// Whether that frame was sent: it is not called any more.
+    bool ended() const noexcept { return ended_.load(); }
+
+  private:
+    // All of these are the driver's thread's.
+    unsigned int frame() noexcept;
+    Trouble read_device(DeviceReading& reading) noexcept;
+    bool for_good() const noexcept;
+    void take_errors() noexcept;
+    void force_output(bool on) noexcept;
+    void report(Trouble trouble, const DeviceReading& reading) noexcept;
+
+    const std::shared_ptr<const Hd> library_;
+    const Hd& hd_;
+    const Setup setup_;
+    Link link_;
+    Newest<Trouble> trouble_;
+    std::atomic<bool> end_{false}, ended_{false};
+
+    // The driver's thread's.
+    ForceGate gate_;
+    Trouble last_told_;
+    Trouble error_;                 // the worst of late
+    std::int64_t error_until_ = 0;  // [ns] when a passing one is over
+    bool force_output_ = true;
+    std::int64_t next_update_ = 0;  // [ns] of the calibration, not before
+};
+
+}  // namespace palpate::devices::openhaptics

@@ -1,0 +1,45 @@
+// Options and errors of the device `openhaptics`.
+#include "devices/openhaptics/openhaptics.hpp"
+
+#include <utility>
+
+#include "devices/openhaptics/phantom.hpp"
+
+namespace palpate::devices {
+
+DeviceFinding openhaptics::find(const std::string& library) {
+    DeviceFinding finding;
+    finding.name = "openhaptics";
+    finding.options = "name=NAME (the driver's default),reset=no,library=libHD.so";
+    try {
+        const Hd hd(library);
+        finding.found = true;
+        finding.what = "OpenHaptics, " + hd.library.path() +
+                       "; whether a device answers shows when it is opened";
+    } catch (const std::exception& error) {
+        finding.missing = error.what();
+    }
+    return finding;
+}
+
+DeviceFinding find_openhaptics() {
+    return openhaptics::find("");
+}
+
+std::unique_ptr<Device> open_openhaptics(const DeviceChoice& choice, const DeviceScene& scene) {
+    DeviceOptions options(choice, "name");
+    openhaptics::Settings settings;
+    settings.name = options.text("name", "");
+    settings.reset = options.flag("reset", false);
+    settings.rate = scene.rate;
+    const std::string library = options.text("library", "");
+    options.finish();
+    try {
+        auto attachment = std::make_unique<openhaptics::Attachment>(library, settings.name);
+        return std::make_unique<openhaptics::Phantom>(std::move(attachment), settings);
+    } catch (const DeviceError& error) {
+        throw DeviceError("device " + choice.name + ": " + error.what());
+    }
+}
+
+}  // namespace palpate::devices

@@ -1,0 +1,239 @@
+// Attaching, asking what the device can do, starting and halting the driver's servo loop, and what
+// is wrong in words.
+#include "devices/openhaptics/phantom.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <thread>
+#include <vector>
+
+namespace palpate::devices::openhaptics {
+namespace {
+
+using namespace std::chrono_literals;
+
+std::atomic<bool> attached{false};  // the driver's loop is one a process, and so is this
+
+constexpr auto longest_wait = 500ms;  // for the last frame
+
+const char* const how_to_attach =
+    "connect and switch on the device and set it up with the vendor's program (its name there, if "
+    "it is not the default one: name=NAME); your account must be able to open its /dev/ttyACM* or "
+    "/dev/hidraw* (the driver's udev rule)";
+
+/// What the driver tells, if it is sensible. An Omni's or Touch's figures otherwise.
+double number(const Hd& hd, unsigned int parameter, double low, double high, double otherwise) {
+    double value = std::numeric_limits<double>::quiet_NaN();
+    hd.get_double(parameter, &value);
+    hd.take_error();
+    return value >= low && value <= high ? value : otherwise;
+}
+
+int whole_number(const Hd& hd, unsigned int parameter, int low, int high, int otherwise) {
+    int value = std::numeric_limits<int>::min();
+    hd.get_int(parameter, &value);
+    hd.take_error();
+    return value >= low && value <= high ? value : otherwise;
+}
+
+std::string text(const Hd& hd, unsigned int parameter) {
+    const char* words = hd.get_string(parameter);
+    hd.take_error();
+    return words ? words : "";
+}
+
+void set_workspace(const Hd& hd, DeviceInfo& info) {
+    double box[6];
+    std::fill(std::begin(box), std::end(box), std::numeric_limits<double>::quiet_NaN());
+    hd.get_double(parameter::usable_workspace, box);
+    hd.take_error();
+    const Vec3 low(box[0], box[1], box[2]), high(box[3], box[4], box[5]);
+    const Vec3 size = high - low;
+    const bool sensible =
+        is_position(low) && is_position(high) && size.minCoeff() >= 10 && size.maxCoeff() <= 2000;
+    info.workspace_low = sensible ? low : Vec3(-80, -60, -35);
+    info.workspace_high = sensible ? high : Vec3(80, 60, 35);
+}
+
+DeviceInfo ask(const Hd& hd, double servo_rate) {
+    DeviceInfo info;
+    info.name = "openhaptics";
+    info.model = text(hd, parameter::model);
+    const std::string serial = text(hd, parameter::serial_number);
+    if (info.model.empty()) info.model = "OpenHaptics device";
+    if (!serial.empty()) info.model += ", serial number " + serial;
+    info.limits.maximum_force = number(hd, parameter::nominal_max_force, 0.1, 50, 3.3);
+    info.stiffness = number(hd, parameter::nominal_max_stiffness, 0.05, 10, 0.4);
+    // The slower of the two loops is the one that samples.
+    const int rate = whole_number(hd, parameter::update_rate, 100, 10000, 1000);
+    info.limits.rate = std::min<double>(servo_rate, rate);
+    set_workspace(hd, info);
+    info.has_orientation = whole_number(hd, parameter::input_dof, 1, 7, 6) >= 6;
+    info.buttons = 4;  // as many as the interface has bits
+    return info;
+}
+
+const char* advice(unsigned int code) {
+    switch (code) {
+        case error::warm_motors:
+            return "let go and wait until the motors have cooled down; there is no force meanwhile";
+        case error::exceeded_force:
+        case error::exceeded_impulse:
+        case error::exceeded_velocity:
+        case error::force_error:
+            return "force is off for a second; if this happens again, lower the stiffness or move "
+                   "more slowly";
+        default:
+            return "force is off until a second after it was last reported";
+    }
+}
+
+}  // namespace
+
+Attachment::Attachment(const std::string& library, const std::string& name)
+    : hd_(std::make_shared<const Hd>(library)) {
+    if (attached.exchange(true)) {
+        throw DeviceError("there is one open already, and the driver has no second one a process");
+    }
+    std::vector<const char*> names{name.c_str()};
+    if (name.empty()) names = {nullptr, "Default PHANToM"};
+    std::string tried;
+    for (const char* one : names) {
+        hd_->take_error();
+        device_ = hd_->init_device(one);
+        const unsigned int code = hd_->take_error();
+        if (device_ != no_handle && code == 0) return;
+        if (device_ != no_handle) hd_->disable_device(device_);
+        tried += (tried.empty() ? "" : "; ") + std::string("device ") +
+                 (one ? "'" + std::string(one) + "'" : "NULL") + ": " +
+                 (code ? hd_->error_words(code) : "no error told");
+    }
+    attached.store(false);
+    throw DeviceError("the driver gives no device (" + tried + "): " + how_to_attach);
+}
+
+Attachment::~Attachment() {
+    hd_->make_current(device_);
+    hd_->disable(force_output);
+    hd_->disable_device(device_);
+    hd_->take_error();
+    attached.store(false);
+}
+
+Phantom::Phantom(std::unique_ptr<Attachment> attachment, const Settings& settings)
+    : attachment_(std::move(attachment)) {
+    const Hd& hd = attachment_->hd();
+    hd.make_current(attachment_->device());
+    check("hdMakeCurrentDevice");
+    info_ = ask(hd, settings.rate);
+    styles_ = static_cast<unsigned int>(whole_number(hd, parameter::calibration_style, 0, 7, 0));
+    if (settings.reset) {
+        if (!(styles_ & encoder_reset)) {
+            throw DeviceError("reset=yes: the encoders of this device cannot be zeroed; leave it");
+        }
+        hd.update_calibration(encoder_reset);
+        check("zeroing the encoders");
+    }
+    frames_ = std::make_shared<Frames>(
+        attachment_->shared_hd(),
+        Frames::Setup{attachment_->device(), info_.limits.maximum_force, styles_});
+    try {
+        start();
+    } catch (...) {
+        halt();
+        throw;
+    }
+}
+
+Phantom::~Phantom() {
+    halt();
+}
+
+void Phantom::start() {
+    const Hd& hd = attachment_->hd();
+    hd.enable(force_output);
+    check("switching on its force");
+    scheduled_ = hd.schedule(&Frames::callback, frames_.get(), highest_priority);
+    is_scheduled_ = true;
+    check("hdScheduleAsynchronous");
+    hd.start_scheduler();
+    check("starting the driver's servo loop");
+}
+
+void Phantom::halt() noexcept {
+    if (!is_scheduled_) return;
+    const Hd& hd = attachment_->hd();
+    frames_->link().stop();
+    frames_->end();
+    const auto until = std::chrono::steady_clock::now() + longest_wait;
+    while (!frames_->ended() && std::chrono::steady_clock::now() < until) {
+        std::this_thread::sleep_for(1ms);
+    }
+    hd.stop_scheduler();
+    hd.unschedule(scheduled_);
+    is_scheduled_ = false;
+    if (frames_->ended()) return;
+    // A driver that has not called for so long may yet do so: what it would call stays for ever.
+    static auto& kept = *new std::vector<std::shared_ptr<Frames>>;
+    kept.push_back(frames_);
+}
+
+void Phantom::check(const char* step) const {
+    const Hd& hd = attachment_->hd();
+    const unsigned int code = hd.take_error();
+    if (code) throw DeviceError(std::string(step) + ": the driver says " + hd.error_words(code));
+}
+
+std::string Phantom::calibration_words(Trouble::Kind kind) const {
+    if (kind == Trouble::Kind::needs_update) {
+        return "the driver is bringing its calibration up to date; if that does not end, move the "
+               "device about or put the stylus into its inkwell";
+    }
+    if (styles_ & inkwell) {
+        return "not calibrated: put the stylus into its inkwell for a moment; if that does not "
+               "help, calibrate it with the vendor's program";
+    }
+    if (styles_ & automatic) return "not calibrated: move the device through its whole workspace";
+    if (styles_ & encoder_reset) {
+        return "not calibrated: hold the arm in its reset pose (all links at right angles) and "
+               "open it again with reset=yes";
+    }
+    return "not calibrated: calibrate it with the vendor's program";
+}
+
+std::string Phantom::problem() const {
+    const Trouble trouble = frames_->trouble();
+    const auto driver_says = [&](const char* do_this) {
+        return "the driver reports " + attachment_->hd().error_words(trouble.code) + ": " + do_this;
+    };
+    switch (trouble.kind) {
+        case Trouble::Kind::needs_update:
+        case Trouble::Kind::needs_person:
+            return calibration_words(trouble.kind);
+        case Trouble::Kind::not_a_position:
+            return "the driver tells a position that cannot be: calibrate the device, or switch it "
+                   "off and on";
+        case Trouble::Kind::passing:
+            return driver_says(advice(trouble.code));
+        case Trouble::Kind::lost:
+            return driver_says("no force any more; check cable and power, then start again");
+        case Trouble::Kind::broken:
+            return driver_says("no force any more; switch the device off and on, then start again");
+        case Trouble::Kind::none:
+            break;
+    }
+    switch (frames_->link().read().status) {
+        case DeviceStatus::starting:
+            return "the driver's servo loop has not told a position yet";
+        case DeviceStatus::stale:
+            return "the driver's servo loop stands still or is too slow: its last position is more "
+                   "than 20 ms old";
+        default:
+            return {};
+    }
+}
+
+}  // namespace palpate::devices::openhaptics

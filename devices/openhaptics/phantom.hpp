@@ -1,0 +1,62 @@
+// The device: attached to the driver, and its servo loop running.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "devices/openhaptics/frames.hpp"
+
+namespace palpate::devices::openhaptics {
+
+struct Settings {
+    std::string name;    ///< as in the vendor's setup; empty: its default device
+    bool reset = false;  ///< the arm stands in its reset pose: zero its encoders
+    double rate = 1000;  ///< [Hz] of the servo
+};
+
+/// A device of the driver's, ours until this goes. The driver has one servo loop and one current
+/// device a process, so there is at most one of these. Throws DeviceError.
+class Attachment {
+  public:
+    Attachment(const std::string& library, const std::string& name);
+    ~Attachment();
+    Attachment(const Attachment&) = delete;
+    Attachment& operator=(const Attachment&) = delete;
+
+    const Hd& hd() const { return *hd_; }
+    /// Shared, for calls that may still come when this has gone.
+    const std::shared_ptr<const Hd>& shared_hd() const { return hd_; }
+    Handle device() const { return device_; }
+
+  private:
+    std::shared_ptr<const Hd> hd_;
+    Handle device_ = no_handle;
+};
+
+class Phantom final : public Device {
+  public:
+    /// Starts the driver's servo loop. Throws DeviceError.
+    Phantom(std::unique_ptr<Attachment> attachment, const Settings& settings);
+    ~Phantom() override;
+
+    DeviceInfo info() const override { return info_; }
+    std::string problem() const override;
+    DeviceReading read(double) noexcept override { return frames_->link().read(); }
+    void write(const Vec3& force, double) noexcept override { frames_->link().write(force); }
+    void stop() noexcept override { frames_->link().stop(); }
+
+  private:
+    void start();
+    void halt() noexcept;
+    void check(const char* step) const;
+    std::string calibration_words(Trouble::Kind kind) const;
+
+    std::unique_ptr<Attachment> attachment_;
+    DeviceInfo info_;
+    unsigned int styles_ = 0;  // of calibration
+    std::shared_ptr<Frames> frames_;
+    unsigned long scheduled_ = 0;
+    bool is_scheduled_ = false;
+};
+
+}  // namespace palpate::devices::openhaptics

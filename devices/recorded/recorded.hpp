@@ -1,0 +1,18 @@
+// The device `recorded`: a hand that moves as a file says and feels nothing. See
+// docs/devices/recorded.md.
+#pragma once
+
+#include <memory>
+
+#include "devices/backend.hpp"
+
+namespace palpate::devices {
+
+/// Always found.
+DeviceFinding find_recorded();
+
+/// Reads the file. Throws std::invalid_argument for options it has not, io::InputError for a file
+/// that cannot be read.
+std::unique_ptr<Device> open_recorded(const DeviceChoice& choice, const DeviceScene& scene);
+
+}  // namespace palpate::devices

@@ -1,0 +1,136 @@
+// Reads the columns by name: a recording has many more, and an older or newer one others.
+#include "devices/recorded/recording.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "io/csv.hpp"
+#include "io/number.hpp"
+#include "io/recording.hpp"
+#include "io/trajectory.hpp"
+
+namespace palpate::devices {
+namespace {
+
+std::optional<std::size_t> column_if_any(const io::CsvReader& rows, const std::string& name) {
+    if (!rows.has_column(name)) return std::nullopt;
+    return rows.column(name);
+}
+
+/// The columns of a recording that a device told.
+class DeviceColumns {
+  public:
+    explicit DeviceColumns(const io::CsvReader& rows)
+        : time_(rows.column("t")),
+          x_(rows.column("device_x")),
+          y_(rows.column("device_y")),
+          z_(rows.column("device_z")),
+          status_(column_if_any(rows, "device_status")),
+          buttons_(column_if_any(rows, "buttons")),
+          age_(column_if_any(rows, "age")) {
+        if (!rows.has_column("tool_xx")) return;
+        for (const char r : {'x', 'y', 'z'}) {
+            for (const char c : {'x', 'y', 'z'}) {
+                tool_.push_back(rows.column(std::string("tool_") + r + c));
+            }
+        }
+    }
+
+    double time(const io::CsvReader& rows, const std::vector<double>& before) const {
+        const double time = rows.finite_number(time_);
+        if (before.empty() || time > before.back()) return time;
+        std::string last;
+        io::append_number(last, before.back());
+        rows.fail("the time " + io::quoted(rows.cell(time_)) + " does not come after " + last +
+                  ", that of the row before: sort the rows and remove doubles");
+    }
+    /// As the device told it, even if that is no number: what a session made of it is to be seen.
+    Vec3 position(const io::CsvReader& rows) const {
+        return {rows.number(x_), rows.number(y_), rows.number(z_)};
+    }
+    Told told(const io::CsvReader& rows) const {
+        constexpr auto last = static_cast<std::uint32_t>(DeviceStatus::finished);
+        constexpr auto ready = static_cast<std::uint32_t>(DeviceStatus::ready);
+        Told told;
+        told.status = static_cast<DeviceStatus>(code(rows, status_, ready, last));
+        told.buttons = code(rows, buttons_, 0, std::numeric_limits<std::uint32_t>::max());
+        if (age_) told.age = rows.number(*age_);
+        return told;
+    }
+    bool has_tool() const { return !tool_.empty(); }
+    Mat3 tool(const io::CsvReader& rows) const {
+        Mat3 tool;
+        for (int i = 0; i < 9; ++i) {
+            tool(i / 3, i % 3) = rows.number(tool_[static_cast<std::size_t>(i)]);
+        }
+        return tool;
+    }
+
+  private:
+    static std::uint32_t code(const io::CsvReader& rows, std::optional<std::size_t> column,
+                              std::uint32_t otherwise, std::uint32_t most) {
+        if (!column) return otherwise;
+        const std::int64_t value = rows.integer(*column);
+        if (value >= 0 && value <= most) return static_cast<std::uint32_t>(value);
+        rows.fail(io::quoted(rows.cell(*column)) + " is out of range: 0 to " +
+                  std::to_string(most));
+    }
+
+    std::size_t time_, x_, y_, z_;
+    std::optional<std::size_t> status_, buttons_, age_;
+    std::vector<std::size_t> tool_;
+};
+
+Recording raw_recording(const std::string& text, const std::string& name) {
+    io::CsvReader rows(io::whole_lines(text), name);
+    const DeviceColumns columns(rows);
+    Recording recording;
+    while (rows.next()) {
+        recording.time.push_back(columns.time(rows, recording.time));
+        recording.position.push_back(columns.position(rows));
+        recording.told.push_back(columns.told(rows));
+        if (columns.has_tool()) recording.orientation.push_back(columns.tool(rows));
+    }
+    if (recording.time.empty()) {
+        throw io::InputError(name + ": has a header and no rows: add at least one position");
+    }
+    const bool turned = std::ranges::any_of(
+        recording.orientation, [](const Mat3& tool) { return tool != Mat3::Identity(); });
+    if (!turned) recording.orientation = {};
+    return recording;
+}
+
+/// What the device told in one place of a volume, as one that lies there otherwise would have told
+/// it: the hand goes the same way through the volume. Nothing changes where both lie alike.
+void move_from(const DeviceTransform& recorded, const DeviceTransform& now, Recording& recording) {
+    if (recorded.rotation == now.rotation && recorded.translation == now.translation &&
+        recorded.scale == now.scale) {
+        return;
+    }
+    for (Vec3& position : recording.position) {
+        position = device_from_physical(now, physical_from_device(recorded, position));
+    }
+    const Mat3 turn = now.rotation.transpose() * recorded.rotation;
+    for (Mat3& tool : recording.orientation) tool = turn * tool;
+}
+
+}  // namespace
+
+Recording read_recording(const std::string& file, const DeviceTransform& transform) {
+    std::string text = io::read_text(file);
+    if (io::CsvReader(text, file).has_column("device_x")) {
+        Recording recording = raw_recording(text, file);
+        if (text.starts_with("# palpate recording")) {
+            const io::RecordingReader reader(std::move(text), file);
+            move_from(reader.head().settings.transform, transform, recording);
+        }
+        return recording;
+    }
+    io::Trajectory trajectory = io::parse_trajectory(text, file);
+    for (Vec3& point : trajectory.position) point = device_from_physical(transform, point);
+    return {std::move(trajectory.time), std::move(trajectory.position), {}, {}};
+}
+
+}  // namespace palpate::devices

@@ -1,0 +1,47 @@
+// What the simulated devices and hands are like: plain numbers. Which of them are published and
+// which assumed: docs/devices/simulated.md.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "palpate/volume.hpp"
+
+namespace palpate::devices {
+
+/// A haptic device as a point mass at the grip, the same in all directions.
+struct DeviceProfile {
+    std::string name;          ///< for the option `profile`
+    std::string model;         ///< as people call it
+    double mass = 0.05;        ///< [kg] apparent at the grip, > 0
+    double damping = 0;        ///< [N s/mm] viscous, of the mechanics
+    double friction = 0;       ///< [N] Coulomb, static and sliding alike
+    double encoder_step = 0;   ///< [mm] positions are read in multiples of it; 0: exactly
+    double maximum_force = 0;  ///< [N]
+    double force_step = 0;     ///< [N] the motors' command has multiples of it; 0: any
+    double delay = 0;          ///< [s] from writing a force until it acts
+    double stiffness = 0;      ///< [N/mm] it is rated for
+    Vec3 workspace_low = Vec3::Zero();
+    Vec3 workspace_high = Vec3::Zero();  ///< [device mm]
+};
+
+/// omni, touch, touchx, omega3, falcon, inverse3.
+const std::vector<std::string>& profile_names();
+/// Throws std::invalid_argument, listing the names, for another.
+const DeviceProfile& profile(std::string_view name);
+
+/// The hand at the grip: a mass that moves with the device, and a spring and a damper to where the
+/// hand wants to be.
+struct HandGrip {
+    double mass = 0;       ///< [kg]
+    double damping = 0;    ///< [N s/mm]
+    double stiffness = 0;  ///< [N/mm]
+};
+
+/// light, normal, firm.
+const std::vector<std::string>& grip_names();
+/// Throws std::invalid_argument, listing the names, for another.
+const HandGrip& grip(std::string_view name);
+
+}  // namespace palpate::devices

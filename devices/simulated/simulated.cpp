@@ -1,0 +1,243 @@
+// The device: options, the hand's path, and reading and writing the dynamics.
+#include "devices/simulated/simulated.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "devices/recorded/timed_path.hpp"
+#include "devices/simulated/dynamics.hpp"
+#include "io/trajectory.hpp"
+#include "scenes/motions.hpp"
+
+namespace palpate::devices {
+namespace {
+
+/// A gap between two reads is caught up by this much [s]; the rest is skipped, so that a read after
+/// a stall takes no longer than one of the next stall.
+constexpr double longest_gap = 0.05;
+
+const char* const usual_profile = "omni";
+
+/// What the hand is to do. Lengths in device mm: those of the hand.
+struct HandOptions {
+    std::string motion = "explore";
+    std::string file;
+    double seconds = 30;
+    double speed = 50;
+    double depth = 4;
+    double seed = 1;
+    bool loop = false;
+};
+
+struct Choice {
+    DeviceProfile device;
+    std::string grip = "normal";
+    HandGrip grip_numbers;
+    HandOptions hand;
+};
+
+/// The motions a hand can make, by the names used here.
+std::vector<std::string> hand_names() {
+    std::vector<std::string> names = scenes::motion_names();
+    std::erase(names, "random");  // jumps about: no hand
+    std::ranges::replace(names, "approach", "hold");
+    return names;
+}
+
+Choice choose(const DeviceChoice& given) {
+    DeviceOptions options(given, "profile");
+    Choice choice;
+    choice.device = profile(options.one_of("profile", usual_profile, profile_names()));
+    DeviceProfile& device = choice.device;
+    if (!options.flag("friction", true)) device.friction = 0;
+    device.encoder_step = options.number("encoder", device.encoder_step, 0, 5);
+    device.delay = 1e-3 * options.number("delay", 1e3 * device.delay, 0, 100);
+    device.force_step = options.number("force_step", device.force_step, 0, 5);
+
+    choice.grip = options.one_of("grip", choice.grip, grip_names());
+    HandGrip& numbers = choice.grip_numbers = grip(choice.grip);
+    numbers.mass = options.number("hand_mass", numbers.mass, 0, 10);
+    numbers.damping = options.number("hand_damping", numbers.damping, 0, 1);
+    numbers.stiffness = options.number("hand_stiffness", numbers.stiffness, 0, 100);
+
+    HandOptions& hand = choice.hand;
+    hand.file = options.text("file", "");
+    hand.loop = options.flag("loop", hand.loop);
+    if (!hand.file.empty()) {
+        for (const char* key : {"hand", "seconds", "speed", "depth", "seed"}) {
+            if (!given.options.contains(key)) continue;
+            throw std::invalid_argument("device " + given.name + ": " + key +
+                                        "= has no meaning with file=: leave one of them out");
+        }
+    }
+    hand.motion = options.one_of("hand", hand.motion, hand_names());
+    hand.seconds = options.number("seconds", hand.seconds, 0.5, 3600);
+    hand.speed = options.number("speed", hand.speed, 1, 1000);
+    hand.depth = options.number("depth", hand.depth, 0, 50);
+    hand.seed = options.number("seed", hand.seed, 0, 1e9);
+    if (hand.seed != std::floor(hand.seed)) {
+        throw std::invalid_argument("device " + given.name + ": seed= needs a whole number");
+    }
+    options.finish();
+    return choice;
+}
+
+TimedPath hand_path(const HandOptions& hand, const DeviceScene& scene,
+                    const DeviceTransform& transform) {
+    std::vector<double> time;
+    std::vector<Vec3> position;
+    if (!hand.file.empty()) {
+        io::Trajectory read = io::read_trajectory(hand.file);
+        time = std::move(read.time);
+        position = std::move(read.position);
+    } else {
+        const std::string motion = hand.motion == "hold" ? "approach" : hand.motion;
+        const auto samples = scenes::make_motion(motion, scene.field, scene.isovalue,
+                                                 {.rate_hz = 1000,
+                                                  .duration_s = hand.seconds,
+                                                  .speed_mm_s = hand.speed * transform.scale,
+                                                  .depth_mm = hand.depth * transform.scale,
+                                                  .seed = static_cast<std::uint64_t>(hand.seed)});
+        for (const scenes::HandSample& sample : samples) {
+            time.push_back(sample.t);
+            position.push_back(sample.position);
+        }
+    }
+    for (Vec3& point : position) point = device_from_physical(transform, point);
+    return {std::move(time), std::move(position)};
+}
+
+DeviceInfo info_of(const Choice& choice, double rate) {
+    const DeviceProfile& device = choice.device;
+    DeviceInfo info;
+    info.name = "simulated";
+    info.model = "simulated " + device.model + ", " + choice.grip + " grip";
+    info.limits.maximum_force = device.maximum_force;
+    info.limits.rate = rate;
+    info.limits.physical_damping = device.damping + choice.grip_numbers.damping;
+    info.stiffness = device.stiffness;
+    info.workspace_low = device.workspace_low;
+    info.workspace_high = device.workspace_high;
+    return info;
+}
+
+/// Twice the forces that are under way at this rate.
+std::size_t room_for(double delay, double rate) {
+    return 16 + static_cast<std::size_t>(2 * delay * std::min(1e5, std::max(1.0, rate)));
+}
+
+class Simulated final : public Device {
+  public:
+    Simulated(const Choice& choice, const DeviceInfo& info, TimedPath path)
+        : info_(info),
+          device_(choice.device),
+          path_(std::move(path)),
+          loop_(choice.hand.loop),
+          line_(device_.delay, longest_force, room_for(device_.delay, info.limits.rate)),
+          system_(hand_and_device(device_, choice.grip_numbers, path_.at(path_.begin()).position)) {
+    }
+
+    DeviceInfo info() const override { return info_; }
+
+    DeviceReading read(double time) noexcept override {
+        if (std::isfinite(time)) {
+            if (!started_) now_ = time;
+            started_ = true;
+            if (time > now_) {
+                pass(std::min(time, now_ + longest_gap));
+                now_ = time;
+            }
+        }
+        DeviceReading reading;
+        reading.position = encoder_position(device_, system_.position);
+        const bool finished = !loop_ && path_.begin() + script_time_ > path_.end();
+        reading.status = finished ? DeviceStatus::finished : DeviceStatus::ready;
+        return reading;
+    }
+
+    void write(const Vec3& force, double time) noexcept override { line_.send(force, time); }
+
+    void stop() noexcept override { stopped_.store(true, std::memory_order_relaxed); }
+
+  private:
+    /// Lets the system move on to a time, from one change of the force to the next.
+    void pass(double end) noexcept {
+        while (now_ < end) {
+            const ForceLine::Acting acting = line_.at(now_);
+            const double until = std::min(end, acting.until);
+            const bool stopped = stopped_.load(std::memory_order_relaxed);
+            integrate(stopped ? Vec3(Vec3::Zero()) : motor_force(device_, acting.force),
+                      until - now_);
+            now_ = until;
+        }
+    }
+
+    void integrate(const Vec3& force, double duration) noexcept {
+        // Less a rounding: a millisecond that came out of a difference is still 40 steps.
+        const double wanted = duration / longest_step - 1e-6;
+        const int steps = std::max(1, static_cast<int>(std::ceil(wanted)));
+        const double dt = duration / steps;
+        const double from = script_time_;
+        for (int i = 1; i <= steps; ++i) {
+            const TimedPath::Place target = target_at(from + i * dt);
+            advance(system_, target.position, target.velocity, force, dt);
+        }
+        script_time_ = from + duration;
+    }
+
+    TimedPath::Place target_at(double script_time) noexcept {
+        if (!loop_) return path_.at(path_.begin() + script_time);
+        const ThereAndBack turn = there_and_back(script_time, path_.end() - path_.begin());
+        TimedPath::Place place = path_.at(path_.begin() + turn.time);
+        place.velocity *= turn.direction;
+        return place;
+    }
+
+    const DeviceInfo info_;
+    const DeviceProfile device_;
+    TimedPath path_;
+    const bool loop_;
+    ForceLine line_;
+    HandAndDevice system_;
+    bool started_ = false;
+    double now_ = 0;          // [s] of the session
+    double script_time_ = 0;  // [s] since the first read, without what was skipped
+    std::atomic<bool> stopped_{false};
+};
+
+/// KEY=OTHERWISE with what else may stand there.
+std::string choice_of(const std::string& key, const std::string& otherwise,
+                      const std::vector<std::string>& accepted) {
+    std::string text;
+    for (const std::string& name : accepted) text += (text.empty() ? "" : "|") + name;
+    return key + "=" + otherwise + " (" + text + "), ";
+}
+
+}  // namespace
+
+DeviceFinding find_simulated() {
+    const Choice usual;
+    return {.name = "simulated",
+            .found = true,
+            .what = "a haptic device and the hand that holds it, computed",
+            .missing = "",
+            .options = choice_of("profile", usual_profile, profile_names()) +
+                       choice_of("hand", usual.hand.motion, hand_names()) +
+                       choice_of("grip", usual.grip, grip_names()) +
+                       "file=TRAJECTORY.csv instead of hand, loop=no, seconds=30, speed=50, "
+                       "depth=4, seed=1, friction=yes; the profile's and the grip's own: "
+                       "encoder=MM, delay=MS, force_step=N, hand_mass=KG, "
+                       "hand_damping=N_S_PER_MM, hand_stiffness=N_PER_MM"};
+}
+
+std::unique_ptr<Device> open_simulated(const DeviceChoice& given, const DeviceScene& scene) {
+    const Choice choice = choose(given);
+    const DeviceInfo info = info_of(choice, scene.rate);
+    return std::make_unique<Simulated>(choice, info,
+                                       hand_path(choice.hand, scene, scene.transform(info)));
+}
+
+}  // namespace palpate::devices

@@ -1,0 +1,66 @@
+// What spacenavd says, and what becomes of it: deflections of the puck are speeds of the hand. Pure
+// functions and values, no socket.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "palpate/device.hpp"
+
+namespace palpate::devices::spacenav {
+
+/// Eight numbers in the machine's byte order, protocol 0. The first tells what it is:
+enum EventType : std::int32_t {
+    motion = 0,   ///< x y z rx ry rz, counts of deflection, and the ms since the last one
+    press = 1,    ///< button
+    release = 2,  ///< button
+};
+using Event = std::array<std::int32_t, 8>;
+
+/// Puts events together from pieces of any size.
+class EventReader {
+  public:
+    /// Takes bytes; what they complete comes out of next().
+    void take(std::span<const unsigned char> bytes);
+    std::optional<Event> next();
+
+  private:
+    std::vector<unsigned char> bytes_;
+    std::size_t used_ = 0;
+};
+
+struct Feel {
+    double speed = 100;       ///< [mm/s] at full deflection
+    double turn = 90;         ///< [degrees/s] at full deflection
+    double deflection = 350;  ///< [counts] that is full
+};
+
+/// Half an edge of the box that the hand stays in [device mm].
+constexpr double reach = 80;
+
+struct Hand {
+    Vec3 position = Vec3::Zero();  ///< [device mm]
+    Mat3 orientation = Mat3::Identity();
+    Vec3 slide = Vec3::Zero();  ///< deflection, 1: full; our axes
+    Vec3 twist = Vec3::Zero();  ///< the same about them
+    std::uint32_t buttons = 0;
+};
+
+/// What an event changes. Types that are not known are for other programs: nothing.
+void apply(Hand& hand, const Event& event, const Feel& feel);
+/// So long [s] with the deflections as they are.
+void advance(Hand& hand, double time, const Feel& feel);
+/// The puck is let go: nobody tells of it any more.
+void let_go(Hand& hand);
+
+/// Where the daemon's socket may be, in the order to try: `environment` is $SPNAV_SOCKET (empty:
+/// none), `configuration` the text of /etc/spnavrc.
+std::vector<std::string> socket_paths(const std::string& environment,
+                                      std::string_view configuration);
+
+}  // namespace palpate::devices::spacenav

@@ -1,0 +1,58 @@
+// Options and errors of the device `spacenav`.
+#include "devices/spacenav/spacenav.hpp"
+
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <utility>
+
+#include "devices/spacenav/mouse.hpp"
+
+namespace palpate::devices {
+namespace {
+
+/// The one that is asked for, or where one usually is.
+std::vector<std::string> paths_from(const std::string& asked) {
+    if (!asked.empty()) return {asked};
+    const char* environment = std::getenv("SPNAV_SOCKET");
+    std::ifstream file("/etc/spnavrc", std::ios::binary);
+    const std::string configuration{std::istreambuf_iterator<char>(file), {}};
+    return spacenav::socket_paths(environment ? environment : "", configuration);
+}
+
+}  // namespace
+
+DeviceFinding find_spacenav() {
+    DeviceFinding finding;
+    finding.name = "spacenav";
+    finding.options = "socket=/var/run/spnav.sock,speed=100 [mm/s],turn=90 [degrees/s],full=350";
+    try {
+        spacenav::Socket socket;
+        finding.what = "spacenavd at " + connect_to_any(socket, paths_from(""));
+        finding.found = true;
+    } catch (const std::exception& error) {
+        finding.missing = error.what();
+    }
+    return finding;
+}
+
+std::unique_ptr<Device> open_spacenav(const DeviceChoice& choice, const DeviceScene& scene) {
+    DeviceOptions options(choice, "socket");
+    const std::string asked = options.text("socket", "");
+    spacenav::Feel feel;
+    feel.speed = options.number("speed", feel.speed, 1, 1000);
+    feel.turn = options.number("turn", feel.turn, 0, 360);
+    feel.deflection = options.number("full", feel.deflection, 1, 10000);
+    options.finish();
+    try {
+        std::vector<std::string> paths = paths_from(asked);
+        spacenav::Socket socket;
+        const std::string path = connect_to_any(socket, paths);
+        return std::make_unique<spacenav::Mouse>(std::move(socket), path, std::move(paths), feel,
+                                                 scene.rate);
+    } catch (const DeviceError& error) {
+        throw DeviceError("device " + choice.name + ": " + error.what());
+    }
+}
+
+}  // namespace palpate::devices

@@ -1,0 +1,67 @@
+// What the backends over a vendor's library share: the library, opened at run time, and the rule
+// by which a force reaches the vendor's call.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "devices/error.hpp"
+#include "palpate/device.hpp"
+
+namespace palpate::devices {
+
+/// A vendor's shared library. It stays in the process for ever: drivers keep threads and device
+/// state in it, and OpenHaptics' must not be unloaded and loaded again. Its symbols are visible to
+/// the libraries that it brings along (RTLD_GLOBAL), as those expect.
+class VendorLibrary {
+  public:
+    /// Opens the first of `names` (file names, or paths) that the system's loader finds. Throws
+    /// DeviceError, saying what was tried, what the loader says, and `install`.
+    VendorLibrary(const std::vector<std::string>& names, const std::string& install);
+
+    /// Sets a pointer to a function of this library or of those it brings along. Throws DeviceError
+    /// if there is none of this name.
+    template <class F>
+    void need(F*& function, const char* name) const {
+        function = reinterpret_cast<F*>(symbol(name));
+        if (!function) throw DeviceError(lacks(name));
+    }
+    /// The same; null if there is none.
+    template <class F>
+    void take(F*& function, const char* name) const noexcept {
+        function = reinterpret_cast<F*>(symbol(name));
+    }
+
+    /// Where the loader found it.
+    const std::string& path() const { return path_; }
+
+  private:
+    void* symbol(const char* name) const noexcept;
+    std::string lacks(const char* name) const;
+
+    void* handle_ = nullptr;
+    std::string path_;
+};
+
+/// Whether a device can be there [device mm]: finite, and not farther than 10 m from its origin.
+bool is_position(const Vec3& position) noexcept;
+
+/// Lets a force through only once the device has been ready without a break for as long as a link
+/// holds a force: what is let through was written by a servo that knew it to be ready. For the
+/// thread that talks to the device.
+class ForceGate {
+  public:
+    /// How the device is, at this time [ns, monotonic], after the calls that told it. So long
+    /// without a word is a break: a slow call is one, too.
+    void note(bool ready, std::int64_t now) noexcept;
+    /// `force` cut to `most` [N], or zero.
+    Vec3 pass(const Vec3& force, double most, std::int64_t now) const noexcept;
+
+  private:
+    std::optional<std::int64_t> ready_since_;
+    std::int64_t noted_ = 0;
+};
+
+}  // namespace palpate::devices

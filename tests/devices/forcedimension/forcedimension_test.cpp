@@ -1,0 +1,436 @@
+// The device `forcedimension` against stand-ins for the vendor's libraries.
+#include "devices/forcedimension/forcedimension.hpp"
+
+#include <dlfcn.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+
+#include "devices/forcedimension/mock_dhd.hpp"
+#include "devices/vendor_polling.hpp"
+#include "support/scratch_folder.hpp"
+
+namespace palpate::devices {
+namespace {
+
+using namespace std::chrono_literals;
+using support::any_scene;
+using support::contains;
+using support::eventually;
+using support::message_of;
+using support::MockDhd;
+using support::MockDhdState;
+using support::throughout;
+
+/// A stand-in that was just plugged in.
+MockDhd* plugged_in(const char* path) {
+    void* library = dlopen(path, RTLD_NOW);
+    if (!library) throw std::runtime_error(dlerror());
+    MockDhd* mock = reinterpret_cast<MockDhd* (*)()>(dlsym(library, "mock_dhd"))();
+    const std::lock_guard lock(mock->mutex);
+    mock->state = {};
+    return mock;
+}
+
+class ForceDimension : public testing::Test {
+  protected:
+    void use(const char* library) {
+        library_ = library;
+        mock_ = plugged_in(library);
+    }
+    void SetUp() override { use(MOCK_DRD); }
+
+    std::unique_ptr<Device> open(const std::string& options = "", double rate = 1000) const {
+        return open_forcedimension(parse_device("forcedimension:library=" + library_ + options),
+                                   any_scene(rate));
+    }
+    std::string refusal(const std::string& options = "") const {
+        return message_of<DeviceError>([&] { open(options); });
+    }
+
+    /// Of the stand-in, its lock held.
+    template <class F>
+    auto with(F act) const {
+        const std::lock_guard lock(mock_->mutex);
+        return act(mock_->state);
+    }
+    /// In our axes: x to the right, y up, z towards the person.
+    Vec3 force() const {
+        return with([](auto& dhd) { return Vec3(dhd.force[1], dhd.force[2], dhd.force[0]); });
+    }
+    bool becomes(Device& device, DeviceStatus status) const {
+        return eventually([&] { return device.read(0).status == status; });
+    }
+    bool has_no_problem(Device& device) const {
+        return eventually([&] { return device.problem().empty(); });
+    }
+    bool says(Device& device, const std::string& words) const {
+        return eventually([&] { return contains(device.problem(), words); });
+    }
+    /// Presses with this force until the device feels it.
+    bool presses(Device& device, const Vec3& newtons = Vec3(1, 2, 0)) const {
+        return eventually([&] { return (force() - newtons).norm() < 1e-12; },
+                          [&] { device.write(newtons, 0); });
+    }
+    /// No force for a while, whatever is asked for.
+    bool stays_at_zero(Device& device) const {
+        return throughout(
+            100ms, [&] { return force().isZero(0); }, [&] { device.write(Vec3(1, 1, 1), 0); });
+    }
+    bool goes_to_zero(Device& device) const {
+        const auto press = [&] { device.write(Vec3(1, 1, 1), 0); };
+        return eventually([&] { return force().isZero(0); }, press) && stays_at_zero(device);
+    }
+    long called(const std::string& name) const {
+        return with(
+            [&](auto& dhd) { return std::count(dhd.calls.begin(), dhd.calls.end(), name); });
+    }
+
+    std::string library_;
+    MockDhd* mock_ = nullptr;
+};
+
+TEST_F(ForceDimension, a_missing_library_is_named_with_what_to_install) {
+    const auto open_nothing = [] {
+        open_forcedimension(parse_device("forcedimension:library=/nowhere/libdhd.so.3"),
+                            any_scene());
+    };
+    const std::string message = message_of<DeviceError>(open_nothing);
+    EXPECT_TRUE(contains(message, "device forcedimension: ")) << message;
+    EXPECT_TRUE(contains(message, "/nowhere/libdhd.so.3")) << message;
+    EXPECT_TRUE(contains(message, "install Force Dimension's SDK")) << message;
+    EXPECT_TRUE(contains(message, "library=PATH")) << message;
+    const DeviceFinding finding = forcedimension::find("/nowhere/libdhd.so.3");
+    EXPECT_FALSE(finding.found);
+    EXPECT_TRUE(contains(finding.missing, "/nowhere/libdhd.so.3")) << finding.missing;
+}
+
+TEST_F(ForceDimension, looking_for_it_counts_the_devices_and_opens_none) {
+    with([](auto& dhd) { dhd.count = 2; });
+    const DeviceFinding finding = forcedimension::find(MOCK_DRD);
+    EXPECT_TRUE(finding.found) << finding.missing;
+    EXPECT_TRUE(contains(finding.what, "2 devices; Force Dimension SDK 3.17.5")) << finding.what;
+    with([](auto& dhd) { dhd.count = 0; });
+    const DeviceFinding nothing = forcedimension::find(MOCK_DRD);
+    EXPECT_FALSE(nothing.found);
+    EXPECT_TRUE(contains(nothing.missing, "udev rule")) << nothing.missing;
+    EXPECT_TRUE(with([](auto& dhd) { return dhd.calls.empty(); }));
+    const DeviceFinding usual = find_forcedimension();
+    EXPECT_EQ(usual.name, "forcedimension");
+    EXPECT_NE(usual.found, usual.what.empty());
+    EXPECT_EQ(usual.found, usual.missing.empty());
+}
+
+TEST_F(ForceDimension, a_library_without_a_function_that_is_needed_is_refused_by_its_name) {
+    use(MOCK_DHD_LACKING);
+    const std::string message = refusal();
+    EXPECT_TRUE(contains(message, "dhdGetStatus")) << message;
+    EXPECT_FALSE(forcedimension::find(MOCK_DHD_LACKING).found);
+}
+
+TEST_F(ForceDimension, options_that_cannot_be_meant_are_refused) {
+    const auto wrong = [&](const std::string& options) {
+        return message_of<std::invalid_argument>([&] { open(options); });
+    };
+    EXPECT_TRUE(contains(wrong(",gripper=yes"), "there are: index, autoinit, library"));
+    EXPECT_TRUE(contains(wrong(",index=1.5"), "a whole number is needed"));
+    EXPECT_TRUE(contains(wrong(",index=-1"), "a number from 0 to 100"));
+    EXPECT_TRUE(contains(wrong(",autoinit=perhaps"), "must be one of yes, no"));
+}
+
+TEST_F(ForceDimension, a_device_that_is_not_there_or_does_not_open_is_told_with_what_to_do) {
+    EXPECT_TRUE(contains(refusal(",index=3"), "no device with index=3 (1 found)"));
+    with([](auto& dhd) { dhd.refuses_open = true; });
+    EXPECT_TRUE(contains(refusal(), "cannot open device 0: device already in use"));
+    with([](auto& dhd) { dhd.count = 0; });
+    EXPECT_TRUE(contains(refusal(), "no device (0 found): connect it"));
+}
+
+TEST_F(ForceDimension, each_model_has_its_own_limits) {
+    const DeviceInfo omega = open()->info();
+    EXPECT_EQ(omega.name, "forcedimension");
+    EXPECT_EQ(omega.model, "mock.3, serial number 4711");
+    EXPECT_EQ(omega.limits.maximum_force, 12);
+    EXPECT_EQ(omega.limits.rate, 1000);
+    EXPECT_FALSE(omega.has_orientation);
+    EXPECT_EQ(with([](auto& dhd) { return dhd.wrong_id; }), 0);
+    with([](auto& dhd) { dhd.type = 60; });
+    const DeviceInfo falcon = open("", 8000)->info();
+    EXPECT_EQ(falcon.limits.maximum_force, 8);
+    EXPECT_EQ(falcon.limits.rate, 4000);
+    EXPECT_EQ(falcon.workspace_high, Vec3(40, 40, 40));
+    EXPECT_EQ(falcon.buttons, 4);
+    with([](auto& dhd) { dhd.type = 63; });
+    EXPECT_EQ(open()->info().limits.maximum_force, 20);
+    with([](auto& dhd) { dhd.type = 4242; });
+    EXPECT_EQ(open()->info().limits.maximum_force, 8);
+}
+
+TEST_F(ForceDimension, position_and_buttons_come_in_mm_in_our_axes) {
+    with([](auto& dhd) {
+        dhd.position = {0.01, 0.02, -0.03};
+        dhd.buttons = 5;
+    });
+    const auto device = open();
+    ASSERT_TRUE(becomes(*device, DeviceStatus::ready));
+    const DeviceReading reading = device->read(0);
+    EXPECT_LE((reading.position - Vec3(20, -30, 10)).norm(), 1e-12);
+    EXPECT_EQ(reading.orientation, Mat3(Mat3::Identity()));
+    EXPECT_EQ(reading.buttons, 5U);
+    EXPECT_TRUE(has_no_problem(*device));
+}
+
+TEST_F(ForceDimension, a_wrist_turns_in_our_axes) {
+    with([](auto& dhd) {
+        dhd.type = 34;
+        // A quarter turn about the library's z, which is our y.
+        const double turn[3][3] = {{0, -1, 0}, {1, 0, 0}, {0, 0, 1}};
+        std::copy(&turn[0][0], &turn[0][0] + 9, &dhd.frame[0][0]);
+    });
+    const auto device = open();
+    ASSERT_TRUE(becomes(*device, DeviceStatus::ready));
+    EXPECT_TRUE(device->info().has_orientation);
+    Mat3 about_y;
+    about_y << 0, 0, 1, 0, 1, 0, -1, 0, 0;
+    EXPECT_LE((device->read(0).orientation - about_y).norm(), 1e-12);
+}
+
+TEST_F(ForceDimension, a_force_arrives_in_newtons_in_the_axes_it_was_written_in) {
+    const auto device = open();
+    EXPECT_TRUE(presses(*device, Vec3(0.5, -1, 2)));
+    // To the right, up, and towards the person: the library's y, z and x.
+    EXPECT_TRUE(eventually(
+        [&] {
+            const auto raw = with([](auto& dhd) { return dhd.force; });
+            return raw == std::array<double, 3>{3, 1, 2};
+        },
+        [&] { device->write(Vec3(1, 2, 3), 0); }));
+    EXPECT_EQ(with([](auto& dhd) { return dhd.wrong_id; }), 0);
+}
+
+TEST_F(ForceDimension, a_force_beyond_the_devices_own_is_cut_to_it) {
+    const auto device = open();
+    const Vec3 cut = Vec3(0.6, 0, 0.8) * 12;
+    EXPECT_TRUE(eventually([&] { return (force() - cut).norm() < 1e-12; },
+                           [&] { device->write(Vec3(30, 0, 40), 0); }));
+    EXPECT_LE(with([](auto& dhd) { return dhd.largest_force; }), 12 + 1e-12);
+    EXPECT_EQ(with([](auto& dhd) { return dhd.max_force; }), 12);
+}
+
+TEST_F(ForceDimension, the_time_guard_and_a_saturated_motor_are_no_errors) {
+    with([](auto& dhd) {
+        dhd.position_result = 1;
+        dhd.force_result = 2;
+    });
+    const auto device = open();
+    EXPECT_TRUE(presses(*device));
+    EXPECT_TRUE(has_no_problem(*device));
+}
+
+TEST_F(ForceDimension, the_force_goes_to_zero_when_the_servo_falls_silent) {
+    const auto device = open();
+    ASSERT_TRUE(presses(*device));
+    EXPECT_TRUE(eventually([&] { return force().isZero(0); }));
+    EXPECT_TRUE(becomes(*device, DeviceStatus::ready));
+    EXPECT_TRUE(presses(*device));
+}
+
+TEST_F(ForceDimension, the_force_goes_to_zero_for_good_when_it_is_stopped) {
+    const auto device = open();
+    ASSERT_TRUE(presses(*device));
+    device->stop();
+    EXPECT_TRUE(goes_to_zero(*device));
+    EXPECT_TRUE(becomes(*device, DeviceStatus::ready));
+}
+
+TEST_F(ForceDimension, it_is_switched_on_and_off_in_order_and_its_last_force_is_zero) {
+    auto device = open();
+    ASSERT_TRUE(presses(*device));
+    EXPECT_EQ(with([](auto& dhd) { return dhd.watchdog; }), 240);
+    EXPECT_EQ(with([](auto& dhd) { return dhd.gravity; }), 1);
+    device.reset();
+    const std::vector<std::string> expected{"drd open",     "max force", "brakes",
+                                            "enable force", "gravity",   "watchdog",
+                                            "watchdog",     "stop",      "drd close"};
+    EXPECT_EQ(with([](auto& dhd) { return dhd.calls; }), expected);
+    EXPECT_EQ(with([](auto& dhd) { return dhd.force_at_stop; }), (std::array<double, 3>{}));
+    EXPECT_EQ(with([](auto& dhd) { return dhd.watchdog; }), 17);  // as it was
+    EXPECT_EQ(with([](auto& dhd) { return dhd.wrong_id; }), 0);
+    EXPECT_NO_THROW(open());
+}
+
+TEST_F(ForceDimension, works_with_the_smaller_library_alone) {
+    use(MOCK_DHD);
+    auto device = open();
+    EXPECT_TRUE(presses(*device));
+    device.reset();
+    EXPECT_EQ(called("dhd open"), 1);
+    EXPECT_EQ(called("dhd close"), 1);
+    EXPECT_TRUE(contains(refusal(",autoinit=yes"), "libdrd.so.3"));
+    EXPECT_FALSE(with([](auto& dhd) { return dhd.is_open; }));
+    with([](auto& dhd) { dhd.initialised = false; });
+    EXPECT_TRUE(becomes(*open(), DeviceStatus::uncalibrated));
+}
+
+TEST_F(ForceDimension, an_uninitialised_device_has_no_force_and_says_what_to_do) {
+    with([](auto& dhd) { dhd.initialised = false; });
+    const auto device = open();
+    ASSERT_TRUE(becomes(*device, DeviceStatus::uncalibrated));
+    EXPECT_TRUE(says(*device, "calibration pit"));
+    EXPECT_TRUE(says(*device, "autoinit=yes, which moves it"));
+    EXPECT_TRUE(stays_at_zero(*device));
+    EXPECT_EQ(called("initialise"), 0);
+    EXPECT_EQ(called("enable force"), 0);
+    with([](auto& dhd) { dhd.initialised = true; });  // by hand
+    EXPECT_TRUE(presses(*device));
+    EXPECT_TRUE(has_no_problem(*device));
+}
+
+TEST_F(ForceDimension, a_device_that_was_off_for_a_while_is_switched_on_again) {
+    const auto device = open();
+    ASSERT_TRUE(presses(*device));
+    with([](auto& dhd) {
+        dhd.initialised = dhd.force_on = false;
+        dhd.brakes = true;
+    });
+    ASSERT_TRUE(becomes(*device, DeviceStatus::uncalibrated));
+    with([](auto& dhd) { dhd.initialised = true; });
+    EXPECT_TRUE(presses(*device));
+}
+
+TEST_F(ForceDimension, it_moves_by_itself_only_when_asked_to_and_says_so_meanwhile) {
+    with([](auto& dhd) {
+        dhd.initialised = false;
+        dhd.initialise_ms = 200;
+    });
+    const auto device = open(",autoinit=yes");
+    ASSERT_TRUE(becomes(*device, DeviceStatus::uncalibrated));
+    EXPECT_TRUE(says(*device, "keep your hands off"));
+    EXPECT_TRUE(presses(*device));
+    EXPECT_TRUE(has_no_problem(*device));
+    EXPECT_EQ(called("initialise"), 1);
+}
+
+TEST_F(ForceDimension, one_that_is_initialised_does_not_move_even_when_asked_to) {
+    const auto device = open(",autoinit=yes");
+    EXPECT_TRUE(presses(*device));
+    EXPECT_EQ(called("initialise"), 0);
+}
+
+TEST_F(ForceDimension, one_that_cannot_initialise_itself_says_why) {
+    with([](auto& dhd) { dhd.initialised = dhd.initialises = false; });
+    const auto device = open(",autoinit=yes");
+    EXPECT_TRUE(says(*device, "it could not initialise itself (geometry error)"));
+    EXPECT_TRUE(becomes(*device, DeviceStatus::uncalibrated));
+    EXPECT_TRUE(stays_at_zero(*device));
+}
+
+TEST_F(ForceDimension, a_device_whose_force_cannot_be_switched_on_is_no_ready_one) {
+    with([](auto& dhd) { dhd.refuses_force = true; });
+    const auto device = open();
+    ASSERT_TRUE(becomes(*device, DeviceStatus::lost));
+    EXPECT_TRUE(says(*device, "undocumented error"));
+    EXPECT_TRUE(stays_at_zero(*device));
+    with([](auto& dhd) { dhd.refuses_force = false; });
+    EXPECT_TRUE(presses(*device));
+}
+
+TEST_F(ForceDimension, a_broken_connection_in_contact_is_lost_and_without_force_until_it_is_back) {
+    const auto device = open();
+    ASSERT_TRUE(presses(*device));
+    with([](auto& dhd) { dhd.position_error = 2; });
+    ASSERT_TRUE(becomes(*device, DeviceStatus::lost));
+    EXPECT_TRUE(says(*device, "no connection to the device (communication error)"));
+    EXPECT_TRUE(goes_to_zero(*device));
+    with([](auto& dhd) { dhd.position_error = 0; });
+    EXPECT_TRUE(presses(*device));
+    EXPECT_TRUE(has_no_problem(*device));
+}
+
+TEST_F(ForceDimension, an_error_of_reading_or_of_force_is_a_fault_in_the_librarys_words) {
+    const auto device = open();
+    ASSERT_TRUE(presses(*device));
+    with([](auto& dhd) { dhd.position_error = 8; });
+    EXPECT_TRUE(becomes(*device, DeviceStatus::fault));
+    EXPECT_TRUE(says(*device, "the library reports: geometry error"));
+    EXPECT_TRUE(goes_to_zero(*device));
+    with([](auto& dhd) { dhd.position_error = 0; });
+    ASSERT_TRUE(presses(*device));
+    with([](auto& dhd) { dhd.force_error = 8; });
+    EXPECT_TRUE(becomes(*device, DeviceStatus::fault));
+    with([](auto& dhd) { dhd.force_error = 0; });
+    EXPECT_TRUE(presses(*device));
+    with([](auto& dhd) { dhd.status_error = 2; });
+    EXPECT_TRUE(becomes(*device, DeviceStatus::lost));
+    EXPECT_TRUE(goes_to_zero(*device));
+}
+
+TEST_F(ForceDimension, a_device_that_has_switched_its_force_off_is_a_fault_until_it_is_on_again) {
+    const auto device = open();
+    ASSERT_TRUE(presses(*device));
+    with([](auto& dhd) { dhd.force_off_cause = 1; });
+    ASSERT_TRUE(becomes(*device, DeviceStatus::fault));
+    EXPECT_TRUE(says(*device, "press its force button"));
+    with([](auto& dhd) { dhd.force_off_cause = 2; });
+    EXPECT_TRUE(says(*device, "moved faster"));
+    EXPECT_EQ(called("enable force"), 1);  // that is for the person to do
+    with([](auto& dhd) { dhd.force_off_cause = 0; });
+    EXPECT_TRUE(presses(*device));
+}
+
+TEST_F(ForceDimension, the_devices_watchdog_is_answered_by_switching_the_force_on_again) {
+    const auto device = open();
+    ASSERT_TRUE(presses(*device));
+    with([](auto& dhd) { dhd.force_off_cause = 3; });
+    EXPECT_TRUE(eventually([&] { return called("enable force") == 2; }));
+    EXPECT_TRUE(presses(*device));
+}
+
+TEST_F(ForceDimension, a_device_that_never_tells_of_its_force_is_ready_all_the_same) {
+    with([](auto& dhd) { dhd.tells_of_force = false; });
+    const auto device = open();
+    EXPECT_TRUE(presses(*device));
+    EXPECT_TRUE(has_no_problem(*device));
+}
+
+TEST_F(ForceDimension, a_position_that_cannot_be_is_a_fault_and_never_told) {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const auto device = open();
+    for (const std::array<double, 3>& absurd :
+         {std::array<double, 3>{nan, 0, 0}, {0, 10.001, 0}, {0, 0, -1e300}}) {
+        with([](auto& dhd) { dhd.position = {}; });
+        ASSERT_TRUE(presses(*device));
+        with([&](auto& dhd) { dhd.position = absurd; });
+        ASSERT_TRUE(becomes(*device, DeviceStatus::fault));
+        EXPECT_EQ(device->read(0).position, Vec3(0, 0, 0));
+        EXPECT_TRUE(says(*device, "cannot be"));
+        EXPECT_TRUE(goes_to_zero(*device));
+    }
+}
+
+TEST_F(ForceDimension, readings_of_a_slow_library_are_never_ready_and_get_no_force) {
+    with([](auto& dhd) { dhd.slow_ms = 50; });
+    const auto device = open();
+    ASSERT_TRUE(becomes(*device, DeviceStatus::stale));
+    EXPECT_TRUE(says(*device, "takes too long"));
+    EXPECT_TRUE(throughout(
+        300ms, [&] { return device->read(0).status != DeviceStatus::ready && force().isZero(0); },
+        [&] { device->write(Vec3(1, 1, 1), 0); }));
+    with([](auto& dhd) { dhd.slow_ms = 0; });
+    EXPECT_TRUE(presses(*device));
+}
+
+TEST_F(ForceDimension, its_loop_is_no_faster_than_4_khz) {
+    const auto begun = std::chrono::steady_clock::now();
+    const auto device = open();
+    std::this_thread::sleep_for(200ms);
+    const long loops = with([](auto& dhd) { return dhd.loops; });
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begun;
+    EXPECT_GE(loops, 2);
+    EXPECT_LE(static_cast<double>(loops), 4000 * took.count() + 2);
+}
+
+}  // namespace
+}  // namespace palpate::devices

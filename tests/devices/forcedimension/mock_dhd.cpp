@@ -1,0 +1,242 @@
+// A stand-in for libdhd.so.3 and, unless MOCK_DHD_ALONE, for libdrd.so.3: one device without
+// hardware behind the functions of the SDK. Its id is not its index, so that mixing them up shows.
+#include "mock_dhd.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <thread>
+
+#define MOCK_EXPORT extern "C" __attribute__((visibility("default")))
+
+namespace {
+
+using palpate::support::MockDhd;
+using palpate::support::MockDhdState;
+
+constexpr char the_id = 5;
+
+// The interface is one of globals: so is this.
+MockDhd mock;
+thread_local int last_error = 0;
+
+int fail(int code) {
+    last_error = code;
+    return -1;
+}
+
+void apply(MockDhdState& state, const std::array<double, 3>& force) {
+    const bool works =
+        state.initialised && state.force_on && !state.brakes && state.force_off_cause == 0;
+    state.force = works ? force : std::array<double, 3>{};
+    const double size = std::hypot(state.force[0], state.force[1], state.force[2]);
+    state.largest_force = std::max(state.largest_force, size);
+}
+
+/// The state, for a call for this device; its lock is held.
+class Call {
+  public:
+    explicit Call(char id, const char* name = nullptr) : lock_(mock.mutex) {
+        if (id != the_id || !mock.state.is_open) ++mock.state.wrong_id;
+        if (name) mock.state.calls.emplace_back(name);
+    }
+    MockDhdState* operator->() const { return &mock.state; }
+
+  private:
+    std::lock_guard<std::mutex> lock_;
+};
+
+int open_device(char index, const char* name) {
+    const std::lock_guard lock(mock.mutex);
+    mock.state.calls.emplace_back(name);
+    if (mock.state.refuses_open || index != 0) return fail(20);
+    mock.state.is_open = true;
+    return the_id;
+}
+
+}  // namespace
+
+MOCK_EXPORT MockDhd* mock_dhd() {
+    return &mock;
+}
+
+MOCK_EXPORT int dhdGetDeviceCount() {
+    const std::lock_guard lock(mock.mutex);
+    return mock.state.count;
+}
+
+MOCK_EXPORT void dhdGetSDKVersion(int* major, int* minor, int* release, int* revision) {
+    *major = 3;
+    *minor = 17;
+    *release = 5;
+    *revision = 0;
+}
+
+MOCK_EXPORT int dhdErrorGetLast() {
+    return last_error;
+}
+
+MOCK_EXPORT const char* dhdErrorGetLastStr() {
+    switch (last_error) {
+        case 2:
+            return "communication error";
+        case 8:
+            return "geometry error";
+        case 20:
+            return "device already in use";
+        default:
+            return "undocumented error";
+    }
+}
+
+MOCK_EXPORT int dhdOpenID(char index) {
+    return open_device(index, "dhd open");
+}
+
+MOCK_EXPORT int dhdClose(char id) {
+    const Call call(id, "dhd close");
+    call->is_open = false;
+    return 0;
+}
+
+MOCK_EXPORT int dhdStop(char id) {
+    const Call call(id, "stop");
+    call->force_at_stop = call->force;
+    call->force_on = false;
+    call->brakes = true;
+    apply(mock.state, {});
+    return 0;
+}
+
+MOCK_EXPORT int dhdEnableForce(unsigned char on, char id) {
+    const Call call(id, "enable force");
+    if (call->refuses_force) return fail(12);
+    call->force_on = on != 0;
+    if (call->force_off_cause == 3) call->force_off_cause = 0;
+    return 0;
+}
+
+MOCK_EXPORT int dhdGetSystemType(char id) {
+    const Call call(id);
+    return call->type;
+}
+
+MOCK_EXPORT const char* dhdGetSystemName(char id) {
+    const Call call(id);
+    return "mock.3";
+}
+
+MOCK_EXPORT int dhdGetSerialNumber(unsigned short* number, char id) {
+    const Call call(id);
+    *number = 4711;
+    return 0;
+}
+
+#ifndef MOCK_DHD_LACKS_STATUS
+MOCK_EXPORT int dhdGetStatus(int* status, char id) {
+    const Call call(id);
+    if (call->status_error) return fail(call->status_error);
+    std::fill(status, status + 17, 0);
+    status[3] = call->initialised ? 1 : 0;
+    status[5] = call->tells_of_force && call->force_on && call->force_off_cause == 0 ? 1 : 0;
+    status[6] = call->brakes ? 1 : 0;
+    status[14] = call->force_off_cause;
+    return 0;
+}
+#endif
+
+MOCK_EXPORT int dhdGetPosition(double* x, double* y, double* z, char id) {
+    int slow = 0;
+    {
+        const Call call(id);
+        slow = call->slow_ms;
+    }
+    if (slow) std::this_thread::sleep_for(std::chrono::milliseconds(slow));
+    const Call call(id);
+    if (call->position_error) return fail(call->position_error);
+    *x = call->position[0];
+    *y = call->position[1];
+    *z = call->position[2];
+    return call->position_result;
+}
+
+MOCK_EXPORT int dhdGetOrientationFrame(double (*rows)[3], char id) {
+    const Call call(id);
+    std::memcpy(rows, call->frame, sizeof call->frame);
+    return 0;
+}
+
+MOCK_EXPORT unsigned int dhdGetButtonMask(char id) {
+    const Call call(id);
+    return call->buttons;
+}
+
+MOCK_EXPORT int dhdSetForce(double x, double y, double z, char id) {
+    const Call call(id);
+    ++call->loops;
+    if (call->force_error) return fail(call->force_error);
+    apply(mock.state, {x, y, z});
+    return call->force_result;
+}
+
+MOCK_EXPORT int dhdSetBrakes(int on, char id) {
+    const Call call(id, "brakes");
+    call->brakes = on != 0;
+    return 0;
+}
+
+MOCK_EXPORT int dhdSetGravityCompensation(int on, char id) {
+    const Call call(id, "gravity");
+    call->gravity = on;
+    return 0;
+}
+
+MOCK_EXPORT int dhdSetMaxForce(double limit, char id) {
+    const Call call(id, "max force");
+    call->max_force = limit;
+    return 0;
+}
+
+MOCK_EXPORT int dhdSetWatchdog(unsigned char duration, char id) {
+    const Call call(id, "watchdog");
+    call->watchdog = duration;
+    return 0;
+}
+
+MOCK_EXPORT int dhdGetWatchdog(unsigned char* duration, char id) {
+    const Call call(id);
+    *duration = static_cast<unsigned char>(call->watchdog);
+    return 0;
+}
+
+#ifndef MOCK_DHD_ALONE
+MOCK_EXPORT int drdOpenID(char index) {
+    return open_device(index, "drd open");
+}
+
+MOCK_EXPORT int drdClose(char id) {
+    const Call call(id, "drd close");
+    call->is_open = false;
+    return 0;
+}
+
+MOCK_EXPORT bool drdIsInitialized(char id) {
+    const Call call(id);
+    return call->initialised;
+}
+
+MOCK_EXPORT int drdAutoInit(char id) {
+    int takes = 0;
+    {
+        const Call call(id, "initialise");
+        takes = call->initialise_ms;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(takes));
+    const Call call(id);
+    if (!call->initialises) return fail(8);
+    call->initialised = true;
+    return 0;
+}
+#endif

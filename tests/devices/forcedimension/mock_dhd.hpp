@@ -1,0 +1,55 @@
+// What a test tells and asks a stand-in for libdhd.so.3; it finds this with dlsym(mock_dhd).
+#pragma once
+
+#include <array>
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace palpate::support {
+
+/// What can be copied: lock `MockDhd::mutex` for all of it.
+struct MockDhdState {
+    // The device.
+    int count = 1;
+    int type = 33;
+    bool initialised = true;
+    std::array<double, 3> position{};  // [m]
+    double frame[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    unsigned int buttons = 0;
+
+    // How it misbehaves.
+    bool refuses_open = false;
+    bool refuses_force = false;  // dhdEnableForce fails
+    bool initialises = true;     // drdAutoInit
+    int initialise_ms = 0;       // how long that takes
+    int position_error = 0;      // dhdGetPosition fails with this
+    int force_error = 0;         // dhdSetForce fails with this
+    int status_error = 0;        // dhdGetStatus fails with this
+    int position_result = 0;     // where it does not fail: 1 time guard
+    int force_result = 0;        // 1 time guard, 2 motor saturated
+    int slow_ms = 0;             // dhdGetPosition takes this long
+    int force_off_cause = 0;     // the device has switched its force off
+    bool tells_of_force = true;  // false: its status never says that force is on
+
+    // What it saw.
+    std::array<double, 3> force{};  // [N] as applied: zero with brakes on or force off
+    double largest_force = 0;
+    double max_force = -1;  // dhdSetMaxForce
+    int watchdog = 17, gravity = 0;
+    bool force_on = false, brakes = true, is_open = false;
+    std::vector<std::string> calls;                // but for those of the loop
+    long loops = 0;                                // dhdSetForce
+    int wrong_id = 0;                              // calls for another device
+    std::array<double, 3> force_at_stop{1, 1, 1};  // as applied when dhdStop was called
+};
+
+struct MockDhd {
+    std::mutex mutex;
+    MockDhdState state;
+};
+
+}  // namespace palpate::support
+
+/// The stand-in's one and only.
+extern "C" palpate::support::MockDhd* mock_dhd();

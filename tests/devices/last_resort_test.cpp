@@ -1,0 +1,142 @@
+// What a crash leaves behind: zero force, sent before the program ends. Each crash is a child
+// process's; a file that it shares stands for the motors.
+#include "devices/last_resort.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <optional>
+#include <stdexcept>
+#include <thread>
+#include <utility>
+
+#include "devices/link.hpp"
+
+namespace palpate::devices {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// A device with a thread of its own, as every backend has; the last force it sent is in memory
+/// that outlives the process.
+class Motor : public Device {
+  public:
+    explicit Motor(std::atomic<double>& sent)
+        : sent_(sent), thread_([this](std::stop_token stop) {
+              while (!stop.stop_requested()) {
+                  sent_ = link_.force().norm();
+                  std::this_thread::sleep_for(1ms);
+              }
+          }) {}
+    DeviceInfo info() const override { return {}; }
+    DeviceReading read(double) noexcept override { return link_.read(); }
+    void write(const Vec3& force, double) noexcept override { link_.write(force); }
+    void stop() noexcept override { link_.stop(); }
+
+  private:
+    std::atomic<double>& sent_;
+    Link link_;
+    std::jthread thread_;
+};
+
+struct Shared {
+    std::atomic<double> sent{-1}, before{-1};
+};
+
+/// Presses with 2 N from a thread that goes on and on, as a servo would, until `crash` happens in
+/// another. Returns the child's status and what was sent last.
+template <class F>
+std::pair<int, double> crashed(bool guarded, F&& crash) {
+    void* memory =
+        ::mmap(nullptr, sizeof(Shared), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    auto* shared = new (memory) Shared;
+    const pid_t child = ::fork();
+    if (child == 0) {
+        std::fclose(stderr);  // what terminate() has to say
+        // Sanitizers have handlers of their own.
+        for (const int s : {SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT}) std::signal(s, SIG_DFL);
+        Motor motor(shared->sent);
+        std::optional<LastResort> last_resort;
+        if (guarded) last_resort.emplace(motor);
+        std::jthread servo([&](std::stop_token stop) {
+            while (!stop.stop_requested()) {
+                motor.write({0, 0, 2}, 0);
+                std::this_thread::sleep_for(1ms);
+            }
+        });
+        for (int i = 0; i < 10'000 && shared->sent != 2; ++i) std::this_thread::sleep_for(1ms);
+        shared->before = shared->sent.load();
+        crash();
+        ::_exit(0);
+    }
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    EXPECT_EQ(shared->before, 2);
+    const double sent = shared->sent;
+    ::munmap(memory, sizeof(Shared));
+    return {status, sent};
+}
+
+void expect_let_go(int signal, void (*crash)()) {
+    const auto [status, sent] = crashed(true, crash);
+    EXPECT_TRUE(WIFSIGNALED(status)) << status;
+    EXPECT_EQ(WTERMSIG(status), signal);
+    EXPECT_EQ(sent, 0);
+}
+
+TEST(LastResort, without_it_a_crash_leaves_the_force_on) {
+    const auto [status, sent] = crashed(false, [] { std::raise(SIGSEGV); });
+    EXPECT_TRUE(WIFSIGNALED(status));
+    EXPECT_EQ(sent, 2);
+}
+
+TEST(LastResort, lets_go_before_a_wild_pointer_ends_the_program) {
+    expect_let_go(SIGSEGV, [] {
+        void* page = ::mmap(nullptr, 4096, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+        *static_cast<volatile int*>(page) = 1;
+    });
+}
+
+TEST(LastResort, lets_go_before_an_exception_that_nobody_catches_does) {
+    expect_let_go(SIGABRT, [] {
+        std::thread([] { throw std::runtime_error("nobody catches this"); }).join();
+    });
+}
+
+TEST(LastResort, lets_go_at_every_kind_of_crash) {
+    expect_let_go(SIGBUS, [] { std::raise(SIGBUS); });
+    expect_let_go(SIGILL, [] { std::raise(SIGILL); });
+    expect_let_go(SIGFPE, [] { std::raise(SIGFPE); });
+    expect_let_go(SIGABRT, [] { std::abort(); });
+}
+
+// Not inlined, and not turned into a loop: it is the stack that has to run out.
+[[gnu::noinline]] int endless(int depth) {  // NOLINT(misc-no-recursion)
+    std::array<volatile char, 4096> page;
+    page[0] = static_cast<char>(depth);
+    return depth < 0 ? 0 : endless(depth + 1) + page[0];
+}
+
+TEST(LastResort, lets_go_when_the_stack_runs_out) {
+    expect_let_go(SIGSEGV, [] { std::_Exit(endless(0)); });
+}
+
+TEST(LastResort, there_is_one_at_a_time) {
+    std::atomic<double> sent;
+    Motor motor(sent);
+    {
+        const LastResort first(motor);
+        EXPECT_THROW(LastResort second(motor), std::logic_error);
+    }
+    EXPECT_NO_THROW(LastResort again(motor));
+}
+
+}  // namespace
+}  // namespace palpate::devices

@@ -1,0 +1,307 @@
+// A stand-in for libHD.so: a device without hardware behind the functions of the HD interface, with
+// a servo loop of its own. One device, no licence, no arm.
+#include "mock_hd.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <optional>
+#include <thread>
+
+#define MOCK_EXPORT extern "C" __attribute__((visibility("default")))
+
+namespace {
+
+using palpate::support::MockHd;
+
+struct Scheduled {
+    unsigned int (*callback)(void*);
+    void* data;
+    unsigned long handle;
+};
+
+struct ErrorInfo {
+    unsigned int code;
+    int internal_code;
+    unsigned int device;
+};
+
+constexpr unsigned int the_device = 7;
+
+// The interface is one of globals: so is this.
+MockHd state;
+std::vector<unsigned int> errors;
+std::vector<Scheduled> scheduled;
+std::optional<std::thread> scheduler;
+std::atomic<bool> running{false};
+bool force_output = false;
+bool in_frame = false;
+std::array<double, 3> frame_force{};
+unsigned long last_handle = 0;
+
+// The mutex is held by the caller of all of these.
+void complain(unsigned int code) {
+    errors.push_back(code);
+}
+void called(const std::string& what) {
+    state.calls.push_back(what);
+}
+void want_frame() {
+    if (in_frame) return;
+    ++state.outside;
+    complain(0x102);
+}
+void apply(const std::array<double, 3>& force) {
+    state.force = force_output ? force : std::array<double, 3>{};
+    const double size = std::hypot(state.force[0], state.force[1], state.force[2]);
+    state.largest_force = std::max(state.largest_force, size);
+}
+
+void loop() {
+    auto next = std::chrono::steady_clock::now();
+    while (running) {
+        std::vector<Scheduled> now;
+        {
+            const std::lock_guard lock(state.mutex);
+            if (!state.silent) now = scheduled;
+        }
+        for (const Scheduled& one : now) {
+            if (one.callback(one.data) != 0) continue;
+            const std::lock_guard lock(state.mutex);
+            std::erase_if(scheduled, [&](const Scheduled& s) { return s.handle == one.handle; });
+        }
+        next = std::max(next + std::chrono::milliseconds(1), std::chrono::steady_clock::now());
+        std::this_thread::sleep_until(next);
+    }
+}
+
+}  // namespace
+
+MOCK_EXPORT MockHd* mock_hd() {
+    return &state;
+}
+
+MOCK_EXPORT void mock_hd_reset() {
+    const MockHd fresh;
+    const std::lock_guard lock(state.mutex);
+    state.position = fresh.position;
+    state.transform = fresh.transform;
+    state.buttons = 0;
+    state.most_force = fresh.most_force;
+    state.stiffness = fresh.stiffness;
+    state.workspace = fresh.workspace;
+    state.rate = fresh.rate;
+    state.calibration = fresh.calibration;
+    state.calibration_style = fresh.calibration_style;
+    state.refuses_null = state.refuses_all = state.refuses_start = false;
+    state.update_helps = true;
+    state.every_error = state.next_error = 0;
+    state.slow_ms = 0;
+    state.silent = state.no_position = false;
+    state.force = {};
+    state.largest_force = 0;
+    state.calls.clear();
+    state.frames = 0;
+    state.force_at_stop = fresh.force_at_stop;
+    state.outside = 0;
+    errors.clear();
+}
+
+MOCK_EXPORT unsigned int hdInitDevice(const char* name) {
+    const std::lock_guard lock(state.mutex);
+    called("init " + std::string(name ? name : "NULL"));
+    const bool refused = state.refuses_all || (!name && state.refuses_null) ||
+                         (name && std::strcmp(name, "Default PHANToM") != 0);
+    if (refused || state.device_open) {
+        complain(refused ? 0x300 : 0x301);
+        return 0xFFFFFFFF;
+    }
+    state.device_open = true;
+    return the_device;
+}
+
+MOCK_EXPORT void hdDisableDevice(unsigned int device) {
+    const std::lock_guard lock(state.mutex);
+    called("disable device");
+    if (device != the_device || !state.device_open) complain(0x104);
+    state.device_open = false;
+}
+
+MOCK_EXPORT void hdMakeCurrentDevice(unsigned int device) {
+    const std::lock_guard lock(state.mutex);
+    if (device != the_device || !state.device_open) complain(0x104);
+}
+
+MOCK_EXPORT void hdBeginFrame(unsigned int device) {
+    int slow = 0;
+    {
+        const std::lock_guard lock(state.mutex);
+        if (device != the_device || !state.device_open) complain(0x104);
+        if (in_frame) complain(0x400);
+        in_frame = true;
+        frame_force = {};
+        slow = state.slow_ms;
+    }
+    if (slow) std::this_thread::sleep_for(std::chrono::milliseconds(slow));
+}
+
+MOCK_EXPORT void hdEndFrame(unsigned int device) {
+    const std::lock_guard lock(state.mutex);
+    if (device != the_device) complain(0x104);
+    if (!in_frame) complain(0x401);
+    in_frame = false;
+    ++state.frames;
+    apply(frame_force);
+    if (state.every_error) complain(state.every_error);
+    if (state.next_error) complain(state.next_error);
+    state.next_error = 0;
+}
+
+MOCK_EXPORT ErrorInfo hdGetError() {
+    const std::lock_guard lock(state.mutex);
+    if (errors.empty()) return {0, 0, 0};
+    const unsigned int code = errors.back();
+    errors.pop_back();
+    return {code, -1, the_device};
+}
+
+MOCK_EXPORT const char* hdGetErrorString(unsigned int code) {
+    switch (code) {
+        case 0x102:
+            return "Invalid operation";
+        case 0x200:
+            return "Warm motors";
+        case 0x203:
+            return "Exceeded maximum velocity";
+        case 0x300:
+            return "Device fault";
+        case 0x302:
+            return "Communication error";
+        default:
+            return nullptr;
+    }
+}
+
+MOCK_EXPORT void hdEnable(unsigned int capability) {
+    const std::lock_guard lock(state.mutex);
+    called("enable");
+    if (capability != 0x4000) return complain(0x100);
+    force_output = true;
+}
+
+MOCK_EXPORT void hdDisable(unsigned int capability) {
+    const std::lock_guard lock(state.mutex);
+    called("disable");
+    if (capability != 0x4000) return complain(0x100);
+    force_output = false;
+    apply({});
+}
+
+MOCK_EXPORT void hdGetDoublev(unsigned int parameter, double* value) {
+    const std::lock_guard lock(state.mutex);
+    switch (parameter) {
+        case 0x2050:
+            want_frame();
+            if (state.no_position) return;
+            std::copy(state.position.begin(), state.position.end(), value);
+            break;
+        case 0x2052:
+            want_frame();
+            std::copy(state.transform.begin(), state.transform.end(), value);
+            break;
+        case 0x2551:
+            std::copy(state.workspace.begin(), state.workspace.end(), value);
+            break;
+        case 0x2602:
+            *value = state.stiffness;
+            break;
+        case 0x2603:
+            *value = state.most_force;
+            break;
+        default:
+            complain(0x100);
+    }
+}
+
+MOCK_EXPORT void hdGetIntegerv(unsigned int parameter, int* value) {
+    const std::lock_guard lock(state.mutex);
+    switch (parameter) {
+        case 0x2000:
+            want_frame();
+            *value = state.buttons;
+            break;
+        case 0x2553:
+            *value = 6;
+            break;
+        case 0x2555:
+            *value = state.calibration_style;
+            break;
+        case 0x2600:
+            *value = state.rate;
+            break;
+        default:
+            complain(0x100);
+    }
+}
+
+MOCK_EXPORT const char* hdGetString(unsigned int parameter) {
+    if (parameter == 0x2501) return "Mock Touch";
+    return parameter == 0x2504 ? "20240001" : nullptr;
+}
+
+MOCK_EXPORT void hdSetDoublev(unsigned int parameter, const double* value) {
+    const std::lock_guard lock(state.mutex);
+    want_frame();
+    if (parameter != 0x2700) return complain(0x100);
+    std::copy(value, value + 3, frame_force.begin());
+}
+
+MOCK_EXPORT unsigned int hdCheckCalibration() {
+    const std::lock_guard lock(state.mutex);
+    return state.calibration;
+}
+
+MOCK_EXPORT void hdUpdateCalibration(unsigned int style) {
+    const std::lock_guard lock(state.mutex);
+    called("update calibration " + std::to_string(style));
+    if (!(style & static_cast<unsigned int>(state.calibration_style))) return complain(0x102);
+    if (state.update_helps) state.calibration = 0x5000;
+}
+
+MOCK_EXPORT void hdStartScheduler() {
+    const std::lock_guard lock(state.mutex);
+    called("start scheduler");
+    if (state.refuses_start) return complain(0x304);
+    if (running.exchange(true)) return;
+    scheduler.emplace(loop);
+}
+
+MOCK_EXPORT void hdStopScheduler() {
+    {
+        const std::lock_guard lock(state.mutex);
+        called("stop scheduler");
+        state.force_at_stop = state.force;
+    }
+    if (!running.exchange(false)) return;
+    scheduler->join();
+    scheduler.reset();
+}
+
+MOCK_EXPORT unsigned long hdScheduleAsynchronous(unsigned int (*callback)(void*), void* data,
+                                                 unsigned short priority) {
+    const std::lock_guard lock(state.mutex);
+    called("schedule " + std::to_string(priority));
+    scheduled.push_back({callback, data, ++last_handle});
+    return last_handle;
+}
+
+#ifndef MOCK_HD_LACKS_UNSCHEDULE
+MOCK_EXPORT void hdUnschedule(unsigned long handle) {
+    const std::lock_guard lock(state.mutex);
+    called("unschedule");
+    std::erase_if(scheduled, [&](const Scheduled& one) { return one.handle == handle; });
+}
+#endif

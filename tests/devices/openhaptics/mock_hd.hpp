@@ -1,0 +1,51 @@
+// What a test tells and asks the stand-in for libHD.so; it finds this with dlsym(mock_hd).
+#pragma once
+
+#include <array>
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace palpate::support {
+
+/// Lock `mutex` for everything.
+struct MockHd {
+    std::mutex mutex;
+
+    // The device.
+    std::array<double, 3> position{};  // [mm]
+    std::array<double, 16> transform{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+    int buttons = 0;
+    double most_force = 3.3, stiffness = 0.7;
+    std::array<double, 6> workspace{-80, -60, -35, 80, 60, 35};
+    int rate = 1000;
+    unsigned int calibration = 0x5000;
+    int calibration_style = 4;
+
+    // How it misbehaves.
+    bool refuses_null = false;     // hdInitDevice(NULL) fails
+    bool refuses_all = false;      // and so does any name
+    bool refuses_start = false;    // hdStartScheduler
+    bool update_helps = true;      // hdUpdateCalibration
+    unsigned int every_error = 0;  // reported by every frame
+    unsigned int next_error = 0;   // reported by the next frame
+    int slow_ms = 0;               // hdBeginFrame takes this long
+    bool silent = false;           // the servo loop calls nobody
+    bool no_position = false;      // hdGetDoublev(position) tells nothing
+
+    // What it saw.
+    std::array<double, 3> force{};   // as applied: the last frame's, zero without force output
+    double largest_force = 0;        // since the last clear
+    std::vector<std::string> calls;  // but for those in frames
+    long frames = 0;
+    std::array<double, 3> force_at_stop{1, 1, 1};  // as applied when the scheduler was stopped
+    bool device_open = false;
+    int outside = 0;  // calls that want a frame, without one
+};
+
+}  // namespace palpate::support
+
+/// The stand-in's one and only.
+extern "C" palpate::support::MockHd* mock_hd();
+/// A device that was just plugged in: all as at the start.
+extern "C" void mock_hd_reset();

@@ -1,0 +1,413 @@
+// The device `openhaptics` against a stand-in for the vendor's library.
+#include "devices/openhaptics/openhaptics.hpp"
+
+#include <dlfcn.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "devices/openhaptics/mock_hd.hpp"
+#include "devices/vendor_polling.hpp"
+#include "support/scratch_folder.hpp"
+
+namespace palpate::devices {
+namespace {
+
+using namespace std::chrono_literals;
+using support::any_scene;
+using support::contains;
+using support::eventually;
+using support::message_of;
+using support::MockHd;
+using support::throughout;
+
+class OpenHaptics : public testing::Test {
+  protected:
+    void SetUp() override {
+        void* library = dlopen(MOCK_HD, RTLD_NOW);
+        ASSERT_NE(library, nullptr) << dlerror();
+        hd_ = reinterpret_cast<MockHd* (*)()>(dlsym(library, "mock_hd"))();
+        reinterpret_cast<void (*)()>(dlsym(library, "mock_hd_reset"))();
+    }
+
+    static std::unique_ptr<Device> open(const std::string& options = "", double rate = 1000) {
+        const std::string text = "openhaptics:library=" + std::string(MOCK_HD) + options;
+        return open_openhaptics(parse_device(text), any_scene(rate));
+    }
+    static std::string refusal(const std::string& options = "") {
+        return message_of<DeviceError>([&] { open(options); });
+    }
+
+    /// Of the stand-in, its lock held.
+    template <class F>
+    auto with(F use) const {
+        const std::lock_guard lock(hd_->mutex);
+        return use(*hd_);
+    }
+    Vec3 force() const {
+        return with([](MockHd& hd) { return Vec3(hd.force[0], hd.force[1], hd.force[2]); });
+    }
+    bool becomes(Device& device, DeviceStatus status) const {
+        return eventually([&] { return device.read(0).status == status; });
+    }
+    bool has_no_problem(Device& device) const {
+        return eventually([&] { return device.problem().empty(); });
+    }
+    /// Presses with this force until the device feels it.
+    bool presses(Device& device, const Vec3& newtons) const {
+        return eventually([&] { return (force() - newtons).norm() < 1e-12; },
+                          [&] { device.write(newtons, 0); });
+    }
+    /// No force for a while, whatever is asked for.
+    bool stays_at_zero(Device& device) const {
+        return throughout(
+            100ms, [&] { return force().isZero(0); }, [&] { device.write(Vec3(1, 1, 1), 0); });
+    }
+    bool goes_to_zero(Device& device) const {
+        const auto press = [&] { device.write(Vec3(1, 1, 1), 0); };
+        return eventually([&] { return force().isZero(0); }, press) && stays_at_zero(device);
+    }
+
+    MockHd* hd_ = nullptr;
+};
+
+TEST_F(OpenHaptics, a_missing_library_is_named_with_what_to_install) {
+    const auto open_nothing = [] {
+        open_openhaptics(parse_device("openhaptics:library=/nowhere/libHD.so"), any_scene());
+    };
+    const std::string message = message_of<DeviceError>(open_nothing);
+    EXPECT_TRUE(contains(message, "device openhaptics: ")) << message;
+    EXPECT_TRUE(contains(message, "/nowhere/libHD.so")) << message;
+    EXPECT_TRUE(contains(message, "install 3D Systems' OpenHaptics")) << message;
+    EXPECT_TRUE(contains(message, "library=PATH")) << message;
+    const DeviceFinding finding = openhaptics::find("/nowhere/libHD.so");
+    EXPECT_FALSE(finding.found);
+    EXPECT_TRUE(contains(finding.missing, "/nowhere/libHD.so")) << finding.missing;
+}
+
+TEST_F(OpenHaptics, looking_for_it_opens_no_device) {
+    const DeviceFinding finding = openhaptics::find(MOCK_HD);
+    EXPECT_TRUE(finding.found) << finding.missing;
+    EXPECT_TRUE(contains(finding.what, "libHD.so")) << finding.what;
+    EXPECT_TRUE(with([](MockHd& hd) { return hd.calls.empty(); }));
+    const DeviceFinding usual = find_openhaptics();
+    EXPECT_EQ(usual.name, "openhaptics");
+    EXPECT_NE(usual.found, usual.what.empty());
+    EXPECT_EQ(usual.found, usual.missing.empty());
+}
+
+TEST_F(OpenHaptics, a_library_without_a_function_that_is_needed_is_refused_by_its_name) {
+    const auto open_lacking = [] {
+        const std::string text = "openhaptics:library=" + std::string(MOCK_HD_LACKING);
+        open_openhaptics(parse_device(text), any_scene());
+    };
+    const std::string message = message_of<DeviceError>(open_lacking);
+    EXPECT_TRUE(contains(message, "hdUnschedule")) << message;
+    EXPECT_TRUE(contains(message, "lacking/libHD.so")) << message;
+    EXPECT_FALSE(openhaptics::find(MOCK_HD_LACKING).found);
+}
+
+TEST_F(OpenHaptics, an_option_that_it_has_not_is_refused) {
+    const std::string message = message_of<std::invalid_argument>([] { open(",speed=1"); });
+    EXPECT_TRUE(contains(message, "no option 'speed'; there are: name, reset, library")) << message;
+}
+
+TEST_F(OpenHaptics, a_driver_without_a_device_is_told_with_its_words_and_can_be_asked_again) {
+    with([](MockHd& hd) { hd.refuses_all = true; });
+    const std::string message = refusal();
+    EXPECT_TRUE(contains(message, "NULL: Device fault (0x300)")) << message;
+    EXPECT_TRUE(contains(message, "'Default PHANToM': Device fault")) << message;
+    EXPECT_TRUE(contains(message, "name=NAME")) << message;
+    with([](MockHd& hd) { hd.refuses_all = false; });
+    EXPECT_NO_THROW(open());
+}
+
+TEST_F(OpenHaptics, where_the_default_device_fails_its_usual_name_is_tried) {
+    with([](MockHd& hd) { hd.refuses_null = true; });
+    EXPECT_NO_THROW(open());
+    EXPECT_EQ(with([](MockHd& hd) { return hd.calls.at(1); }), "init Default PHANToM");
+}
+
+TEST_F(OpenHaptics, a_name_that_is_given_is_the_only_one_tried) {
+    EXPECT_TRUE(contains(refusal(",name=Left Device"), "device 'Left Device': "));
+    EXPECT_EQ(with([](MockHd& hd) { return hd.calls.size(); }), 1U);
+    EXPECT_NO_THROW(open(",name=Default PHANToM"));
+}
+
+TEST_F(OpenHaptics, a_servo_loop_that_does_not_start_gives_the_device_back) {
+    with([](MockHd& hd) { hd.refuses_start = true; });
+    const std::string message = refusal();
+    EXPECT_TRUE(contains(message, "starting the driver's servo loop")) << message;
+    EXPECT_FALSE(with([](MockHd& hd) { return hd.device_open; }));
+    with([](MockHd& hd) { hd.refuses_start = false; });
+    EXPECT_NO_THROW(open());
+}
+
+TEST_F(OpenHaptics, a_second_one_is_refused_while_the_first_is_open) {
+    const auto device = open();
+    EXPECT_TRUE(contains(refusal(), "open already"));
+    EXPECT_TRUE(becomes(*device, DeviceStatus::ready));
+}
+
+TEST_F(OpenHaptics, what_it_can_do_is_read_from_the_device) {
+    with([](MockHd& hd) {
+        hd.most_force = 7.9;
+        hd.stiffness = 1.5;
+        hd.rate = 500;
+        hd.workspace = {-100, -50, -60, 110, 70, 90};
+    });
+    const DeviceInfo info = open()->info();
+    EXPECT_EQ(info.name, "openhaptics");
+    EXPECT_EQ(info.model, "Mock Touch, serial number 20240001");
+    EXPECT_EQ(info.limits.maximum_force, 7.9);
+    EXPECT_EQ(info.stiffness, 1.5);
+    EXPECT_EQ(info.limits.rate, 500);
+    EXPECT_EQ(info.workspace_low, Vec3(-100, -50, -60));
+    EXPECT_EQ(info.workspace_high, Vec3(110, 70, 90));
+    EXPECT_TRUE(info.has_orientation);
+}
+
+TEST_F(OpenHaptics, figures_that_cannot_be_are_replaced_by_those_of_the_smallest_device) {
+    with([](MockHd& hd) {
+        hd.most_force = std::numeric_limits<double>::infinity();
+        hd.stiffness = -1;
+        hd.rate = 0;
+        hd.workspace = {80, 60, 35, -80, -60, -35};
+    });
+    const DeviceInfo info = open("", 250)->info();
+    EXPECT_EQ(info.limits.maximum_force, 3.3);
+    EXPECT_EQ(info.stiffness, 0.4);
+    EXPECT_EQ(info.limits.rate, 250);
+    EXPECT_EQ(info.workspace_low, Vec3(-80, -60, -35));
+    EXPECT_EQ(info.workspace_high, Vec3(80, 60, 35));
+}
+
+TEST_F(OpenHaptics, position_orientation_and_buttons_come_in_the_axes_of_the_device) {
+    with([](MockHd& hd) {
+        hd.position = {10, -20, 30};
+        hd.transform = {0, 1, 0, 0, 0, 0, 1, 0, 1, 0, 0, 0, 10, -20, 30, 1};
+        hd.buttons = 2;
+    });
+    const auto device = open();
+    ASSERT_TRUE(becomes(*device, DeviceStatus::ready));
+    const DeviceReading reading = device->read(0);
+    EXPECT_EQ(reading.position, Vec3(10, -20, 30));
+    EXPECT_EQ(reading.orientation.col(0), Vec3(0, 1, 0));  // where the tool's x points
+    EXPECT_EQ(reading.orientation.col(1), Vec3(0, 0, 1));
+    EXPECT_EQ(reading.orientation.col(2), Vec3(1, 0, 0));
+    EXPECT_EQ(reading.buttons, 2U);
+    EXPECT_TRUE(has_no_problem(*device));
+    with([](MockHd& hd) { hd.position = {11, 0, 0}; });
+    EXPECT_TRUE(eventually([&] { return device->read(0).position == Vec3(11, 0, 0); }));
+    EXPECT_EQ(with([](MockHd& hd) { return hd.outside; }), 0);
+}
+
+TEST_F(OpenHaptics, a_force_arrives_in_newtons_in_the_axes_it_was_written_in) {
+    const auto device = open();
+    EXPECT_TRUE(presses(*device, Vec3(0.5, -1, 2)));
+    EXPECT_TRUE(presses(*device, Vec3(-2, 0.25, -0.125)));
+}
+
+TEST_F(OpenHaptics, a_force_beyond_the_devices_own_is_cut_to_it) {
+    const auto device = open();
+    const Vec3 cut = Vec3(0.6, 0.8, 0) * 3.3;
+    EXPECT_TRUE(eventually([&] { return (force() - cut).norm() < 1e-12; },
+                           [&] { device->write(Vec3(30, 40, 0), 0); }));
+    EXPECT_LE(with([](MockHd& hd) { return hd.largest_force; }), 3.3 + 1e-12);
+}
+
+TEST_F(OpenHaptics, a_force_that_is_no_number_is_none) {
+    const auto device = open();
+    ASSERT_TRUE(presses(*device, Vec3(1, 0, 0)));
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_TRUE(
+        eventually([&] { return force().isZero(0); }, [&] { device->write(Vec3(1, nan, 0), 0); }));
+}
+
+TEST_F(OpenHaptics, the_force_goes_to_zero_when_the_servo_falls_silent) {
+    const auto device = open();
+    ASSERT_TRUE(presses(*device, Vec3(1, 2, 0)));
+    EXPECT_TRUE(eventually([&] { return force().isZero(0); }));
+    EXPECT_TRUE(becomes(*device, DeviceStatus::ready));
+    EXPECT_TRUE(presses(*device, Vec3(1, 2, 0)));
+}
+
+TEST_F(OpenHaptics, the_force_goes_to_zero_for_good_when_it_is_stopped) {
+    const auto device = open();
+    ASSERT_TRUE(presses(*device, Vec3(1, 2, 0)));
+    device->stop();
+    EXPECT_TRUE(goes_to_zero(*device));
+    EXPECT_TRUE(becomes(*device, DeviceStatus::ready));
+}
+
+TEST_F(OpenHaptics, it_is_closed_in_order_and_its_last_force_is_zero) {
+    auto device = open();
+    ASSERT_TRUE(presses(*device, Vec3(1, 2, 0)));
+    device.reset();
+    EXPECT_EQ(with([](MockHd& hd) { return hd.force_at_stop; }), (std::array<double, 3>{}));
+    const auto calls = with([](MockHd& hd) { return hd.calls; });
+    const std::vector<std::string> expected{"init NULL",       "enable",         "schedule 65535",
+                                            "start scheduler", "stop scheduler", "unschedule",
+                                            "disable",         "disable device"};
+    EXPECT_EQ(calls, expected);
+    const long frames = with([](MockHd& hd) { return hd.frames; });
+    std::this_thread::sleep_for(20ms);
+    EXPECT_EQ(with([](MockHd& hd) { return hd.frames; }), frames);
+}
+
+TEST_F(OpenHaptics, can_be_opened_again_in_the_same_process) {
+    for (int i = 0; i < 3; ++i) {
+        const auto device = open();
+        EXPECT_TRUE(presses(*device, Vec3(1, i, 0)));
+    }
+}
+
+TEST_F(OpenHaptics, an_uncalibrated_device_has_no_force_and_says_what_to_do) {
+    with([](MockHd& hd) { hd.calibration = 0x5002; });
+    const auto device = open();
+    ASSERT_TRUE(becomes(*device, DeviceStatus::uncalibrated));
+    EXPECT_TRUE(contains(device->problem(), "inkwell")) << device->problem();
+    EXPECT_TRUE(stays_at_zero(*device));
+    // The stylus goes into the well: the driver now wants to be told to take that pose.
+    with([](MockHd& hd) { hd.calibration = 0x5001; });
+    EXPECT_TRUE(presses(*device, Vec3(1, 0, 0)));
+    EXPECT_TRUE(has_no_problem(*device));
+    const auto calls = with([](MockHd& hd) { return hd.calls; });
+    EXPECT_EQ(std::count(calls.begin(), calls.end(), "update calibration 4"), 1);
+}
+
+TEST_F(OpenHaptics,
+       a_calibration_that_the_driver_does_not_finish_stays_one_and_is_not_asked_often) {
+    with([](MockHd& hd) {
+        hd.calibration = 0x5001;
+        hd.calibration_style = 2;
+        hd.update_helps = false;
+    });
+    const auto device = open();
+    ASSERT_TRUE(becomes(*device, DeviceStatus::uncalibrated));
+    EXPECT_TRUE(contains(device->problem(), "bringing its calibration up to date"));
+    EXPECT_TRUE(stays_at_zero(*device));
+    const auto calls = with([](MockHd& hd) { return hd.calls; });
+    EXPECT_GE(std::count(calls.begin(), calls.end(), "update calibration 2"), 1);
+    EXPECT_LE(std::count(calls.begin(), calls.end(), "update calibration 2"), 10);
+}
+
+TEST_F(OpenHaptics, encoders_are_zeroed_only_when_asked_to) {
+    with([](MockHd& hd) {
+        hd.calibration = 0x5001;
+        hd.calibration_style = 1;
+    });
+    {
+        const auto device = open();
+        ASSERT_TRUE(becomes(*device, DeviceStatus::uncalibrated));
+        EXPECT_TRUE(contains(device->problem(), "reset=yes")) << device->problem();
+        EXPECT_TRUE(stays_at_zero(*device));
+    }
+    const auto device = open(",reset=yes");
+    EXPECT_TRUE(presses(*device, Vec3(1, 0, 0)));
+    const auto calls = with([](MockHd& hd) { return hd.calls; });
+    EXPECT_EQ(std::count(calls.begin(), calls.end(), "update calibration 1"), 1);
+}
+
+TEST_F(OpenHaptics, zeroing_encoders_that_cannot_be_zeroed_is_refused) {
+    EXPECT_TRUE(contains(refusal(",reset=yes"), "cannot be zeroed"));
+    EXPECT_FALSE(with([](MockHd& hd) { return hd.device_open; }));
+}
+
+TEST_F(OpenHaptics, a_broken_connection_in_contact_is_lost_for_good_without_force) {
+    const auto device = open();
+    ASSERT_TRUE(presses(*device, Vec3(1, 2, 0)));
+    with([](MockHd& hd) { hd.next_error = 0x302; });
+    ASSERT_TRUE(becomes(*device, DeviceStatus::lost));
+    EXPECT_TRUE(contains(device->problem(), "Communication error (0x302)")) << device->problem();
+    EXPECT_TRUE(contains(device->problem(), "check cable")) << device->problem();
+    EXPECT_TRUE(goes_to_zero(*device));
+    EXPECT_EQ(device->read(0).status, DeviceStatus::lost);
+}
+
+TEST_F(OpenHaptics, a_fault_of_the_device_is_one_for_good_without_force) {
+    const auto device = open();
+    ASSERT_TRUE(presses(*device, Vec3(1, 2, 0)));
+    with([](MockHd& hd) { hd.next_error = 0x300; });
+    ASSERT_TRUE(becomes(*device, DeviceStatus::fault));
+    EXPECT_TRUE(contains(device->problem(), "Device fault (0x300)")) << device->problem();
+    EXPECT_TRUE(goes_to_zero(*device));
+    EXPECT_EQ(device->read(0).status, DeviceStatus::fault);
+}
+
+TEST_F(OpenHaptics, warm_motors_get_no_force_until_they_have_cooled) {
+    const auto device = open();
+    ASSERT_TRUE(presses(*device, Vec3(1, 2, 0)));
+    with([](MockHd& hd) { hd.every_error = 0x200; });
+    ASSERT_TRUE(becomes(*device, DeviceStatus::fault));
+    EXPECT_TRUE(contains(device->problem(), "Warm motors (0x200)")) << device->problem();
+    EXPECT_TRUE(contains(device->problem(), "cooled")) << device->problem();
+    EXPECT_TRUE(goes_to_zero(*device));
+    with([](MockHd& hd) { hd.every_error = 0; });
+    EXPECT_TRUE(presses(*device, Vec3(1, 2, 0)));
+    EXPECT_TRUE(has_no_problem(*device));
+}
+
+TEST_F(OpenHaptics, an_error_of_which_the_driver_knows_no_words_is_told_by_its_number) {
+    const auto device = open();
+    ASSERT_TRUE(becomes(*device, DeviceStatus::ready));
+    with([](MockHd& hd) { hd.every_error = 0x201; });
+    ASSERT_TRUE(becomes(*device, DeviceStatus::fault));
+    EXPECT_TRUE(contains(device->problem(), "error (0x201): force is off")) << device->problem();
+}
+
+TEST_F(OpenHaptics, a_position_that_cannot_be_is_a_fault_and_never_told) {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const auto device = open();
+    for (const std::array<double, 3>& absurd :
+         {std::array<double, 3>{nan, 0, 0}, {0, 10001, 0}, {0, 0, -1e300}}) {
+        with([](MockHd& hd) { hd.position = {1, 2, 3}; });
+        ASSERT_TRUE(presses(*device, Vec3(1, 2, 0)));
+        with([&](MockHd& hd) { hd.position = absurd; });
+        ASSERT_TRUE(becomes(*device, DeviceStatus::fault));
+        EXPECT_EQ(device->read(0).position, Vec3(1, 2, 3));
+        EXPECT_TRUE(contains(device->problem(), "cannot be")) << device->problem();
+        EXPECT_TRUE(goes_to_zero(*device));
+    }
+}
+
+TEST_F(OpenHaptics, a_position_that_the_driver_does_not_give_is_none) {
+    const auto device = open();
+    ASSERT_TRUE(presses(*device, Vec3(1, 2, 0)));
+    with([](MockHd& hd) { hd.no_position = true; });
+    EXPECT_TRUE(becomes(*device, DeviceStatus::fault));
+    EXPECT_TRUE(goes_to_zero(*device));
+}
+
+TEST_F(OpenHaptics, a_servo_loop_that_stands_still_is_stale_and_can_be_closed) {
+    auto device = open();
+    ASSERT_TRUE(becomes(*device, DeviceStatus::ready));
+    with([](MockHd& hd) { hd.silent = true; });
+    ASSERT_TRUE(becomes(*device, DeviceStatus::stale));
+    EXPECT_TRUE(contains(device->problem(), "stands still")) << device->problem();
+    with([](MockHd& hd) { hd.silent = false; });
+    EXPECT_TRUE(presses(*device, Vec3(1, 2, 0)));
+    with([](MockHd& hd) { hd.silent = true; });
+    ASSERT_TRUE(becomes(*device, DeviceStatus::stale));
+    device.reset();
+    const auto calls = with([](MockHd& hd) { return hd.calls; });
+    EXPECT_EQ(calls.back(), "disable device");
+    EXPECT_TRUE(force().isZero(0));
+}
+
+TEST_F(OpenHaptics, readings_of_a_slow_driver_are_never_ready_and_get_no_force) {
+    with([](MockHd& hd) { hd.slow_ms = 50; });
+    const auto device = open();
+    ASSERT_TRUE(becomes(*device, DeviceStatus::stale));
+    EXPECT_TRUE(throughout(
+        300ms, [&] { return device->read(0).status != DeviceStatus::ready && force().isZero(0); },
+        [&] { device->write(Vec3(1, 1, 1), 0); }));
+    with([](MockHd& hd) { hd.slow_ms = 0; });
+    EXPECT_TRUE(presses(*device, Vec3(1, 2, 0)));
+}
+
+}  // namespace
+}  // namespace palpate::devices
