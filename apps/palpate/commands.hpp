@@ -7,6 +7,9 @@
 namespace palpate::app {
 
 void add_info(CLI::App& app);
+void add_touch(CLI::App& app);
+void add_record(CLI::App& app);
+void add_devices(CLI::App& app);
 void add_replay(CLI::App& app);
 void add_extract(CLI::App& app);
 void add_demo(CLI::App& app);

@@ -9,12 +9,11 @@
 #include <memory>
 
 #include "apps/palpate/commands.hpp"
+#include "apps/palpate/offline.hpp"
 #include "apps/palpate/picture.hpp"
 #include "apps/palpate/plot.hpp"
 #include "apps/palpate/progress.hpp"
 #include "apps/palpate/render_options.hpp"
-#include "apps/palpate/session.hpp"
-#include "apps/palpate/statistics.hpp"
 #include "apps/palpate/volume_options.hpp"
 #include "scenes/motions.hpp"
 
@@ -43,21 +42,8 @@ struct Demo {
     double isovalue;
     io::Trajectory trajectory;
     std::vector<io::TraceRow> rows;
-    SessionSummary summary;
+    OfflineSummary summary;
 };
-
-/// For a file without --isovalue: the first level that its histogram suggests.
-double demo_isovalue(const LoadedVolume& loaded, const Field& field, FieldOptions options) {
-    if (options.isovalue.empty() && !loaded.isovalue) {
-        const std::vector<double> levels = suggested_isovalues(histogram_of(loaded.volume, 256));
-        if (levels.empty()) {
-            throw std::invalid_argument(loaded.name +
-                                        ": the data are constant, there is nothing to feel");
-        }
-        options.isovalue = fmt::format("{}", levels.front());
-    }
-    return isovalue_of(loaded, field, options);
-}
 
 io::Trajectory simulate_hand(const DemoOptions& options, const Field& field, double isovalue) {
     io::Trajectory trajectory;
@@ -89,14 +75,14 @@ void feel(Demo& demo, const DemoOptions& options, const fs::path& folder) {
     io::PathWriter path(folder / "path.csv");
     ProgressBar bar("feeling", options.volume.quiet);
     demo.rows.reserve(demo.trajectory.time.size());
-    SessionSinks sinks;
+    OfflineSinks sinks;
     sinks.row = [&](const io::TraceRow& row) {
         trace.add(row);
         demo.rows.push_back(row);
     };
     sinks.corner = [&](std::int64_t tick, const Vec3& p) { path.add(tick, p); };
     sinks.progress = [&](double fraction) { bar.at(fraction); };
-    demo.summary = run_session(renderer, demo.trajectory, sinks);
+    demo.summary = render_offline(renderer, demo.trajectory, sinks);
     trace.commit();
     path.commit();
 }
@@ -251,7 +237,7 @@ class ResultFolder {
 void run_demo(const DemoOptions& options) {
     LoadedVolume loaded = load(options.volume);
     const Field field = make_field(loaded, options.field);
-    const double isovalue = demo_isovalue(loaded, field, options.field);
+    const double isovalue = suggested_isovalue_of(loaded, field, options.field);
     Demo demo{std::move(loaded), field, isovalue, {}, {}, {}};
     demo.trajectory = simulate_hand(options, field, isovalue);
     ResultFolder results(options.output);

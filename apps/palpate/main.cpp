@@ -10,11 +10,19 @@
 #include <string>
 
 #include "apps/palpate/commands.hpp"
+#include "devices/error.hpp"
 #include "io/error.hpp"
 
 namespace {
 
-enum ExitStatus { done = 0, wrong_use = 2, bad_input = 3, bad_output = 5, stopped = 130 };
+enum ExitStatus {
+    done = 0,
+    wrong_use = 2,
+    bad_input = 3,
+    no_device = 4,
+    bad_output = 5,
+    stopped = 130
+};
 
 volatile std::sig_atomic_t stop_signal = 0;
 
@@ -81,6 +89,9 @@ int run(int argc, char** argv) {
     palpate::app::add_replay(app);
     palpate::app::add_extract(app);
     palpate::app::add_demo(app);
+    palpate::app::add_touch(app);
+    palpate::app::add_record(app);
+    palpate::app::add_devices(app);
     for (CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
         command->set_version_flag("--version", "palpate " PALPATE_VERSION);
     }
@@ -112,8 +123,9 @@ void stop_if_interrupted() {
 
 int main(int argc, char** argv) {
     occupy_closed_streams();
-    std::signal(SIGINT, on_signal);
-    std::signal(SIGTERM, on_signal);
+    // A closed terminal and Ctrl-\ too: a session lets go of its forces on the way out.
+    for (const int s : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) std::signal(s, on_signal);
+    std::signal(SIGXFSZ, SIG_IGN);  // a failed write, told as such
     std::signal(SIGPIPE, SIG_IGN);  // a reader that has gone is a failed write, cleaned up after
     try {
         return run(argc, argv);
@@ -121,6 +133,8 @@ int main(int argc, char** argv) {
         // Ctrl-C reaches the helper process as well, and its end may be seen first.
         if (palpate::app::interrupted()) return fail("interrupted", stopped);
         return fail(e.what(), bad_input);
+    } catch (const palpate::devices::DeviceError& e) {
+        return fail(e.what(), no_device);
     } catch (const palpate::io::OutputError& e) {
         return fail(e.what(), bad_output);
     } catch (const std::invalid_argument& e) {

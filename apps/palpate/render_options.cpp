@@ -107,6 +107,10 @@ void RenderOptions::add_to(CLI::App& command) {
         ->capture_default_str();
     command.add_option("--ramp", force.ramp, "Ramp of the force from zero at the start [s]")
         ->capture_default_str();
+    command
+        .add_option("--start-below", force.start_below,
+                    "After a start or pause no force until the wanted one is this small [N]")
+        ->capture_default_str();
     command.add_option("--rate", rate, "Rate of the loop the forces are meant for [Hz]")
         ->capture_default_str();
     command.add_option("--scale", scale, "Physical mm per mm of hand")->capture_default_str();
@@ -114,13 +118,21 @@ void RenderOptions::add_to(CLI::App& command) {
         ->capture_default_str();
 }
 
-RendererSettings render_settings(const RenderOptions& options, const Field& field,
-                                 double isovalue) {
+ProxyMethod method_named(const std::string& name) {
+    const auto found = methods().find(name);
+    if (found == methods().end()) {
+        throw std::invalid_argument("there is no proxy method '" + name + "'");
+    }
+    return found->second;
+}
+
+RendererSettings render_settings(const RenderOptions& options, const Field& field, double isovalue,
+                                 const DeviceLimits& limits) {
     if (!options.friction.empty() && options.method != "exact") {
         throw std::invalid_argument("--friction is for --method exact; the others have none");
     }
     RendererSettings settings;
-    settings.method = methods().at(options.method);
+    settings.method = method_named(options.method);
     settings.proxy.step_budget = options.step_budget;
     if (!options.friction.empty()) {
         const auto [still, moving] = two_numbers("--friction", options.friction, true);
@@ -136,6 +148,7 @@ RendererSettings render_settings(const RenderOptions& options, const Field& fiel
         const auto [amplitude, wavelength] = two_numbers("--texture", options.texture);
         settings.force.texture = {amplitude, wavelength};
     }
+    settings.device = limits;
     settings.device.rate = options.rate;
     settings.transform.scale = options.scale;
     check(settings);

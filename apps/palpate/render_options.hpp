@@ -27,8 +27,13 @@ struct RenderOptions {
     void add_to(CLI::App& command);
 };
 
+/// Throws std::invalid_argument for a name that there is not.
+ProxyMethod method_named(const std::string& name);
+
 /// The settings asked for; `isovalue` is the least level felt where no --minimum is given.
 /// Throws std::invalid_argument, through check(), for what cannot be rendered.
-RendererSettings render_settings(const RenderOptions& options, const Field& field, double isovalue);
+/// `limits` are the device's; the rate is that of the options.
+RendererSettings render_settings(const RenderOptions& options, const Field& field, double isovalue,
+                                 const DeviceLimits& limits = {});
 
 }  // namespace palpate::app

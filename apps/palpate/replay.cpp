@@ -7,10 +7,11 @@
 #include <optional>
 
 #include "apps/palpate/commands.hpp"
+#include "apps/palpate/offline.hpp"
 #include "apps/palpate/outputs.hpp"
 #include "apps/palpate/progress.hpp"
 #include "apps/palpate/render_options.hpp"
-#include "apps/palpate/session.hpp"
+#include "apps/palpate/validate.hpp"
 #include "apps/palpate/volume_options.hpp"
 
 namespace palpate::app {
@@ -21,10 +22,33 @@ struct ReplayOptions {
     FieldOptions field;
     RenderOptions render;
     std::string trajectory, output, path;
-    bool json = false;
+    bool json = false, validate = false;
+    std::string recorded_volume;
 };
 
+/// A recording says itself how it was felt.
+void refuse_other_options(const CLI::App& command) {
+    for (const CLI::Option* option : command.get_options()) {
+        const std::string name = option->get_name();
+        const bool known = name == "VOLUME" || name == "--validate" || name == "--volume" ||
+                           name == "-q,--quiet" || name == "--quiet";
+        if (option->count() > 0 && !known) {
+            throw std::invalid_argument(
+                name +
+                " does nothing with --validate, which takes the recording in place of VOLUME");
+        }
+    }
+}
+
 void replay(const ReplayOptions& options) {
+    if (options.validate) {
+        return validate(options.volume.volume, options.recorded_volume, options.volume.quiet);
+    }
+    if (!options.recorded_volume.empty()) {
+        throw std::invalid_argument("--volume is for --validate");
+    }
+    if (options.trajectory.empty()) throw std::invalid_argument("--trajectory is required");
+    if (options.output.empty()) throw std::invalid_argument("--output is required");
     check_outputs({options.volume.volume, options.trajectory}, {options.output, options.path});
     const bool table_on_standard_output =
         is_standard_output(options.output) || is_standard_output(options.path);
@@ -46,11 +70,11 @@ void replay(const ReplayOptions& options) {
     std::optional<io::PathWriter> path;
     if (!options.path.empty()) path.emplace(options.path);
     ProgressBar bar("replaying", options.volume.quiet);
-    SessionSinks sinks;
+    OfflineSinks sinks;
     sinks.row = [&](const io::TraceRow& row) { trace.add(row); };
     if (path) sinks.corner = [&](std::int64_t tick, const Vec3& p) { path->add(tick, p); };
     sinks.progress = [&](double fraction) { bar.at(fraction); };
-    const SessionSummary summary = run_session(renderer, trajectory, sinks);
+    const OfflineSummary summary = render_offline(renderer, trajectory, sinks);
     stop_if_interrupted();
     // A stream may fail, a rename hardly: first the stream, so that no file stays if it does.
     const bool path_first = path && is_stream(options.path);
@@ -75,19 +99,24 @@ void add_replay(CLI::App& app) {
         "serves too.\nThe ramp and the limit on the change of force, which a live session has, are "
         "off unless asked for.\n\n"
         "Example:\n  palpate replay head.nrrd --trajectory hand.csv --isovalue 500 --output "
-        "trace.csv --path path.csv");
+        "trace.csv --path path.csv\n  palpate replay session.csv --validate");
     options->render.force.ramp = 0;
     options->render.force.rate_limit = std::numeric_limits<double>::infinity();
     options->volume.add_to(*command);
-    command->add_option("--trajectory", options->trajectory, "Motion of the hand (CSV)")
-        ->required();
-    command->add_option("-o,--output", options->output, "Trace to write (CSV; - for standard out)")
-        ->required();
+    command->add_option("--trajectory", options->trajectory, "Motion of the hand (CSV)");
+    command->add_option("-o,--output", options->output, "Trace to write (CSV; - for standard out)");
     command->add_option("--path", options->path, "Path of the SCP to write (CSV)");
     options->field.add_to(*command);
     options->render.add_to(*command);
+    command->add_flag("--validate", options->validate,
+                      "Render the recording that is given as VOLUME again and compare every tick");
+    command->add_option("--volume", options->recorded_volume,
+                        "The volume of the recording, if it is no longer where it was");
     command->add_flag("--json", options->json, "Print the summary as JSON");
-    command->callback([options] { replay(*options); });
+    command->callback([options, command] {
+        if (options->validate) refuse_other_options(*command);
+        replay(*options);
+    });
 }
 
 }  // namespace palpate::app

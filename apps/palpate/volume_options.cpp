@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "apps/palpate/progress.hpp"
+#include "apps/palpate/statistics.hpp"
 #include "io/raw_options.hpp"
 #include "palpate/renderer.hpp"
 #include "scenes/volumes.hpp"
@@ -119,6 +120,18 @@ double isovalue_of(const LoadedVolume& loaded, const Field& field, const FieldOp
                    loaded.volume.minimum(), loaded.volume.maximum(), warning);
     }
     return isovalue;
+}
+
+double suggested_isovalue_of(const LoadedVolume& loaded, const Field& field, FieldOptions options) {
+    if (options.isovalue.empty() && !loaded.isovalue) {
+        const std::vector<double> levels = suggested_isovalues(histogram_of(loaded.volume, 256));
+        if (levels.empty()) {
+            throw std::invalid_argument(loaded.name +
+                                        ": the data are constant, there is nothing to feel");
+        }
+        options.isovalue = fmt::format("{}", levels.front());
+    }
+    return isovalue_of(loaded, field, options);
 }
 
 }  // namespace palpate::app

@@ -50,6 +50,8 @@ Field make_field(const LoadedVolume& loaded, const FieldOptions& options);
 /// The isovalue asked for, else the synthetic volume's own; std::invalid_argument if there is none.
 /// Prints a warning on standard error where there is nothing to feel.
 double isovalue_of(const LoadedVolume& loaded, const Field& field, const FieldOptions& options);
+/// The same, but for a file without --isovalue the first level that its histogram suggests.
+double suggested_isovalue_of(const LoadedVolume& loaded, const Field& field, FieldOptions options);
 /// Empty for a whole number from 0, else what is wrong: a check for CLI11, which takes -1 for
 /// 2^64-1.
 std::string flaw_in_count(const std::string& text);

@@ -37,7 +37,8 @@ TEST(Reference, ItsExamplesWork) {
 TEST(Reference, NamesEveryOptionThereIs) {
     const std::string reference = support::bytes_of(PALPATE_REFERENCE);
     const ScratchFolder folder;
-    for (const std::string command : {"info", "replay", "extract", "demo"}) {
+    for (const std::string command :
+         {"info", "touch", "record", "devices", "replay", "extract", "demo"}) {
         const std::string help = palpate(folder, command + " --help").out;
         const std::string options = help.substr(0, help.find("\nExample"));
         for (auto at = options.find("--"); at != std::string::npos; at = options.find("--", at)) {

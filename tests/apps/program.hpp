@@ -85,6 +85,8 @@ class Running {
         return false;
     }
 
+    void signal(int signal) const { ::kill(pid_, signal); }
+
     /// Sends `signal` (0: none) and waits for the end.
     Outcome finish(int signal = 0) {
         if (signal != 0) ::kill(pid_, signal);

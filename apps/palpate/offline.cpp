@@ -1,5 +1,5 @@
 // Off-line rendering of a motion.
-#include "apps/palpate/session.hpp"
+#include "apps/palpate/offline.hpp"
 
 #include <fmt/format.h>
 
@@ -18,7 +18,7 @@ constexpr std::int64_t ticks_between_progress = 1024;
 /// last corner of a tick is held back for its SCP, from which it differs by rounding: that is
 /// computed in index space, and where the SCP has reached the HIP it is the HIP, bit for bit.
 struct PathTap {
-    const SessionSinks* sinks;
+    const OfflineSinks* sinks;
     std::int64_t tick = 0;
     std::optional<Vec3> last = {};
 
@@ -34,19 +34,7 @@ struct PathTap {
     }
 };
 
-io::TraceRow row_of(const Tick& tick) {
-    return {tick.time,
-            tick.proxy.hip,
-            tick.proxy.scp,
-            tick.force,
-            tick.proxy.density,
-            tick.proxy.isovalue,
-            tick.proxy.mode == Mode::constrained,
-            tick.proxy.tetrahedra,
-            tick.update_ns};
-}
-
-void add_to_summary(SessionSummary& summary, const Tick& tick, double range) {
+void add_to_summary(OfflineSummary& summary, const Tick& tick, double range) {
     ++summary.ticks;
     summary.out_of_budget += tick.proxy.status == UpdateStatus::out_of_budget;
     summary.recovering += tick.proxy.status == UpdateStatus::recovering;
@@ -64,7 +52,7 @@ void add_to_summary(SessionSummary& summary, const Tick& tick, double range) {
     }
 }
 
-void finish(SessionSummary& summary, std::vector<std::int64_t>& times) {
+void finish(OfflineSummary& summary, std::vector<std::int64_t>& times) {
     const auto n = static_cast<double>(summary.ticks);
     summary.mean_tetrahedra /= n;
     summary.mean_ns /= n;
@@ -80,15 +68,15 @@ void finish(SessionSummary& summary, std::vector<std::int64_t>& times) {
 
 }  // namespace
 
-SessionSummary run_session(Renderer& renderer, const io::Trajectory& trajectory,
-                           const SessionSinks& sinks) {
+OfflineSummary render_offline(Renderer& renderer, const io::Trajectory& trajectory,
+                              const OfflineSinks& sinks) {
     const Vec3& first = trajectory.position.front();
     if (!place(renderer.proxy, renderer.field, first, renderer.proxy.isovalue)) {
         throw std::invalid_argument(
             "no free space was found at this isovalue: everything is solid; choose another "
             "isovalue or --background");
     }
-    SessionSummary summary;
+    OfflineSummary summary;
     std::vector<std::int64_t> times;
     times.reserve(trajectory.time.size());
     PathTap tap{&sinks};
@@ -110,7 +98,7 @@ SessionSummary run_session(Renderer& renderer, const io::Trajectory& trajectory,
         }
         const Tick tick = render(renderer, device);
         tap.end_tick(tick.proxy.scp);
-        if (sinks.row) sinks.row(row_of(tick));
+        if (sinks.row) sinks.row(io::trace_row(tick));
         times.push_back(tick.update_ns);
         add_to_summary(summary, tick, renderer.field.range());
         if (sinks.progress && i % ticks_between_progress == 0) {
@@ -121,7 +109,7 @@ SessionSummary run_session(Renderer& renderer, const io::Trajectory& trajectory,
     return summary;
 }
 
-std::string summary_text(const SessionSummary& s) {
+std::string summary_text(const OfflineSummary& s) {
     return fmt::format(
         "ticks {}, in contact {} ({:.1f} %), out of step budget {}, recovering {}, refused {}\n"
         "largest |density - isovalue| in contact {:.2g} of the data's range\n"
@@ -134,7 +122,7 @@ std::string summary_text(const SessionSummary& s) {
         s.mean_ns, s.p50_ns, s.p99_ns, s.p999_ns, s.max_ns);
 }
 
-std::string summary_json(const SessionSummary& s) {
+std::string summary_json(const OfflineSummary& s) {
     const nlohmann::ordered_json json{{"ticks", s.ticks},
                                       {"constrained", s.constrained},
                                       {"out_of_budget", s.out_of_budget},

@@ -12,8 +12,8 @@
 
 namespace palpate::app {
 
-/// What a session gave, in numbers.
-struct SessionSummary {
+/// What a motion gave, in numbers.
+struct OfflineSummary {
     std::int64_t ticks = 0;
     std::int64_t constrained = 0;
     std::int64_t out_of_budget = 0;  ///< updates that went on in the next tick
@@ -28,7 +28,7 @@ struct SessionSummary {
 };
 
 /// Where the ticks go; any may be empty. The last corner of a tick is its SCP, bit for bit.
-struct SessionSinks {
+struct OfflineSinks {
     std::function<void(const io::TraceRow&)> row;
     std::function<void(std::int64_t tick, const Vec3& corner)> corner;  ///< of the SCP's path [mm]
     std::function<void(double fraction)> progress;
@@ -37,11 +37,11 @@ struct SessionSinks {
 /// Renders each position of the trajectory (physical space) in order. The proxy is placed first: at
 /// the first position if that is free, else where recovery finds. Throws std::invalid_argument if
 /// no free point exists at this isovalue; Interrupted through the progress sink.
-SessionSummary run_session(Renderer& renderer, const io::Trajectory& trajectory,
-                           const SessionSinks& sinks);
+OfflineSummary render_offline(Renderer& renderer, const io::Trajectory& trajectory,
+                              const OfflineSinks& sinks);
 
 /// The summary as lines of text for people, and as JSON.
-std::string summary_text(const SessionSummary& summary);
-std::string summary_json(const SessionSummary& summary);
+std::string summary_text(const OfflineSummary& summary);
+std::string summary_json(const OfflineSummary& summary);
 
 }  // namespace palpate::app

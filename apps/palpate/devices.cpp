@@ -1,0 +1,47 @@
+// palpate devices: what was found, and why something was not.
+#include "devices/devices.hpp"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "apps/palpate/commands.hpp"
+
+namespace palpate::app {
+namespace {
+
+void list_devices(bool json) {
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    for (const devices::DeviceFinding& device : devices::find_devices()) {
+        if (json) {
+            list.push_back({{"name", device.name},
+                            {"found", device.found},
+                            {"what", device.what},
+                            {"missing", device.missing},
+                            {"options", device.options}});
+            continue;
+        }
+        fmt::print("{:<15} {} {}\n", device.name, device.found ? "yes" : "no ",
+                   device.found ? device.what : device.missing);
+        if (!device.options.empty()) fmt::print("{:<15}     options: {}\n", "", device.options);
+    }
+    if (json) {
+        fmt::print("{}\n", list.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    }
+}
+
+}  // namespace
+
+void add_devices(CLI::App& app) {
+    auto json = std::make_shared<bool>(false);
+    CLI::App* command =
+        app.add_subcommand("devices", "List the haptic devices that were found, and why not");
+    command->footer(
+        "Looks for each kind of device: its library, its service, the device itself. Nothing is "
+        "moved.\n\nExample:\n  palpate devices");
+    command->add_flag("--json", *json, "Print the list as JSON");
+    command->callback([json] { list_devices(*json); });
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,101 @@
+// Lateness is the machine's, compute time ours: told apart everywhere.
+#include "apps/palpate/live_status.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+namespace palpate::app {
+namespace {
+
+std::string four(const LatencySummary& s) {
+    return fmt::format("p50 {}, p99 {}, p99.9 {}, max {}", duration_text(s.p50),
+                       duration_text(s.p99), duration_text(s.p999), duration_text(s.max));
+}
+
+nlohmann::ordered_json json_of(const LatencySummary& s) {
+    return {{"p50", s.p50}, {"p99", s.p99}, {"p99.9", s.p999}, {"max", s.max}};
+}
+
+}  // namespace
+
+std::string duration_text(std::int64_t ns) {
+    if (ns < 1000) return fmt::format("{} ns", ns);
+    const double us = 1e-3 * static_cast<double>(ns);
+    if (us < 1000) return fmt::format("{:.3g} us", us);
+    if (us < 1e6) return fmt::format("{:.3g} ms", 1e-3 * us);
+    return fmt::format("{:.3g} s", 1e-6 * us);
+}
+
+std::string force_words(const Tick& tick) {
+    const unsigned flags = tick.force_flags;
+    if (flags & force_off) return "off";
+    if (tick.proxy.status == UpdateStatus::recovering) return "recovering";
+    if (flags & (force_stale | force_not_finite)) return "no input";
+    if (flags & force_overrun) return "too late";
+    if (flags & force_waiting) return "waiting";
+    if (flags & force_ramping) return "ramp";
+    if (flags & force_limited) return "limit";
+    if (flags & force_rate_limited) return "rate limit";
+    return {};
+}
+
+std::string status_line(const Snapshot& now, const ServoReport& report, std::size_t columns) {
+    const Tick& tick = now.session.tick;
+    const bool ready = now.session.device.status == DeviceStatus::ready;
+    std::string words = force_words(tick);
+    if (!words.empty()) words = " (" + words + ")";
+    std::string state = ready ? tick.proxy.mode == Mode::constrained ? "contact" : "free"
+                              : name_of(now.session.device.status);
+    if (now.session.frozen) state = "frozen";
+    if (now.session.clutched) state = "clutch";
+    std::string line =
+        fmt::format("{:.1f} s {} {:.2f} N{} iso {:.5g} missed {} compute p99.9 {} late p99 {}",
+                    tick.time, state, tick.force.norm(), words, tick.proxy.isovalue, report.missed,
+                    duration_text(report.compute.p999), duration_text(report.lateness.p99));
+    line.resize(std::min(line.size(), columns));
+    return line;
+}
+
+std::string report_text(const ServoReport& r, double seconds) {
+    std::string text = fmt::format(
+        "ticks {} in {:.1f} s, missed deadlines {}, forces taken back {}\n"
+        "compute time (ours)    {}\n"
+        "lateness (the machine) {}\n"
+        "period                 {}\n",
+        r.ticks, seconds, r.missed, r.overruns, four(r.compute), four(r.lateness), four(r.period));
+    if (r.unrecorded > 0) {
+        text += fmt::format("events that the recording lost: {} (the disk was too slow)\n",
+                            r.unrecorded);
+    }
+    if (r.worst.tick >= 0) {
+        text += fmt::format("worst tick {}: woken {} late, {} of work ({} computing); mostly {}\n",
+                            r.worst.tick, duration_text(r.worst.lateness_ns),
+                            duration_text(r.worst.work_ns), duration_text(r.worst.compute_ns),
+                            name_of(r.worst.cause));
+    }
+    return text;
+}
+
+std::string report_json(const ServoReport& r, double seconds, const std::string& device) {
+    const nlohmann::ordered_json json{{"device", device},
+                                      {"seconds", seconds},
+                                      {"ticks", r.ticks},
+                                      {"missed", r.missed},
+                                      {"overruns", r.overruns},
+                                      {"unrecorded", r.unrecorded},
+                                      {"compute_ns", json_of(r.compute)},
+                                      {"lateness_ns", json_of(r.lateness)},
+                                      {"work_ns", json_of(r.work)},
+                                      {"period_ns", json_of(r.period)},
+                                      {"worst",
+                                       {{"tick", r.worst.tick},
+                                        {"lateness_ns", r.worst.lateness_ns},
+                                        {"work_ns", r.worst.work_ns},
+                                        {"compute_ns", r.worst.compute_ns},
+                                        {"cause", name_of(r.worst.cause)}}}};
+    return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,218 @@
+// palpate touch: a live session. palpate record: the same, for its recording.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <memory>
+#include <thread>
+
+#include "apps/palpate/commands.hpp"
+#include "apps/palpate/live_commands.hpp"
+#include "apps/palpate/live_status.hpp"
+#include "apps/palpate/outputs.hpp"
+#include "apps/palpate/terminal.hpp"
+#include "apps/palpate/touch_options.hpp"
+#include "devices/last_resort.hpp"
+
+namespace palpate::app {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Looks after a running session from outside: words, keys, the line on the terminal.
+class Attendant {
+  public:
+    Attendant(Servo& servo, LiveScene& scene, const io::RecordingWriter* recording,
+              const TouchOptions& options, std::vector<TimedRequest> requests,
+              LiveCommands& commands)
+        : servo_(servo),
+          scene_(scene),
+          recording_(recording),
+          options_(options),
+          requests_(std::move(requests)),
+          commands_(commands),
+          line_(!options.volume.quiet && ::isatty(STDERR_FILENO)) {
+        if (keys_.available() && !options.volume.quiet) note(LiveCommands::key_help());
+    }
+    ~Attendant() {
+        if (line_) std::fputs("\r\033[K", stderr);
+    }
+
+    /// One round, every 10 ms; false once the session is to end.
+    bool attend() {
+        const auto now = servo_.snapshot();
+        if (!now) return true;
+        if (!ask(*now)) return false;
+        if (const auto key = keys_.next()) {
+            const auto request = commands_.from_key(*key, *now);
+            if (request && !carry_out(*request)) return false;
+        }
+        ++rounds_;
+        watch_device(now->session.device.status);
+        watch_recording();
+        if (line_ && rounds_ % 20 == 0) {
+            fmt::print(stderr, "\r\033[K{}",
+                       status_line(*now, servo_.report(), terminal_columns() - 1));
+        }
+        const bool over = options_.seconds > 0 && now->session.tick.time >= options_.seconds;
+        return !over && now->session.device.status != DeviceStatus::finished;
+    }
+
+  private:
+    void note(const std::string& text) const {
+        fmt::print(stderr, "{}{}\n", line_ ? "\r\033[K" : "", text);
+    }
+
+    /// Carries out what has become due.
+    bool ask(const Snapshot& now) {
+        while (next_ < requests_.size() && requests_[next_].time <= now.session.tick.time) {
+            if (!carry_out(requests_[next_].request)) return false;
+            ++next_;
+        }
+        return true;
+    }
+
+    bool carry_out(const Request& request) {
+        if (std::holds_alternative<Quit>(request)) return false;
+        if (std::holds_alternative<Help>(request)) {
+            note(LiveCommands::key_help());
+            return true;
+        }
+        try {
+            if (!servo_.send(std::get<Command>(request)))
+                note("too many commands at once: one was left out");
+        } catch (const std::invalid_argument& e) {
+            note(e.what());
+        }
+        return true;
+    }
+
+    /// Tells when the device's status changes, and what is wrong with it when that does.
+    void watch_device(DeviceStatus status) {
+        const bool changed = status_ != status;
+        if (!changed && rounds_ % 50 != 0) return;
+        const std::string problem = scene_.device->problem();
+        if (!changed && problem == problem_) return;
+        status_ = status;
+        problem_ = problem;
+        if (options_.volume.quiet || status == DeviceStatus::finished) return;
+        note(fmt::format("device {}: {}{}{}", scene_.info.name, name_of(status),
+                         problem.empty() ? "" : ": ", problem));
+    }
+
+    void watch_recording() {
+        if (!recording_ || recording_told_ || rounds_ % 50 != 0) return;
+        const std::string problem = recording_->problem();
+        if (problem.empty()) return;
+        recording_told_ = true;
+        note("palpate: " + problem);
+    }
+
+    Servo& servo_;
+    LiveScene& scene_;
+    const io::RecordingWriter* recording_;
+    const TouchOptions& options_;
+    std::vector<TimedRequest> requests_;
+    std::size_t next_ = 0;
+    LiveCommands& commands_;
+    Keys keys_;
+    std::optional<DeviceStatus> status_;
+    std::string problem_;  // of the device, as told
+    bool recording_told_ = false;
+    bool line_;
+    int rounds_ = 0;
+};
+
+void announce(const Servo& servo, const LiveScene& scene, bool quiet) {
+    if (quiet) return;
+    const RendererSettings& settings = servo.settings();
+    const std::string force =
+        scene.info.renders_force
+            ? fmt::format("at most {} N, {} N/mm",
+                          std::min(settings.force.limit, settings.device.maximum_force),
+                          settings.force.stiffness)
+            : "position only, no force";
+    fmt::print(stderr, "isovalue {}\ndevice {} ({}): {}; 1 mm of hand is {:.3g} mm of the volume\n",
+               scene.isovalue, scene.info.name, scene.info.model, force, settings.transform.scale);
+    for (const std::string& sentence : servo.privileges()) fmt::print(stderr, "{}\n", sentence);
+}
+
+void touch(const TouchOptions& options) {
+    check_outputs({options.volume.volume, options.commands}, {options.record});
+    LiveScene scene = make_scene(options);
+    LiveCommands commands(scene.field, scene.isovalue, scene.session.renderer.settings);
+    std::vector<TimedRequest> requests;
+    if (!options.commands.empty()) requests = read_commands(options.commands, commands);
+    std::unique_ptr<io::RecordingWriter> recording;
+    if (!options.record.empty()) {
+        recording =
+            std::make_unique<io::RecordingWriter>(options.record, recording_head(scene, options));
+    }
+    const devices::LastResort last_resort(*scene.device);
+    Servo servo(std::move(scene.session), *scene.device,
+                {.rate = options.render.rate,
+                 .real_time = !options.normal_priority,
+                 .recorder = recording ? &recording->queue() : nullptr});
+    // Stopped in the middle, the program could not let go. Ctrl-Z does nothing while it runs.
+    std::signal(SIGTSTP, SIG_IGN);
+    servo.start();
+    announce(servo, scene, options.volume.quiet);
+    const auto begin = std::chrono::steady_clock::now();
+    {
+        Attendant attendant(servo, scene, recording.get(), options, std::move(requests), commands);
+        while (!interrupted() && attendant.attend()) std::this_thread::sleep_for(10ms);
+    }
+    servo.stop();
+    scene.device->stop();
+    const double seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    const ServoReport report = servo.report();
+    if (options.json) {
+        fmt::print("{}",
+                   report_json(report, seconds, scene.info.name + " (" + scene.info.model + ")"));
+    } else if (!options.volume.quiet) {
+        fmt::print("{}", report_text(report, seconds));
+    }
+    if (recording) {
+        recording->finish(report.unrecorded);
+        if (!options.json && !options.volume.quiet) {
+            fmt::print("recorded {} ticks in {}\n", recording->ticks(), options.record);
+        }
+    }
+    stop_if_interrupted();
+}
+
+void add_session(CLI::App& app, const char* name, const char* what, bool record_is_output,
+                 const char* example) {
+    auto options = std::make_shared<TouchOptions>();
+    CLI::App* command = app.add_subcommand(name, what);
+    command->footer(fmt::format(
+        "Without --device a simulated hand explores the volume. Forces begin at zero, when the "
+        "wanted one is small, and end at zero,\nwhatever ends the session. With a terminal, keys "
+        "work while it runs (? lists them).\n\nExample:\n  {}",
+        example));
+    options->add_to(*command, record_is_output);
+    command->callback([options, command] {
+        options->limit_given = command->count("--force-limit") > 0;
+        options->stiffness_given = command->count("--stiffness") > 0;
+        options->budget_given = command->count("--step-budget") > 0;
+        options->scale_given = command->count("--scale") > 0;
+        touch(*options);
+    });
+}
+
+}  // namespace
+
+void add_touch(CLI::App& app) {
+    add_session(app, "touch", "Feel a volume live, through a haptic device", false,
+                "palpate touch head.nrrd --isovalue 500 --device haply --record session.csv");
+}
+
+void add_record(CLI::App& app) {
+    add_session(app, "record", "Feel a volume live and record the session", true,
+                "palpate record head.nrrd --isovalue 500 --device haply --output session.csv");
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,52 @@
+// The options of a live session, and what they make: device, session, head of a recording.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "apps/palpate/render_options.hpp"
+#include "apps/palpate/volume_options.hpp"
+#include "devices/devices.hpp"
+#include "io/recording.hpp"
+#include "palpate/session.hpp"
+
+namespace palpate::app {
+
+struct TouchOptions {
+    VolumeOptions volume;
+    FieldOptions field;
+    RenderOptions render;
+    std::string device = "simulated";
+    std::string facing = "anterior";
+    std::string clutch = "auto", deadman = "none";  ///< a button's number from 1, none, auto
+    std::string record, commands;
+    double seconds = 0;  ///< 0: until the hand has finished or the session is stopped
+    bool json = false;
+    bool normal_priority = false;
+    /// Options that were given; the rest is what the device is rated for.
+    bool limit_given = false, stiffness_given = false, scale_given = false, budget_given = false;
+
+    /// For `touch`; for `record`, which has --output in place of --record.
+    void add_to(CLI::App& command, bool record_is_output);
+};
+
+/// What a session is made of.
+struct LiveScene {
+    LoadedVolume loaded;
+    Field field;
+    double isovalue;
+    std::unique_ptr<Device> device;
+    DeviceInfo info;  ///< of the device when it was opened
+    Session session;
+};
+
+/// Loads the volume, opens the device, fits it to the volume. Throws std::invalid_argument,
+/// io::InputError, devices::DeviceError.
+LiveScene make_scene(const TouchOptions& options);
+
+/// What a recording of the scene has to say.
+io::RecordingHead recording_head(const LiveScene& scene, const TouchOptions& options);
+
+}  // namespace palpate::app

@@ -1,0 +1,95 @@
+// However a live session ends, the device that it talked to is left without force: the program
+// against a stand-in for Haply's service, which sees what arrives.
+#include <atomic>
+
+#include "apps/program.hpp"
+#include "devices/haply/messages.hpp"
+#include "devices/haply/mock_service.hpp"
+
+namespace palpate::app::test {
+namespace {
+
+using support::MockService;
+
+/// A hand that comes down onto the sphere's top and stays 4 mm inside, wherever messages are asked
+/// for. Service axes [m]: z is up; the device's workspace is centred at (-0.007, -0.068, 0.13).
+class PressedSphere {
+  public:
+    explicit PressedSphere(MockService& service) : service_(service) {
+        service.greet(support::snapshot({support::whole_device("049D", position(0))}));
+        service.answer([this](const std::string&) {
+            return MockService::Reply{support::moved("049D", position(++asked_))};
+        });
+    }
+    Words words() const {
+        return words_of(
+            "touch synthetic:sphere:32x32x32 --scale 0.5 --device "
+            "haply:host=127.0.0.1,port=" +
+            std::to_string(service_.port()));
+    }
+    /// True once forces arrive that push out of the sphere.
+    bool is_felt() const {
+        return comes_true([&] {
+            const auto forces = service_.forces();
+            return !forces.empty() && forces.back()[2] > 0.5;
+        });
+    }
+
+  private:
+    static Vec3 position(std::int64_t asked) {
+        const double depth = std::min(0.06, 2e-5 * static_cast<double>(asked));
+        return {-0.007, -0.068, 0.13 + 0.08 - depth};
+    }
+
+    MockService& service_;
+    std::atomic<std::int64_t> asked_{0};
+};
+
+class EndOfSession : public testing::TestWithParam<int> {};
+
+TEST_P(EndOfSession, LeavesNoForceOnTheDevice) {
+    const ScratchFolder folder;
+    MockService service;
+    PressedSphere sphere(service);
+    Running running(sphere.words() + Words{"--record", "r.csv"}, folder.path());
+    ASSERT_TRUE(sphere.is_felt());
+    const Outcome end = running.finish(GetParam());
+    const bool asked = GetParam() != SIGSEGV && GetParam() != SIGABRT;
+    EXPECT_EQ(end.status, asked ? 130 : 1000 + GetParam()) << end.err;
+    ASSERT_TRUE(comes_true([&] { return service.forces().back().isZero(0); }));
+    EXPECT_EQ(palpate(folder, "replay r.csv --validate").status, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Signals, EndOfSession,
+                         testing::Values(SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGSEGV, SIGABRT));
+
+TEST(Touch, CannotBeSuspendedWithTheForceOn) {
+    const ScratchFolder folder;
+    MockService service;
+    PressedSphere sphere(service);
+    Running running(sphere.words(), folder.path());
+    ASSERT_TRUE(sphere.is_felt());
+    running.signal(SIGTSTP);
+    const auto messages = service.messages();
+    EXPECT_TRUE(comes_true([&] { return service.messages() > messages + 200; }));
+    EXPECT_EQ(running.finish(SIGINT).status, 130);
+}
+
+TEST(Touch, AServiceThatGoesAwayWhilePressingIsWaitedForAndFeltAgain) {
+    const ScratchFolder folder;
+    MockService service;
+    PressedSphere sphere(service);
+    Running running(sphere.words() + Words{"--record", "r.csv"}, folder.path());
+    ASSERT_TRUE(sphere.is_felt());
+    const int before = service.connections();
+    service.drop();
+    EXPECT_TRUE(comes_true([&] { return service.connections() > before; }));
+    EXPECT_TRUE(comes_true([&] { return service.forces().back().isZero(0); }));
+    const Outcome end = running.finish(SIGINT);
+    EXPECT_EQ(end.status, 130);
+    EXPECT_TRUE(contains(end.err, "device haply: lost")) << end.err;
+    EXPECT_EQ(palpate(folder, "replay r.csv --validate").status, 0);
+}
+
+}  // namespace
+}  // namespace palpate::app::test

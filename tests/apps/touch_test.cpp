@@ -1,0 +1,307 @@
+// Live sessions from the command line: touch, record, devices, replay --validate. The simulated
+// hand is the device; time is real, so no test asserts how long a tick took.
+#include <nlohmann/json.hpp>
+
+#include "apps/program.hpp"
+#include "io/recording.hpp"
+
+namespace palpate::app::test {
+namespace {
+
+using support::bytes_of;
+using support::put_bytes;
+
+const std::string sphere = "synthetic:sphere:32x32x32";
+
+struct Ticks {
+    std::int64_t count = 0, felt = 0, commands = 0;
+    double largest_force = 0;
+    double last_way = 0, last_device_way = 0;  ///< [mm] of HIP and hand, the last where they moved
+    SessionTick last;
+};
+
+Ticks ticks_of(const std::filesystem::path& path) {
+    io::RecordingReader reader(path);
+    Ticks ticks;
+    while (const auto event = reader.next()) {
+        if (const auto* tick = std::get_if<SessionTick>(&*event)) {
+            ++ticks.count;
+            ticks.felt += !tick->tick.force.isZero(0);
+            ticks.largest_force = std::max(ticks.largest_force, tick->tick.force.norm());
+            const double way = (tick->device.position - ticks.last.device.position).norm();
+            if (ticks.count > 1 && way > 0.01 && !tick->frozen && !ticks.last.frozen) {
+                ticks.last_device_way = way;
+                ticks.last_way = (tick->tick.proxy.hip - ticks.last.tick.proxy.hip).norm();
+            }
+            ticks.last = *tick;
+        } else {
+            ++ticks.commands;
+        }
+    }
+    EXPECT_TRUE(reader.complete());
+    return ticks;
+}
+
+TEST(Touch, SimulatedHandFeelsAndItsRecordingIsTheSameBitForBit) {
+    const ScratchFolder folder;
+    const Outcome done = palpate(
+        folder, "touch " + sphere + " --device simulated:hand=press --seconds 1.5 --record r.csv");
+    EXPECT_EQ(done.status, 0) << done.err;
+    EXPECT_TRUE(contains(done.out, "compute time (ours)")) << done.out;
+    EXPECT_TRUE(contains(done.out, "lateness (the machine)")) << done.out;
+    EXPECT_TRUE(contains(done.err, "real-time priority")) << done.err;
+    const Ticks ticks = ticks_of(folder / "r.csv");
+    EXPECT_GT(ticks.count, 200);
+    EXPECT_GT(ticks.felt, 50);
+    EXPECT_LE(ticks.largest_force, 3.3 + 1e-12);
+    const Outcome valid = palpate(folder, "replay r.csv --validate");
+    EXPECT_EQ(valid.status, 0) << valid.err;
+    EXPECT_TRUE(contains(valid.out, "bit for bit")) << valid.out;
+    EXPECT_TRUE(contains(valid.out, std::to_string(ticks.count) + " ticks")) << valid.out;
+}
+
+TEST(Touch, StartsWhenTheForceIsSmallAndBoundsItsWorkByTheRate) {
+    const ScratchFolder folder;
+    for (const auto& [rate, budget] : {std::pair{1000, 4096}, std::pair{8000, 512}}) {
+        const std::string file = std::to_string(rate) + ".csv";
+        const Outcome done = palpate(folder, "touch " + sphere + " --seconds 0.05 --rate " +
+                                                 std::to_string(rate) + " --record " + file);
+        EXPECT_EQ(done.status, 0) << done.err;
+        const io::RecordingReader reader(folder / file);
+        EXPECT_EQ(reader.head().settings.force.start_below, 0.3);
+        EXPECT_EQ(reader.head().settings.proxy.step_budget, budget);
+        EXPECT_EQ(reader.head().rate, rate);
+    }
+}
+
+TEST(Touch, EndsWhenTheHandHasFinished) {
+    const ScratchFolder folder;
+    const Outcome done = palpate(
+        folder, "touch " + sphere + " --device simulated:hand=tap,seconds=0.5 --json --quiet");
+    EXPECT_EQ(done.status, 0) << done.err;
+    EXPECT_EQ(done.err, "");
+    const auto report = nlohmann::json::parse(done.out);
+    EXPECT_GT(report["ticks"], 100);
+    EXPECT_LT(report["seconds"], 20);
+    EXPECT_GT(report["compute_ns"]["p50"], 0);
+    EXPECT_TRUE(report["worst"]["cause"].is_string());
+}
+
+TEST(Touch, CommandsAreCarriedOutAndRecorded) {
+    const ScratchFolder folder;
+    put_bytes(folder / "commands.txt",
+              "# what happens\n0.1 isovalue 60%\n0.2 penetrability threshold 0.4\n"
+              "0.3 friction 0.4,0.2\n0.4 stiffness 0.25\n0.5 scale 1.5  # about the SCP\n"
+              "0.6 freeze on\n0.7 freeze off\n0.8 forces off\n1.0 quit\n9 forces on\n");
+    const Outcome done =
+        palpate(folder, "touch " + sphere + " --commands commands.txt --record r.csv");
+    EXPECT_EQ(done.status, 0) << done.err;
+    const Ticks ticks = ticks_of(folder / "r.csv");
+    EXPECT_EQ(ticks.commands, 8);
+    // What the transform was follows from the commands; that the scale changed, from the ways of
+    // hand and HIP.
+    EXPECT_NEAR(ticks.last_way / ticks.last_device_way, 1.5, 1e-6);
+    EXPECT_NE(ticks.last.tick.force_flags & force_off, 0);
+    EXPECT_EQ(palpate(folder, "replay r.csv --validate").status, 0);
+}
+
+TEST(Touch, CommandsThatAreNotUnderstoodAreRefusedBeforeAnythingRuns) {
+    const ScratchFolder folder;
+    const auto refused = [&](const std::string& text, const std::string& reason) {
+        put_bytes(folder / "c.txt", text);
+        expect_failure(palpate(folder, "touch " + sphere + " --commands c.txt --record r.csv"), 3,
+                       reason);
+        EXPECT_FALSE(std::filesystem::exists(folder / "r.csv"));
+    };
+    refused("0 dance\n", "c.txt, line 1: there is no command 'dance'");
+    refused("\n1 freeze\n", "c.txt, line 2: freeze on, or freeze off");
+    refused("soon freeze on\n", "is no time");
+    refused("2 freeze on\n1 freeze off\n", "the time goes back");
+    refused("0 stiffness 1000\n", "to be rendered stably");
+    refused("0 scale 0\n", "scale must be finite and above 0");
+    refused("0 penetrability ranges 1 5:3\n", "low <= high");
+    refused("0 isovalue much\n", "'much'");
+}
+
+TEST(Touch, InterruptedItLetsGoAndCompletesTheRecording) {
+    for (const int signal : {SIGINT, SIGTERM}) {
+        const ScratchFolder folder;
+        Running running(words_of("record " + sphere + " -o r.csv"), folder.path());
+        const auto begun = [&] {
+            return std::filesystem::exists(folder / "r.csv") &&
+                   bytes_of(folder / "r.csv").size() > 20'000;
+        };
+        EXPECT_TRUE(comes_true(begun));
+        const Outcome stopped = running.finish(signal);
+        EXPECT_EQ(stopped.status, 130) << stopped.err;
+        EXPECT_TRUE(contains(stopped.err, "interrupted"));
+        EXPECT_GT(ticks_of(folder / "r.csv").count, 10);
+        EXPECT_FALSE(running.left_a_process());
+    }
+}
+
+TEST(Touch, KilledItLeavesARecordingThatReplaysUpToTheEnd) {
+    const ScratchFolder folder;
+    Running running(words_of("record " + sphere + " -o r.csv"), folder.path());
+    EXPECT_TRUE(comes_true([&] {
+        return std::filesystem::exists(folder / "r.csv") &&
+               bytes_of(folder / "r.csv").size() > 60'000;
+    }));
+    EXPECT_EQ(running.finish(SIGKILL).status, 1000 + SIGKILL);
+    const Outcome valid = palpate(folder, "replay r.csv --validate");
+    EXPECT_EQ(valid.status, 0) << valid.err;
+    EXPECT_TRUE(contains(valid.out, "cut off before its end")) << valid.out;
+}
+
+TEST(Touch, ARecordingPlaysAgainAsADevice) {
+    const ScratchFolder folder;
+    ASSERT_EQ(palpate(folder, "touch " + sphere +
+                                  " --device simulated:hand=press --seconds 1 --record r.csv")
+                  .status,
+              0);
+    const Outcome again =
+        palpate(folder, "touch " + sphere + " --device recorded:r.csv --record again.csv");
+    EXPECT_EQ(again.status, 0) << again.err;
+    EXPECT_GT(ticks_of(folder / "again.csv").felt, 20);
+    EXPECT_EQ(palpate(folder, "replay again.csv --validate").status, 0);
+    EXPECT_EQ(palpate(folder, "replay " + sphere + " --trajectory r.csv -o t.csv").status, 0);
+}
+
+TEST(Touch, WhatCannotBeMeantIsRefused) {
+    const ScratchFolder folder;
+    const auto wrong = [&](const std::string& options, const std::string& reason) {
+        expect_failure(palpate(folder, "touch " + sphere + " " + options), 2, reason);
+    };
+    wrong("--device nothing", "there are: simulated");
+    wrong("--device simulated:profile=magic", "magic");
+    wrong("--device simulated:colour=red", "no option 'colour'");
+    wrong("--rate 100", "250 to 8000 Hz");
+    wrong("--facing up", "up");
+    wrong("--clutch x", "a button's number");
+    wrong("--dead-man 1", "the device has 0 buttons");
+    wrong("--seconds -1", "-1");
+    wrong("--stiffness 90", "to be rendered stably");
+    expect_failure(palpate(folder, "touch none.nrrd"), 3, "none.nrrd");
+    expect_failure(palpate(folder, "touch " + sphere + " --commands none.txt"), 3, "none.txt");
+    EXPECT_TRUE(folder.names().empty());
+}
+
+TEST(Touch, WithoutTheDeviceThereIsOneLineThatSaysWhatToDo) {
+    const ScratchFolder folder;
+    expect_failure(palpate(folder, "touch " + sphere + " --device haply:port=1"), 4, ":1 ");
+    expect_failure(palpate(folder, "touch " + sphere + " --device openhaptics:library=none.so"), 4,
+                   "none.so");
+    expect_failure(palpate(folder, "touch " + sphere + " --device spacenav:socket=none.sock"), 4,
+                   "none.sock");
+    expect_failure(palpate(folder, "touch " + sphere + " --device recorded:none.csv"), 3,
+                   "none.csv");
+}
+
+TEST(Touch, ARecordingNeverReplacesAFile) {
+    const ScratchFolder folder;
+    put_bytes(folder / "r.csv", "precious");
+    expect_failure(palpate(folder, "touch " + sphere + " --record r.csv"), 5, "r.csv: exists");
+    EXPECT_EQ(bytes_of(folder / "r.csv"), "precious");
+}
+
+TEST(Devices, ListsEachWithWhatWasFoundOrWhatIsMissing) {
+    const ScratchFolder folder;
+    const Outcome list = palpate(folder, "devices --json");
+    EXPECT_EQ(list.status, 0) << list.err;
+    std::vector<std::string> names;
+    for (const auto& device : nlohmann::json::parse(list.out)) {
+        names.push_back(device["name"]);
+        EXPECT_FALSE(device[device["found"] ? "what" : "missing"].get<std::string>().empty());
+        EXPECT_FALSE(device["options"].get<std::string>().empty());
+    }
+    EXPECT_EQ(names, (std::vector<std::string>{"simulated", "recorded", "haply", "openhaptics",
+                                               "forcedimension", "spacenav"}));
+    const Outcome text = palpate(folder, "devices");
+    for (const std::string& name : names) EXPECT_TRUE(contains(text.out, name));
+}
+
+/// A short recording, to be changed.
+struct Recorded {
+    ScratchFolder folder;
+    std::string text;
+
+    Recorded() {
+        EXPECT_EQ(palpate(folder, "touch " + sphere +
+                                      " --device simulated:hand=press --seconds 0.6 --record r.csv")
+                      .status,
+                  0);
+        text = bytes_of(folder / "r.csv");
+    }
+    Outcome validate_with(const std::string& from, const std::string& to, std::size_t after = 0) {
+        std::string changed = text;
+        const auto at = changed.find(from, after);
+        EXPECT_NE(at, std::string::npos) << from;
+        changed.replace(at, from.size(), to);
+        put_bytes(folder / "changed.csv", changed);
+        return palpate(folder, "replay changed.csv --validate");
+    }
+};
+
+TEST(Validate, NamesTheTickThatDiffers) {
+    Recorded recorded;
+    const auto line = recorded.text.find("\n0.2");  // some tick after 0.2 s
+    const auto stiffer = recorded.validate_with("\"stiffness\": 0.5", "\"stiffness\": 0.6");
+    EXPECT_EQ(stiffer.status, 3);
+    EXPECT_TRUE(is_one_line(stiffer.err)) << stiffer.err;
+    EXPECT_TRUE(contains(stiffer.err, "differs: force")) << stiffer.err;
+    const auto moved = recorded.validate_with(",free,", ",constrained,", line);
+    EXPECT_EQ(moved.status, 3);
+    EXPECT_TRUE(contains(moved.err, "differs: mode")) << moved.err;
+    EXPECT_TRUE(contains(moved.err, "tick ")) << moved.err;
+}
+
+TEST(Validate, ADeviceThatToldNonsenseIsTheSameAgain) {
+    const ScratchFolder folder;
+    put_bytes(folder / "device.csv",
+              "t,device_x,device_y,device_z\n0,70,0,0\n0.2,20,0,0\n0.3,nan,0,inf\n0.4,20,0,0\n"
+              "0.6,20,1,0\n");
+    EXPECT_EQ(
+        palpate(folder, "touch " + sphere + " --device recorded:device.csv --record r.csv").status,
+        0);
+    EXPECT_TRUE(contains(bytes_of(folder / "r.csv"), "nan"));
+    const Outcome valid = palpate(folder, "replay r.csv --validate");
+    EXPECT_EQ(valid.status, 0) << valid.err;
+}
+
+TEST(Validate, TellsOfEventsThatTheRecordingLost) {
+    Recorded recorded;
+    recorded.text.replace(recorded.text.find("\"lost\":0"), 8, "\"lost\":7");
+    const auto differs = recorded.validate_with("\"stiffness\": 0.5", "\"stiffness\": 0.6");
+    EXPECT_EQ(differs.status, 3);
+    EXPECT_TRUE(contains(differs.err, "lost 7 events")) << differs.err;
+    EXPECT_TRUE(is_one_line(differs.err)) << differs.err;
+}
+
+TEST(Validate, RefusesAnotherVolumeAndTakesTheRightOneFromElsewhere) {
+    Recorded recorded;
+    const Words words{"replay", "r.csv", "--validate", "--volume"};
+    expect_failure(palpate(recorded.folder, words + Words{"synthetic:torus:32x32x32"}), 3,
+                   "is not the volume of the recording");
+    EXPECT_EQ(palpate(recorded.folder, words + Words{sphere}).status, 0);
+    expect_failure(recorded.validate_with(sphere, "gone.nrrd"), 3, "gone.nrrd");
+    expect_failure(recorded.validate_with("\"exact\"", "\"magic\""), 3, "magic");
+    expect_failure(recorded.validate_with("\"limit\": 3.3", "\"limit\": -1"), 3,
+                   "cannot be rendered");
+}
+
+TEST(Validate, TakesNoOutputsAndNothingButRecordings) {
+    const ScratchFolder folder;
+    put_trajectory(folder);
+    expect_failure(palpate(folder, "replay t.csv --validate"), 3, "is no recording");
+    for (const std::string options : {"-o x.csv", "--json", "--stiffness 3", "--path p.csv"}) {
+        expect_failure(palpate(folder, "replay t.csv --validate " + options), 2,
+                       "does nothing with --validate");
+    }
+    expect_failure(palpate(folder, "replay " + sphere + " --trajectory t.csv -o x --volume v"), 2,
+                   "--volume is for --validate");
+    expect_failure(palpate(folder, "replay " + sphere + " -o x.csv"), 2, "--trajectory");
+    expect_failure(palpate(folder, "replay " + sphere + " --trajectory t.csv"), 2, "--output");
+}
+
+}  // namespace
+}  // namespace palpate::app::test
