@@ -5,9 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
-#include <stdexcept>
 
-#include "baselines/gradient.hpp"
 #include "scenes/volumes.hpp"
 
 namespace palpate::benchmarks {
@@ -109,14 +107,6 @@ Touch ramp_touch(int size) {
         }
     }
     return {Field(Volume(geometry, std::move(samples))), 0, {}};
-}
-
-ProxyMethod method_named(std::string_view name) {
-    if (name == "exact") return update_exact;
-    if (name == "paper") return update_paper;
-    if (name == "gradient") return baselines::update_gradient;
-    if (name == "gradient-improved") return baselines::update_gradient_improved;
-    throw std::invalid_argument("no method '" + std::string(name) + "'");
 }
 
 }  // namespace palpate::benchmarks

@@ -62,8 +62,4 @@ class Stroke {
     int step_ = 1;
 };
 
-/// A method by the name that the tables give it: exact, paper, gradient, gradient-improved.
-/// Throws std::invalid_argument for another name.
-ProxyMethod method_named(std::string_view name);
-
 }  // namespace palpate::benchmarks

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <string>
 
+#include "baselines/methods.hpp"
 #include "benchmarks/hand.hpp"
 
 using namespace palpate;
@@ -56,7 +57,7 @@ void mix(std::uint64_t& hash, const Vec3& point) {
 void run(const Case& chosen, long updates) {
     const Touch touch = chosen.touch();
     const bool idle = std::strcmp(chosen.method, "nothing") == 0;
-    const ProxyMethod method = idle ? no_update : method_named(chosen.method);
+    const ProxyMethod method = idle ? no_update : baselines::method_named(chosen.method);
     Proxy proxy;
     proxy.isovalue = touch.isovalue;
     place(proxy, touch.field, touch.path.front(), touch.isovalue);

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "baselines/methods.hpp"
 #include "benchmarks/hand.hpp"
 #include "benchmarks/timing.hpp"
 
@@ -57,7 +58,7 @@ void add(const std::string& name, const char* method, const MakeTouch& make,
     benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
         const Touch& touch = kept(name, make);
         const double other = touch.isovalue + isovalue_step * touch.field.range();
-        run_updates(state, touch, method_named(method), other);
+        run_updates(state, touch, baselines::method_named(method), other);
     })->Unit(benchmark::kMicrosecond);
 }
 

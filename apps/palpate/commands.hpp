@@ -3,6 +3,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstddef>
 
 namespace palpate::app {
 
@@ -13,7 +14,12 @@ void add_devices(CLI::App& app);
 void add_replay(CLI::App& app);
 void add_extract(CLI::App& app);
 void add_demo(CLI::App& app);
+void add_evaluate(CLI::App& app);
 
+/// Thrown by evaluate when all results are written: exit status 1.
+struct ClaimsDoNotHold {
+    std::size_t count;
+};
 /// Thrown where Ctrl-C was seen: open files are dropped by unwinding (exit status 130).
 struct Interrupted {};
 /// True once SIGINT or SIGTERM has come.

@@ -1,7 +1,6 @@
 // palpate demo: the main job with nothing given. A simulated hand explores a volume; a picture, a
 // figure, the trace and a report stay in a folder.
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -11,10 +10,12 @@
 #include "apps/palpate/commands.hpp"
 #include "apps/palpate/offline.hpp"
 #include "apps/palpate/picture.hpp"
-#include "apps/palpate/plot.hpp"
 #include "apps/palpate/progress.hpp"
 #include "apps/palpate/render_options.hpp"
+#include "apps/palpate/result_folder.hpp"
 #include "apps/palpate/volume_options.hpp"
+#include "evaluation/html.hpp"
+#include "io/plot.hpp"
 #include "scenes/motions.hpp"
 
 namespace palpate::app {
@@ -129,7 +130,7 @@ bool plot_trace(const fs::path& folder, const fs::path& figure, std::size_t rows
     for (std::size_t at = 0; (at = trace.find('\'', at)) != std::string::npos; at += 2) {
         trace.insert(at, 1, '\'');
     }
-    return plot(
+    const std::string problem = io::plot(
         fmt::format(
             "set datafile separator ','\nset datafile commentschars '#'\nf = '{}'\nn = {}\n"
             "set multiplot layout 3,1\nset lmargin 12\nset grid\nset key off\n"
@@ -147,17 +148,7 @@ bool plot_trace(const fs::path& folder, const fs::path& figure, std::size_t rows
             "'#000000' title 'isovalue'\nunset multiplot\n",
             trace, 1 + rows / most_points),
         figure);
-}
-
-std::string html_text(const std::string& text) {
-    std::string html;
-    for (const char c : text) {
-        if (c == '&') html += "&amp;";
-        if (c == '<') html += "&lt;";
-        if (c == '>') html += "&gt;";
-        if (c != '&' && c != '<' && c != '>') html += c;
-    }
-    return html;
+    return problem.empty();
 }
 
 void write_report(const Demo& demo, const DemoOptions& options, bool plotted,
@@ -170,8 +161,8 @@ void write_report(const Demo& demo, const DemoOptions& options, bool plotted,
         "<p>A simulated hand ({}, {:g} s, {:g} mm/s, {:g} mm deep, {:g} Hz) felt the surface at "
         "isovalue {:g} of <b>{}</b> ({} x {} x {} samples of {}).</p>\n",
         options.motion, options.hand.duration_s, options.hand.speed_mm_s, options.hand.depth_mm,
-        options.hand.rate_hz, demo.isovalue, html_text(demo.loaded.name), g.size[0], g.size[1],
-        g.size[2], name_of(demo.loaded.volume.type()));
+        options.hand.rate_hz, demo.isovalue, evaluation::html_text(demo.loaded.name), g.size[0],
+        g.size[1], g.size[2], name_of(demo.loaded.volume.type()));
     html += fmt::format("<pre>{}</pre>\n", summary_text(demo.summary));
     html +=
         "<p><img src=\"surface.png\" alt=\"The isosurface with the way of the hand\"><br>"
@@ -187,52 +178,6 @@ void write_report(const Demo& demo, const DemoOptions& options, bool plotted,
     file.write(html);
     file.commit();
 }
-
-/// The results are made in a hidden folder inside the one asked for and appear there together, at
-/// the end: an interrupted demo leaves nothing that could be taken for results.
-class ResultFolder {
-  public:
-    explicit ResultFolder(const fs::path& folder) : folder_(folder) {
-        std::error_code error;
-        is_new_ = fs::create_directories(folder_, error);
-        if (folder_.empty() || error || !fs::is_directory(folder_)) {
-            throw io::OutputError("'" + folder.string() +
-                                  "': this folder could not be made: choose another with --output");
-        }
-        part_ = folder_ / fmt::format(".palpate-{}.part", ::getpid());
-        if (!fs::create_directory(part_, error) && error) {
-            if (is_new_) fs::remove(folder_, error);
-            throw io::OutputError(folder.string() + ": nothing can be written in this folder (" +
-                                  error.message() + "): choose another with --output");
-        }
-    }
-    ~ResultFolder() {
-        std::error_code ignored;
-        fs::remove_all(part_, ignored);
-        if (is_new_ && !complete_) fs::remove(folder_, ignored);
-    }
-    ResultFolder(const ResultFolder&) = delete;
-    ResultFolder& operator=(const ResultFolder&) = delete;
-
-    const fs::path& part() const { return part_; }
-    void complete() {
-        for (const auto& entry : fs::directory_iterator(part_)) {
-            std::error_code error;
-            const fs::path target = folder_ / entry.path().filename();
-            fs::rename(entry.path(), target, error);
-            if (error) {
-                throw io::OutputError(target.string() + ": could not be put in place: " +
-                                      error.message() + ": remove it, or choose another --output");
-            }
-        }
-        complete_ = true;
-    }
-
-  private:
-    fs::path folder_, part_;
-    bool is_new_ = false;
-    bool complete_ = false;
-};
 
 void run_demo(const DemoOptions& options) {
     LoadedVolume loaded = load(options.volume);

@@ -17,6 +17,7 @@ namespace {
 
 enum ExitStatus {
     done = 0,
+    claims_broken = 1,
     wrong_use = 2,
     bad_input = 3,
     no_device = 4,
@@ -89,6 +90,7 @@ int run(int argc, char** argv) {
     palpate::app::add_replay(app);
     palpate::app::add_extract(app);
     palpate::app::add_demo(app);
+    palpate::app::add_evaluate(app);
     palpate::app::add_touch(app);
     palpate::app::add_record(app);
     palpate::app::add_devices(app);
@@ -139,6 +141,10 @@ int main(int argc, char** argv) {
         return fail(e.what(), bad_output);
     } catch (const std::invalid_argument& e) {
         return fail(e.what(), wrong_use);
+    } catch (const palpate::app::ClaimsDoNotHold& broken) {
+        const std::string text =
+            std::to_string(broken.count) + " of the claims do not hold (see above)";
+        return fail(text.c_str(), claims_broken);
     } catch (const palpate::app::Interrupted&) {
         return fail("interrupted", stopped);
     } catch (const std::bad_alloc&) {

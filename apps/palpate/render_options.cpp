@@ -5,23 +5,13 @@
 
 #include <array>
 #include <limits>
-#include <map>
 #include <stdexcept>
 
-#include "baselines/gradient.hpp"
+#include "baselines/methods.hpp"
 #include "io/number.hpp"
 
 namespace palpate::app {
 namespace {
-
-const std::map<std::string, ProxyMethod>& methods() {
-    static const std::map<std::string, ProxyMethod> all{
-        {"exact", &update_exact},
-        {"paper", &update_paper},
-        {"gradient", &baselines::update_gradient},
-        {"gradient-improved", &baselines::update_gradient_improved}};
-    return all;
-}
 
 /// "0.5,0.3" as two numbers; "0.5" as twice the same where one is enough.
 std::array<double, 2> two_numbers(const std::string& option, const std::string& text,
@@ -80,7 +70,7 @@ Penetrability penetrability_of(const RenderOptions& options, const Field& field,
 
 void RenderOptions::add_to(CLI::App& command) {
     std::vector<std::string> names;
-    for (const auto& [name, function] : methods()) names.push_back(name);
+    for (const auto& entry : baselines::methods()) names.emplace_back(entry.name);
     command.add_option("--method", method, "Proxy method")
         ->check(CLI::IsMember(names))
         ->capture_default_str();
@@ -118,21 +108,13 @@ void RenderOptions::add_to(CLI::App& command) {
         ->capture_default_str();
 }
 
-ProxyMethod method_named(const std::string& name) {
-    const auto found = methods().find(name);
-    if (found == methods().end()) {
-        throw std::invalid_argument("there is no proxy method '" + name + "'");
-    }
-    return found->second;
-}
-
 RendererSettings render_settings(const RenderOptions& options, const Field& field, double isovalue,
                                  const DeviceLimits& limits) {
     if (!options.friction.empty() && options.method != "exact") {
         throw std::invalid_argument("--friction is for --method exact; the others have none");
     }
     RendererSettings settings;
-    settings.method = method_named(options.method);
+    settings.method = baselines::method_named(options.method);
     settings.proxy.step_budget = options.step_budget;
     if (!options.friction.empty()) {
         const auto [still, moving] = two_numbers("--friction", options.friction, true);

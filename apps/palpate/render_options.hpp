@@ -27,9 +27,6 @@ struct RenderOptions {
     void add_to(CLI::App& command);
 };
 
-/// Throws std::invalid_argument for a name that there is not.
-ProxyMethod method_named(const std::string& name);
-
 /// The settings asked for; `isovalue` is the least level felt where no --minimum is given.
 /// Throws std::invalid_argument, through check(), for what cannot be rendered.
 /// `limits` are the device's; the rate is that of the options.

@@ -11,6 +11,7 @@
 #include "apps/palpate/progress.hpp"
 #include "apps/palpate/render_options.hpp"
 #include "apps/palpate/volume_options.hpp"
+#include "baselines/methods.hpp"
 #include "io/number.hpp"
 #include "io/recording.hpp"
 
@@ -98,7 +99,7 @@ Session session_of(const io::RecordingHead& head, const LoadedVolume& loaded,
                    const std::string& name) {
     try {
         RendererSettings settings = head.settings;
-        settings.method = method_named(head.method);
+        settings.method = baselines::method_named(head.method);
         check(head.session);
         return {make_renderer(Field(loaded.volume, head.solid, head.background), head.isovalue,
                               settings),

@@ -20,8 +20,8 @@ MAY_SEE = {
     "scenes": ("include", "scenes"),
     "devices": ("include", "io", "scenes", "devices"),
     "io": ("include", "io", "scenes"),
-    "apps": ("include", "io", "baselines", "scenes", "devices", "apps"),
-    "evaluation": ("include", "io", "baselines", "scenes", "evaluation"),
+    "apps": ("include", "io", "baselines", "scenes", "devices", "evaluation", "apps"),
+    "evaluation": ("include", "io", "baselines", "scenes", "devices", "evaluation"),
     "benchmarks": ("include", "io", "baselines", "scenes", "devices", "benchmarks", "tests"),
     "examples": ("include", "io", "baselines", "scenes", "examples"),
 }

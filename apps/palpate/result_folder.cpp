@@ -1,0 +1,47 @@
+// Made aside, renamed when complete.
+#include "apps/palpate/result_folder.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "io/error.hpp"
+
+namespace palpate::app {
+
+namespace fs = std::filesystem;
+
+ResultFolder::ResultFolder(const fs::path& folder) : folder_(folder) {
+    std::error_code error;
+    is_new_ = fs::create_directories(folder_, error);
+    if (folder_.empty() || error || !fs::is_directory(folder_)) {
+        throw io::OutputError("'" + folder.string() +
+                              "': this folder could not be made: choose another with --output");
+    }
+    part_ = folder_ / fmt::format(".palpate-{}.part", ::getpid());
+    if (!fs::create_directory(part_, error) && error) {
+        if (is_new_) fs::remove(folder_, error);
+        throw io::OutputError(folder.string() + ": nothing can be written in this folder (" +
+                              error.message() + "): choose another with --output");
+    }
+}
+
+ResultFolder::~ResultFolder() {
+    std::error_code ignored;
+    fs::remove_all(part_, ignored);
+    if (is_new_ && !complete_) fs::remove(folder_, ignored);
+}
+
+void ResultFolder::complete() {
+    for (const auto& entry : fs::directory_iterator(part_)) {
+        std::error_code error;
+        const fs::path target = folder_ / entry.path().filename();
+        fs::rename(entry.path(), target, error);
+        if (error) {
+            throw io::OutputError(target.string() + ": could not be put in place: " +
+                                  error.message() + ": remove it, or choose another --output");
+        }
+    }
+    complete_ = true;
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,74 @@
+// What an experiment is: a question put to the methods, and an answer as a table, figures, a
+// paragraph and claims that were checked. One experiment is one file; all are listed here.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "evaluation/figure.hpp"
+#include "evaluation/subject.hpp"
+#include "evaluation/table.hpp"
+
+namespace palpate::evaluation {
+
+/// What the user chose.
+struct Options {
+    /// Seconds instead of minutes: fewer and smaller cases, but every claim is checked.
+    bool quick = false;
+    std::uint64_t seed = 1;
+    std::string method = "exact";   ///< for an experiment that shows one method
+    std::vector<Subject> subjects;  ///< instead of the experiment's own volumes
+    std::filesystem::path data;     ///< folder with the real volumes; empty: there is none
+    /// The part of the work that is done, 0 to 1. May throw to stop.
+    std::function<void(double)> progress = [](double) {};
+    /// One line for the user about something that was left out.
+    std::function<void(const std::string&)> note = [](const std::string&) {};
+};
+
+/// A statement that the numbers either bear out or not, exactly: it never depends on how fast the
+/// machine is.
+struct Claim {
+    std::string statement;
+    bool held = false;
+    std::string measured;  ///< what it rests on, as in "largest 3.1e-15 over 5,000,000 updates"
+};
+
+/// A picture that is there already (a rendering), beside the plotted figures.
+struct Picture {
+    std::string suffix;  ///< file name: EXPERIMENT-SUFFIX.png
+    std::string caption;
+    std::string png;  ///< the file's bytes
+};
+
+struct Result {
+    Table table;
+    std::vector<Figure> figures;  ///< the first is the experiment's figure
+    std::vector<Picture> pictures;
+    std::string paragraph;  ///< what was done and what came out, with the figures' numbers
+    std::vector<Claim> claims;
+};
+
+struct Experiment {
+    const char* name;
+    const char* title;
+    Result (*run)(const Options& options);
+    bool takes_volumes;  ///< whether Options::subjects replaces its own
+};
+
+/// In the order of docs/evaluation.md.
+std::span<const Experiment> experiments();
+
+// Each in the file of its name. They throw std::invalid_argument for options that cannot be meant.
+Result drift(const Options& options);
+Result fall_through(const Options& options);
+Result performance(const Options& options);
+Result scaling(const Options& options);
+Result fidelity(const Options& options);
+Result stability(const Options& options);
+Result walk_through(const Options& options);
+Result penetration(const Options& options);
+
+}  // namespace palpate::evaluation

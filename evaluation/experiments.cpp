@@ -1,0 +1,13 @@
+// The list of experiments.
+#include "evaluation/experiment.hpp"
+
+namespace palpate::evaluation {
+
+std::span<const Experiment> experiments() {
+    static constexpr Experiment all[] = {
+        {"drift", "Does the proxy stay on the isosurface?", &drift, true},
+    };
+    return all;
+}
+
+}  // namespace palpate::evaluation

@@ -1,0 +1,33 @@
+// Foreign text in HTML. Header only; also for the demo's report.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace palpate::evaluation {
+
+/// Nothing in it is markup any more.
+inline std::string html_text(std::string_view text) {
+    std::string html;
+    for (const char c : text) {
+        switch (c) {
+            case '&':
+                html += "&amp;";
+                break;
+            case '<':
+                html += "&lt;";
+                break;
+            case '>':
+                html += "&gt;";
+                break;
+            case '"':
+                html += "&quot;";
+                break;
+            default:
+                html += c;
+        }
+    }
+    return html;
+}
+
+}  // namespace palpate::evaluation

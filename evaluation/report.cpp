@@ -1,0 +1,144 @@
+// Markdown for a repository, HTML for a reader.
+#include "evaluation/report.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstdint>
+#include <fstream>
+#include <iterator>
+
+#include "evaluation/html.hpp"
+#include "io/output.hpp"
+
+namespace palpate::evaluation {
+namespace {
+
+namespace fs = std::filesystem;
+
+void write_text(const std::string& text, const fs::path& path) {
+    io::PendingFile file(path);
+    file.write(text);
+    file.commit();
+}
+
+std::string file_name(const Report& report, const std::string& suffix) {
+    return report.experiment.name + (suffix.empty() ? "" : "-" + suffix);
+}
+
+std::string markdown_from(const Report& report) {
+    std::string text = fmt::format("# {}: {}\n\n{}\n\n", report.experiment.name,
+                                   report.experiment.title, report.result.paragraph);
+    for (const Figure& figure : report.result.figures) {
+        text += fmt::format("![{0}]({1}.svg)\n\n{0}\n\n", figure.caption,
+                            file_name(report, figure.suffix));
+    }
+    for (const Picture& picture : report.result.pictures) {
+        text += fmt::format("![{0}]({1}.png)\n\n{0}\n\n", picture.caption,
+                            file_name(report, picture.suffix));
+    }
+    if (!report.result.claims.empty()) text += "| claim | holds | measured |\n|---|---|---|\n";
+    for (const Claim& claim : report.result.claims) {
+        text += fmt::format("| {} | {} | {} |\n", claim.statement, claim.held ? "yes" : "**no**",
+                            claim.measured);
+    }
+    return text + fmt::format("\nAll numbers: [{0}.csv]({0}.csv). {1}.\n", report.experiment.name,
+                              report.circumstances);
+}
+
+std::string base64(const std::string& bytes) {
+    static constexpr char digits[] =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        std::uint32_t three = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            three =
+                three << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U);
+        }
+        for (std::size_t k = 0; k < 4; ++k) {
+            text += i + k > bytes.size() ? '=' : digits[three >> (18 - 6 * k) & 63U];
+        }
+    }
+    return text;
+}
+
+/// The file as an address that is itself the picture.
+std::string embedded(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+    if (!in || bytes.empty()) throw io::OutputError(file.string() + ": is gone again");
+    return fmt::format("data:image/{};base64,{}", file.extension() == ".svg" ? "svg+xml" : "png",
+                       base64(bytes));
+}
+
+std::string figure_html(const fs::path& file, const std::string& caption) {
+    return fmt::format("<figure><img src=\"{}\" alt=\"{}\"><figcaption>{}</figcaption></figure>\n",
+                       embedded(file), html_text(caption), html_text(caption));
+}
+
+std::string section(const Report& report, const fs::path& folder) {
+    std::string html =
+        fmt::format("<h2 id=\"{0}\">{0}: {1}</h2>\n<p>{2}</p>\n", report.experiment.name,
+                    html_text(report.experiment.title), html_text(report.result.paragraph));
+    for (const Figure& figure : report.result.figures) {
+        html += figure_html(folder / (file_name(report, figure.suffix) + ".svg"), figure.caption);
+    }
+    for (const Picture& picture : report.result.pictures) {
+        html += figure_html(folder / (file_name(report, picture.suffix) + ".png"), picture.caption);
+    }
+    if (!report.result.claims.empty()) {
+        html += "<table>\n<tr><th>claim</th><th>holds</th><th>measured</th></tr>\n";
+    }
+    for (const Claim& claim : report.result.claims) {
+        html +=
+            fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td></tr>\n", html_text(claim.statement),
+                        claim.held ? "yes" : "<strong>no</strong>", html_text(claim.measured));
+    }
+    if (!report.result.claims.empty()) html += "</table>\n";
+    return html + fmt::format(
+                      "<details><summary>All numbers ({} rows)</summary>\n{}</details>\n"
+                      "<p class=c>{}.</p>\n",
+                      report.result.table.rows().size(), html_from(report.result.table),
+                      html_text(report.circumstances));
+}
+
+}  // namespace
+
+void write_files(const Report& report, const fs::path& folder) {
+    const auto path = [&](const std::string& suffix, const char* extension) {
+        return folder / (file_name(report, suffix) + extension);
+    };
+    write_text(csv_from(report.result.table), path("", ".csv"));
+    for (const Figure& figure : report.result.figures) {
+        draw(figure, path(figure.suffix, ".svg"));
+        draw(figure, path(figure.suffix, ".png"));
+    }
+    for (const Picture& picture : report.result.pictures) {
+        write_text(picture.png, path(picture.suffix, ".png"));
+    }
+    write_text(markdown_from(report), path("", ".md"));
+}
+
+void write_html(const std::vector<Report>& reports, const fs::path& folder, const fs::path& page) {
+    std::string html =
+        "<!DOCTYPE html>\n<html lang=\"en\"><meta charset=\"utf-8\">"
+        "<title>Palpate: the evidence</title>\n<style>"
+        "body{font-family:sans-serif;max-width:64em;margin:2em auto;padding:0 1em;line-height:1.5}"
+        "img{max-width:100%}figure{margin:1em 0}figcaption,.c{color:#444;font-size:90%}"
+        "table{border-collapse:collapse;font-size:85%}td,th{border:1px solid #ccc;padding:.2em "
+        ".5em;text-align:left}td.n{text-align:right}details{overflow-x:auto}</style>\n"
+        "<h1>Palpate: the evidence</h1>\n<ul>\n";
+    for (const Report& report : reports) {
+        std::size_t held = 0;
+        for (const Claim& claim : report.result.claims) held += claim.held;
+        html += fmt::format("<li><a href=\"#{0}\">{0}</a>: {1} ({2} of {3} claims hold)</li>\n",
+                            report.experiment.name, html_text(report.experiment.title), held,
+                            report.result.claims.size());
+    }
+    html += "</ul>\n";
+    for (const Report& report : reports) html += section(report, folder);
+    write_text(html + "</html>\n", page);
+}
+
+}  // namespace palpate::evaluation

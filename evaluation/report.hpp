@@ -1,0 +1,26 @@
+// What an experiment leaves: NAME.csv, its figures as SVG and PNG, its pictures, NAME.md; and the
+// report of several as one HTML file that needs no other.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "evaluation/experiment.hpp"
+
+namespace palpate::evaluation {
+
+struct Report {
+    Experiment experiment;
+    Result result;
+    std::string circumstances;  ///< machine, date, seed, full or quick
+};
+
+/// Files go into `folder`, which exists. Throws io::OutputError.
+void write_files(const Report& report, const std::filesystem::path& folder);
+
+/// `folder` is where write_files() put the figures, which go into the page. Throws io::OutputError.
+void write_html(const std::vector<Report>& reports, const std::filesystem::path& folder,
+                const std::filesystem::path& page);
+
+}  // namespace palpate::evaluation

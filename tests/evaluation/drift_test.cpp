@@ -1,0 +1,22 @@
+// drift, in its quick mode.
+#include "evaluation/claims.hpp"
+
+namespace palpate::evaluation {
+namespace {
+
+TEST(Drift, quick_mode_bears_out_its_claims) {
+    const Result result = quick_result(drift);
+    EXPECT_EQ(result.claims.size(), 3U);
+}
+
+TEST(Drift, a_volume_of_the_user_is_gone_round_instead) {
+    Options options = quick_options();
+    options.subjects.push_back(synthetic("torus:40x40x20"));
+    const Result result = drift(options);
+    EXPECT_EQ(result.claims.size(), 2U);
+    EXPECT_EQ(result.table.text(0, "volume"), "torus");
+    EXPECT_TRUE(all_hold(result));
+}
+
+}  // namespace
+}  // namespace palpate::evaluation
