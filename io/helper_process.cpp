@@ -1,4 +1,4 @@
-// Runs palpate-io-helper; see the header.
+// Runs a helper program; see the header.
 #include "io/helper_process.hpp"
 
 #include <fcntl.h>
@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cctype>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -49,17 +50,25 @@ Pipe open_pipe() {
     return pipe;
 }
 
-/// The helper program, or an empty path.
-fs::path find_program(const fs::path& wanted) {
-    if (!wanted.empty()) return wanted;
-    if (const char* set = std::getenv("PALPATE_IO_HELPER")) return set;
-    const char* const name = "palpate-io-helper";
+/// "PALPATE_IO_HELPER" of "palpate-io-helper".
+std::string variable_of(const HelperProgram& program) {
+    std::string name = program.name;
+    for (char& c : name) c = c == '-' ? '_' : static_cast<char>(std::toupper(c));
+    return name;
+}
+
+/// The program's file, or an empty path.
+fs::path find_program(const HelperJob& job) {
+    if (!job.path.empty()) return job.path;
+    if (const char* set = std::getenv(variable_of(job.program).c_str())) return set;
     std::error_code error;
     const fs::path here = fs::read_symlink("/proc/self/exe", error).parent_path();
     for (const fs::path& folder : {here, here / "../libexec/palpate",
-                                   here / "../../io/helper",  // in a build tree
+                                   here / "../.." / job.program.build_folder,  // in a build tree
                                    fs::path(PALPATE_LIBEXEC)}) {
-        if (access((folder / name).c_str(), X_OK) == 0) return folder / name;
+        if (access((folder / job.program.name).c_str(), X_OK) == 0) {
+            return folder / job.program.name;
+        }
     }
     return {};
 }
@@ -116,7 +125,11 @@ pid_t spawn(const fs::path& program, const HelperJob& job, const Descriptor& rep
     posix_spawn_file_actions_addopen(files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
     posix_spawn_file_actions_adddup2(files, errors.number(), STDOUT_FILENO);
     posix_spawn_file_actions_adddup2(files, errors.number(), STDERR_FILENO);
-    posix_spawn_file_actions_adddup2(files, job.samples->number(), samples_descriptor);
+    if (job.memory) {
+        posix_spawn_file_actions_adddup2(files, job.memory->number(), samples_descriptor);
+    } else {
+        posix_spawn_file_actions_addopen(files, samples_descriptor, "/dev/null", O_RDONLY, 0);
+    }
     posix_spawn_file_actions_adddup2(files, report.number(), report_descriptor);
     posix_spawn_file_actions_addclosefrom_np(files, report_descriptor + 1);
     // The caller may block or ignore Ctrl-C; the helper must not.
@@ -213,7 +226,7 @@ std::string last_words(const std::string& text) {
     return " (" + line + ")";
 }
 
-std::string failure_of(const Listener& said, int status) {
+std::string failure_of(const HelperProgram& program, const Listener& said, int status) {
     if (!said.error().empty()) return said.error();
     if (WIFEXITED(status) && WEXITSTATUS(status) == 0 && said.done().is_object()) return {};
     const std::string where = said.doing().empty() ? "" : " at " + said.doing();
@@ -221,16 +234,14 @@ std::string failure_of(const Listener& said, int status) {
         const int s = WTERMSIG(status);
         if (s == SIGINT || s == SIGTERM || s == SIGHUP) return "interrupted";
         if (s == SIGKILL) {
-            return "the helper process was killed" + where +
-                   ": most likely out of memory; close other programs or use a smaller volume";
+            return "the helper process was killed" + where + ": most likely out of memory; " +
+                   program.out_of_memory;
         }
-        return std::string("the format's library crashed") + where + " (" + strsignal(s) +
-               "): the file is damaged or not what its name says; export it again" +
-               last_words(said.error_text());
+        return program.who_crashes + std::string(" crashed") + where + " (" + strsignal(s) +
+               "): " + program.after_crash + last_words(said.error_text());
     }
-    return "the helper process ended without an answer" + where +
-           ": check that palpate-io-helper belongs to this version of Palpate" +
-           last_words(said.error_text());
+    return "the helper process ended without an answer" + where + ": check that " + program.name +
+           " belongs to this version of Palpate" + last_words(said.error_text());
 }
 
 }  // namespace
@@ -250,6 +261,12 @@ Descriptor shared_memory() {
     return moved_up(number);
 }
 
+Descriptor shared_memory(std::size_t bytes) {
+    Descriptor memory = shared_memory();
+    if (ftruncate(memory.number(), static_cast<off_t>(bytes)) != 0) fail("no memory");
+    return memory;
+}
+
 std::shared_ptr<void> map_shared(const Descriptor& memory, std::size_t bytes) {
     void* at = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, memory.number(), 0);
     if (at == MAP_FAILED) fail("the samples do not fit into memory");
@@ -257,17 +274,15 @@ std::shared_ptr<void> map_shared(const Descriptor& memory, std::size_t bytes) {
 }
 
 HelperResult run_helper(const HelperJob& job) {
-    const fs::path program = find_program(job.program);
-    if (program.empty()) {
-        return {{}, "palpate-io-helper was not found; reinstall Palpate, or set PALPATE_IO_HELPER"};
-    }
+    const HelperProgram& helper = job.program;
+    const fs::path path = find_program(job);
+    const std::string remedy = "; reinstall Palpate, or set " + variable_of(helper);
+    if (path.empty()) return {{}, helper.name + (" was not found" + remedy)};
     Pipe errors = open_pipe();
     Pipe report = open_pipe();
-    const pid_t pid = spawn(program, job, report.write_end, errors.write_end);
+    const pid_t pid = spawn(path, job, report.write_end, errors.write_end);
     if (pid == 0) {
-        return {{},
-                "cannot run '" + program.string() + "' (" + std::strerror(errno) +
-                    "); reinstall Palpate, or set PALPATE_IO_HELPER"};
+        return {{}, "cannot run '" + path.string() + "' (" + std::strerror(errno) + ")" + remedy};
     }
     Child child(pid);
     // The only write ends must be the helper's, or the end of its output would never be seen.
@@ -277,9 +292,9 @@ HelperResult run_helper(const HelperJob& job) {
     if (!listener.listen()) {
         return {{},
                 "no answer after " + std::to_string(static_cast<int>(job.time_limit_s)) +
-                    " s: the file is damaged or very large; raise the time limit or check it"};
+                    " s: " + helper.too_slow};
     }
-    return {listener.done(), failure_of(listener, child.wait())};
+    return {listener.done(), failure_of(helper, listener, child.wait())};
 }
 
 }  // namespace palpate::io

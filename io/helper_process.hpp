@@ -1,5 +1,6 @@
-// Runs palpate-io-helper and turns every way it can end (an answer, an error, a crash, a hang) into
-// one result. Linux: posix_spawn, memfd, prctl. Private to io/.
+// Runs a helper program (palpate-io-helper and its like: what needs libraries that crash, hang or
+// are slow to load) and turns every way it can end (an answer, an error, a crash, a hang) into one
+// result. Linux: posix_spawn, memfd. For the libraries that have such a program, not for the apps.
 #pragma once
 
 #include <filesystem>
@@ -25,17 +26,35 @@ class Descriptor {
     int number_;
 };
 
-/// Memory without a name that two processes can share. Throws std::system_error.
+/// Memory without a name that two processes can share; of no size yet. Throws std::system_error.
 Descriptor shared_memory();
+
+/// The same, of `bytes`. Throws std::system_error.
+Descriptor shared_memory(std::size_t bytes);
 
 /// `bytes` of it mapped into this process until the last copy of the pointer is gone.
 /// Throws std::system_error.
 std::shared_ptr<void> map_shared(const Descriptor& memory, std::size_t bytes);
 
+/// Which program, and what its failures most likely mean to the person who waits for it. Each text
+/// ends a message, so it begins in lower case and has no full stop.
+struct HelperProgram {
+    const char* name;           ///< "palpate-io-helper"; its variable is then PALPATE_IO_HELPER
+    const char* build_folder;   ///< where it lies in a build tree: "io/helper"
+    const char* who_crashes;    ///< "the format's library"
+    const char* after_crash;    ///< "the file is damaged or not what its name says; ..."
+    const char* out_of_memory;  ///< "close other programs or use a smaller volume"
+    const char* too_slow;       ///< "the file is damaged or very large; ..."
+};
+
 struct HelperJob {
-    std::filesystem::path program;  ///< empty: looked for
+    const HelperProgram& program;
+    /// Instead of the one that is looked for: the variable's, else beside the running program, in
+    /// its build tree or in the installed libexec folder.
+    std::filesystem::path path;
     std::vector<std::string> arguments;
-    const Descriptor* samples = nullptr;
+    /// What both share, its descriptor 3 (helper/protocol.hpp); it reports on 4. May be null.
+    const Descriptor* memory = nullptr;
     std::function<void(double)> progress;
     double time_limit_s = 0;
 };
@@ -45,7 +64,8 @@ struct HelperResult {
     std::string failure;  ///< what went wrong, without the file's name
 };
 
-/// Blocks until the helper has ended. Exceptions of `progress` end it and pass through.
+/// Blocks until the helper has ended; safe from several threads. Exceptions of `progress` end it
+/// and pass through.
 HelperResult run_helper(const HelperJob& job);
 
 }  // namespace palpate::io

@@ -20,6 +20,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr HelperProgram io_helper{
+    "palpate-io-helper",
+    "io/helper",
+    "the format's library",
+    "the file is damaged or not what its name says; export it again",
+    "close other programs or use a smaller volume",
+    "the file is damaged or very large; raise the time limit or check it"};
+
 std::uint64_t machine_memory() {
     return static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) *
            static_cast<std::uint64_t>(sysconf(_SC_PAGE_SIZE));
@@ -81,11 +89,9 @@ VolumeFile read_volume(const fs::path& path, const ReadOptions& options) {
     if (options.spacing) request["spacing"] = json_from(*options.spacing);
     try {
         const Descriptor samples = shared_memory();
-        const HelperJob job{options.helper,
-                            {"read", path.string(), line_from(request)},
-                            &samples,
-                            options.progress,
-                            options.time_limit_s};
+        const HelperJob job{
+            io_helper, options.helper,   {"read", path.string(), line_from(request)},
+            &samples,  options.progress, options.time_limit_s};
         const HelperResult result = run_helper(job);
         if (!result.failure.empty()) throw InputError(path.string() + ": " + result.failure);
         return volume_from(result.done, samples);
@@ -142,12 +148,10 @@ void write_volume(const Volume& volume, const fs::path& path, const WriteOptions
                                     {"type", name_of(volume.type())},
                                     {"compress", options.compress}};
     try {
-        const Descriptor samples = shared_memory();
-        if (ftruncate(samples.number(), static_cast<off_t>(volume.bytes())) != 0) {
-            throw std::system_error(errno, std::generic_category(), "no memory");
-        }
+        const Descriptor samples = shared_memory(volume.bytes());
         std::memcpy(map_shared(samples, volume.bytes()).get(), volume.data(), volume.bytes());
         const HelperJob job{
+            io_helper,
             options.helper,
             {"write", path.string(), line_from(request), workshop.folder().string()},
             &samples,

@@ -1,8 +1,6 @@
 // palpate-io-helper: reads or writes one volume with the formats' libraries and reports; what it
 // says is described in protocol.hpp. It exists so that a library's crash is not the caller's.
 #include <sys/mman.h>
-#include <sys/prctl.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -10,20 +8,12 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
 #include <new>
 
+#include "io/helper/child.hpp"
 #include "io/helper/protocol.hpp"
 #include "io/helper/readers.hpp"
 #include "io/helper/report.hpp"
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define PALPATE_SANITIZED 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define PALPATE_SANITIZED 1
-#endif
-#endif
 
 namespace palpate::io {
 namespace {
@@ -43,22 +33,9 @@ extern "C" void clean_up_and_go(int signal_number) {
     raise(signal_number);
 }
 
-/// Goes with the caller, leaves no core file, and takes no more memory than it may.
 void limit_this_process(const nlohmann::json& asked, std::uint64_t memory) {
-    prctl(PR_SET_PDEATHSIG, SIGTERM);
-    if (getppid() != asked.at("caller").get<pid_t>()) raise(SIGTERM);  // it died before that line
-    const rlimit none{0, 0};
-    setrlimit(RLIMIT_CORE, &none);
-    // If memory runs out all the same, this process goes, not the one that a person touches.
-    std::ofstream("/proc/self/oom_score_adj") << 1000;
-#ifndef PALPATE_SANITIZED  // a sanitizer's shadow is address space too
-    // Besides the samples: the programs' code, and the copy that some libraries make.
-    const rlim_t space = memory + (rlim_t{2} << 30);
-    const rlimit limit{space, space};
-    if (memory < UINT64_MAX / 4) setrlimit(RLIMIT_AS, &limit);
-#else
-    (void)memory;
-#endif
+    go_with_caller(asked.at("caller").get<pid_t>());
+    limit_memory(memory);
 }
 
 bool ends_with(const std::string& text, const std::string& end) {

@@ -1,0 +1,43 @@
+// What every helper program does first: it goes with its caller and takes no more than it may.
+// Header only, so that each program can have it without the others' libraries.
+#pragma once
+
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdint>
+#include <fstream>
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define PALPATE_SANITIZED 1
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define PALPATE_SANITIZED 1
+#endif
+#endif
+
+namespace palpate::io {
+
+/// Ends with the caller (its process id, from the request), leaves no core file, and is the first
+/// to go where memory runs out: not the process that a person touches.
+inline void go_with_caller(pid_t caller) {
+    prctl(PR_SET_PDEATHSIG, SIGTERM);
+    if (getppid() != caller) raise(SIGTERM);  // it died before that line
+    const rlimit none{0, 0};
+    setrlimit(RLIMIT_CORE, &none);
+    std::ofstream("/proc/self/oom_score_adj") << 1000;
+}
+
+/// No more address space than `bytes` and 2 GiB for the programs' code and what libraries copy.
+/// Nothing under a sanitizer, whose shadow is address space too.
+inline void limit_memory([[maybe_unused]] std::uint64_t bytes) {
+#ifndef PALPATE_SANITIZED
+    const rlim_t space = bytes + (rlim_t{2} << 30);
+    const rlimit limit{space, space};
+    if (bytes < UINT64_MAX / 4) setrlimit(RLIMIT_AS, &limit);
+#endif
+}
+
+}  // namespace palpate::io
