@@ -15,8 +15,8 @@
 namespace palpate::evaluation {
 namespace {
 
-constexpr double seconds = 2.5;      ///< held for; the last second counts
-constexpr double least_step = 0.01;  ///< [mm] what counts as rest where the encoder is exact
+constexpr double seconds = 4;        ///< held for; the last second counts
+constexpr double least_step = 0.01;  ///< [mm] the least that an encoder step counts for
 
 struct Case {
     std::string profile;
@@ -82,7 +82,7 @@ Held press(const Case& c, const Subject& subject) {
     }
     held.position = position.largest();
     held.force = force.largest();
-    held.at_rest = held.position <= std::max(least_step, 1.01 * c.encoder);
+    held.at_rest = held.position <= 2.01 * std::max(least_step, c.encoder);
     return held;
 }
 
@@ -157,14 +157,14 @@ std::string map_panel(const Table& table, const Plan& plan, double encoder, std:
     }
     std::string tics;
     for (std::size_t r = 0; r < plan.rates.size(); ++r) {
-        tics += fmt::format("{}'{:g}' {}", r ? ", " : "", plan.rates[r], r);
+        tics += fmt::format("{}'{:g}' {}", r ? ", " : "", plan.rates[r] / 1000, r);
     }
     return block(fmt::format("cells{}", number), cells) +
            block(fmt::format("limit{}", number), limit) +
            fmt::format(
                "set title 'encoder step {:g} mm'\nset xtics ({})\n"
                "plot $cells{} using 1:2:3 with image notitle, $limit{} with lines lw 3 lc rgb "
-               "'#D55E00' title 'comes to rest below'\n",
+               "'#D55E00'\n",
                encoder, tics, number, number);
 }
 
@@ -173,19 +173,19 @@ Figure map_figure(const Table& table, const Plan& plan) {
     figure.caption = fmt::format(
         "How far the device goes on moving when a light hand presses and holds (simulated {}, no "
         "friction in its mechanics): white is rest, dark a limit cycle. Below the vermilion line "
-        "it moves by one encoder step at most.",
+        "it moves by two encoder steps at most.",
         map_profile);
     figure.size = {1200, 460};
     figure.script = fmt::format(
-        "set multiplot layout 1,{} margins 0.06,0.9,0.16,0.86 spacing 0.035,0.1\n"
+        "set multiplot layout 1,{} margins 0.07,0.9,0.16,0.86 spacing 0.035,0.1\n"
         "set palette defined (0 '#ffffff', 0.35 '#9ecae1', 0.7 '#3182bd', 1 '#08306b')\n"
         "set logscale cb\nset cbrange [0.001:10]\nset format cb '%g'\nunset colorbox\n"
-        "set cblabel 'peak to peak [mm]'\nset xlabel 'update rate [Hz]'\n"
-        "set yrange [0:3.05]\nset xrange [-0.5:{}]\nset key at graph 0.98,0.97 right opaque\n"
+        "set cblabel 'peak to peak [mm]'\nset xlabel 'update rate [kHz]'\n"
+        "set yrange [0:3.05]\nset xrange [-0.5:{}]\nunset key\n"
         "set ylabel 'stiffness [N/mm]'\nunset grid\n",
         plan.encoders.size(), double(plan.rates.size()) - 0.5);
     for (std::size_t i = 0; i < plan.encoders.size(); ++i) {
-        if (i == 1) figure.script += "unset ylabel\nset format y ''\nunset key\n";
+        if (i == 1) figure.script += "unset ylabel\nset format y ''\n";
         if (i + 1 == plan.encoders.size()) {
             figure.script += "set colorbox user origin 0.92,0.16 size 0.015,0.7\n";
         }
@@ -205,7 +205,8 @@ Figure profile_figure(const Table& table, const Plan& plan) {
         "which stills small limit cycles.";
     figure.size = {1200, 520};
     figure.script =
-        "set multiplot layout 1,2\nset logscale x\nset xlabel 'update rate [Hz]'\n"
+        "set multiplot layout 1,2\nset logscale x\nset xlabel 'update rate [kHz]'\n"
+        "set xrange [0.2:5]\nset xtics (0.25, 0.5, 1, 2, 4)\nset bmargin 7\n"
         "set ylabel 'largest stable stiffness [N/mm]'\nset yrange [0:3.1]\n"
         "set key outside below horizontal\n";
     for (const char* part : {"profiles", "profiles without friction"}) {
@@ -213,7 +214,8 @@ Figure profile_figure(const Table& table, const Plan& plan) {
         for (std::size_t p = 0; p < plan.profiles.size(); ++p) {
             std::vector<std::vector<double>> rows;
             for (const double rate : plan.rates) {
-                rows.push_back({rate, largest_stable(table, part, plan.profiles[p], 0, rate)});
+                rows.push_back(
+                    {rate / 1000, largest_stable(table, part, plan.profiles[p], 0, rate)});
             }
             const std::string name = fmt::format("p{}{}", part == std::string("profiles"), p);
             blocks += block(name, rows);
@@ -231,7 +233,7 @@ Figure profile_figure(const Table& table, const Plan& plan) {
 
 /// Each profile at its rated stiffness, in the light grip, at 1 kHz.
 Claim rated_claim(const Subject& subject, Table& table) {
-    Claim claim{"every profile comes to rest at its rated stiffness at 1 kHz, to one encoder step",
+    Claim claim{"every profile comes to rest at its rated stiffness at 1 kHz, to two encoder steps",
                 true, ""};
     for (const std::string& name : devices::profile_names()) {
         const devices::DeviceProfile& device = devices::profile(name);
@@ -265,8 +267,10 @@ Claim control_claim(const Table& table) {
 std::string paragraph_of(const Table& table, const Plan& plan, const Subject& subject) {
     std::string text = fmt::format(
         "A simulated device in a light hand is pressed into {} and held; the last of {:g} s "
-        "counts. It is at rest if its position, as the encoders tell it, moves by one encoder step "
-        "at most ({:g} mm where they are exact). Of {}, without friction in its mechanics, the "
+        "counts. It is at rest if its position, as the encoders tell it, moves by two encoder "
+        "steps "
+        "at most (a step counts for {:g} mm at least). Of {}, without friction in its mechanics, "
+        "the "
         "largest stiffness that comes to rest, of those tried up to 3 N/mm, is",
         subject.name, seconds, least_step, map_profile);
     for (const double encoder : plan.encoders) {
