@@ -6,6 +6,7 @@ namespace palpate::evaluation {
 std::span<const Experiment> experiments() {
     static constexpr Experiment all[] = {
         {"drift", "Does the proxy stay on the isosurface?", &drift, true},
+        {"performance", "What does an update cost?", &performance, true},
         {"stability", "How stiff may a surface be before it buzzes?", &stability, true},
     };
     return all;

@@ -1,0 +1,269 @@
+// Places on the surface, the hand's steering, and the search for the wanted manner.
+#include "evaluation/hand_at_work.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "scenes/random.hpp"
+
+namespace palpate::evaluation {
+namespace {
+
+using scenes::Random;
+
+constexpr double smoothing_s = 0.01;  // of the normal that it feels
+constexpr double cycle_s = 2;         // exploring once and touching once
+constexpr double swell = 0.8;         // of the speed, up and down
+constexpr double swell_hz = 1.3;
+
+Vec3 unit(const Vec3& v, const Vec3& otherwise) {
+    const double length = v.norm();
+    return length > 1e-12 ? Vec3(v / length) : otherwise;
+}
+
+Vec3 unit_vector(Random& random) {
+    for (;;) {
+        const double x = random.uniform(-1, 1), y = random.uniform(-1, 1),
+                     z = random.uniform(-1, 1);
+        const double square = x * x + y * y + z * z;
+        if (square > 1e-4 && square <= 1) return Vec3(x, y, z) / std::sqrt(square);
+    }
+}
+
+bool is_solid(const Field& field, double isovalue, const Vec3& physical) {
+    return field.sign() * (value_at(field, physical) - isovalue) > field.tolerance();
+}
+
+/// Indices of `count` solid samples, evenly drawn from all there are; empty if there are none.
+template <class T>
+std::vector<std::size_t> solid_samples(const Field& field, double isovalue, std::size_t count,
+                                       Random& random) {
+    const auto samples = field.volume().samples<T>();
+    const auto is_solid = [&](T sample) { return field.sign() * (double(sample) - isovalue) > 0; };
+    const auto solid =
+        static_cast<std::size_t>(std::count_if(samples.begin(), samples.end(), is_solid));
+    if (solid == 0) return {};
+    std::vector<std::size_t> ranks(count);
+    for (auto& rank : ranks) {
+        rank = std::min(solid - 1, static_cast<std::size_t>(random.uniform() * double(solid)));
+    }
+    std::vector<std::size_t> sorted = ranks;
+    std::sort(sorted.begin(), sorted.end());
+    std::vector<std::size_t> found;
+    std::size_t rank = 0;
+    for (std::size_t i = 0; i < samples.size() && found.size() < count; ++i) {
+        if (!is_solid(samples[i])) continue;
+        while (found.size() < count && sorted[found.size()] == rank) found.push_back(i);
+        ++rank;
+    }
+    // In the order in which they were drawn, or the strokes would go through the volume in order.
+    for (auto& r : ranks) {
+        const auto at = std::lower_bound(sorted.begin(), sorted.end(), r) - sorted.begin();
+        r = found[static_cast<std::size_t>(at)];
+    }
+    return ranks;
+}
+
+std::vector<std::size_t> solid_samples(const Subject& subject, std::size_t count, Random& random) {
+    switch (subject.field.volume().type()) {
+        case SampleType::uint8:
+            return solid_samples<std::uint8_t>(subject.field, subject.isovalue, count, random);
+        case SampleType::int16:
+            return solid_samples<std::int16_t>(subject.field, subject.isovalue, count, random);
+        case SampleType::uint16:
+            return solid_samples<std::uint16_t>(subject.field, subject.isovalue, count, random);
+        case SampleType::float32:
+            break;
+    }
+    return solid_samples<float>(subject.field, subject.isovalue, count, random);
+}
+
+/// Where a hand from outside first meets the body on its straight way to a solid sample.
+struct Place {
+    Vec3 point, outward;  // [mm, physical]; outward is where it came from
+};
+
+std::vector<Place> places(const Subject& subject, int count, Random& random) {
+    const Geometry& geometry = subject.field.geometry();
+    const double outside =
+        (geometry.size + Index3::Constant(2)).cast<double>().cwiseProduct(geometry.spacing).norm();
+    std::vector<Place> found;
+    for (const std::size_t i : solid_samples(subject, std::size_t(count), random)) {
+        const auto nx = std::size_t(geometry.size[0]), ny = std::size_t(geometry.size[1]);
+        const Vec3 target = physical_from_index(
+            geometry, Vec3(double(i % nx), double(i / nx % ny), double(i / (nx * ny))));
+        const Vec3 outward = unit_vector(random);
+        const Vec3 from = target + outside * outward;
+        if (is_solid(subject.field, subject.isovalue, from)) continue;
+        const RayHit hit = cast_ray(subject.field, subject.isovalue, from, target);
+        if (hit.hit) found.push_back({hit.point, outward});
+    }
+    if (found.empty()) {
+        throw std::invalid_argument(subject.name +
+                                    ": a hand from outside meets no surface at this level; choose "
+                                    "another level or volume");
+    }
+    return found;
+}
+
+/// A hand on one stroke.
+class Steering {
+  public:
+    Steering(const Subject& subject, const HandAtWork& hand, const Place& place, Random& random)
+        : field_(subject.field),
+          hand_(hand),
+          random_(random),
+          hip_(place.point + 2 * hand.depth_mm * place.outward),
+          touched_(place.point),
+          normal_(place.outward),
+          way_(-place.outward) {
+        palpate::place(proxy_, field_, hip_, subject.isovalue);
+        new_cycle();
+    }
+
+    Vec3 step(double t) {
+        const double into = std::fmod(t, cycle_s);
+        if (into < into_cycle_) new_cycle();
+        into_cycle_ = into;
+        const bool touches = t < first_touch_s || into >= (1 - hand_.touching) * cycle_s;
+        const Vec3 direction = touches ? touching() : exploring();
+        const double swelling = 1 + swell * std::sin(2 * std::numbers::pi * swell_hz * t);
+        hip_ += hand_.speed_mm_s * swelling / hand_.rate_hz * direction;
+        feel();
+        return hip_;
+    }
+    const Vec3& hip() const { return hip_; }
+
+  private:
+    static constexpr double first_touch_s = 0.2;  // it begins by coming to the surface
+
+    void new_cycle() {
+        turn_per_s_ = random_.uniform(-1.5, 1.5);
+        way_ = unit(normal_ + 0.7 * unit_vector(random_), normal_);
+    }
+
+    void feel() {
+        constrained_ = update_exact(proxy_, field_, hip_).mode == Mode::constrained;
+        if (!constrained_) return;
+        const double share = 1 / (smoothing_s * hand_.rate_hz + 1);
+        touched_ = proxy_.scp_physical;
+        const Vec3 felt = normal_at(proxy_, field_);
+        normal_ = unit(normal_ + share * (felt - normal_), felt);
+    }
+
+    /// Away from where it last touched; off whatever is in the way.
+    Vec3 exploring() {
+        if (constrained_ && way_.dot(normal_) < 0.5) {
+            way_ = unit(way_ + (1 - way_.dot(normal_)) * normal_, normal_);
+        }
+        return way_;
+    }
+
+    /// Along the surface at its depth, in a slow turn; free, straight back to the surface.
+    Vec3 touching() {
+        const Vec3 lag = touched_ - hip_;
+        if (!constrained_) return unit(lag - hand_.depth_mm * normal_, -normal_);
+        const Vec3 across = normal_.cross(along_);
+        along_ += turn_per_s_ / hand_.rate_hz * across;
+        // A proxy that something holds back is fetched: the hand does not go on without it.
+        if (lag.norm() > 4 * hand_.depth_mm) along_ = lag;
+        along_ = unit(along_ - along_.dot(normal_) * normal_, normal_.unitOrthogonal());
+        keep_to_the_body();
+        const double missing = (hand_.depth_mm - lag.dot(normal_)) / hand_.depth_mm;
+        return unit(along_ - std::clamp(missing, -2.0, 2.0) * normal_, along_);
+    }
+
+    /// Turns before an edge, where the hand would slip off.
+    void keep_to_the_body() {
+        const Vec3 across = normal_.cross(along_);
+        for (const double angle : {0.0, 0.7, -0.7, 1.4, -1.4, 2.1, -2.1, 3.1}) {
+            const Vec3 turned = std::cos(angle) * along_ + std::sin(angle) * across;
+            const Vec3 ahead = hip_ + 2 * hand_.depth_mm * turned;
+            if (!is_solid(field_, proxy_.isovalue, ahead)) continue;
+            along_ = turned;
+            return;
+        }
+    }
+
+    const Field& field_;
+    const HandAtWork& hand_;
+    Random& random_;
+    Proxy proxy_;
+    Vec3 hip_, touched_, normal_, way_;  // [mm, physical] and unit vectors
+    Vec3 along_ = Vec3::Zero();
+    double turn_per_s_ = 0, into_cycle_ = 0;
+    bool constrained_ = false;
+};
+
+/// 0 where both are as wanted.
+double miss(const Manner& manner, const Manner& wanted) {
+    return std::max(std::abs(manner.speed_mm_s / wanted.speed_mm_s - 1),
+                    std::abs(manner.constrained_share / wanted.constrained_share - 1));
+}
+
+}  // namespace
+
+std::vector<Stroke> work(const Subject& subject, const HandAtWork& hand) {
+    Random random(hand.seed);
+    const auto starts = places(subject, hand.strokes, random);
+    const auto ticks = static_cast<std::size_t>(hand.stroke_s * hand.rate_hz);
+    std::vector<Stroke> strokes;
+    for (int i = 0; i < hand.strokes; ++i) {
+        Steering steering(subject, hand, starts[std::size_t(i) % starts.size()], random);
+        Stroke stroke{steering.hip()};
+        stroke.reserve(ticks + 1);
+        for (std::size_t k = 0; k < ticks; ++k) {
+            stroke.push_back(steering.step(static_cast<double>(k) / hand.rate_hz));
+        }
+        strokes.push_back(std::move(stroke));
+    }
+    return strokes;
+}
+
+Manner manner_of(const Subject& subject, const std::vector<Stroke>& strokes, double rate_hz) {
+    double way = 0;
+    std::size_t ticks = 0, constrained = 0;
+    for (const Stroke& stroke : strokes) {
+        Proxy proxy;
+        place(proxy, subject.field, stroke.front(), subject.isovalue);
+        for (std::size_t i = 1; i < stroke.size(); ++i) {
+            way += (stroke[i] - stroke[i - 1]).norm();
+            constrained += update_exact(proxy, subject.field, stroke[i]).mode == Mode::constrained;
+            ++ticks;
+        }
+    }
+    return {way * rate_hz / double(ticks), double(constrained) / double(ticks)};
+}
+
+Tuned tuned(const Subject& subject, HandAtWork hand, const Manner& wanted) {
+    constexpr int attempts = 24;
+    constexpr double near_enough = 0.02;
+    Tuned best;
+    double low = 0, high = 1;
+    hand.speed_mm_s = wanted.speed_mm_s;
+    hand.touching = wanted.constrained_share;
+    for (int attempt = 0; attempt < attempts; ++attempt) {
+        auto strokes = work(subject, hand);
+        const Manner manner = manner_of(subject, strokes, hand.rate_hz);
+        const bool is_best =
+            best.strokes.empty() || miss(manner, wanted) < miss(best.manner, wanted);
+        if (is_best) best = {std::move(strokes), manner, hand};
+        if (miss(best.manner, wanted) <= near_enough) break;
+        if (manner.speed_mm_s > 0) hand.speed_mm_s *= wanted.speed_mm_s / manner.speed_mm_s;
+        (manner.constrained_share < wanted.constrained_share ? low : high) = hand.touching;
+        hand.touching = 0.5 * (low + high);
+        const double least = (1 - near_enough) * wanted.constrained_share;
+        if (low < 0.98 || manner.constrained_share >= least) continue;
+        // It means to touch all the time and slips off: the body is too fine for so firm a hand.
+        hand.depth_mm *= 0.5;
+        hand.touching = wanted.constrained_share;
+        low = 0;
+        high = 1;
+    }
+    return best;
+}
+
+}  // namespace palpate::evaluation
