@@ -7,6 +7,8 @@ std::span<const Experiment> experiments() {
     static constexpr Experiment all[] = {
         {"drift", "Does the proxy stay on the isosurface?", &drift, true},
         {"performance", "What does an update cost?", &performance, true},
+        {"scaling", "What does the cost grow with, and what does the explicit way cost?", &scaling,
+         true},
         {"stability", "How stiff may a surface be before it buzzes?", &stability, true},
     };
     return all;

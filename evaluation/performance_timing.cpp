@@ -38,7 +38,7 @@ struct Timed {
 /// Mean over all updates [ns]: timed in batches without a clock inside, so short that most of them
 /// are not interrupted; of each batch the median over the passes counts.
 double mean_of_batches(const Timed& timed, int passes, std::int64_t updates) {
-    constexpr std::size_t batch = 500;
+    constexpr std::size_t batch = 50;
     std::vector<std::vector<double>> batches;  // [ns], of each the passes
     for (int pass = 0; pass < passes; ++pass) {
         std::size_t number = 0;

@@ -1,0 +1,14 @@
+// The figures of scaling.
+#pragma once
+
+#include <vector>
+
+#include "evaluation/figure.hpp"
+#include "evaluation/table.hpp"
+
+namespace palpate::evaluation {
+
+/// What an update's time grows with, a panel a part; and the explicit way beside the dynamic one.
+std::vector<Figure> scaling_figures(const Table& table);
+
+}  // namespace palpate::evaluation

@@ -1,0 +1,198 @@
+// scaling, in its quick mode, and the explicit side, which has to be a fair one.
+#include <cmath>
+#include <cstdlib>
+#include <stdexcept>
+
+#include "evaluation/claims.hpp"
+#include "evaluation/explicit_helper/aabb_tree.hpp"
+#include "evaluation/scaling_bodies.hpp"
+#include "evaluation/scaling_explicit.hpp"
+#include "scenes/random.hpp"
+#include "scenes/volumes.hpp"
+
+namespace palpate::evaluation {
+namespace {
+
+TEST(Scaling, quick_mode_bears_out_its_claims) {
+    const Result result = quick_result(scaling);
+    EXPECT_EQ(result.claims.size(), 7U);  // the last two need the helper program
+    EXPECT_EQ(result.figures.size(), 2U);
+}
+
+TEST(Scaling, same_seed_gives_the_same_table_but_for_the_times) {
+    Options options = quick_options();
+    const Table once = scaling(options).table, again = scaling(options).table;
+    for (std::size_t i = 0; i < once.rows().size(); ++i) {
+        for (const char* column :
+             {"tetrahedra", "way_voxel", "constrained_share", "unfinished_changes",
+              "worst_deviation_of_range", "explicit_triangles", "hit_difference_voxel"}) {
+            const double value = once.number(i, column);
+            if (std::isnan(value)) continue;
+            EXPECT_EQ(value, again.number(i, column)) << column;
+        }
+    }
+}
+
+TEST(Scaling, a_volume_of_the_user_is_measured_instead_without_the_parts_that_make_bodies) {
+    Options options = quick_options();
+    options.subjects.push_back(synthetic("torus:40x40x20"));
+    std::string notes;
+    options.note = [&](const std::string& text) { notes += text; };
+    const Result result = scaling(options);
+    EXPECT_TRUE(all_hold(result));
+    EXPECT_NE(notes.find("left out"), std::string::npos);
+    for (std::size_t i = 0; i < result.table.rows().size(); ++i) {
+        EXPECT_EQ(result.table.text(i, "volume"), "torus");
+        EXPECT_NE(result.table.text(i, "part"), "noise");
+    }
+}
+
+TEST(Scaling, goes_on_without_the_explicit_way_where_its_program_cannot_be_run) {
+    setenv("PALPATE_EXPLICIT_HELPER", "/nonexistent/palpate-explicit-helper", 1);
+    Options options = quick_options();
+    options.subjects.push_back(synthetic("sphere:24x24x24"));
+    std::string notes;
+    options.note = [&](const std::string& text) { notes += text; };
+    const Result result = scaling(options);
+    unsetenv("PALPATE_EXPLICIT_HELPER");
+    EXPECT_TRUE(all_hold(result));
+    EXPECT_NE(notes.find("without the explicit way"), std::string::npos);
+    const std::size_t last = result.table.rows().size() - 1;
+    EXPECT_TRUE(std::isnan(result.table.number(last, "explicit_triangles")));
+    EXPECT_FALSE(std::isnan(result.table.number(last, "change_p50_ns")));
+}
+
+TEST(Scaling, stops_while_the_helper_works) {
+    Options options = quick_options();
+    options.subjects.push_back(synthetic("torus:40x40x20"));
+    int calls = 0;
+    options.progress = [&](double done) {
+        EXPECT_GE(done, 0);
+        EXPECT_LE(done, 1);
+        // Three speeds, two resolutions, one comparison: after that it is the helper's waiting.
+        if (++calls == 7) throw std::runtime_error("stopped");
+    };
+    EXPECT_THROW(scaling(options), std::runtime_error);
+}
+
+TEST(Bodies, a_ball_has_the_same_samples_round_its_centre_in_a_grid_of_any_size) {
+    const Subject small = ball({64, 22, 16}), large = ball({80, 22, 16});
+    for (int k = 0; k < 64; k += 3) {
+        for (int j = 0; j < 64; j += 3) {
+            for (int i = 0; i < 64; ++i) {
+                EXPECT_EQ(small.field.volume().sample({i, j, k}),
+                          large.field.volume().sample(Index3(i, j, k) + Index3::Constant(8)));
+            }
+        }
+    }
+    EXPECT_EQ(large.field.volume().sample({0, 40, 40}), 0);
+    EXPECT_EQ(large.field.volume().sample({40, 40, 40}), 255);
+    const RayHit hit = cast_ray(small.field, small.isovalue, {40, 0.3, 0.2}, {0, 0.3, 0.2});
+    EXPECT_NEAR(hit.point.norm(), 22, 0.05);
+}
+
+TEST(Bodies, noise_is_seeded_and_as_large_as_asked_for) {
+    const Subject calm = noisy_ball({32, 10, 8}, 0, 1), wild = noisy_ball({32, 10, 8}, 0.4, 1);
+    double largest = 0;
+    const auto a = calm.field.volume().samples<float>(), b = wild.field.volume().samples<float>();
+    for (std::size_t i = 0; i < a.size(); ++i)
+        largest = std::max(largest, double(std::abs(a[i] - b[i])));
+    EXPECT_LE(largest, 0.2 + 1e-6);
+    EXPECT_GT(largest, 0.19);
+}
+
+/// A mesh without any order: triangles as wide as 1/5 of the box.
+struct Soup {
+    std::vector<Point3> points;
+    std::vector<Triangle> triangles;
+};
+
+Soup soup(std::size_t count, scenes::Random& random) {
+    Soup made;
+    const auto uniform = [&] { return static_cast<float>(random.uniform()); };
+    for (std::size_t i = 0; i < count; ++i) {
+        const Point3 middle{uniform(), uniform(), uniform()};
+        Triangle triangle;
+        for (auto& corner : triangle) {
+            corner = static_cast<std::uint32_t>(made.points.size());
+            made.points.push_back({middle[0] + 0.2F * uniform(), middle[1] + 0.2F * uniform(),
+                                   middle[2] + 0.2F * uniform()});
+        }
+        made.triangles.push_back(triangle);
+    }
+    return made;
+}
+
+TEST(AabbTree, finds_the_hit_that_going_through_all_triangles_finds) {
+    scenes::Random random(1);
+    std::size_t hits = 0;
+    for (const std::size_t count : {1, 2, 5, 40, 1000}) {
+        Soup all = soup(count, random);
+        const AabbTree tree(all.points, all.triangles);
+        // Trees of a single triangle: a leaf each, nothing to descend.
+        for (int query = 0; query < 400; ++query) {
+            std::array<double, 3> from, to;
+            for (std::size_t a = 0; a < 3; ++a) {
+                from[a] = random.uniform(-0.2, 1.4);
+                to[a] = query % 5 == int(a) ? from[a] : random.uniform(-0.2, 1.4);
+            }
+            double nearest = std::numeric_limits<double>::quiet_NaN();
+            for (const Triangle& triangle : all.triangles) {
+                std::vector<Triangle> alone{triangle};
+                const double t = AabbTree(all.points, alone).first_hit(from, to);
+                if (!(nearest <= t)) nearest = std::isnan(t) ? nearest : t;
+            }
+            const double found = tree.first_hit(from, to);
+            EXPECT_EQ(std::isnan(found), std::isnan(nearest));
+            if (std::isnan(found)) continue;
+            EXPECT_EQ(found, nearest);
+            ++hits;
+        }
+    }
+    EXPECT_GT(hits, 150U);
+}
+
+TEST(AabbTree, of_nothing_is_never_hit) {
+    std::vector<Triangle> none;
+    const AabbTree tree({}, none);
+    EXPECT_TRUE(std::isnan(tree.first_hit({0, 0, 0}, {1, 1, 1})));
+    EXPECT_EQ(tree.bytes(), 0U);
+}
+
+TEST(AabbTree, a_triangle_is_hit_where_its_plane_is_crossed_inside_it) {
+    const std::vector<Point3> points{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
+    std::vector<Triangle> triangles{{0, 1, 2}};
+    const AabbTree tree(points, triangles);
+    EXPECT_DOUBLE_EQ(tree.first_hit({0.2, 0.3, 0}, {0.2, 0.3, 4}), 0.25);
+    EXPECT_DOUBLE_EQ(tree.first_hit({0.2, 0.3, 4}, {0.2, 0.3, 0}), 0.75);
+    EXPECT_TRUE(std::isnan(tree.first_hit({0.6, 0.6, 0}, {0.6, 0.6, 4})));
+    EXPECT_TRUE(std::isnan(tree.first_hit({0.2, 0.3, 0}, {0.2, 0.3, 0.9})));
+}
+
+TEST(ExplicitWay, extracts_the_surface_that_is_felt_on_every_type_and_an_oblique_grid) {
+    Geometry geometry;
+    geometry.size = {30, 34, 26};
+    geometry.spacing = {1, 0.8, 1.5};
+    geometry.origin = {-7, 30, 12};
+    geometry.direction << 0, -1, 0, 0.6, 0, 0.8, -0.8, 0, 0.6;
+    for (const SampleType type :
+         {SampleType::uint8, SampleType::int16, SampleType::uint16, SampleType::float32}) {
+        scenes::Scene scene = scenes::make_volume("sphere", geometry, type);
+        const Subject subject{"sphere", Field(std::move(scene.volume)), scene.isovalue, {}, ""};
+        const auto strokes = work(subject, {.strokes = 2, .stroke_s = 0.5});
+        const auto segments = segments_of(subject, strokes, 100);
+        EXPECT_EQ(segments.size(), 100U);
+        const ExplicitAnswer answer = explicit_cost(subject, segments, 1, [] {});
+        ASSERT_EQ(answer.failure, "");
+        const Difference difference = difference_of(subject, segments, answer.hits);
+        EXPECT_EQ(difference.one_sided_share, 0);
+        EXPECT_LT(difference.worst_voxel, 0.2);
+        // Euler: a closed surface of genus 0 has 2 V - 4 triangles.
+        EXPECT_EQ(answer.cost.triangles, 2 * answer.cost.vertices - 4);
+        EXPECT_EQ(answer.cost.mesh_bytes,
+                  12.0 * double(answer.cost.vertices + answer.cost.triangles));
+    }
+}
+
+}  // namespace
+}  // namespace palpate::evaluation
