@@ -240,6 +240,10 @@ std::string failure_of(const HelperProgram& program, const Listener& said, int s
         return program.who_crashes + std::string(" crashed") + where + " (" + strsignal(s) +
                "): " + program.after_crash + last_words(said.error_text());
     }
+    if (WIFEXITED(status) && WEXITSTATUS(status) == 127) {  // the loader's
+        return std::string("a library that it needs is missing: install what ") +
+               "scripts/install_packages.sh names for io" + last_words(said.error_text());
+    }
     return "the helper process ended without an answer" + where + ": check that " + program.name +
            " belongs to this version of Palpate" + last_words(said.error_text());
 }

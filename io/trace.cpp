@@ -1,6 +1,8 @@
 // Traces and paths: the columns of the contract, and nothing that a reader could round.
 #include "io/trace.hpp"
 
+#include <array>
+
 #include "io/trace_columns.hpp"
 
 namespace palpate::io {
@@ -71,6 +73,30 @@ std::vector<TraceRow> parse_trace(std::string_view text, const std::string& name
 
 std::vector<TraceRow> read_trace(const std::filesystem::path& path) {
     return parse_trace(read_text(path), path.string());
+}
+
+Way read_way(const std::filesystem::path& path) {
+    const std::string text = read_text(path);
+    CsvReader rows(text, path.string());
+    const auto columns = [&](const std::string& before) {
+        return std::array{rows.column(before + "x"), rows.column(before + "y"),
+                          rows.column(before + "z")};
+    };
+    const bool trace = rows.has_column("scp_x");
+    const auto scp = columns(trace ? "scp_" : "");
+    const auto hip = trace ? columns("hip_") : scp;
+    const std::size_t mode = trace ? rows.column("mode") : 0;
+    const auto point = [&](const std::array<std::size_t, 3>& at) {
+        return Vec3(rows.finite_number(at[0]), rows.finite_number(at[1]),
+                    rows.finite_number(at[2]));
+    };
+    Way way;
+    while (rows.next()) {
+        way.scp.push_back(point(scp));
+        way.constrained.push_back(!trace || rows.cell(mode) == "constrained");
+        if (trace) way.hip.push_back(point(hip));
+    }
+    return way;
 }
 
 }  // namespace palpate::io

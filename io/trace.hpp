@@ -63,4 +63,14 @@ std::vector<TraceRow> read_trace(const std::filesystem::path& path);
 /// The same from text that errors call `name`.
 std::vector<TraceRow> parse_trace(std::string_view text, const std::string& name);
 
+/// Where hand and proxy went, point by point.
+struct Way {
+    std::vector<Vec3> hip;  ///< [mm, physical] a tick each; empty if it came from a path file
+    std::vector<Vec3> scp;  ///< [mm, physical] a tick each, or the corners of a path file
+    std::vector<bool> constrained;  ///< of each `scp`; a path file does not tell, and has true
+};
+/// From a trace, or from a path (columns x, y, z). Throws InputError, also for points that are not
+/// finite.
+Way read_way(const std::filesystem::path& path);
+
 }  // namespace palpate::io

@@ -3,29 +3,29 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <limits>
 #include <memory>
 
 #include "apps/palpate/commands.hpp"
 #include "apps/palpate/offline.hpp"
-#include "apps/palpate/picture.hpp"
 #include "apps/palpate/progress.hpp"
 #include "apps/palpate/render_options.hpp"
 #include "apps/palpate/result_folder.hpp"
 #include "apps/palpate/volume_options.hpp"
 #include "evaluation/html.hpp"
+#include "io/error.hpp"
 #include "io/plot.hpp"
+#include "pictures/levels.hpp"
+#include "pictures/picture.hpp"
+#include "pictures/view.hpp"
 #include "scenes/motions.hpp"
 
 namespace palpate::app {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr Colour bone{226, 205, 175};
-constexpr Colour hip_colour{0, 114, 178};  // blue and vermilion: told apart by everybody
-constexpr Colour scp_colour{213, 94, 0};
 
 struct DemoOptions {
     VolumeOptions volume;
@@ -99,28 +99,40 @@ Vec3 mean_contact(const std::vector<io::TraceRow>& rows) {
     return sum / count;
 }
 
-void draw(const Demo& demo, Picture picture, bool quiet, const fs::path& path) {
-    ProgressBar bar("drawing", quiet);
-    const Vec3 towards = mean_contact(demo.rows) - physical_centre(demo.field.geometry());
-    const Camera camera = camera_for(demo.field, demo.isovalue, towards);
-    draw_isosurface(picture, camera, demo.field, demo.isovalue, bone,
-                    [&](double fraction) { bar.at(fraction); });
-    const double bias = 0.5 * demo.field.geometry().spacing.maxCoeff();
-    std::vector<Vec3> hip;
-    for (const io::TraceRow& row : demo.rows) hip.push_back(row.hip);
-    draw_line(picture, camera, hip, hip_colour, 0, 1);
-    // The SCP in contact only: where it is free it is the HIP.
-    std::vector<Vec3> touch;
+/// The isosurface with the ways of hand and proxy. Empty if it worked, else why there is none: a
+/// demo without a picture is still one.
+std::string draw(const Demo& demo, int width, bool quiet, const fs::path& path) {
+    pictures::PictureScene scene;
+    scene.width = width;
+    scene.height = std::max(width * 4 / 5, 16);
+    scene.title = demo.loaded.name;
+    std::vector<Vec3> hip, scp;
+    std::vector<bool> constrained;
     for (const io::TraceRow& row : demo.rows) {
-        if (row.constrained) {
-            touch.push_back(row.scp);
-            continue;
-        }
-        draw_line(picture, camera, touch, scp_colour, bias, 3);
-        touch.clear();
+        hip.push_back(row.hip);
+        scp.push_back(row.scp);
+        constrained.push_back(row.constrained);
     }
-    draw_line(picture, camera, touch, scp_colour, bias, 3);
-    write_png(picture, path);
+    {
+        ProgressBar bar("extracting", quiet);
+        pictures::add_levels(scene, demo.field, std::array{demo.isovalue},
+                             [&](double fraction) { bar.at(fraction); });
+    }
+    const Vec3 contact = mean_contact(demo.rows);
+    const Geometry& geometry = demo.field.geometry();
+    const Vec3 towards =
+        contact.allFinite() ? Vec3(contact - physical_centre(geometry)) : Vec3(Vec3::Zero());
+    pictures::frame(scene, pictures::natural_view(geometry, towards));
+    pictures::add_way(scene, hip, scp, constrained);
+    pictures::DrawOptions options;
+    options.waiting = [] { stop_if_interrupted(); };
+    try {
+        pictures::draw_picture(scene, path, options);
+    } catch (const io::OutputError& e) {
+        stop_if_interrupted();  // Ctrl-C ends the helper too, which is not its failure
+        return e.what();
+    }
+    return {};
 }
 
 /// Depth, force and density over time, from the trace that was just written.
@@ -151,7 +163,7 @@ bool plot_trace(const fs::path& folder, const fs::path& figure, std::size_t rows
     return problem.empty();
 }
 
-void write_report(const Demo& demo, const DemoOptions& options, bool plotted,
+void write_report(const Demo& demo, const DemoOptions& options, bool drawn, bool plotted,
                   const fs::path& path) {
     const Geometry& g = demo.field.geometry();
     std::string html = fmt::format(
@@ -164,9 +176,13 @@ void write_report(const Demo& demo, const DemoOptions& options, bool plotted,
         options.hand.rate_hz, demo.isovalue, evaluation::html_text(demo.loaded.name), g.size[0],
         g.size[1], g.size[2], name_of(demo.loaded.volume.type()));
     html += fmt::format("<pre>{}</pre>\n", summary_text(demo.summary));
-    html +=
-        "<p><img src=\"surface.png\" alt=\"The isosurface with the way of the hand\"><br>"
-        "Blue: the hand (HIP). Vermilion: the proxy (SCP) in contact.</p>\n";
+    if (drawn) {
+        html +=
+            "<p><img src=\"surface.png\" alt=\"The isosurface with the way of the hand\"><br>"
+            "Blue: the hand (HIP). Vermilion: the proxy (SCP) in contact. Fainter where it is "
+            "behind "
+            "the surface.</p>\n";
+    }
     if (plotted) {
         html += "<p><img src=\"session.png\" alt=\"Depth, force and density over time\"></p>\n";
     }
@@ -188,12 +204,15 @@ void run_demo(const DemoOptions& options) {
     ResultFolder results(options.output);
     const fs::path& folder = results.part();
     feel(demo, options, folder);
-    const int width = options.picture_width;
-    draw(demo, Picture(width, width * 4 / 5), options.volume.quiet, folder / "surface.png");
+    const std::string no_picture =
+        draw(demo, options.picture_width, options.volume.quiet, folder / "surface.png");
+    if (!no_picture.empty() && !options.volume.quiet) {
+        fmt::print(stderr, "palpate: note: {}\n", no_picture);
+    }
     const bool plotted = plot_trace(folder, folder / "session.png", demo.rows.size()) &&
                          plot_trace(folder, folder / "session.svg", demo.rows.size());
     stop_if_interrupted();
-    write_report(demo, options, plotted, folder / "report.html");
+    write_report(demo, options, no_picture.empty(), plotted, folder / "report.html");
     results.complete();
     if (options.volume.quiet) return;
     fmt::print("A simulated hand felt {} at isovalue {:g}.\n{}", demo.loaded.name, demo.isovalue,

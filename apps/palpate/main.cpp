@@ -89,6 +89,7 @@ int run(int argc, char** argv) {
     palpate::app::add_info(app);
     palpate::app::add_replay(app);
     palpate::app::add_extract(app);
+    palpate::app::add_render(app);
     palpate::app::add_demo(app);
     palpate::app::add_evaluate(app);
     palpate::app::add_touch(app);

@@ -71,12 +71,18 @@ void VolumeOptions::add_to(CLI::App& command, bool optional) {
     command.add_option("--series", series, "DICOM series: its number in the list, or its UID");
     command.add_option("--time-step", time_step, "Which volume of a 4-D file, from 0")
         ->check(flaw_in_count);
+    command
+        .add_option("--smooth", smooth,
+                    "Smooth the samples so many times (3x3x3 binomial), against the terraces of 8 "
+                    "bits; they become float32")
+        ->check(CLI::Range(0, 64));
     command.add_flag("-q,--quiet", quiet, "No progress, no notes");
 }
 
 LoadedVolume load(const VolumeOptions& options) {
     LoadedVolume loaded =
         options.volume.starts_with(synthetic_prefix) ? make_synthetic(options) : read_file(options);
+    loaded.volume = smoothed(loaded.volume, options.smooth);
     if (!options.quiet) {
         for (const std::string& note : loaded.notes) {
             fmt::print(stderr, "palpate: note: {}: {}\n", loaded.name, note);
@@ -88,6 +94,10 @@ LoadedVolume load(const VolumeOptions& options) {
 void FieldOptions::add_to(CLI::App& command) {
     command.add_option("-i,--isovalue", isovalue,
                        "Level to feel, in the data's units (300) or percent of its range (53%)");
+    add_side_to(command);
+}
+
+void FieldOptions::add_side_to(CLI::App& command) {
     command.add_option("--solid", solid, "Which side of the level is solid: above, below")
         ->check(CLI::IsMember({"above", "below"}))
         ->capture_default_str();

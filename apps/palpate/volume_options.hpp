@@ -17,6 +17,7 @@ struct VolumeOptions {
     std::uint64_t skip = 0;           ///< [bytes] header to skip in a raw file
     std::string series;               ///< DICOM series UID or number
     int time_step = 0;
+    int smooth = 0;  ///< passes of the binomial kernel
     bool quiet = false;
 
     /// Declares VOLUME and its options on a command. An `optional` VOLUME has a default.
@@ -43,6 +44,8 @@ struct FieldOptions {
     std::string background;
 
     void add_to(CLI::App& command);
+    /// All but --isovalue, for a command that takes several.
+    void add_side_to(CLI::App& command);
 };
 
 /// The field that the options ask for.

@@ -1,9 +1,8 @@
 // palpate demo: the files it promises, and none that it does not.
-#include <png.h>
-
 #include "apps/program.hpp"
 #include "io/trace.hpp"
 #include "io/trajectory.hpp"
+#include "support/png.hpp"
 
 namespace palpate::app::test {
 namespace {
@@ -11,14 +10,8 @@ namespace {
 const std::string quick = "demo synthetic:sphere:20x20x20 --duration 0.5 --picture 150 ";
 
 bool is_picture(const std::filesystem::path& path) {
-    png_image image{};
-    image.version = PNG_IMAGE_VERSION;
-    if (png_image_begin_read_from_file(&image, path.c_str()) == 0) return false;
-    image.format = PNG_FORMAT_RGB;
-    std::vector<png_byte> pixels(PNG_IMAGE_SIZE(image));
-    if (png_image_finish_read(&image, nullptr, pixels.data(), 0, nullptr) == 0) return false;
-    const auto [least, most] = std::minmax_element(pixels.begin(), pixels.end());
-    return image.width > 100 && image.height > 100 && *least != *most;
+    const support::Png png = support::png_from(support::bytes_of(path));
+    return png.width > 100 && png.height > 100 && png.colours() > 20;
 }
 
 void expect_results(const std::filesystem::path& folder, std::size_t ticks) {
@@ -69,6 +62,36 @@ TEST(Demo, FeelsARealVolumeAtALevelOfItsOwnChoice) {
                       "150", "--motion", "slide", "-o", "my <results> & 'more'"});
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     expect_results(folder / "my <results> & 'more'", 1001);
+}
+
+TEST(Demo, ThePictureShowsTheSurfaceAndBothWays) {
+    const ScratchFolder folder;
+    ASSERT_EQ(palpate(folder,
+                      "demo synthetic:sphere:20x20x20 --duration 2 --picture 150 --motion "
+                      "circle -q -o out")
+                  .status,
+              0);
+    const auto png = support::png_from(support::bytes_of(folder / "out/surface.png"));
+    EXPECT_EQ(png.width, 150U);
+    EXPECT_EQ(png.height, 120U);
+    EXPECT_GT(png.count(support::is_bone), 2000U);
+    EXPECT_GT(png.count(support::is_vermilion), 20U);
+    EXPECT_GT(png.count(support::is_blue), 5U);
+}
+
+TEST(Demo, WithoutAPictureItSaysSoAndIsDoneAllTheSame) {
+    const ScratchFolder folder;
+    ::setenv("PALPATE_PICTURE_HELPER", "/bin/false", 1);
+    const Outcome outcome = palpate(folder, quick);
+    ::unsetenv("PALPATE_PICTURE_HELPER");
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_TRUE(is_one_line(outcome.err)) << outcome.err;
+    EXPECT_TRUE(contains(outcome.err, "note: the picture could not be drawn")) << outcome.err;
+    EXPECT_FALSE(std::filesystem::exists(folder / "palpate-demo/surface.png"));
+    EXPECT_TRUE(std::filesystem::exists(folder / "palpate-demo/trace.csv"));
+    const std::string report = support::bytes_of(folder / "palpate-demo/report.html");
+    EXPECT_FALSE(contains(report, "surface.png"));
+    EXPECT_TRUE(contains(report, "trace.csv"));
 }
 
 TEST(Demo, AnExistingFolderIsUsedAgainAndOtherFilesStay) {

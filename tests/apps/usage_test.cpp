@@ -4,7 +4,7 @@
 namespace palpate::app::test {
 namespace {
 
-constexpr const char* commands[] = {"info", "replay", "extract", "demo"};
+constexpr const char* commands[] = {"info", "replay", "extract", "render", "demo"};
 
 TEST(Usage, EveryCommandHasHelpWithAnExample) {
     const ScratchFolder folder;
@@ -22,7 +22,7 @@ TEST(Usage, EveryCommandHasHelpWithAnExample) {
 
 TEST(Usage, EveryCommandTellsTheVersion) {
     const ScratchFolder folder;
-    for (const std::string command : {"", "info ", "replay ", "extract ", "demo "}) {
+    for (const std::string command : {"", "info ", "replay ", "extract ", "render ", "demo "}) {
         const Outcome version = palpate(folder, command + "--version");
         EXPECT_EQ(version.status, 0) << command;
         EXPECT_EQ(version.out, "palpate " PALPATE_VERSION "\n") << command;

@@ -20,8 +20,9 @@ MAY_SEE = {
     "scenes": ("include", "scenes"),
     "devices": ("include", "io", "scenes", "devices"),
     "io": ("include", "io", "scenes"),
-    "apps": ("include", "io", "baselines", "scenes", "devices", "evaluation", "apps"),
-    "evaluation": ("include", "io", "baselines", "scenes", "devices", "evaluation"),
+    "pictures": ("include", "io", "pictures"),
+    "apps": ("include", "io", "baselines", "scenes", "devices", "pictures", "evaluation", "apps"),
+    "evaluation": ("include", "io", "baselines", "scenes", "devices", "pictures", "evaluation"),
     "benchmarks": ("include", "io", "baselines", "scenes", "devices", "benchmarks", "tests"),
     "examples": ("include", "io", "baselines", "scenes", "examples"),
 }

@@ -1,0 +1,263 @@
+// palpate render: a picture of isosurfaces, hand and proxy, without a display.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "apps/palpate/commands.hpp"
+#include "apps/palpate/outputs.hpp"
+#include "apps/palpate/progress.hpp"
+#include "apps/palpate/volume_options.hpp"
+#include "io/number.hpp"
+#include "io/output.hpp"
+#include "io/trace.hpp"
+#include "palpate/force.hpp"
+#include "palpate/proxy.hpp"
+#include "pictures/contact.hpp"
+#include "pictures/levels.hpp"
+#include "pictures/picture.hpp"
+#include "pictures/view.hpp"
+
+namespace palpate::app {
+namespace {
+
+struct RenderPictureOptions {
+    VolumeOptions volume;
+    FieldOptions field;
+    std::vector<std::string> isovalues;
+    std::string scp, hip, force;                   ///< X,Y,Z
+    double stiffness = ForceSettings{}.stiffness;  ///< [N/mm]
+    std::string path;                              ///< of a path file or a trace
+    std::string view;
+    std::optional<double> azimuth, elevation;  ///< [degrees]
+    double roll = 0;                           ///< [degrees] clockwise
+    double zoom = 1;
+    std::string size = "1000x800";  ///< [pixels]
+    std::string output;
+};
+
+std::optional<Vec3> point_from(const std::string& option, const std::string& text) {
+    if (text.empty()) return {};
+    Vec3 point;
+    std::size_t begin = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        const std::size_t end = axis < 2 ? text.find(',', begin) : text.size();
+        const auto number = end == std::string::npos
+                                ? std::nullopt
+                                : io::number_from<double>(text.substr(begin, end - begin));
+        if (!number || !std::isfinite(*number)) {
+            throw std::invalid_argument(option + " " + text +
+                                        ": three numbers are needed, as in 10,-20.5,3");
+        }
+        point[axis] = *number;
+        begin = end + 1;
+    }
+    return point;
+}
+
+std::array<int, 2> size_from(const std::string& text) {
+    const auto cross = text.find('x');
+    const auto width = io::number_from<int>(text.substr(0, cross));
+    const auto height =
+        cross == std::string::npos ? width : io::number_from<int>(text.substr(cross + 1));
+    const auto good = [](const auto& n) { return n && *n >= 64 && *n <= 4096; };
+    if (cross == std::string::npos || !good(width) || !good(height)) {
+        throw std::invalid_argument("--size " + text +
+                                    ": WIDTHxHEIGHT is needed, each 64 to 4096 pixels");
+    }
+    return {*width, *height};
+}
+
+/// The levels in the order given; the first is the one that a hand feels.
+std::vector<double> levels_of(const RenderPictureOptions& options, const LoadedVolume& loaded,
+                              const Field& field) {
+    std::vector<std::string> texts = options.isovalues;
+    if (texts.empty()) texts.emplace_back();  // the volume's own
+    std::vector<double> levels;
+    for (const std::string& text : texts) {
+        FieldOptions one = options.field;
+        one.isovalue = text;
+        const double level = isovalue_of(loaded, field, one);
+        if (std::ranges::count(levels, level) > 0) {
+            throw std::invalid_argument("--isovalue " + text + ": is there twice");
+        }
+        levels.push_back(level);
+    }
+    if (levels.size() > pictures::most_levels) {
+        throw std::invalid_argument(
+            fmt::format("--isovalue: at most {} levels can be told apart", pictures::most_levels));
+    }
+    return levels;
+}
+
+/// What is asked for, completed: a hand alone meets the surface where its proxy does, and hand and
+/// proxy have a spring between them.
+pictures::Contact contact_of(const RenderPictureOptions& options, const Field& field,
+                             double isovalue) {
+    pictures::Contact contact{point_from("--scp", options.scp), point_from("--hip", options.hip),
+                              point_from("--force", options.force)};
+    if (contact.hip && !contact.scp) {
+        Proxy proxy;
+        if (!place(proxy, field, *contact.hip, isovalue)) {
+            throw std::invalid_argument(
+                fmt::format("--hip {}: all of space is solid at isovalue {:g}, so there is no "
+                            "proxy; choose another level",
+                            options.hip, isovalue));
+        }
+        contact.scp = update_exact(proxy, field, *contact.hip).scp;
+    }
+    if (contact.hip && contact.scp && !contact.force) {
+        contact.force = options.stiffness * (*contact.scp - *contact.hip);
+    }
+    if (contact.force && !contact.scp) {
+        throw std::invalid_argument("--force: where? Give --scp or --hip as well");
+    }
+    return contact;
+}
+
+pictures::View view_of(const RenderPictureOptions& options, const Field& field,
+                       const pictures::Contact& contact) {
+    if (!options.view.empty()) return pictures::view_named(options.view);
+    if (options.azimuth || options.elevation) {
+        return pictures::view_from(options.azimuth.value_or(0), options.elevation.value_or(0));
+    }
+    Vec3 towards = Vec3::Zero();
+    // From where the surface is touched: out of it, or at least away from the middle.
+    const bool pressed = contact.scp && contact.hip && *contact.scp != *contact.hip;
+    if (contact.scp) {
+        towards = *contact.scp - (pressed ? *contact.hip : physical_centre(field.geometry()));
+    }
+    return pictures::natural_view(field.geometry(), towards);
+}
+
+struct Drawing {
+    pictures::PictureScene scene;
+    std::string summary;  ///< what is in it, in words
+};
+
+std::string text_of(const Vec3& p) {
+    return fmt::format("({:.6g}, {:.6g}, {:.6g})", p[0], p[1], p[2]);
+}
+
+std::string summary_of(const pictures::PictureScene& scene, const pictures::Contact& contact) {
+    std::string text = fmt::format("{} x {} pixels", scene.width, scene.height);
+    for (const pictures::Surface& s : scene.surfaces) {
+        text += fmt::format(", {} ({} triangles)", s.label, s.mesh.triangles.size());
+    }
+    if (contact.hip) text += ", HIP " + text_of(*contact.hip);
+    if (contact.scp) text += ", SCP " + text_of(*contact.scp);
+    if (contact.force) text += fmt::format(" mm, force {:.4g} N", contact.force->norm());
+    return text;
+}
+
+Drawing drawing_of(const RenderPictureOptions& options) {
+    const LoadedVolume loaded = load(options.volume);
+    const Field field = make_field(loaded, options.field);
+    const std::vector<double> levels = levels_of(options, loaded, field);
+    const pictures::Contact contact = contact_of(options, field, levels.front());
+    const io::Way way = options.path.empty() ? io::Way{} : io::read_way(options.path);
+    Drawing drawing;
+    pictures::PictureScene& scene = drawing.scene;
+    scene.width = size_from(options.size)[0];
+    scene.height = size_from(options.size)[1];
+    scene.title = std::filesystem::path(loaded.name).filename().string();
+    {
+        ProgressBar bar("extracting", options.volume.quiet);
+        const int every =
+            pictures::add_levels(scene, field, levels, [&](double fraction) { bar.at(fraction); });
+        if (every > 1 && !options.volume.quiet) {
+            fmt::print(stderr,
+                       "palpate: note: {}: too large for a picture; drawn from one in {} samples "
+                       "along each axis, without what is finer\n",
+                       loaded.name, every);
+        }
+    }
+    pictures::frame(scene, pictures::rolled(view_of(options, field, contact), options.roll),
+                    options.zoom, contact.scp ? contact.scp : contact.hip);
+    pictures::add_way(scene, way.hip, way.scp, way.constrained);
+    pictures::add_contact(scene, contact);
+    drawing.summary = summary_of(scene, contact);
+    return drawing;
+}
+
+void render(const RenderPictureOptions& options) {
+    if (!is_stream(options.output) && std::filesystem::path(options.output).extension() != ".png") {
+        throw std::invalid_argument("--output " + options.output +
+                                    ": pictures are PNG files; give a name that ends in .png");
+    }
+    check_outputs({options.volume.volume, options.path}, {options.output});
+    (void)size_from(options.size);
+    io::PendingFile file(options.output);
+    const Drawing drawing = drawing_of(options);
+    pictures::DrawOptions draw;
+    draw.waiting = [] { stop_if_interrupted(); };
+    try {
+        file.write(pictures::png_of(drawing.scene, draw));
+    } catch (const io::OutputError&) {
+        stop_if_interrupted();  // Ctrl-C reaches the helper as well, and its end may be seen first
+        throw;
+    }
+    stop_if_interrupted();
+    file.commit();
+    if (!options.volume.quiet && !is_standard_output(options.output)) {
+        fmt::print("{}: {}\n", options.output, drawing.summary);
+    }
+}
+
+}  // namespace
+
+void add_render(CLI::App& app) {
+    auto options = std::make_shared<RenderPictureOptions>();
+    CLI::App* command =
+        app.add_subcommand("render", "A picture of isosurfaces, hand and proxy; needs no display");
+    command->footer(
+        "Points are physical (LPS, mm). A --hip alone gets the proxy that it has at the first "
+        "--isovalue.\n\nExamples:\n"
+        "  palpate render head.nrrd --isovalue 500 --isovalue 1200 --output head.png\n"
+        "  palpate render synthetic:torus --hip 0,-20,8 --zoom 3 --output contact.png");
+    options->volume.add_to(*command);
+    command
+        ->add_option("-i,--isovalue", options->isovalues,
+                     "Level to draw, in the data's units (300) or percent of its range (53%); "
+                     "may be given again: the outer surfaces are translucent")
+        ->allow_extra_args(false);
+    options->field.add_side_to(*command);
+    command->add_option("--scp", options->scp, "The proxy [mm, physical]")->type_name("X,Y,Z");
+    command->add_option("--hip", options->hip, "The hand [mm, physical]")->type_name("X,Y,Z");
+    command
+        ->add_option("--force", options->force,
+                     "Force on the hand [N] (default: stiffness (SCP - HIP))")
+        ->type_name("X,Y,Z");
+    command->add_option("-k,--stiffness", options->stiffness, "Stiffness of the spring [N/mm]")
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str();
+    command->add_option("--path", options->path, "Way to draw: a trace or a path of replay")
+        ->type_name("FILE");
+    auto* view = command
+                     ->add_option("--view", options->view,
+                                  "Side of the body to look at (default: one that shows much)")
+                     ->check(CLI::IsMember(pictures::view_names()));
+    command
+        ->add_option("--azimuth", options->azimuth,
+                     "Look from [degrees]: 0 the front, 90 the body's left side")
+        ->excludes(view);
+    command->add_option("--elevation", options->elevation, "Look from above [degrees], -90 to 90")
+        ->excludes(view);
+    command->add_option("--roll", options->roll, "Turn the picture clockwise [degrees]")
+        ->check(CLI::Range(-360.0, 360.0))
+        ->capture_default_str();
+    command->add_option("--zoom", options->zoom, "Enlarge, about the proxy where there is one")
+        ->check(CLI::Range(0.1, 1000.0))
+        ->capture_default_str();
+    command->add_option("--size", options->size, "Size of the picture [pixels]")
+        ->type_name("WxH")
+        ->capture_default_str();
+    command->add_option("-o,--output", options->output, "Picture to write: .png")->required();
+    command->callback([options] { render(*options); });
+}
+
+}  // namespace palpate::app

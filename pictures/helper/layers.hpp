@@ -1,0 +1,28 @@
+// Drawings laid one over the other, pixel by pixel. A surface of glass is one pane: its nearest
+// part alone, or the far side of a body and all that is inside it would cloud the view.
+#pragma once
+
+#include <vector>
+
+namespace palpate::pictures {
+
+/// Row by row from the bottom.
+struct Layer {
+    std::vector<unsigned char> rgba;  ///< sRGB; what alpha means is said where it is used
+    std::vector<float> depth;         ///< 0 near, 1 nothing
+};
+
+/// Panes whose alpha is how dense they are, each where it is nearer than `picture`, the farther
+/// ones first.
+void lay_over(Layer& picture, const std::vector<Layer>& panes);
+
+/// What of `hidden` lies behind the picture, mixed into it.
+void shine_through(Layer& picture, const Layer& hidden, double opacity);
+
+/// An overlay before everything, its colours already multiplied by its alpha.
+void lay_over(Layer& picture, const Layer& overlay);
+
+/// The mean of each block of scale x scale pixels, 3 bytes a pixel.
+std::vector<unsigned char> reduced(const Layer& picture, int width, int height, int scale);
+
+}  // namespace palpate::pictures

@@ -1,0 +1,209 @@
+// Text and small signs, all in the window's pixels from its lower left corner.
+#include "pictures/helper/notes.hpp"
+
+#include <vtkActor2D.h>
+#include <vtkAnnotatedCubeActor.h>
+#include <vtkCamera.h>
+#include <vtkCellArray.h>
+#include <vtkNew.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkPolyDataMapper2D.h>
+#include <vtkProperty.h>
+#include <vtkProperty2D.h>
+#include <vtkTextActor.h>
+#include <vtkTextProperty.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+namespace palpate::pictures {
+namespace {
+
+constexpr double ink = 0.13;  // grey of all writing
+
+/// A filled rectangle.
+void add_box(vtkRenderer& renderer, double x, double y, double width, double height,
+             const Colour& colour) {
+    vtkNew<vtkPoints> points;
+    points->InsertNextPoint(x, y, 0);
+    points->InsertNextPoint(x + width, y, 0);
+    points->InsertNextPoint(x + width, y + height, 0);
+    points->InsertNextPoint(x, y + height, 0);
+    const vtkIdType corners[] = {0, 1, 2, 3};
+    vtkNew<vtkCellArray> polygons;
+    polygons->InsertNextCell(4, corners);
+    vtkNew<vtkPolyData> data;
+    data->SetPoints(points);
+    data->SetPolys(polygons);
+    vtkNew<vtkPolyDataMapper2D> mapper;
+    mapper->SetInputData(data);
+    vtkNew<vtkActor2D> actor;
+    actor->SetMapper(mapper);
+    actor->GetProperty()->SetColor(colour.red, colour.green, colour.blue);
+    renderer.AddActor2D(actor);
+}
+
+/// A square in a frame; beside each other, since what is drawn later does not cover.
+void add_swatch(vtkRenderer& renderer, double x, double y, double side, double frame,
+                const Colour& colour) {
+    const Colour grey{0.45, 0.45, 0.45};
+    add_box(renderer, x, y, side, side, colour);
+    add_box(renderer, x - frame, y - frame, side + 2 * frame, frame, grey);
+    add_box(renderer, x - frame, y + side, side + 2 * frame, frame, grey);
+    add_box(renderer, x - frame, y, frame, side, grey);
+    add_box(renderer, x + side, y, frame, side, grey);
+}
+
+struct Text {
+    double x = 0, y = 0;  ///< its left end, or middle if centred; the middle of its height
+    int size = 12;        ///< [pixels]
+    bool centred = false, bold = false;
+};
+
+void add_text(vtkRenderer& renderer, const std::string& text, const Text& where) {
+    vtkNew<vtkTextActor> actor;
+    actor->SetInput(text.c_str());
+    vtkTextProperty* const p = actor->GetTextProperty();
+    p->SetFontFamilyToArial();
+    p->SetFontSize(where.size);
+    p->SetBold(where.bold);
+    p->SetColor(ink, ink, ink);
+    p->SetBackgroundColor(paper.red, paper.green, paper.blue);
+    p->SetBackgroundOpacity(0.7);  // readable over a surface, unseen beside it
+    p->SetVerticalJustificationToCentered();
+    if (where.centred) p->SetJustificationToCentered();
+    actor->SetPosition(where.x, where.y);
+    renderer.AddActor2D(actor);
+}
+
+/// 1, 2 or 5 times a power of ten: the greatest that is at most `most`.
+double round_length(double most) {
+    const double power = std::pow(10, std::floor(std::log10(most)));
+    for (const double digit : {5.0, 2.0}) {
+        if (digit * power <= most) return digit * power;
+    }
+    return power;
+}
+
+std::string in_millimetres(double length) {
+    char text[32];
+    if (length >= 1) {
+        std::snprintf(text, sizeof text, "%g mm", length);
+    } else {
+        std::snprintf(text, sizeof text, "%g \xC2\xB5m", 1000 * length);
+    }
+    return text;
+}
+
+struct Entry {
+    Colour colour;
+    std::string label;
+};
+
+std::vector<Entry> entries_of(const PictureScene& scene) {
+    std::vector<Entry> entries;
+    const auto add = [&](const auto& all) {
+        for (const auto& one : all) {
+            if (!one.label.empty()) entries.push_back({one.colour, one.label});
+        }
+    };
+    add(scene.surfaces);
+    add(scene.balls);
+    add(scene.springs);
+    add(scene.arrows);
+    add(scene.lines);
+    return entries;
+}
+
+void add_legend(vtkRenderer& renderer, const PictureScene& scene, double em, int height) {
+    const double line = 1.55 * em;
+    double y = height - 1.5 * em;
+    const auto size = static_cast<int>(em);
+    if (!scene.title.empty()) {
+        add_text(renderer, scene.title, {1.1 * em, y, size, false, true});
+        y -= 1.15 * line;
+    }
+    if (!scene.legend) return;
+    for (const Entry& entry : entries_of(scene)) {
+        add_swatch(renderer, 1.1 * em, y - 0.36 * em, 0.72 * em, 0.06 * em, entry.colour);
+        add_text(renderer, entry.label, {2.2 * em, y, size});
+        y -= line;
+    }
+}
+
+void add_scale_bar(vtkRenderer& renderer, const PictureScene& scene, double em, int width,
+                   int height) {
+    const double pixels_per_mm = height / (2 * scene.camera.half_height);
+    const double length = round_length(0.22 * width / pixels_per_mm);
+    const double pixels = length * pixels_per_mm;
+    const double right = width - 1.3 * em, y = 1.1 * em, thick = std::max(1.0, 0.16 * em);
+    const Colour grey{ink, ink, ink};
+    add_box(renderer, right - pixels, y, pixels, thick, grey);
+    for (const double x : {right - pixels, right - thick}) {
+        add_box(renderer, x, y - 0.25 * em, thick, 0.5 * em + thick, grey);
+    }
+    add_text(renderer, in_millimetres(length),
+             {right - 0.5 * pixels, y + 1.05 * em, static_cast<int>(em), true});
+}
+
+/// A cube whose faces say which side of the body they are, seen as the body is.
+vtkSmartPointer<vtkRenderer> orientation_of(const PictureScene& scene, int width, int height,
+                                            int layer) {
+    vtkNew<vtkAnnotatedCubeActor> cube;
+    cube->SetXPlusFaceText("L");
+    cube->SetXMinusFaceText("R");
+    cube->SetYPlusFaceText("P");
+    cube->SetYMinusFaceText("A");
+    cube->SetZPlusFaceText("S");
+    cube->SetZMinusFaceText("I");
+    cube->SetFaceTextScale(0.62);
+    cube->SetXFaceTextRotation(90);
+    cube->SetYFaceTextRotation(0);
+    cube->SetZFaceTextRotation(90);
+    cube->GetCubeProperty()->SetColor(0.86, 0.88, 0.9);
+    cube->GetCubeProperty()->SetAmbient(0.35);
+    cube->GetCubeProperty()->SetDiffuse(0.7);
+    cube->GetTextEdgesProperty()->SetColor(ink, ink, ink);
+    for (vtkProperty* face : {cube->GetXPlusFaceProperty(), cube->GetXMinusFaceProperty(),
+                              cube->GetYPlusFaceProperty(), cube->GetYMinusFaceProperty(),
+                              cube->GetZPlusFaceProperty(), cube->GetZMinusFaceProperty()}) {
+        face->SetColor(ink, ink, ink);
+        face->SetAmbient(1);
+        face->SetDiffuse(0);
+    }
+    auto renderer = vtkSmartPointer<vtkRenderer>::New();
+    const double side = 0.17 * std::min(width, height);
+    renderer->SetViewport(0, 0, side / width, side / height);
+    renderer->SetLayer(layer);
+    renderer->InteractiveOff();
+    renderer->AddActor(cube);
+    vtkCamera* const camera = renderer->GetActiveCamera();
+    camera->ParallelProjectionOn();
+    camera->SetFocalPoint(0, 0, 0);
+    camera->SetPosition(Vec3(5 * scene.camera.towards_viewer.normalized()).data());
+    camera->SetViewUp(Vec3(scene.camera.up).data());
+    camera->SetParallelScale(1.15);
+    renderer->ResetCameraClippingRange();
+    return renderer;
+}
+
+}  // namespace
+
+std::vector<vtkSmartPointer<vtkRenderer>> notes_of(const PictureScene& scene, int scale,
+                                                   int layer) {
+    const int width = scene.width * scale, height = scene.height * scale;
+    const double em = std::max(9.0 * scale, 0.024 * std::min(width, height));
+    auto writing = vtkSmartPointer<vtkRenderer>::New();
+    writing->SetLayer(layer);
+    writing->InteractiveOff();
+    add_legend(*writing, scene, em, height);
+    if (scene.scale_bar) add_scale_bar(*writing, scene, em, width, height);
+    std::vector<vtkSmartPointer<vtkRenderer>> notes{writing};
+    if (scene.orientation) notes.push_back(orientation_of(scene, width, height, layer));
+    return notes;
+}
+
+}  // namespace palpate::pictures

@@ -1,0 +1,173 @@
+// Light and the camera, and the drawings that the compositor lays one over the other.
+#include "pictures/helper/stage.hpp"
+
+#include <vtkCallbackCommand.h>
+#include <vtkCamera.h>
+#include <vtkLight.h>
+#include <vtkNew.h>
+#include <vtkOpenGLState.h>
+#include <vtkProperty.h>
+#include <vtkRenderer.h>
+#include <vtkUnsignedCharArray.h>
+#include <vtk_glew.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "pictures/helper/failure.hpp"
+#include "pictures/helper/layers.hpp"
+#include "pictures/helper/notes.hpp"
+#include "pictures/helper/window.hpp"
+
+namespace palpate::pictures {
+namespace {
+
+constexpr double ghost_opacity = 0.4;  // of what lies behind a surface
+
+/// From over the viewer's left shoulder, with weaker ones that keep the shadows from going black.
+void light(vtkRenderer& renderer) {
+    struct Lamp {
+        double x, y, z, intensity;
+    };
+    renderer.AutomaticLightCreationOff();
+    for (const Lamp& lamp : {Lamp{-0.55, 0.75, 1, 0.78}, Lamp{0.9, -0.1, 0.6, 0.26},
+                             Lamp{0, 0, 1, 0.2}, Lamp{0.2, -1, 0.2, 0.12}}) {
+        vtkNew<vtkLight> l;
+        l->SetLightTypeToCameraLight();
+        l->SetPosition(lamp.x, lamp.y, lamp.z);
+        l->SetFocalPoint(0, 0, 0);
+        l->SetIntensity(lamp.intensity);
+        renderer.AddLight(l);
+    }
+}
+
+struct Size {
+    int width, height;
+};
+
+enum class Blending { on, off };
+
+/// VTK switches blending on when it begins; as a callback of what begins after that.
+void stop_blending(vtkObject*, unsigned long, void* window, void*) {
+    static_cast<vtkOpenGLRenderWindow*>(window)->GetState()->vtkglDisable(GL_BLEND);
+}
+
+Layer drawn(const std::vector<vtkRenderer*>& renderers, const Size& size,
+            Blending blending = Blending::on) {
+    const auto window = surfaceless_window(size.width, size.height);
+    vtkNew<vtkCallbackCommand> before;
+    before->SetCallback(stop_blending);
+    before->SetClientData(window);
+    if (blending == Blending::off) renderers[0]->AddObserver(vtkCommand::StartEvent, before);
+    window->SetMultiSamples(0);
+    window->SetAlphaBitPlanes(1);
+    int layers = 1;
+    for (vtkRenderer* const renderer : renderers) {
+        window->AddRenderer(renderer);
+        layers = std::max(layers, renderer->GetLayer() + 1);
+    }
+    window->SetNumberOfLayers(layers);
+    window->Render();
+    Layer layer;
+    vtkNew<vtkUnsignedCharArray> pixels;
+    const auto count = std::size_t(size.width) * std::size_t(size.height);
+    layer.depth.resize(count);
+    if (window->GetRGBACharPixelData(0, 0, size.width - 1, size.height - 1, 0, pixels, 0) != 1 ||
+        static_cast<std::size_t>(pixels->GetNumberOfValues()) != 4 * count ||
+        window->GetZbufferData(0, 0, size.width - 1, size.height - 1, layer.depth.data()) != 1) {
+        throw Failure("OpenGL did not give the picture back");
+    }
+    layer.rgba.assign(pixels->GetPointer(0), pixels->GetPointer(0) + 4 * count);
+    for (vtkRenderer* const renderer : renderers) window->RemoveRenderer(renderer);
+    return layer;
+}
+
+/// A renderer of the scene's space; every drawing has the same camera, so that depths compare.
+vtkSmartPointer<vtkRenderer> view_of(vtkCamera* camera,
+                                     const std::vector<vtkSmartPointer<vtkActor>>& actors) {
+    auto renderer = vtkSmartPointer<vtkRenderer>::New();
+    renderer->SetBackground(paper.red, paper.green, paper.blue);
+    for (const auto& actor : actors) renderer->AddActor(actor);
+    light(*renderer);
+    renderer->SetActiveCamera(camera);
+    return renderer;
+}
+
+/// The scene's bodies are relative to the camera's focus and reach as far as `depth` from it.
+vtkSmartPointer<vtkCamera> camera_of(const Camera& wanted, double depth) {
+    auto camera = vtkSmartPointer<vtkCamera>::New();
+    camera->ParallelProjectionOn();
+    camera->SetParallelScale(wanted.half_height);
+    camera->SetFocalPoint(0, 0, 0);
+    camera->SetPosition(Vec3(1.05 * depth * wanted.towards_viewer.normalized()).data());
+    camera->SetViewUp(Vec3(wanted.up).data());
+    camera->SetClippingRange(0.02 * depth, 2.08 * depth);
+    return camera;
+}
+
+/// How far from the focus anything is [mm].
+double reach(const std::vector<vtkSmartPointer<vtkActor>>& actors) {
+    double farthest = 1e-6;
+    for (const auto& actor : actors) {
+        const double* const bounds = actor->GetBounds();
+        for (int i = 0; i < 6; ++i) farthest = std::max(farthest, std::abs(bounds[i]));
+    }
+    return std::sqrt(3.0) * farthest;
+}
+
+/// Crevices are darker, which shows the shape. Not in a detail: VTK keeps the places of what it
+/// sees as 16-bit floats, which are too coarse for it where the picture is a small part of `depth`.
+void shade_crevices(vtkRenderer& renderer, const Camera& camera, double depth) {
+    const double radius = 0.09 * camera.half_height;
+    const double bias = std::max(0.004 * camera.half_height, 0.002 * depth);
+    if (bias > 0.2 * radius) return;
+    renderer.UseSSAOOn();
+    renderer.SetSSAORadius(radius);
+    renderer.SetSSAOBias(bias);
+    renderer.SetSSAOKernelSize(64);
+    renderer.SSAOBlurOn();
+}
+
+/// Legend and signs on nothing.
+Layer writing(const PictureScene& scene, const Size& size, int scale) {
+    vtkNew<vtkRenderer> nothing;
+    nothing->SetBackground(0, 0, 0);
+    nothing->SetBackgroundAlpha(0);
+    std::vector<vtkRenderer*> renderers{nothing};
+    const auto notes = notes_of(scene, scale, 1);
+    for (const auto& renderer : notes) renderers.push_back(renderer);
+    return drawn(renderers, size);
+}
+
+}  // namespace
+
+std::vector<unsigned char> pixels_of(const PictureScene& scene,
+                                     const std::vector<SharedMesh>& meshes) {
+    // Drawn twice as large, where that is no more than a large picture, and reduced: smooth edges.
+    const int scale = std::size_t(scene.width) * std::size_t(scene.height) <= 3'000'000 ? 2 : 1;
+    const Size size{scale * scene.width, scale * scene.height};
+    const auto markers = marker_actors(scene);
+    auto solid = markers;
+    std::vector<vtkSmartPointer<vtkActor>> glass;
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        if (meshes[i].triangles.empty()) continue;
+        auto& kind = scene.surfaces[i].opacity < 1 ? glass : solid;
+        kind.push_back(surface_actor(scene.surfaces[i], meshes[i]));
+    }
+    const double depth = std::max(reach(solid), reach(glass));
+    const auto camera = camera_of(scene.camera, depth);
+    const auto bodies = view_of(camera, solid);
+    shade_crevices(*bodies, scene.camera, depth);
+    Layer picture = drawn({bodies}, size);
+    std::vector<Layer> panes;
+    for (const auto& actor : glass)
+        panes.push_back(drawn({view_of(camera, {actor})}, size, Blending::off));
+    lay_over(picture, panes);
+    if (!markers.empty()) {
+        shine_through(picture, drawn({view_of(camera, markers)}, size), ghost_opacity);
+    }
+    lay_over(picture, writing(scene, size, scale));
+    return reduced(picture, size.width, size.height, scale);
+}
+
+}  // namespace palpate::pictures

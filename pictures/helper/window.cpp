@@ -1,0 +1,121 @@
+// EGL is opened at run time, so that a machine without it gets a sentence and not the loader's.
+#include "pictures/helper/window.hpp"
+
+#include <dlfcn.h>
+#include <vtk_glew.h>
+
+#define EGL_NO_X11
+#include <EGL/egl.h>
+#include <EGL/eglext.h>
+
+#include <cstdlib>
+#include <string>
+
+#include "pictures/helper/failure.hpp"
+
+namespace palpate::pictures {
+namespace {
+
+constexpr const char* remedy = "; install libegl1 and libgl1-mesa-dri";
+
+class Egl {
+  public:
+    Egl() : library_(dlopen("libEGL.so.1", RTLD_NOW | RTLD_GLOBAL)) {
+        if (!library_) throw Failure(std::string("there is no EGL (libEGL.so.1)") + remedy);
+    }
+    template <class Function>
+    Function function(const char* name) const {
+        auto* const found = reinterpret_cast<Function>(dlsym(library_, name));
+        if (!found) throw Failure(std::string("libEGL.so.1 lacks ") + name + remedy);
+        return found;
+    }
+
+  private:
+    void* library_;  // never closed: the context lives as long as the process
+};
+
+/// A desktop OpenGL context of at least 3.2 core, which is what VTK draws with.
+EGLContext context_of(const Egl& egl, EGLDisplay display) {
+    const auto bind = egl.function<decltype(&eglBindAPI)>("eglBindAPI");
+    const auto choose = egl.function<decltype(&eglChooseConfig)>("eglChooseConfig");
+    const auto create = egl.function<decltype(&eglCreateContext)>("eglCreateContext");
+    const EGLint wanted[] = {EGL_SURFACE_TYPE, 0, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
+    const EGLint version[] = {EGL_CONTEXT_MAJOR_VERSION,
+                              3,
+                              EGL_CONTEXT_MINOR_VERSION,
+                              2,
+                              EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                              EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                              EGL_NONE};
+    EGLConfig configuration = nullptr;
+    EGLint count = 0;
+    if (!bind(EGL_OPENGL_API) || !choose(display, wanted, &configuration, 1, &count) ||
+        count == 0) {
+        return EGL_NO_CONTEXT;
+    }
+    return create(display, configuration, EGL_NO_CONTEXT, version);
+}
+
+/// VTK asks GLEW for the functions of OpenGL, and GLEW, having found them all, complains that there
+/// is no X display. That is the one complaint that is expected here.
+class SurfacelessWindow : public vtkGenericOpenGLRenderWindow {
+  public:
+    // As vtkStandardNewMacro has it, whose semicolons a pedantic compiler refuses.
+    static SurfacelessWindow* New() {
+        auto* const made = new SurfacelessWindow;
+        made->InitializeObjectBase();
+        return made;
+    }
+    void OpenGLInitContext() override {
+        if (this->Initialized) return;
+        this->ContextCreationTime.Modified();
+        glewExperimental = GL_TRUE;
+        const GLenum result = glewInit();
+        if ((result != GLEW_OK && result != GLEW_ERROR_NO_GLX_DISPLAY) || !GLEW_VERSION_3_2) {
+            throw Failure(std::string("this machine's OpenGL is older than 3.2") + remedy);
+        }
+        this->GlewInitValid = true;
+        this->Initialized = true;
+        this->MaximumHardwareLineWidth = 1;  // our lines are tubes
+    }
+};
+
+}  // namespace
+
+void make_surfaceless_context() {
+    // The same picture on every machine, and no graphics driver to fail. Who wants the processor
+    // for graphics sets it to 0.
+    setenv("LIBGL_ALWAYS_SOFTWARE", "1", 0);
+    const Egl egl;
+    const auto address = egl.function<decltype(&eglGetProcAddress)>("eglGetProcAddress");
+    const auto platform_display =
+        reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(address("eglGetPlatformDisplayEXT"));
+    if (!platform_display) throw Failure(std::string("EGL knows no platforms") + remedy);
+    const EGLDisplay display =
+        platform_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
+    EGLint major = 0, minor = 0;
+    if (display == EGL_NO_DISPLAY ||
+        !egl.function<decltype(&eglInitialize)>("eglInitialize")(display, &major, &minor)) {
+        throw Failure(std::string("EGL has no way to draw without a screen (Mesa's surfaceless "
+                                  "platform)") +
+                      remedy);
+    }
+    const EGLContext context = context_of(egl, display);
+    if (context == EGL_NO_CONTEXT || !egl.function<decltype(&eglMakeCurrent)>("eglMakeCurrent")(
+                                         display, EGL_NO_SURFACE, EGL_NO_SURFACE, context)) {
+        throw Failure(std::string("EGL gives no OpenGL 3.2 context") + remedy);
+    }
+}
+
+vtkSmartPointer<vtkGenericOpenGLRenderWindow> surfaceless_window(int width, int height) {
+    auto window = vtkSmartPointer<SurfacelessWindow>::New();
+    window->SetSize(width, height);
+    window->SetIsCurrent(true);
+    window->SetIsDirect(1);
+    window->SetSupportsOpenGL(1);
+    window->SetOffScreenRendering(1);
+    window->SetShowWindow(false);
+    return window;
+}
+
+}  // namespace palpate::pictures

@@ -1,0 +1,191 @@
+// A scene into shared memory, the helper's PNG out of it.
+#include "pictures/picture.hpp"
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <span>
+#include <stdexcept>
+#include <system_error>
+
+#include "io/helper_process.hpp"
+#include "io/output.hpp"
+#include "pictures/surface.hpp"
+#include "pictures/wire.hpp"
+
+namespace palpate::pictures {
+namespace {
+
+constexpr io::HelperProgram picture_helper{
+    "palpate-picture-helper",
+    "pictures/helper",
+    "OpenGL or VTK",
+    "install libegl1 and libgl1-mesa-dri, or draw a smaller picture",
+    "close other programs, or draw a smaller picture of a smaller volume",
+    "draw a smaller picture of a smaller volume"};
+
+[[noreturn]] void fail(const std::string& why) {
+    throw io::OutputError("the picture could not be drawn: " + why);
+}
+
+bool finite(const Vec3& v) {
+    return v.allFinite();
+}
+
+void check(const Surface& surface) {
+    const std::size_t vertices = surface.mesh.vertices.size();
+    if (!surface.normals.empty() && surface.normals.size() != vertices) {
+        throw std::invalid_argument("a picture's surface needs a normal a vertex, or none");
+    }
+    if (!(surface.opacity > 0 && surface.opacity <= 1)) {
+        throw std::invalid_argument("an opacity is above 0 and at most 1");
+    }
+    for (const Vec3& v : surface.mesh.vertices) {
+        if (!finite(v)) throw std::invalid_argument("a vertex of the picture is not finite");
+    }
+    for (const auto& triangle : surface.mesh.triangles) {
+        for (const std::uint32_t v : triangle) {
+            if (v >= vertices) throw std::invalid_argument("a triangle has no such vertex");
+        }
+    }
+}
+
+/// `of` gives the points of one of the scene's objects; `size` its radius.
+void check_object(std::span<const Vec3> points, double radius) {
+    for (const Vec3& p : points) {
+        if (!finite(p)) throw std::invalid_argument("a point of the picture is not finite");
+    }
+    if (!(radius > 0) || !std::isfinite(radius)) {
+        throw std::invalid_argument("a radius in the picture has to be above 0");
+    }
+}
+
+void check(const PictureScene& scene) {
+    if (scene.width < 16 || scene.height < 16 || scene.width > 8192 || scene.height > 8192) {
+        throw std::invalid_argument("a picture is 16 to 8192 pixels wide and high");
+    }
+    const Camera& c = scene.camera;
+    if (!finite(c.focus) || !finite(c.towards_viewer) || !finite(c.up) ||
+        !(c.towards_viewer.cross(c.up).norm() > 1e-6 * c.towards_viewer.norm() * c.up.norm()) ||
+        !(c.half_height > 0) || !std::isfinite(c.half_height)) {
+        throw std::invalid_argument("the picture's camera looks nowhere");
+    }
+    std::size_t triangles = 0;
+    for (const Surface& surface : scene.surfaces) {
+        check(surface);
+        triangles += surface.mesh.triangles.size();
+    }
+    if (triangles > most_triangles) {
+        throw std::invalid_argument("the picture has " + std::to_string(triangles) +
+                                    " triangles; at most " + std::to_string(most_triangles) +
+                                    " can be drawn");
+    }
+    for (const Ball& b : scene.balls) check_object({&b.centre, 1}, b.radius);
+    for (const Line& l : scene.lines) check_object(l.points, l.radius);
+    for (const Spring& s : scene.springs) check_object(std::array{s.from, s.to}, s.radius);
+    for (const Arrow& a : scene.arrows) check_object(std::array{a.from, a.to}, a.radius);
+}
+
+/// Where the arrays go, behind a text of `text` bytes, and the end of them.
+std::size_t lay_out(const PictureScene& scene, std::size_t text,
+                    std::vector<SurfaceArrays>& arrays) {
+    std::size_t at = sizeof(std::uint64_t) + text;
+    const auto place = [&](std::size_t count) {
+        const Extent extent{aligned(at), count};
+        at = extent.at + count * element_bytes;
+        return extent;
+    };
+    arrays.clear();
+    for (const Surface& s : scene.surfaces) {
+        const std::size_t vertices = s.mesh.vertices.size();
+        arrays.push_back({place(vertices), place(vertices), place(s.mesh.triangles.size())});
+    }
+    return at;
+}
+
+/// The text's length decides where the arrays begin, and where they begin is in the text: so room
+/// is left for the longest numbers.
+io::Descriptor packed(const PictureScene& scene) {
+    std::vector<SurfaceArrays> arrays;
+    lay_out(scene, 0, arrays);
+    const std::size_t room = io::line_from(json_from(scene, arrays)).size() + 4096 +
+                             arrays.size() * 3 * std::numeric_limits<std::size_t>::digits10;
+    const std::size_t bytes = lay_out(scene, room, arrays);
+    std::string text = io::line_from(json_from(scene, arrays));
+    text.resize(room, ' ');
+    io::Descriptor memory = io::shared_memory(bytes);
+    const auto mapped = io::map_shared(memory, bytes);
+    auto* const to = static_cast<char*>(mapped.get());
+    const std::uint64_t length = room;
+    std::memcpy(to, &length, sizeof length);
+    std::memcpy(to + sizeof length, text.data(), room);
+    for (std::size_t i = 0; i < arrays.size(); ++i) {
+        const Surface& s = scene.surfaces[i];
+        auto* position = reinterpret_cast<Eigen::Vector3f*>(to + arrays[i].positions.at);
+        for (const Vec3& v : s.mesh.vertices) {
+            *position++ = (v - scene.camera.focus).cast<float>();
+        }
+        const auto& normals = s.normals.empty() ? mesh_normals(s.mesh) : s.normals;
+        std::memcpy(to + arrays[i].normals.at, normals.data(), normals.size() * element_bytes);
+        std::memcpy(to + arrays[i].triangles.at, s.mesh.triangles.data(),
+                    s.mesh.triangles.size() * element_bytes);
+    }
+    return memory;
+}
+
+std::string png_from(const io::Descriptor& memory, const json& done) {
+    const auto at = done.at("at").get<std::size_t>();
+    const auto bytes = done.at("bytes").get<std::size_t>();
+    struct stat status {};
+    if (fstat(memory.number(), &status) != 0 || bytes == 0 ||
+        static_cast<std::size_t>(status.st_size) < bytes ||
+        static_cast<std::size_t>(status.st_size) - bytes < at) {
+        fail("the helper process gave no picture");
+    }
+    std::string png(bytes, '\0');
+    std::size_t got = 0;
+    while (got < bytes) {
+        const ssize_t n =
+            pread(memory.number(), png.data() + got, bytes - got, static_cast<off_t>(at + got));
+        if (n <= 0) fail("the helper's picture could not be read");
+        got += static_cast<std::size_t>(n);
+    }
+    return png;
+}
+
+}  // namespace
+
+std::string png_of(const PictureScene& scene, const DrawOptions& options) {
+    check(scene);
+    try {
+        const io::Descriptor memory = packed(scene);
+        const io::HelperJob job{picture_helper,
+                                options.helper,
+                                {"draw", io::line_from({{"caller", getpid()}})},
+                                &memory,
+                                [&](double) { options.waiting(); },
+                                options.time_limit_s};
+        const io::HelperResult result = io::run_helper(job);
+        if (!result.failure.empty()) fail(result.failure);
+        return png_from(memory, result.done);
+    } catch (const std::system_error& e) {
+        fail(e.what());
+    } catch (const nlohmann::json::exception&) {
+        fail(
+            "the helper process gave no sensible answer; check that palpate-picture-helper belongs "
+            "to this version of Palpate");
+    }
+}
+
+void draw_picture(const PictureScene& scene, const std::filesystem::path& png,
+                  const DrawOptions& options) {
+    io::PendingFile file(png);
+    file.write(png_of(scene, options));
+    file.commit();
+}
+
+}  // namespace palpate::pictures
