@@ -140,6 +140,7 @@ io::RecordingHead recording_head(const LiveScene& scene, const TouchOptions& opt
     add("series", volume.series);
     if (volume.skip > 0) add("skip", std::to_string(volume.skip));
     if (volume.time_step > 0) add("time-step", std::to_string(volume.time_step));
+    if (volume.smooth > 0) add("smooth", std::to_string(volume.smooth));
     io::RecordingHead head;
     head.version = PALPATE_VERSION;
     head.begun = utc_now();

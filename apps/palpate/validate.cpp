@@ -42,6 +42,7 @@ LoadedVolume load_recorded(const io::RecordingHead& head, const std::string& rec
     volume.series = option("series");
     volume.skip = io::number_from<std::uint64_t>(option("skip")).value_or(0);
     volume.time_step = io::number_from<int>(option("time-step")).value_or(0);
+    volume.smooth = io::number_from<int>(option("smooth")).value_or(0);
     volume.quiet = quiet;
     LoadedVolume loaded = load(volume);
     const io::VolumeIdentity now = io::identify(loaded.volume, {});

@@ -109,6 +109,13 @@ class Volume {
     double maximum_ = 0;
 };
 
+/// The volume smoothed with the binomial kernel (1 2 1)/4 along each axis, `passes` times, as
+/// float32; samples beyond the border count as those on it. Samples of few bits make terraces of
+/// slow ramps, in whose dents a proxy sticks; one pass takes most of them away
+/// (docs/results/fidelity.md), and blurs what is thinner than about two voxels. No passes: the same
+/// volume. Throws std::invalid_argument for fewer than 0 or more than 64.
+Volume smoothed(const Volume& volume, int passes = 1);
+
 /// Reads an isovalue or density as people write it: "300" in the data's units, "53%" of the data's
 /// range. Throws std::invalid_argument for anything else, NaN and infinity included.
 double level_from_text(std::string_view text, const Volume& volume);

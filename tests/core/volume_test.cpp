@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdlib>
 #include <limits>
+#include <vector>
 
 #include "support/fields.hpp"
 
@@ -199,6 +202,53 @@ TEST(Volume, index_and_physical_space_are_each_others_inverse) {
     EXPECT_EQ(physical_from_index(geometry, Vec3::Zero()), geometry.origin);
     EXPECT_LE((physical_centre(geometry) - physical_from_index(geometry, {2, 2.5, 3})).norm(),
               1e-12);
+}
+
+/// One pass at one sample, straight from the definition.
+double binomial(const Volume& volume, const Index3& at) {
+    double sum = 0;
+    for (int k = -1; k <= 1; ++k) {
+        for (int j = -1; j <= 1; ++j) {
+            for (int i = -1; i <= 1; ++i) {
+                const Index3 near = (at + Index3(i, j, k))
+                                        .cwiseMax(0)
+                                        .cwiseMin(volume.geometry().size - Index3::Ones());
+                sum += volume.sample(near) * (2 - std::abs(i)) * (2 - std::abs(j)) *
+                       (2 - std::abs(k)) / 64;
+            }
+        }
+    }
+    return sum;
+}
+
+TYPED_TEST(VolumeOf, smoothed_once_is_the_binomial_mean_of_the_neighbours) {
+    Geometry geometry;
+    geometry.size = {5, 1, 4};
+    geometry.spacing = {0.5, 2, 1};
+    std::vector<TypeParam> samples;
+    for (int i = 0; i < 20; ++i) samples.push_back(static_cast<TypeParam>(i * i % 101));
+    const Volume volume(geometry, samples);
+    const Volume smooth = smoothed(volume);
+    EXPECT_EQ(smooth.geometry(), geometry);
+    EXPECT_EQ(smooth.type(), SampleType::float32);
+    for (int k = 0; k < 4; ++k) {
+        for (int i = 0; i < 5; ++i) {
+            EXPECT_NEAR(smooth.sample({i, 0, k}), binomial(volume, {i, 0, k}), 1e-4) << i << k;
+        }
+    }
+}
+
+TEST(Volume, smoothed_twice_is_smoothed_and_smoothed_and_not_at_all_is_the_same) {
+    Geometry geometry;
+    geometry.size = {4, 3, 2};
+    std::vector<std::uint8_t> samples(24);
+    for (std::size_t i = 0; i < 24; ++i) samples[i] = static_cast<std::uint8_t>(37 * i % 256);
+    const Volume volume(geometry, samples);
+    const Volume twice = smoothed(volume, 2), again = smoothed(smoothed(volume));
+    EXPECT_TRUE(std::ranges::equal(twice.samples<float>(), again.samples<float>()));
+    EXPECT_EQ(smoothed(volume, 0).data(), volume.data());
+    EXPECT_THROW(smoothed(volume, -1), std::invalid_argument);
+    EXPECT_THROW(smoothed(volume, 65), std::invalid_argument);
 }
 
 TEST(Level, is_read_as_people_write_it) {
