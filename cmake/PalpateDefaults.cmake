@@ -12,6 +12,6 @@ if(PROJECT_IS_TOP_LEVEL)
   endif()
 endif()
 if(PALPATE_FUZZ AND NOT CMAKE_CXX_COMPILER_ID MATCHES Clang)
-  message(FATAL_ERROR "PALPATE_FUZZ needs clang for its libFuzzer: use the preset `fuzz`, or "
+  message(FATAL_ERROR "PALPATE_FUZZ needs clang for its libFuzzer: use the preset `asan`, or "
                       "configure an empty build directory with -DCMAKE_CXX_COMPILER=clang++.")
 endif()

@@ -11,6 +11,10 @@ function(palpate_target name)
     target_compile_options(${name} PRIVATE -fsanitize=${PALPATE_SANITIZE} -fno-omit-frame-pointer
                                            -fno-sanitize-recover=all)
     target_link_options(${name} PUBLIC -fsanitize=${PALPATE_SANITIZE})
+    if(CMAKE_CXX_COMPILER_ID MATCHES Clang AND PALPATE_SANITIZE MATCHES undefined)
+      # A vendor's library has its own names for the types of its interface.
+      target_compile_options(${name} PRIVATE -fno-sanitize=function)
+    endif()
   endif()
   if(PALPATE_FUZZ)
     # Coverage in the code under test; only the fuzz targets themselves link libFuzzer's main.

@@ -13,7 +13,7 @@ presets (default: dev)
   release  what is installed
   clang    release with clang
   core     the core alone: standard library and Eigen, no ITK, no VTK
-  asan     address and undefined-behaviour sanitizers
+  asan     address and undefined-behaviour sanitizers (clang), and the fuzz targets
   tsan     thread sanitizer
 
   --no-packages   do not look for packages; use what is there
@@ -39,7 +39,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 if [ "$packages" = yes ]; then
     case "$preset" in
         core) scripts/install_packages.sh core ;;
-        clang) scripts/install_packages.sh io dev ;;
+        clang | asan) scripts/install_packages.sh io dev ;;
         *) scripts/install_packages.sh io ;;
     esac
 fi
