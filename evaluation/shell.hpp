@@ -1,0 +1,19 @@
+// Closed walls as thin as wanted: shells of samples that no way through the lattice passes. A ramp
+// sampled thinner than a voxel would be a lace of holes, through which a proxy may rightly go.
+#pragma once
+
+#include "evaluation/subject.hpp"
+
+namespace palpate::evaluation {
+
+/// What the wall encloses: a box, whose wall is flat with corners, or a ball of voxels, whose wall
+/// goes in steps.
+enum class Enclosed : std::uint8_t { box, ball };
+
+/// A wall round a hollow body, `thickness` [voxel] on every flat face and thicker at edges and
+/// steps; spacing 1 mm. Every face of the body has its four samples full, so the field is full all
+/// over the face, and the wall is closed at any level below that; the level sets how thick it is:
+/// t = (layers - 1) + 2 (1 - level). Throws std::invalid_argument unless 0 < thickness <= 4.
+Subject closed_shell(Enclosed enclosed, double thickness);
+
+}  // namespace palpate::evaluation
