@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <limits>
 #include <map>
 
@@ -114,6 +115,21 @@ constexpr double step_of(double speed, double voxels_per_mm) {
     return speed / usual.rate_hz * voxels_per_mm;
 }
 
+/// Whether there is room for so many times the samples of a cube; if not, says what is left out.
+bool has_room(int size, double copies, const char* what, const Options& options) {
+    std::ifstream file("/proc/meminfo");
+    const double needed = copies * std::pow(double(size), 3);
+    double kibibytes = 0;
+    for (std::string word; file >> word;) {
+        if (word != "MemAvailable:") continue;
+        if (!(file >> kibibytes) || 1024 * kibibytes > needed) return true;
+        options.note(fmt::format("scaling: {} at {}^3 left out, which takes {:.1f} GB of memory",
+                                 what, size, 1e-9 * needed));
+        return false;
+    }
+    return true;  // the system does not tell
+}
+
 /// What is going on, for progress between the cases of all parts.
 class Course {
   public:
@@ -169,6 +185,7 @@ void by_body(const Plan& plan, const Options& options, Course& course, Table& ta
                                step_of(usual.speed_mm_s, usual.voxels_per_mm), plan.ticks);
     for (const int size : plan.sizes) {
         course.next();
+        if (!has_room(size, 1.2, "the volume", options)) continue;
         Ball shape = same;
         shape.size = size;
         const Subject subject = ball(shape);
@@ -233,6 +250,8 @@ void by_way(const Plan& plan, const Options& options, Course& course, Table& tab
     if (!options.subjects.empty()) return;
     for (const int size : plan.explicit_sizes) {
         course.next();
+        // Ours, the one that is shared, and what extraction takes at its peak.
+        if (!has_room(size, 3.6, "the explicit way", options)) continue;
         // Grows with the grid, with the blur of its edge in voxels as a scanner has it.
         const Ball shape{size, 0.35 * size, 16};
         const auto strokes =
