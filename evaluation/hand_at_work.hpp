@@ -19,7 +19,7 @@ struct HandAtWork {
     double rate_hz = 1000;
     double speed_mm_s = 50;  ///< mean; it swells and ebbs by 0.8 of that
     double touching = 0.6;   ///< part of its time that it means to touch, 0 to 1
-    double depth_mm = 0.5;     ///< how far it presses below the surface
+    double depth_mm = 0.5;   ///< how far it presses below the surface
     int strokes = 20;        ///< each from another side to another place of the body
     double stroke_s = 5;
     std::uint64_t seed = 1;
