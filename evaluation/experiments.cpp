@@ -12,6 +12,8 @@ std::span<const Experiment> experiments() {
          true},
         {"fidelity", "How near is the force to the true surface's?", &fidelity, true},
         {"stability", "How stiff may a surface be before it buzzes?", &stability, true},
+        {"penetration", "What is felt on the way from the skin into the brain?", &penetration,
+         true},
     };
     return all;
 }

@@ -20,7 +20,7 @@ constexpr std::array<Colour, most_levels - 1> glass{{
     {0.36, 0.72, 0.60},  // bluish green
     {0.85, 0.58, 0.74},  // reddish purple
 }};
-constexpr double clear = 0.3;
+constexpr double clear = 0.24;
 
 std::string label_of(double isovalue) {
     char text[48];
