@@ -129,10 +129,13 @@ io::Descriptor packed(const PictureScene& scene) {
         for (const Vec3& v : s.mesh.vertices) {
             *position++ = (v - scene.camera.focus).cast<float>();
         }
-        const auto& normals = s.normals.empty() ? mesh_normals(s.mesh) : s.normals;
-        std::memcpy(to + arrays[i].normals.at, normals.data(), normals.size() * element_bytes);
-        std::memcpy(to + arrays[i].triangles.at, s.mesh.triangles.data(),
-                    s.mesh.triangles.size() * element_bytes);
+        const auto put = [to](const Extent& where, const auto& elements) {
+            static_assert(sizeof elements[0] == element_bytes);
+            if (elements.empty()) return;  // of which memcpy may not be told
+            std::memcpy(to + where.at, elements.data(), elements.size() * element_bytes);
+        };
+        put(arrays[i].normals, s.normals.empty() ? mesh_normals(s.mesh) : s.normals);
+        put(arrays[i].triangles, s.mesh.triangles);
     }
     return memory;
 }
