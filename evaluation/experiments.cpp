@@ -12,6 +12,7 @@ std::span<const Experiment> experiments() {
          true},
         {"fidelity", "How near is the force to the true surface's?", &fidelity, true},
         {"stability", "How stiff may a surface be before it buzzes?", &stability, true},
+        {"walk-through", "How does a proxy go, step by step?", &walk_through, true},
         {"penetration", "What is felt on the way from the skin into the brain?", &penetration,
          true},
     };
