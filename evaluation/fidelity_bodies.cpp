@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
 #include "evaluation/ring.hpp"
 #include "scenes/volumes.hpp"
@@ -137,7 +138,13 @@ Body ripples_by_spiral(int grid, Samples samples) {
 }
 
 Body body_of(const Subject& subject) {
-    const Geometry& geometry = subject.field.geometry();
+    const Field& field = subject.field;
+    const Geometry& geometry = field.geometry();
+    if (field.sign() * (field.background() - subject.isovalue) > 0) {
+        throw std::invalid_argument(subject.name +
+                                    ": all around the data is solid at this level, so a hand "
+                                    "cannot come to it; choose another level");
+    }
     Body body(subject);
     body.way = "ring";
     body.samples = name_of(subject.field.volume().type());
@@ -146,7 +153,9 @@ Body body_of(const Subject& subject) {
     const Ring ring = ring_round(subject, body.depth);
     body.hand = [=](double part) { return ring.at(part * ring.length()); };
     const Vec3 centre = physical_centre(geometry);
-    body.start = centre + 2 * (body.hand(0) - centre);
+    // Outside the grid, on the ray that found the ring's first point.
+    const double outside = geometry.size.cast<double>().cwiseProduct(geometry.spacing).norm();
+    body.start = centre + outside * (body.hand(0) - centre).normalized();
     return body;
 }
 

@@ -217,7 +217,7 @@ std::string panel(const Walk& walk, const std::string& name) {
            " with points pt 7 ps 0.6 lc rgb '#D55E00' notitle, " + scps +
            " using 1:2 with points pt 7 ps 1.3 lc rgb '#D55E00' notitle, " + led +
            "$hips using 1:2 with points pt 2 ps 1.6 lw 3 lc rgb '#000000' notitle, " +
-           numbered("$hips", "font ',11' offset 0,-1.1") + "-1 notitle\n";
+           numbered("$hips", "font ',11' left offset 1.2,0") + "-1 notitle\n";
 }
 
 /// What the marks mean, in an empty panel under the others.

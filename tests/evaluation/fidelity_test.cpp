@@ -57,6 +57,8 @@ TEST(Fidelity, a_volume_that_cannot_be_gone_round_is_refused) {
     Options options = quick_options();
     options.subjects.push_back(synthetic("sphere:16x16x16", 300));
     EXPECT_THROW(fidelity(options), std::invalid_argument);
+    options.subjects = {synthetic("sphere:16x16x16", -1)};  // all of space is solid
+    EXPECT_THROW(fidelity(options), std::invalid_argument);
 }
 
 TEST(Fidelity, hands_are_as_deep_below_the_true_surface_as_said) {
