@@ -119,19 +119,28 @@ pictures::Contact contact_of(const RenderPictureOptions& options, const Field& f
     return contact;
 }
 
+/// From where one sees what is touched: out of the surface, or at least away from the middle; zero
+/// where nothing is.
+Vec3 side_of(const pictures::Contact& contact, const io::Way& way, const Vec3& middle) {
+    if (contact.scp && contact.hip && *contact.scp != *contact.hip) {
+        return *contact.scp - *contact.hip;
+    }
+    if (contact.scp) return *contact.scp - middle;
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t i = 0; i < way.scp.size(); ++i) {
+        if (way.constrained[i]) sum += way.scp[i] - middle;
+    }
+    return sum;
+}
+
 pictures::View view_of(const RenderPictureOptions& options, const Field& field,
-                       const pictures::Contact& contact) {
+                       const pictures::Contact& contact, const io::Way& way) {
     if (!options.view.empty()) return pictures::view_named(options.view);
     if (options.azimuth || options.elevation) {
         return pictures::view_from(options.azimuth.value_or(0), options.elevation.value_or(0));
     }
-    Vec3 towards = Vec3::Zero();
-    // From where the surface is touched: out of it, or at least away from the middle.
-    const bool pressed = contact.scp && contact.hip && *contact.scp != *contact.hip;
-    if (contact.scp) {
-        towards = *contact.scp - (pressed ? *contact.hip : physical_centre(field.geometry()));
-    }
-    return pictures::natural_view(field.geometry(), towards);
+    const Geometry& geometry = field.geometry();
+    return pictures::natural_view(geometry, side_of(contact, way, physical_centre(geometry)));
 }
 
 struct Drawing {
@@ -176,7 +185,7 @@ Drawing drawing_of(const RenderPictureOptions& options) {
                        loaded.name, every);
         }
     }
-    pictures::frame(scene, pictures::rolled(view_of(options, field, contact), options.roll),
+    pictures::frame(scene, pictures::rolled(view_of(options, field, contact, way), options.roll),
                     options.zoom, contact.scp ? contact.scp : contact.hip);
     pictures::add_way(scene, way.hip, way.scp, way.constrained);
     pictures::add_contact(scene, contact);

@@ -39,6 +39,16 @@ vtkSmartPointer<vtkFloatArray> vectors(std::span<float> values) {
     return array;
 }
 
+/// VTK turns the normal of a triangle that faces away. A sliver that rounding has turned would be a
+/// dark dot, so the normal alone decides.
+void face_the_viewer(vtkActor* actor) {
+    actor->GetShaderProperty()->AddFragmentShaderReplacement(
+        "//VTK::Normal::Impl", true,
+        "//VTK::Normal::Impl\n"
+        "  if (normalVCVSOutput.z < 0.0) normalVCVSOutput = -normalVCVSOutput;\n",
+        false);
+}
+
 /// Like glass: clear where one looks straight through, denser towards the outline. It is drawn as
 /// if opaque, its nearest part alone, with how dense that is as alpha.
 void look_like_glass(vtkActor* actor, double opacity) {
@@ -181,6 +191,7 @@ vtkSmartPointer<vtkActor> surface_actor(const Surface& surface, const SharedMesh
     mapper->StaticOn();
     auto actor = actor_of(mapper, surface.colour);
     look_matt(actor);
+    face_the_viewer(actor);
     if (surface.opacity < 1) look_like_glass(actor, surface.opacity);
     return actor;
 }
