@@ -4,8 +4,8 @@
 
 #include "baselines/methods.hpp"
 #include "evaluation/claims.hpp"
-#include "evaluation/crossing.hpp"
-#include "evaluation/shell.hpp"
+#include "evaluation/fall_through/crossing.hpp"
+#include "evaluation/fall_through/shell.hpp"
 #include "palpate/surface.hpp"
 #include "scenes/volumes.hpp"
 #include "support/mesh_checks.hpp"

@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "evaluation/claims.hpp"
-#include "evaluation/fidelity_course.hpp"
-#include "evaluation/nearest_point.hpp"
+#include "evaluation/fidelity/course.hpp"
+#include "evaluation/fidelity/nearest_point.hpp"
 #include "scenes/volumes.hpp"
 #include "support/random.hpp"
 

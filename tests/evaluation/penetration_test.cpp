@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "evaluation/claims.hpp"
-#include "evaluation/penetration_course.hpp"
+#include "evaluation/penetration/course.hpp"
 #include "support/png.hpp"
 
 namespace palpate::evaluation {

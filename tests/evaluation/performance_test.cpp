@@ -5,8 +5,8 @@
 
 #include "evaluation/claims.hpp"
 #include "evaluation/hand_at_work.hpp"
-#include "evaluation/performance_neuron.hpp"
-#include "evaluation/performance_timing.hpp"
+#include "evaluation/performance/neuron.hpp"
+#include "evaluation/timing.hpp"
 
 namespace palpate::evaluation {
 namespace {

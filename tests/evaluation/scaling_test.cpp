@@ -4,9 +4,9 @@
 #include <stdexcept>
 
 #include "evaluation/claims.hpp"
-#include "evaluation/explicit_helper/aabb_tree.hpp"
-#include "evaluation/scaling_bodies.hpp"
-#include "evaluation/scaling_explicit.hpp"
+#include "evaluation/scaling/bodies.hpp"
+#include "evaluation/scaling/explicit.hpp"
+#include "evaluation/scaling/explicit_helper/aabb_tree.hpp"
 #include "scenes/random.hpp"
 #include "scenes/volumes.hpp"
 

@@ -5,7 +5,7 @@
 
 #include "baselines/methods.hpp"
 #include "evaluation/claims.hpp"
-#include "evaluation/walk_through.hpp"
+#include "evaluation/walk_through/walk.hpp"
 #include "support/random.hpp"
 
 namespace palpate::evaluation {
