@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "baselines/methods.hpp"
@@ -36,6 +37,7 @@ struct Course {
     double speed, rate;
     int turns;
     bool shown;
+    std::function<void()> alive;  ///< called every turn; may throw to stop
 };
 
 /// Adds the rows of one proxy that is taken round.
@@ -50,6 +52,7 @@ void go_round(const Course& course, Table& table) {
     const double step = course.speed / course.rate;
     double arc = 0, worst = 0;
     for (int turn = 1; turn <= course.turns; ++turn) {
+        course.alive();
         double density = 0;
         std::int64_t constrained = 0, ticks = 0;
         for (; arc < turn * course.ring.length(); arc += step, ++ticks) {
@@ -198,9 +201,9 @@ Result drift(const Options& options) {
         for (const double speed : plan.speeds) {
             for (const double rate : plan.rates) {
                 for (const auto& method : baselines::methods()) {
-                    options.progress(done / cases);
+                    const auto alive = [&] { options.progress(done / cases); };
                     go_round({subject, ring, method, speed, rate, plan.turns,
-                              speed == plan.shown_speed && rate == plan.shown_rate},
+                              speed == plan.shown_speed && rate == plan.shown_rate, alive},
                              result.table);
                 }
                 done += 1;
