@@ -55,7 +55,6 @@ struct Experiment {
     const char* name;
     const char* title;
     Result (*run)(const Options& options);
-    bool takes_volumes;  ///< whether Options::subjects replaces its own
 };
 
 /// In the order of docs/evaluation.md.

@@ -104,10 +104,6 @@ evaluation::Report run(const evaluation::Experiment& experiment, const EvaluateO
 
 void evaluate(EvaluateOptions& options) {
     const auto experiments = chosen(options.name);
-    if (!options.volumes.empty() && experiments.size() == 1 && !experiments[0].takes_volumes) {
-        throw std::invalid_argument("--volume: " + options.name +
-                                    " is done on bodies of its own, whose true shape is known");
-    }
     if (!io::can_plot()) {
         throw io::OutputError("figures need gnuplot: install it (apt install gnuplot-nox)");
     }
@@ -116,7 +112,13 @@ void evaluate(EvaluateOptions& options) {
     std::vector<evaluation::Report> reports;
     std::size_t broken = 0;
     for (const auto& experiment : experiments) {
-        reports.push_back(run(experiment, options));
+        try {
+            reports.push_back(run(experiment, options));
+        } catch (const std::invalid_argument& e) {
+            if (experiments.size() == 1) throw;  // of all, the others can still be done
+            fmt::print(stderr, "palpate: note: {} is left out: {}\n", experiment.name, e.what());
+            continue;
+        }
         write_files(reports.back(), results.part());
         results.complete();
         if (!options.quiet && !options.json) print(reports.back());

@@ -73,6 +73,17 @@ TEST(Evaluate, AllMakesOneReportThatNeedsNoOtherFile) {
     EXPECT_GE(embedded, 1U);
 }
 
+TEST(Evaluate, AllLeavesOutWhatCannotBeDoneOnTheUsersVolume) {
+    const ScratchFolder folder;
+    const Outcome outcome =
+        palpate(folder, "evaluate all --quick -o found --volume synthetic:plane:24x24x24");
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_TRUE(contains(outcome.err, "note: drift is left out: ")) << outcome.err;
+    EXPECT_FALSE(std::filesystem::exists(folder / "found/drift.csv"));
+    EXPECT_TRUE(std::filesystem::exists(folder / "found/stability.csv"));
+    EXPECT_TRUE(std::filesystem::exists(folder / "found/report.html"));
+}
+
 TEST(Evaluate, WhatCannotBeMeantIsRefused) {
     const ScratchFolder folder;
     expect_failure(palpate(folder, "evaluate"), 2, "EXPERIMENT");

@@ -16,7 +16,7 @@ using support::contains;
 
 /// Three points, a claim that holds and one that does not.
 Report some_report() {
-    Report report{{"points", "Are there <three>?", nullptr, false}, {}, "a machine, some day"};
+    Report report{{"points", "Are there <three>?", nullptr}, {}, "a machine, some day"};
     report.result.table = Table({"x", "y"});
     for (const double x : {1.0, 2.0, 3.0}) report.result.table.add({x, x * x});
     Figure figure;
