@@ -6,6 +6,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "apps/palpate/render_options.hpp"
 #include "io/csv.hpp"
 #include "io/number.hpp"
 
@@ -33,15 +34,6 @@ void expect_words(const std::vector<std::string>& words, std::size_t count) {
     if (words.size() != count) wrong(fmt::format("one value after '{}'", words[0]));
 }
 
-Friction friction_from(const std::string& text) {
-    const auto comma = text.find(',');
-    const auto still = io::number_from<double>(text.substr(0, comma));
-    const auto moving =
-        comma == std::string::npos ? still : io::number_from<double>(text.substr(comma + 1));
-    if (!still || !moving) wrong("friction STATIC,DYNAMIC");
-    return {*still, *moving};
-}
-
 }  // namespace
 
 LiveCommands::LiveCommands(const Field& field, double isovalue, const RendererSettings& settings)
@@ -62,10 +54,7 @@ Penetrability LiveCommands::penetrability_from(const std::vector<std::string>& w
     if (mode != "ranges") wrong("penetrability off, threshold PT [MINIMUM] or ranges PT LOW:HIGH");
     std::vector<DensityRange> ranges;
     for (std::size_t i = 3; i < words.size(); ++i) {
-        const auto colon = words[i].find(':');
-        if (colon == std::string::npos) wrong("LOW:HIGH");
-        ranges.push_back({level_from_text(words[i].substr(0, colon), field_.volume()),
-                          level_from_text(words[i].substr(colon + 1), field_.volume())});
+        ranges.push_back(range_from(words[i], field_.volume()));
     }
     return penetrability_ranges(threshold, ranges, field_.solid());
 }
@@ -94,7 +83,7 @@ Request LiveCommands::from_words(std::string_view line) {
     }
     if (name == "friction") {
         expect_words(words, 2);
-        command = next.proxy.friction = friction_from(words[1]);
+        command = next.proxy.friction = friction_from(name, words[1]);
     } else if (name == "scale") {
         expect_words(words, 2);
         command = command::Scale{number(words, 1, "scale FACTOR")};

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -14,6 +13,7 @@
 #include "apps/palpate/volume_options.hpp"
 #include "io/number.hpp"
 #include "io/output.hpp"
+#include "io/raw_options.hpp"
 #include "io/trace.hpp"
 #include "palpate/force.hpp"
 #include "palpate/proxy.hpp"
@@ -42,21 +42,7 @@ struct RenderPictureOptions {
 
 std::optional<Vec3> point_from(const std::string& option, const std::string& text) {
     if (text.empty()) return {};
-    Vec3 point;
-    std::size_t begin = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-        const std::size_t end = axis < 2 ? text.find(',', begin) : text.size();
-        const auto number = end == std::string::npos
-                                ? std::nullopt
-                                : io::number_from<double>(text.substr(begin, end - begin));
-        if (!number || !std::isfinite(*number)) {
-            throw std::invalid_argument(option + " " + text +
-                                        ": three numbers are needed, as in 10,-20.5,3");
-        }
-        point[axis] = *number;
-        begin = end + 1;
-    }
-    return point;
+    return io::three_numbers_from(text, ',', option);
 }
 
 std::array<int, 2> size_from(const std::string& text) {

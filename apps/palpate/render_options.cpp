@@ -28,15 +28,6 @@ std::array<double, 2> two_numbers(const std::string& option, const std::string& 
     return {*first, *second};
 }
 
-DensityRange range_from(const std::string& text, const Volume& volume) {
-    const auto colon = text.find(':');
-    if (colon == std::string::npos) {
-        throw std::invalid_argument("--range " + text + ": LOW:HIGH is needed, as in 300:700");
-    }
-    return {level_from_text(text.substr(0, colon), volume),
-            level_from_text(text.substr(colon + 1), volume)};
-}
-
 /// An option that would do nothing is a misunderstanding.
 void refuse_idle_options(const RenderOptions& options) {
     const auto refuse = [](const std::string& option, const std::string& mode) {
@@ -67,6 +58,20 @@ Penetrability penetrability_of(const RenderOptions& options, const Field& field,
 }
 
 }  // namespace
+
+Friction friction_from(const std::string& what, const std::string& text) {
+    const auto [still, moving] = two_numbers(what, text, true);
+    return {still, moving};
+}
+
+DensityRange range_from(const std::string& text, const Volume& volume) {
+    const auto colon = text.find(':');
+    if (colon == std::string::npos) {
+        throw std::invalid_argument("range " + text + ": LOW:HIGH is needed, as in 300:700");
+    }
+    return {level_from_text(text.substr(0, colon), volume),
+            level_from_text(text.substr(colon + 1), volume)};
+}
 
 void RenderOptions::add_to(CLI::App& command) {
     std::vector<std::string> names;
@@ -117,8 +122,7 @@ RendererSettings render_settings(const RenderOptions& options, const Field& fiel
     settings.method = baselines::method_named(options.method);
     settings.proxy.step_budget = options.step_budget;
     if (!options.friction.empty()) {
-        const auto [still, moving] = two_numbers("--friction", options.friction, true);
-        settings.proxy.friction = {still, moving};
+        settings.proxy.friction = friction_from("--friction", options.friction);
     }
     settings.penetrability = penetrability_of(options, field, isovalue);
     settings.force = options.force;

@@ -27,6 +27,12 @@ struct RenderOptions {
     void add_to(CLI::App& command);
 };
 
+/// "0.5,0.3" as static and dynamic coefficient; "0.5": both. Throws std::invalid_argument, naming
+/// `what` (the option or command).
+Friction friction_from(const std::string& what, const std::string& text);
+/// "LOW:HIGH", each a level (level_from_text). Throws std::invalid_argument.
+DensityRange range_from(const std::string& text, const Volume& volume);
+
 /// The settings asked for; `isovalue` is the least level felt where no --minimum is given.
 /// Throws std::invalid_argument, through check(), for what cannot be rendered.
 /// `limits` are the device's; the rate is that of the options.

@@ -18,6 +18,7 @@
 #include <iterator>
 
 #include "io/helper/readers.hpp"
+#include "io/helper/vtk_type.hpp"
 
 namespace palpate::io {
 namespace {
@@ -99,20 +100,6 @@ Stored stored_from(int type) {
         default:
             throw Failure("its sample type is not read; save it as Float32");
     }
-}
-
-int vtk_type(SampleType type) {
-    switch (type) {
-        case SampleType::uint8:
-            return VTK_UNSIGNED_CHAR;
-        case SampleType::int16:
-            return VTK_SHORT;
-        case SampleType::uint16:
-            return VTK_UNSIGNED_SHORT;
-        case SampleType::float32:
-            break;
-    }
-    return VTK_FLOAT;
 }
 
 /// The active scalars, else the first array with one value a sample.

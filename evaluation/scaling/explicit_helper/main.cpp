@@ -29,6 +29,7 @@
 #include "evaluation/scaling/explicit_helper/wire.hpp"
 #include "io/helper/child.hpp"
 #include "io/helper/report.hpp"
+#include "io/helper/vtk_type.hpp"
 
 namespace palpate::evaluation {
 namespace {
@@ -66,25 +67,11 @@ void forget_peak() {
     std::ofstream("/proc/self/clear_refs") << 5;
 }
 
-int vtk_type(SampleType type) {
-    switch (type) {
-        case SampleType::uint8:
-            return VTK_UNSIGNED_CHAR;
-        case SampleType::int16:
-            return VTK_SHORT;
-        case SampleType::uint16:
-            return VTK_UNSIGNED_SHORT;
-        case SampleType::float32:
-            break;
-    }
-    return VTK_FLOAT;
-}
-
 /// A view of the samples; nothing is copied.
 vtkSmartPointer<vtkImageData> image_of(const ExplicitRequest& request, void* samples) {
     const Geometry& geometry = request.geometry;
-    auto array =
-        vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(vtk_type(request.type)));
+    auto array = vtkSmartPointer<vtkDataArray>::Take(
+        vtkDataArray::CreateDataArray(io::vtk_type(request.type)));
     constexpr int keep = 1;  // it is not VTK's to free
     array->SetVoidArray(samples, sample_count(geometry), keep);
     auto image = vtkSmartPointer<vtkImageData>::New();
