@@ -6,6 +6,7 @@
 
 #include "devices/forcedimension/forcedimension.hpp"
 #include "devices/haply/haply.hpp"
+#include "devices/mouse/mouse.hpp"
 #include "devices/openhaptics/openhaptics.hpp"
 #include "devices/recorded/recorded.hpp"
 #include "devices/simulated/simulated.hpp"
@@ -20,9 +21,10 @@ struct Backend {
     std::unique_ptr<Device> (*open)(const DeviceChoice&, const DeviceScene&);
 };
 
-constexpr std::array<Backend, 6> backends{{
+constexpr std::array<Backend, 7> backends{{
     {"simulated", &find_simulated, &open_simulated},
     {"recorded", &find_recorded, &open_recorded},
+    {"mouse", &find_mouse, &open_mouse},
     {"haply", &find_haply, &open_haply},
     {"openhaptics", &find_openhaptics, &open_openhaptics},
     {"forcedimension", &find_forcedimension, &open_forcedimension},

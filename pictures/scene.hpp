@@ -12,6 +12,8 @@ namespace palpate::pictures {
 /// sRGB, each 0 to 1.
 struct Colour {
     double red = 0, green = 0, blue = 0;
+
+    bool operator==(const Colour&) const = default;
 };
 
 // Told apart by everybody: the hand and the proxy as in all figures (Okabe and Ito).

@@ -55,6 +55,21 @@ const char* name_of(TickCause cause) {
     return "unknown";
 }
 
+Snapshot snapshot_of(const Session& session, const SessionTick& tick, std::int64_t number,
+                     std::int64_t missed) noexcept {
+    const Renderer& renderer = session.renderer;
+    Snapshot snapshot;
+    snapshot.number = number;
+    snapshot.session = tick;
+    snapshot.scp = renderer.proxy.scp;
+    snapshot.normal = normal_at(renderer.proxy, renderer.field);
+    snapshot.stiffness = renderer.settings.force.stiffness;
+    snapshot.penetrability_on = renderer.settings.penetrability.on;
+    snapshot.forces_on = renderer.settings.forces_on;
+    snapshot.missed = missed;
+    return snapshot;
+}
+
 /// The servo thread's own: when ticks are due and how they went. Times in ns.
 struct Servo::Clock {
     std::int64_t period;
@@ -141,6 +156,11 @@ ServoReport Servo::report() const noexcept {
     return report;
 }
 
+const Session& Servo::session() const {
+    if (thread_.joinable()) throw std::logic_error("a running servo's session is its own");
+    return session_;
+}
+
 void Servo::run() noexcept {
     try {
         privileges_ = settings_.real_time ? ask_for_real_time(settings_.priority)
@@ -219,17 +239,7 @@ void Servo::record(const SessionEvent& event) noexcept {
 }
 
 void Servo::publish(std::int64_t number, const SessionTick& tick) noexcept {
-    const RendererSettings& settings = session_.renderer.settings;
-    Snapshot snapshot;
-    snapshot.number = number;
-    snapshot.session = tick;
-    snapshot.tetrahedron = session_.renderer.proxy.scp.tetrahedron;
-    snapshot.normal = normal_at(session_.renderer.proxy, session_.renderer.field);
-    snapshot.stiffness = settings.force.stiffness;
-    snapshot.penetrability_on = settings.penetrability.on;
-    snapshot.forces_on = settings.forces_on;
-    snapshot.missed = missed_.load(std::memory_order_relaxed);
-    snapshot_.put(snapshot);
+    snapshot_.put(snapshot_of(session_, tick, number, missed_.load(std::memory_order_relaxed)));
 }
 
 }  // namespace palpate

@@ -8,12 +8,12 @@
 #include <limits>
 #include <memory>
 
+#include "apps/live/render_options.hpp"
+#include "apps/live/volume_options.hpp"
 #include "apps/palpate/commands.hpp"
 #include "apps/palpate/offline.hpp"
 #include "apps/palpate/progress.hpp"
-#include "apps/palpate/render_options.hpp"
 #include "apps/palpate/result_folder.hpp"
-#include "apps/palpate/volume_options.hpp"
 #include "evaluation/html.hpp"
 #include "io/error.hpp"
 #include "io/plot.hpp"
@@ -196,7 +196,7 @@ void write_report(const Demo& demo, const DemoOptions& options, bool drawn, bool
 }
 
 void run_demo(const DemoOptions& options) {
-    LoadedVolume loaded = load(options.volume);
+    LoadedVolume loaded = load_for_terminal(options.volume);
     const Field field = make_field(loaded, options.field);
     const double isovalue = suggested_isovalue_of(loaded, field, options.field);
     Demo demo{std::move(loaded), field, isovalue, {}, {}, {}};

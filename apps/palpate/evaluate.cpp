@@ -6,10 +6,10 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "apps/live/volume_options.hpp"
 #include "apps/palpate/commands.hpp"
 #include "apps/palpate/progress.hpp"
 #include "apps/palpate/result_folder.hpp"
-#include "apps/palpate/volume_options.hpp"
 #include "baselines/methods.hpp"
 #include "evaluation/machine.hpp"
 #include "evaluation/report.hpp"

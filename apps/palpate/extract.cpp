@@ -4,10 +4,10 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "apps/live/volume_options.hpp"
 #include "apps/palpate/commands.hpp"
 #include "apps/palpate/outputs.hpp"
 #include "apps/palpate/progress.hpp"
-#include "apps/palpate/volume_options.hpp"
 #include "io/mesh_file.hpp"
 #include "palpate/surface.hpp"
 
@@ -24,7 +24,7 @@ struct ExtractOptions {
 void extract(const ExtractOptions& options) {
     (void)io::mesh_format_from(options.output);  // refuse before the work, not after it
     check_outputs({options.volume.volume}, {options.output});
-    const LoadedVolume loaded = load(options.volume);
+    const LoadedVolume loaded = load_for_terminal(options.volume);
     const Field field = make_field(loaded, options.field);
     const double isovalue = isovalue_of(loaded, field, options.field);
     SurfaceMesh mesh;

@@ -7,9 +7,10 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "apps/live/statistics.hpp"
+#include "apps/live/volume_options.hpp"
 #include "apps/palpate/commands.hpp"
-#include "apps/palpate/statistics.hpp"
-#include "apps/palpate/volume_options.hpp"
+#include "apps/palpate/progress.hpp"
 
 namespace palpate::app {
 namespace {
@@ -139,7 +140,7 @@ void add_info(CLI::App& app) {
     options->add_to(*command);
     command->add_flag("--json", *json, "Print JSON");
     command->callback([options, json] {
-        const LoadedVolume loaded = load(*options);
+        const LoadedVolume loaded = load_for_terminal(*options);
         const Histogram histogram = histogram_of(loaded.volume, fine_bins);
         std::vector<double> suggested = suggested_isovalues(histogram);
         const std::optional<double>& own = loaded.isovalue;  // a tiny grid may miss its range

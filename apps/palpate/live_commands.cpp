@@ -6,7 +6,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "apps/palpate/render_options.hpp"
+#include "apps/live/render_options.hpp"
 #include "io/csv.hpp"
 #include "io/number.hpp"
 

@@ -42,4 +42,15 @@ void ProgressBar::at(double fraction) {
     std::fputs(line.c_str(), stderr);
 }
 
+LoadedVolume load_for_terminal(const VolumeOptions& options) {
+    ProgressBar bar("reading " + options.volume, options.quiet);
+    LoadedVolume loaded = load(options, [&](double fraction) { bar.at(fraction); });
+    if (!options.quiet) {
+        for (const std::string& note : loaded.notes) {
+            fmt::print(stderr, "palpate: note: {}: {}\n", loaded.name, note);
+        }
+    }
+    return loaded;
+}
+
 }  // namespace palpate::app

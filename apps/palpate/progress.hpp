@@ -5,6 +5,8 @@
 #include <chrono>
 #include <string>
 
+#include "apps/live/volume_options.hpp"
+
 namespace palpate::app {
 
 class ProgressBar {
@@ -26,5 +28,9 @@ class ProgressBar {
     bool show_;
     bool drawn_ = false;
 };
+
+/// Reads or makes the volume, with a progress bar; prints what there is to note on standard error
+/// unless quiet. Throws as load(), and Interrupted.
+LoadedVolume load_for_terminal(const VolumeOptions& options);
 
 }  // namespace palpate::app

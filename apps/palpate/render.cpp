@@ -7,10 +7,10 @@
 #include <memory>
 #include <optional>
 
+#include "apps/live/volume_options.hpp"
 #include "apps/palpate/commands.hpp"
 #include "apps/palpate/outputs.hpp"
 #include "apps/palpate/progress.hpp"
-#include "apps/palpate/volume_options.hpp"
 #include "io/number.hpp"
 #include "io/output.hpp"
 #include "io/raw_options.hpp"
@@ -150,7 +150,7 @@ std::string summary_of(const pictures::PictureScene& scene, const pictures::Cont
 }
 
 Drawing drawing_of(const RenderPictureOptions& options) {
-    const LoadedVolume loaded = load(options.volume);
+    const LoadedVolume loaded = load_for_terminal(options.volume);
     const Field field = make_field(loaded, options.field);
     const std::vector<double> levels = levels_of(options, loaded, field);
     const pictures::Contact contact = contact_of(options, field, levels.front());

@@ -6,13 +6,13 @@
 #include <memory>
 #include <optional>
 
+#include "apps/live/render_options.hpp"
+#include "apps/live/volume_options.hpp"
 #include "apps/palpate/commands.hpp"
 #include "apps/palpate/offline.hpp"
 #include "apps/palpate/outputs.hpp"
 #include "apps/palpate/progress.hpp"
-#include "apps/palpate/render_options.hpp"
 #include "apps/palpate/validate.hpp"
-#include "apps/palpate/volume_options.hpp"
 
 namespace palpate::app {
 namespace {
@@ -57,7 +57,7 @@ void replay(const ReplayOptions& options) {
             "--json and a table would both go to standard output: give the table a file");
     }
     const io::Trajectory trajectory = io::read_trajectory(options.trajectory);
-    const LoadedVolume loaded = load(options.volume);
+    const LoadedVolume loaded = load_for_terminal(options.volume);
     const Field field = make_field(loaded, options.field);
     const double isovalue = isovalue_of(loaded, field, options.field);
     RendererSettings settings = render_settings(options.render, field, isovalue);

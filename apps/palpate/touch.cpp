@@ -8,12 +8,13 @@
 #include <memory>
 #include <thread>
 
+#include "apps/live/touch_options.hpp"
 #include "apps/palpate/commands.hpp"
 #include "apps/palpate/live_commands.hpp"
 #include "apps/palpate/live_status.hpp"
 #include "apps/palpate/outputs.hpp"
+#include "apps/palpate/progress.hpp"
 #include "apps/palpate/terminal.hpp"
-#include "apps/palpate/touch_options.hpp"
 #include "devices/last_resort.hpp"
 
 namespace palpate::app {
@@ -141,14 +142,19 @@ void announce(const Servo& servo, const LiveScene& scene, bool quiet) {
 
 void touch(const TouchOptions& options) {
     check_outputs({options.volume.volume, options.commands}, {options.record});
-    LiveScene scene = make_scene(options);
+    if (devices::parse_device(options.device).name == "mouse") {
+        throw devices::DeviceError(
+            "device mouse: there is no window to move it in; leave out "
+            "--headless, or take another device (palpate devices)");
+    }
+    LiveScene scene = make_scene(load_for_terminal(options.volume), options);
     LiveCommands commands(scene.field, scene.isovalue, scene.session.renderer.settings);
     std::vector<TimedRequest> requests;
     if (!options.commands.empty()) requests = read_commands(options.commands, commands);
     std::unique_ptr<io::RecordingWriter> recording;
     if (!options.record.empty()) {
-        recording =
-            std::make_unique<io::RecordingWriter>(options.record, recording_head(scene, options));
+        recording = std::make_unique<io::RecordingWriter>(
+            options.record, recording_head(scene.session, scene.info, options));
     }
     const devices::LastResort last_resort(*scene.device);
     Servo servo(std::move(scene.session), *scene.device,

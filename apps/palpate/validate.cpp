@@ -8,52 +8,12 @@
 #include <filesystem>
 #include <optional>
 
+#include "apps/live/recorded_scene.hpp"
 #include "apps/palpate/progress.hpp"
-#include "apps/palpate/render_options.hpp"
-#include "apps/palpate/volume_options.hpp"
-#include "baselines/methods.hpp"
-#include "io/number.hpp"
 #include "io/recording.hpp"
 
 namespace palpate::app {
 namespace {
-
-/// The recorded name, looked for from here, then beside the recording.
-std::string volume_name(const std::string& recorded, const std::filesystem::path& recording) {
-    if (recorded.starts_with("synthetic:") || std::filesystem::exists(recorded)) return recorded;
-    std::string name = recorded;
-    while (name.size() > 1 && name.back() == '/') name.pop_back();  // a folder
-    const auto beside = recording.parent_path() / std::filesystem::path(name).filename();
-    return std::filesystem::exists(beside) ? beside.string() : recorded;
-}
-
-LoadedVolume load_recorded(const io::RecordingHead& head, const std::string& recording,
-                           const std::string& instead, bool quiet) {
-    const auto& options = head.volume.options;
-    const auto option = [&](const char* name) {
-        const auto found = options.find(name);
-        return found == options.end() ? std::string() : found->second;
-    };
-    VolumeOptions volume;
-    volume.volume = instead.empty() ? volume_name(option("volume"), recording) : instead;
-    volume.dims = option("dims");
-    volume.type = option("type");
-    volume.spacing = option("spacing");
-    volume.series = option("series");
-    volume.skip = io::number_from<std::uint64_t>(option("skip")).value_or(0);
-    volume.time_step = io::number_from<int>(option("time-step")).value_or(0);
-    volume.smooth = io::number_from<int>(option("smooth")).value_or(0);
-    volume.quiet = quiet;
-    LoadedVolume loaded = load(volume);
-    const io::VolumeIdentity now = io::identify(loaded.volume, {});
-    if (now.size != head.volume.size || now.type != head.volume.type ||
-        now.crc32 != head.volume.crc32) {
-        throw io::InputError(volume.volume +
-                             ": is not the volume of the recording (its size, type "
-                             "or samples differ): name the right one with --volume");
-    }
-    return loaded;
-}
 
 /// The same bits; what is not a number equals what is none either, for text keeps no payload.
 bool same(double a, double b) {
@@ -96,20 +56,6 @@ std::string difference(const SessionTick& recorded, const SessionTick& again) {
     return {};
 }
 
-Session session_of(const io::RecordingHead& head, const LoadedVolume& loaded,
-                   const std::string& name) {
-    try {
-        RendererSettings settings = head.settings;
-        settings.method = baselines::method_named(head.method);
-        check(head.session);
-        return {make_renderer(Field(loaded.volume, head.solid, head.background), head.isovalue,
-                              settings),
-                head.session};
-    } catch (const std::invalid_argument& e) {
-        throw io::InputError(name + ": the head asks for what cannot be rendered: " + e.what());
-    }
-}
-
 /// What else may be the reason; reads on to the end.
 std::string excuses(io::RecordingReader& reader) {
     std::string words;
@@ -129,8 +75,10 @@ std::string excuses(io::RecordingReader& reader) {
 
 void validate(const std::string& recording, const std::string& volume, bool quiet) {
     io::RecordingReader reader{std::filesystem::path(recording)};
-    const LoadedVolume loaded = load_recorded(reader.head(), recording, volume, quiet);
-    Session session = session_of(reader.head(), loaded, recording);
+    VolumeOptions options = recorded_volume(reader.head(), recording, volume);
+    options.quiet = quiet;
+    const LoadedVolume loaded = load_for_terminal(options);
+    Session session = recorded_session(reader.head(), loaded, recording);
     ProgressBar bar("validating", quiet);
     std::int64_t ticks = 0, commands = 0;
     while (const auto event = reader.next()) {

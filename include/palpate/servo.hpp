@@ -63,13 +63,17 @@ struct ServoReport {
 struct Snapshot {
     std::int64_t number = 0;  ///< of the tick, from 0
     SessionTick session;
-    Tetrahedron tetrahedron;     ///< the SCP's
+    LatticePoint scp;            ///< the SCP, with the tetrahedron that it is in
     Vec3 normal = Vec3::Zero();  ///< of the constraint plane at the SCP, out of the solid, physical
     double stiffness = 0;        ///< [N/mm] in use
     bool penetrability_on = false;
     bool forces_on = true;
     std::int64_t missed = 0;  ///< deadlines so far
 };
+
+/// What is seen of a session after a tick. Neither throws nor allocates.
+Snapshot snapshot_of(const Session& session, const SessionTick& tick, std::int64_t number,
+                     std::int64_t missed) noexcept;
 
 /// A session running on its own thread. Neither copied nor moved: threads hold on to it.
 class Servo {
@@ -93,6 +97,9 @@ class Servo {
     /// The newest tick; nothing before the first. Any thread, never waits.
     std::optional<Snapshot> snapshot() const noexcept { return snapshot_.get(); }
     ServoReport report() const noexcept;
+    /// The session as its last tick left it, to go on with in another servo. Throws
+    /// std::logic_error while the thread runs.
+    const Session& session() const;
 
     /// What the system granted and what not, a sentence each, with what to set. After start().
     const std::vector<std::string>& privileges() const { return privileges_; }

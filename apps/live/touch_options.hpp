@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
-#include "apps/palpate/render_options.hpp"
-#include "apps/palpate/volume_options.hpp"
+#include "apps/live/render_options.hpp"
+#include "apps/live/volume_options.hpp"
 #include "devices/devices.hpp"
 #include "io/recording.hpp"
 #include "palpate/session.hpp"
@@ -42,11 +42,12 @@ struct LiveScene {
     Session session;
 };
 
-/// Loads the volume, opens the device, fits it to the volume. Throws std::invalid_argument,
-/// io::InputError, devices::DeviceError.
-LiveScene make_scene(const TouchOptions& options);
+/// Opens the device and fits it to the volume. Throws std::invalid_argument, io::InputError (a
+/// hand's file), devices::DeviceError.
+LiveScene make_scene(LoadedVolume loaded, const TouchOptions& options);
 
-/// What a recording of the scene has to say.
-io::RecordingHead recording_head(const LiveScene& scene, const TouchOptions& options);
+/// What a recording has to say of a session that is about to begin.
+io::RecordingHead recording_head(const Session& session, const DeviceInfo& device,
+                                 const TouchOptions& options);
 
 }  // namespace palpate::app

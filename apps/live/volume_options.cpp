@@ -1,12 +1,12 @@
 // Which volume, which level: options and loading.
-#include "apps/palpate/volume_options.hpp"
+#include "apps/live/volume_options.hpp"
 
 #include <fmt/format.h>
 
 #include <cstdio>
 
-#include "apps/palpate/progress.hpp"
-#include "apps/palpate/statistics.hpp"
+#include "apps/live/statistics.hpp"
+#include "io/number.hpp"
 #include "io/raw_options.hpp"
 #include "palpate/renderer.hpp"
 #include "scenes/volumes.hpp"
@@ -32,7 +32,7 @@ LoadedVolume make_synthetic(const VolumeOptions& options) {
             {},           scene.isovalue};
 }
 
-LoadedVolume read_file(const VolumeOptions& options) {
+LoadedVolume read_file(const VolumeOptions& options, const io::Progress& progress) {
     io::ReadOptions read;
     if (!options.dims.empty() || !options.type.empty()) {
         read.raw = io::raw_layout_from(options.dims, options.type, options.spacing, options.skip);
@@ -40,8 +40,7 @@ LoadedVolume read_file(const VolumeOptions& options) {
     if (!options.spacing.empty()) read.spacing = io::spacing_from(options.spacing);
     read.series = options.series;
     read.time_step = options.time_step;
-    ProgressBar bar("reading " + options.volume, options.quiet);
-    read.progress = [&](double fraction) { bar.at(fraction); };
+    read.progress = progress;
     io::VolumeFile file = io::read_volume(options.volume, read);
     return {std::move(file.volume), options.volume,        std::move(file.format),
             file.time_steps,        std::move(file.notes), {}};
@@ -79,16 +78,44 @@ void VolumeOptions::add_to(CLI::App& command, bool optional) {
     command.add_flag("-q,--quiet", quiet, "No progress, no notes");
 }
 
-LoadedVolume load(const VolumeOptions& options) {
-    LoadedVolume loaded =
-        options.volume.starts_with(synthetic_prefix) ? make_synthetic(options) : read_file(options);
+LoadedVolume load(const VolumeOptions& options, const io::Progress& progress) {
+    LoadedVolume loaded = options.volume.starts_with(synthetic_prefix)
+                              ? make_synthetic(options)
+                              : read_file(options, progress);
     loaded.volume = smoothed(loaded.volume, options.smooth);
-    if (!options.quiet) {
-        for (const std::string& note : loaded.notes) {
-            fmt::print(stderr, "palpate: note: {}: {}\n", loaded.name, note);
-        }
-    }
     return loaded;
+}
+
+std::map<std::string, std::string> to_names(const VolumeOptions& options) {
+    std::map<std::string, std::string> names{{"volume", options.volume}};
+    const auto add = [&](const char* name, const std::string& value) {
+        if (!value.empty()) names[name] = value;
+    };
+    add("dims", options.dims);
+    add("type", options.type);
+    add("spacing", options.spacing);
+    add("series", options.series);
+    if (options.skip > 0) add("skip", std::to_string(options.skip));
+    if (options.time_step > 0) add("time-step", std::to_string(options.time_step));
+    if (options.smooth > 0) add("smooth", std::to_string(options.smooth));
+    return names;
+}
+
+VolumeOptions options_from(const std::map<std::string, std::string>& names) {
+    const auto value = [&](const char* name) {
+        const auto found = names.find(name);
+        return found == names.end() ? std::string() : found->second;
+    };
+    VolumeOptions options;
+    options.volume = value("volume");
+    options.dims = value("dims");
+    options.type = value("type");
+    options.spacing = value("spacing");
+    options.series = value("series");
+    options.skip = io::number_from<std::uint64_t>(value("skip")).value_or(0);
+    options.time_step = io::number_from<int>(value("time-step")).value_or(0);
+    options.smooth = io::number_from<int>(value("smooth")).value_or(0);
+    return options;
 }
 
 void FieldOptions::add_to(CLI::App& command) {

@@ -1,5 +1,5 @@
 // From options to a session.
-#include "apps/palpate/touch_options.hpp"
+#include "apps/live/touch_options.hpp"
 
 #include <fmt/format.h>
 
@@ -91,8 +91,7 @@ void TouchOptions::add_to(CLI::App& command, bool record_is_output) {
     command.add_flag("--json", json, "Print the report as JSON");
 }
 
-LiveScene make_scene(const TouchOptions& options) {
-    LoadedVolume loaded = load(options.volume);
+LiveScene make_scene(LoadedVolume loaded, const TouchOptions& options) {
     Field field = make_field(loaded, options.field);
     const double isovalue = suggested_isovalue_of(loaded, field, options.field);
     const double rate = options.render.rate;
@@ -128,31 +127,21 @@ LiveScene make_scene(const TouchOptions& options) {
             std::move(session)};
 }
 
-io::RecordingHead recording_head(const LiveScene& scene, const TouchOptions& options) {
-    const VolumeOptions& volume = options.volume;
-    std::map<std::string, std::string> names{{"volume", volume.volume}};
-    const auto add = [&](const char* name, const std::string& value) {
-        if (!value.empty()) names[name] = value;
-    };
-    add("dims", volume.dims);
-    add("type", volume.type);
-    add("spacing", volume.spacing);
-    add("series", volume.series);
-    if (volume.skip > 0) add("skip", std::to_string(volume.skip));
-    if (volume.time_step > 0) add("time-step", std::to_string(volume.time_step));
-    if (volume.smooth > 0) add("smooth", std::to_string(volume.smooth));
+io::RecordingHead recording_head(const Session& session, const DeviceInfo& device,
+                                 const TouchOptions& options) {
+    const Field& field = session.renderer.field;
     io::RecordingHead head;
     head.version = PALPATE_VERSION;
     head.begun = utc_now();
-    head.volume = io::identify(scene.loaded.volume, std::move(names));
-    head.solid = scene.field.solid();
-    head.background = scene.field.background();
-    head.isovalue = scene.isovalue;
-    head.device = scene.info.name + " (" + scene.info.model + ")";
+    head.volume = io::identify(field.volume(), to_names(options.volume));
+    head.solid = field.solid();
+    head.background = field.background();
+    head.isovalue = session.renderer.proxy.isovalue;
+    head.device = device.name + " (" + device.model + ")";
     head.rate = options.render.rate;
     head.method = options.render.method;
-    head.settings = scene.session.renderer.settings;
-    head.session = scene.session.settings;
+    head.settings = session.renderer.settings;
+    head.session = session.settings;
     return head;
 }
 

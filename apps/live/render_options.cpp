@@ -1,5 +1,5 @@
 // How to feel: options of method, penetrability and force.
-#include "apps/palpate/render_options.hpp"
+#include "apps/live/render_options.hpp"
 
 #include <fmt/format.h>
 

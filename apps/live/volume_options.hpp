@@ -3,10 +3,12 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "io/volume_file.hpp"
 #include "palpate/field.hpp"
 
 namespace palpate::app {
@@ -34,9 +36,15 @@ struct LoadedVolume {
     std::optional<double> isovalue;  ///< a good one, of a synthetic volume
 };
 
-/// Reads or makes the volume, with a progress bar; prints what there is to note on standard error
-/// unless quiet. Throws std::invalid_argument (wrong use) and io::InputError.
-LoadedVolume load(const VolumeOptions& options);
+/// Reads or makes the volume. `progress` may throw to stop. Throws std::invalid_argument (wrong
+/// use) and io::InputError.
+LoadedVolume load(const VolumeOptions& options, const io::Progress& progress);
+
+/// The names and values under which recordings and sessions keep a volume's options: "volume" is
+/// its name, the rest are options without their dashes; those that were not given are left out.
+std::map<std::string, std::string> to_names(const VolumeOptions& options);
+/// The inverse; names it does not know are passed over, values that are none count as not given.
+VolumeOptions options_from(const std::map<std::string, std::string>& names);
 
 struct FieldOptions {
     std::string isovalue;

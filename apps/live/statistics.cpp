@@ -1,5 +1,5 @@
 // Histogram and Otsu's thresholds.
-#include "apps/palpate/statistics.hpp"
+#include "apps/live/statistics.hpp"
 
 #include <algorithm>
 #include <array>

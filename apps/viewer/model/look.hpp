@@ -1,0 +1,47 @@
+// How a scene is shown: plain values that panel and scene share and a session file keeps.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pictures/scene.hpp"
+
+namespace palpate::viewer {
+
+using pictures::Colour;
+
+/// Where a transfer function changes: between two points colour and opacity run straight, beyond
+/// the outer ones they stay.
+struct ControlPoint {
+    double level = 0;    ///< [data units]
+    Colour colour;       ///< sRGB
+    double opacity = 0;  ///< 0 to 1, of a layer as thick as the smallest spacing
+
+    bool operator==(const ControlPoint&) const = default;
+};
+
+/// Colour and opacity by density, for volume rendering.
+struct TransferFunction {
+    std::string preset;                ///< which one it was made from; empty once it was edited
+    std::vector<ControlPoint> points;  ///< at least two, levels strictly rising
+
+    bool operator==(const TransferFunction&) const = default;
+};
+
+/// What is in the scene and how it looks.
+struct Look {
+    bool surface = true;  ///< the isosurface that is felt
+    Colour surface_colour = pictures::bone;
+    double surface_opacity = 1;
+    bool volume = false;  ///< volume rendering
+    TransferFunction transfer;
+    bool shading = true;                      ///< of the volume
+    bool slices = false;                      ///< three planes through the crosshair
+    bool contact = true;                      ///< HIP, SCP, spring and force
+    bool tetrahedra = false, planes = false;  ///< round the SCP: the paper's figures
+    bool box = true, orientation = true, scale_bar = true;
+
+    bool operator==(const Look&) const = default;
+};
+
+}  // namespace palpate::viewer

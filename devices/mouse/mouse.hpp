@@ -1,0 +1,49 @@
+// The device `mouse`: a window's pointer and keys move the hand; the force is shown, not felt. See
+// docs/devices/mouse.md.
+#pragma once
+
+#include <memory>
+
+#include "devices/backend.hpp"
+#include "palpate/exchange.hpp"
+
+namespace palpate::devices {
+
+/// Always found; it needs a window to move it.
+DeviceFinding find_mouse();
+
+/// A Mouse. Throws std::invalid_argument for options it has not.
+std::unique_ptr<Device> open_mouse(const DeviceChoice& choice, const DeviceScene& scene);
+
+/// A hand that goes where a window's pointer aims. Pointers jump a hundred times a second; the hand
+/// follows smoothly, a thousand times, never faster than its speed. Axes and workspace as of every
+/// device: x to the right, y up, z towards the person. Begins in the middle of the side that is
+/// nearest to the person.
+class Mouse final : public Device {
+  public:
+    /// `speed` [mm/s]: the hand's greatest.
+    explicit Mouse(double speed);
+
+    /// Where the hand is to go [device mm], cut to the workspace. By one thread, the window's; not
+    /// finite: nothing happens.
+    void aim(const Vec3& position) noexcept;
+    /// Where it is going. The thread that aims.
+    const Vec3& aimed() const noexcept { return aim_; }
+
+    DeviceInfo info() const override;
+    DeviceReading read(double time) noexcept override;
+    /// Forces reach no motor.
+    void write(const Vec3&, double) noexcept override {}
+    void stop() noexcept override {}
+
+  private:
+    Vec3 aim_;            // the window's
+    Newest<Vec3> going_;  // from the window to the servo
+    // The servo's.
+    double speed_;
+    Vec3 target_, position_, velocity_ = Vec3::Zero();
+    double time_ = 0;
+    bool moving_ = false;
+};
+
+}  // namespace palpate::devices
