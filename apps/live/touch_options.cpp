@@ -59,8 +59,8 @@ std::string utc_now() {
 
 }  // namespace
 
-void TouchOptions::add_to(CLI::App& command, bool record_is_output) {
-    volume.add_to(command);
+void TouchOptions::add_to(CLI::App& command, bool record_is_output, bool volume_is_optional) {
+    volume.add_to(command, volume_is_optional);
     command
         .add_option("-d,--device", device,
                     "Device and its options, NAME[:KEY=VALUE,...]; palpate devices lists them")
@@ -89,6 +89,13 @@ void TouchOptions::add_to(CLI::App& command, bool record_is_output) {
     command.get_option("--step-budget")->default_str("4096, less above 1 kHz");
     command.add_flag("--normal-priority", normal_priority, "Do not ask for real-time priority");
     command.add_flag("--json", json, "Print the report as JSON");
+}
+
+void TouchOptions::finish(const CLI::App& command) {
+    limit_given = command.count("--force-limit") > 0;
+    stiffness_given = command.count("--stiffness") > 0;
+    budget_given = command.count("--step-budget") > 0;
+    scale_given = command.count("--scale") > 0;
 }
 
 LiveScene make_scene(LoadedVolume loaded, const TouchOptions& options) {

@@ -8,7 +8,9 @@
 namespace palpate::app {
 
 void add_info(CLI::App& app);
-void add_touch(CLI::App& app);
+struct Words;  // window.hpp
+void add_touch(CLI::App& app, const Words& words);
+void add_view(CLI::App& app, const Words& words);
 void add_record(CLI::App& app);
 void add_devices(CLI::App& app);
 void add_replay(CLI::App& app);

@@ -2,28 +2,20 @@
 // exit status of the contract.
 #include <fcntl.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
+#include <exception>
 #include <iostream>
-#include <new>
-#include <stdexcept>
 #include <string>
 
+#include "apps/live/exit_status.hpp"
 #include "apps/palpate/commands.hpp"
-#include "devices/error.hpp"
-#include "io/error.hpp"
+#include "apps/palpate/window.hpp"
 
 namespace {
 
-enum ExitStatus {
-    done = 0,
-    claims_broken = 1,
-    wrong_use = 2,
-    bad_input = 3,
-    no_device = 4,
-    bad_output = 5,
-    stopped = 130
-};
+using namespace palpate::app;
 
 volatile std::sig_atomic_t stop_signal = 0;
 
@@ -86,15 +78,18 @@ int run(int argc, char** argv) {
         "  palpate demo                             a simulated hand explores a built-in volume\n"
         "  palpate info head.nrrd                   what a volume is, and which levels to feel\n"
         "  palpate COMMAND --help                   options and an example of each command");
-    palpate::app::add_info(app);
-    palpate::app::add_replay(app);
-    palpate::app::add_extract(app);
-    palpate::app::add_render(app);
-    palpate::app::add_demo(app);
-    palpate::app::add_evaluate(app);
-    palpate::app::add_touch(app);
-    palpate::app::add_record(app);
-    palpate::app::add_devices(app);
+    add_info(app);
+    add_replay(app);
+    add_extract(app);
+    add_render(app);
+    add_demo(app);
+    add_evaluate(app);
+    // What follows the command's name, for a command that becomes another program.
+    const Words words{std::max(argc - 2, 0), argv + std::min(argc, 2)};
+    add_touch(app, words);
+    add_view(app, words);
+    add_record(app);
+    add_devices(app);
     for (CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
         command->set_version_flag("--version", "palpate " PALPATE_VERSION);
     }
@@ -132,26 +127,17 @@ int main(int argc, char** argv) {
     std::signal(SIGPIPE, SIG_IGN);  // a reader that has gone is a failed write, cleaned up after
     try {
         return run(argc, argv);
-    } catch (const palpate::io::InputError& e) {
-        // Ctrl-C reaches the helper process as well, and its end may be seen first.
-        if (palpate::app::interrupted()) return fail("interrupted", stopped);
-        return fail(e.what(), bad_input);
-    } catch (const palpate::devices::DeviceError& e) {
-        return fail(e.what(), no_device);
-    } catch (const palpate::io::OutputError& e) {
-        return fail(e.what(), bad_output);
-    } catch (const std::invalid_argument& e) {
-        return fail(e.what(), wrong_use);
-    } catch (const palpate::app::ClaimsDoNotHold& broken) {
+    } catch (const ClaimsDoNotHold& broken) {
         const std::string text =
             std::to_string(broken.count) + " of the claims do not hold (see above)";
         return fail(text.c_str(), claims_broken);
-    } catch (const palpate::app::Interrupted&) {
+    } catch (const Interrupted&) {
         return fail("interrupted", stopped);
-    } catch (const std::bad_alloc&) {
-        return fail("not enough memory: use a smaller volume, or one of fewer bits", bad_input);
     } catch (const std::exception& e) {
+        const Failure failure = failure_of(e);
+        // Ctrl-C reaches the helper process as well, and its end may be seen first.
+        if (failure.status == bad_input && interrupted()) return fail("interrupted", stopped);
         if (std::ferror(stdout) != 0) return finish_output();
-        return fail(e.what(), bad_input);
+        return fail(failure.text.c_str(), failure.status);
     }
 }

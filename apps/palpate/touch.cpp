@@ -15,6 +15,7 @@
 #include "apps/palpate/outputs.hpp"
 #include "apps/palpate/progress.hpp"
 #include "apps/palpate/terminal.hpp"
+#include "apps/palpate/window.hpp"
 #include "devices/last_resort.hpp"
 
 namespace palpate::app {
@@ -144,8 +145,9 @@ void touch(const TouchOptions& options) {
     check_outputs({options.volume.volume, options.commands}, {options.record});
     if (devices::parse_device(options.device).name == "mouse") {
         throw devices::DeviceError(
-            "device mouse: there is no window to move it in; leave out "
-            "--headless, or take another device (palpate devices)");
+            "device mouse: there is no window to move it in (--headless, --json, --seconds and "
+            "--commands have none, nor has a machine without a display); palpate devices lists "
+            "others");
     }
     LiveScene scene = make_scene(load_for_terminal(options.volume), options);
     LiveCommands commands(scene.field, scene.isovalue, scene.session.renderer.settings);
@@ -190,34 +192,46 @@ void touch(const TouchOptions& options) {
     stop_if_interrupted();
 }
 
-void add_session(CLI::App& app, const char* name, const char* what, bool record_is_output,
-                 const char* example) {
-    auto options = std::make_shared<TouchOptions>();
+/// Scripts and terminals without a display get no window.
+bool wants_window(const TouchOptions& options, bool headless) {
+    const bool script = options.json || options.seconds > 0 || !options.commands.empty();
+    return !headless && !script && has_display() && !viewer_program().empty();
+}
+
+void add_session(CLI::App& app, const char* name, const char* what, bool is_record,
+                 const Words& words, const char* example) {
+    struct Options : TouchOptions {
+        bool headless = false;
+    };
+    auto options = std::make_shared<Options>();
     CLI::App* command = app.add_subcommand(name, what);
     command->footer(fmt::format(
         "Without --device a simulated hand explores the volume. Forces begin at zero, when the "
         "wanted one is small, and end at zero,\nwhatever ends the session. With a terminal, keys "
         "work while it runs (? lists them).\n\nExample:\n  {}",
         example));
-    options->add_to(*command, record_is_output);
-    command->callback([options, command] {
-        options->limit_given = command->count("--force-limit") > 0;
-        options->stiffness_given = command->count("--stiffness") > 0;
-        options->budget_given = command->count("--step-budget") > 0;
-        options->scale_given = command->count("--scale") > 0;
+    options->add_to(*command, is_record);
+    if (!is_record) {
+        command->add_flag("--headless", options->headless,
+                          "No window, even where there is a display; so too with --json, "
+                          "--seconds, --commands");
+    }
+    command->callback([options, command, words, is_record] {
+        options->finish(*command);
+        if (!is_record && wants_window(*options, options->headless)) become_viewer(words);
         touch(*options);
     });
 }
 
 }  // namespace
 
-void add_touch(CLI::App& app) {
-    add_session(app, "touch", "Feel a volume live, through a haptic device", false,
+void add_touch(CLI::App& app, const Words& words) {
+    add_session(app, "touch", "Feel a volume live, through a haptic device", false, words,
                 "palpate touch head.nrrd --isovalue 500 --device haply --record session.csv");
 }
 
 void add_record(CLI::App& app) {
-    add_session(app, "record", "Feel a volume live and record the session", true,
+    add_session(app, "record", "Feel a volume live and record the session", true, {},
                 "palpate record head.nrrd --isovalue 500 --device haply --output session.csv");
 }
 

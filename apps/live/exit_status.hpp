@@ -1,0 +1,28 @@
+// How failures leave a program: exit status and one line, the same for every program of ours.
+#pragma once
+
+#include <exception>
+#include <string>
+
+namespace palpate::app {
+
+/// See docs/command_line.md.
+enum ExitStatus {
+    done = 0,
+    claims_broken = 1,
+    wrong_use = 2,
+    bad_input = 3,
+    no_device = 4,
+    bad_output = 5,
+    stopped = 130
+};
+
+struct Failure {
+    ExitStatus status;
+    std::string text;  ///< one line for people
+};
+
+/// What an exception that nobody caught means.
+Failure failure_of(const std::exception& exception);
+
+}  // namespace palpate::app
