@@ -1,0 +1,17 @@
+// How a live session does, in single words: for a terminal's line and for the window.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "palpate/renderer.hpp"
+
+namespace palpate::app {
+
+/// A duration as people read it: 850 ns, 12.4 us, 3.1 ms.
+std::string duration_text(std::int64_t ns);
+
+/// What a force is held back by, in words; empty for a force that is simply rendered.
+std::string force_words(const Tick& tick);
+
+}  // namespace palpate::app
