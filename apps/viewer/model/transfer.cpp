@@ -1,0 +1,264 @@
+// Presets, and what lies between two control points.
+#include "apps/viewer/model/transfer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+namespace palpate::viewer {
+namespace {
+
+/// What presets stand on [data units]. `outer` and `inner` part the data into three classes: in CT
+/// of a head air, soft tissue and bone.
+struct Levels {
+    double low, outer, inner, high;  // low < outer < inner < high
+    bool hounsfield;
+};
+
+bool looks_like_hounsfield(const Volume& volume) {
+    return (volume.type() == SampleType::int16 || volume.type() == SampleType::float32) &&
+           volume.minimum() <= -500 && volume.maximum() > 0;
+}
+
+/// Whether a lies before b by more than what rounding could close again.
+bool apart(double a, double b, double range) {
+    return b - a > 1e-6 * range && b > a;
+}
+
+Levels levels_of(const app::Histogram& histogram, const Volume& volume) {
+    const double low = volume.minimum();
+    // A constant volume still has two ends, even where 1 is lost beside the value.
+    const double high =
+        std::max(low + volume.range(), std::nextafter(low, std::numeric_limits<double>::max()));
+    const double range = high - low;
+    double outer = low + range / 3;
+    double inner = low + 2 * range / 3;
+    const std::vector<double> suggested = app::suggested_isovalues(histogram);
+    if (!suggested.empty() && apart(low, suggested.front(), range) &&
+        apart(suggested.front(), high, range)) {
+        outer = suggested.front();
+        inner = 0.5 * (outer + high);
+    }
+    if (suggested.size() > 1 && apart(outer, suggested.back(), range) &&
+        apart(suggested.back(), high, range)) {
+        inner = suggested.back();
+    }
+    return {low, outer, inner, high, looks_like_hounsfield(volume)};
+}
+
+/// A point between two levels, `part` of the way.
+double between(double from, double to, double part) {
+    return from + part * (to - from);
+}
+
+using Points = std::vector<ControlPoint>;
+
+constexpr Colour black{0, 0, 0};
+constexpr Colour white{1, 1, 1};
+constexpr Colour skin{0.91, 0.73, 0.62};
+constexpr Colour muscle{0.72, 0.33, 0.25};
+constexpr Colour fat{0.93, 0.82, 0.58};
+constexpr Colour ivory{0.99, 0.97, 0.90};
+
+Points ct_bone(const Levels& l) {
+    if (l.hounsfield) {
+        return {{-1024, muscle, 0},          {130, muscle, 0},   {230, muscle, 0.06},
+                {350, pictures::bone, 0.35}, {700, ivory, 0.75}, {2000, white, 0.9}};
+    }
+    return {{l.low, muscle, 0},
+            {between(l.outer, l.inner, 0.75), muscle, 0},
+            {between(l.outer, l.inner, 0.92), muscle, 0.06},
+            {between(l.inner, l.high, 0.05), pictures::bone, 0.4},
+            {between(l.inner, l.high, 0.4), ivory, 0.75},
+            {l.high, white, 0.9}};
+}
+
+Points ct_skin(const Levels& l) {
+    if (l.hounsfield) {
+        return {{-1024, skin, 0},  {-600, skin, 0},   {-350, skin, 0.35},
+                {-150, skin, 0.8}, {250, skin, 0.85}, {600, ivory, 0.95}};
+    }
+    return {{l.low, skin, 0},      {between(l.low, l.outer, 0.6), skin, 0},
+            {l.outer, skin, 0.35}, {between(l.outer, l.inner, 0.3), skin, 0.8},
+            {l.inner, skin, 0.85}, {l.high, ivory, 0.95}};
+}
+
+Points ct_soft_tissue(const Levels& l) {
+    if (l.hounsfield) {
+        return {{-1024, fat, 0},
+                {-200, fat, 0},
+                {-100, fat, 0.03},
+                {0, muscle, 0.08},
+                {60, muscle, 0.25},
+                {150, {0.85, 0.45, 0.36}, 0.3},
+                {300, pictures::bone, 0.3},
+                {1500, ivory, 0.6}};
+    }
+    return {{l.low, fat, 0},
+            {between(l.low, l.outer, 0.8), fat, 0},
+            {between(l.outer, l.inner, 0.1), fat, 0.04},
+            {between(l.outer, l.inner, 0.5), muscle, 0.22},
+            {between(l.outer, l.inner, 0.9), {0.85, 0.45, 0.36}, 0.3},
+            {l.high, ivory, 0.6}};
+}
+
+Points mr(const Levels& l) {
+    return {{l.low, black, 0},
+            {between(l.low, l.outer, 0.7), {0.16, 0.10, 0.09}, 0},
+            {between(l.outer, l.inner, 0.3), {0.55, 0.40, 0.36}, 0.12},
+            {l.inner, {0.84, 0.74, 0.68}, 0.3},
+            {l.high, white, 0.65}};
+}
+
+/// Fluorescence: light in the dark, the more the brighter.
+Points microscopy(const Levels& l) {
+    return {{l.low, {0, 0.02, 0.10}, 0},
+            {between(l.low, l.outer, 0.6), {0, 0.12, 0.28}, 0},
+            {between(l.outer, l.inner, 0.2), {0.02, 0.48, 0.46}, 0.10},
+            {l.inner, {0.32, 0.82, 0.36}, 0.4},
+            {l.high, {0.98, 0.98, 0.72}, 0.8}};
+}
+
+Points grey(const Levels& l) {
+    return {{l.low, black, 0}, {l.high, white, 0.5}};
+}
+
+struct Preset {
+    const char* name;
+    Points (*points)(const Levels&);
+};
+constexpr std::array<Preset, 6> presets{{{"CT bone", &ct_bone},
+                                         {"CT skin", &ct_skin},
+                                         {"CT soft tissue", &ct_soft_tissue},
+                                         {"MR", &mr},
+                                         {"Microscopy", &microscopy},
+                                         {"Grey", &grey}}};
+
+ControlPoint mixed(const ControlPoint& a, const ControlPoint& b, double level) {
+    const double part = (level - a.level) / (b.level - a.level);
+    const auto mix = [part](double from, double to) {  // rounding must not lead beyond either
+        return std::clamp(between(from, to, part), std::min(from, to), std::max(from, to));
+    };
+    return {level,
+            {mix(a.colour.red, b.colour.red), mix(a.colour.green, b.colour.green),
+             mix(a.colour.blue, b.colour.blue)},
+            mix(a.opacity, b.opacity)};
+}
+
+/// The part of a function that lies over the data, so that every point can be seen and taken hold
+/// of in an editor; the same function there. Points that coincide for want of digits become one.
+Points over_the_data(const Points& points, const Levels& l) {
+    TransferFunction whole;
+    for (const ControlPoint& point : points) {
+        if (whole.points.empty() || point.level > whole.points.back().level) {
+            whole.points.push_back(point);
+        }
+    }
+    Points inside{sampled(whole, l.low)};
+    for (const ControlPoint& point : whole.points) {
+        if (point.level > inside.back().level && point.level < l.high) inside.push_back(point);
+    }
+    inside.push_back(sampled(whole, l.high));
+    return inside;
+}
+
+/// Share of the samples that lie above a level.
+double share_above(const app::Histogram& histogram, double level) {
+    const auto bins = static_cast<double>(histogram.counts.size());
+    double above = 0;
+    double all = 0;
+    for (std::size_t i = 0; i < histogram.counts.size(); ++i) {
+        const double middle = between(histogram.low, histogram.high, (double(i) + 0.5) / bins);
+        all += static_cast<double>(histogram.counts[i]);
+        if (middle > level) above += static_cast<double>(histogram.counts[i]);
+    }
+    return all > 0 ? above / all : 0;
+}
+
+/// CT stored as Hounsfield units + 1000 or + 1024: most of what is not air is near water.
+bool looks_like_shifted_hounsfield(const app::Histogram& histogram, const Levels& l) {
+    if (!histogram.whole_numbers || l.low < -1 || l.high < 1500 || l.high > 4200) return false;
+    const auto bins = static_cast<double>(histogram.counts.size());
+    double peak = 0;
+    std::int64_t most = -1;
+    for (std::size_t i = 0; i < histogram.counts.size(); ++i) {
+        const double middle = between(histogram.low, histogram.high, (double(i) + 0.5) / bins);
+        if (middle <= l.outer || histogram.counts[i] <= most) continue;
+        most = histogram.counts[i];
+        peak = middle;
+    }
+    return peak > 850 && peak < 1250;
+}
+
+}  // namespace
+
+std::vector<std::string> preset_names() {
+    std::vector<std::string> names;
+    for (const Preset& p : presets) names.emplace_back(p.name);
+    return names;
+}
+
+TransferFunction preset(std::string_view name, const app::Histogram& histogram,
+                        const Volume& volume) {
+    std::string names;
+    for (const Preset& p : presets) {
+        if (name == p.name) {
+            const Levels levels = levels_of(histogram, volume);
+            return {p.name, over_the_data(p.points(levels), levels)};
+        }
+        names += (names.empty() ? "" : ", ") + std::string(p.name);
+    }
+    throw std::invalid_argument(
+        fmt::format("there is no transfer function '{}'; there are: {}", name, names));
+}
+
+std::string suggested_preset(const app::Histogram& histogram, const Volume& volume) {
+    const Levels levels = levels_of(histogram, volume);
+    if (levels.hounsfield || looks_like_shifted_hounsfield(histogram, levels)) return "CT bone";
+    if (volume.minimum() == volume.maximum()) return "Grey";
+    if (volume.type() != SampleType::uint8) return "MR";
+    // Stained cells are a few bright voxels in the dark.
+    return share_above(histogram, levels.outer) < 0.05 ? "Microscopy" : "CT bone";
+}
+
+ControlPoint sampled(const TransferFunction& transfer, double level) {
+    const Points& points = transfer.points;
+    const auto after = std::ranges::upper_bound(points, level, {}, &ControlPoint::level);
+    ControlPoint point;
+    if (after == points.begin()) {
+        point = points.front();
+    } else if (after == points.end()) {
+        point = points.back();
+    } else {
+        return mixed(*(after - 1), *after, level);
+    }
+    point.level = level;
+    return point;
+}
+
+void check(const TransferFunction& transfer) {
+    if (transfer.points.size() < 2) {
+        throw std::invalid_argument("a transfer function needs two points or more");
+    }
+    const auto unit = [](double x) { return x >= 0 && x <= 1; };
+    const ControlPoint* before = nullptr;
+    for (const ControlPoint& point : transfer.points) {
+        if (!std::isfinite(point.level) || (before && !(before->level < point.level))) {
+            throw std::invalid_argument(
+                "the levels of a transfer function must be finite and rise");
+        }
+        if (!unit(point.opacity) || !unit(point.colour.red) || !unit(point.colour.green) ||
+            !unit(point.colour.blue)) {
+            throw std::invalid_argument(
+                "the opacities and colours of a transfer function are 0 to 1");
+        }
+        before = &point;
+    }
+}
+
+}  // namespace palpate::viewer

@@ -1,0 +1,35 @@
+// Transfer functions to begin with, made from the data at hand.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "apps/live/statistics.hpp"
+#include "apps/viewer/model/look.hpp"
+
+namespace palpate::viewer {
+
+/// What preset() knows, in the order in which people are offered them.
+std::vector<std::string> preset_names();
+
+/// A transfer function for this volume; its points lie within the data's range. Where the data look
+/// like Hounsfield units (int16 or float, down to -500 or less) the CT presets stand at those of
+/// tissues; else all presets stand at the levels that the histogram suggests. Throws
+/// std::invalid_argument, listing the names, for one that there is not.
+TransferFunction preset(std::string_view name, const app::Histogram& histogram,
+                        const Volume& volume);
+
+/// The preset that is likely to show something of this volume: a guess by type, range and shape of
+/// the histogram.
+std::string suggested_preset(const app::Histogram& histogram, const Volume& volume);
+
+/// Colour and opacity at a level [data units]; beyond the outer points theirs. The function must
+/// pass check().
+ControlPoint sampled(const TransferFunction& transfer, double level);
+
+/// Throws std::invalid_argument, saying what is wrong, unless there are two or more points, their
+/// levels finite and strictly rising, opacities and colours within 0 to 1.
+void check(const TransferFunction& transfer);
+
+}  // namespace palpate::viewer
