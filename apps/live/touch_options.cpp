@@ -59,8 +59,8 @@ std::string utc_now() {
 
 }  // namespace
 
-void TouchOptions::add_to(CLI::App& command, bool record_is_output, bool volume_is_optional) {
-    volume.add_to(command, volume_is_optional);
+void TouchOptions::add_to(CLI::App& command, For purpose) {
+    volume.add_to(command, purpose == For::view);
     command
         .add_option("-d,--device", device,
                     "Device and its options, NAME[:KEY=VALUE,...]; palpate devices lists them")
@@ -72,14 +72,11 @@ void TouchOptions::add_to(CLI::App& command, bool record_is_output, bool volume_
         "--clutch", clutch,
         "Button that holds the volume to the hand: 1, 2, ... or none (2, or 1 of 1)");
     command.add_option("--dead-man", deadman, "Button without which there is no force (none)");
-    CLI::Option* file = command.add_option(record_is_output ? "-o,--output" : "--record", record,
-                                           "Recording to write (CSV; never replaces a file)");
-    if (record_is_output) file->required();
-    command.add_option("--commands", commands,
-                       "File of commands, a line each: SECONDS COMMAND, as in 1.5 isovalue 300");
-    command
-        .add_option("--seconds", seconds, "End after so long (default: when the hand has finished)")
-        ->check(CLI::PositiveNumber);
+    CLI::Option* file =
+        command.add_option(purpose == For::record ? "-o,--output" : "--record", record,
+                           "Recording to write (CSV; never replaces a file)");
+    if (purpose == For::record) file->required();
+    if (purpose != For::view) add_script_options(command);
     field.add_to(command);
     render.force.start_below = start_below;
     render.add_to(command);
@@ -88,6 +85,14 @@ void TouchOptions::add_to(CLI::App& command, bool record_is_output, bool volume_
     command.get_option("--stiffness")->default_str("0.5, or what the device is rated for");
     command.get_option("--step-budget")->default_str("4096, less above 1 kHz");
     command.add_flag("--normal-priority", normal_priority, "Do not ask for real-time priority");
+}
+
+void TouchOptions::add_script_options(CLI::App& command) {
+    command.add_option("--commands", commands,
+                       "File of commands, a line each: SECONDS COMMAND, as in 1.5 isovalue 300");
+    command
+        .add_option("--seconds", seconds, "End after so long (default: when the hand has finished)")
+        ->check(CLI::PositiveNumber);
     command.add_flag("--json", json, "Print the report as JSON");
 }
 

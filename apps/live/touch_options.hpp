@@ -28,11 +28,15 @@ struct TouchOptions {
     /// Options that were given; the rest is what the device is rated for.
     bool limit_given = false, stiffness_given = false, scale_given = false, budget_given = false;
 
-    /// For `touch`; for `record`, which has --output in place of --record; for `view`, which can do
-    /// without a volume.
-    void add_to(CLI::App& command, bool record_is_output, bool volume_is_optional = false);
+    /// `record` has --output in place of --record; `view` can do without a volume, and has nothing
+    /// for scripts (--commands, --seconds, --json).
+    enum class For { touch, record, view };
+    void add_to(CLI::App& command, For purpose);
     /// To be called when the command line has been read.
     void finish(const CLI::App& command);
+
+  private:
+    void add_script_options(CLI::App& command);
 };
 
 /// What a session is made of.

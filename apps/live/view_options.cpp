@@ -6,7 +6,8 @@
 namespace palpate::app {
 
 void ViewOptions::add_to(CLI::App& command) {
-    touch.add_to(command, false, true);
+    touch.device = "mouse";
+    touch.add_to(command, TouchOptions::For::view);
     command.add_option("--session", session, "Session file to open: volume, view and settings");
     command.add_option("--play", play, "Recording to play, with a time line, in place of feeling");
     command.add_option("--window", size, "Size of the window [pixels]: WIDTHxHEIGHT")

@@ -210,7 +210,7 @@ void add_session(CLI::App& app, const char* name, const char* what, bool is_reco
         "wanted one is small, and end at zero,\nwhatever ends the session. With a terminal, keys "
         "work while it runs (? lists them).\n\nExample:\n  {}",
         example));
-    options->add_to(*command, is_record);
+    options->add_to(*command, is_record ? TouchOptions::For::record : TouchOptions::For::touch);
     if (!is_record) {
         command->add_flag("--headless", options->headless,
                           "No window, even where there is a display; so too with --json, "

@@ -1,0 +1,59 @@
+// Loading, and what the histogram says at first sight.
+#include "apps/viewer/model/opening.hpp"
+
+#include <numeric>
+#include <stdexcept>
+
+namespace palpate::viewer {
+namespace {
+
+constexpr int bins = 256;
+/// Of the samples, at either end, that may be all black or all white.
+constexpr double outliers = 0.002;
+
+/// The level below which this part of the samples lies.
+double quantile(const app::Histogram& histogram, double part) {
+    const auto& counts = histogram.counts;
+    const double all =
+        static_cast<double>(std::accumulate(counts.begin(), counts.end(), std::int64_t{0}));
+    double below = 0;
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+        below += static_cast<double>(counts[i]);
+        if (below >= part * all) {
+            return histogram.low + (histogram.high - histogram.low) * double(i + (part > 0.5)) /
+                                       double(counts.size());
+        }
+    }
+    return histogram.high;
+}
+
+}  // namespace
+
+double Opened::dark() const {
+    return quantile(histogram, outliers);
+}
+
+double Opened::bright() const {
+    const double level = quantile(histogram, 1 - outliers);
+    return level > dark() ? level : loaded.volume.maximum();
+}
+
+Opened open(const app::VolumeOptions& options, const io::Progress& progress) {
+    // Counting takes a tenth of what reading takes, or less.
+    app::LoadedVolume loaded = app::load(options, [&](double part) { progress(0.9 * part); });
+    app::Histogram histogram = app::histogram_of(loaded.volume, bins);
+    progress(1);
+    return {options, std::move(loaded), std::move(histogram)};
+}
+
+double first_isovalue(const Opened& opened) {
+    if (opened.loaded.isovalue) return *opened.loaded.isovalue;
+    const std::vector<double> levels = app::suggested_isovalues(opened.histogram);
+    if (levels.empty()) {
+        throw std::invalid_argument(opened.loaded.name +
+                                    ": the data are constant, there is nothing to feel");
+    }
+    return levels.front();
+}
+
+}  // namespace palpate::viewer

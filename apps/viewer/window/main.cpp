@@ -1,0 +1,100 @@
+// The program palpate-viewer: a window in which a volume is seen and felt.
+#include <QVTKOpenGLNativeWidget.h>
+#include <vtkObject.h>
+
+#include <QApplication>
+#include <QSurfaceFormat>
+#include <QTimer>
+#include <csignal>
+#include <cstdio>
+
+#include "apps/live/exit_status.hpp"
+#include "apps/live/view_options.hpp"
+#include "apps/viewer/window/appearance.hpp"
+#include "apps/viewer/window/main_window.hpp"
+#include "apps/viewer/window/screenshot.hpp"
+
+namespace {
+
+using namespace palpate;
+
+volatile std::sig_atomic_t stop_signal = 0;
+
+void on_signal(int number) {
+    stop_signal = number;
+}
+
+int fail(const std::string& text, int status) {
+    std::fprintf(stderr, "palpate: %s\n", text.c_str());
+    return status;
+}
+
+void open(viewer::MainWindow& window, const app::ViewOptions& options) {
+    if (!options.session.empty()) {
+        window.open_session(QString::fromStdString(options.session));
+    } else if (!options.play.empty()) {
+        window.open_recording(QString::fromStdString(options.play));
+    } else if (!options.touch.volume.volume.empty()) {
+        window.open_volume(options.touch.volume);
+    }
+}
+
+int show(QApplication& application, const app::ViewOptions& options) {
+    viewer::MainWindow window(options.touch);
+    const QSize size = viewer::window_size(options.size);
+    if (size.isValid()) window.resize(size);
+    window.show();
+    open(window, options);
+    // A signal ends the window as its close button does: forces go to zero.
+    QTimer signals;
+    QObject::connect(&signals, &QTimer::timeout, [&] {
+        if (stop_signal != 0) window.close();
+    });
+    signals.start(50);
+    std::unique_ptr<viewer::Screenshot> screenshot;
+    if (!options.screenshot.empty()) {
+        screenshot = std::make_unique<viewer::Screenshot>(
+            window, QString::fromStdString(options.screenshot), options.after);
+    }
+    const int status = application.exec();
+    if (stop_signal != 0) return fail("interrupted", app::stopped);
+    return screenshot ? screenshot->status() : status;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    CLI::App command("Look at a volume while feeling it, in a window.", "palpate-viewer");
+    command.set_version_flag("--version", "palpate " PALPATE_VERSION);
+    app::ViewOptions options;
+    options.add_to(command);
+    try {
+        command.parse(argc, argv);
+        options.finish(command);
+    } catch (const CLI::Success& e) {
+        return command.exit(e);
+    } catch (const CLI::ParseError& e) {
+        return fail(std::string(e.what()) + " (see palpate view --help)", app::wrong_use);
+    } catch (const std::exception& e) {
+        return fail(e.what(), app::wrong_use);
+    }
+    for (const int s : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) std::signal(s, on_signal);
+    for (const int s : {SIGXFSZ, SIGPIPE}) std::signal(s, SIG_IGN);
+    // A window of its own for VTK's warnings would come between.
+    vtkObject::GlobalWarningDisplayOff();
+    QCoreApplication::setAttribute(Qt::AA_EnableHighDpiScaling);
+    QCoreApplication::setAttribute(Qt::AA_UseHighDpiPixmaps);
+    QSurfaceFormat::setDefaultFormat(QVTKOpenGLNativeWidget::defaultFormat());
+    QApplication::setStyle("fusion");
+    int qt_arguments = 1;
+    QApplication application(qt_arguments, argv);
+    QCoreApplication::setOrganizationName("palpate");
+    QCoreApplication::setApplicationName("palpate");
+    viewer::set_appearance(viewer::Appearance::system);
+    try {
+        return show(application, options);
+    } catch (const std::exception& e) {
+        const app::Failure failure = app::failure_of(e);
+        return fail(failure.text, failure.status);
+    }
+}

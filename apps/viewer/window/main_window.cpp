@@ -1,0 +1,259 @@
+// What goes on in the window: snapshots to who shows them, wishes to the session.
+#include "apps/viewer/window/main_window.hpp"
+
+#include <fmt/format.h>
+
+#include <QCloseEvent>
+#include <QDockWidget>
+#include <QDragEnterEvent>
+#include <QLabel>
+#include <QMenu>
+#include <QMessageBox>
+#include <QMimeData>
+#include <QScrollArea>
+#include <QSettings>
+#include <QStatusBar>
+#include <QVBoxLayout>
+#include <cmath>
+#include <cstdio>
+
+#include "apps/viewer/model/transfer.hpp"
+#include "apps/viewer/panel/panel.hpp"
+#include "apps/viewer/scene/scene.hpp"
+#include "apps/viewer/slices/time_line.hpp"
+#include "apps/viewer/window/progress_strip.hpp"
+#include "apps/viewer/window/stage.hpp"
+
+namespace palpate::viewer {
+namespace {
+
+constexpr int frame_ms = 16;
+// In frames: how often what changes slowly, or is slow to show, is looked at.
+constexpr int panel_rounds = 2, device_rounds = 8, report_rounds = 32;
+
+}  // namespace
+
+MainWindow::MainWindow(const app::TouchOptions& options)
+    : options_(options),
+      stage_(new Stage),
+      panel_(new Panel),
+      time_line_(new TimeLine),
+      progress_(new ProgressStrip),
+      frames_(new QLabel) {
+    setObjectName("palpate");
+    setWindowTitle("Palpate");
+    setAcceptDrops(true);
+    auto* centre = new QWidget;
+    auto* layout = new QVBoxLayout(centre);
+    layout->setContentsMargins(0, 0, 0, 0);
+    layout->setSpacing(0);
+    layout->addWidget(stage_, 1);
+    layout->addWidget(time_line_);
+    layout->addWidget(progress_);
+    time_line_->hide();
+    setCentralWidget(centre);
+    auto* scroll = new QScrollArea;
+    scroll->setWidget(panel_);
+    scroll->setWidgetResizable(true);
+    scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+    scroll->setMinimumWidth(panel_->minimumSizeHint().width() + 24);
+    auto* dock = new QDockWidget(tr("Feel and look"));
+    dock->setObjectName("dock");
+    dock->setWidget(scroll);
+    addDockWidget(Qt::RightDockWidgetArea, dock);
+    frames_->setObjectName("frames");
+    statusBar()->addPermanentWidget(frames_);
+    statusBar()->showMessage(tr("Open a volume, or drop one here (Ctrl+O); ? lists the shortcuts"));
+    panel_->clear();
+    make_menus();
+    connect_parts();
+    const QSettings settings;
+    restoreGeometry(settings.value("geometry").toByteArray());
+    restoreState(settings.value("state").toByteArray());
+    find_devices();
+    timer_.start(frame_ms);
+}
+
+MainWindow::~MainWindow() {
+    timer_.stop();
+    finding_.reset();
+    work_.reset();
+    live_.reset();
+}
+
+void MainWindow::connect_parts() {
+    connect(&timer_, &QTimer::timeout, this, &MainWindow::tick);
+    connect(stage_, &Stage::probe_dragged, this, &MainWindow::drag_probe);
+    connect(stage_, &Stage::probe_aimed, this, &MainWindow::aim_probe);
+    connect(&stage_->scene(), &Scene::problem, this, &MainWindow::show_problem);
+    connect(panel_, &Panel::asked, this, &MainWindow::send);
+    connect(panel_, &Panel::device_chosen, this, &MainWindow::use_device);
+    connect(panel_, &Panel::devices_wanted, this, &MainWindow::find_devices);
+    connect(panel_, &Panel::solid_chosen, this, &MainWindow::use_solid);
+    connect(panel_, &Panel::look_changed, this, [this](const Look& look) {
+        stage_->set_look(look);
+        refresh_actions();
+    });
+    connect(time_line_, &TimeLine::time_chosen, this, &MainWindow::show_time);
+    connect(progress_, &ProgressStrip::cancelled, this, [this] {
+        if (work_) work_->cancel();
+    });
+}
+
+void MainWindow::tick() {
+    ++rounds_;
+    observe();
+    if (rounds_ % report_rounds != 0) return;
+    if (live_) panel_->show_report(live_->report(), options_.render.rate);
+    const double seconds = stage_->scene().frame_seconds();
+    frames_->setText(seconds > 0 ? tr("%1 ms a frame").arg(1e3 * seconds, 0, 'f', 0) : QString());
+    if (live_ && live_->recording() && !recording_told_) {
+        const std::string problem = live_->recording()->problem();
+        if (!problem.empty()) {
+            recording_told_ = true;
+            show_problem(QString::fromStdString(problem));
+        }
+    }
+}
+
+void MainWindow::observe() {
+    std::optional<Snapshot> now;
+    if (live_) {
+        now = live_->snapshot();
+    } else if (playback_) {
+        now = playback_->at(shown_time_);
+    }
+    stage_->show_snapshot(now);
+    if (!now) return;
+    const double felt = now->session.tick.proxy.isovalue;
+    if (std::isfinite(felt) && shown_isovalue_ != felt) {
+        shown_isovalue_ = felt;
+        stage_->set_isovalue(felt);
+    }
+    if (rounds_ % panel_rounds == 0) panel_->show_snapshot(*now);
+    if (live_ && rounds_ % device_rounds == 0) {
+        const DeviceStatus status = now->session.device.status;
+        const QString problem = QString::fromStdString(live_->device_problem());
+        if (status != device_status_ || problem != device_problem_) {
+            device_status_ = status;
+            device_problem_ = problem;
+            panel_->show_device(live_->device(), status, problem);
+        }
+        refresh_actions();
+    }
+}
+
+void MainWindow::send(const Command& command) {
+    if (!live_) {
+        panel_->show_refused(playback_ ? tr("A recording is played: nothing here changes it.")
+                                       : tr("There is no volume to feel."));
+        return;
+    }
+    try {
+        live_->send(command);
+    } catch (const std::invalid_argument& e) {
+        panel_->show_refused(QString::fromStdString(e.what()));
+    }
+}
+
+/// Runs what may throw; what it throws is shown.
+void MainWindow::guarded(const std::function<void()>& action) {
+    try {
+        action();
+    } catch (const std::bad_alloc&) {
+        show_problem(tr("not enough memory: use a smaller volume, or one of fewer bits"));
+    } catch (const std::exception& e) {
+        show_problem(QString::fromStdString(e.what()));
+    }
+}
+
+void MainWindow::show_problem(const QString& what) {
+    problem_ = what;
+    std::fprintf(stderr, "palpate: %s\n", what.toLocal8Bit().constData());
+    auto* box = new QMessageBox(QMessageBox::Warning, tr("Palpate"), what, QMessageBox::Ok, this);
+    box->setObjectName("problem");
+    box->setTextInteractionFlags(Qt::TextSelectableByMouse);
+    box->setAttribute(Qt::WA_DeleteOnClose);
+    box->open();  // the session goes on behind it
+}
+
+void MainWindow::show_done(const QString& what) {
+    statusBar()->showMessage(what, 10'000);
+}
+
+void MainWindow::find_devices() {
+    if (finding_ && !finding_->ended()) return;
+    auto found = std::make_shared<std::vector<devices::DeviceFinding>>();
+    finding_ =
+        std::make_unique<Work>([found](const io::Progress&) { *found = devices::find_devices(); },
+                               [this, found] {
+                                   QMetaObject::invokeMethod(
+                                       this,
+                                       [this, found] {
+                                           if (!finding_ || !finding_->ended()) return;
+                                           findings_ = *found;
+                                           device_changed();
+                                       },
+                                       Qt::QueuedConnection);
+                               });
+}
+
+void MainWindow::device_changed() {
+    const std::string current = live_ ? live_->options().device : options_.device;
+    panel_->set_devices(findings_, QString::fromStdString(current));
+    device_status_.reset();
+    use_pointer_for(live_ && live_->mouse());
+}
+
+void MainWindow::use_device(const QString& option) {
+    guarded([&] {
+        (void)devices::parse_device(option.toStdString());
+        if (live_) {
+            live_->use_device(option.toStdString());
+            panel_->set_session(live_->field(), opened_->histogram, live_->isovalue(),
+                                live_->settings(), live_->device());
+        }
+        options_.device = option.toStdString();
+    });
+    device_changed();
+    refresh_actions();
+}
+
+void MainWindow::use_solid(Solid solid) {
+    if (!live_ || live_->field().solid() == solid) return;
+    guarded([&] {
+        live_->use_field(solid);
+        show_volume(live_->field(), live_->isovalue(), live_->settings(), live_->device());
+    });
+}
+
+void MainWindow::freeze() {
+    if (live_) send(command::Freeze{true});
+}
+
+bool MainWindow::settled() const {
+    return !work_ && (!opened_ || stage_->scene().settled());
+}
+
+void MainWindow::closeEvent(QCloseEvent* event) {
+    QSettings settings;
+    settings.setValue("geometry", saveGeometry());
+    settings.setValue("state", saveState());
+    if (live_ && live_->recording()) {
+        guarded([&] { live_->stop_recording(); });
+    }
+    event->accept();
+}
+
+void MainWindow::dragEnterEvent(QDragEnterEvent* event) {
+    if (event->mimeData()->hasUrls()) event->acceptProposedAction();
+}
+
+void MainWindow::dropEvent(QDropEvent* event) {
+    const auto urls = event->mimeData()->urls();
+    if (urls.isEmpty()) return;
+    event->acceptProposedAction();
+    open_path(urls.front().toLocalFile());
+}
+
+}  // namespace palpate::viewer

@@ -1,0 +1,143 @@
+// The viewer's window: stage, panel and time line; a session that runs or a recording that plays.
+// It observes snapshots and sends commands.
+#pragma once
+
+#include <QMainWindow>
+#include <QTimer>
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "apps/live/view_options.hpp"
+#include "apps/viewer/model/live.hpp"
+#include "apps/viewer/model/opening.hpp"
+#include "apps/viewer/model/playback.hpp"
+#include "apps/viewer/model/session_file.hpp"
+#include "apps/viewer/model/work.hpp"
+
+class QAction;
+class QLabel;
+class QMenu;
+
+namespace palpate::viewer {
+
+class Panel;
+class ProgressStrip;
+class Stage;
+class TimeLine;
+
+class MainWindow : public QMainWindow {
+    Q_OBJECT
+
+  public:
+    /// `options` are those of the command line: device and settings of the sessions to come. Opens
+    /// nothing yet.
+    explicit MainWindow(const app::TouchOptions& options);
+    /// Ends the session: forces are zero.
+    ~MainWindow() override;
+
+    /// A volume, a folder, a session or a recording, by what it is. Errors are shown.
+    void open_path(const QString& path);
+    /// Loads in the background and feels it, with the settings of the command line.
+    void open_volume(const app::VolumeOptions& volume);
+    void open_session(const QString& path);
+    void open_recording(const QString& path);
+    /// Throw io::OutputError.
+    void save_session(const QString& path);
+    void save_picture(const QString& path, bool whole_window);
+    void start_recording(const QString& path);
+    void stop_recording();
+
+    Stage& stage() { return *stage_; }
+    Panel& panel() { return *panel_; }
+    TimeLine& time_line() { return *time_line_; }
+    const Live* live() const { return live_.get(); }
+    const Playback* playback() const { return playback_ ? &*playback_ : nullptr; }
+    /// [s] of the recording that is shown.
+    double shown_time() const { return shown_time_; }
+    void show_time(double time);
+    /// Nothing is being loaded or drawn: what is seen is what there is.
+    /// Hand and proxy stand still from now on.
+    void freeze();
+    bool settled() const;
+    /// What went wrong last, as shown; empty if nothing did.
+    const QString& problem() const { return problem_; }
+
+  protected:
+    void closeEvent(QCloseEvent* event) override;
+    void dragEnterEvent(QDragEnterEvent* event) override;
+    void dropEvent(QDropEvent* event) override;
+
+  private:
+    // main_window.cpp: what goes on.
+    void connect_parts();
+    void tick();
+    void observe();
+    void send(const Command& command);
+    void guarded(const std::function<void()>& action);
+    void show_problem(const QString& what);
+    void show_done(const QString& what);
+    void find_devices();
+    void use_device(const QString& option);
+    void use_solid(Solid solid);
+    void device_changed();
+    void refresh_actions();
+    // opening.cpp
+    void run(const QString& label, Work::Task task, std::function<void()> then);
+    void load(const app::VolumeOptions& volume, std::function<void(std::shared_ptr<Opened>)> then);
+    void begin(std::shared_ptr<Opened> opened, const app::TouchOptions& options);
+    void close_all();
+    void show_volume(const Field& field, double isovalue, const RendererSettings& settings,
+                     const DeviceInfo& device);
+    void resume(std::shared_ptr<Opened> opened, const SessionFile& session);
+    void play(std::shared_ptr<Opened> opened, const QString& path);
+    void leave_playback();
+    void remember(const QString& path);
+    SessionFile session_now() const;
+    // hand.cpp
+    void make_hand_actions();
+    void drag_probe(const Vec3& by);
+    void aim_probe(const Vec3& to);
+    void nudge(const Vec3& screen);
+    void use_pointer_for(bool probe);
+    // menus.cpp
+    void make_menus();
+    void make_file_menu();
+    void make_session_menu();
+    void make_view_menu();
+    void fill_recent();
+    QAction* add(QMenu* menu, const char* name, const QString& text, const QKeySequence& key,
+                 std::function<void()> action);
+    QAction* add_switch(QMenu* menu, const char* name, const QString& text, const QKeySequence& key,
+                        std::function<void(bool)> action);
+    void ask_open();
+    void ask_open_folder();
+    void ask_open_raw();
+    void ask_save_session();
+    void ask_save_picture(bool whole_window);
+    void ask_record(bool on);
+
+    app::TouchOptions options_;
+    Stage* stage_;
+    Panel* panel_;
+    TimeLine* time_line_;
+    ProgressStrip* progress_;
+    QLabel* frames_;
+    QMenu* recent_ = nullptr;
+    QTimer timer_;
+    int rounds_ = 0;
+
+    std::unique_ptr<Work> work_, finding_;
+    std::function<void()> then_;
+    std::shared_ptr<Opened> opened_;  // what is shown
+    std::unique_ptr<Live> live_;
+    std::optional<Playback> playback_;
+    double shown_time_ = 0;
+    std::optional<double> shown_isovalue_;  // of the surface in the scene
+    std::optional<DeviceStatus> device_status_;
+    std::vector<devices::DeviceFinding> findings_;
+    QString problem_, device_problem_;
+    bool recording_told_ = false;
+};
+
+}  // namespace palpate::viewer

@@ -1,0 +1,96 @@
+// The dialog for raw files.
+#include "apps/viewer/window/raw_dialog.hpp"
+
+#include <fmt/format.h>
+
+#include <QComboBox>
+#include <QDialogButtonBox>
+#include <QDoubleSpinBox>
+#include <QFileInfo>
+#include <QFormLayout>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QPushButton>
+#include <limits>
+
+namespace palpate::viewer {
+namespace {
+
+template <class Spin>
+QWidget* row_of(const std::array<Spin*, 3>& spins) {
+    auto* row = new QWidget;
+    auto* layout = new QHBoxLayout(row);
+    layout->setContentsMargins(0, 0, 0, 0);
+    for (Spin* spin : spins) layout->addWidget(spin);
+    return row;
+}
+
+}  // namespace
+
+RawDialog::RawDialog(const QString& path, QWidget* parent)
+    : QDialog(parent),
+      path_(path),
+      size_{new QSpinBox, new QSpinBox, new QSpinBox},
+      spacing_{new QDoubleSpinBox, new QDoubleSpinBox, new QDoubleSpinBox},
+      type_(new QComboBox),
+      skip_(new QSpinBox),
+      verdict_(new QLabel) {
+    setObjectName("raw");
+    setWindowTitle(tr("Raw data: %1").arg(QFileInfo(path).fileName()));
+    const auto changed = [this] { judge(); };
+    for (std::size_t a = 0; a < 3; ++a) {
+        size_[a]->setRange(1, 65535);
+        size_[a]->setValue(256);
+        size_[a]->setObjectName(QString("size%1").arg(a));
+        spacing_[a]->setRange(1e-4, 1000);
+        spacing_[a]->setDecimals(4);
+        spacing_[a]->setValue(1);
+        connect(size_[a], qOverload<int>(&QSpinBox::valueChanged), this, changed);
+    }
+    type_->addItems({"uint8", "int16", "uint16", "float32"});
+    connect(type_, qOverload<int>(&QComboBox::currentIndexChanged), this, changed);
+    skip_->setRange(0, std::numeric_limits<int>::max());
+    connect(skip_, qOverload<int>(&QSpinBox::valueChanged), this, changed);
+    auto* buttons = new QDialogButtonBox(QDialogButtonBox::Open | QDialogButtonBox::Cancel);
+    accept_ = buttons->button(QDialogButtonBox::Open);
+    connect(buttons, &QDialogButtonBox::accepted, this, &QDialog::accept);
+    connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);
+    auto* form = new QFormLayout(this);
+    form->addRow(tr("Samples (x runs fastest)"), row_of(size_));
+    form->addRow(tr("Sample type (little-endian)"), type_);
+    form->addRow(tr("Spacing [mm]"), row_of(spacing_));
+    form->addRow(tr("Bytes of header to skip"), skip_);
+    verdict_->setWordWrap(true);
+    form->addRow(verdict_);
+    form->addRow(buttons);
+    judge();
+}
+
+void RawDialog::judge() {
+    const std::size_t each = size_of(sample_type_from(type_->currentText().toStdString()));
+    double bytes = double(each) + 0.0;
+    for (const QSpinBox* size : size_) bytes *= size->value();
+    bytes += skip_->value();
+    const bool packed = path_.endsWith(".gz", Qt::CaseInsensitive);
+    const auto have = static_cast<double>(QFileInfo(path_).size());
+    accept_->setEnabled(packed || bytes <= have);
+    verdict_->setText(packed
+                          ? tr("These samples take %L1 bytes once unpacked.").arg(bytes, 0, 'f', 0)
+                      : bytes == have ? tr("These samples are just what the file holds.")
+                                      : tr("The file holds %L1 bytes, these samples take %L2.")
+                                            .arg(have, 0, 'f', 0)
+                                            .arg(bytes, 0, 'f', 0));
+}
+
+app::VolumeOptions RawDialog::options() const {
+    app::VolumeOptions options;
+    options.volume = path_.toStdString();
+    options.dims = fmt::format("{}x{}x{}", size_[0]->value(), size_[1]->value(), size_[2]->value());
+    options.type = type_->currentText().toStdString();
+    options.spacing =
+        fmt::format("{},{},{}", spacing_[0]->value(), spacing_[1]->value(), spacing_[2]->value());
+    options.skip = static_cast<std::uint64_t>(skip_->value());
+    return options;
+}
+
+}  // namespace palpate::viewer

@@ -1,0 +1,73 @@
+// The way to a picture.
+#include "apps/viewer/window/screenshot.hpp"
+
+#include <cstdio>
+#include <stdexcept>
+
+#include "apps/live/exit_status.hpp"
+#include "apps/viewer/window/main_window.hpp"
+
+namespace palpate::viewer {
+namespace {
+
+constexpr int look_ms = 50;
+/// How many looks in a row must find nothing under way.
+constexpr int quiet_looks = 6;
+
+}  // namespace
+
+Screenshot::Screenshot(MainWindow& window, const QString& path, double after)
+    : window_(window), path_(path), after_(after) {
+    connect(&timer_, &QTimer::timeout, this, &Screenshot::look);
+    timer_.start(look_ms);
+}
+
+/// Whether the hand is where the picture wants it; a session is frozen there.
+bool Screenshot::reached() {
+    if (const Playback* playback = window_.playback()) {
+        if (!frozen_) window_.show_time(playback->begin() + after_);
+        frozen_ = true;
+        return true;
+    }
+    const Live* live = window_.live();
+    const auto now = live ? live->snapshot() : std::nullopt;
+    if (!now) return false;
+    if (!frozen_ && now->session.tick.time >= after_) {
+        window_.freeze();
+        frozen_ = true;
+    }
+    return frozen_;
+}
+
+void Screenshot::look() {
+    if (!window_.problem().isEmpty()) {
+        status_ = app::bad_input;  // what, the window has said
+        window_.close();
+        return;
+    }
+    quiet_ = reached() && window_.settled() ? quiet_ + 1 : 0;
+    if (quiet_ < quiet_looks) return;
+    timer_.stop();
+    try {
+        window_.save_picture(path_, true);
+    } catch (const std::exception& e) {
+        const app::Failure failure = app::failure_of(e);
+        std::fprintf(stderr, "palpate: %s\n", failure.text.c_str());
+        status_ = failure.status;
+    }
+    window_.close();
+}
+
+QSize window_size(const std::string& text) {
+    if (text.empty()) return {};
+    int width = 0, height = 0, end = 0;
+    const bool read = std::sscanf(text.c_str(), "%dx%d%n", &width, &height, &end) == 2;
+    if (!read || end != static_cast<int>(text.size()) || width < 320 || height < 240 ||
+        width > 16384 || height > 16384) {
+        throw std::invalid_argument("--window " + text +
+                                    ": WIDTHxHEIGHT in pixels, as in 1280x800, is meant");
+    }
+    return {width, height};
+}
+
+}  // namespace palpate::viewer

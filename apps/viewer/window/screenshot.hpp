@@ -1,0 +1,39 @@
+// A picture of the window for scripts: once all that is asked for is loaded and drawn.
+#pragma once
+
+#include <QObject>
+#include <QSize>
+#include <QTimer>
+#include <string>
+
+namespace palpate::viewer {
+
+class MainWindow;
+
+/// Waits until the session or recording has come to its time and the window has settled, writes the
+/// picture and closes the window.
+class Screenshot : public QObject {
+    Q_OBJECT
+
+  public:
+    /// `after` [s] of the session; of a recording, from its beginning.
+    Screenshot(MainWindow& window, const QString& path, double after);
+    /// The program's exit status.
+    int status() const { return status_; }
+
+  private:
+    void look();
+    bool reached();
+
+    MainWindow& window_;
+    QString path_;
+    double after_;
+    bool opened_ = false, frozen_ = false;
+    int quiet_ = 0, status_ = 0;
+    QTimer timer_;
+};
+
+/// "1280x800" as a size; not valid for an empty text. Throws std::invalid_argument for another.
+QSize window_size(const std::string& text);
+
+}  // namespace palpate::viewer
