@@ -10,6 +10,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <functional>
 #include <sstream>
@@ -63,6 +64,8 @@ class Running {
         ::dup2(to == Stdout::full ? ::open("/dev/full", O_WRONLY) : ::fileno(out_), 1);
         ::dup2(::fileno(err_), 2);
         ::close_range(3, ~0U, 0);
+        // No window on the screen of the person who runs the tests.
+        if (!std::getenv("PALPATE_VIEWER")) ::unsetenv("DISPLAY");
         if (to == Stdout::closed) ::close(1);
         if (::chdir(folder.c_str()) == 0) ::execvp(program.c_str(), argv.data());
         ::_exit(127);

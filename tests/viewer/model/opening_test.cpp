@@ -1,0 +1,58 @@
+// A volume made ready in the background.
+#include "apps/viewer/model/opening.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "io/error.hpp"
+#include "support/scratch_folder.hpp"
+
+namespace palpate::viewer {
+namespace {
+
+app::VolumeOptions named(const std::string& name) {
+    app::VolumeOptions options;
+    options.volume = name;
+    return options;
+}
+
+TEST(Opening, every_sample_is_counted_and_progress_rises_to_the_end) {
+    double last = 0;
+    const Opened opened = open(named("synthetic:shepp-logan:32x32x32"), [&](double part) {
+        EXPECT_GE(part, last);
+        last = part;
+    });
+    EXPECT_EQ(last, 1);
+    const auto& counts = opened.histogram.counts;
+    EXPECT_EQ(std::accumulate(counts.begin(), counts.end(), std::int64_t{0}), 32 * 32 * 32);
+    EXPECT_LT(opened.dark(), opened.bright());
+    EXPECT_GE(opened.dark(), opened.loaded.volume.minimum());
+    EXPECT_LE(opened.bright(), opened.loaded.volume.maximum());
+}
+
+TEST(Opening, first_level_lies_within_the_data) {
+    const Opened opened = open(named("synthetic:noise:16x16x16"), [](double) {});
+    EXPECT_GT(first_isovalue(opened), opened.loaded.volume.minimum());
+    EXPECT_LT(first_isovalue(opened), opened.loaded.volume.maximum());
+}
+
+TEST(Opening, constant_data_are_refused_with_their_name) {
+    Volume constant(Geometry{.size = {4, 4, 4}}, std::vector<std::uint8_t>(64, 9));
+    const Opened opened{
+        named("flat"), {constant, "flat", "made", 1, {}, {}}, app::histogram_of(constant, 256)};
+    try {
+        (void)first_isovalue(opened);
+        FAIL();
+    } catch (const std::invalid_argument& e) {
+        EXPECT_NE(std::string(e.what()).find("flat"), std::string::npos);
+    }
+    EXPECT_LE(opened.dark(), opened.bright());
+}
+
+TEST(Opening, a_file_that_is_not_there_is_an_input_error) {
+    EXPECT_THROW((void)open(named("no-such-file.nrrd"), [](double) {}), io::InputError);
+}
+
+}  // namespace
+}  // namespace palpate::viewer

@@ -1,0 +1,85 @@
+// Work in the background.
+#include "apps/viewer/model/work.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <stdexcept>
+
+namespace palpate::viewer {
+namespace {
+
+using namespace std::chrono_literals;
+
+void wait_for(const Work& work) {
+    for (int i = 0; i < 20'000 && !work.ended(); ++i) std::this_thread::sleep_for(1ms);
+    ASSERT_TRUE(work.ended());
+}
+
+TEST(Work, result_is_there_once_it_has_ended) {
+    int result = 0;
+    Work work([&](const io::Progress&) { result = 7; }, [] {});
+    wait_for(work);
+    EXPECT_TRUE(work.finish());
+    EXPECT_EQ(result, 7);
+}
+
+TEST(Work, what_the_task_throws_comes_out_of_finish) {
+    Work work([](const io::Progress&) { throw std::runtime_error("no such file"); }, [] {});
+    wait_for(work);
+    EXPECT_THROW((void)work.finish(), std::runtime_error);
+}
+
+TEST(Work, cancelled_work_stops_at_its_next_progress_and_is_not_done) {
+    std::atomic<bool> begun{false};
+    Work work(
+        [&](const io::Progress& progress) {
+            for (;;) {
+                begun = true;
+                progress(0.5);
+                std::this_thread::sleep_for(1ms);
+            }
+        },
+        [] {});
+    while (!begun) std::this_thread::sleep_for(1ms);
+    work.cancel();
+    wait_for(work);
+    EXPECT_FALSE(work.finish());
+}
+
+TEST(Work, owner_is_woken_for_each_percent_at_most_and_at_the_end) {
+    std::atomic<int> woken{0};
+    Work work(
+        [](const io::Progress& progress) {
+            for (int i = 0; i <= 100'000; ++i) progress(i / 100'000.0);
+        },
+        [&] { ++woken; });
+    wait_for(work);
+    EXPECT_EQ(work.progress(), 1);
+    // The last wake comes after ended() is seen.
+    for (int i = 0; i < 1000 && woken < 50; ++i) std::this_thread::sleep_for(1ms);
+    EXPECT_GE(woken, 50);
+    EXPECT_LE(woken, 105);
+}
+
+TEST(Work, destroying_it_gives_the_work_up) {
+    std::atomic<int> turns{0};
+    {
+        const Work work(
+            [&](const io::Progress& progress) {
+                for (;; ++turns) {
+                    progress(0);
+                    std::this_thread::sleep_for(1ms);
+                }
+            },
+            [] {});
+        while (turns < 3) std::this_thread::sleep_for(1ms);
+    }
+    const int then = turns;
+    std::this_thread::sleep_for(20ms);
+    EXPECT_EQ(turns, then);
+}
+
+}  // namespace
+}  // namespace palpate::viewer
