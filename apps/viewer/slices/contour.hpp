@@ -1,0 +1,32 @@
+// Where a slice cuts the isosurface: the felt one, by cutting the lattice's tetrahedra. No Qt.
+#pragma once
+
+#include <vector>
+
+#include "apps/viewer/slices/samples.hpp"
+
+namespace palpate::viewer {
+
+/// A piece of the contour, in samples along u and v.
+struct ContourPiece {
+    float u0, v0, u1, v1;
+};
+
+/// The cells of a slice: those whose lower corner has u from `u0` to below `u1`, and so for v. The
+/// ring of cells between data and background counts: from -1 to below the number of samples.
+struct CellRange {
+    int u0 = -1, v0 = -1, u1 = 0, v1 = 0;
+};
+CellRange all_cells(const SliceSamples& samples);
+
+enum class ContourDetail : std::uint8_t {
+    lattice,  ///< exactly where the proxy meets the surface
+    cells,    ///< two triangles a cell: less than a sample away from it, an eighth of the work
+};
+
+/// Appends the contour of `isovalue` [data units] in these cells, in no particular order. Costs
+/// what the cells cost: a few nanoseconds for one without a contour.
+void append_contour(const SliceSamples& samples, double isovalue, const CellRange& cells,
+                    ContourDetail detail, std::vector<ContourPiece>& pieces);
+
+}  // namespace palpate::viewer

@@ -1,0 +1,109 @@
+// Which way round a slice is shown.
+#include "apps/viewer/slices/plane.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace palpate::viewer {
+namespace {
+
+// Along +x, +y, +z of physical space (LPS), and against them.
+constexpr std::array positive{'L', 'P', 'S'};
+constexpr std::array negative{'R', 'A', 'I'};
+constexpr std::array titles{"Sagittal", "Coronal", "Axial"};
+/// Below this component [sine of 15 degrees] a direction is as good as along the others.
+constexpr double aslant = 0.2588;
+
+/// The body's axis of each grid axis, all three different: those that fit best together.
+std::array<int, 3> anatomical_axes(const Mat3& direction) {
+    std::array<int, 3> order{0, 1, 2}, best = order;
+    double most = -1;
+    do {
+        double sum = 0;
+        for (int a = 0; a < 3; ++a) sum += std::abs(direction(order[std::size_t(a)], a));
+        if (sum > most + 1e-12) {
+            most = sum;
+            best = order;
+        }
+    } while (std::ranges::next_permutation(order).found);
+    return best;
+}
+
+std::string letters_towards(const Vec3& direction) {
+    std::array<int, 3> order{0, 1, 2};
+    std::ranges::stable_sort(order, std::greater{}, [&](int a) { return std::abs(direction[a]); });
+    std::string letters;
+    for (const int a : order) {
+        if (!letters.empty() && std::abs(direction[a]) < aslant) break;
+        letters += direction[a] > 0 ? positive[std::size_t(a)] : negative[std::size_t(a)];
+    }
+    return letters;
+}
+
+}  // namespace
+
+SlicePlane slice_plane(const Geometry& geometry, int axis) {
+    const Mat3& direction = geometry.direction;
+    const std::array<int, 3> body = anatomical_axes(direction);
+    SlicePlane plane;
+    plane.axis = axis;
+    plane.anatomical = body[std::size_t(axis)];
+    plane.title = titles[std::size_t(plane.anatomical)];
+    // To the right: the patient's left; on sagittal slices, the back. Down: the back; on upright
+    // slices, the feet, which are against +z.
+    const int to_right = plane.anatomical == 0 ? 1 : 0;
+    const int to_bottom = plane.anatomical == 2 ? 1 : 2;
+    const auto along = [&](int wanted, bool forwards) {
+        const int a = static_cast<int>(std::ranges::find(body, wanted) - body.begin());
+        return ScreenAxis{a, (direction(wanted, a) > 0) != forwards};
+    };
+    plane.right = along(to_right, true);
+    plane.down = along(to_bottom, to_bottom == 1);
+    const auto shown = [&](const ScreenAxis& s) -> Vec3 {
+        return (s.flip ? -1 : 1) * direction.col(s.axis);
+    };
+    plane.at_right = letters_towards(shown(plane.right));
+    plane.at_left = letters_towards(-shown(plane.right));
+    plane.at_bottom = letters_towards(shown(plane.down));
+    plane.at_top = letters_towards(-shown(plane.down));
+    return plane;
+}
+
+std::array<int, 2> samples_of(const SlicePlane& plane, const Geometry& geometry) {
+    return {geometry.size[plane.right.axis], geometry.size[plane.down.axis]};
+}
+
+std::array<double, 2> spacing_of(const SlicePlane& plane, const Geometry& geometry) {
+    return {geometry.spacing[plane.right.axis], geometry.spacing[plane.down.axis]};
+}
+
+Vec3 slice_from_index(const SlicePlane& plane, const Geometry& geometry, const Vec3& index) {
+    const auto along = [&](const ScreenAxis& s) {
+        return s.flip ? geometry.size[s.axis] - 1 - index[s.axis] : index[s.axis];
+    };
+    return {along(plane.right), along(plane.down), index[plane.axis]};
+}
+
+Vec3 index_from_slice(const SlicePlane& plane, const Geometry& geometry, const Vec3& slice) {
+    Vec3 index;
+    const auto put = [&](const ScreenAxis& s, double value) {
+        index[s.axis] = s.flip ? geometry.size[s.axis] - 1 - value : value;
+    };
+    put(plane.right, slice[0]);
+    put(plane.down, slice[1]);
+    index[plane.axis] = slice[2];
+    return index;
+}
+
+std::string position_text(const SlicePlane& plane, const Geometry& geometry, const Vec3& physical) {
+    const auto body = static_cast<std::size_t>(plane.anatomical);
+    const Vec3 axis = geometry.direction.col(plane.axis);
+    const double at = (axis[plane.anatomical] > 0 ? 1 : -1) * axis.dot(physical);
+    char text[32];
+    std::snprintf(text, sizeof text, "%c %.2f mm", at >= 0 ? positive[body] : negative[body],
+                  std::abs(at));
+    return text;
+}
+
+}  // namespace palpate::viewer

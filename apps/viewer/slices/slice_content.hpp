@@ -1,0 +1,20 @@
+// What a pane holds of a volume. Private to the pane.
+#pragma once
+
+#include "apps/viewer/slices/slice_pane.hpp"
+#include "apps/viewer/slices/slice_picture.hpp"
+
+namespace palpate::viewer {
+
+struct SlicePane::Content {
+    SlicePlane plane;
+    SliceSamples samples;
+    GreyWindow usual;
+    bool usual_given = false;  ///< from outside
+    QImage picture;            ///< grey levels and contour as they are seen now; null: to be made
+
+    Content(const Field& field, const SlicePlane& across, const GreyWindow& window)
+        : plane(across), samples(field, across), usual(window) {}
+};
+
+}  // namespace palpate::viewer

@@ -1,0 +1,169 @@
+// Marks over a slice.
+#include "apps/viewer/slices/slice_marks.hpp"
+
+#include <QFontMetricsF>
+#include <QLineF>
+#include <QPainterPath>
+
+#include <algorithm>
+#include <cmath>
+
+#include "pictures/scene.hpp"
+
+namespace palpate::viewer {
+namespace {
+
+QColor qt_colour(const pictures::Colour& c, double opacity = 1) {
+    return QColor::fromRgbF(c.red, c.green, c.blue, opacity);
+}
+
+/// 1 on the slice, 0.25 far from it; half way at a hundredth of what is seen.
+double opacity_of(const SliceSheet& sheet, const Vec3& physical) {
+    const double half_mm = 0.03 * sheet.size.height() / sheet.map.per_mm;
+    const double spacing = 0.5 * sheet.geometry.spacing[sheet.plane.axis];
+    const double away = std::max(sheet.distance(physical) - spacing, 0.0) / half_mm;
+    return 0.25 + 0.75 / (1 + away * away);
+}
+
+/// White below the colour, so that it is seen on black and on white.
+void stroke(QPainter& painter, const QPainterPath& path, const QColor& colour, double width) {
+    QPen pen(QColor::fromRgbF(1, 1, 1, 0.85 * colour.alphaF()), width + 2);
+    pen.setCapStyle(Qt::RoundCap);
+    pen.setJoinStyle(Qt::RoundJoin);
+    painter.setBrush(Qt::NoBrush);
+    painter.setPen(pen);
+    painter.drawPath(path);
+    pen.setColor(colour);
+    pen.setWidthF(width);
+    painter.setPen(pen);
+    painter.drawPath(path);
+}
+
+void dot(QPainter& painter, const QPointF& at, const QColor& colour, double radius) {
+    painter.setPen(QPen(QColor::fromRgbF(1, 1, 1, 0.9 * colour.alphaF()), 1));
+    painter.setBrush(colour);
+    painter.drawEllipse(at, radius, radius);
+}
+
+/// A zigzag from one point to another, straight where there is no room for one.
+QPainterPath spring(const QPointF& from, const QPointF& to, double width) {
+    QPainterPath path(from);
+    const QLineF way(from, to);
+    constexpr int turns = 6;
+    if (way.length() > 4 * width) {
+        const QPointF along = (to - from) / way.length(), across(-along.y(), along.x());
+        for (int i = 1; i < 2 * turns; ++i) {
+            const double part = 0.15 + 0.7 * i / (2 * turns);
+            path.lineTo(way.pointAt(part) + (i % 2 ? width : -width) * across);
+        }
+    }
+    path.lineTo(to);
+    return path;
+}
+
+QPainterPath arrow(const QPointF& from, const QPointF& to, double head) {
+    QPainterPath path(from);
+    path.lineTo(to);
+    const double length = QLineF(from, to).length();
+    const QPointF along = (to - from) / length, across(-along.y(), along.x());
+    const double size = std::min(head, 0.6 * length);
+    path.moveTo(to - size * along + 0.6 * size * across);
+    path.lineTo(to);
+    path.lineTo(to - size * along - 0.6 * size * across);
+    return path;
+}
+
+void paint_force(QPainter& painter, const SliceSheet& sheet, const Snapshot& snapshot,
+                 double opacity, double unit) {
+    const SessionTick& tick = snapshot.session;
+    const Vec3 force = tick.transform.rotation * tick.tick.force;
+    const double newtons = force.norm();
+    if (!(newtons > 1e-3)) return;
+    const double length = std::clamp(0.125 * newtons, 0.05, 0.35) * sheet.size.height();
+    const Vec3& scp = tick.tick.proxy.scp;
+    const QPointF from = sheet.pixel(scp);
+    const QPointF to = sheet.pixel(scp + (length / sheet.map.per_mm / newtons) * force);
+    if (QLineF(from, to).length() < 0.5 * unit) return;  // it points at the viewer
+    stroke(painter, arrow(from, to, 1.2 * unit), qt_colour(pictures::force_colour, opacity),
+           0.3 * unit);
+}
+
+void shadowed(QPainter& painter, const QRectF& box, int flags, const QString& text) {
+    painter.setPen(QColor(0, 0, 0, 200));
+    painter.drawText(box.translated(1, 1), flags, text);
+    painter.drawText(box.translated(-0.5, 0.5), flags, text);
+    painter.setPen(QColor(230, 230, 230));
+    painter.drawText(box, flags, text);
+}
+
+}  // namespace
+
+QPointF SliceSheet::pixel(const Vec3& physical) const {
+    const Vec3 at = slice_from_index(plane, geometry, index_from_physical(geometry, physical));
+    return map.pixel(at[0], at[1]);
+}
+
+double SliceSheet::distance(const Vec3& physical) const {
+    const Vec3 at = index_from_physical(geometry, physical);
+    return std::abs(at[plane.axis] - position) * geometry.spacing[plane.axis];
+}
+
+void paint_crosshair(QPainter& painter, const SliceSheet& sheet, const QPointF& at) {
+    const double gap = 0.8 * QFontMetricsF(painter.font()).height();
+    const double right = sheet.size.width(), bottom = sheet.size.height();
+    const QVector<QLineF> lines{{0, at.y(), at.x() - gap, at.y()},
+                                {at.x() + gap, at.y(), right, at.y()},
+                                {at.x(), 0, at.x(), at.y() - gap},
+                                {at.x(), at.y() + gap, at.x(), bottom}};
+    painter.setPen(QPen(QColor(0, 0, 0, 110), 3));
+    painter.drawLines(lines);
+    painter.setPen(QPen(QColor(240, 228, 66, 190), 1));
+    painter.drawLines(lines);
+}
+
+void paint_probe(QPainter& painter, const SliceSheet& sheet, const Snapshot& snapshot) {
+    const ProxyUpdate& proxy = snapshot.session.tick.proxy;
+    if (!proxy.hip.allFinite() || !proxy.scp.allFinite()) return;
+    painter.save();
+    painter.setRenderHint(QPainter::Antialiasing);
+    const double unit = 0.6 * QFontMetricsF(painter.font()).height();
+    const double hip_opacity = opacity_of(sheet, proxy.hip);
+    const double scp_opacity = opacity_of(sheet, proxy.scp);
+    const QPointF hip = sheet.pixel(proxy.hip), scp = sheet.pixel(proxy.scp);
+    const bool apart = proxy.hip != proxy.scp;
+    if (apart && QLineF(hip, scp).length() > 1) {
+        const double opacity = std::min(hip_opacity, scp_opacity);
+        stroke(painter, spring(hip, scp, 0.4 * unit), qt_colour(pictures::spring_colour, opacity),
+               0.15 * unit);
+    }
+    paint_force(painter, sheet, snapshot, scp_opacity, unit);
+    if (apart) dot(painter, scp, qt_colour(pictures::scp_colour, scp_opacity), 0.5 * unit);
+    dot(painter, hip, qt_colour(pictures::hip_colour, hip_opacity), 0.5 * unit);
+    painter.restore();
+}
+
+void paint_letters(QPainter& painter, const SliceSheet& sheet) {
+    QFont font = painter.font();
+    font.setBold(true);
+    painter.save();
+    painter.setFont(font);
+    const double edge = 0.3 * QFontMetricsF(font).height();
+    const QRectF box = QRectF({0, 0}, sheet.size).adjusted(edge, edge, -edge, -edge);
+    const auto letter = [&](int flags, const std::string& text) {
+        shadowed(painter, box, flags, QString::fromStdString(text));
+    };
+    letter(Qt::AlignLeft | Qt::AlignVCenter, sheet.plane.at_left);
+    letter(Qt::AlignRight | Qt::AlignVCenter, sheet.plane.at_right);
+    letter(Qt::AlignHCenter | Qt::AlignTop, sheet.plane.at_top);
+    letter(Qt::AlignHCenter | Qt::AlignBottom, sheet.plane.at_bottom);
+    painter.restore();
+}
+
+void paint_corner(QPainter& painter, const QSizeF& size, Qt::Alignment corner,
+                  const QStringList& lines) {
+    const double edge = 0.3 * QFontMetricsF(painter.font()).height();
+    const QRectF box = QRectF({0, 0}, size).adjusted(edge, edge, -edge, -edge);
+    shadowed(painter, box, static_cast<int>(corner), lines.join('\n'));
+}
+
+}  // namespace palpate::viewer

@@ -1,0 +1,41 @@
+// What is drawn over a slice: crosshair, hand and proxy, letters at the edges, words in corners.
+#pragma once
+
+#include <QPainter>
+#include <QStringList>
+
+#include "apps/viewer/slices/slice_map.hpp"
+#include "palpate/servo.hpp"
+
+namespace palpate::viewer {
+
+/// A slice in a widget.
+struct SliceSheet {
+    const SlicePlane& plane;
+    const Geometry& geometry;
+    const SliceMap& map;
+    double position;  ///< along the grid axis, in layers
+    QSizeF size;      ///< of the widget [pixels]
+
+    /// Of a physical point [mm], seen along the grid axis.
+    QPointF pixel(const Vec3& physical) const;
+    /// How far it lies from the slice [mm].
+    double distance(const Vec3& physical) const;
+};
+
+/// Lines through a pixel, open round it so that they hide nothing.
+void paint_crosshair(QPainter& painter, const SliceSheet& sheet, const QPointF& at);
+
+/// Hand (blue), proxy (vermilion), the spring between them and the force (green; a newton is an
+/// eighth of the widget's height). What lies off the slice is paler the farther it is, but never
+/// gone.
+void paint_probe(QPainter& painter, const SliceSheet& sheet, const Snapshot& snapshot);
+
+/// Which side of the body is at each edge.
+void paint_letters(QPainter& painter, const SliceSheet& sheet);
+
+/// Lines of text in a corner.
+void paint_corner(QPainter& painter, const QSizeF& size, Qt::Alignment corner,
+                  const QStringList& lines);
+
+}  // namespace palpate::viewer

@@ -1,0 +1,110 @@
+// A pane with a slice of the volume: grey levels, the isosurface's contour, crosshair, hand and
+// proxy. What users of ITK-SNAP and 3D Slicer expect of one.
+#pragma once
+
+#include <QWidget>
+
+#include <memory>
+#include <optional>
+
+#include "apps/viewer/slices/slice_map.hpp"
+#include "palpate/servo.hpp"
+
+namespace palpate::viewer {
+
+/// Wheel: next slice. Left: crosshair, or the probe (set_hand; Ctrl then is the crosshair). Right
+/// drag: window and level. Middle drag: moves the picture. Ctrl and wheel: zoom. Double click: the
+/// whole slice, the usual grey levels. Arrows, Page Up and Down, +, -, Home do the same by keys.
+/// Points are physical [mm].
+class SlicePane : public QWidget {
+    Q_OBJECT
+
+  public:
+    /// `axis`: 0, 1 or 2, the grid axis that the slices lie across. Empty at first.
+    explicit SlicePane(int axis, QWidget* parent = nullptr);
+    ~SlicePane() override;
+
+    /// Another volume: the crosshair goes to its centre, the whole slice is seen, the grey levels
+    /// are the usual ones. For the same samples with another solid side or background all of these
+    /// stay.
+    void set_field(const Field& field, double isovalue);
+    void clear();
+    /// [data units] Whose contour is shown.
+    void set_isovalue(double isovalue);
+    /// The slice goes through it. Not finite: nothing happens.
+    void set_crosshair(const Vec3& physical);
+    const Vec3& crosshair() const { return crosshair_; }
+    /// Hand, proxy, spring and force; nothing: none are shown. The slice stays where it is.
+    void show_snapshot(const std::optional<Snapshot>& snapshot);
+    /// Grey levels [data units]: up to `low` black, from `high` white. Unless low < high, nothing
+    /// happens. Those that are set first for a volume are its usual ones, until then 1 in 100
+    /// samples is black and 1 in 100 white.
+    void set_window(double low, double high);
+    double window_low() const { return low_; }
+    double window_high() const { return high_; }
+    /// True: the left button aims the probe.
+    void set_hand(bool probe);
+
+    /// Sagittal, Coronal or Axial; empty without a volume.
+    QString title() const;
+    /// Where a point is drawn [pixels of the widget], and which point of the slice is drawn there.
+    QPointF pixel_of(const Vec3& physical) const;
+    Vec3 point_at(const QPointF& pixel) const;
+
+    QSize sizeHint() const override;
+    QSize minimumSizeHint() const override;
+
+  Q_SIGNALS:
+    /// By the person; the pane has gone there already.
+    void crosshair_chosen(const palpate::Vec3& physical);
+    /// Where the probe is to go.
+    void probe_aimed(const palpate::Vec3& physical);
+    void window_changed(double low, double high);
+
+  protected:
+    bool event(QEvent* event) override;
+    void paintEvent(QPaintEvent* event) override;
+    void mousePressEvent(QMouseEvent* event) override;
+    void mouseMoveEvent(QMouseEvent* event) override;
+    void mouseReleaseEvent(QMouseEvent* event) override;
+    void mouseDoubleClickEvent(QMouseEvent* event) override;
+    void wheelEvent(QWheelEvent* event) override;
+    void keyPressEvent(QKeyEvent* event) override;
+    void leaveEvent(QEvent* event) override;
+
+  private:
+    struct Content;
+    enum class Drag { none, crosshair, probe, window, move };
+
+    const Geometry& geometry() const;
+    SliceMap map() const;
+    double margin() const;
+    double layer() const;
+    void picture_changed();
+    void choose(const Vec3& physical);
+    void choose_at(const QPointF& pixel);
+    void aim_at(const QPointF& pixel);
+    void step_slice(int steps);
+    double next_layer(double from, int steps) const;
+    void zoom_at(const QPointF& pixel, double factor);
+    void use_window(double low, double high);
+    void change_window(const QPointF& way);
+    void reset();
+    void paint_words(QPainter& painter) const;
+
+    const int axis_;
+    std::unique_ptr<Content> content_;  // null without a volume
+    double isovalue_ = 0;
+    Vec3 crosshair_ = Vec3::Zero();
+    std::optional<Snapshot> snapshot_;
+    double low_ = 0, high_ = 1;
+    bool probe_ = false;
+    SliceView view_;
+    Drag drag_ = Drag::none;
+    double drag_layer_ = 0;  // of the slice that the probe is dragged in
+    QPointF drag_from_;
+    std::optional<QPointF> pointer_;
+    int wheel_ = 0;  // [eighths of a degree] not yet a step
+};
+
+}  // namespace palpate::viewer
