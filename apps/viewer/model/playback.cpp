@@ -1,0 +1,160 @@
+// Rendering a recording again and keeping what is worth looking at.
+#include "apps/viewer/model/playback.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+namespace palpate::viewer {
+namespace {
+
+constexpr std::size_t most_snapshots = Playback::most_bytes / sizeof(Snapshot);
+/// Ticks come a little early or late; every fourth is meant where it is 4 ms.
+constexpr double punctual = 0.9;
+
+bool same(const Tick& a, const Tick& b) {
+    const auto equal = [](const Vec3& p, const Vec3& q) {
+        for (int i = 0; i < 3; ++i) {
+            if (p[i] != q[i] && !(std::isnan(p[i]) && std::isnan(q[i]))) return false;
+        }
+        return true;
+    };
+    return equal(a.proxy.hip, b.proxy.hip) && equal(a.proxy.scp, b.proxy.scp) &&
+           equal(a.force, b.force) && a.proxy.mode == b.proxy.mode;
+}
+
+void carry_out(const Command& command, Session& session, const std::string& recording) {
+    try {
+        check(command, session.renderer.settings, session.renderer.field.solid());
+    } catch (const std::invalid_argument& e) {
+        throw io::InputError(recording + ": a command that cannot be carried out: " + e.what());
+    }
+    apply(session, command);
+}
+
+void join(Overview::Piece& piece, const Overview::Piece& other) {
+    if (other.empty) return;
+    if (piece.empty) {
+        piece = other;
+        return;
+    }
+    piece.least_force = std::min(piece.least_force, other.least_force);
+    piece.most_force = std::max(piece.most_force, other.most_force);
+    piece.contact = piece.contact || other.contact;
+    if (other.least_isovalue > other.most_isovalue) return;
+    const bool none = piece.least_isovalue > piece.most_isovalue;
+    piece.least_isovalue =
+        none ? other.least_isovalue : std::min(piece.least_isovalue, other.least_isovalue);
+    piece.most_isovalue =
+        none ? other.most_isovalue : std::max(piece.most_isovalue, other.most_isovalue);
+}
+
+Overview::Piece piece_of(const SessionTick& session) {
+    Overview::Piece piece;
+    const Tick& tick = session.tick;
+    piece.least_force = piece.most_force = tick.force.norm();
+    if (std::isfinite(tick.proxy.isovalue)) {
+        piece.least_isovalue = piece.most_isovalue = tick.proxy.isovalue;
+    }
+    piece.contact = tick.proxy.mode == Mode::constrained;
+    piece.empty = false;
+    return piece;
+}
+
+}  // namespace
+
+Playback Playback::read(const std::filesystem::path& recording, const app::LoadedVolume& loaded,
+                        const io::Progress& progress) {
+    io::RecordingReader reader(recording);
+    Session session = app::recorded_session(reader.head(), loaded, recording.string());
+    Playback playback(reader.head(), session.renderer.field);
+    Snapshot last;
+    bool kept = true;
+    while (const auto event = reader.next()) {
+        if (const auto* command = std::get_if<Command>(&*event)) {
+            carry_out(*command, session, recording.string());
+            continue;
+        }
+        const auto& recorded = std::get<SessionTick>(*event);
+        const SessionTick again = repeat(session, recorded);
+        if (!same(recorded.tick, again.tick)) ++playback.different_;
+        const auto number = static_cast<std::int64_t>(playback.ticks_++);
+        if (progress && number % 1024 == 0) progress(reader.progress());
+        // A time that is none or goes back belongs to no place of a time line.
+        const double time = again.tick.time;
+        if (!std::isfinite(time)) continue;
+        if (!playback.snapshots_.empty() && !(time > playback.overview_.end)) continue;
+        last = snapshot_of(session, again, number, 0);
+        kept = playback.snapshots_.empty() ||
+               time >= playback.snapshots_.back().session.tick.time + punctual * playback.interval_;
+        playback.survey(again);
+        if (kept) playback.keep(last);
+    }
+    if (playback.snapshots_.empty()) {
+        throw io::InputError(recording.string() + ": has no ticks: nothing was recorded");
+    }
+    if (!kept) playback.snapshots_.push_back(last);
+    playback.complete_ = reader.complete();
+    playback.finish();
+    if (progress) progress(1);
+    return playback;
+}
+
+/// Where there is no more room, every second goes.
+void Playback::keep(const Snapshot& snapshot) {
+    if (snapshots_.size() + 1 >= most_snapshots) {
+        std::size_t to = 0;
+        for (std::size_t from = 0; from < snapshots_.size(); from += 2) {
+            snapshots_[to++] = snapshots_[from];
+        }
+        snapshots_.resize(to);
+        interval_ *= 2;
+    }
+    snapshots_.push_back(snapshot);
+}
+
+/// Pieces become twice as wide where there are too many.
+void Playback::survey(const SessionTick& tick) {
+    Overview& o = overview_;
+    const double time = tick.tick.time;
+    if (o.pieces.empty()) o.begin = time;
+    o.end = time;
+    while ((time - o.begin) / o.width >= static_cast<double>(Overview::most_pieces)) {
+        for (std::size_t i = 0; 2 * i < o.pieces.size(); ++i) {
+            Overview::Piece joined = o.pieces[2 * i];
+            if (2 * i + 1 < o.pieces.size()) join(joined, o.pieces[2 * i + 1]);
+            o.pieces[i] = joined;
+        }
+        o.pieces.resize((o.pieces.size() + 1) / 2);
+        o.width *= 2;
+    }
+    const auto at = static_cast<std::size_t>((time - o.begin) / o.width);
+    if (at >= o.pieces.size()) o.pieces.resize(at + 1);
+    join(o.pieces[at], piece_of(tick));
+}
+
+void Playback::finish() {
+    Overview& o = overview_;
+    for (std::size_t i = 0; i < o.pieces.size(); ++i) {
+        if (!o.pieces[i].contact) continue;
+        const double from = o.begin + static_cast<double>(i) * o.width;
+        const double to = std::min(from + o.width, o.end);
+        const bool goes_on = !o.contacts.empty() && from - o.contacts.back().to < 0.5 * o.width;
+        if (goes_on) {
+            o.contacts.back().to = to;
+        } else {
+            o.contacts.push_back({from, to});
+        }
+    }
+}
+
+const Snapshot& Playback::at(double time) const {
+    const auto after = std::upper_bound(
+        snapshots_.begin(), snapshots_.end(), time,
+        [](double t, const Snapshot& snapshot) { return t < snapshot.session.tick.time; });
+    const bool before_all = after == snapshots_.begin() || std::isnan(time);
+    return before_all ? snapshots_.front() : *(after - 1);
+}
+
+}  // namespace palpate::viewer
