@@ -23,7 +23,7 @@ top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 # In a subshell, so that the demo leaves its folder where the person is.
 (
     cd "$top"
-    if [ "$packages" = yes ]; then scripts/install_packages.sh io; fi
+    if [ "$packages" = yes ]; then scripts/install_packages.sh viewer; fi
     echo "== configure (release)"
     cmake --preset release -DPALPATE_TESTS=OFF
     echo "== build (release)"

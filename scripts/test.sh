@@ -39,8 +39,10 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 if [ "$packages" = yes ]; then
     case "$preset" in
         core) scripts/install_packages.sh core ;;
-        clang | asan) scripts/install_packages.sh io dev ;;
-        *) scripts/install_packages.sh io ;;
+        asan) scripts/install_packages.sh io dev ;;
+        tsan) scripts/install_packages.sh io ;;
+        clang) scripts/install_packages.sh viewer dev ;;
+        *) scripts/install_packages.sh viewer ;;
     esac
 fi
 

@@ -22,7 +22,7 @@ fs::path viewer_program() {
     if (const char* set = std::getenv("PALPATE_VIEWER")) return set;
     std::error_code error;
     const fs::path here = fs::read_symlink("/proc/self/exe", error).parent_path();
-    for (const fs::path& folder : {here, here / "../viewer/window"}) {  // installed, built
+    for (const fs::path& folder : {here, here / "../viewer"}) {  // installed, built
         if (::access((folder / "palpate-viewer").c_str(), X_OK) == 0) {
             return folder / "palpate-viewer";
         }

@@ -23,7 +23,8 @@ MAY_SEE = {
     "pictures": ("include", "io", "pictures"),
     "apps": ("include", "io", "baselines", "scenes", "devices", "pictures", "evaluation", "apps"),
     "evaluation": ("include", "io", "baselines", "scenes", "devices", "pictures", "evaluation"),
-    "benchmarks": ("include", "io", "baselines", "scenes", "devices", "benchmarks", "tests"),
+    "benchmarks": ("include", "io", "baselines", "scenes", "devices", "pictures", "apps",
+                   "benchmarks", "tests"),
     "examples": ("include", "io", "baselines", "scenes", "examples"),
 }
 # Folders that build from the standard library and Eigen alone.

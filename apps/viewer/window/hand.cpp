@@ -5,9 +5,8 @@
 #include <QStatusBar>
 
 #include "apps/viewer/scene/scene.hpp"
-#include "apps/viewer/slices/slice_pane.hpp"
 #include "apps/viewer/window/main_window.hpp"
-#include "apps/viewer/window/stage.hpp"
+#include "apps/viewer/window/views.hpp"
 
 namespace palpate::viewer {
 
@@ -28,7 +27,7 @@ void MainWindow::aim_probe(const Vec3& to) {
 /// `screen`: to the right, up, towards the viewer, in steps.
 void MainWindow::nudge(const Vec3& screen) {
     if (!live_) return;
-    const pictures::Camera camera = stage_->scene().camera();
+    const pictures::Camera camera = views_->scene().camera();
     const Vec3 back = camera.towards_viewer.normalized();
     const Vec3 right = Vec3(camera.up).cross(back).normalized();
     const double step = live_->field().geometry().spacing.minCoeff();
@@ -50,29 +49,28 @@ void MainWindow::make_hand_actions() {
         {"in", tr("Nudge the probe into the depth"), Qt::Key_PageUp, {0, 0, -1}},
         {"out", tr("Nudge the probe towards you"), Qt::Key_PageDown, {0, 0, 1}},
     };
-    // Where the scene or a slice has the focus: elsewhere arrows belong to sliders and numbers.
+    // Where the scene has the focus: elsewhere arrows belong to sliders, numbers and slices.
     for (const Key& key : keys) {
         for (const bool far : {false, true}) {
             auto* action = new QAction(far ? key.text + tr(" by ten voxels") : key.text, this);
             action->setShortcut(QKeySequence(key.key + (far ? int(Qt::ShiftModifier) : 0)));
-            action->setShortcutContext(Qt::WidgetWithChildrenShortcut);
+            action->setShortcutContext(Qt::WidgetShortcut);
             const Vec3 step = (far ? 10 : 1) * key.step;
             connect(action, &QAction::triggered, this, [this, step] { nudge(step); });
-            stage_->addAction(action);
+            views_->scene().addAction(action);
         }
     }
-    stage_->scene().setFocusPolicy(Qt::StrongFocus);
-    for (int axis = 0; axis < 3; ++axis) stage_->slice(axis).setFocusPolicy(Qt::StrongFocus);
+    views_->scene().setFocusPolicy(Qt::StrongFocus);
 }
 
 void MainWindow::use_pointer_for(bool probe) {
     const bool can = live_ && live_->mouse();
-    stage_->set_hand(probe && can);
+    views_->set_hand(probe && can);
     auto* action = findChild<QAction*>("pointer");
     action->setEnabled(can);
     action->setChecked(probe && can);
     if (probe && can) {
-        stage_->scene().setFocus();
+        views_->scene().setFocus();
         statusBar()->showMessage(
             tr("Drag to move the probe, turn the wheel to push it in; the right button turns the "
                "view"));

@@ -22,7 +22,7 @@
 #include "apps/viewer/scene/scene.hpp"
 #include "apps/viewer/slices/time_line.hpp"
 #include "apps/viewer/window/progress_strip.hpp"
-#include "apps/viewer/window/stage.hpp"
+#include "apps/viewer/window/views.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -35,7 +35,7 @@ constexpr int panel_rounds = 2, device_rounds = 8, report_rounds = 32;
 
 MainWindow::MainWindow(const app::TouchOptions& options)
     : options_(options),
-      stage_(new Stage),
+      views_(new Views),
       panel_(new Panel),
       time_line_(new TimeLine),
       progress_(new ProgressStrip),
@@ -47,7 +47,7 @@ MainWindow::MainWindow(const app::TouchOptions& options)
     auto* layout = new QVBoxLayout(centre);
     layout->setContentsMargins(0, 0, 0, 0);
     layout->setSpacing(0);
-    layout->addWidget(stage_, 1);
+    layout->addWidget(views_, 1);
     layout->addWidget(time_line_);
     layout->addWidget(progress_);
     time_line_->hide();
@@ -83,18 +83,18 @@ MainWindow::~MainWindow() {
 
 void MainWindow::connect_parts() {
     connect(&timer_, &QTimer::timeout, this, &MainWindow::tick);
-    connect(stage_, &Stage::probe_dragged, this, &MainWindow::drag_probe);
-    connect(stage_, &Stage::probe_aimed, this, &MainWindow::aim_probe);
-    connect(&stage_->scene(), &Scene::problem, this, &MainWindow::show_problem);
+    connect(views_, &Views::probe_dragged, this, &MainWindow::drag_probe);
+    connect(views_, &Views::probe_aimed, this, &MainWindow::aim_probe);
+    connect(&views_->scene(), &Scene::problem, this, &MainWindow::show_problem);
     connect(panel_, &Panel::asked, this, &MainWindow::send);
     connect(panel_, &Panel::device_chosen, this, &MainWindow::use_device);
     connect(panel_, &Panel::devices_wanted, this, &MainWindow::find_devices);
     connect(panel_, &Panel::solid_chosen, this, &MainWindow::use_solid);
     connect(panel_, &Panel::look_changed, this, [this](const Look& look) {
-        stage_->set_look(look);
+        views_->set_look(look);
         refresh_actions();
     });
-    connect(time_line_, &TimeLine::time_chosen, this, &MainWindow::show_time);
+    connect(time_line_, &TimeLine::time_chosen, this, [this](double time) { shown_time_ = time; });
     connect(progress_, &ProgressStrip::cancelled, this, [this] {
         if (work_) work_->cancel();
     });
@@ -105,7 +105,7 @@ void MainWindow::tick() {
     observe();
     if (rounds_ % report_rounds != 0) return;
     if (live_) panel_->show_report(live_->report(), options_.render.rate);
-    const double seconds = stage_->scene().frame_seconds();
+    const double seconds = views_->scene().frame_seconds();
     frames_->setText(seconds > 0 ? tr("%1 ms a frame").arg(1e3 * seconds, 0, 'f', 0) : QString());
     if (live_ && live_->recording() && !recording_told_) {
         const std::string problem = live_->recording()->problem();
@@ -123,12 +123,12 @@ void MainWindow::observe() {
     } else if (playback_) {
         now = playback_->at(shown_time_);
     }
-    stage_->show_snapshot(now);
+    views_->show_snapshot(now);
     if (!now) return;
     const double felt = now->session.tick.proxy.isovalue;
     if (std::isfinite(felt) && shown_isovalue_ != felt) {
         shown_isovalue_ = felt;
-        stage_->set_isovalue(felt);
+        views_->set_isovalue(felt);
     }
     if (rounds_ % panel_rounds == 0) panel_->show_snapshot(*now);
     if (live_ && rounds_ % device_rounds == 0) {
@@ -232,7 +232,7 @@ void MainWindow::freeze() {
 }
 
 bool MainWindow::settled() const {
-    return !work_ && (!opened_ || stage_->scene().settled());
+    return !work_ && (!opened_ || views_->scene().settled());
 }
 
 void MainWindow::closeEvent(QCloseEvent* event) {

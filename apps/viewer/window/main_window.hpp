@@ -1,4 +1,4 @@
-// The viewer's window: stage, panel and time line; a session that runs or a recording that plays.
+// The viewer's window: views, panel and time line; a session that runs or a recording that plays.
 // It observes snapshots and sends commands.
 #pragma once
 
@@ -23,7 +23,7 @@ namespace palpate::viewer {
 
 class Panel;
 class ProgressStrip;
-class Stage;
+class Views;
 class TimeLine;
 
 class MainWindow : public QMainWindow {
@@ -48,7 +48,7 @@ class MainWindow : public QMainWindow {
     void start_recording(const QString& path);
     void stop_recording();
 
-    Stage& stage() { return *stage_; }
+    Views& views() { return *views_; }
     Panel& panel() { return *panel_; }
     TimeLine& time_line() { return *time_line_; }
     const Live* live() const { return live_.get(); }
@@ -118,7 +118,7 @@ class MainWindow : public QMainWindow {
     void ask_record(bool on);
 
     app::TouchOptions options_;
-    Stage* stage_;
+    Views* views_;
     Panel* panel_;
     TimeLine* time_line_;
     ProgressStrip* progress_;

@@ -17,7 +17,7 @@
 #include "apps/viewer/window/main_window.hpp"
 #include "apps/viewer/window/raw_dialog.hpp"
 #include "apps/viewer/window/shortcuts.hpp"
-#include "apps/viewer/window/stage.hpp"
+#include "apps/viewer/window/views.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -133,28 +133,28 @@ void MainWindow::make_session_menu() {
 void MainWindow::make_view_menu() {
     QMenu* view = menuBar()->addMenu(tr("&View"));
     add(view, "whole", tr("&Whole volume"), QKeySequence("R"),
-        [this] { stage_->scene().reset_camera(); });
+        [this] { views_->scene().reset_camera(); });
     add(view, "from_hand", tr("From the &hand"), QKeySequence("0"), [this] {
         const auto now = live_ ? live_->snapshot() : std::nullopt;
         if (!now) return;
         const Mat3& hand = now->session.transform.rotation;
-        stage_->scene().look_from({hand.col(2), hand.col(1)});
+        views_->scene().look_from({hand.col(2), hand.col(1)});
     });
     int number = 0;
     for (const std::string& name : pictures::view_names()) {
         const QString text = QString::fromStdString(name);
         add(view, ("view_" + name).c_str(), tr("From the %1").arg(text),
             QKeySequence(QString::number(++number)),
-            [this, name] { stage_->scene().look_from(pictures::view_named(name)); });
+            [this, name] { views_->scene().look_from(pictures::view_named(name)); });
     }
     view->addSeparator();
     add_switch(view, "slices", tr("&Slices beside the scene"), QKeySequence("X"), [this](bool on) {
-        stage_->show_slices(on);
+        views_->show_slices(on);
     })->setChecked(true);
     auto* follow = add_switch(view, "follow", tr("&Crosshair follows the probe"), QKeySequence("G"),
-                              [this](bool on) { stage_->set_follow(on); });
+                              [this](bool on) { views_->set_follow(on); });
     follow->setChecked(true);
-    connect(stage_, &Stage::follow_changed, follow, &QAction::setChecked);
+    connect(views_, &Views::follow_changed, follow, &QAction::setChecked);
     auto* dock = findChild<QDockWidget*>("dock");
     dock->toggleViewAction()->setShortcut(QKeySequence("F9"));
     view->addAction(dock->toggleViewAction());
@@ -183,6 +183,7 @@ void MainWindow::refresh_actions() {
         set(name, live);
     }
     set("leave_playback", playback_.has_value());
+    set("slices", true, views_->slices_shown());
     for (const char* name : {"save_session", "picture", "whole"}) set(name, opened_ != nullptr);
 }
 

@@ -16,7 +16,7 @@
 #include "apps/viewer/slices/time_line.hpp"
 #include "apps/viewer/window/main_window.hpp"
 #include "apps/viewer/window/progress_strip.hpp"
-#include "apps/viewer/window/stage.hpp"
+#include "apps/viewer/window/views.hpp"
 #include "io/output.hpp"
 
 namespace palpate::viewer {
@@ -107,12 +107,12 @@ void MainWindow::begin(std::shared_ptr<Opened> opened, const app::TouchOptions& 
     look.transfer = preset(suggested_preset(opened_->histogram, opened_->loaded.volume),
                            opened_->histogram, opened_->loaded.volume);
     panel_->set_look(look);
-    stage_->set_look(look);
+    views_->set_look(look);
     show_volume(live_->field(), live_->isovalue(), live_->settings(), live_->device());
     const Mat3& hand = live_->settings().transform.rotation;
-    stage_->scene().look_from({hand.col(2), hand.col(1)});
-    stage_->scene().reset_camera();
-    stage_->set_window(opened_->dark(), opened_->bright());
+    views_->scene().look_from({hand.col(2), hand.col(1)});
+    views_->scene().reset_camera();
+    views_->set_window(opened_->dark(), opened_->bright());
     device_changed();
     if (!options.record.empty()) start_recording(QString::fromStdString(options.record));
     remember(QString::fromStdString(opened_->options.volume));
@@ -126,7 +126,7 @@ void MainWindow::close_all() {
     opened_.reset();
     shown_isovalue_.reset();
     time_line_->hide();
-    stage_->clear();
+    views_->clear();
     panel_->clear();
     setWindowTitle("Palpate");
     refresh_actions();
@@ -135,7 +135,7 @@ void MainWindow::close_all() {
 void MainWindow::show_volume(const Field& field, double isovalue, const RendererSettings& settings,
                              const DeviceInfo& device) {
     shown_isovalue_ = isovalue;
-    stage_->set_field(field, isovalue);
+    views_->set_field(field, isovalue);
     panel_->set_session(field, opened_->histogram, isovalue, settings, device);
     setWindowTitle(short_name(QString::fromStdString(opened_->loaded.name)) + " – Palpate");
     refresh_actions();
@@ -169,13 +169,13 @@ void MainWindow::play(std::shared_ptr<Opened> opened, const QString& path) {
                 look.transfer = preset(suggested_preset(opened->histogram, field.volume()),
                                        opened->histogram, field.volume());
                 panel_->set_look(look);
-                stage_->set_look(look);
+                views_->set_look(look);
             }
             DeviceInfo device;
             device.name = device.model = head.device;
             device.limits = head.settings.device;
             show_volume(field, head.isovalue, head.settings, device);
-            stage_->set_window(opened->dark(), opened->bright());
+            views_->set_window(opened->dark(), opened->bright());
             use_pointer_for(false);
             time_line_->set_playback(*playback_);
             time_line_->show();
@@ -216,7 +216,7 @@ void MainWindow::stop_recording() {
 }
 
 void MainWindow::save_picture(const QString& path, bool whole_window) {
-    const QImage image = whole_window ? grab().toImage() : stage_->scene().picture();
+    const QImage image = whole_window ? grab().toImage() : views_->scene().picture();
     QByteArray bytes;
     QBuffer buffer(&bytes);
     buffer.open(QIODevice::WriteOnly);

@@ -1,5 +1,5 @@
 // Scene and slices, side by side.
-#include "apps/viewer/window/stage.hpp"
+#include "apps/viewer/window/views.hpp"
 
 #include <QHBoxLayout>
 #include <QSplitter>
@@ -9,7 +9,7 @@
 
 namespace palpate::viewer {
 
-Stage::Stage(QWidget* parent)
+Views::Views(QWidget* parent)
     : QWidget(parent),
       scene_(new Scene),
       slices_{new SlicePane(0), new SlicePane(1), new SlicePane(2)},
@@ -30,34 +30,34 @@ Stage::Stage(QWidget* parent)
         SlicePane* pane = slices_[axis];
         pane->setObjectName(QString("slice%1").arg(axis));
         down_->addWidget(pane);
-        connect(pane, &SlicePane::crosshair_chosen, this, &Stage::choose_crosshair);
-        connect(pane, &SlicePane::probe_aimed, this, &Stage::probe_aimed);
-        connect(pane, &SlicePane::window_changed, this, &Stage::set_window);
+        connect(pane, &SlicePane::crosshair_chosen, this, &Views::choose_crosshair);
+        connect(pane, &SlicePane::probe_aimed, this, &Views::probe_aimed);
+        connect(pane, &SlicePane::window_changed, this, &Views::set_window);
     }
-    connect(scene_, &Scene::probe_dragged, this, &Stage::probe_dragged);
+    connect(scene_, &Scene::probe_dragged, this, &Views::probe_dragged);
 }
 
-void Stage::set_field(const Field& field, double isovalue) {
+void Views::set_field(const Field& field, double isovalue) {
     scene_->set_field(field, isovalue);
     for (SlicePane* pane : slices_) pane->set_field(field, isovalue);
     set_crosshair(physical_centre(field.geometry()));
 }
 
-void Stage::clear() {
+void Views::clear() {
     scene_->clear();
     for (SlicePane* pane : slices_) pane->clear();
 }
 
-void Stage::set_isovalue(double isovalue) {
+void Views::set_isovalue(double isovalue) {
     scene_->set_isovalue(isovalue);
     for (SlicePane* pane : slices_) pane->set_isovalue(isovalue);
 }
 
-void Stage::set_look(const Look& look) {
+void Views::set_look(const Look& look) {
     scene_->set_look(look);
 }
 
-void Stage::show_snapshot(const std::optional<Snapshot>& snapshot) {
+void Views::show_snapshot(const std::optional<Snapshot>& snapshot) {
     scene_->show_snapshot(snapshot);
     const bool placed = snapshot && snapshot->session.device.status == DeviceStatus::ready &&
                         snapshot->session.tick.proxy.scp.allFinite();
@@ -65,12 +65,12 @@ void Stage::show_snapshot(const std::optional<Snapshot>& snapshot) {
     for (SlicePane* pane : slices_) pane->show_snapshot(snapshot);
 }
 
-void Stage::set_hand(bool probe) {
+void Views::set_hand(bool probe) {
     scene_->set_hand(probe ? Scene::Hand::probe : Scene::Hand::camera);
     for (SlicePane* pane : slices_) pane->set_hand(probe);
 }
 
-void Stage::set_crosshair(const Vec3& physical) {
+void Views::set_crosshair(const Vec3& physical) {
     if (crosshair_ == physical) return;
     crosshair_ = physical;
     scene_->set_crosshair(physical);
@@ -78,25 +78,29 @@ void Stage::set_crosshair(const Vec3& physical) {
 }
 
 /// By hand: then it stays there.
-void Stage::choose_crosshair(const Vec3& physical) {
+void Views::choose_crosshair(const Vec3& physical) {
     set_follow(false);
     set_crosshair(physical);
 }
 
-void Stage::set_follow(bool follow) {
+void Views::set_follow(bool follow) {
     if (follow_ == follow) return;
     follow_ = follow;
     Q_EMIT follow_changed(follow);
 }
 
-void Stage::set_window(double low, double high) {
+void Views::set_window(double low, double high) {
     window_low_ = low;
     window_high_ = high;
     for (SlicePane* pane : slices_) pane->set_window(low, high);
 }
 
-void Stage::show_slices(bool shown) {
+void Views::show_slices(bool shown) {
     down_->setVisible(shown);
+}
+
+bool Views::slices_shown() const {
+    return !down_->isHidden();
 }
 
 }  // namespace palpate::viewer

@@ -1,4 +1,5 @@
-// What is seen: the scene, three slices beside it, and the crosshair that ties them together.
+// What is seen of a volume: the scene, three slices beside it, and the crosshair that ties them
+// together.
 #pragma once
 
 #include <QWidget>
@@ -15,11 +16,11 @@ namespace palpate::viewer {
 class Scene;
 class SlicePane;
 
-class Stage : public QWidget {
+class Views : public QWidget {
     Q_OBJECT
 
   public:
-    explicit Stage(QWidget* parent = nullptr);
+    explicit Views(QWidget* parent = nullptr);
 
     void set_field(const Field& field, double isovalue);
     void clear();
@@ -39,6 +40,7 @@ class Stage : public QWidget {
     double window_low() const { return window_low_; }
     double window_high() const { return window_high_; }
     void show_slices(bool shown);
+    bool slices_shown() const;
 
     Scene& scene() { return *scene_; }
     SlicePane& slice(int axis) { return *slices_.at(static_cast<std::size_t>(axis)); }
