@@ -1,0 +1,35 @@
+// A button that shows a colour and lets people choose another.
+#pragma once
+
+#include <QPushButton>
+
+#include "apps/viewer/panel/colours.hpp"
+
+namespace palpate::viewer {
+
+class ColourButton : public QPushButton {
+    Q_OBJECT
+
+  public:
+    explicit ColourButton(const QString& name, const QString& title, QWidget* parent = nullptr);
+
+    /// Shows a colour; emits nothing.
+    void set_colour(const Colour& colour);
+    const Colour& colour() const { return colour_; }
+    /// Opens the dialog, as a click does; the window goes on meanwhile.
+    void choose();
+
+  Q_SIGNALS:
+    /// While the dialog is open, too, so that the scene can be watched; the old colour comes back
+    /// where it is cancelled.
+    void wanted(const palpate::viewer::Colour& colour);
+
+  protected:
+    void paintEvent(QPaintEvent* event) override;
+
+  private:
+    QString title_;
+    Colour colour_;
+};
+
+}  // namespace palpate::viewer

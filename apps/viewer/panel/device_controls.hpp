@@ -1,0 +1,61 @@
+// The device: which one, how it does, what to do about it, the scale of the hand.
+#pragma once
+
+#include <QComboBox>
+#include <QLabel>
+#include <QLineEdit>
+#include <QPushButton>
+#include <QWidget>
+
+#include <vector>
+
+#include "apps/viewer/panel/number_box.hpp"
+#include "apps/viewer/panel/section.hpp"
+#include "devices/backend.hpp"
+
+namespace palpate::viewer {
+
+/// How a device is doing, as people say it.
+QString words_for(DeviceStatus status);
+
+class DeviceControls : public QWidget {
+    Q_OBJECT
+
+  public:
+    explicit DeviceControls(QWidget* parent = nullptr);
+
+    /// What was looked for. `current` is the option of the device in use ("haply:port=10001").
+    void set_devices(const std::vector<devices::DeviceFinding>& findings, const QString& current);
+    void show_device(const DeviceInfo& info, DeviceStatus status, const QString& problem);
+    void show_status(DeviceStatus status);
+    /// Volume mm per mm of the hand; while a number is being typed it is left alone.
+    void show_scale(double scale);
+    void set_scale(double scale) { scale_->show_value(scale); }
+    /// The option of the device in use from now on.
+    void set_current(const QString& option);
+    const QString& current() const { return current_; }
+    void clear();
+
+  Q_SIGNALS:
+    void chosen(const QString& option);
+    void refresh_wanted();
+    void scale_wanted(double scale);
+    void nonsense(const QString& why);
+
+  private:
+    void choose(int row);
+    void show_current();
+    void connect_device();
+
+    QComboBox* picker_;
+    QLineEdit* options_;
+    QPushButton* connect_;
+    Note* missing_;
+    QLabel *dot_, *state_, *model_, *workspace_;
+    Note* problem_;
+    NumberBox* scale_;
+    DeviceStatus status_ = DeviceStatus::starting;
+    QString current_;
+};
+
+}  // namespace palpate::viewer

@@ -1,0 +1,107 @@
+// Drawing the gauge.
+#include "apps/viewer/panel/force_gauge.hpp"
+
+#include <QPainter>
+#include <QPainterPath>
+
+#include <algorithm>
+#include <cmath>
+
+#include "apps/viewer/panel/colours.hpp"
+#include "apps/viewer/panel/level_axis.hpp"
+
+namespace palpate::viewer {
+namespace {
+
+constexpr Colour near_limit{0.835, 0.369, 0};
+
+}  // namespace
+
+ForceGauge::ForceGauge(QWidget* parent) : QWidget(parent) {
+    setObjectName("force_gauge");
+    setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
+    setToolTip(explained({}));
+}
+
+void ForceGauge::set_force(double force, double limit, const QString& words) {
+    if (words != words_) setToolTip(explained(words));
+    // What is not seen to change is not drawn anew, thirty times a second.
+    const bool seen = words != words_ || limit != limit_ || std::abs(force - force_) > 0.002;
+    if (!seen) return;
+    force_ = force;
+    limit_ = limit;
+    words_ = words;
+    setAccessibleName(QString("Force %1 N of %2 N %3").arg(force, 0, 'f', 2).arg(limit).arg(words));
+    update();
+}
+
+void ForceGauge::clear() {
+    set_force(0, 0, {});
+}
+
+double ForceGauge::filled() const {
+    return limit_ > 0 ? std::clamp(force_ / limit_, 0.0, 1.0) : 0;
+}
+
+QSize ForceGauge::sizeHint() const {
+    const int height = fontMetrics().height();
+    return {14 * height, static_cast<int>(2.4 * height)};
+}
+
+QSize ForceGauge::minimumSizeHint() const {
+    return {9 * fontMetrics().height(), sizeHint().height()};
+}
+
+void ForceGauge::paintEvent(QPaintEvent*) {
+    QPainter painter(this);
+    painter.setRenderHint(QPainter::Antialiasing);
+    const double line = fontMetrics().height();
+    const QRectF all = QRectF(rect()).adjusted(0.5, 0.5, -0.5, -0.5);
+    QFont bold = font();
+    bold.setBold(true);
+    painter.setFont(bold);
+    painter.setPen(
+        palette().color(isEnabled() ? QPalette::Active : QPalette::Disabled, QPalette::WindowText));
+    const QRectF text(all.left(), all.top(), all.width(), line * 1.15);
+    const QString number = QString("%1 N").arg(force_, 0, 'f', 2);
+    painter.drawText(text, Qt::AlignLeft | Qt::AlignVCenter, number);
+    const double after = QFontMetricsF(bold).horizontalAdvance(number) + 0.6 * line;
+    painter.setFont(font());
+    painter.drawText(text.adjusted(after, 0, 0, 0), Qt::AlignLeft | Qt::AlignVCenter, words_);
+    painter.setPen(palette().color(QPalette::PlaceholderText));
+    if (limit_ > 0) {
+        painter.drawText(text, Qt::AlignRight | Qt::AlignVCenter,
+                         QString("of %1 N").arg(QString::number(limit_, 'g', 3)));
+    }
+    const QRectF bar(all.left(), text.bottom() + 1, all.width(), all.bottom() - text.bottom() - 1);
+    QPainterPath frame;
+    frame.addRoundedRect(bar, 3, 3);
+    painter.fillPath(frame, palette().color(QPalette::Base));
+    painter.save();
+    painter.setClipPath(frame);
+    const bool high = filled() > 0.9;
+    painter.fillRect(QRectF(bar.left(), bar.top(), bar.width() * filled(), bar.height()),
+                     readable(to_qt(high ? near_limit : pictures::force_colour), palette()));
+    painter.restore();
+    painter.setPen(QPen(palette().color(QPalette::Mid), 1));
+    painter.drawPath(frame);
+}
+
+QString explained(const QString& words) {
+    const QString what = "Force on the hand [N] against the limit in use";
+    if (words == "off") return what + "\nOff: forces are switched off";
+    if (words == "recovering") {
+        return what + "\nRecovering: the proxy is on its way out of the solid";
+    }
+    if (words == "no input") return what + "\nNo input: the device gives no position to trust";
+    if (words == "too late") return what + "\nToo late: a tick took too long and was taken back";
+    if (words == "waiting") {
+        return what + "\nWaiting: forces begin when the hand is where they are small";
+    }
+    if (words == "ramp") return what + "\nRamp: from zero to full force after a start or pause";
+    if (words == "limit") return what + "\nLimit: more was wanted than may be given";
+    if (words == "rate limit") return what + "\nRate limit: the force may not change faster";
+    return what;
+}
+
+}  // namespace palpate::viewer

@@ -1,0 +1,38 @@
+// The force against its limit: a bar, a number, and in words why it is not simply what was wanted.
+#pragma once
+
+#include <QString>
+#include <QWidget>
+
+namespace palpate::viewer {
+
+class ForceGauge : public QWidget {
+    Q_OBJECT
+
+  public:
+    explicit ForceGauge(QWidget* parent = nullptr);
+
+    /// [N]; `words` stand beside the number, empty where the force is simply rendered.
+    void set_force(double force, double limit, const QString& words);
+    void clear();
+    double force() const { return force_; }
+    double limit() const { return limit_; }
+    const QString& words() const { return words_; }
+    /// How much of the bar is filled, 0 to 1.
+    double filled() const;
+
+    QSize sizeHint() const override;
+    QSize minimumSizeHint() const override;
+
+  protected:
+    void paintEvent(QPaintEvent* event) override;
+
+  private:
+    double force_ = 0, limit_ = 0;
+    QString words_;
+};
+
+/// What a held-back force means, for a tooltip; empty for no words.
+QString explained(const QString& words);
+
+}  // namespace palpate::viewer

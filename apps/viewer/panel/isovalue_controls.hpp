@@ -1,0 +1,53 @@
+// The level: chart, slider and number, which side is solid, what is felt now.
+#pragma once
+
+#include <QComboBox>
+#include <QSlider>
+#include <QWidget>
+
+#include <optional>
+
+#include "apps/viewer/panel/level_chart.hpp"
+#include "apps/viewer/panel/number_box.hpp"
+#include "apps/viewer/panel/pacer.hpp"
+#include "apps/viewer/panel/section.hpp"
+
+namespace palpate::viewer {
+
+class IsovalueControls : public QWidget {
+    Q_OBJECT
+
+  public:
+    explicit IsovalueControls(QWidget* parent = nullptr);
+
+    void set_data(const Field& field, const app::Histogram& histogram);
+    void clear();
+    /// Shows the level asked for; emits nothing.
+    void set_isovalue(double isovalue);
+    void set_solid(Solid solid);
+    /// What is felt now, shown apart where it is not what was asked for.
+    void show_felt(double isovalue, bool penetrability_on);
+    LevelChart& chart() { return *chart_; }
+    void drop() { pacer_.drop(); }
+
+  Q_SIGNALS:
+    void wanted(double isovalue);  ///< at most 60 a second while something is dragged
+    void solid_wanted(palpate::Solid solid);
+
+  private:
+    void ask(double isovalue);
+    void place(double isovalue);
+
+    std::optional<Field> field_;
+    LevelChart* chart_;
+    QSlider* slider_;
+    NumberBox* box_;
+    QComboBox* solid_;
+    QLabel* felt_;
+    Note* warning_;
+    Pacer pacer_;
+    double isovalue_ = 0;
+    int differing_ = 0;  // snapshots that tell of another level, in a row
+};
+
+}  // namespace palpate::viewer

@@ -1,0 +1,91 @@
+// From levels to pixels, and the histogram's bars.
+#include "apps/viewer/panel/level_axis.hpp"
+
+#include <QPainter>
+#include <QPainterPath>
+#include <QString>
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate::viewer {
+
+double LevelAxis::x_of(double level) const {
+    const double part = (std::clamp(level, low, high) - low) / (high - low);
+    return left + part * (right - left);
+}
+
+double LevelAxis::level_of(double x) const {
+    const double part = std::clamp((x - left) / (right - left), 0.0, 1.0);
+    return low + part * (high - low);
+}
+
+double LevelAxis::step() const {
+    return std::pow(10.0, std::floor(std::log10((high - low) / std::max(1.0, right - left))));
+}
+
+double LevelAxis::round_level_of(double x) const {
+    return std::clamp(rounded_to(level_of(x), step()), low, high);
+}
+
+double rounded_to(double value, double unit) {
+    // By 1 / unit where that is a whole number: 0.3 and not 0.30000000000000004.
+    const double per_unit = std::round(1 / unit);
+    const double rounded =
+        unit < 1 ? std::round(value * per_unit) / per_unit : std::round(value / unit) * unit;
+    return std::isfinite(rounded) ? rounded : value;
+}
+
+LevelAxis axis_of(const app::Histogram& histogram, const QRectF& plot) {
+    LevelAxis axis{histogram.low, histogram.high, plot.left(),
+                   std::max(plot.right(), plot.left() + 1)};
+    if (!(axis.high > axis.low)) {
+        const double room = std::max(0.5, 1e-3 * std::abs(axis.low));
+        axis.low -= room;
+        axis.high += room;
+    }
+    return axis;
+}
+
+void paint_histogram(QPainter& painter, const app::Histogram& histogram, const LevelAxis& axis,
+                     const QRectF& plot, const QColor& colour) {
+    if (histogram.counts.empty()) return;
+    const auto most = *std::ranges::max_element(histogram.counts);
+    const double scale =
+        plot.height() / std::log1p(static_cast<double>(std::max<std::int64_t>(1, most)));
+    const auto bins = static_cast<double>(histogram.counts.size());
+    const double width = (histogram.high - histogram.low) / bins;
+    QPainterPath bars(plot.bottomLeft());
+    for (std::size_t i = 0; i < histogram.counts.size(); ++i) {
+        const double from = histogram.low + static_cast<double>(i) * width;
+        double left = axis.x_of(from);
+        double right = axis.x_of(from + width);
+        if (right - left < 0.5 && bins < 2) {  // all samples have one value
+            left -= 1;
+            right += 1;
+        }
+        const double top =
+            plot.bottom() - scale * std::log1p(static_cast<double>(histogram.counts[i]));
+        bars.lineTo(left, top);
+        bars.lineTo(right, top);
+        if (bins < 2) bars.lineTo(right, plot.bottom());
+    }
+    bars.lineTo(plot.bottomRight());
+    bars.closeSubpath();
+    painter.fillPath(bars, colour);
+}
+
+QString level_text(double level) {
+    if (std::isinf(level)) return level > 0 ? "inf" : "-inf";
+    return QString::number(level == 0 ? 0.0 : level, 'g', 6);
+}
+
+bool is_dark(const QPalette& palette) {
+    return palette.color(QPalette::Window).lightnessF() < 0.5;
+}
+
+QColor readable(const QColor& colour, const QPalette& palette) {
+    return is_dark(palette) ? colour.lighter(155) : colour;
+}
+
+}  // namespace palpate::viewer

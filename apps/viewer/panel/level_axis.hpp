@@ -1,0 +1,47 @@
+// Levels along a widget's width, and the histogram drawn over them. Shared by the level chart and
+// the transfer function editor.
+#pragma once
+
+#include <QColor>
+#include <QPalette>
+#include <QRectF>
+
+#include "apps/live/statistics.hpp"
+
+class QPainter;
+
+namespace palpate::viewer {
+
+/// low < high [data units] lie at left < right [logical pixels].
+struct LevelAxis {
+    double low = 0, high = 1;
+    double left = 0, right = 1;
+
+    double x_of(double level) const;  ///< infinite levels at the ends
+    double level_of(double x) const;  ///< not beyond the ends
+    /// The smallest step that can be told apart here, a power of ten: dragged levels are multiples
+    /// of it and so have short numbers.
+    double step() const;
+    /// The multiple of step() nearest to the level at x, not beyond the ends.
+    double round_level_of(double x) const;
+};
+
+/// The multiple of `unit`, a power of ten, that is nearest.
+double rounded_to(double value, double unit);
+
+/// The ends of the axis for a histogram: the data's, or round a single value.
+LevelAxis axis_of(const app::Histogram& histogram, const QRectF& plot);
+
+/// Bars, their heights the logarithms of the counts, on the plot's lower edge.
+void paint_histogram(QPainter& painter, const app::Histogram& histogram, const LevelAxis& axis,
+                     const QRectF& plot, const QColor& colour);
+
+/// A level in as few digits as are needed.
+QString level_text(double level);
+
+/// Whether the palette is a dark one.
+bool is_dark(const QPalette& palette);
+/// The colour, lighter on a dark palette: thin lines and small text stay readable.
+QColor readable(const QColor& colour, const QPalette& palette);
+
+}  // namespace palpate::viewer

@@ -1,0 +1,95 @@
+// The histogram on which a level is chosen: the level as a line to drag, what is felt as a second
+// one, suggested levels as ticks, ranges of interest as bands.
+#pragma once
+
+#include <QWidget>
+
+#include <limits>
+#include <vector>
+
+#include "apps/viewer/panel/range_bands.hpp"
+
+namespace palpate::viewer {
+
+/// Mouse: press or drag in the plot moves the level; a tick on the upper edge is taken exactly;
+/// bands are moved and resized by their strip on the lower edge; shift-drag makes a new one; right
+/// click or Del on a band deletes it. Keys: arrows one step, Page 10, Home and End, Tab to leave.
+class LevelChart : public QWidget {
+    Q_OBJECT
+
+  public:
+    explicit LevelChart(QWidget* parent = nullptr);
+
+    /// New data; `suggested` are levels that are worth feeling.
+    void set_data(const app::Histogram& histogram, const std::vector<double>& suggested);
+    void clear();
+    /// Moves the line; emits nothing.
+    void set_level(double level);
+    double level() const { return level_; }
+    /// The level felt now; NaN: none to show.
+    void set_felt(double level);
+    double felt() const { return felt_; }
+    /// Bands; emits nothing. While one is dragged, the pointer has the say.
+    void set_bands(const Ranges& bands);
+    const Ranges& bands() const { return bands_; }
+    /// Whether bands can be added, deleted and moved as a whole; else only their ends move.
+    void set_editable(bool editable) { editable_ = editable; }
+    int chosen_band() const { return chosen_; }
+    void choose_band(int band);
+    /// What an arrow key moves the level by [data units].
+    double fine_step() const;
+    LevelAxis axis() const;
+    /// Where bands are taken hold of [logical pixels].
+    QRectF strip() const;
+
+    QSize sizeHint() const override;
+    QSize minimumSizeHint() const override;
+
+  Q_SIGNALS:
+    void level_moved(double level);
+    void level_settled();  ///< the drag is over
+    void bands_moved(const palpate::viewer::Ranges& bands);
+    void bands_settled();
+    void band_added(const palpate::DensityRange& range);
+    void band_deleted(int band);
+    void band_chosen(int band);
+
+  protected:
+    void paintEvent(QPaintEvent* event) override;
+    void mousePressEvent(QMouseEvent* event) override;
+    void mouseMoveEvent(QMouseEvent* event) override;
+    void mouseReleaseEvent(QMouseEvent* event) override;
+    void contextMenuEvent(QContextMenuEvent* event) override;
+    void keyPressEvent(QKeyEvent* event) override;
+    void wheelEvent(QWheelEvent* event) override;
+
+  private:
+    enum class Drag { none, level, band, fresh };
+
+    QRectF plot() const;
+    double text_height() const;
+    void ask_level(double level);
+    void step_level(double steps);
+    void press_strip(const QPointF& at);
+    int tick_at(const QPointF& at) const;
+    void show_cursor(const QPointF& at);
+    void paint_ticks(QPainter& painter, const LevelAxis& axis) const;
+    void paint_markers(QPainter& painter, const LevelAxis& axis) const;
+    void paint_ends(QPainter& painter) const;
+
+    app::Histogram histogram_;
+    std::vector<double> suggested_;
+    double level_ = 0;
+    double felt_ = std::numeric_limits<double>::quiet_NaN();
+    Ranges bands_;
+    bool editable_ = true;
+    int chosen_ = -1;
+
+    Drag drag_ = Drag::none;
+    BandGrip grip_;
+    double held_at_ = 0;         // level under the pointer when the drag began
+    DensityRange held_, fresh_;  // the band then; the one that is being made
+    int wheel_ = 0;              // eighths of degrees that make no step yet
+};
+
+}  // namespace palpate::viewer

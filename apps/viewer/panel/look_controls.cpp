@@ -1,0 +1,208 @@
+// Switches, colours and the transfer function.
+#include "apps/viewer/panel/look_controls.hpp"
+
+#include <QGridLayout>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QSignalBlocker>
+#include <QVBoxLayout>
+
+#include <cmath>
+
+namespace palpate::viewer {
+
+LookControls::LookControls(QWidget* parent)
+    : QWidget(parent),
+      surface_colour_(new ColourButton("surface_colour", "Colour of the isosurface")),
+      point_colour_(new ColourButton("point_colour", "Colour of the chosen point")),
+      surface_opacity_(new Quantity("surface_opacity", "", 0, 1, 0.05)),
+      preset_(new QComboBox),
+      editor_(new TransferEditor),
+      point_level_(new NumberBox),
+      point_opacity_(new NumberBox),
+      pacer_(this) {
+    auto* column = new QVBoxLayout(this);
+    column->setContentsMargins(0, 0, 0, 0);
+    column->addWidget(make_surface());
+    column->addWidget(make_volume());
+    column->addWidget(make_rest());
+    connect(surface_colour_, &ColourButton::wanted, this, [this](const Colour& colour) {
+        look_.surface_colour = colour;
+        changed();
+    });
+    connect(surface_opacity_, &Quantity::wanted, this, [this](double opacity) {
+        look_.surface_opacity = std::clamp(opacity, 0.0, 1.0);
+        surface_opacity_->set_value(look_.surface_opacity);
+        changed();
+    });
+    connect_transfer();
+    set_look(look_);
+    show_point(-1);
+}
+
+QCheckBox* LookControls::add_switch(const QString& name, const QString& text, const QString& tip,
+                                    bool Look::*shown) {
+    auto* box = new QCheckBox(text);
+    box->setObjectName("show_" + name);
+    box->setToolTip(tip);
+    switches_.push_back({box, shown});
+    connect(box, &QCheckBox::clicked, this, [this, shown](bool on) {
+        look_.*shown = on;
+        changed();
+    });
+    return box;
+}
+
+QWidget* LookControls::make_surface() {
+    auto* all = new QWidget;
+    auto* row = new QHBoxLayout(all);
+    row->setContentsMargins(0, 0, 0, 0);
+    row->addWidget(add_switch("surface", "Surface", "The isosurface that is felt", &Look::surface));
+    row->addWidget(surface_colour_);
+    row->addWidget(surface_opacity_, 1);
+    surface_opacity_->setToolTip("Opacity of the isosurface, 0 to 1");
+    return all;
+}
+
+QWidget* LookControls::make_volume() {
+    auto* all = new QWidget;
+    auto* column = new QVBoxLayout(all);
+    column->setContentsMargins(0, 0, 0, 0);
+    preset_->setObjectName("preset");
+    preset_->setToolTip("Transfer functions made for these data; choose one again to undo changes");
+    let_wheel_pass(*preset_);
+    for (const std::string& name : preset_names()) preset_->addItem(QString::fromStdString(name));
+    auto* first = new QHBoxLayout;
+    first->addWidget(
+        add_switch("volume", "Volume", "Volume rendering by the transfer function", &Look::volume));
+    first->addWidget(
+        add_switch("shading", "Shading", "Light on the volume, by its gradients", &Look::shading));
+    first->addWidget(preset_, 1);
+    point_level_->setObjectName("point_level");
+    point_level_->setToolTip("Level of the chosen point [data units]");
+    point_opacity_->setObjectName("point_opacity");
+    point_opacity_->setSingleStep(0.05);
+    point_opacity_->setToolTip(
+        "Opacity of the chosen point, 0 to 1, of a layer as thick as the "
+        "smallest spacing");
+    auto* point = new QHBoxLayout;
+    point->addWidget(new QLabel("Point"));
+    point->addWidget(point_level_, 1);
+    point->addWidget(point_opacity_, 1);
+    point->addWidget(point_colour_);
+    column->addLayout(first);
+    column->addWidget(editor_);
+    column->addLayout(point);
+    return all;
+}
+
+QWidget* LookControls::make_rest() {
+    auto* all = new QWidget;
+    auto* grid = new QGridLayout(all);
+    grid->setContentsMargins(0, 0, 0, 0);
+    grid->setVerticalSpacing(2);
+    QCheckBox* boxes[] = {
+        add_switch("slices", "Slices", "Three planes through the crosshair", &Look::slices),
+        add_switch("contact", "Hand and proxy", "HIP, SCP, the spring between them and the force",
+                   &Look::contact),
+        add_switch("tetrahedra", "Tetrahedra", "Those round the proxy, with the surface in them",
+                   &Look::tetrahedra),
+        add_switch("planes", "Constraint planes", "Those of the tetrahedra round the proxy",
+                   &Look::planes),
+        add_switch("box", "Box", "The bounds of the data", &Look::box),
+        add_switch("orientation", "Orientation cube", "L, R, A, P, S, I: sides of the body",
+                   &Look::orientation),
+        add_switch("scale_bar", "Scale bar", "A length in the picture [mm]", &Look::scale_bar)};
+    int at = 0;
+    for (QCheckBox* box : boxes) {
+        grid->addWidget(box, at / 2, at % 2);
+        ++at;
+    }
+    return all;
+}
+
+void LookControls::connect_transfer() {
+    connect(preset_, QOverload<int>::of(&QComboBox::activated), this, [this](int at) {
+        if (!volume_) return;
+        const std::string name = preset_->itemText(at).toStdString();
+        look_.transfer = preset(name, histogram_, *volume_);
+        editor_->set_transfer(look_.transfer);
+        changed();
+    });
+    connect(editor_, &TransferEditor::changed, this, [this](const TransferFunction& transfer) {
+        look_.transfer = transfer;
+        show_preset();
+        changed();
+    });
+    connect(editor_, &TransferEditor::settled, &pacer_, &Pacer::flush);
+    connect(editor_, &TransferEditor::point_chosen, this, &LookControls::show_point);
+    connect(editor_, &TransferEditor::colour_wanted, point_colour_, &ColourButton::choose);
+    // What is typed for the chosen point; the editor keeps it within its neighbours.
+    const auto change = [this](auto set) {
+        const int chosen = editor_->chosen();
+        if (chosen < 0) return;
+        ControlPoint point = look_.transfer.points[static_cast<std::size_t>(chosen)];
+        set(point);
+        editor_->change_chosen(point);
+        show_point(chosen);
+    };
+    connect(point_level_, QOverload<double>::of(&QDoubleSpinBox::valueChanged), this,
+            [change](double level) { change([level](ControlPoint& p) { p.level = level; }); });
+    connect(
+        point_opacity_, QOverload<double>::of(&QDoubleSpinBox::valueChanged), this,
+        [change](double opacity) { change([opacity](ControlPoint& p) { p.opacity = opacity; }); });
+    connect(point_colour_, &ColourButton::wanted, this, [change](const Colour& colour) {
+        change([&colour](ControlPoint& p) { p.colour = colour; });
+    });
+}
+
+void LookControls::set_data(const Volume& volume, const app::Histogram& histogram) {
+    volume_ = volume;
+    histogram_ = histogram;
+    editor_->set_data(histogram);
+    const LevelAxis axis = axis_of(histogram, QRectF(0, 0, 100, 1));
+    point_level_->setSingleStep(axis.step());
+}
+
+void LookControls::clear() {
+    pacer_.drop();
+    volume_.reset();
+    histogram_ = {};
+    editor_->set_data({});
+}
+
+void LookControls::set_look(const Look& look) {
+    pacer_.drop();
+    look_ = look;
+    for (const Switch& one : switches_) one.box->setChecked(look.*one.shown);
+    surface_colour_->set_colour(look.surface_colour);
+    surface_opacity_->drop();
+    surface_opacity_->set_value(look.surface_opacity);
+    editor_->set_transfer(look.transfer);
+    show_preset();
+}
+
+/// The preset, or none for a function that was edited.
+void LookControls::show_preset() {
+    const QString name = QString::fromStdString(look_.transfer.preset);
+    preset_->setCurrentIndex(preset_->findText(name));
+}
+
+void LookControls::show_point(int point) {
+    const bool any = point >= 0;
+    for (QWidget* one : {static_cast<QWidget*>(point_level_), static_cast<QWidget*>(point_opacity_),
+                         static_cast<QWidget*>(point_colour_)}) {
+        one->setEnabled(any);
+    }
+    if (!any) return;
+    const ControlPoint& at = editor_->transfer().points[static_cast<std::size_t>(point)];
+    point_level_->show_value(at.level);
+    point_opacity_->show_value(at.opacity);
+    point_colour_->set_colour(at.colour);
+}
+
+void LookControls::changed() {
+    pacer_.put([this] { Q_EMIT look_changed(look_); });
+}
+
+}  // namespace palpate::viewer

@@ -1,0 +1,38 @@
+// A number that is typed or stepped: as many digits as it has, and no accidents by the wheel.
+#pragma once
+
+#include <QDoubleSpinBox>
+
+namespace palpate::viewer {
+
+/// Shows up to seven significant digits but keeps the whole value. A typed value counts at Enter or
+/// when the focus leaves. The wheel scrolls the panel unless the box has the focus: a force must
+/// not change because somebody scrolls by. "inf" and "-inf" are numbers where `set_infinite(true)`.
+class NumberBox : public QDoubleSpinBox {
+    Q_OBJECT
+
+  public:
+    explicit NumberBox(QWidget* parent = nullptr);
+
+    /// Shows a value; emits nothing.
+    void show_value(double value);
+    void set_infinite(bool allowed) { infinite_ = allowed; }
+
+    QString textFromValue(double value) const override;
+    double valueFromText(const QString& text) const override;
+    QValidator::State validate(QString& text, int& position) const override;
+    void fixup(QString& text) const override;
+
+  protected:
+    void wheelEvent(QWheelEvent* event) override;
+
+  private:
+    QString bare(const QString& text) const;
+
+    bool infinite_ = false;
+};
+
+/// Puts a filter on a widget that leaves the wheel to the scroll area unless it has the focus.
+void let_wheel_pass(QWidget& widget);
+
+}  // namespace palpate::viewer

@@ -1,0 +1,275 @@
+// Sections to commands, and what is in effect back to sections.
+#include "apps/viewer/panel/panel.hpp"
+
+#include <QEvent>
+#include <QKeyEvent>
+#include <QScrollArea>
+#include <QVBoxLayout>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "apps/viewer/panel/device_controls.hpp"
+#include "apps/viewer/panel/force_controls.hpp"
+#include "apps/viewer/panel/isovalue_controls.hpp"
+#include "apps/viewer/panel/look_controls.hpp"
+#include "apps/viewer/panel/loop_view.hpp"
+#include "apps/viewer/panel/penetrability_controls.hpp"
+#include "apps/viewer/panel/section.hpp"
+#include "apps/viewer/panel/session_bar.hpp"
+
+namespace palpate::viewer {
+namespace {
+
+/// Return presses buttons: the space bar is the window's, for the forces.
+class ReturnPresses : public QObject {
+  public:
+    using QObject::QObject;
+    bool eventFilter(QObject* watched, QEvent* event) override {
+        if (event->type() != QEvent::KeyPress) return false;
+        const int key = static_cast<QKeyEvent*>(event)->key();
+        if (key != Qt::Key_Return && key != Qt::Key_Enter) return false;
+        static_cast<QAbstractButton*>(watched)->click();
+        return true;
+    }
+};
+
+}  // namespace
+
+Panel::Panel(QWidget* parent)
+    : QWidget(parent),
+      isovalue_(new IsovalueControls),
+      penetrability_(new PenetrabilityControls(isovalue_->chart())),
+      force_(new ForceControls),
+      device_(new DeviceControls),
+      loop_(new LoopView),
+      look_(new LookControls),
+      bar_(new SessionBar) {
+    setObjectName("panel");
+    build();
+    connect_sections();
+    auto* presses = new ReturnPresses(this);
+    for (auto* button : findChildren<QAbstractButton*>()) button->installEventFilter(presses);
+    clear();
+}
+
+Panel::~Panel() = default;
+
+void Panel::build() {
+    session_part_ = new Section("Session", "session_part", bar_);
+    isovalue_part_ = new Section("Isovalue", "isovalue_part", isovalue_);
+    penetrability_part_ =
+        new Section("Pressing through (penetrability)", "penetrability_part", penetrability_);
+    force_part_ = new Section("Force", "force_part", force_);
+    device_part_ = new Section("Device", "device_part", device_);
+    loop_part_ = new Section("Servo loop", "loop_part", loop_);
+    look_part_ = new Section("Look", "look_part", look_);
+    auto* column = new QVBoxLayout(this);
+    column->setContentsMargins(6, 6, 6, 6);
+    for (Section* part : {session_part_, isovalue_part_, penetrability_part_, force_part_,
+                          device_part_, loop_part_, look_part_}) {
+        column->addWidget(part);
+    }
+    column->addStretch(1);
+}
+
+void Panel::connect_sections() {
+    connect(isovalue_, &IsovalueControls::wanted, this,
+            [this](double level) { ask(isovalue_part_, command::Isovalue{level}); });
+    connect(isovalue_, &IsovalueControls::solid_wanted, this, [this](Solid solid) {
+        if (solid == solid_) return;
+        asked_by_ = isovalue_part_;
+        before_ = now_;
+        isovalue_part_->say({});
+        Q_EMIT solid_chosen(solid);
+    });
+    connect(penetrability_, &PenetrabilityControls::wanted, this, &Panel::ask_penetrability);
+    connect(penetrability_, &PenetrabilityControls::nonsense, penetrability_part_, &Section::say);
+    connect(force_, &ForceControls::force_wanted, this,
+            [this](const ForceSettings& force) { ask(force_part_, force); });
+    connect(force_, &ForceControls::friction_wanted, this,
+            [this](const Friction& friction) { ask(force_part_, friction); });
+    connect(device_, &DeviceControls::scale_wanted, this,
+            [this](double scale) { ask(device_part_, command::Scale{scale}); });
+    connect(device_, &DeviceControls::nonsense, device_part_, &Section::say);
+    connect(device_, &DeviceControls::refresh_wanted, this, &Panel::devices_wanted);
+    connect(device_, &DeviceControls::chosen, this, [this](const QString& option) {
+        asked_by_ = device_part_;
+        before_ = now_;
+        device_part_->say({});
+        refused_ = false;
+        device_before_ = device_->current();
+        Q_EMIT device_chosen(option);
+        if (!refused_) device_->set_current(option);
+    });
+    connect(bar_, &SessionBar::forces_wanted, this,
+            [this](bool on) { ask(session_part_, command::Forces{on}); });
+    connect(bar_, &SessionBar::freeze_wanted, this,
+            [this](bool on) { ask(session_part_, command::Freeze{on}); });
+    connect(bar_, &SessionBar::clutch_wanted, this,
+            [this](bool on) { ask(session_part_, command::Clutch{on}); });
+    connect(look_, &LookControls::look_changed, this, &Panel::look_changed);
+}
+
+void Panel::set_session(const Field& field, const app::Histogram& histogram, double isovalue,
+                        const RendererSettings& settings, const DeviceInfo& device) {
+    isovalue_->drop();
+    force_->drop();
+    live_ = true;
+    solid_ = field.solid();
+    now_ = before_ = {settings, isovalue, false, false};
+    asked_by_ = nullptr;
+    last_.reset();
+    for (Section* part : {session_part_, isovalue_part_, penetrability_part_, force_part_,
+                          device_part_, loop_part_, look_part_}) {
+        part->say({});
+        part->setEnabled(true);
+    }
+    isovalue_->set_data(field, histogram);
+    isovalue_->show_felt(isovalue, false);
+    penetrability_->set_session(settings.penetrability, solid_, isovalue, field.volume().minimum(),
+                                field.volume().minimum() + field.volume().range());
+    look_->set_data(field.volume(), histogram);
+    bar_->set_session(settings);
+    loop_->clear();
+    device_->show_device(device, DeviceStatus::starting, {});
+    show_effect();
+}
+
+void Panel::clear() {
+    live_ = false;
+    last_.reset();
+    isovalue_->clear();
+    penetrability_->drop();
+    force_->drop();
+    bar_->clear();
+    loop_->clear();
+    device_->clear();
+    look_->clear();
+    for (Section* part : {session_part_, isovalue_part_, penetrability_part_, force_part_,
+                          device_part_, loop_part_, look_part_}) {
+        part->say({});
+        part->setEnabled(false);
+    }
+}
+
+void Panel::set_look(const Look& look) {
+    look_->set_look(look);
+}
+
+void Panel::toggle_forces() {
+    bar_->toggle_forces();
+}
+
+const Look& Panel::look() const {
+    return look_->look();
+}
+
+/// Shows what is in effect, in every section that commands change.
+void Panel::show_effect() {
+    isovalue_->set_isovalue(now_.isovalue);
+    isovalue_->set_solid(solid_);
+    penetrability_->set_in_use(now_.settings.penetrability);
+    force_->set_settings(now_.settings.force, now_.settings.proxy.friction, now_.settings.device);
+    device_->set_scale(now_.settings.transform.scale);
+}
+
+/// Asks for a command if it is one that the session can carry out; else says why not. Whoever hears
+/// `asked` may refuse it at once.
+void Panel::ask(Section* by, const Command& command) {
+    if (!live_) return;
+    try {
+        palpate::check(command, now_.settings, solid_);
+    } catch (const std::invalid_argument& error) {
+        refuse(by, QString::fromStdString(error.what()));
+        return;
+    }
+    by->say({});
+    asked_by_ = by;
+    refused_ = false;
+    before_ = now_;
+    if (const auto* level = std::get_if<command::Isovalue>(&command)) {
+        now_.isovalue = level->isovalue;
+    } else if (const auto* force = std::get_if<ForceSettings>(&command)) {
+        now_.settings.force = *force;
+    } else if (const auto* friction = std::get_if<Friction>(&command)) {
+        now_.settings.proxy.friction = *friction;
+    } else if (const auto* penetrability = std::get_if<Penetrability>(&command)) {
+        now_.settings.penetrability = *penetrability;
+    } else if (const auto* forces = std::get_if<command::Forces>(&command)) {
+        now_.settings.forces_on = forces->on;
+    } else if (const auto* freeze = std::get_if<command::Freeze>(&command)) {
+        now_.frozen = freeze->on;
+    } else if (const auto* clutch = std::get_if<command::Clutch>(&command)) {
+        now_.clutched = clutch->on;
+    } else if (const auto* scale = std::get_if<command::Scale>(&command)) {
+        now_.settings.transform.scale = scale->scale;
+    }
+    Q_EMIT asked(command);
+    if (!refused_ && live_) show_effect();
+}
+
+void Panel::ask_penetrability(const PressThrough& wish) {
+    Penetrability penetrability;
+    try {
+        penetrability = penetrability_of(wish, solid_);
+    } catch (const std::invalid_argument& error) {
+        refuse(penetrability_part_, QString::fromStdString(error.what()));
+        return;
+    }
+    const bool ends = now_.settings.penetrability.on && !penetrability.on;
+    ask(penetrability_part_, penetrability);
+    if (!ends || refused_ || !last_) return;
+    // The session goes on with the level felt last, so the line goes there; past the last range
+    // nothing is felt, and what was asked for last holds again.
+    const double felt = last_->session.tick.proxy.isovalue;
+    ask(isovalue_part_, command::Isovalue{std::isfinite(felt) ? felt : now_.isovalue});
+}
+
+void Panel::refuse(Section* by, const QString& why) {
+    by->say(why);
+    show_effect();
+}
+
+void Panel::show_refused(const QString& why) {
+    refused_ = true;
+    now_ = before_;
+    Section* by = asked_by_ ? asked_by_ : session_part_;
+    by->say(why);
+    if (!live_) return;
+    show_effect();
+    bar_->set_forces(now_.settings.forces_on);
+    bar_->set_frozen(now_.frozen);
+    bar_->set_clutched(now_.clutched);
+    if (by == device_part_) device_->set_current(device_before_);
+}
+
+void Panel::show_snapshot(const Snapshot& snapshot) {
+    if (!live_) return;
+    last_ = snapshot;
+    now_.frozen = snapshot.session.frozen;
+    now_.clutched = snapshot.session.clutched;
+    now_.settings.forces_on = snapshot.forces_on;
+    now_.settings.transform = snapshot.session.transform;
+    const double limit = std::min(now_.settings.force.limit, now_.settings.device.maximum_force);
+    bar_->show_snapshot(snapshot, limit);
+    isovalue_->show_felt(snapshot.session.tick.proxy.isovalue, snapshot.penetrability_on);
+    device_->show_status(snapshot.session.device.status);
+    device_->show_scale(snapshot.session.transform.scale);
+}
+
+void Panel::show_report(const ServoReport& report, double rate) {
+    if (live_) loop_->show_report(report, rate);
+}
+
+void Panel::show_device(const DeviceInfo& info, DeviceStatus status, const QString& problem) {
+    if (live_) device_->show_device(info, status, problem);
+}
+
+void Panel::set_devices(const std::vector<devices::DeviceFinding>& findings,
+                        const QString& current_option) {
+    device_->set_devices(findings, current_option);
+}
+
+}  // namespace palpate::viewer

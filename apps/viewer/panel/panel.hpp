@@ -1,0 +1,104 @@
+// The panel: all that can be set and read of a session, in sections that fold. It holds no session:
+// what people want goes out as signals, what is so comes in by calls, which emit nothing.
+#pragma once
+
+#include <QWidget>
+
+#include <optional>
+#include <vector>
+
+#include "apps/live/statistics.hpp"
+#include "apps/viewer/model/look.hpp"
+#include "devices/backend.hpp"
+#include "palpate/servo.hpp"
+
+namespace palpate::viewer {
+
+class DeviceControls;
+class ForceControls;
+class IsovalueControls;
+class LookControls;
+class LoopView;
+class PenetrabilityControls;
+class Section;
+class SessionBar;
+struct PressThrough;
+
+/// Goes into a scroll area. GUI thread only.
+class Panel : public QWidget {
+    Q_OBJECT
+
+  public:
+    explicit Panel(QWidget* parent = nullptr);
+    ~Panel() override;
+
+    /// A session, as it is: shows these values.
+    void set_session(const Field& field, const app::Histogram& histogram, double isovalue,
+                     const RendererSettings& settings, const DeviceInfo& device);
+    /// No volume: nothing can be set.
+    void clear();
+    void set_look(const Look& look);
+    const Look& look() const;
+
+    /// About thirty times a second.
+    void show_snapshot(const Snapshot& snapshot);
+    /// About twice a second; `rate` [Hz] as measured.
+    void show_report(const ServoReport& report, double rate);
+    /// `problem`: what is wrong with the device and what to do; empty where all is well.
+    void show_device(const DeviceInfo& info, DeviceStatus status, const QString& problem);
+    /// What the picker offers; `current_option` is the device in use ("haply:port=10001").
+    void set_devices(const std::vector<devices::DeviceFinding>& findings,
+                     const QString& current_option);
+    /// The last thing that was asked for was refused: says why beside it and shows what is in
+    /// effect. May be called while `asked` or another of the signals is being emitted, or later.
+    void show_refused(const QString& why);
+
+    /// What is in effect as far as the panel knows: as set, with what was asked for since.
+    const RendererSettings& settings() const { return now_.settings; }
+    double isovalue() const { return now_.isovalue; }
+
+    /// As if the button was pressed: for the window's space bar.
+    void toggle_forces();
+
+  Q_SIGNALS:
+    /// A command that has passed palpate::check for the session that is shown.
+    void asked(const palpate::Command& command);
+    void device_chosen(const QString& option);
+    void devices_wanted();
+    void solid_chosen(palpate::Solid solid);
+    void look_changed(const palpate::viewer::Look& look);
+
+  private:
+    struct Effect {
+        RendererSettings settings;
+        double isovalue = 0;
+        bool frozen = false, clutched = false;
+    };
+
+    void build();
+    void connect_sections();
+    void ask(Section* by, const Command& command);
+    void ask_penetrability(const PressThrough& wish);
+    void refuse(Section* by, const QString& why);
+    void show_effect();
+
+    IsovalueControls* isovalue_;
+    PenetrabilityControls* penetrability_;
+    ForceControls* force_;
+    DeviceControls* device_;
+    LoopView* loop_;
+    LookControls* look_;
+    SessionBar* bar_;
+    Section *session_part_, *isovalue_part_, *penetrability_part_, *force_part_, *device_part_,
+        *loop_part_, *look_part_;
+
+    bool live_ = false;  // there is a session
+    Solid solid_ = Solid::above;
+    Effect now_, before_;  // in effect; before the last thing that was asked for
+    Section* asked_by_ = nullptr;
+    bool refused_ = false;
+    QString device_before_;
+    std::optional<Snapshot> last_;
+};
+
+}  // namespace palpate::viewer

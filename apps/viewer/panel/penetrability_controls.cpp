@@ -1,0 +1,216 @@
+// Modes, PT, minimum, table and bands kept in step.
+#include "apps/viewer/panel/penetrability_controls.hpp"
+
+#include <QFormLayout>
+#include <QHBoxLayout>
+#include <QRadioButton>
+#include <QSignalBlocker>
+#include <QVBoxLayout>
+
+#include <algorithm>
+
+namespace palpate::viewer {
+namespace {
+
+using Mode = PressThrough::Mode;
+
+struct ModeText {
+    const char* name;
+    const char* text;
+    const char* tip;
+};
+constexpr ModeText mode_texts[] = {
+    {"penetrability_off", "Off", "Surfaces hold, however hard the hand presses"},
+    {"penetrability_threshold", "Threshold",
+     "A surface that is pressed deeper than PT gives way: the level felt follows the hand"},
+    {"penetrability_ranges", "Ranges",
+     "As Threshold, but only levels in the ranges of interest are felt"}};
+
+}  // namespace
+
+PenetrabilityControls::PenetrabilityControls(LevelChart& chart, QWidget* parent)
+    : QWidget(parent),
+      chart_(&chart),
+      modes_(new QButtonGroup(this)),
+      threshold_(new Quantity("threshold", "mm", 0, 5, 0.1)),
+      minimum_row_(new QWidget),
+      minimum_(new NumberBox),
+      ranges_row_(new QWidget),
+      table_(new RangeTable),
+      pacer_(this) {
+    auto* row = new QHBoxLayout;
+    for (int i = 0; i < 3; ++i) {
+        auto* button = new QRadioButton(mode_texts[i].text);
+        button->setObjectName(mode_texts[i].name);
+        button->setToolTip(mode_texts[i].tip);
+        modes_->addButton(button, i);
+        row->addWidget(button);
+    }
+    row->addStretch(1);
+    threshold_->setToolTip(
+        "PT, the penetration threshold [mm of the hand]: pulled further apart than this, hand and "
+        "proxy get the surface to give way. The spring never exceeds stiffness x PT.");
+    threshold_->box().set_infinite(true);
+    minimum_->setObjectName("minimum");
+    minimum_->set_infinite(true);
+    minimum_->setToolTip(
+        "The least level felt [data units] (the greatest, where below is solid); also by the end "
+        "of the band on the histogram");
+    auto* minimum = new QFormLayout(minimum_row_);
+    minimum->setContentsMargins(0, 0, 0, 0);
+    minimum->addRow("Minimum level", minimum_);
+    auto* add = new QPushButton("Add range");
+    add->setObjectName("add_range");
+    add->setToolTip("Another range of interest; or shift-drag on the histogram");
+    auto* remove = new QPushButton("Delete range");
+    remove->setObjectName("delete_range");
+    remove->setToolTip("Delete the chosen range");
+    auto* buttons = new QHBoxLayout;
+    buttons->addWidget(add);
+    buttons->addWidget(remove);
+    buttons->addStretch(1);
+    auto* ranges = new QVBoxLayout(ranges_row_);
+    ranges->setContentsMargins(0, 0, 0, 0);
+    ranges->addWidget(table_);
+    ranges->addLayout(buttons);
+    auto* column = new QVBoxLayout(this);
+    column->setContentsMargins(0, 0, 0, 0);
+    auto* form = new QFormLayout;
+    form->addRow("PT", threshold_);
+    column->addLayout(row);
+    column->addLayout(form);
+    column->addWidget(minimum_row_);
+    column->addWidget(ranges_row_);
+    connect(add, &QPushButton::clicked, this, [this] { add_range(room_for_a_range()); });
+    connect(remove, &QPushButton::clicked, this, [this] { remove_range(table_->chosen()); });
+    connect_chart();
+    show_wish(shown_);
+}
+
+void PenetrabilityControls::connect_chart() {
+    connect(modes_, &QButtonGroup::idClicked, this, [this](int id) {
+        PressThrough wish = shown_;
+        wish.mode = static_cast<Mode>(id);
+        if (wish.mode != shown_.mode) ask(wish);
+    });
+    connect(threshold_, &Quantity::wanted, this, [this](double threshold) {
+        PressThrough wish = shown_;
+        wish.threshold = threshold;
+        ask(wish);
+    });
+    connect(minimum_, QOverload<double>::of(&QDoubleSpinBox::valueChanged), this,
+            [this](double level) {
+                PressThrough wish = shown_;
+                wish.minimum = level;
+                ask(wish);
+            });
+    connect(table_, &RangeTable::edited, this, [this](int at, const DensityRange& range) {
+        PressThrough wish = shown_;
+        wish.ranges[static_cast<std::size_t>(at)] = range;
+        ask(wish);
+    });
+    connect(table_, &RangeTable::nonsense, this, &PenetrabilityControls::nonsense);
+    connect(table_, &RangeTable::delete_wanted, this, &PenetrabilityControls::remove_range);
+    connect(table_, &RangeTable::row_chosen, chart_, &LevelChart::choose_band);
+    connect(chart_, &LevelChart::band_chosen, table_, &RangeTable::choose);
+    connect(chart_, &LevelChart::band_added, this, &PenetrabilityControls::add_range);
+    connect(chart_, &LevelChart::band_deleted, this, &PenetrabilityControls::remove_range);
+    connect(chart_, &LevelChart::bands_moved, this, [this](const Ranges& bands) {
+        dragging_ = true;
+        const PressThrough wish = with_bands(shown_, bands, solid_);
+        show_wish(wish);
+        pacer_.put([this, wish] { Q_EMIT wanted(wish); });
+    });
+    connect(chart_, &LevelChart::bands_settled, this, [this] {
+        pacer_.flush();
+        if (!std::exchange(dragging_, false)) return;
+        ask(shown_);  // bands that were drawn over each other become one
+    });
+}
+
+void PenetrabilityControls::set_session(const Penetrability& in_use, Solid solid, double isovalue,
+                                        double low, double high) {
+    drop();
+    solid_ = solid;
+    low_ = low;
+    high_ = high;
+    minimum_->setSingleStep(chart_->fine_step());
+    shown_ = first_press_through(isovalue, low, high, solid);
+    set_in_use(in_use);
+}
+
+void PenetrabilityControls::set_in_use(const Penetrability& in_use) {
+    if (dragging_) return;  // overlapping bands stay apart until they are let go of
+    show_wish(shown_from(in_use, solid_, shown_));
+}
+
+void PenetrabilityControls::drop() {
+    pacer_.drop();
+    threshold_->drop();
+    dragging_ = false;
+}
+
+void PenetrabilityControls::ask(const PressThrough& wish) {
+    pacer_.drop();
+    show_wish(wish);
+    Q_EMIT wanted(wish);
+}
+
+void PenetrabilityControls::show_wish(const PressThrough& wish) {
+    shown_ = wish;
+    modes_->button(static_cast<int>(wish.mode))->setChecked(true);
+    threshold_->set_value(wish.threshold);
+    threshold_->setEnabled(wish.mode != Mode::off);
+    minimum_->show_value(wish.minimum);
+    minimum_row_->setVisible(wish.mode == Mode::threshold);
+    table_->set_ranges(wish.ranges);
+    ranges_row_->setVisible(wish.mode == Mode::ranges);
+    chart_->set_editable(wish.mode == Mode::ranges);
+    chart_->set_bands(bands_of(wish, solid_));
+}
+
+/// The first range asks for the mode, too.
+void PenetrabilityControls::add_range(const DensityRange& range) {
+    PressThrough wish = shown_;
+    if (wish.mode != Mode::ranges) wish.ranges.clear();
+    wish.mode = Mode::ranges;
+    wish.ranges.push_back(range);
+    std::ranges::sort(wish.ranges, {}, &DensityRange::low);
+    ask(wish);
+}
+
+void PenetrabilityControls::remove_range(int which) {
+    if (which < 0 || which >= static_cast<int>(shown_.ranges.size())) {
+        Q_EMIT nonsense("choose the range to delete, in the table or on the histogram");
+        return;
+    }
+    if (shown_.ranges.size() == 1) {
+        Q_EMIT nonsense("the last range stays: switch penetrability off to have none");
+        return;
+    }
+    PressThrough wish = shown_;
+    wish.ranges.erase(wish.ranges.begin() + which);
+    ask(wish);
+}
+
+/// In the middle of the widest gap, a third of it wide at most.
+DensityRange PenetrabilityControls::room_for_a_range() const {
+    DensityRange gap{low_, low_};
+    double end = low_;
+    const auto consider = [&](double from, double to) {
+        if (to - from > gap.high - gap.low) gap = {from, to};
+    };
+    if (shown_.mode == Mode::ranges) {
+        for (const DensityRange& range : shown_.ranges) {
+            consider(end, range.low);
+            end = std::max(end, range.high);
+        }
+    }
+    consider(end, high_);
+    const double width = gap.high - gap.low;
+    const LevelAxis axis = chart_->axis();
+    return {rounded_to(gap.low + width / 3, axis.step()),
+            rounded_to(gap.high - width / 3, axis.step())};
+}
+
+}  // namespace palpate::viewer

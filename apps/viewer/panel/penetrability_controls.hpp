@@ -1,0 +1,60 @@
+// Pressing through: off, past a threshold, or by ranges of interest; with the level chart, on which
+// the ranges are bands.
+#pragma once
+
+#include <QButtonGroup>
+#include <QPushButton>
+#include <QWidget>
+
+#include <utility>
+
+#include "apps/viewer/panel/level_chart.hpp"
+#include "apps/viewer/panel/press_through.hpp"
+#include "apps/viewer/panel/quantity.hpp"
+#include "apps/viewer/panel/range_table.hpp"
+
+namespace palpate::viewer {
+
+class PenetrabilityControls : public QWidget {
+    Q_OBJECT
+
+  public:
+    /// Takes its bands from the chart and puts them there; the chart is another's.
+    explicit PenetrabilityControls(LevelChart& chart, QWidget* parent = nullptr);
+
+    /// A new session: modes that are not in use begin at this level and range [data units]. Emits
+    /// nothing.
+    void set_session(const Penetrability& in_use, Solid solid, double isovalue, double low,
+                     double high);
+    /// Shows the setting in use; emits nothing.
+    void set_in_use(const Penetrability& in_use);
+    void drop();
+
+  Q_SIGNALS:
+    /// What somebody asks for, valid or not.
+    void wanted(const palpate::viewer::PressThrough& wish);
+    void nonsense(const QString& why);
+
+  private:
+    void ask(const PressThrough& wish);
+    void show_wish(const PressThrough& wish);
+    void connect_chart();
+    void add_range(const DensityRange& range);
+    void remove_range(int which);
+    DensityRange room_for_a_range() const;
+
+    LevelChart* chart_;
+    QButtonGroup* modes_;
+    Quantity* threshold_;
+    QWidget* minimum_row_;
+    NumberBox* minimum_;
+    QWidget* ranges_row_;
+    RangeTable* table_;
+    Pacer pacer_;
+    PressThrough shown_;
+    Solid solid_ = Solid::above;
+    double low_ = 0, high_ = 1;
+    bool dragging_ = false;  // a band
+};
+
+}  // namespace palpate::viewer

@@ -1,0 +1,37 @@
+// Penetrability as people set it, and the core's value for it. No Qt.
+#pragma once
+
+#include "apps/viewer/panel/range_bands.hpp"
+
+namespace palpate::viewer {
+
+/// What the panel shows; what is not in use is kept for when it is chosen again.
+struct PressThrough {
+    enum class Mode { off, threshold, ranges };
+
+    Mode mode = Mode::off;
+    double threshold = 1;  ///< PT [device mm]
+    double minimum = 0;    ///< [data units] least level felt (greatest where below is solid)
+    Ranges ranges;         ///< [data units] in any order
+
+    PenetrabilityFunction function = nullptr;  ///< kept as it came
+    const void* context = nullptr;
+};
+
+/// The setting. Throws std::invalid_argument as penetrability_threshold and _ranges do.
+Penetrability penetrability_of(const PressThrough& shown, Solid solid);
+
+/// How a setting is shown; what it does not say stays as it was `before`.
+PressThrough shown_from(const Penetrability& penetrability, Solid solid, PressThrough before);
+
+/// What to begin with for data of this range [data units]: a minimum at the level, one range that
+/// begins there and takes a tenth of the data.
+PressThrough first_press_through(double isovalue, double low, double high, Solid solid);
+
+/// The bands on the chart, rising: the ranges, or all that lies past the minimum; none where it is
+/// off.
+Ranges bands_of(const PressThrough& shown, Solid solid);
+/// The inverse: bands that were dragged become ranges or the minimum.
+PressThrough with_bands(PressThrough shown, const Ranges& bands, Solid solid);
+
+}  // namespace palpate::viewer

@@ -1,0 +1,89 @@
+// Slider and box kept in step.
+#include "apps/viewer/panel/quantity.hpp"
+
+#include <QHBoxLayout>
+#include <QSignalBlocker>
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate::viewer {
+namespace {
+
+constexpr int places = 1000;  // of the slider
+
+}  // namespace
+
+Quantity::Quantity(const QString& name, const QString& unit, double low, double high, double step,
+                   QWidget* parent)
+    : QWidget(parent),
+      low_(low),
+      high_(high),
+      slider_(new QSlider(Qt::Horizontal)),
+      box_(new NumberBox),
+      pacer_(this) {
+    setObjectName(name);
+    slider_->setObjectName(name + "_slider");
+    slider_->setRange(0, places);
+    slider_->setSingleStep(places / 100);
+    slider_->setPageStep(places / 10);
+    slider_->setMinimumWidth(3 * fontMetrics().height());
+    let_wheel_pass(*slider_);
+    box_->setObjectName(name + "_box");
+    box_->setSuffix(unit.isEmpty() ? QString() : " " + unit);
+    box_->setSingleStep(step);
+    box_->setMinimumWidth(fontMetrics().horizontalAdvance("0.000000 " + unit) +
+                          2 * fontMetrics().height());
+    box_->setMaximumWidth(box_->minimumWidth());
+    auto* row = new QHBoxLayout(this);
+    row->setContentsMargins(0, 0, 0, 0);
+    row->addWidget(slider_, 1);
+    row->addWidget(box_);
+    setFocusProxy(box_);
+    connect(slider_, &QSlider::valueChanged, this, [this](int place) { ask(value_at(place)); });
+    connect(slider_, &QSlider::sliderReleased, &pacer_, &Pacer::flush);
+    connect(box_, QOverload<double>::of(&QDoubleSpinBox::valueChanged), this, [this](double value) {
+        value_ = value;
+        place_slider();
+        pacer_.drop();
+        Q_EMIT wanted(value);
+    });
+    set_value(low);
+}
+
+void Quantity::set_value(double value) {
+    value_ = value;
+    box_->show_value(value);
+    if (!slider_->isSliderDown()) place_slider();
+}
+
+void Quantity::set_ends(double low, double high) {
+    low_ = low;
+    high_ = std::max(low, high);
+    if (!slider_->isSliderDown()) place_slider();
+}
+
+/// Short numbers between the ends, the ends themselves exactly.
+double Quantity::value_at(int place) const {
+    if (place <= 0) return low_;
+    if (place >= places) return high_;
+    const double value = low_ + (high_ - low_) * place / places;
+    const double digits = std::ceil(std::log10(places / (high_ - low_)));
+    const double scale = std::pow(10.0, digits);
+    const double rounded = std::round(value * scale) / scale;
+    return std::isfinite(rounded) ? std::clamp(rounded, low_, high_) : value;
+}
+
+void Quantity::place_slider() {
+    const QSignalBlocker quiet(slider_);
+    const double part = high_ > low_ ? (value_ - low_) / (high_ - low_) : 0;
+    slider_->setValue(static_cast<int>(std::lround(places * std::clamp(part, 0.0, 1.0))));
+}
+
+void Quantity::ask(double value) {
+    value_ = value;
+    box_->show_value(value);
+    pacer_.put([this, value] { Q_EMIT wanted(value); });
+}
+
+}  // namespace palpate::viewer

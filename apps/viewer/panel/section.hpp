@@ -1,0 +1,49 @@
+// A part of the panel under a heading that folds it away, with room for a word about what was
+// refused.
+#pragma once
+
+#include <QLabel>
+#include <QToolButton>
+#include <QWidget>
+
+namespace palpate::viewer {
+
+/// A line or more of text that wraps, and is not there while it is empty.
+class Note : public QLabel {
+    Q_OBJECT
+
+  public:
+    enum class Kind { plain, warning };
+    Note(const QString& name, Kind kind, QWidget* parent = nullptr);
+    void say(const QString& text);
+
+  protected:
+    void changeEvent(QEvent* event) override;
+
+  private:
+    void paint_text();
+
+    Kind kind_;
+};
+
+class Section : public QWidget {
+    Q_OBJECT
+
+  public:
+    /// Takes the content over. `name` is that of the object; its heading is NAME_heading, its
+    /// message NAME_message.
+    Section(const QString& title, const QString& name, QWidget* content, bool open = true);
+
+    void set_open(bool open);
+    bool is_open() const { return heading_->isChecked(); }
+    /// Why something was refused; empty: all is well. Opens the section.
+    void say(const QString& why);
+    QString message() const { return message_->text(); }
+
+  private:
+    QToolButton* heading_;
+    QWidget* content_;
+    Note* message_;
+};
+
+}  // namespace palpate::viewer

@@ -1,0 +1,130 @@
+// Switches and gauge.
+#include "apps/viewer/panel/session_bar.hpp"
+
+#include <QEvent>
+#include <QHBoxLayout>
+#include <QVBoxLayout>
+
+#include "apps/live/words.hpp"
+#include "apps/viewer/panel/level_axis.hpp"
+
+namespace palpate::viewer {
+namespace {
+
+/// Snapshots come thirty times a second, a command is obeyed within a tick.
+constexpr int snapshots_of_grace = 3;
+
+}  // namespace
+
+SessionSwitch::SessionSwitch(const QString& name, const QString& on, const QString& off)
+    : on_(on), off_(off) {
+    setObjectName(name);
+    setCheckable(true);
+    setText(off_);
+    connect(this, &QPushButton::clicked, this, [this](bool now) {
+        grace_ = snapshots_of_grace;
+        setText(now ? on_ : off_);
+        Q_EMIT wanted(now);
+    });
+}
+
+void SessionSwitch::show_state(bool on) {
+    if (on == isChecked()) {
+        grace_ = 0;
+    } else if (grace_ > 0) {
+        --grace_;
+    } else {
+        set_state(on);
+    }
+}
+
+void SessionSwitch::set_state(bool on) {
+    grace_ = 0;
+    setChecked(on);
+    setText(on ? on_ : off_);
+}
+
+SessionBar::SessionBar(QWidget* parent)
+    : QWidget(parent),
+      forces_(new SessionSwitch("forces", "Forces are ON", "Forces are OFF")),
+      freeze_(new SessionSwitch("freeze", "Frozen", "Freeze")),
+      clutch_(new SessionSwitch("clutch", "Clutched", "Clutch")),
+      gauge_(new ForceGauge),
+      contact_(new QLabel) {
+    setObjectName("session_bar");
+    forces_->setToolTip("Forces on or off (space bar). Off: zero at once; on: they ramp up");
+    freeze_->setToolTip("Hand and proxy stand still for the session, forces are let go");
+    clutch_->setToolTip("The volume hangs on the hand, to put it elsewhere; forces are let go");
+    QFont big = forces_->font();
+    big.setBold(true);
+    big.setPointSizeF(1.25 * big.pointSizeF());
+    forces_->setFont(big);
+    forces_->setMinimumHeight(static_cast<int>(2.6 * fontMetrics().height()));
+    contact_->setObjectName("contact");
+    contact_->setToolTip("Whether the proxy is on a surface, and how far hand and proxy are apart");
+    auto* switches = new QVBoxLayout;
+    switches->setSpacing(2);
+    switches->addWidget(freeze_);
+    switches->addWidget(clutch_);
+    auto* row = new QHBoxLayout;
+    row->addWidget(forces_, 1);
+    row->addLayout(switches);
+    auto* column = new QVBoxLayout(this);
+    column->setContentsMargins(0, 0, 0, 0);
+    column->addLayout(row);
+    column->addWidget(gauge_);
+    column->addWidget(contact_);
+    connect(forces_, &SessionSwitch::wanted, this, &SessionBar::forces_wanted);
+    connect(freeze_, &SessionSwitch::wanted, this, &SessionBar::freeze_wanted);
+    connect(clutch_, &SessionSwitch::wanted, this, &SessionBar::clutch_wanted);
+    colour_forces();
+}
+
+/// On: green, off: as any button. The text says it, too.
+void SessionBar::colour_forces() {
+    const QString sheet =
+        "QPushButton:checked:enabled { background-color: #00855f; color: white; border: 1px solid "
+        "#00553c; border-radius: 4px; }"
+        "QPushButton:checked:enabled:focus { border: 2px solid palette(highlight); }";
+    if (forces_->styleSheet() != sheet) forces_->setStyleSheet(sheet);
+}
+
+void SessionBar::changeEvent(QEvent* event) {
+    // A style sheet keeps the palette it was polished with.
+    if (event->type() == QEvent::PaletteChange) {
+        forces_->setStyleSheet({});
+        colour_forces();
+    }
+    QWidget::changeEvent(event);
+}
+
+void SessionBar::set_session(const RendererSettings& settings) {
+    forces_->set_state(settings.forces_on);
+    freeze_->set_state(false);
+    clutch_->set_state(false);
+    contact_->setText("no tick yet");
+    gauge_->set_force(0, std::min(settings.force.limit, settings.device.maximum_force), {});
+}
+
+void SessionBar::clear() {
+    for (SessionSwitch* one : {forces_, freeze_, clutch_}) one->set_state(false);
+    gauge_->clear();
+    contact_->clear();
+}
+
+void SessionBar::show_snapshot(const Snapshot& now, double limit) {
+    forces_->show_state(now.forces_on);
+    freeze_->show_state(now.session.frozen);
+    clutch_->show_state(now.session.clutched);
+    const Tick& tick = now.session.tick;
+    gauge_->set_force(tick.force.norm(), limit, QString::fromStdString(app::force_words(tick)));
+    const double apart = (tick.proxy.scp - tick.proxy.hip).norm();
+    const bool touching = tick.proxy.mode == Mode::constrained;
+    const QString words = QString("%1, hand and proxy %2 mm apart (%3 mm in the volume)")
+                              .arg(touching ? "In contact" : "Free")
+                              .arg(apart / now.session.transform.scale, 0, 'f', 2)
+                              .arg(apart, 0, 'f', 2);
+    if (contact_->text() != words) contact_->setText(words);
+}
+
+}  // namespace palpate::viewer

@@ -1,0 +1,133 @@
+// A panel with a session to show, and what it has asked for.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <QApplication>
+#include <QLabel>
+#include <QMouseEvent>
+#include <QScrollArea>
+#include <QSignalSpy>
+#include <QTest>
+
+#include <optional>
+#include <random>
+#include <vector>
+
+#include "apps/viewer/panel/panel.hpp"
+
+namespace palpate::viewer {
+
+/// Three clusters as in CT of a head: air, soft tissue, bone [HU].
+inline Volume head_like() {
+    std::mt19937 random(3);
+    std::vector<std::int16_t> samples;
+    const auto cluster = [&](int count, double centre, double width) {
+        std::normal_distribution<double> normal(centre, width);
+        for (int i = 0; i < count; ++i) {
+            samples.push_back(
+                static_cast<std::int16_t>(std::clamp(normal(random), -1000.0, 3000.0)));
+        }
+    };
+    cluster(20000, -990, 15);
+    cluster(9000, 40, 40);
+    cluster(3766, 900, 350);
+    samples.push_back(-1000);
+    samples.push_back(3000);
+    Geometry geometry;
+    geometry.size = {32, 32, 32};
+    return Volume(geometry, samples);
+}
+
+inline DeviceInfo desktop_device() {
+    DeviceInfo info;
+    info.name = "simulated";
+    info.model = "desktop";
+    return info;
+}
+
+/// Shown, active, with all that it emitted. `set` puts a session in.
+class PanelStage : public testing::Test {
+  protected:
+    PanelStage() {
+        QObject::connect(&panel, &Panel::asked, [this](const Command& command) {
+            commands.push_back(command);
+            if (!refuse_with.isEmpty()) panel.show_refused(refuse_with);
+        });
+        area.setWidgetResizable(true);
+        area.setWidget(&panel);
+        area.resize(400, 1450);
+        area.show();
+        QApplication::setActiveWindow(&area);
+        (void)QTest::qWaitForWindowExposed(&area);
+    }
+    ~PanelStage() override { area.takeWidget(); }
+
+    void set(const RendererSettings& settings = {}, double isovalue = 300,
+             Solid solid = Solid::above) {
+        session_settings = settings;
+        field.emplace(head_like(), solid);
+        histogram = app::histogram_of(field->volume(), 256);
+        panel.set_session(*field, histogram, isovalue, settings, desktop_device());
+        QApplication::processEvents();
+    }
+
+    template <class T>
+    T* find(const char* name) {
+        T* found = panel.findChild<T*>(name);
+        if (!found) throw std::runtime_error(std::string("no widget ") + name);
+        return found;
+    }
+
+    /// All commands of a kind so far, and none that wait.
+    template <class T>
+    std::vector<T> of() {
+        QTest::qWait(40);  // longer than anything is held back
+        std::vector<T> found;
+        for (const Command& command : commands) {
+            if (const auto* one = std::get_if<T>(&command)) found.push_back(*one);
+        }
+        return found;
+    }
+
+    /// Types a number over what is there.
+    void type(const char* name, const QString& text) {
+        auto* box = find<QWidget>(name);
+        box->setFocus();
+        QTest::keyClick(box, Qt::Key_A, Qt::ControlModifier);
+        QTest::keyClicks(box, text);
+        QTest::keyClick(box, Qt::Key_Return);
+    }
+
+    void press(const char* name) { QTest::mouseClick(find<QWidget>(name), Qt::LeftButton); }
+
+    /// A drag through places of a widget, in steps as a hand makes them.
+    static void drag(QWidget* widget, QPointF from, QPointF to,
+                     Qt::KeyboardModifiers keys = Qt::NoModifier, bool release = true) {
+        QTest::mousePress(widget, Qt::LeftButton, keys, from.toPoint());
+        for (int i = 1; i <= 8; ++i) {
+            move(widget, from + (to - from) * (i / 8.0), keys);
+        }
+        if (release) QTest::mouseRelease(widget, Qt::LeftButton, keys, to.toPoint());
+    }
+    static void move(QWidget* widget, QPointF to, Qt::KeyboardModifiers keys = Qt::NoModifier) {
+        QMouseEvent event(QEvent::MouseMove, to.toPoint(), widget->mapToGlobal(to.toPoint()),
+                          Qt::NoButton, Qt::LeftButton, keys);
+        QApplication::sendEvent(widget, &event);
+    }
+
+    QString message(const char* part) {
+        return find<QLabel>((std::string(part) + "_message").c_str())->text();
+    }
+
+    // The order counts: what the panel tells on its way out is still heard.
+    std::vector<Command> commands;
+    QString refuse_with;
+    RendererSettings session_settings;
+    std::optional<Field> field;
+    app::Histogram histogram;
+    QScrollArea area;
+    Panel panel;
+};
+
+}  // namespace palpate::viewer

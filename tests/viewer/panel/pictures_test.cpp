@@ -1,0 +1,103 @@
+// Pictures of the panel for people to look at, and what must be true of them on any screen.
+#include <QDir>
+#include <QPalette>
+#include <QStyleFactory>
+
+#include "apps/viewer/model/transfer.hpp"
+#include "apps/viewer/panel/level_chart.hpp"
+#include "tests/viewer/panel/panel_stage.hpp"
+
+namespace palpate::viewer {
+namespace {
+
+QPalette dark_palette() {
+    QPalette dark;
+    dark.setColor(QPalette::Window, QColor(45, 45, 48));
+    dark.setColor(QPalette::WindowText, QColor(230, 230, 230));
+    dark.setColor(QPalette::Base, QColor(28, 28, 30));
+    dark.setColor(QPalette::AlternateBase, QColor(45, 45, 48));
+    dark.setColor(QPalette::Text, QColor(230, 230, 230));
+    dark.setColor(QPalette::Button, QColor(58, 58, 62));
+    dark.setColor(QPalette::ButtonText, QColor(230, 230, 230));
+    dark.setColor(QPalette::ToolTipBase, QColor(58, 58, 62));
+    dark.setColor(QPalette::ToolTipText, QColor(230, 230, 230));
+    dark.setColor(QPalette::PlaceholderText, QColor(150, 150, 150));
+    dark.setColor(QPalette::Highlight, QColor(42, 130, 218));
+    dark.setColor(QPalette::HighlightedText, Qt::white);
+    for (const auto role : {QPalette::WindowText, QPalette::Text, QPalette::ButtonText}) {
+        dark.setColor(QPalette::Disabled, role, QColor(120, 120, 120));
+    }
+    return dark;
+}
+
+class Pictures : public PanelStage {
+  protected:
+    Pictures() { usual_ = QApplication::palette(); }
+    ~Pictures() override { QApplication::setPalette(usual_); }
+
+    void full(Solid solid = Solid::above) {
+        RendererSettings settings;
+        const DensityRange ranges[] = {{-400, 150}, {700, 1500}};
+        settings.penetrability = penetrability_ranges(1.5, ranges, solid);
+        settings.proxy.friction = {0.4, 0.2};
+        set(settings, 300, solid);
+        Look look;
+        look.transfer = preset("CT bone", histogram, field->volume());
+        panel.set_look(look);
+        panel.set_devices(
+            {{"simulated", true, "a haptic device and its hand, computed", "", "seed=1"},
+             {"mouse", true, "pointer and keys", "", "speed=600 [mm/s]"},
+             {"haply", false, "", "no Inverse Service at localhost:10001", "port=10001"}},
+            "simulated:seed=7");
+        Snapshot now;
+        now.session.tick.force = Vec3(1.2, 0, 1);
+        now.session.tick.proxy.isovalue = 820;
+        now.session.tick.proxy.mode = Mode::constrained;
+        now.session.tick.proxy.hip = Vec3(1, 0, 0);
+        now.session.transform.scale = 1.8;
+        now.session.device.status = DeviceStatus::ready;
+        now.session.tick.force_flags = force_ramping;
+        now.penetrability_on = true;
+        panel.show_snapshot(now);
+        ServoReport report;
+        report.ticks = 20000;
+        report.missed = 2;
+        report.lateness = {20000, 11000, 45000, 120000, 2300000};
+        report.compute = {20000, 900, 4100, 7000, 31000};
+        report.worst = {77, 2300000, 30000, 21000, TickCause::machine};
+        panel.show_report(report, 999.8);
+        QApplication::processEvents();
+    }
+
+    /// The whole panel, as high as it likes to be.
+    QImage picture(const QString& name) {
+        area.resize(400, panel.sizeHint().height() + 10);
+        QApplication::processEvents();
+        const QImage image = panel.grab().toImage();
+        QDir().mkpath(PALPATE_PICTURES);
+        const QString scale = image.devicePixelRatio() > 1.5 ? "_2x" : "";
+        EXPECT_TRUE(image.save(QString(PALPATE_PICTURES) + "/" + name + scale + ".png"));
+        return image;
+    }
+
+  private:
+    QPalette usual_;
+};
+
+TEST_F(Pictures, light) {
+    full();
+    picture("panel_light");
+}
+
+TEST_F(Pictures, dark) {
+    QApplication::setPalette(dark_palette());
+    full();
+    picture("panel_dark");
+}
+
+TEST_F(Pictures, without_a_volume) {
+    picture("panel_empty");
+}
+
+}  // namespace
+}  // namespace palpate::viewer
