@@ -34,7 +34,23 @@ Volume thinned(const Volume& volume, int every) {
     return Volume(coarse, std::move(samples));
 }
 
-/// Every `every`-th sample along each axis, as it is: a mean would move the surface.
+/// Out of the solid, from the field's central differences over a voxel along each axis of the grid.
+/// `facet`, the normal of the mesh, where they say nothing (plateaus) or something else (sheets
+/// thinner than a voxel).
+Eigen::Vector3f smooth_normal(const Field& field, const Vec3& at, const Eigen::Vector3f& facet) {
+    const Geometry& g = field.geometry();
+    Vec3 gradient = Vec3::Zero();
+    for (int axis = 0; axis < 3; ++axis) {
+        const Vec3 step = g.spacing[axis] * g.direction.col(axis);
+        gradient += (value_at(field, Vec3(at + step)) - value_at(field, Vec3(at - step))) /
+                    g.spacing[axis] * g.direction.col(axis);
+    }
+    const Eigen::Vector3f normal = (-field.sign() * gradient).normalized().cast<float>();
+    return normal.dot(facet) > 0.3F ? normal : facet;
+}
+
+}  // namespace
+
 Field coarser(const Field& field, int every) {
     const Volume& v = field.volume();
     const auto with = [&](Volume coarse) {
@@ -53,23 +69,6 @@ Field coarser(const Field& field, int every) {
     return with(thinned<float>(v, every));
 }
 
-/// Out of the solid, from the field's central differences over a voxel along each axis of the grid.
-/// `facet`, the normal of the mesh, where they say nothing (plateaus) or something else (sheets
-/// thinner than a voxel).
-Eigen::Vector3f smooth_normal(const Field& field, const Vec3& at, const Eigen::Vector3f& facet) {
-    const Geometry& g = field.geometry();
-    Vec3 gradient = Vec3::Zero();
-    for (int axis = 0; axis < 3; ++axis) {
-        const Vec3 step = g.spacing[axis] * g.direction.col(axis);
-        gradient += (value_at(field, Vec3(at + step)) - value_at(field, Vec3(at - step))) /
-                    g.spacing[axis] * g.direction.col(axis);
-    }
-    const Eigen::Vector3f normal = (-field.sign() * gradient).normalized().cast<float>();
-    return normal.dot(facet) > 0.3F ? normal : facet;
-}
-
-}  // namespace
-
 std::vector<Eigen::Vector3f> mesh_normals(const SurfaceMesh& mesh) {
     std::vector<Eigen::Vector3f> normals(mesh.vertices.size(), Eigen::Vector3f::Zero());
     for (const auto& [a, b, c] : mesh.triangles) {
@@ -85,14 +84,16 @@ std::vector<Eigen::Vector3f> mesh_normals(const SurfaceMesh& mesh) {
 }
 
 ShadedSurface shaded_surface(const Field& field, double isovalue, const SurfaceWork& work) {
+    if (work.every < 1) throw std::invalid_argument("every 0th sample is none");
     ShadedSurface result;
+    result.every = work.every;
     SurfaceOptions options;
     options.progress = [&](double fraction) {
         work.progress(0.7 * fraction);
         return true;
     };
     options.max_vertices = work.most_triangles / 2;  // a closed mesh has half as many, and few more
-    Field drawn = field;
+    Field drawn = result.every > 1 ? coarser(field, result.every) : field;
     for (;;) {
         try {
             result.surface.mesh = extract_surface(drawn, isovalue, options);

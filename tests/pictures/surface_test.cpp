@@ -25,6 +25,32 @@ TEST(PictureSurface, is_the_mesh_that_the_proxy_meets) {
     ASSERT_EQ(made.surface.normals.size(), mesh.vertices.size());
 }
 
+TEST(PictureSurface, of_every_third_sample_is_the_surface_of_those) {
+    const scenes::Scene scene = scenes::make_volume("noise:10x8x7");
+    const Geometry& all = scene.volume.geometry();
+    Geometry geometry = all;
+    geometry.size = Index3(4, 3, 3);
+    geometry.spacing *= 3;
+    std::vector<float> samples;
+    for (int z = 0; z < 7; z += 3) {
+        for (int y = 0; y < 8; y += 3) {
+            for (int x = 0; x < 10; x += 3) {
+                samples.push_back(static_cast<float>(scene.volume.sample(Index3(x, y, z))));
+            }
+        }
+    }
+    const Field field(scene.volume);
+    SurfaceWork work;
+    work.every = 3;
+    const ShadedSurface made = shaded_surface(field, scene.isovalue, work);
+    const Field thinned(Volume(geometry, samples), field.solid(), field.background());
+    EXPECT_EQ(made.every, 3);
+    EXPECT_FALSE(made.surface.mesh.vertices.empty());
+    EXPECT_EQ(made.surface.mesh.vertices, extract_surface(thinned, scene.isovalue).vertices);
+    work.every = 0;
+    EXPECT_THROW(shaded_surface(field, scene.isovalue, work), std::invalid_argument);
+}
+
 TEST(PictureSurface, normals_of_a_ball_point_out_of_the_solid) {
     for (const Solid solid : {Solid::above, Solid::below}) {
         Geometry geometry = scenes::centred(Index3(24, 20, 16), Vec3(1, 1.2, 1.5));
