@@ -1,0 +1,34 @@
+// What stands still, as VTK's actors: the isosurface in parts, slices and the grid's outline.
+#pragma once
+
+#include <vtkActor.h>
+#include <vtkSmartPointer.h>
+
+#include <array>
+#include <atomic>
+#include <memory>
+#include <vector>
+
+#include "apps/viewer/scene/shot.hpp"
+
+namespace palpate::viewer {
+
+/// The material of all bodies in our pictures.
+void look_matt(vtkActor& actor);
+
+/// A mesh in parts, none so large that drawing it is long: between two of them drawing can be given
+/// up. `give_up` must outlive the actors.
+std::vector<vtkSmartPointer<vtkActor>> mesh_actors(const std::shared_ptr<const DrawnMesh>& mesh,
+                                                   const std::atomic<bool>& give_up);
+/// Like glass: clear where one looks straight through, denser towards the outline; `opacity` is
+/// that of a part that faces the viewer. 1: not glass.
+void set_glass(vtkActor& actor, double opacity);
+
+/// Three planes of the grid through a point, grey from the least sample to the greatest. Positions
+/// from the middle of the grid.
+std::array<vtkSmartPointer<vtkActor>, 3> slice_actors(const Volume& volume, const Vec3& crosshair);
+
+/// The twelve edges of the box whose corners are the outermost samples.
+vtkSmartPointer<vtkActor> box_actor(const Geometry& geometry);
+
+}  // namespace palpate::viewer

@@ -1,0 +1,31 @@
+// The lattice round the SCP: what the paper's figures show, as points in space.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "palpate/lattice.hpp"
+
+namespace palpate::viewer {
+
+/// A constraint plane: the proxy has to stay on the side to which the normal points.
+struct ConstraintPlane {
+    Vec3 point = Vec3::Zero();   ///< the SCP [mm, physical]
+    Vec3 normal = Vec3::Zero();  ///< unit, out of the solid, physical axes
+};
+
+struct LocalTetrahedron {
+    std::array<Vec3, 4> corners;  ///< cell centre, face centre, the edge's two ends [mm, physical]
+    /// The isosurface in it: nothing, or the 3 or 4 corners of a plane polygon, in turn [mm,
+    /// physical].
+    std::vector<Vec3> patch;
+    /// Where the point lies on the isosurface and the field is not constant here.
+    std::optional<ConstraintPlane> plane;
+};
+
+/// All tetrahedra that contain the point.
+std::vector<LocalTetrahedron> local_tetrahedra(const Field& field, const LatticePoint& point,
+                                               double isovalue);
+
+}  // namespace palpate::viewer

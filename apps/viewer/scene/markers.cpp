@@ -1,0 +1,160 @@
+// Markers' shapes.
+#include "apps/viewer/scene/markers.hpp"
+
+#include <vtkCellArray.h>
+#include <vtkFloatArray.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkPolyDataMapper.h>
+#include <vtkProperty.h>
+#include <vtkSphereSource.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "apps/viewer/scene/bodies.hpp"
+#include "apps/viewer/scene/shapes.hpp"
+
+namespace palpate::viewer {
+namespace {
+
+constexpr double ghost_opacity = 0.4;
+constexpr Colour plane_colour{0.8, 0.475, 0.655};  // reddish purple (Okabe and Ito)
+
+vtkSmartPointer<vtkPolyData> unit_ball() {
+    vtkNew<vtkSphereSource> source;
+    source->SetRadius(1);
+    source->SetThetaResolution(32);
+    source->SetPhiResolution(20);
+    source->Update();
+    return source->GetOutput();
+}
+
+void place(vtkActor& actor, const Vec3& at, double scale) {
+    actor.SetPosition(Vec3(at).data());
+    actor.SetScale(scale);
+}
+
+void flat(vtkActor& actor, double opacity) {
+    actor.GetProperty()->LightingOff();
+    actor.GetProperty()->SetOpacity(opacity);
+}
+
+}  // namespace
+
+std::optional<Contact> contact_of(const std::optional<Snapshot>& snapshot, const Field& field,
+                                  bool with_lattice) {
+    if (!snapshot || snapshot->session.device.status != DeviceStatus::ready) return std::nullopt;
+    const SessionTick& tick = snapshot->session;
+    const ProxyUpdate& proxy = tick.tick.proxy;
+    if (!proxy.hip.allFinite() || !proxy.scp.allFinite()) return std::nullopt;
+    Contact contact{proxy.hip, proxy.scp, tick.transform.rotation * tick.tick.force, {}};
+    if (with_lattice) contact.lattice = local_tetrahedra(field, snapshot->scp, proxy.isovalue);
+    return contact;
+}
+
+Markers::Markers(vtkRenderer& solid, vtkRenderer& ghost) : solid_(solid), ghost_(ghost) {
+    const auto nothing = [] { return vtkSmartPointer<vtkPolyData>::New(); };
+    edges_ = add(pictures::spring_colour, nothing());
+    spring_ = add(pictures::spring_colour, nothing());
+    arrow_ = add(pictures::force_colour, nothing());
+    scp_ = add(pictures::scp_colour, unit_ball());
+    hip_ = add(pictures::hip_colour, unit_ball());
+    normals_ = add(plane_colour, nothing());
+    discs_ = add(plane_colour, nothing());
+    patches_ = add(pictures::scp_colour, nothing());
+    for (const Twin& twin : {edges_, normals_}) {
+        flat(*twin.solid, 1);
+        flat(*twin.ghost, ghost_opacity);
+    }
+    flat(*discs_.solid, 0.35);
+    flat(*patches_.solid, 0.6);
+    for (const Twin& twin : {discs_, patches_}) {
+        twin.ghost->SetVisibility(false);
+        ghost_.RemoveActor(twin.ghost);
+    }
+}
+
+Markers::Twin Markers::add(const Colour& colour, vtkSmartPointer<vtkPolyData> data) {
+    Twin twin{vtkSmartPointer<vtkActor>::New(), vtkSmartPointer<vtkActor>::New(), std::move(data)};
+    for (vtkActor* actor : {twin.solid.Get(), twin.ghost.Get()}) {
+        vtkNew<vtkPolyDataMapper> mapper;
+        mapper->SetInputData(twin.data);
+        mapper->ScalarVisibilityOff();
+        actor->SetMapper(mapper);
+        actor->GetProperty()->SetColor(colour.red, colour.green, colour.blue);
+        look_matt(*actor);
+        actor->GetProperty()->SetSpecular(0.35);
+        actor->SetVisibility(false);
+    }
+    // Over itself a ghost changes nothing; over a surface that hides its twin it is a hint. Its
+    // nearest part alone is drawn.
+    twin.ghost->GetProperty()->SetOpacity(ghost_opacity);
+    twin.ghost->GetProperty()->BackfaceCullingOn();
+    twin.ghost->ForceOpaqueOn();
+    solid_.AddActor(twin.solid);
+    ghost_.AddActor(twin.ghost);
+    return twin;
+}
+
+void Markers::set_visible(const Twin& twin, bool visible) {
+    twin.solid->SetVisibility(visible);
+    twin.ghost->SetVisibility(visible);
+}
+
+void Markers::show_probe(const Contact& contact, const Vec3& origin, double pixel) {
+    const double radius = ball_radius_px * pixel;
+    const Vec3 hip = contact.hip - origin, scp = contact.scp - origin;
+    const bool apart = contact.hip != contact.scp;
+    for (vtkActor* actor : {hip_.solid.Get(), hip_.ghost.Get()}) place(*actor, hip, radius);
+    for (vtkActor* actor : {scp_.solid.Get(), scp_.ghost.Get()}) place(*actor, scp, radius);
+    set_visible(hip_, true);
+    set_visible(scp_, apart);
+    const bool sprung = apart && (scp - hip).norm() > 2 * radius;
+    set_visible(spring_, sprung);
+    if (sprung) put_spring(*spring_.data, hip, scp, 0.5 * radius);
+    const double newtons = contact.force.norm();
+    set_visible(arrow_, newtons > 0);
+    if (newtons > 0) {
+        const double length =
+            pixel * std::clamp(newton_px * newtons, shortest_arrow_px, longest_arrow_px);
+        put_arrow(*arrow_.data, scp, scp + length / newtons * contact.force, 0.35 * radius);
+    }
+}
+
+void Markers::show_lattice(const Contact& contact, const Look& look, const Vec3& origin,
+                           double voxel) {
+    set_visible(edges_, look.tetrahedra && !contact.lattice.empty());
+    patches_.solid->SetVisibility(look.tetrahedra && !contact.lattice.empty());
+    discs_.solid->SetVisibility(look.planes && !contact.lattice.empty());
+    set_visible(normals_, look.planes && !contact.lattice.empty());
+    if (look.tetrahedra) {
+        put_edges(*edges_.data, contact.lattice, origin);
+        put_patches(*patches_.data, contact.lattice, origin);
+    }
+    if (look.planes) put_planes(*discs_.data, *normals_.data, contact.lattice, origin, voxel);
+}
+
+void Markers::show(const std::optional<Contact>& contact, const Look& look, const Vec3& origin,
+                   double pixel, double voxel, const Colour& ink, double pixel_ratio) {
+    for (const Twin* twin : {&hip_, &scp_, &spring_, &arrow_, &edges_, &normals_}) {
+        set_visible(*twin, false);
+    }
+    patches_.solid->SetVisibility(false);
+    discs_.solid->SetVisibility(false);
+    if (!contact) return;
+    for (vtkActor* actor : {edges_.solid.Get(), edges_.ghost.Get()}) {
+        actor->GetProperty()->SetColor(ink.red, ink.green, ink.blue);
+        actor->GetProperty()->SetLineWidth(static_cast<float>(1.5 * pixel_ratio));
+    }
+    for (vtkActor* actor : {normals_.solid.Get(), normals_.ghost.Get()}) {
+        actor->GetProperty()->SetLineWidth(static_cast<float>(2 * pixel_ratio));
+    }
+    if (look.contact) show_probe(*contact, origin, pixel);
+    show_lattice(*contact, look, origin, voxel);
+}
+
+}  // namespace palpate::viewer

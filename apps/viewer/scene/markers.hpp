@@ -1,0 +1,58 @@
+// Hand, proxy, spring and force, of the same size on the screen however near one looks; and the
+// lattice round the proxy.
+#pragma once
+
+#include <vtkActor.h>
+#include <vtkPolyData.h>
+#include <vtkRenderer.h>
+#include <vtkSmartPointer.h>
+
+#include <optional>
+#include <vector>
+
+#include "apps/viewer/model/look.hpp"
+#include "apps/viewer/scene/local.hpp"
+#include "palpate/servo.hpp"
+
+namespace palpate::viewer {
+
+/// What is drawn of a snapshot.
+struct Contact {
+    Vec3 hip = Vec3::Zero(), scp = Vec3::Zero();  ///< [mm, physical]
+    Vec3 force = Vec3::Zero();                    ///< [N] on the hand, physical axes
+    std::vector<LocalTetrahedron> lattice;
+};
+/// Nothing while the device is not ready. The lattice only where it is asked for.
+std::optional<Contact> contact_of(const std::optional<Snapshot>& snapshot, const Field& field,
+                                  bool with_lattice);
+
+/// Sizes in logical pixels, as in our pictures of 800 pixels in height.
+inline constexpr double ball_radius_px = 8.8;
+inline constexpr double newton_px = 100;
+inline constexpr double shortest_arrow_px = 56, longest_arrow_px = 240;
+
+class Markers {
+  public:
+    /// Draws into `solid`, and faintly into `ghost`, which is laid over it: what lies behind a
+    /// surface shines through.
+    Markers(vtkRenderer& solid, vtkRenderer& ghost);
+
+    /// `origin` [mm, physical] of what is drawn; `pixel` [mm] is a logical pixel.
+    void show(const std::optional<Contact>& contact, const Look& look, const Vec3& origin,
+              double pixel, double voxel, const Colour& ink, double pixel_ratio);
+
+  private:
+    struct Twin {
+        vtkSmartPointer<vtkActor> solid, ghost;
+        vtkSmartPointer<vtkPolyData> data;
+    };
+    Twin add(const Colour& colour, vtkSmartPointer<vtkPolyData> data);
+    static void set_visible(const Twin& twin, bool visible);
+    void show_probe(const Contact& contact, const Vec3& origin, double pixel);
+    void show_lattice(const Contact& contact, const Look& look, const Vec3& origin, double voxel);
+
+    vtkRenderer &solid_, &ghost_;
+    Twin hip_, scp_, spring_, arrow_, edges_, patches_, discs_, normals_;
+};
+
+}  // namespace palpate::viewer

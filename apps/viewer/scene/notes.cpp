@@ -1,0 +1,139 @@
+// Cube and scale bar.
+#include "apps/viewer/scene/notes.hpp"
+
+#include <vtkAnnotatedCubeActor.h>
+#include <vtkCamera.h>
+#include <vtkCellArray.h>
+#include <vtkNew.h>
+#include <vtkPoints.h>
+#include <vtkPolyDataMapper2D.h>
+#include <vtkProperty.h>
+#include <vtkTextProperty.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace palpate::viewer {
+namespace {
+
+vtkSmartPointer<vtkAnnotatedCubeActor> body_cube() {
+    auto cube = vtkSmartPointer<vtkAnnotatedCubeActor>::New();
+    cube->SetXPlusFaceText("L");
+    cube->SetXMinusFaceText("R");
+    cube->SetYPlusFaceText("P");
+    cube->SetYMinusFaceText("A");
+    cube->SetZPlusFaceText("S");
+    cube->SetZMinusFaceText("I");
+    cube->SetFaceTextScale(0.62);
+    cube->SetXFaceTextRotation(90);
+    cube->SetYFaceTextRotation(0);
+    cube->SetZFaceTextRotation(90);
+    cube->GetCubeProperty()->SetColor(0.86, 0.88, 0.9);
+    cube->GetCubeProperty()->SetAmbient(0.35);
+    cube->GetCubeProperty()->SetDiffuse(0.7);
+    constexpr double ink = 0.13;
+    cube->GetTextEdgesProperty()->SetColor(ink, ink, ink);
+    for (vtkProperty* face : {cube->GetXPlusFaceProperty(), cube->GetXMinusFaceProperty(),
+                              cube->GetYPlusFaceProperty(), cube->GetYMinusFaceProperty(),
+                              cube->GetZPlusFaceProperty(), cube->GetZMinusFaceProperty()}) {
+        face->SetColor(ink, ink, ink);
+        face->SetAmbient(1);
+        face->SetDiffuse(0);
+    }
+    return cube;
+}
+
+void add_box(vtkPoints& points, vtkCellArray& polygons, double x, double y, double width,
+             double height) {
+    const vtkIdType first = points.InsertNextPoint(x, y, 0);
+    points.InsertNextPoint(x + width, y, 0);
+    points.InsertNextPoint(x + width, y + height, 0);
+    points.InsertNextPoint(x, y + height, 0);
+    const vtkIdType corners[] = {first, first + 1, first + 2, first + 3};
+    polygons.InsertNextCell(4, corners);
+}
+
+}  // namespace
+
+double round_length(double most) {
+    const double power = std::pow(10, std::floor(std::log10(most)));
+    for (const double digit : {5.0, 2.0}) {
+        if (digit * power <= most) return digit * power;
+    }
+    return power;
+}
+
+std::string in_millimetres(double length) {
+    char text[32];
+    if (length >= 1) {
+        std::snprintf(text, sizeof text, "%g mm", length);
+    } else {
+        std::snprintf(text, sizeof text, "%g \xC2\xB5m", 1000 * length);
+    }
+    return text;
+}
+
+Notes::Notes(int layer)
+    : writing_(vtkSmartPointer<vtkRenderer>::New()),
+      orientation_(vtkSmartPointer<vtkRenderer>::New()),
+      bar_(vtkSmartPointer<vtkActor2D>::New()),
+      bar_data_(vtkSmartPointer<vtkPolyData>::New()),
+      text_(vtkSmartPointer<vtkTextActor>::New()) {
+    for (vtkRenderer* renderer : {writing_.Get(), orientation_.Get()}) {
+        renderer->SetLayer(layer);
+        renderer->InteractiveOff();
+    }
+    orientation_->AddActor(body_cube());
+    orientation_->GetActiveCamera()->ParallelProjectionOn();
+    vtkNew<vtkPolyDataMapper2D> mapper;
+    mapper->SetInputData(bar_data_);
+    bar_->SetMapper(mapper);
+    writing_->AddActor2D(bar_);
+    vtkTextProperty* const p = text_->GetTextProperty();
+    p->SetFontFamilyToArial();
+    p->SetJustificationToCentered();
+    p->SetVerticalJustificationToBottom();
+    writing_->AddActor2D(text_);
+}
+
+void Notes::show_bar(const What& what) {
+    bar_->SetVisibility(what.scale_bar);
+    text_->SetVisibility(what.scale_bar);
+    if (!what.scale_bar) return;
+    const double pixels_per_mm = what.height / (2 * what.camera.half_height);
+    const double length = round_length(0.22 * what.width / pixels_per_mm);
+    const double pixels = length * pixels_per_mm, em = what.em;
+    const double right = what.width - 1.3 * em, y = 1.1 * em, thick = std::max(1.0, 0.14 * em);
+    vtkNew<vtkPoints> points;
+    vtkNew<vtkCellArray> polygons;
+    add_box(*points, *polygons, right - pixels, y, pixels, thick);
+    for (const double x : {right - pixels, right - thick}) {
+        add_box(*points, *polygons, x, y - 0.25 * em, thick, 0.5 * em + thick);
+    }
+    bar_data_->SetPoints(points);
+    bar_data_->SetPolys(polygons);
+    bar_data_->Modified();
+    bar_->GetProperty()->SetColor(what.ink.red, what.ink.green, what.ink.blue);
+    text_->SetInput(in_millimetres(length).c_str());
+    text_->GetTextProperty()->SetFontSize(static_cast<int>(std::lround(em)));
+    text_->GetTextProperty()->SetColor(what.ink.red, what.ink.green, what.ink.blue);
+    text_->SetPosition(right - 0.5 * pixels, y + 0.5 * em);
+}
+
+void Notes::show(const What& what) {
+    show_bar(what);
+    orientation_->SetDraw(what.orientation);
+    const double side =
+        std::clamp(0.17 * std::min(what.width, what.height), 4 * what.em, 9 * what.em);
+    orientation_->SetViewport(0, 0, std::min(1.0, side / what.width),
+                              std::min(1.0, side / what.height));
+    vtkCamera* const camera = orientation_->GetActiveCamera();
+    camera->SetFocalPoint(0, 0, 0);
+    camera->SetPosition(Vec3(5 * what.camera.towards_viewer.normalized()).data());
+    camera->SetViewUp(Vec3(what.camera.up).data());
+    camera->SetParallelScale(1.15);
+    camera->SetClippingRange(2, 8);
+}
+
+}  // namespace palpate::viewer

@@ -1,0 +1,47 @@
+// What is written over the scene: the cube that says where left and right are, and a scale bar.
+#pragma once
+
+#include <vtkActor2D.h>
+#include <vtkPolyData.h>
+#include <vtkProperty2D.h>
+#include <vtkRenderer.h>
+#include <vtkSmartPointer.h>
+#include <vtkTextActor.h>
+
+#include <string>
+
+#include "pictures/scene.hpp"
+
+namespace palpate::viewer {
+
+/// 1, 2 or 5 times a power of ten: the greatest that is at most `most` > 0.
+double round_length(double most);
+/// "20 mm", below a millimetre "500 µm".
+std::string in_millimetres(double length);
+
+class Notes {
+  public:
+    /// Two renderers of its own, both in this layer.
+    explicit Notes(int layer);
+    vtkRenderer& writing() const { return *writing_; }
+    vtkRenderer& orientation() const { return *orientation_; }
+
+    struct What {
+        bool orientation = true, scale_bar = true;
+        pictures::Camera camera;
+        int width = 1, height = 1;  ///< [device pixels]
+        double em = 12;             ///< [device pixels] height of the widget's font
+        pictures::Colour ink;
+    };
+    void show(const What& what);
+
+  private:
+    void show_bar(const What& what);
+
+    vtkSmartPointer<vtkRenderer> writing_, orientation_;
+    vtkSmartPointer<vtkActor2D> bar_;
+    vtkSmartPointer<vtkPolyData> bar_data_;
+    vtkSmartPointer<vtkTextActor> text_;
+};
+
+}  // namespace palpate::viewer

@@ -1,0 +1,107 @@
+// Two textures and a rectangle that takes colours and depths from them.
+#include "apps/viewer/scene/pane.hpp"
+
+#include <vtkOpenGLRenderWindow.h>
+#include <vtkOpenGLShaderCache.h>
+#include <vtkOpenGLState.h>
+#include <vtkRenderer.h>
+#include <vtkShaderProgram.h>
+#include <vtk_glew.h>
+
+namespace palpate::viewer {
+namespace {
+
+constexpr const char* shader = R"(//VTK::System::Dec
+//VTK::Output::Dec
+in vec2 texCoord;
+uniform sampler2D colours;
+uniform sampler2D depths;
+void main() {
+  gl_FragData[0] = texture(colours, texCoord);
+  gl_FragDepth = texture(depths, texCoord).r;
+}
+)";
+
+vtkSmartPointer<vtkTextureObject> texture(vtkOpenGLRenderWindow& window) {
+    auto made = vtkSmartPointer<vtkTextureObject>::New();
+    made->SetContext(&window);
+    made->SetMinificationFilter(vtkTextureObject::Nearest);
+    made->SetMagnificationFilter(vtkTextureObject::Nearest);
+    made->SetWrapS(vtkTextureObject::ClampToEdge);
+    made->SetWrapT(vtkTextureObject::ClampToEdge);
+    return made;
+}
+
+}  // namespace
+
+Pane* Pane::New() {
+    auto* const made = new Pane;
+    made->InitializeObjectBase();
+    return made;
+}
+
+void Pane::set_layer(std::shared_ptr<const Backdrop> owner, const Layer& layer, bool seen_through) {
+    owner_ = std::move(owner);
+    layer_ = &layer;
+    seen_through_ = seen_through;
+    uploaded_ = false;
+    this->Modified();
+}
+
+void Pane::clear() {
+    owner_.reset();
+    layer_ = nullptr;
+    this->Modified();
+}
+
+void Pane::upload(vtkOpenGLRenderWindow& window) {
+    if (!colour_) colour_ = texture(window);
+    if (!depth_) depth_ = texture(window);
+    const auto width = static_cast<unsigned>(owner_->width);
+    const auto height = static_cast<unsigned>(owner_->height);
+    // The call only reads them.
+    colour_->Create2DFromRaw(width, height, 4, VTK_UNSIGNED_CHAR,
+                             const_cast<unsigned char*>(layer_->rgba.data()));
+    depth_->Create2DFromRaw(width, height, 1, VTK_FLOAT, const_cast<float*>(layer_->depth.data()));
+    uploaded_ = true;
+}
+
+int Pane::RenderOpaqueGeometry(vtkViewport* viewport) {
+    if (!layer_ || layer_->rgba.empty()) return 0;
+    auto* const renderer = vtkRenderer::SafeDownCast(viewport);
+    auto* const window = vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow());
+    if (!uploaded_) upload(*window);
+    if (!quad_) {
+        quad_ = std::make_unique<vtkOpenGLQuadHelper>(window, nullptr, shader, "");
+    } else {
+        window->GetShaderCache()->ReadyShaderProgram(quad_->Program);
+    }
+    vtkOpenGLState* const state = window->GetState();
+    const vtkOpenGLState::ScopedglEnableDisable depth_test(state, GL_DEPTH_TEST);
+    const vtkOpenGLState::ScopedglEnableDisable blend(state, GL_BLEND);
+    const vtkOpenGLState::ScopedglDepthMask mask(state);
+    const vtkOpenGLState::ScopedglDepthFunc function(state);
+    state->vtkglEnable(GL_DEPTH_TEST);
+    state->vtkglDepthFunc(seen_through_ ? GL_LESS : GL_ALWAYS);
+    state->vtkglDepthMask(seen_through_ ? GL_FALSE : GL_TRUE);
+    seen_through_ ? state->vtkglEnable(GL_BLEND) : state->vtkglDisable(GL_BLEND);
+    colour_->Activate();
+    depth_->Activate();
+    quad_->Program->SetUniformi("colours", colour_->GetTextureUnit());
+    quad_->Program->SetUniformi("depths", depth_->GetTextureUnit());
+    quad_->Render();
+    colour_->Deactivate();
+    depth_->Deactivate();
+    return 1;
+}
+
+void Pane::ReleaseGraphicsResources(vtkWindow* window) {
+    quad_.reset();
+    if (colour_) colour_->ReleaseGraphicsResources(window);
+    if (depth_) depth_->ReleaseGraphicsResources(window);
+    colour_ = nullptr;
+    depth_ = nullptr;
+    uploaded_ = false;
+}
+
+}  // namespace palpate::viewer

@@ -1,0 +1,367 @@
+// The widget: hands on the camera and on the probe, and the layers that are laid over each other.
+#include "apps/viewer/scene/scene.hpp"
+
+#include <QApplication>
+#include <QFontMetricsF>
+#include <QMouseEvent>
+#include <QWheelEvent>
+
+#include <vtkCamera.h>
+#include <vtkGenericOpenGLRenderWindow.h>
+#include <vtkNew.h>
+#include <vtkRenderWindowInteractor.h>
+#include <vtkRenderer.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "apps/viewer/scene/backstage.hpp"
+#include "apps/viewer/scene/markers.hpp"
+#include "apps/viewer/scene/notes.hpp"
+#include "apps/viewer/scene/pane.hpp"
+#include "apps/viewer/scene/view_space.hpp"
+
+namespace palpate::viewer {
+namespace {
+
+constexpr double finer = 0.2;        // the part of its way that a hand moves with Shift held
+constexpr double notch_px = 15;      // a notch of the wheel in depth, as if dragged so far
+constexpr double notch_zoom = 1.15;  // a notch of the wheel
+constexpr double zoom_px = 150;      // dragged so far the scale doubles or halves
+
+bool is_dark(const QPalette& palette) {
+    return palette.color(QPalette::Window).lightnessF() < 0.5;
+}
+Colour background_of(const QPalette& palette) {
+    if (is_dark(palette)) return {0.13, 0.135, 0.145};
+    return {0.945, 0.953, 0.961};  // the paper of our pictures
+}
+Colour ink_of(const QPalette& palette) {
+    return is_dark(palette) ? Colour{0.78, 0.79, 0.8} : Colour{0.3, 0.3, 0.3};
+}
+
+}  // namespace
+
+struct Scene::Parts {
+    Backstage backstage;
+    Shot wanted;  // look, crosshair; the rest is filled in when it is staged
+    std::optional<Snapshot> snapshot;
+    bool outdated = true;  // the layers are not those of what was set last
+
+    vtkNew<vtkGenericOpenGLRenderWindow> window;
+    vtkNew<vtkRenderer> front, ghosts;
+    vtkNew<Pane> solid, glass;
+    Notes notes{2};
+    std::unique_ptr<Markers> markers;
+
+    Parts() {
+        window->SetMultiSamples(0);
+        window->SetNumberOfLayers(3);
+        for (vtkRenderer* renderer : {front.Get(), ghosts.Get()}) light(*renderer);
+        ghosts->SetLayer(1);
+        ghosts->SetActiveCamera(front->GetActiveCamera());
+        front->AddViewProp(solid);
+        markers = std::make_unique<Markers>(*front, *ghosts);
+        front->AddViewProp(glass);  // after all that it may cover
+        for (vtkRenderer* renderer :
+             {front.Get(), ghosts.Get(), &notes.writing(), &notes.orientation()}) {
+            window->AddRenderer(renderer);
+        }
+    }
+};
+
+Scene::Scene(QWidget* parent) : QVTKOpenGLNativeWidget(parent), parts_(std::make_unique<Parts>()) {
+    setObjectName("scene");
+    setFocusPolicy(Qt::StrongFocus);
+    setMinimumSize(120, 90);
+    setRenderWindow(parts_->window.Get());
+    // What mouse and keys do is said here alone.
+    if (auto* const interactor = parts_->window->GetInteractor()) {
+        interactor->SetInteractorStyle(nullptr);
+    }
+    refresh_.setSingleShot(true);
+    connect(&refresh_, &QTimer::timeout, this, [this] {
+        if (!parts_->outdated || !isVisible()) return;
+        lay_out();
+        parts_->window->Render();  // calls update() in the end
+    });
+    connect(&parts_->backstage, &Backstage::painted, this, &Scene::refresh);
+    connect(&parts_->backstage, &Backstage::surface_ready, this, &Scene::surface_ready);
+    connect(&parts_->backstage, &Backstage::problem, this, &Scene::problem);
+}
+
+Scene::~Scene() {
+    // VTK gives its textures back while the context is there.
+    makeCurrent();
+    parts_->window->Finalize();
+    doneCurrent();
+}
+
+ViewSize Scene::view_size() const {
+    return {double(std::max(1, width())), double(std::max(1, height()))};
+}
+
+void Scene::set_field(const Field& field, double isovalue) {
+    parts_->snapshot.reset();
+    parts_->wanted.crosshair = physical_centre(field.geometry());
+    parts_->backstage.set_field(field, isovalue);
+    reset_camera();
+    changed();
+}
+
+void Scene::clear() {
+    parts_->snapshot.reset();
+    parts_->backstage.clear();
+    refresh();
+    changed();
+}
+
+void Scene::set_isovalue(double isovalue) {
+    parts_->backstage.set_isovalue(isovalue);
+}
+
+void Scene::set_look(const Look& look) {
+    parts_->wanted.look = look;
+    refresh();
+    changed();
+}
+
+void Scene::show_snapshot(const std::optional<Snapshot>& snapshot) {
+    const bool was = parts_->snapshot.has_value();
+    if (!snapshot && !was) return;
+    if (snapshot && was && snapshot->number == parts_->snapshot->number) return;
+    parts_->snapshot = snapshot;
+    refresh();
+}
+
+void Scene::set_crosshair(const Vec3& physical) {
+    parts_->wanted.crosshair = physical;
+    if (parts_->wanted.look.slices) changed();
+}
+
+void Scene::set_hand(Hand hand) {
+    hand_ = hand;
+    setCursor(hand == Hand::probe ? Qt::CrossCursor : Qt::ArrowCursor);
+}
+
+void Scene::set_camera(const pictures::Camera& camera) {
+    const bool finite = camera.focus.allFinite() && camera.towards_viewer.allFinite() &&
+                        camera.up.allFinite() && std::isfinite(camera.half_height);
+    if (!finite || !(camera.half_height > 0) ||
+        !(camera.up.cross(camera.towards_viewer).norm() > 0)) {
+        throw std::invalid_argument("a camera needs two directions and a height above 0");
+    }
+    move_camera(camera);
+}
+
+void Scene::move_camera(const pictures::Camera& camera) {
+    fitted_ = false;
+    camera_ = camera;
+    changed();
+    Q_EMIT camera_moved();
+}
+
+void Scene::look_from(const pictures::View& view) {
+    pictures::Camera camera = camera_;
+    camera.towards_viewer = view.towards_viewer;
+    camera.up = view.up;
+    set_camera(camera);
+}
+
+void Scene::reset_camera() {
+    if (!parts_->backstage.field()) return;
+    const Geometry& geometry = parts_->backstage.field()->geometry();
+    move_camera(whole(geometry, pictures::natural_view(geometry, Vec3::Zero()), view_size()));
+    fitted_ = true;
+}
+
+void Scene::changed() {
+    Shot shot = parts_->wanted;
+    shot.background = background_of(palette());
+    shot.ink = ink_of(palette());
+    shot.camera = camera_;
+    shot.pixel_ratio = devicePixelRatioF();
+    if (isVisible()) {
+        shot.width = static_cast<int>(std::lround(width() * shot.pixel_ratio));
+        shot.height = static_cast<int>(std::lround(height() * shot.pixel_ratio));
+    } else {
+        shot.width = shot.height = 0;
+    }
+    parts_->backstage.stage(shot);  // shown once it is painted
+}
+
+bool Scene::settled() const {
+    return parts_->backstage.settled() && !parts_->outdated;
+}
+
+double Scene::frame_seconds() const {
+    return parts_->backstage.frame_seconds();
+}
+
+bool Scene::on_hardware() const {
+    return parts_->backstage.shown() && parts_->backstage.shown()->hardware;
+}
+
+QImage Scene::picture() {
+    return grabFramebuffer();
+}
+
+/// Once the events that are there already have been dealt with.
+void Scene::refresh() {
+    parts_->outdated = true;
+    refresh_.start(0);
+}
+
+void Scene::lay_out() {
+    const auto& shown = parts_->backstage.shown();
+    // The camera of what is shown: the probe stays where it is on the surface while that lags.
+    const pictures::Camera& camera = shown ? shown->camera : camera_;
+    const auto& field = parts_->backstage.field();
+    const double ratio = devicePixelRatioF();
+    const Colour background = background_of(palette()), ink = ink_of(palette());
+    parts_->front->SetBackground(background.red, background.green, background.blue);
+    shown ? parts_->solid->set_layer(shown, shown->solid, false) : parts_->solid->clear();
+    shown ? parts_->glass->set_layer(shown, shown->glass, true) : parts_->glass->clear();
+    const Look& look = parts_->wanted.look;
+    if (field) {
+        const Vec3 origin = physical_centre(field->geometry());
+        direct(*parts_->front->GetActiveCamera(), camera, origin, reach_of(field->geometry()));
+        const double voxel = field->geometry().spacing.mean();
+        parts_->markers->show(contact_of(parts_->snapshot, *field, look.tetrahedra || look.planes),
+                              look, origin, mm_per_pixel(camera, view_size()), voxel, ink, ratio);
+    } else {
+        parts_->markers->show({}, look, Vec3::Zero(), 1, 1, ink, ratio);
+    }
+    Notes::What notes;
+    notes.orientation = look.orientation && field;
+    notes.scale_bar = look.scale_bar && field;
+    notes.camera = camera;
+    notes.width = static_cast<int>(std::lround(width() * ratio));
+    notes.height = static_cast<int>(std::lround(height() * ratio));
+    notes.em = ratio * QFontMetricsF(font()).ascent();
+    notes.ink = ink;
+    parts_->notes.show(notes);
+    parts_->outdated = false;
+}
+
+void Scene::paintGL() {
+    if (parts_->outdated) lay_out();
+    QVTKOpenGLNativeWidget::paintGL();
+}
+
+void Scene::resizeEvent(QResizeEvent* event) {
+    QVTKOpenGLNativeWidget::resizeEvent(event);
+    if (fitted_ && parts_->backstage.field()) {
+        reset_camera();
+    } else {
+        changed();
+    }
+}
+
+void Scene::showEvent(QShowEvent* event) {
+    QVTKOpenGLNativeWidget::showEvent(event);
+    changed();
+}
+
+void Scene::changeEvent(QEvent* event) {
+    QVTKOpenGLNativeWidget::changeEvent(event);
+    if (event->type() == QEvent::PaletteChange || event->type() == QEvent::FontChange) changed();
+}
+
+Scene::Drag Scene::drag_of(const QMouseEvent& event) const {
+    const bool probe = hand_ == Hand::probe;
+    const Qt::KeyboardModifiers keys = event.modifiers();
+    switch (event.button()) {
+        case Qt::LeftButton:
+            if (probe) return keys & Qt::AltModifier ? Drag::turn : Drag::probe;
+            return keys & Qt::ShiftModifier ? Drag::pan : Drag::turn;
+        case Qt::MiddleButton:
+            return Drag::pan;
+        case Qt::RightButton:
+            return probe ? Drag::turn : Drag::zoom;
+        default:
+            return Drag::none;
+    }
+}
+
+void Scene::mousePressEvent(QMouseEvent* event) {
+    if (drag_ != Drag::none) return;  // one button after the other
+    drag_ = drag_of(*event);
+    drag_from_ = drag_start_ = event->localPos();
+    event->accept();
+}
+
+void Scene::mouseMoveEvent(QMouseEvent* event) {
+    const QPointF by = event->localPos() - drag_from_;
+    drag_from_ = event->localPos();
+    if (by.isNull() || !parts_->backstage.field()) return;
+    const ViewSize size = view_size();
+    switch (drag_) {
+        case Drag::turn:
+            move_camera(turned(camera_, size, by.x(), by.y()));
+            break;
+        case Drag::pan:
+            move_camera(panned(camera_, size, by.x(), by.y()));
+            break;
+        case Drag::zoom:
+            move_camera(zoomed(camera_, size, std::exp2(-by.y() / zoom_px),
+                               {drag_start_.x(), drag_start_.y()}));
+            break;
+        case Drag::probe: {
+            const double part = event->modifiers() & Qt::ShiftModifier ? finer : 1;
+            Q_EMIT probe_dragged(part * in_view_plane(camera_, size, by.x(), by.y()));
+            break;
+        }
+        case Drag::none:
+            break;
+    }
+}
+
+void Scene::mouseReleaseEvent(QMouseEvent* event) {
+    if (event->buttons() == Qt::NoButton) drag_ = Drag::none;
+}
+
+void Scene::mouseDoubleClickEvent(QMouseEvent* event) {
+    const auto& shown = parts_->backstage.shown();
+    const auto& field = parts_->backstage.field();
+    if (hand_ != Hand::camera || event->button() != Qt::LeftButton || !shown || !field) {
+        mousePressEvent(event);
+        return;
+    }
+    const double ratio = devicePixelRatioF();
+    const auto x = static_cast<int>(event->localPos().x() * ratio);
+    const int y = shown->height - 1 - static_cast<int>(event->localPos().y() * ratio);
+    if (x < 0 || y < 0 || x >= shown->width || y >= shown->height) return;
+    const auto depth_at = [&](const Layer& layer) {
+        const std::size_t i = std::size_t(y) * std::size_t(shown->width) + std::size_t(x);
+        return i < layer.depth.size() ? layer.depth[i] : 1.0F;
+    };
+    const float depth = std::min(depth_at(shown->solid), depth_at(shown->glass));
+    if (depth >= 1) return;  // beside everything
+    const Vec3 at =
+        point_at(shown->camera, view_size(), {event->localPos().x(), event->localPos().y()});
+    const Vec3 towards = axes_of(shown->camera).towards_viewer;
+    const Vec3 origin = physical_centre(field->geometry());
+    pictures::Camera camera = camera_;
+    camera.focus = at + (height_of(depth, shown->reach) - towards.dot(at - origin)) * towards;
+    move_camera(camera);
+}
+
+void Scene::wheelEvent(QWheelEvent* event) {
+    const double notches = event->angleDelta().y() / 120.0;
+    event->accept();
+    if (notches == 0 || !parts_->backstage.field()) return;
+    const ViewSize size = view_size();
+    if (hand_ == Hand::probe && !(event->modifiers() & Qt::ControlModifier)) {
+        const double part = event->modifiers() & Qt::ShiftModifier ? finer : 1;
+        const double into = part * notches * notch_px * mm_per_pixel(camera_, size);
+        Q_EMIT probe_dragged(-into * axes_of(camera_).towards_viewer);
+        return;
+    }
+    const QPointF at = event->position();
+    move_camera(zoomed(camera_, size, std::pow(notch_zoom, notches), {at.x(), at.y()}));
+}
+
+}  // namespace palpate::viewer

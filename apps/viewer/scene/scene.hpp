@@ -1,0 +1,103 @@
+// The 3-D view of a volume and of the hand that feels it. It only observes: what it shows is given
+// to it, what it is asked for with the mouse it tells.
+#pragma once
+
+#include <QVTKOpenGLNativeWidget.h>
+#include <QImage>
+#include <QTimer>
+
+#include <memory>
+#include <optional>
+
+#include "apps/viewer/model/look.hpp"
+#include "apps/viewer/scene/navigation.hpp"
+#include "palpate/servo.hpp"
+#include "pictures/scene.hpp"
+#include "pictures/view.hpp"
+
+namespace palpate::viewer {
+
+/// Parallel projection. What stands still (surface, volume, slices, box) is painted on threads of
+/// its own, quickly while something changes and finely once it rests; the widget lays hand, proxy
+/// and force over the newest picture. Points are physical [mm].
+class Scene : public QVTKOpenGLNativeWidget {
+    Q_OBJECT
+  public:
+    explicit Scene(QWidget* parent = nullptr);
+    /// Gives up what is under way; waits for threads, a moment.
+    ~Scene() override;
+
+    /// New data, seen as a whole; the extraction of its surface starts. An isovalue that is not
+    /// finite shows no surface and is a problem().
+    void set_field(const Field& field, double isovalue);
+    /// An empty scene.
+    void clear();
+    /// The surface is extracted again in the background, coarse first; the newest isovalue wins.
+    void set_isovalue(double isovalue);
+    void set_look(const Look& look);
+    /// As often as the screen shows; nothing: no probe.
+    void show_snapshot(const std::optional<Snapshot>& snapshot);
+    /// Where the three slices cut [mm, physical]; to begin with the middle of the grid.
+    void set_crosshair(const Vec3& physical);
+
+    /// What the left mouse button moves. docs/viewer.md has what all buttons do.
+    enum class Hand { camera, probe };
+    void set_hand(Hand hand);
+
+    pictures::Camera camera() const { return camera_; }
+    /// Throws std::invalid_argument for one that cannot be looked through.
+    void set_camera(const pictures::Camera& camera);
+    /// From another side, with the same focus and zoom.
+    void look_from(const pictures::View& view);
+    /// The whole volume from where it shows most.
+    void reset_camera();
+
+    /// True if all is shown at full quality and nothing is under way.
+    bool settled() const;
+    /// What is shown, in device pixels.
+    QImage picture();
+    /// How long a picture took [s], smoothed over the last ones while things moved.
+    double frame_seconds() const;
+    /// True if graphics hardware paints; known after the first picture.
+    bool on_hardware() const;
+
+  Q_SIGNALS:
+    /// Hand motion asked for with mouse or wheel under Hand::probe [mm, physical].
+    void probe_dragged(const palpate::Vec3& by);
+    void camera_moved();
+    /// The surface is shown as finely as it will be, `seconds` after it was asked for.
+    void surface_ready(double isovalue, double seconds);
+    void problem(const QString& what);
+
+  protected:
+    void resizeEvent(QResizeEvent* event) override;
+    void showEvent(QShowEvent* event) override;
+    void changeEvent(QEvent* event) override;
+    void mousePressEvent(QMouseEvent* event) override;
+    void mouseMoveEvent(QMouseEvent* event) override;
+    void mouseReleaseEvent(QMouseEvent* event) override;
+    void mouseDoubleClickEvent(QMouseEvent* event) override;
+    void wheelEvent(QWheelEvent* event) override;
+    void paintGL() override;
+
+  private:
+    struct Parts;
+    enum class Drag { none, turn, pan, zoom, probe };
+
+    ViewSize view_size() const;
+    Drag drag_of(const QMouseEvent& event) const;
+    void move_camera(const pictures::Camera& camera);
+    void changed();
+    void refresh();
+    void lay_out();
+
+    std::unique_ptr<Parts> parts_;
+    QTimer refresh_;
+    pictures::Camera camera_;
+    bool fitted_ = true;  // the camera shows the whole volume, and goes on so when resized
+    Hand hand_ = Hand::camera;
+    Drag drag_ = Drag::none;
+    QPointF drag_from_, drag_start_;
+};
+
+}  // namespace palpate::viewer

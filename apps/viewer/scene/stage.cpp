@@ -1,0 +1,249 @@
+// The stage: keeps its actors in step with what is asked for, and reads back what it drew.
+#include "apps/viewer/scene/stage.hpp"
+
+#include <vtkCallbackCommand.h>
+#include <vtkCamera.h>
+#include <vtkNew.h>
+#include <vtkOpenGLState.h>
+#include <vtkProperty.h>
+#include <vtkRendererCollection.h>
+#include <vtkUnsignedCharArray.h>
+#include <vtk_glew.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "apps/viewer/scene/bodies.hpp"
+#include "apps/viewer/scene/view_space.hpp"
+#include "pictures/surface.hpp"
+
+namespace palpate::viewer {
+namespace {
+
+/// A window that draws into memory. GLEW complains where there is no X display, which is no harm.
+class UnseenWindow : public vtkGenericOpenGLRenderWindow {
+  public:
+    // As vtkStandardNewMacro has it, whose semicolons a pedantic compiler refuses.
+    static UnseenWindow* New() {
+        auto* const made = new UnseenWindow;
+        made->InitializeObjectBase();
+        return made;
+    }
+    void OpenGLInitContext() override {
+        if (this->Initialized) return;
+        this->ContextCreationTime.Modified();
+        glewExperimental = GL_TRUE;
+        const GLenum result = glewInit();
+        if ((result != GLEW_OK && result != GLEW_ERROR_NO_GLX_DISPLAY) || !GLEW_VERSION_3_2) {
+            throw std::runtime_error("the 3-D view needs OpenGL 3.2 or newer");
+        }
+        this->GlewInitValid = true;
+        this->Initialized = true;
+    }
+};
+
+/// VTK switches blending on when it begins; as a callback of what begins after that.
+void stop_blending(vtkObject*, unsigned long, void* window, void*) {
+    static_cast<vtkOpenGLRenderWindow*>(window)->GetState()->vtkglDisable(GL_BLEND);
+}
+
+void check_abort(vtkObject* window, unsigned long, void* give_up, void*) {
+    if (*static_cast<const std::atomic<bool>*>(give_up)) {
+        static_cast<vtkRenderWindow*>(window)->SetAbortRender(1);
+    }
+}
+
+constexpr std::int64_t moving_samples = 128 * 128 * 144;
+constexpr std::int64_t most_samples = 512LL * 512 * 640;  // with what VTK keeps beside, 1 GB
+constexpr double moving_seconds = 0.06;  // what a moving picture of a volume may take
+
+}  // namespace
+
+Stage::Stage(const std::atomic<bool>& give_up, bool hardware)
+    : give_up_(give_up),
+      window_(vtkSmartPointer<UnseenWindow>::New()),
+      solid_(vtkSmartPointer<vtkRenderer>::New()),
+      glass_(vtkSmartPointer<vtkRenderer>::New()),
+      hardware_(hardware) {
+    window_->SetIsCurrent(true);
+    window_->SetIsDirect(1);
+    window_->SetSupportsOpenGL(1);
+    window_->SetOffScreenRendering(1);
+    window_->SetShowWindow(false);
+    window_->SetAlphaBitPlanes(1);
+    glass_->SetBackground(0, 0, 0);
+    glass_->SetBackgroundAlpha(0);
+    glass_->SetActiveCamera(solid_->GetActiveCamera());
+    for (vtkRenderer* renderer : {solid_.Get(), glass_.Get()}) {
+        light(*renderer);
+    }
+    vtkNew<vtkCallbackCommand> before;
+    before->SetCallback(stop_blending);
+    before->SetClientData(window_);
+    glass_->AddObserver(vtkCommand::StartEvent, before);
+    vtkNew<vtkCallbackCommand> abort;
+    abort->SetCallback(check_abort);
+    abort->SetClientData(const_cast<std::atomic<bool>*>(&give_up_));
+    window_->AddObserver(vtkCommand::AbortCheckEvent, abort);
+}
+
+Stage::~Stage() {
+    window_->Finalize();
+}
+
+void Stage::show_surface(const Shot& shot) {
+    const auto& wanted = shot.moving && !hardware_ ? shot.surface.moving : shot.surface.mesh;
+    if (wanted != mesh_) {
+        for (const auto& part : parts_) {
+            solid_->RemoveActor(part);
+            glass_->RemoveActor(part);
+            part->ReleaseGraphicsResources(window_);
+        }
+        parts_ = mesh_actors(wanted, give_up_);
+        mesh_ = wanted;
+        opacity_ = -1;
+        if (give_up_) mesh_.reset();  // not all parts were made
+    }
+    const double opacity = std::clamp(shot.look.surface_opacity, 0.0, 1.0);
+    for (const auto& part : parts_) {
+        const Colour& c = shot.look.surface_colour;
+        part->GetProperty()->SetColor(c.red, c.green, c.blue);
+        part->SetVisibility(shot.look.surface && opacity > 0);
+        if (opacity == opacity_) continue;
+        set_glass(*part, opacity);
+        (opacity < 1 ? solid_ : glass_)->RemoveActor(part);
+        (opacity < 1 ? glass_ : solid_)->AddActor(part);
+    }
+    opacity_ = opacity;
+}
+
+void Stage::show_slices(const Shot& shot) {
+    const Volume& volume = shot.field->volume();
+    const bool outdated = sliced_ != volume.data() || crosshair_ != shot.crosshair;
+    if (slices_[0] && (outdated || !shot.look.slices)) {
+        for (auto& slice : slices_) {
+            solid_->RemoveActor(slice);
+            slice->ReleaseGraphicsResources(window_);
+            slice = nullptr;
+        }
+    }
+    if (!shot.look.slices || slices_[0]) return;
+    slices_ = slice_actors(volume, shot.crosshair);
+    sliced_ = volume.data();
+    crosshair_ = shot.crosshair;
+    for (const auto& slice : slices_) solid_->AddActor(slice);
+}
+
+void Stage::show_box(const Shot& shot) {
+    if (boxed_ != shot.field->geometry()) {
+        if (box_) solid_->RemoveActor(box_);
+        boxed_ = shot.field->geometry();
+        box_ = box_actor(*boxed_);
+        solid_->AddActor(box_);
+    }
+    box_->SetVisibility(shot.look.box);
+    box_->GetProperty()->SetColor(shot.ink.red, shot.ink.green, shot.ink.blue);
+    box_->GetProperty()->SetOpacity(1);
+    box_->GetProperty()->SetLineWidth(static_cast<float>(std::round(shot.pixel_ratio)));
+}
+
+const Field& Stage::volume_field(const Shot& shot) {
+    const auto samples = static_cast<double>(sample_count(shot.field->geometry()));
+    const auto limit =
+        static_cast<double>(shot.moving && !hardware_ ? moving_samples : most_samples);
+    if (samples <= limit || !shot.look.volume) return *shot.field;
+    if (thinned_from_ != shot.field->volume().data()) {
+        thinned_ =
+            pictures::coarser(*shot.field, static_cast<int>(std::ceil(std::cbrt(samples / limit))));
+        thinned_from_ = shot.field->volume().data();
+    }
+    return *thinned_;
+}
+
+void Stage::show_volume(const Shot& shot) {
+    const bool wanted = shot.look.volume && shot.look.transfer.points.size() > 1;
+    const Field& field = volume_field(shot);
+    if (volume_ && (!wanted || !volume_->shows(field.volume()))) {
+        solid_->RemoveVolume(volume_->prop());
+        volume_->prop()->ReleaseGraphicsResources(window_);
+        volume_.reset();
+    }
+    if (!wanted) return;
+    if (!volume_) {
+        volume_ = std::make_unique<VolumePart>(field.volume(),
+                                               physical_centre(shot.field->geometry()), hardware_);
+        solid_->AddVolume(volume_->prop());
+    }
+    volume_->set_look(shot.look.transfer, shot.look.shading,
+                      shot.field->geometry().spacing.minCoeff());
+    const bool coarse = shot.moving && !hardware_;
+    const double spacing = field.geometry().spacing.minCoeff();
+    volume_->set_fineness(coarse ? coarseness_ * shot.pixel_ratio : 1,
+                          coarse ? spacing : 0.5 * spacing);
+}
+
+void Stage::show(const Shot& shot) {
+    const Colour& b = shot.background;
+    solid_->SetBackground(b.red, b.green, b.blue);
+    if (!shot.field) return;
+    const Geometry& geometry = shot.field->geometry();
+    show_surface(shot);
+    show_slices(shot);
+    show_box(shot);
+    show_volume(shot);
+    direct(*solid_->GetActiveCamera(), shot.camera, physical_centre(geometry), reach_of(geometry));
+}
+
+Layer Stage::layer_of(vtkRenderer& renderer, const Shot& shot) {
+    window_->AddRenderer(&renderer);
+    window_->SetAbortRender(0);
+    window_->Render();
+    Layer layer;
+    const int right = shot.width - 1, top = shot.height - 1;
+    const auto count = std::size_t(shot.width) * std::size_t(shot.height);
+    layer.depth.resize(count);
+    vtkNew<vtkUnsignedCharArray> pixels;
+    const bool read =
+        give_up_ || (window_->GetRGBACharPixelData(0, 0, right, top, 0, pixels, 0) == 1 &&
+                     static_cast<std::size_t>(pixels->GetNumberOfValues()) == 4 * count &&
+                     window_->GetZbufferData(0, 0, right, top, layer.depth.data()) == 1);
+    window_->RemoveRenderer(&renderer);
+    if (!read) throw std::runtime_error("OpenGL did not give the picture back");
+    if (!give_up_) layer.rgba.assign(pixels->GetPointer(0), pixels->GetPointer(0) + 4 * count);
+    return layer;
+}
+
+std::optional<Backdrop> Stage::draw(const Shot& shot) {
+    const auto start = std::chrono::steady_clock::now();
+    window_->SetSize(shot.width, shot.height);
+    // A volume is cast up to the depths that lie before it: those of whole pixels.
+    const bool smooth = (hardware_ || !shot.moving) && !shot.look.volume;
+    window_->SetMultiSamples(smooth ? 4 : 0);
+    show(shot);
+    Backdrop backdrop;
+    backdrop.number = shot.number;
+    backdrop.width = shot.width;
+    backdrop.height = shot.height;
+    backdrop.camera = shot.camera;
+    backdrop.reach = shot.field ? reach_of(shot.field->geometry()) : 1;
+    backdrop.moving = shot.moving && !hardware_;
+    backdrop.hardware = hardware_;
+    backdrop.solid = layer_of(*solid_, shot);
+    if (!give_up_ && shot.field && shot.look.surface && opacity_ > 0 && opacity_ < 1) {
+        window_->SetMultiSamples(0);
+        backdrop.glass = layer_of(*glass_, shot);
+    }
+    if (give_up_) return std::nullopt;
+    backdrop.seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    if (volume_ && shot.moving && !hardware_) {
+        const double wanted = coarseness_ * std::sqrt(backdrop.seconds / moving_seconds);
+        coarseness_ = std::clamp(0.5 * (coarseness_ + wanted), 1.5, 8.0);
+    }
+    return backdrop;
+}
+
+}  // namespace palpate::viewer

@@ -1,0 +1,61 @@
+// What a painter draws with: VTK in a window that nobody sees, in whatever OpenGL context is
+// current. Lives and dies in one thread, with that context.
+#pragma once
+
+#include <vtkActor.h>
+#include <vtkGenericOpenGLRenderWindow.h>
+#include <vtkRenderer.h>
+#include <vtkSmartPointer.h>
+
+#include <array>
+#include <atomic>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "apps/viewer/scene/shot.hpp"
+#include "apps/viewer/scene/volume_part.hpp"
+
+namespace palpate::viewer {
+
+class Stage {
+  public:
+    /// While `give_up` is true, drawing ends as soon as it can; must outlive the stage.
+    /// `hardware`: OpenGL here is the machine's graphics hardware.
+    Stage(const std::atomic<bool>& give_up, bool hardware);
+    ~Stage();
+    Stage(const Stage&) = delete;
+    Stage& operator=(const Stage&) = delete;
+
+    /// Nothing if it was given up. Throws std::runtime_error if OpenGL does not do it.
+    std::optional<Backdrop> draw(const Shot& shot);
+
+  private:
+    void show(const Shot& shot);
+    void show_surface(const Shot& shot);
+    void show_slices(const Shot& shot);
+    void show_box(const Shot& shot);
+    void show_volume(const Shot& shot);
+    const Field& volume_field(const Shot& shot);
+    Layer layer_of(vtkRenderer& renderer, const Shot& shot);
+
+    const std::atomic<bool>& give_up_;
+    vtkSmartPointer<vtkGenericOpenGLRenderWindow> window_;
+    vtkSmartPointer<vtkRenderer> solid_, glass_;
+    bool hardware_;
+
+    std::shared_ptr<const DrawnMesh> mesh_;
+    std::vector<vtkSmartPointer<vtkActor>> parts_;
+    double opacity_ = -1;
+    const void* sliced_ = nullptr;  // the samples that the slices show
+    Vec3 crosshair_ = Vec3::Zero();
+    std::array<vtkSmartPointer<vtkActor>, 3> slices_;
+    std::optional<Geometry> boxed_;
+    vtkSmartPointer<vtkActor> box_;
+    std::unique_ptr<VolumePart> volume_;
+    std::optional<Field> thinned_;  // few enough samples for moving pictures
+    const void* thinned_from_ = nullptr;
+    double coarseness_ = 3;  // pixels a ray while moving, as quick as it turned out
+};
+
+}  // namespace palpate::viewer
