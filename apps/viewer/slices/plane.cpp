@@ -99,7 +99,8 @@ Vec3 index_from_slice(const SlicePlane& plane, const Geometry& geometry, const V
 std::string position_text(const SlicePlane& plane, const Geometry& geometry, const Vec3& physical) {
     const auto body = static_cast<std::size_t>(plane.anatomical);
     const Vec3 axis = geometry.direction.col(plane.axis);
-    const double at = (axis[plane.anatomical] > 0 ? 1 : -1) * axis.dot(physical);
+    double at = (axis[plane.anatomical] > 0 ? 1 : -1) * axis.dot(physical);
+    if (std::abs(at) < 0.005) at = 0;  // as it will be shown
     char text[32];
     std::snprintf(text, sizeof text, "%c %.2f mm", at >= 0 ? positive[body] : negative[body],
                   std::abs(at));
