@@ -109,6 +109,7 @@ DeviceControls::DeviceControls(QWidget* parent)
     second->addWidget(options_, 1);
     second->addWidget(connect_);
     auto* state = new QHBoxLayout;
+    state->setSpacing(6);
     state->addWidget(dot_);
     state->addWidget(state_, 1);
     auto* form = new QFormLayout;

@@ -36,17 +36,17 @@ ForceControls::ForceControls(QWidget* parent) : QWidget(parent) {
                    "Against the hand's motion along the contact normal [N s/mm]; pulls nobody in");
     viscosity_ = row(*form, "Viscosity", "viscosity", "N s/mm", 1e-3, 1e-4,
                      "Of the medium, against all motion, in contact or not [N s/mm]");
-    static_friction_ = row(*form, "Friction, static", "static_friction", "", 1.5, 0.05,
+    static_friction_ = row(*form, "Static friction", "static_friction", "", 1.5, 0.05,
                            "Coefficient past which the proxy begins to slide (no unit)");
-    dynamic_friction_ = row(*form, "dynamic", "dynamic_friction", "", 1.5, 0.05,
+    dynamic_friction_ = row(*form, "Dynamic friction", "dynamic_friction", "", 1.5, 0.05,
                             "Coefficient while the proxy slides, at most the static one (no unit)");
-    amplitude_ = row(*form, "Texture, height", "texture_amplitude", "mm", 0.5, 0.01,
+    amplitude_ = row(*form, "Texture height", "texture_amplitude", "mm", 0.5, 0.01,
                      "Height of the bumps [mm in the volume]; 0: smooth");
-    wavelength_ = row(*form, "wavelength", "texture_wavelength", "mm", 20, 0.5,
+    wavelength_ = row(*form, "Texture length", "texture_wavelength", "mm", 20, 0.5,
                       "From bump to bump [mm in the volume]");
-    distance_ = row(*form, "Magnet, reach", "magnet_distance", "mm", 10, 0.5,
+    distance_ = row(*form, "Magnet reach", "magnet_distance", "mm", 10, 0.5,
                     "From how far a free hand is pulled to the surface [mm of the hand]; 0: off");
-    peak_ = row(*form, "force", "magnet_peak", "N", 1, 0.1,
+    peak_ = row(*form, "Magnet force", "magnet_peak", "N", 1, 0.1,
                 "Most that the magnet pulls, half-way to the surface [N]");
     limit_ = row(*form, "Force limit", "force_limit", "N", 3.3, 0.1,
                  "Most force asked of the device [N]; the device's own limit holds besides");

@@ -38,9 +38,7 @@ LoopView::LoopView(QWidget* parent)
     grid->addWidget(label("Compute"), 4, 0);
     for (int i = 0; i < 4; ++i) {
         const auto at = static_cast<std::size_t>(i);
-        QLabel* head = label(heads[i]);
-        head->setForegroundRole(QPalette::PlaceholderText);
-        grid->addWidget(head, 2, i + 1);
+        grid->addWidget(label(heads[i]), 2, i + 1);
         lateness_[at] = label({}, QString("lateness_") + names[i]);
         compute_[at] = label({}, QString("compute_") + names[i]);
         grid->addWidget(lateness_[at], 3, i + 1);

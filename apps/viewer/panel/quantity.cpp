@@ -32,7 +32,8 @@ Quantity::Quantity(const QString& name, const QString& unit, double low, double 
     box_->setObjectName(name + "_box");
     box_->setSuffix(unit.isEmpty() ? QString() : " " + unit);
     box_->setSingleStep(step);
-    box_->setMinimumWidth(fontMetrics().horizontalAdvance("0.000000 " + unit) +
+    // All alike, so that they stand in a column; the longest unit is N s/mm.
+    box_->setMinimumWidth(fontMetrics().horizontalAdvance("0.00000 N s/mm") +
                           2 * fontMetrics().height());
     box_->setMaximumWidth(box_->minimumWidth());
     auto* row = new QHBoxLayout(this);

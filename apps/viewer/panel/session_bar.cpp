@@ -61,7 +61,10 @@ SessionBar::SessionBar(QWidget* parent)
     forces_->setFont(big);
     forces_->setMinimumHeight(static_cast<int>(2.6 * fontMetrics().height()));
     contact_->setObjectName("contact");
-    contact_->setToolTip("Whether the proxy is on a surface, and how far hand and proxy are apart");
+    contact_->setToolTip(
+        "Whether the proxy is on a surface, and how far it is from the hand [mm of "
+        "the hand; mm in the volume]");
+    contact_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Fixed);
     auto* switches = new QVBoxLayout;
     switches->setSpacing(2);
     switches->addWidget(freeze_);
@@ -120,7 +123,7 @@ void SessionBar::show_snapshot(const Snapshot& now, double limit) {
     gauge_->set_force(tick.force.norm(), limit, QString::fromStdString(app::force_words(tick)));
     const double apart = (tick.proxy.scp - tick.proxy.hip).norm();
     const bool touching = tick.proxy.mode == Mode::constrained;
-    const QString words = QString("%1, hand and proxy %2 mm apart (%3 mm in the volume)")
+    const QString words = QString("%1, pull %2 mm (%3 mm in the volume)")
                               .arg(touching ? "In contact" : "Free")
                               .arg(apart / now.session.transform.scale, 0, 'f', 2)
                               .arg(apart, 0, 'f', 2);

@@ -127,7 +127,8 @@ void TransferEditor::add(ControlPoint point) {
     if (points.size() < 2) return;
     const auto after = std::ranges::upper_bound(points, point.level, {}, &ControlPoint::level);
     if (after != points.begin() && (after - 1)->level == point.level) return;  // one is there
-    chosen_ = static_cast<int>(points.insert(after, point) - points.begin());
+    const auto added = points.insert(after, point);
+    chosen_ = static_cast<int>(added - points.begin());
     edited();
 }
 
@@ -136,6 +137,7 @@ void TransferEditor::remove(int point) {
     if (point < 0 || points.size() <= 2) return;  // two are the least
     points.erase(points.begin() + point);
     chosen_ = -1;
+    dragging_ = false;
     edited();
 }
 
@@ -229,8 +231,9 @@ void TransferEditor::paint_function(QPainter& painter) const {
     painter.setOpacity(isEnabled() ? 0.75 : 0.35);
     painter.fillPath(area, colours);
     painter.setOpacity(1);
-    painter.fillRect(QRectF(p.left(), p.bottom() + 2, p.width(), 0.5 * fontMetrics().height()),
-                     colours);
+    painter.setPen(QPen(palette().color(QPalette::Mid), 1));
+    painter.setBrush(colours);
+    painter.drawRect(QRectF(p.left(), p.bottom() + 2, p.width(), 0.5 * fontMetrics().height()));
     painter.setBrush(Qt::NoBrush);
     painter.setPen(QPen(palette().color(QPalette::Text), 1.5));
     painter.drawPath(line);

@@ -1,0 +1,187 @@
+// The device picker, its state, the scale of the hand; the servo loop's figures.
+#include "tests/viewer/panel/panel_stage.hpp"
+
+#include <QComboBox>
+#include <QLineEdit>
+#include <QPushButton>
+#include <QToolButton>
+
+#include "apps/viewer/panel/number_box.hpp"
+#include "apps/viewer/panel/section.hpp"
+
+namespace palpate::viewer {
+namespace {
+
+const std::vector<devices::DeviceFinding> findings{
+    {"simulated", true, "a device and its hand, computed", "", "seed=1"},
+    {"mouse", true, "pointer and keys", "", "speed=600 [mm/s]"},
+    {"haply", false, "", "no Inverse Service at localhost:10001", "host=localhost,port=10001"}};
+
+class Devices : public PanelStage {
+  protected:
+    Devices() {
+        QObject::connect(&panel, &Panel::device_chosen, [this](const QString& option) {
+            chosen.push_back(option);
+            if (!refuse_with.isEmpty()) panel.show_refused(refuse_with);
+        });
+    }
+    QComboBox* picker() { return find<QComboBox>("devices"); }
+    QStringList chosen;
+};
+
+TEST_F(Devices, the_device_in_use_is_shown_with_its_options) {
+    set();
+    panel.set_devices(findings, "simulated:seed=7,depth=3");
+    EXPECT_TRUE(picker()->currentText().startsWith("simulated"));
+    EXPECT_EQ(find<QLineEdit>("device_options")->text(), "seed=7,depth=3");
+    EXPECT_TRUE(chosen.empty());
+}
+
+TEST_F(Devices, connecting_asks_for_name_and_options) {
+    set();
+    panel.set_devices(findings, "simulated");
+    picker()->setFocus();
+    QTest::keyClick(picker(), Qt::Key_Down);
+    press("connect_device");
+    auto* options = find<QLineEdit>("device_options");
+    EXPECT_EQ(options->placeholderText(), "speed=600 [mm/s]");
+    options->setFocus();
+    QTest::keyClicks(options, "speed=300");
+    QTest::keyClick(options, Qt::Key_Return);
+    EXPECT_EQ(chosen, (QStringList{"mouse", "mouse:speed=300"}));
+}
+
+TEST_F(Devices, what_was_not_found_says_why_but_can_be_tried_elsewhere) {
+    set();
+    panel.set_devices(findings, "simulated");
+    const int haply = picker()->findText("haply", Qt::MatchStartsWith);
+    ASSERT_GE(haply, 0);
+    EXPECT_EQ(picker()->itemData(haply, Qt::ToolTipRole).toString(),
+              "no Inverse Service at localhost:10001");
+    EXPECT_EQ(picker()->itemData(haply, Qt::ForegroundRole).value<QBrush>().color(),
+              picker()->palette().color(QPalette::Disabled, QPalette::Text));
+    picker()->setFocus();
+    QTest::keyClick(picker(), Qt::Key_End);
+    EXPECT_EQ(find<QLabel>("device_missing")->text(), "no Inverse Service at localhost:10001");
+    QTest::keyClicks(find<QLineEdit>("device_options"), "host=10.0.0.7");
+    press("connect_device");
+    EXPECT_EQ(chosen, (QStringList{"haply:host=10.0.0.7"}));
+}
+
+TEST_F(Devices, simulated_and_mouse_are_always_there) {
+    set();
+    panel.set_devices({}, "");
+    EXPECT_GE(picker()->findText("simulated", Qt::MatchStartsWith), 0);
+    EXPECT_GE(picker()->findText("mouse", Qt::MatchStartsWith), 0);
+    panel.set_devices(findings, "mouse");
+    EXPECT_EQ(picker()->count(), 3);
+    EXPECT_TRUE(picker()->currentText().startsWith("mouse"));
+}
+
+TEST_F(Devices, options_that_are_none_are_refused_here) {
+    set();
+    panel.set_devices(findings, "mouse");
+    QTest::keyClicks(find<QLineEdit>("device_options"), "speed=1,speed=2");
+    press("connect_device");
+    EXPECT_TRUE(chosen.empty());
+    EXPECT_TRUE(message("device_part").contains("speed"));
+}
+
+TEST_F(Devices, a_device_that_cannot_be_had_leaves_the_old_one) {
+    set();
+    panel.set_devices(findings, "simulated:seed=7");
+    picker()->setFocus();
+    QTest::keyClick(picker(), Qt::Key_Down);
+    refuse_with = "the mouse is gone";
+    press("connect_device");
+    EXPECT_EQ(chosen.size(), 1);
+    EXPECT_TRUE(picker()->currentText().startsWith("simulated"));
+    EXPECT_EQ(find<QLineEdit>("device_options")->text(), "seed=7");
+    EXPECT_EQ(message("device_part"), "the mouse is gone");
+}
+
+TEST_F(Devices, looking_again_is_asked_for) {
+    set();
+    QSignalSpy wanted(&panel, &Panel::devices_wanted);
+    press("refresh_devices");
+    EXPECT_EQ(wanted.count(), 1);
+}
+
+TEST_F(Devices, state_is_told_in_words_with_what_to_do) {
+    set();
+    DeviceInfo info = desktop_device();
+    info.name = "haply";
+    info.model = "Inverse3 0A1B";
+    info.workspace_low = Vec3(-70, 0, -50);
+    info.workspace_high = Vec3(70, 100, 50);
+    info.limits.maximum_force = 4;
+    panel.show_device(info, DeviceStatus::uncalibrated, "move the arm to its corner");
+    EXPECT_EQ(find<QLabel>("device_state")->text(), "needs calibration");
+    EXPECT_EQ(find<QLabel>("device_problem")->text(), "move the arm to its corner");
+    EXPECT_TRUE(find<QLabel>("device_problem")->isVisible());
+    EXPECT_EQ(find<QLabel>("device_model")->text(), "haply, Inverse3 0A1B");
+    EXPECT_EQ(find<QLabel>("device_workspace")->text(), "140 x 100 x 100 mm, up to 4 N");
+    const QColor amber = find<QLabel>("device_dot")->palette().color(QPalette::WindowText);
+    panel.show_device(info, DeviceStatus::ready, {});
+    EXPECT_FALSE(find<QLabel>("device_problem")->isVisible());
+    EXPECT_NE(find<QLabel>("device_dot")->palette().color(QPalette::WindowText), amber);
+    Snapshot now;
+    now.session.device.status = DeviceStatus::lost;
+    panel.show_snapshot(now);
+    EXPECT_EQ(find<QLabel>("device_state")->text(), "connection lost");
+}
+
+TEST_F(Devices, the_scale_of_the_hand_is_asked_for_and_followed) {
+    set();
+    type("scale", "2.5");
+    ASSERT_EQ(of<command::Scale>().size(), 1U);
+    EXPECT_EQ(of<command::Scale>().back().scale, 2.5);
+    type("scale", "0");
+    type("scale", "-3");
+    EXPECT_EQ(of<command::Scale>().size(), 1U);
+    EXPECT_NE(message("device_part"), "");
+    area.setFocus();
+    Snapshot now;
+    now.session.transform.scale = 1.75;
+    panel.show_snapshot(now);
+    EXPECT_EQ(find<NumberBox>("scale")->value(), 1.75);
+    EXPECT_EQ(of<command::Scale>().size(), 1U);
+}
+
+TEST_F(Devices, the_loops_figures_are_told_with_their_units) {
+    set();
+    ServoReport report;
+    report.ticks = 5000;
+    report.missed = 3;
+    report.overruns = 1;
+    report.lateness = {5000, 12000, 40000, 150000, 2100000};
+    report.compute = {5000, 800, 2500, 6000, 30000};
+    report.worst = {17, 2100000, 50000, 30000, TickCause::machine};
+    panel.show_report(report, 998.6);
+    EXPECT_EQ(find<QLabel>("loop_rate")->text(), "999 Hz");
+    EXPECT_EQ(find<QLabel>("loop_missed")->text(), "3 of 5000 ticks, 1 forces taken back");
+    EXPECT_EQ(find<QLabel>("lateness_p50")->text(), "12 us");
+    EXPECT_EQ(find<QLabel>("lateness_p999")->text(), "150 us");
+    EXPECT_EQ(find<QLabel>("lateness_max")->text(), "2.1 ms");
+    EXPECT_EQ(find<QLabel>("compute_p50")->text(), "800 ns");
+    EXPECT_EQ(find<QLabel>("compute_p99")->text(), "2.5 us");
+    EXPECT_EQ(find<QLabel>("loop_worst")->text(), "2.15 ms, mostly the machine");
+}
+
+TEST_F(Devices, sections_fold_away_and_open_to_say_what_was_refused) {
+    set();
+    auto* part = find<Section>("force_part");
+    auto* heading = find<QToolButton>("force_part_heading");
+    QTest::mouseClick(heading, Qt::LeftButton);
+    EXPECT_FALSE(part->is_open());
+    EXPECT_FALSE(find<QWidget>("stiffness")->isVisible());
+    panel.findChild<NumberBox*>("stiffness_box")->setValue(99);
+    EXPECT_TRUE(part->is_open());
+    EXPECT_TRUE(message("force_part").contains("stiffness"));
+    heading->setFocus();
+    QTest::keyClick(heading, Qt::Key_Return);
+    EXPECT_FALSE(part->is_open());
+}
+
+}  // namespace
+}  // namespace palpate::viewer

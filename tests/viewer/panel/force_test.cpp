@@ -1,0 +1,274 @@
+// Force settings by slider and number, and the switches and the gauge of the session.
+#include "tests/viewer/panel/panel_stage.hpp"
+
+#include <QPushButton>
+#include <QSlider>
+
+#include <functional>
+
+#include "apps/viewer/panel/force_gauge.hpp"
+#include "apps/viewer/panel/number_box.hpp"
+
+namespace palpate::viewer {
+namespace {
+
+class Forces : public PanelStage {
+  protected:
+    /// Not the defaults, so that a setting that is lost on the way shows.
+    static RendererSettings unusual() {
+        RendererSettings settings;
+        settings.force = {.stiffness = 0.8,
+                          .damping = 2e-4,
+                          .viscosity = 1e-4,
+                          .magnet = {3, 0.5},
+                          .texture = {0.1, 4},
+                          .limit = 2.5,
+                          .rate_limit = 1234,
+                          .ramp = 0.3,
+                          .stale_after = 0.03,
+                          .start_below = 0.4};
+        settings.proxy.friction = {0.5, 0.25};
+        return settings;
+    }
+    static void expect_same(const ForceSettings& a, const ForceSettings& b) {
+        EXPECT_EQ(a.stiffness, b.stiffness);
+        EXPECT_EQ(a.damping, b.damping);
+        EXPECT_EQ(a.viscosity, b.viscosity);
+        EXPECT_EQ(a.magnet.distance, b.magnet.distance);
+        EXPECT_EQ(a.magnet.peak, b.magnet.peak);
+        EXPECT_EQ(a.texture.amplitude, b.texture.amplitude);
+        EXPECT_EQ(a.texture.wavelength, b.texture.wavelength);
+        EXPECT_EQ(a.limit, b.limit);
+        EXPECT_EQ(a.rate_limit, b.rate_limit);
+        EXPECT_EQ(a.ramp, b.ramp);
+        EXPECT_EQ(a.stale_after, b.stale_after);
+        EXPECT_EQ(a.start_below, b.start_below);
+    }
+};
+
+TEST_F(Forces, each_number_changes_its_setting_and_nothing_else) {
+    struct Case {
+        const char* box;
+        const char* text;
+        std::function<void(ForceSettings&)> change;
+    };
+    const Case cases[] = {
+        {"stiffness_box", "1.25", [](ForceSettings& f) { f.stiffness = 1.25; }},
+        {"damping_box", "0.0003", [](ForceSettings& f) { f.damping = 0.0003; }},
+        {"viscosity_box", "5e-5", [](ForceSettings& f) { f.viscosity = 5e-5; }},
+        {"texture_amplitude_box", "0.25", [](ForceSettings& f) { f.texture.amplitude = 0.25; }},
+        {"texture_wavelength_box", "7", [](ForceSettings& f) { f.texture.wavelength = 7; }},
+        {"magnet_distance_box", "5", [](ForceSettings& f) { f.magnet.distance = 5; }},
+        {"magnet_peak_box", "0.9", [](ForceSettings& f) { f.magnet.peak = 0.9; }},
+        {"force_limit_box", "1.5", [](ForceSettings& f) { f.limit = 1.5; }},
+    };
+    for (const Case& one : cases) {
+        SCOPED_TRACE(one.box);
+        set(unusual());
+        commands.clear();
+        type(one.box, one.text);
+        ForceSettings expected = unusual().force;
+        one.change(expected);
+        const auto asked = of<ForceSettings>();
+        ASSERT_EQ(asked.size(), 1U);
+        expect_same(asked.front(), expected);
+        expect_same(panel.settings().force, expected);
+        EXPECT_EQ(commands.size(), 1U);
+    }
+}
+
+TEST_F(Forces, the_stiffness_slider_ends_where_it_can_still_be_rendered) {
+    set(unusual());
+    auto* slider = find<QSlider>("stiffness_slider");
+    slider->setFocus();
+    QTest::keyClick(slider, Qt::Key_End);
+    ASSERT_EQ(of<ForceSettings>().size(), 1U);
+    EXPECT_EQ(of<ForceSettings>().back().stiffness,
+              greatest_stiffness(unusual().device, 2e-4 + 1e-4));
+    EXPECT_EQ(message("force_part"), "");
+    // Now there is no room for more damping; its slider has come to its end.
+    auto* damping = find<QSlider>("damping_slider");
+    EXPECT_EQ(damping->value(), damping->maximum());
+}
+
+TEST_F(Forces, every_slider_end_can_be_rendered) {
+    for (const char* name : {"stiffness", "damping", "viscosity", "static_friction",
+                             "dynamic_friction", "texture_amplitude", "texture_wavelength",
+                             "magnet_distance", "magnet_peak", "force_limit"}) {
+        SCOPED_TRACE(name);
+        for (const auto end : {Qt::Key_End, Qt::Key_Home}) {
+            set(unusual());
+            commands.clear();
+            auto* slider = find<QSlider>((std::string(name) + "_slider").c_str());
+            slider->setFocus();
+            QTest::keyClick(slider, end);
+            QTest::qWait(20);
+            EXPECT_EQ(message("force_part"), "");
+            EXPECT_LE(commands.size(), 1U);  // none where it was there already
+        }
+    }
+}
+
+TEST_F(Forces, what_cannot_be_rendered_is_refused_with_the_reason_and_nothing_asked_for) {
+    set(unusual());
+    type("stiffness_box", "50");
+    EXPECT_TRUE(message("force_part").contains("to be rendered stably"));
+    EXPECT_EQ(find<NumberBox>("stiffness_box")->value(), 0.8);
+    type("damping_box", "1");
+    EXPECT_TRUE(message("force_part").contains("damping"));
+    type("force_limit_box", "-2");
+    EXPECT_TRUE(message("force_part").contains("force limit"));
+    type("dynamic_friction_box", "0.9");
+    EXPECT_TRUE(message("force_part").contains("friction"));
+    type("texture_wavelength_box", "0");
+    EXPECT_TRUE(message("force_part").contains("wavelength"));
+    EXPECT_TRUE(commands.empty());
+    EXPECT_EQ(find<NumberBox>("dynamic_friction_box")->value(), 0.25);
+}
+
+TEST_F(Forces, dynamic_friction_goes_down_with_the_static_one) {
+    set(unusual());
+    type("static_friction_box", "0.75");
+    type("static_friction_box", "0.1");
+    const auto asked = of<Friction>();
+    ASSERT_EQ(asked.size(), 2U);
+    EXPECT_EQ(asked[0].static_coefficient, 0.75);
+    EXPECT_EQ(asked[0].dynamic_coefficient, 0.25);
+    EXPECT_EQ(asked[1].static_coefficient, 0.1);
+    EXPECT_EQ(asked[1].dynamic_coefficient, 0.1);
+    EXPECT_TRUE(of<ForceSettings>().empty());
+}
+
+TEST_F(Forces, the_wheel_over_a_number_without_focus_scrolls_the_panel) {
+    set();
+    area.resize(400, 300);
+    area.setFocus();
+    for (const char* name : {"stiffness_box", "stiffness_slider", "preset", "solid", "devices"}) {
+        auto* widget = find<QWidget>(name);
+        const QPointF at = QRectF(widget->rect()).center();
+        QWheelEvent event(at, widget->mapToGlobal(at.toPoint()), {}, {0, -120}, Qt::NoButton,
+                          Qt::NoModifier, Qt::NoScrollPhase, false);
+        QApplication::sendEvent(widget, &event);
+        EXPECT_FALSE(event.isAccepted()) << name;
+    }
+    QTest::qWait(40);
+    EXPECT_TRUE(commands.empty());
+}
+
+TEST_F(Forces, snapshots_move_the_gauge_and_say_what_holds_the_force_back) {
+    set(unusual());
+    auto* gauge = find<ForceGauge>("force_gauge");
+    Snapshot now;
+    now.session.tick.force = Vec3(0, 1.2, 0.5);
+    panel.show_snapshot(now);
+    EXPECT_DOUBLE_EQ(gauge->force(), 1.3);
+    EXPECT_EQ(gauge->limit(), 2.5);
+    EXPECT_DOUBLE_EQ(gauge->filled(), 1.3 / 2.5);
+    EXPECT_EQ(gauge->words(), "");
+    const QImage before = gauge->grab().toImage();
+    now.session.tick.force = Vec3(0, 2.5, 0);
+    now.session.tick.force_flags = force_limited;
+    panel.show_snapshot(now);
+    EXPECT_EQ(gauge->filled(), 1);
+    EXPECT_EQ(gauge->words(), "limit");
+    EXPECT_NE(gauge->grab().toImage(), before);
+    now.session.tick.force_flags = force_waiting;
+    panel.show_snapshot(now);
+    EXPECT_EQ(gauge->words(), "waiting");
+    now.session.tick.force_flags = force_off;
+    panel.show_snapshot(now);
+    EXPECT_EQ(gauge->words(), "off");
+}
+
+TEST_F(Forces, the_gauge_ends_at_the_devices_limit_where_that_is_less) {
+    RendererSettings settings = unusual();
+    settings.force.limit = 8;
+    set(settings);
+    panel.show_snapshot({});
+    EXPECT_EQ(find<ForceGauge>("force_gauge")->limit(), 3.3);
+}
+
+TEST_F(Forces, the_pull_is_told_in_millimetres_of_hand_and_volume) {
+    set();
+    Snapshot now;
+    now.session.tick.proxy.mode = Mode::constrained;
+    now.session.tick.proxy.hip = Vec3(0, 3, 0);
+    now.session.tick.proxy.scp = Vec3(0, 0, 0);
+    now.session.transform.scale = 2;
+    panel.show_snapshot(now);
+    const QString text = find<QLabel>("contact")->text();
+    EXPECT_TRUE(text.contains("1.50 mm")) << text.toStdString();
+    EXPECT_TRUE(text.contains("3.00 mm")) << text.toStdString();
+    EXPECT_TRUE(text.startsWith("In contact"));
+}
+
+TEST_F(Forces, switches_ask_for_the_opposite_and_show_what_snapshots_tell) {
+    set();
+    auto* forces = find<QPushButton>("forces");
+    EXPECT_TRUE(forces->isChecked());
+    press("forces");
+    ASSERT_EQ(of<command::Forces>().size(), 1U);
+    EXPECT_FALSE(of<command::Forces>().back().on);
+    EXPECT_EQ(forces->text(), "Forces are OFF");
+    Snapshot now;  // taken before the command was obeyed
+    panel.show_snapshot(now);
+    EXPECT_FALSE(forces->isChecked()) << "it must not flicker";
+    now.forces_on = false;
+    panel.show_snapshot(now);
+    EXPECT_FALSE(forces->isChecked());
+    now.forces_on = true;  // somebody else switched them on
+    panel.show_snapshot(now);
+    EXPECT_TRUE(forces->isChecked());
+    panel.toggle_forces();
+    EXPECT_EQ(of<command::Forces>().size(), 2U);
+}
+
+TEST_F(Forces, a_switch_that_is_never_obeyed_goes_back) {
+    set();
+    press("freeze");
+    EXPECT_TRUE(of<command::Freeze>().back().on);
+    for (int i = 0; i < 10; ++i) panel.show_snapshot({});
+    EXPECT_FALSE(find<QPushButton>("freeze")->isChecked());
+}
+
+TEST_F(Forces, freeze_and_clutch_are_shown_as_the_session_has_them) {
+    set();
+    Snapshot now;
+    now.session.frozen = true;
+    now.session.clutched = true;  // by a button of the device
+    panel.show_snapshot(now);
+    EXPECT_TRUE(find<QPushButton>("freeze")->isChecked());
+    EXPECT_TRUE(find<QPushButton>("clutch")->isChecked());
+    press("clutch");
+    EXPECT_FALSE(of<command::Clutch>().back().on);
+}
+
+TEST_F(Forces, a_refused_switch_goes_back_and_says_why) {
+    set();
+    refuse_with = "too many commands at once";
+    press("forces");
+    EXPECT_TRUE(find<QPushButton>("forces")->isChecked());
+    EXPECT_EQ(message("session_part"), "too many commands at once");
+}
+
+TEST_F(Forces, a_refusal_that_comes_later_undoes_the_last_wish) {
+    set(unusual());
+    type("stiffness_box", "1");
+    type("stiffness_box", "1.5");
+    panel.show_refused("not this one");
+    EXPECT_EQ(find<NumberBox>("stiffness_box")->value(), 1);
+    EXPECT_EQ(panel.settings().force.stiffness, 1);
+    EXPECT_EQ(message("force_part"), "not this one");
+}
+
+TEST_F(Forces, return_presses_a_button_that_has_the_focus) {
+    set();
+    auto* freeze = find<QPushButton>("freeze");
+    freeze->setFocus();
+    QTest::keyClick(freeze, Qt::Key_Return);
+    ASSERT_EQ(of<command::Freeze>().size(), 1U);
+    EXPECT_TRUE(of<command::Freeze>().back().on);
+}
+
+}  // namespace
+}  // namespace palpate::viewer

@@ -1,0 +1,228 @@
+// The isovalue by mouse, wheel, keys and number.
+#include "tests/viewer/panel/panel_stage.hpp"
+
+#include <QComboBox>
+#include <QSlider>
+#include <QWheelEvent>
+
+#include <cmath>
+
+#include "apps/viewer/panel/level_chart.hpp"
+#include "apps/viewer/panel/number_box.hpp"
+
+namespace palpate::viewer {
+namespace {
+
+class Isovalue : public PanelStage {
+  protected:
+    LevelChart* chart() { return find<LevelChart>("level_chart"); }
+    /// A place in the plot over a level.
+    QPointF over(double level) {
+        return {chart()->axis().x_of(level), 0.5 * chart()->strip().top()};
+    }
+    std::vector<double> levels() {
+        std::vector<double> found;
+        for (const auto& one : of<command::Isovalue>()) found.push_back(one.isovalue);
+        return found;
+    }
+    /// [data units] of a pixel.
+    double pixel() {
+        const LevelAxis axis = chart()->axis();
+        return (axis.high - axis.low) / (axis.right - axis.left);
+    }
+    void wheel(QWidget* widget, int steps) {
+        const QPointF at = QRectF(widget->rect()).center();
+        QWheelEvent event(at, widget->mapToGlobal(at.toPoint()), {}, {0, 120 * steps}, Qt::NoButton,
+                          Qt::NoModifier, Qt::NoScrollPhase, false);
+        QApplication::sendEvent(widget, &event);
+    }
+};
+
+TEST_F(Isovalue, a_session_is_shown_and_nothing_is_asked_for) {
+    RendererSettings settings;
+    settings.force.stiffness = 0.7;
+    const DensityRange ranges[] = {{-400, 150}, {700, 1500}};
+    settings.penetrability = penetrability_ranges(1.5, ranges);
+    int looks = 0;
+    QObject::connect(&panel, &Panel::look_changed, [&](const Look&) { ++looks; });
+    QSignalSpy device(&panel, &Panel::device_chosen);
+    int sides = 0;
+    QObject::connect(&panel, &Panel::solid_chosen, [&](Solid) { ++sides; });
+    set(settings, 412.5);
+    set(settings, 300, Solid::below);
+    set({}, 412.5);
+    panel.set_look({});
+    panel.set_devices({}, "mouse");
+    panel.show_snapshot({});
+    QTest::qWait(40);
+    EXPECT_TRUE(commands.empty());
+    EXPECT_EQ(looks + device.count() + sides, 0);
+    EXPECT_EQ(find<NumberBox>("isovalue_box")->value(), 412.5);
+    EXPECT_EQ(chart()->level(), 412.5);
+}
+
+TEST_F(Isovalue, dragging_the_line_asks_for_the_levels_under_the_pointer) {
+    set();
+    drag(chart(), over(300), over(1200));
+    const std::vector<double> asked = levels();
+    ASSERT_FALSE(asked.empty());
+    for (std::size_t i = 1; i < asked.size(); ++i) EXPECT_GT(asked[i], asked[i - 1]);
+    EXPECT_GE(asked.front(), 300);
+    EXPECT_NEAR(asked.back(), 1200, pixel());
+    EXPECT_EQ(panel.isovalue(), asked.back());
+    EXPECT_EQ(find<NumberBox>("isovalue_box")->value(), asked.back());
+}
+
+TEST_F(Isovalue, the_first_of_a_drag_goes_out_at_once_and_the_last_always) {
+    set();
+    drag(chart(), over(0), over(100), Qt::NoModifier, false);
+    ASSERT_FALSE(commands.empty());  // without waiting
+    const std::size_t before = commands.size();
+    EXPECT_LT(before, 9U);  // eight moves in no time are not eight commands
+    for (int i = 1; i <= 500; ++i) move(chart(), over(100 + i));
+    QTest::mouseRelease(chart(), Qt::LeftButton, {}, over(600).toPoint());
+    EXPECT_NEAR(std::get<command::Isovalue>(commands.back()).isovalue, 600, pixel());
+    EXPECT_LT(commands.size(), 250U);
+}
+
+TEST_F(Isovalue, a_tick_of_a_suggested_level_is_taken_exactly) {
+    set();
+    const double suggested = app::suggested_isovalues(histogram).front();
+    QTest::mouseClick(chart(), Qt::LeftButton, {},
+                      QPoint(static_cast<int>(chart()->axis().x_of(suggested)), 2));
+    ASSERT_EQ(levels().size(), 1U);
+    EXPECT_EQ(levels().front(), suggested);
+}
+
+TEST_F(Isovalue, arrow_keys_and_wheel_step_finely_once_the_chart_has_the_focus) {
+    set();
+    area.setFocus();
+    wheel(chart(), 3);
+    EXPECT_TRUE(levels().empty()) << "scrolling the panel must not change what is felt";
+    chart()->setFocus();
+    wheel(chart(), 2);
+    EXPECT_EQ(levels().back(), 302);
+    QTest::keyClick(chart(), Qt::Key_Left);
+    EXPECT_EQ(levels().back(), 301);
+    QTest::keyClick(chart(), Qt::Key_PageUp);
+    EXPECT_EQ(levels().back(), 311);
+    QTest::keyClick(chart(), Qt::Key_Home);
+    EXPECT_EQ(levels().back(), -1000);
+}
+
+TEST_F(Isovalue, the_slider_covers_the_data_and_follows) {
+    set();
+    auto* slider = find<QSlider>("isovalue_slider");
+    slider->setFocus();
+    QTest::keyClick(slider, Qt::Key_End);
+    EXPECT_EQ(levels().back(), histogram.high);
+    type("isovalue_box", "1000");
+    EXPECT_NEAR(double(slider->value()) / slider->maximum(), 2000 / (histogram.high + 1000), 1e-3);
+}
+
+TEST_F(Isovalue, a_typed_number_is_asked_for_as_it_is_also_beyond_the_data) {
+    set();
+    type("isovalue_box", "123.4567891");
+    EXPECT_EQ(levels(), (std::vector<double>{123.4567891}));
+    // Another look at it, with fewer digits shown, changes nothing.
+    QTest::keyClick(find<QWidget>("isovalue_box"), Qt::Key_Return);
+    EXPECT_EQ(levels().size(), 1U);
+    EXPECT_TRUE(find<QLabel>("isovalue_warning")->text().isEmpty());
+    type("isovalue_box", "9000");
+    EXPECT_EQ(levels().back(), 9000);
+    EXPECT_TRUE(find<QLabel>("isovalue_warning")->text().contains("nothing to feel"));
+}
+
+TEST_F(Isovalue, nonsense_is_not_taken) {
+    set();
+    type("isovalue_box", "hello");
+    type("isovalue_box", "-");
+    type("isovalue_box", "nan");
+    EXPECT_TRUE(levels().empty());
+    EXPECT_EQ(find<NumberBox>("isovalue_box")->value(), 300);
+}
+
+TEST_F(Isovalue, random_numbers_survive_the_way_through_the_box) {
+    set();
+    std::mt19937_64 random(11);
+    auto* box = find<NumberBox>("isovalue_box");
+    for (int i = 0; i < 2000; ++i) {
+        const double size = std::pow(10.0, std::uniform_real_distribution(-12.0, 12.0)(random));
+        const double value = size * std::uniform_real_distribution(-1.0, 1.0)(random);
+        box->show_value(value);
+        ASSERT_EQ(box->value(), value);
+        ASSERT_EQ(box->valueFromText(box->text()), value);  // Return on it changes nothing
+        ASSERT_NEAR(box->text().toDouble(), value, 1e-6 * std::abs(value));
+    }
+    EXPECT_TRUE(levels().empty());
+}
+
+TEST_F(Isovalue, a_refused_level_goes_back_and_says_why) {
+    set();
+    refuse_with = "too many commands at once";
+    type("isovalue_box", "700");
+    EXPECT_EQ(levels().size(), 1U);
+    EXPECT_EQ(find<NumberBox>("isovalue_box")->value(), 300);
+    EXPECT_EQ(chart()->level(), 300);
+    EXPECT_EQ(panel.isovalue(), 300);
+    EXPECT_EQ(message("isovalue_part"), "too many commands at once");
+    refuse_with.clear();
+    type("isovalue_box", "800");
+    EXPECT_EQ(message("isovalue_part"), "");
+    EXPECT_EQ(panel.isovalue(), 800);
+}
+
+TEST_F(Isovalue, what_is_felt_is_a_second_marker_while_it_differs) {
+    set();
+    Snapshot now;
+    now.session.tick.proxy.isovalue = 300;
+    panel.show_snapshot(now);
+    EXPECT_TRUE(std::isnan(chart()->felt()));
+    now.penetrability_on = true;
+    now.session.tick.proxy.isovalue = 640;
+    panel.show_snapshot(now);
+    EXPECT_EQ(chart()->felt(), 640);
+    EXPECT_EQ(chart()->level(), 300);
+    EXPECT_EQ(find<QLabel>("felt")->text(), "felt 640");
+    now.session.tick.proxy.isovalue = std::numeric_limits<double>::infinity();
+    panel.show_snapshot(now);
+    EXPECT_EQ(find<QLabel>("felt")->text(), "felt inf");
+}
+
+TEST_F(Isovalue, the_other_side_is_asked_for_once) {
+    set();
+    std::vector<Solid> chosen;
+    QObject::connect(&panel, &Panel::solid_chosen, [&](Solid solid) { chosen.push_back(solid); });
+    auto* box = find<QComboBox>("solid");
+    box->setFocus();
+    QTest::keyClick(box, Qt::Key_Down);
+    EXPECT_EQ(chosen, (std::vector{Solid::below}));
+    panel.show_refused("this field is solid all over");
+    EXPECT_EQ(box->currentIndex(), 0);
+    EXPECT_EQ(message("isovalue_part"), "this field is solid all over");
+}
+
+TEST_F(Isovalue, without_a_volume_nothing_can_be_asked_for) {
+    drag(chart(), QPointF(50, 30), QPointF(200, 30));
+    set();
+    panel.clear();
+    QTest::mouseClick(chart(), Qt::LeftButton, {}, QPoint(80, 30));
+    press("forces");
+    QTest::keyClick(chart(), Qt::Key_Right);
+    panel.show_snapshot({});
+    QTest::qWait(40);
+    EXPECT_TRUE(commands.empty());
+}
+
+TEST_F(Isovalue, clearing_in_the_middle_of_a_drag_is_safe) {
+    set();
+    drag(chart(), over(300), over(900), Qt::NoModifier, false);
+    panel.clear();
+    const std::size_t before = commands.size();
+    QTest::mouseRelease(chart(), Qt::LeftButton, {}, over(900).toPoint());
+    QTest::qWait(40);
+    EXPECT_EQ(commands.size(), before);
+}
+
+}  // namespace
+}  // namespace palpate::viewer

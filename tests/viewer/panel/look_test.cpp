@@ -1,0 +1,206 @@
+// The look: switches, colours and the transfer function by mouse and keys.
+#include "tests/viewer/panel/panel_stage.hpp"
+
+#include <QCheckBox>
+#include <QColorDialog>
+#include <QComboBox>
+
+#include "apps/viewer/model/transfer.hpp"
+#include "apps/viewer/panel/number_box.hpp"
+#include "apps/viewer/panel/transfer_editor.hpp"
+
+namespace palpate::viewer {
+namespace {
+
+class Looks : public PanelStage {
+  protected:
+    Looks() {
+        QObject::connect(&panel, &Panel::look_changed,
+                         [this](const Look& l) { looks.push_back(l); });
+        set();
+        look.transfer = preset("CT bone", histogram, field->volume());
+        panel.set_look(look);
+    }
+    ~Looks() override {
+        for (const Look& one : looks) EXPECT_NO_THROW(check(one.transfer));
+        EXPECT_TRUE(commands.empty()) << "a look is no command";
+    }
+    TransferEditor* editor() { return find<TransferEditor>("transfer_editor"); }
+    QPointF place(std::size_t point) {
+        return editor()->place_of(editor()->transfer().points.at(point));
+    }
+    const Look& last() {
+        QTest::qWait(40);
+        EXPECT_FALSE(looks.empty());
+        return looks.empty() ? look : looks.back();
+    }
+
+    Look look;
+    std::vector<Look> looks;
+};
+
+TEST_F(Looks, each_switch_changes_its_own_and_nothing_else) {
+    const std::pair<const char*, bool Look::*> switches[] = {
+        {"show_surface", &Look::surface},         {"show_volume", &Look::volume},
+        {"show_shading", &Look::shading},         {"show_slices", &Look::slices},
+        {"show_contact", &Look::contact},         {"show_tetrahedra", &Look::tetrahedra},
+        {"show_planes", &Look::planes},           {"show_box", &Look::box},
+        {"show_orientation", &Look::orientation}, {"show_scale_bar", &Look::scale_bar}};
+    for (const auto& [name, member] : switches) {
+        SCOPED_TRACE(name);
+        panel.set_look(look);
+        find<QCheckBox>(name)->click();
+        Look expected = look;
+        expected.*member = !(look.*member);
+        EXPECT_EQ(last(), expected);
+        EXPECT_EQ(panel.look(), expected);
+    }
+}
+
+TEST_F(Looks, a_look_that_is_set_is_shown_and_not_told_of) {
+    Look other;
+    other.surface = false;
+    other.surface_opacity = 0.4;
+    other.volume = true;
+    other.transfer = preset("MR", histogram, field->volume());
+    panel.set_look(other);
+    QTest::qWait(40);
+    EXPECT_TRUE(looks.empty());
+    EXPECT_FALSE(find<QCheckBox>("show_surface")->isChecked());
+    EXPECT_EQ(find<NumberBox>("surface_opacity_box")->value(), 0.4);
+    EXPECT_EQ(find<QComboBox>("preset")->currentText(), "MR");
+    EXPECT_EQ(panel.look(), other);
+}
+
+TEST_F(Looks, opacity_is_between_none_and_all) {
+    type("surface_opacity_box", "0.3");
+    EXPECT_EQ(last().surface_opacity, 0.3);
+    type("surface_opacity_box", "7");
+    EXPECT_EQ(last().surface_opacity, 1);
+    EXPECT_EQ(find<NumberBox>("surface_opacity_box")->value(), 1);
+}
+
+TEST_F(Looks, a_point_is_dragged_between_its_neighbours) {
+    const TransferFunction before = look.transfer;
+    drag(editor(), place(3), place(3) + QPointF(5, -20));
+    EXPECT_EQ(last().transfer.preset, "");
+    EXPECT_EQ(last().transfer.points.size(), before.points.size());
+    EXPECT_GT(last().transfer.points[3].level, before.points[3].level);
+    EXPECT_GT(last().transfer.points[3].opacity, before.points[3].opacity);
+    EXPECT_EQ(last().transfer.points[3].colour, before.points[3].colour);
+    EXPECT_EQ(find<QComboBox>("preset")->currentIndex(), -1);
+    // Past its neighbours it does not go.
+    drag(editor(), place(3), QPointF(editor()->width() - 1, -50));
+    EXPECT_LT(last().transfer.points[3].level, last().transfer.points[4].level);
+    EXPECT_EQ(last().transfer.points[3].opacity, 1);
+    EXPECT_EQ(last().transfer.points[2], before.points[2]);
+}
+
+TEST_F(Looks, a_double_click_adds_a_point_with_the_colour_that_is_there) {
+    const QPointF at(0.5 * (place(4).x() + place(5).x()), place(4).y() + 25);
+    QTest::mouseDClick(editor(), Qt::LeftButton, {}, at.toPoint());
+    const auto& points = last().transfer.points;
+    ASSERT_EQ(points.size(), look.transfer.points.size() + 1);
+    const ControlPoint was = sampled(look.transfer, points[5].level);
+    EXPECT_EQ(points[5].colour, was.colour);
+    EXPECT_LT(points[5].opacity, was.opacity - 0.1);
+    EXPECT_NEAR(editor()->place_of(points[5]).x(), at.x(), 1.5);
+    EXPECT_EQ(editor()->chosen(), 5);
+}
+
+TEST_F(Looks, right_click_and_del_delete_points_but_two_stay) {
+    QTest::mouseClick(editor(), Qt::RightButton, {}, place(2).toPoint());
+    EXPECT_EQ(last().transfer.points.size(), look.transfer.points.size() - 1);
+    EXPECT_EQ(last().transfer.points[2], look.transfer.points[3]);
+    editor()->setFocus();
+    for (int i = 0; i < 20; ++i) {
+        QTest::mouseClick(editor(), Qt::LeftButton, {}, place(1).toPoint());
+        QTest::keyClick(editor(), Qt::Key_Delete);
+    }
+    EXPECT_EQ(last().transfer.points.size(), 2U);
+}
+
+TEST_F(Looks, choosing_the_preset_again_undoes_changes) {
+    drag(editor(), place(3), place(3) + QPointF(5, -20));
+    auto* box = find<QComboBox>("preset");
+    box->setFocus();
+    QTest::keyClick(box, Qt::Key_Home);
+    EXPECT_EQ(last().transfer, look.transfer);
+    EXPECT_EQ(editor()->transfer(), look.transfer);
+}
+
+TEST_F(Looks, keys_choose_and_move_points) {
+    editor()->setFocus();
+    editor()->choose(2);
+    QTest::keyClick(editor(), Qt::Key_Period);
+    EXPECT_EQ(editor()->chosen(), 3);
+    QTest::keyClick(editor(), Qt::Key_Up, Qt::ShiftModifier);
+    EXPECT_NEAR(last().transfer.points[3].opacity, look.transfer.points[3].opacity + 0.1, 1e-9);
+    QTest::keyClick(editor(), Qt::Key_Insert);
+    EXPECT_EQ(last().transfer.points.size(), look.transfer.points.size() + 1);
+    EXPECT_EQ(editor()->chosen(), 4);
+}
+
+TEST_F(Looks, numbers_of_the_chosen_point_can_be_typed) {
+    EXPECT_FALSE(find<QWidget>("point_level")->isEnabled());
+    QTest::mouseClick(editor(), Qt::LeftButton, {}, place(3).toPoint());
+    type("point_level", "401.5");
+    EXPECT_EQ(last().transfer.points[3].level, 401.5);
+    type("point_opacity", "0.62");
+    EXPECT_EQ(last().transfer.points[3].opacity, 0.62);
+    type("point_level", "1e9");  // kept below its neighbour, and shown so
+    EXPECT_LT(last().transfer.points[3].level, last().transfer.points[4].level);
+    EXPECT_EQ(find<NumberBox>("point_level")->value(), last().transfer.points[3].level);
+    type("point_opacity", "-3");
+    EXPECT_EQ(last().transfer.points[3].opacity, 0);
+}
+
+TEST_F(Looks, a_colour_is_chosen_in_a_dialog_and_cancelled) {
+    press("surface_colour");
+    auto* dialog = panel.findChild<QColorDialog*>();
+    ASSERT_NE(dialog, nullptr);
+    dialog->setCurrentColor(QColor(10, 200, 30));
+    EXPECT_NEAR(last().surface_colour.green, 200 / 255.0, 1e-4);
+    dialog->reject();
+    EXPECT_EQ(last().surface_colour, look.surface_colour);
+    QTest::mouseDClick(editor(), Qt::LeftButton, {}, place(3).toPoint());
+    dialog = nullptr;
+    for (auto* one : panel.findChildren<QColorDialog*>()) {
+        if (one->isVisible()) dialog = one;
+    }
+    ASSERT_NE(dialog, nullptr);
+    dialog->setCurrentColor(QColor(0, 0, 255));
+    dialog->accept();
+    EXPECT_NEAR(last().transfer.points[3].colour.blue, 1, 1e-4);
+    EXPECT_EQ(last().transfer.points[3].opacity, look.transfer.points[3].opacity);
+}
+
+TEST_F(Looks, random_pulling_about_never_makes_a_function_that_is_none) {
+    std::mt19937 random(21);
+    const auto anywhere = [&] {
+        return QPointF(std::uniform_int_distribution(-10, editor()->width() + 10)(random),
+                       std::uniform_int_distribution(-10, editor()->height() + 10)(random));
+    };
+    for (int i = 0; i < 150; ++i) {
+        const auto point = random() % editor()->transfer().points.size();
+        switch (random() % 4) {
+            case 0:
+                drag(editor(), place(point), anywhere());
+                break;
+            case 1:
+                drag(editor(), anywhere(), anywhere());
+                break;
+            case 2:
+                editor()->choose(static_cast<int>(point));
+                QTest::keyClick(editor(), random() % 2 ? Qt::Key_Left : Qt::Key_Insert);
+                break;
+            default:
+                QTest::mouseClick(editor(), Qt::RightButton, {}, place(point).toPoint());
+        }
+        ASSERT_NO_THROW(check(editor()->transfer())) << i;
+    }
+    EXPECT_EQ(last().transfer, editor()->transfer());
+}
+
+}  // namespace
+}  // namespace palpate::viewer
