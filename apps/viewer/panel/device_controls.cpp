@@ -69,6 +69,7 @@ DeviceControls::DeviceControls(QWidget* parent)
     : QWidget(parent),
       picker_(new QComboBox),
       options_(new QLineEdit),
+      refresh_(new QPushButton("Look again")),
       connect_(new QPushButton("Connect")),
       missing_(new Note("device_missing", Note::Kind::plain)),
       dot_(new QLabel),
@@ -82,9 +83,8 @@ DeviceControls::DeviceControls(QWidget* parent)
     picker_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
     picker_->setMinimumContentsLength(12);
     let_wheel_pass(*picker_);
-    auto* refresh = new QPushButton("Look again");
-    refresh->setObjectName("refresh_devices");
-    refresh->setToolTip("Look for devices again; takes about a second");
+    refresh_->setObjectName("refresh_devices");
+    refresh_->setToolTip("Look for devices again; takes about a second");
     options_->setObjectName("device_options");
     options_->setClearButtonEnabled(true);
     connect_->setObjectName("connect_device");
@@ -102,9 +102,15 @@ DeviceControls::DeviceControls(QWidget* parent)
     scale_->setToolTip(
         "Scale of the hand: mm in the volume for each mm of the hand. Changes about "
         "the proxy, so that neither it nor the force moves");
+    build();
+    connect_inputs();
+    set_devices({}, {});
+}
+
+void DeviceControls::build() {
     auto* first = new QHBoxLayout;
     first->addWidget(picker_, 1);
-    first->addWidget(refresh);
+    first->addWidget(refresh_);
     auto* second = new QHBoxLayout;
     second->addWidget(options_, 1);
     second->addWidget(connect_);
@@ -125,14 +131,16 @@ DeviceControls::DeviceControls(QWidget* parent)
     column->addWidget(missing_);
     column->addLayout(form);
     column->insertWidget(3, problem_);
-    connect(refresh, &QPushButton::clicked, this, &DeviceControls::refresh_wanted);
+}
+
+void DeviceControls::connect_inputs() {
+    connect(refresh_, &QPushButton::clicked, this, &DeviceControls::refresh_wanted);
     connect(connect_, &QPushButton::clicked, this, &DeviceControls::connect_device);
     connect(options_, &QLineEdit::returnPressed, this, &DeviceControls::connect_device);
     connect(picker_, QOverload<int>::of(&QComboBox::currentIndexChanged), this,
             &DeviceControls::choose);
     connect(scale_, QOverload<double>::of(&QDoubleSpinBox::valueChanged), this,
             &DeviceControls::scale_wanted);
-    set_devices({}, {});
 }
 
 void DeviceControls::set_devices(const std::vector<devices::DeviceFinding>& findings,
@@ -164,11 +172,6 @@ void DeviceControls::set_devices(const std::vector<devices::DeviceFinding>& find
                              Qt::ForegroundRole);
         picker_->setItemData(row, QString::fromStdString(finding.missing), Qt::ToolTipRole);
     }
-    show_current();
-}
-
-void DeviceControls::set_current(const QString& option) {
-    current_ = option;
     show_current();
 }
 

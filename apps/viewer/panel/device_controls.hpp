@@ -31,9 +31,8 @@ class DeviceControls : public QWidget {
     /// Volume mm per mm of the hand; while a number is being typed it is left alone.
     void show_scale(double scale);
     void set_scale(double scale) { scale_->show_value(scale); }
-    /// The option of the device in use from now on.
-    void set_current(const QString& option);
-    const QString& current() const { return current_; }
+    /// The picker goes back to the device in use.
+    void show_current();
     void clear();
 
   Q_SIGNALS:
@@ -43,13 +42,14 @@ class DeviceControls : public QWidget {
     void nonsense(const QString& why);
 
   private:
+    void build();
+    void connect_inputs();
     void choose(int row);
-    void show_current();
     void connect_device();
 
     QComboBox* picker_;
     QLineEdit* options_;
-    QPushButton* connect_;
+    QPushButton *refresh_, *connect_;
     Note* missing_;
     QLabel *dot_, *state_, *model_, *workspace_;
     Note* problem_;

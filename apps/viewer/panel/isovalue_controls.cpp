@@ -60,6 +60,10 @@ IsovalueControls::IsovalueControls(QWidget* parent)
     column->addWidget(slider_);
     column->addLayout(row);
     column->addWidget(warning_);
+    connect_inputs();
+}
+
+void IsovalueControls::connect_inputs() {
     connect(chart_, &LevelChart::level_moved, this, &IsovalueControls::ask);
     connect(chart_, &LevelChart::level_settled, &pacer_, &Pacer::flush);
     connect(slider_, &QSlider::sliderReleased, &pacer_, &Pacer::flush);

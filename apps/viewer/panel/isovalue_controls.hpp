@@ -35,6 +35,7 @@ class IsovalueControls : public QWidget {
     void solid_wanted(palpate::Solid solid);
 
   private:
+    void connect_inputs();
     void ask(double isovalue);
     void place(double isovalue);
 

@@ -83,6 +83,7 @@ void Panel::connect_sections() {
         before_ = now_;
         isovalue_part_->say({});
         Q_EMIT solid_chosen(solid);
+        isovalue_->set_solid(solid_);  // a session with the other side has been set by now, or not
     });
     connect(penetrability_, &PenetrabilityControls::wanted, this, &Panel::ask_penetrability);
     connect(penetrability_, &PenetrabilityControls::nonsense, penetrability_part_, &Section::say);
@@ -98,10 +99,7 @@ void Panel::connect_sections() {
         asked_by_ = device_part_;
         before_ = now_;
         device_part_->say({});
-        refused_ = false;
-        device_before_ = device_->current();
         Q_EMIT device_chosen(option);
-        if (!refused_) device_->set_current(option);
     });
     connect(bar_, &SessionBar::forces_wanted, this,
             [this](bool on) { ask(session_part_, command::Forces{on}); });
@@ -242,7 +240,7 @@ void Panel::show_refused(const QString& why) {
     bar_->set_forces(now_.settings.forces_on);
     bar_->set_frozen(now_.frozen);
     bar_->set_clutched(now_.clutched);
-    if (by == device_part_) device_->set_current(device_before_);
+    if (by == device_part_) device_->show_current();
 }
 
 void Panel::show_snapshot(const Snapshot& snapshot) {

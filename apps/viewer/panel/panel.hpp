@@ -46,7 +46,8 @@ class Panel : public QWidget {
     void show_report(const ServoReport& report, double rate);
     /// `problem`: what is wrong with the device and what to do; empty where all is well.
     void show_device(const DeviceInfo& info, DeviceStatus status, const QString& problem);
-    /// What the picker offers; `current_option` is the device in use ("haply:port=10001").
+    /// What the picker offers; `current_option` is the device in use ("haply:port=10001"), to which
+    /// it goes back when another is refused.
     void set_devices(const std::vector<devices::DeviceFinding>& findings,
                      const QString& current_option);
     /// The last thing that was asked for was refused: says why beside it and shows what is in
@@ -97,7 +98,6 @@ class Panel : public QWidget {
     Effect now_, before_;  // in effect; before the last thing that was asked for
     Section* asked_by_ = nullptr;
     bool refused_ = false;
-    QString device_before_;
     std::optional<Snapshot> last_;
 };
 

@@ -197,6 +197,7 @@ TEST_F(Isovalue, the_other_side_is_asked_for_once) {
     box->setFocus();
     QTest::keyClick(box, Qt::Key_Down);
     EXPECT_EQ(chosen, (std::vector{Solid::below}));
+    EXPECT_EQ(box->currentIndex(), 0) << "nobody has put a session in with the other side";
     panel.show_refused("this field is solid all over");
     EXPECT_EQ(box->currentIndex(), 0);
     EXPECT_EQ(message("isovalue_part"), "this field is solid all over");

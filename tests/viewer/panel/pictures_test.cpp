@@ -71,7 +71,7 @@ class Pictures : public PanelStage {
 
     /// The whole panel, as high as it likes to be.
     QImage picture(const QString& name) {
-        area.resize(400, panel.sizeHint().height() + 10);
+        area.resize(area.width(), panel.sizeHint().height() + 10);
         QApplication::processEvents();
         const QImage image = panel.grab().toImage();
         QDir().mkpath(PALPATE_PICTURES);
@@ -93,6 +93,19 @@ TEST_F(Pictures, dark) {
     QApplication::setPalette(dark_palette());
     full();
     picture("panel_dark");
+}
+
+TEST_F(Pictures, narrow_with_a_threshold_and_refusals) {
+    full();
+    press("penetrability_threshold");
+    type("stiffness_box", "99");
+    DeviceInfo info = desktop_device();
+    panel.show_device(info, DeviceStatus::uncalibrated, "Put the handle into its holder once.");
+    press("forces");
+    area.resize(panel.minimumSizeHint().width() + 4, 1700);
+    EXPECT_LE(panel.minimumSizeHint().width(), 26 * panel.fontMetrics().height());
+    QApplication::processEvents();
+    picture("panel_narrow");
 }
 
 TEST_F(Pictures, without_a_volume) {
