@@ -2,6 +2,7 @@
 // feels; knows no window.
 #pragma once
 
+#include <deque>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -59,7 +60,9 @@ class Live {
     void use_field(Solid solid, std::optional<double> background = {});
 
     /// Records from now on: the session starts anew (forces ramp up) with all that was asked for.
-    /// Throws io::OutputError; then nothing has changed.
+    /// Throws io::OutputError for a file that cannot be made; then nothing has changed. A recording
+    /// that was running is finished, and should that fail io::OutputError says so, but the new one
+    /// runs.
     void record(const std::filesystem::path& path);
     /// Ends the recording; the session starts anew. Returns the ticks in it. Throws io::OutputError
     /// for what could not be written. Nothing without a recording.
@@ -70,7 +73,9 @@ class Live {
   private:
     Live(app::LiveScene scene, const app::TouchOptions& options);
     void hold(std::unique_ptr<Device> device);
-    Session session_from(double isovalue, const DeviceTransform& transform) const;
+    Session session_from(double isovalue, const DeviceTransform& transform,
+                         std::int64_t last) const;
+    std::int64_t last_tick() const;
     Session session_after() const;
     void start(Session session);
 
@@ -84,6 +89,12 @@ class Live {
     RendererSettings settings_;
     double isovalue_ = 0;
     bool frozen_ = false;
+    /// Commands that the servo may not have carried out yet, with the tick they were sent after.
+    struct Sent {
+        std::int64_t after;
+        Command command;
+    };
+    std::deque<Sent> sent_;
     std::unique_ptr<io::RecordingWriter> recording_;
     std::unique_ptr<Servo> servo_;
 };

@@ -2,36 +2,383 @@
 #include "apps/viewer/model/live.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <chrono>
+#include <csignal>
+#include <functional>
 #include <thread>
+
+#include "apps/live/recorded_scene.hpp"
+#include "support/scratch_folder.hpp"
 
 namespace palpate::viewer {
 namespace {
 
 using namespace std::chrono_literals;
+using support::ScratchFolder;
 
 app::TouchOptions on_a_ball(const std::string& device) {
     app::TouchOptions options;
     options.volume.volume = "synthetic:sphere:32x32x32";
     options.device = device;
+    options.normal_priority = true;
     return options;
 }
 
-TEST(Live, commands_show_in_settings_and_snapshots) {
-    const app::TouchOptions options = on_a_ball("mouse");
-    Live live(app::load(options.volume, {}), options);
-    ASSERT_NE(live.mouse(), nullptr);
-    ForceSettings force = live.settings().force;
-    force.stiffness = 0.25;
-    live.send(force);
-    EXPECT_EQ(live.settings().force.stiffness, 0.25);
-    for (int i = 0; i < 2000; ++i) {
-        const auto now = live.snapshot();
-        if (now && now->stiffness == 0.25) return;
+/// A hand that presses from the first moment.
+const std::string pressing = "simulated:hand=hold,depth=5,seconds=60";
+
+struct BallSession {
+    app::TouchOptions options;
+    Live live;
+
+    explicit BallSession(const std::string& device = "mouse")
+        : options(on_a_ball(device)), live(app::load(options.volume, {}), options) {}
+};
+
+/// Patience is for slow machines; what is waited for comes in milliseconds.
+bool comes_true(const std::function<bool()>& happened) {
+    for (int i = 0; i < 20'000; ++i) {
+        if (happened()) return true;
         std::this_thread::sleep_for(1ms);
     }
-    FAIL() << "the servo never used the stiffness";
+    return false;
+}
+
+/// So many ticks from now on have gone by.
+bool ticks_go_on(const Live& live, std::int64_t count = 20) {
+    const auto before = live.snapshot();
+    const std::int64_t until = (before ? before->number : 0) + count;
+    return comes_true([&] {
+        const auto now = live.snapshot();
+        return now && now->number >= until;
+    });
+}
+
+TEST(Live, commands_show_in_settings_and_snapshots) {
+    BallSession s;
+    ASSERT_NE(s.live.mouse(), nullptr);
+    ForceSettings force = s.live.settings().force;
+    force.stiffness = 0.25;
+    s.live.send(force);
+    s.live.send(command::Isovalue{60});
+    s.live.send(command::Forces{false});
+    s.live.send(command::Freeze{true});
+    EXPECT_EQ(s.live.settings().force.stiffness, 0.25);
+    EXPECT_EQ(s.live.isovalue(), 60);
+    EXPECT_FALSE(s.live.settings().forces_on);
+    EXPECT_TRUE(s.live.frozen());
+    EXPECT_TRUE(comes_true([&] {
+        const auto now = s.live.snapshot();
+        return now && now->stiffness == 0.25 && now->session.tick.proxy.isovalue == 60 &&
+               !now->forces_on && now->session.frozen;
+    }));
+}
+
+TEST(Live, a_command_that_cannot_be_carried_out_changes_nothing) {
+    BallSession s;
+    ForceSettings force = s.live.settings().force;
+    const double before = force.stiffness;
+    force.stiffness = 1e6;
+    EXPECT_THROW(s.live.send(force), std::invalid_argument);
+    EXPECT_THROW(s.live.send(command::Isovalue{std::nan("")}), std::invalid_argument);
+    EXPECT_EQ(s.live.settings().force.stiffness, before);
+    EXPECT_TRUE(std::isfinite(s.live.isovalue()));
+    EXPECT_TRUE(ticks_go_on(s.live));
+}
+
+TEST(Live, the_mouse_moves_the_hand) {
+    BallSession s;
+    s.live.mouse()->aim({10, 20, 30});
+    EXPECT_TRUE(comes_true([&] {
+        const auto now = s.live.snapshot();
+        return now && (now->session.device.position - Vec3(10, 20, 30)).norm() < 0.1;
+    }));
+}
+
+/// Renders a recording again and counts its ticks; a failure where one differs.
+struct Again {
+    std::int64_t ticks = 0, commands = 0, pressed = 0;
+    bool complete = false;
+    std::vector<SessionTick> all;
+
+    explicit Again(const std::filesystem::path& path) {
+        io::RecordingReader reader(path);
+        const auto loaded = app::load(app::recorded_volume(reader.head(), path), {});
+        Session session = app::recorded_session(reader.head(), loaded, path.string());
+        while (const auto event = reader.next()) {
+            if (const auto* command = std::get_if<Command>(&*event)) {
+                apply(session, *command);
+                ++commands;
+                continue;
+            }
+            const auto& recorded = std::get<SessionTick>(*event);
+            const SessionTick again = repeat(session, recorded);
+            EXPECT_EQ(again.tick.force, recorded.tick.force) << "tick " << ticks;
+            EXPECT_EQ(again.tick.proxy.scp, recorded.tick.proxy.scp) << "tick " << ticks;
+            EXPECT_EQ(again.tick.proxy.isovalue, recorded.tick.proxy.isovalue);
+            if (recorded.tick.force.norm() > 0.05) ++pressed;
+            all.push_back(recorded);
+            ++ticks;
+        }
+        complete = reader.complete();
+    }
+};
+
+TEST(Live, a_recording_with_commands_comes_out_the_same_bit_for_bit) {
+    const ScratchFolder folder;
+    BallSession s(pressing);
+    s.live.record(folder / "a.csv");
+    ASSERT_TRUE(ticks_go_on(s.live, 300));
+    s.live.send(command::Isovalue{70});
+    s.live.send(penetrability_threshold(0.5, 50));
+    ASSERT_TRUE(ticks_go_on(s.live, 100));
+    const std::int64_t ticks = s.live.stop_recording();
+    EXPECT_EQ(s.live.recording(), nullptr);
+    const Again again(folder / "a.csv");
+    EXPECT_TRUE(again.complete);
+    EXPECT_EQ(again.ticks, ticks);
+    EXPECT_GE(again.ticks, 400);
+    EXPECT_EQ(again.commands, 2);
+    EXPECT_GT(again.pressed, 10);
+    EXPECT_TRUE(ticks_go_on(s.live));
+}
+
+TEST(Live, what_was_asked_for_just_before_a_restart_is_not_lost) {
+    const ScratchFolder folder;
+    BallSession s;
+    ASSERT_TRUE(ticks_go_on(s.live));
+    DeviceTransform moved = s.live.settings().transform;
+    for (int i = 0; i < 10; ++i) {
+        const double level = 60 + 0.1 * i;
+        moved.translation = Vec3(i, 2 * i, 0);
+        s.live.send(command::Isovalue{level});
+        s.live.send(moved);
+        if (i % 2 == 0) {
+            s.live.record(folder / (std::to_string(i) + ".csv"));
+            EXPECT_EQ(Again(folder / (std::to_string(i) + ".csv")).commands, 0);
+        } else {
+            s.live.use_field(i % 4 == 1 ? Solid::below : Solid::above);
+        }
+        EXPECT_EQ(s.live.isovalue(), level);
+        EXPECT_EQ(s.live.settings().transform.translation, moved.translation);
+        ASSERT_TRUE(ticks_go_on(s.live, 3));
+        EXPECT_EQ(s.live.snapshot()->session.tick.proxy.isovalue, level);
+        EXPECT_EQ(s.live.snapshot()->session.transform.translation, moved.translation);
+    }
+}
+
+TEST(Live, a_level_that_was_pressed_to_stays_at_a_restart) {
+    const ScratchFolder folder;
+    BallSession s(pressing);
+    s.live.send(penetrability_threshold(0.2, s.live.isovalue()));
+    ASSERT_TRUE(comes_true([&] {
+        const auto now = s.live.snapshot();
+        return now && now->session.tick.proxy.isovalue > s.live.isovalue() + 2;
+    }));
+    s.live.send(no_penetrability());
+    ASSERT_TRUE(ticks_go_on(s.live));
+    const double felt = s.live.snapshot()->session.tick.proxy.isovalue;
+    s.live.record(folder / "a.csv");
+    EXPECT_EQ(s.live.isovalue(), felt);
+}
+
+TEST(Live, a_recording_is_complete_when_the_session_ends) {
+    const ScratchFolder folder;
+    {
+        BallSession s(pressing);
+        s.live.record(folder / "a.csv");
+        ASSERT_TRUE(ticks_go_on(s.live, 50));
+    }
+    const Again again(folder / "a.csv");
+    EXPECT_TRUE(again.complete);
+    EXPECT_GE(again.ticks, 50);
+}
+
+TEST(Live, recording_to_a_file_that_is_there_changes_nothing) {
+    const ScratchFolder folder;
+    support::put_bytes(folder / "mine.csv", "mine");
+    BallSession s;
+    s.live.record(folder / "a.csv");
+    ASSERT_TRUE(ticks_go_on(s.live, 20));
+    const std::int64_t before = s.live.snapshot()->number;
+    EXPECT_THROW(s.live.record(folder / "mine.csv"), io::OutputError);
+    EXPECT_THROW(s.live.record(folder / "a.csv"), io::OutputError);
+    EXPECT_THROW(s.live.record("/dev/full"), io::OutputError);
+    EXPECT_THROW(s.live.record(folder / "no" / "folder.csv"), io::OutputError);
+    EXPECT_EQ(support::bytes_of(folder / "mine.csv"), "mine");
+    ASSERT_NE(s.live.recording(), nullptr);
+    ASSERT_TRUE(ticks_go_on(s.live));
+    EXPECT_GT(s.live.snapshot()->number, before);  // not started anew
+    s.live.record(folder / "b.csv");
+    EXPECT_TRUE(Again(folder / "a.csv").complete);
+    EXPECT_EQ(folder.names(), (std::vector<std::string>{"a.csv", "b.csv", "mine.csv"}));
+}
+
+/// No file of this process may grow beyond so many bytes.
+class SmallDisk {
+  public:
+    explicit SmallDisk(rlim_t bytes) {
+        handler_ = std::signal(SIGXFSZ, SIG_IGN);
+        getrlimit(RLIMIT_FSIZE, &before_);
+        const rlimit small{bytes, before_.rlim_max};
+        setrlimit(RLIMIT_FSIZE, &small);
+    }
+    ~SmallDisk() {
+        setrlimit(RLIMIT_FSIZE, &before_);
+        std::signal(SIGXFSZ, handler_);
+    }
+
+  private:
+    rlimit before_{};
+    void (*handler_)(int) = nullptr;
+};
+
+TEST(Live, when_the_disk_is_full_the_session_goes_on_and_says_so_at_the_end) {
+    const ScratchFolder folder;
+    BallSession s(pressing);
+    std::string problem;
+    {
+        const SmallDisk disk(30'000);
+        s.live.record(folder / "a.csv");
+        ASSERT_TRUE(comes_true([&] { return !s.live.recording()->problem().empty(); }));
+        EXPECT_TRUE(ticks_go_on(s.live));
+        problem = support::message_of<io::OutputError>([&] { s.live.stop_recording(); });
+    }
+    EXPECT_TRUE(support::contains(problem, "a.csv")) << problem;
+    EXPECT_EQ(s.live.recording(), nullptr);
+    EXPECT_TRUE(ticks_go_on(s.live));
+    const Again again(folder / "a.csv");
+    EXPECT_FALSE(again.complete);
+    EXPECT_GT(again.ticks, 5);
+}
+
+TEST(Live, another_device_goes_on_with_what_was_asked_for) {
+    BallSession s("mouse");
+    ForceSettings force = s.live.settings().force;
+    force.stiffness = 0.2;
+    force.viscosity = 1e-4;
+    s.live.send(force);
+    s.live.send(command::Isovalue{65.5});
+    s.live.send(Friction{0.4, 0.3});
+    s.live.use_device(pressing);
+    EXPECT_EQ(s.live.mouse(), nullptr);
+    EXPECT_EQ(s.live.device().name, "simulated");
+    const auto as_asked = [&] {
+        EXPECT_EQ(s.live.isovalue(), 65.5);
+        EXPECT_EQ(s.live.settings().force.stiffness, 0.2);
+        EXPECT_EQ(s.live.settings().force.viscosity, 1e-4);
+        EXPECT_EQ(s.live.settings().proxy.friction.static_coefficient, 0.4);
+    };
+    as_asked();
+    EXPECT_TRUE(comes_true([&] {
+        const auto now = s.live.snapshot();
+        return now && now->session.tick.proxy.mode == Mode::constrained &&
+               now->session.tick.proxy.isovalue == 65.5;
+    }));
+    s.live.use_device("mouse");
+    EXPECT_NE(s.live.mouse(), nullptr);
+    EXPECT_EQ(s.live.options().device, "mouse");
+    as_asked();
+    EXPECT_TRUE(ticks_go_on(s.live));
+}
+
+TEST(Live, a_force_limit_that_was_lowered_stays_low_with_another_device) {
+    BallSession s("mouse");
+    ForceSettings force = s.live.settings().force;
+    force.limit = 0.7;
+    s.live.send(force);
+    s.live.use_device("simulated");
+    EXPECT_EQ(s.live.settings().force.limit, 0.7);
+    force.limit = s.live.device().limits.maximum_force;
+    s.live.send(force);
+    s.live.use_device("simulated:profile=omega3");
+    EXPECT_EQ(s.live.settings().force.limit, s.live.device().limits.maximum_force);
+    EXPECT_GT(s.live.settings().force.limit, force.limit);
+}
+
+TEST(Live, a_device_that_is_refused_leaves_the_old_one_running) {
+    const ScratchFolder folder;
+    BallSession s("mouse");
+    s.live.record(folder / "a.csv");
+    ASSERT_TRUE(ticks_go_on(s.live));
+    const std::int64_t before = s.live.snapshot()->number;
+    EXPECT_THROW(s.live.use_device("gloves"), std::invalid_argument);
+    EXPECT_THROW(s.live.use_device("simulated:grip=iron"), std::invalid_argument);
+    EXPECT_ANY_THROW(s.live.use_device("recorded:file=" + (folder / "none.csv").string()));
+    EXPECT_NE(s.live.mouse(), nullptr);
+    EXPECT_EQ(s.live.options().device, "mouse");
+    EXPECT_NE(s.live.recording(), nullptr);
+    ASSERT_TRUE(ticks_go_on(s.live));
+    EXPECT_GT(s.live.snapshot()->number, before);
+}
+
+TEST(Live, the_other_side_is_solid_when_that_is_asked_for_and_a_hand_by_itself_finds_it) {
+    BallSession s(pressing);
+    s.live.send(penetrability_threshold(1, s.live.isovalue()));
+    s.live.use_field(Solid::below, 200);
+    EXPECT_EQ(s.live.field().solid(), Solid::below);
+    EXPECT_EQ(s.live.field().background(), 200);
+    EXPECT_FALSE(s.live.settings().penetrability.on);
+    s.live.use_device(pressing);
+    EXPECT_EQ(s.live.field().solid(), Solid::below);
+    const Field& field = s.live.field();
+    ASSERT_TRUE(comes_true([&] {
+        const auto now = s.live.snapshot();
+        return now && now->session.tick.proxy.mode == Mode::constrained;
+    }));
+    const ProxyUpdate proxy = s.live.snapshot()->session.tick.proxy;
+    EXPECT_LE(field.sign() * (value_at(field, proxy.scp) - proxy.isovalue), 1e-6);
+}
+
+TEST(Live, a_background_that_is_none_changes_nothing) {
+    BallSession s;
+    ASSERT_TRUE(ticks_go_on(s.live));
+    const std::int64_t before = s.live.snapshot()->number;
+    EXPECT_THROW(s.live.use_field(Solid::below, std::nan("")), std::invalid_argument);
+    EXPECT_EQ(s.live.field().solid(), Solid::above);
+    ASSERT_TRUE(ticks_go_on(s.live));
+    EXPECT_GT(s.live.snapshot()->number, before);
+}
+
+TEST(Live, every_restart_begins_without_force_and_keeps_to_the_limits) {
+    const ScratchFolder folder;
+    BallSession s(pressing);
+    ForceSettings force = s.live.settings().force;
+    force.limit = 0.8;
+    force.start_below = std::numeric_limits<double>::infinity();  // the ramp alone must do it
+    s.live.send(force);
+    const auto pressed = [&] {
+        return comes_true([&] {
+            const auto now = s.live.snapshot();
+            return now && now->session.tick.force.norm() > 0.1;
+        });
+    };
+    for (const std::string name : {"a.csv", "b.csv"}) {
+        ASSERT_TRUE(pressed());  // so the next begins inside the solid
+        s.live.record(folder / name);
+        ASSERT_TRUE(ticks_go_on(s.live, 250));
+    }
+    s.live.stop_recording();
+    for (const std::string name : {"a.csv", "b.csv"}) {
+        const Again again(folder / name);
+        ASSERT_GT(again.all.size(), 100U);
+        Vec3 last = Vec3::Zero();
+        double time = again.all.front().tick.time - 1e-3, most = 0;
+        for (const SessionTick& tick : again.all) {
+            const double dt = tick.tick.time - time;
+            const Vec3& now = tick.tick.force;
+            EXPECT_LE(now.norm(), 0.8 + 1e-9);
+            const bool dropped = now.isZero();
+            EXPECT_TRUE(dropped || (now - last).norm() <= force.rate_limit * dt + 1e-9);
+            most = std::max(most, now.norm());
+            last = now;
+            time = tick.tick.time;
+        }
+        EXPECT_EQ(again.all.front().tick.force.norm(), 0);
+        EXPECT_GT(most, 0.05);
+    }
 }
 
 }  // namespace
