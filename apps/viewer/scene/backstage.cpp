@@ -70,8 +70,8 @@ void Backstage::start_painters() {
                 broken_ = true;
             });
         }};
-    quick_ = std::make_unique<Painter>(results);
-    fine_ = std::make_unique<Painter>(results);
+    quick_ = std::make_unique<Painter>(Painter::Pace::prompt, results);
+    fine_ = std::make_unique<Painter>(Painter::Pace::patient, results);
 }
 
 void Backstage::paint() {

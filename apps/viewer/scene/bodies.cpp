@@ -12,6 +12,8 @@
 #include <vtkPolyData.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
+#include <vtkRenderWindow.h>
+#include <vtkRenderer.h>
 #include <vtkShaderProperty.h>
 #include <vtkTexture.h>
 #include <vtkTypeInt32Array.h>
@@ -24,9 +26,11 @@
 namespace palpate::viewer {
 namespace {
 
-constexpr std::size_t part_triangles = 150'000;
+constexpr std::size_t part_triangles = 50'000;
 
-/// Not drawn any more once it was asked to give up.
+/// Not drawn any more once it was asked to give up. On software OpenGL it waits until it is drawn:
+/// what is given up is then no more than this part, and the window's own pictures, which the same
+/// software draws, come between two parts and not after them all.
 class PatientActor : public vtkOpenGLActor {
   public:
     // As vtkStandardNewMacro has it, whose semicolons a pedantic compiler refuses.
@@ -36,9 +40,15 @@ class PatientActor : public vtkOpenGLActor {
         return made;
     }
     int RenderOpaqueGeometry(vtkViewport* viewport) override {
-        return give_up && *give_up ? 0 : vtkOpenGLActor::RenderOpaqueGeometry(viewport);
+        if (give_up && *give_up) return 0;
+        const int drawn = vtkOpenGLActor::RenderOpaqueGeometry(viewport);
+        if (waits) {
+            vtkRenderer::SafeDownCast(viewport)->GetRenderWindow()->WaitForCompletion();
+        }
+        return drawn;
     }
     const std::atomic<bool>* give_up = nullptr;
+    bool waits = false;
     std::shared_ptr<const DrawnMesh> mesh;  // whose memory the mapper reads
 };
 
@@ -78,8 +88,8 @@ void face_the_viewer(vtkActor& actor) {
         false);
 }
 
-vtkSmartPointer<vtkActor> part_actor(std::shared_ptr<const DrawnMesh> part,
-                                     const std::atomic<bool>& give_up) {
+vtkSmartPointer<PatientActor> part_actor(std::shared_ptr<const DrawnMesh> part,
+                                         const std::atomic<bool>& give_up) {
     auto actor = vtkSmartPointer<PatientActor>::New();
     vtkNew<vtkPolyDataMapper> mapper;
     mapper->SetInputData(polydata_of(*part));
@@ -171,17 +181,19 @@ void look_matt(vtkActor& actor) {
 }
 
 std::vector<vtkSmartPointer<vtkActor>> mesh_actors(const std::shared_ptr<const DrawnMesh>& mesh,
+                                                   bool hardware,
                                                    const std::atomic<bool>& give_up) {
-    std::vector<vtkSmartPointer<vtkActor>> actors;
-    if (!mesh || mesh->triangles.empty()) return actors;
+    if (!mesh || mesh->triangles.empty()) return {};
+    std::vector<vtkSmartPointer<PatientActor>> actors;
     const std::size_t count = mesh->triangle_count();
-    if (count <= part_triangles) return {part_actor(mesh, give_up)};
+    if (hardware || count <= 2 * part_triangles) return {part_actor(mesh, give_up)};
     for (std::size_t first = 0; first < count && !give_up; first += part_triangles) {
         const std::size_t last = std::min(first + part_triangles, count);
         actors.push_back(
             part_actor(std::make_shared<const DrawnMesh>(part_of(*mesh, first, last)), give_up));
+        actors.back()->waits = true;
     }
-    return actors;
+    return {actors.begin(), actors.end()};
 }
 
 void set_glass(vtkActor& actor, double opacity) {

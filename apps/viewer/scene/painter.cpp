@@ -8,6 +8,7 @@
 
 #include <exception>
 
+#include "apps/viewer/scene/patience.hpp"
 #include "apps/viewer/scene/stage.hpp"
 
 namespace palpate::viewer {
@@ -19,8 +20,9 @@ bool is_hardware(const std::string& name) {
     return !name.empty();
 }
 
-Painter::Painter(Results results)
-    : results_(std::move(results)),
+Painter::Painter(Pace pace, Results results)
+    : pace_(pace),
+      results_(std::move(results)),
       surface_(std::make_unique<QOffscreenSurface>()),
       context_(std::make_unique<QOpenGLContext>()) {
     QSurfaceFormat format = QVTKOpenGLNativeWidget::defaultFormat();
@@ -59,6 +61,7 @@ void Painter::give_up() {
 }
 
 void Painter::run() {
+    if (pace_ == Pace::patient) stand_back();
     if (!context_->makeCurrent(surface_.get())) {
         results_.failed("the 3-D view gets no OpenGL context");
         context_.reset();

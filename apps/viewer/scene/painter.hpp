@@ -29,8 +29,9 @@ class Painter {
         std::function<void(Backdrop)> painted;
         std::function<void(std::string what)> failed;
     };
-    /// From the window's thread.
-    explicit Painter(Results results);
+    enum class Pace { prompt, patient };
+    /// From the window's thread. A patient painter stands back behind other threads.
+    Painter(Pace pace, Results results);
     /// Gives up what is under way and waits for the thread.
     ~Painter();
     Painter(const Painter&) = delete;
@@ -44,6 +45,7 @@ class Painter {
   private:
     void run();
 
+    Pace pace_;
     Results results_;
     std::unique_ptr<QOffscreenSurface> surface_;
     std::unique_ptr<QOpenGLContext> context_;

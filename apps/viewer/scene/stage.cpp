@@ -102,7 +102,7 @@ void Stage::show_surface(const Shot& shot) {
             glass_->RemoveActor(part);
             part->ReleaseGraphicsResources(window_);
         }
-        parts_ = mesh_actors(wanted, give_up_);
+        parts_ = mesh_actors(wanted, hardware_, give_up_);
         mesh_ = wanted;
         opacity_ = -1;
         if (give_up_) mesh_.reset();  // not all parts were made
@@ -188,7 +188,19 @@ void Stage::show_volume(const Shot& shot) {
 void Stage::show(const Shot& shot) {
     const Colour& b = shot.background;
     solid_->SetBackground(b.red, b.green, b.blue);
-    if (!shot.field) return;
+    if (!shot.field) {
+        solid_->RemoveAllViewProps();
+        glass_->RemoveAllViewProps();
+        parts_.clear();
+        mesh_.reset();
+        slices_ = {};
+        box_ = nullptr;
+        boxed_.reset();
+        volume_.reset();
+        thinned_.reset();
+        thinned_from_ = nullptr;
+        return;
+    }
     const Geometry& geometry = shot.field->geometry();
     show_surface(shot);
     show_slices(shot);

@@ -6,6 +6,7 @@
 #include <exception>
 #include <new>
 
+#include "apps/viewer/scene/patience.hpp"
 #include "pictures/surface.hpp"
 
 namespace palpate::viewer {
@@ -63,6 +64,7 @@ bool SurfaceWork::outdated(const std::stop_token& stop, bool first) const {
 }
 
 void SurfaceWork::run(const std::stop_token& stop) {
+    stand_back();
     while (!stop.stop_requested()) {
         std::optional<Wish> wish;
         {

@@ -1,0 +1,124 @@
+// Meshes for drawing.
+#include "apps/viewer/scene/drawn_mesh.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+#include "pictures/surface.hpp"
+#include "scenes/volumes.hpp"
+#include "support/fields.hpp"
+
+namespace palpate::viewer {
+namespace {
+
+Vec3 vertex(const DrawnMesh& mesh, std::int32_t i) {
+    return Eigen::Map<const Eigen::Vector3f>(mesh.positions.data() + 3 * i).cast<double>();
+}
+Vec3 normal(const DrawnMesh& mesh, std::int32_t i) {
+    return Eigen::Map<const Eigen::Vector3f>(mesh.normals.data() + 3 * i).cast<double>();
+}
+
+/// A ball of radius 0.35 * 40 mm, seen from `origin`.
+DrawnMesh ball(const Vec3& origin = Vec3::Zero()) {
+    const Field field(scenes::ball(support::cube(40), 0.35, 1.4, SampleType::float32));
+    return drawn_mesh(pictures::shaded_surface(field, 0.5).surface, origin);
+}
+
+double volume_of(const DrawnMesh& mesh) {
+    double six = 0;
+    for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
+        six +=
+            vertex(mesh, mesh.triangles[t])
+                .dot(
+                    vertex(mesh, mesh.triangles[t + 1]).cross(vertex(mesh, mesh.triangles[t + 2])));
+    }
+    return six / 6;
+}
+
+TEST(DrawnMesh, is_the_surface_seen_from_an_origin) {
+    const Field field(scenes::ball(support::cube(12)));
+    const pictures::Surface surface = pictures::shaded_surface(field, 128).surface;
+    const Vec3 origin(100, -20, 3);
+    const DrawnMesh mesh = drawn_mesh(surface, origin);
+    ASSERT_EQ(mesh.vertex_count(), surface.mesh.vertices.size());
+    ASSERT_EQ(mesh.triangle_count(), surface.mesh.triangles.size());
+    for (std::size_t i = 0; i < mesh.vertex_count(); ++i) {
+        EXPECT_LT((vertex(mesh, int(i)) + origin - surface.mesh.vertices[i]).norm(), 1e-4);
+        EXPECT_LT((normal(mesh, int(i)) - surface.normals[i].cast<double>()).norm(), 1e-6);
+    }
+}
+
+TEST(DrawnMesh, simplified_is_small_and_still_the_same_ball) {
+    const DrawnMesh mesh = ball();
+    ASSERT_GT(mesh.triangle_count(), 20'000U);
+    for (const std::size_t most : {10'000U, 3'000U, 1'000U}) {
+        const DrawnMesh simple = simplified(mesh, most);
+        EXPECT_LE(simple.triangle_count(), most * 5 / 4);
+        EXPECT_GE(simple.triangle_count(), most / 6);
+        EXPECT_NEAR(volume_of(simple) / volume_of(mesh), 1, 0.1) << most;
+        for (std::size_t i = 0; i < simple.vertex_count(); ++i) {
+            const Vec3 at = vertex(simple, int(i));
+            EXPECT_NEAR(normal(simple, int(i)).norm(), 1, 1e-5);
+            EXPECT_GT(normal(simple, int(i)).dot(at.normalized()), 0.8);
+            EXPECT_NEAR(at.norm(), 14, 1.5);
+        }
+    }
+}
+
+TEST(DrawnMesh, that_is_small_enough_stays_as_it_is) {
+    const DrawnMesh mesh = ball();
+    EXPECT_EQ(simplified(mesh, mesh.triangle_count()).triangles, mesh.triangles);
+}
+
+TEST(DrawnMesh, simplifying_ends_for_every_budget_and_every_mesh) {
+    // Noise has as much surface as there can be; and there may be none.
+    const Field noise = support::noise_field().field;
+    const DrawnMesh mesh = drawn_mesh(pictures::shaded_surface(noise, 128).surface, Vec3::Zero());
+    for (const std::size_t most : {0U, 1U, 100U}) {
+        EXPECT_LT(simplified(mesh, most).triangle_count(), 2'000U);
+    }
+    EXPECT_EQ(simplified({}, 0).triangle_count(), 0U);
+}
+
+TEST(DrawnMesh, two_sides_of_a_thin_sheet_stay_two) {
+    const support::TestField sheet = support::sheet_field();
+    const DrawnMesh mesh =
+        drawn_mesh(pictures::shaded_surface(sheet.field, sheet.isovalue).surface, Vec3::Zero());
+    const DrawnMesh simple = simplified(mesh, mesh.triangle_count() / 20);
+    // Outer and inner side of the wall at x = 5, away from the edges of the box.
+    int out = 0, in = 0;
+    for (std::size_t i = 0; i < simple.vertex_count(); ++i) {
+        const Vec3 at = vertex(simple, int(i));
+        if (std::abs(at[0] - 5) > 0.5 || (at.tail<2>().array() - 11).abs().maxCoeff() > 3) continue;
+        (normal(simple, int(i))[0] < 0 ? out : in)++;
+        EXPECT_GT(std::abs(normal(simple, int(i))[0]), 0.7);
+    }
+    EXPECT_GT(out, 1);
+    EXPECT_GT(in, 1);
+}
+
+TEST(DrawnMesh, parts_are_the_whole) {
+    const DrawnMesh mesh = ball();
+    std::size_t triangles = 0;
+    double volume = 0;
+    for (std::size_t first = 0; first < mesh.triangle_count(); first += 5'000) {
+        const std::size_t last = std::min(first + 5'000, mesh.triangle_count());
+        const DrawnMesh part = part_of(mesh, first, last);
+        EXPECT_LE(part.vertex_count(), 3 * part.triangle_count());
+        for (std::size_t t = 0; t < part.triangles.size(); ++t) {
+            const std::int32_t whole = mesh.triangles[3 * first + t], own = part.triangles[t];
+            ASSERT_EQ(vertex(part, own), vertex(mesh, whole));
+            ASSERT_EQ(normal(part, own), normal(mesh, whole));
+        }
+        triangles += part.triangle_count();
+        volume += volume_of(part);
+    }
+    EXPECT_EQ(triangles, mesh.triangle_count());
+    EXPECT_NEAR(volume, volume_of(mesh), 1e-6 * volume);
+    EXPECT_EQ(part_of(mesh, 7, 7).triangle_count(), 0U);
+}
+
+}  // namespace
+}  // namespace palpate::viewer

@@ -1,0 +1,175 @@
+// The mouse on the 3-D view: real events, as a person makes them.
+#include <gtest/gtest.h>
+
+#include <QWheelEvent>
+
+#include <Eigen/Geometry>
+
+#include "scenes/volumes.hpp"
+#include "support/fields.hpp"
+#include "viewer/scene/shown_scene.hpp"
+
+namespace palpate::viewer {
+namespace {
+
+struct Hands : ShownScene {
+    int moves = 0;
+    Vec3 dragged = Vec3::Zero();
+
+    Hands() {
+        scene.set_field(Field(scenes::ball(support::cube(32))), 128);
+        // The middle of the grid is the origin; 0.2 mm a pixel.
+        scene.set_camera({Vec3::Zero(), Vec3(0, -1, 0), Vec3(0, 0, 1), 32});
+        QObject::connect(&scene, &Scene::camera_moved, [this] { ++moves; });
+        QObject::connect(&scene, &Scene::probe_dragged, [this](const Vec3& by) { dragged += by; });
+    }
+    void drag(Qt::MouseButton button, const QPoint& from, const QPoint& to,
+              Qt::KeyboardModifiers keys = Qt::NoModifier) {
+        QTest::mousePress(&scene, button, keys, from);
+        for (int i = 1; i <= 4; ++i) {
+            const QPoint at = from + (to - from) * i / 4;
+            QMouseEvent move(QEvent::MouseMove, at, scene.mapToGlobal(at), Qt::NoButton, button,
+                             keys);
+            QCoreApplication::sendEvent(&scene, &move);
+        }
+        QTest::mouseRelease(&scene, button, keys, to);
+    }
+    void wheel(const QPoint& at, int notches, Qt::KeyboardModifiers keys = Qt::NoModifier) {
+        QWheelEvent event(at, scene.mapToGlobal(at), QPoint(), QPoint(0, 120 * notches),
+                          Qt::NoButton, keys, Qt::NoScrollPhase, false);
+        QCoreApplication::sendEvent(&scene, &event);
+    }
+};
+
+TEST(SceneHand, left_drag_turns_the_camera_about_its_focus) {
+    Hands hands;
+    const Camera before = hands.scene.camera();
+    hands.drag(Qt::LeftButton, {200, 160}, {280, 160});
+    const Camera after = hands.scene.camera();
+    EXPECT_EQ(after.focus, before.focus);
+    EXPECT_EQ(after.half_height, before.half_height);
+    // 80 pixels of 320: 45 degrees; the body's right side comes round to the viewer.
+    EXPECT_NEAR(after.towards_viewer.dot(before.towards_viewer), std::sqrt(0.5), 1e-6);
+    EXPECT_LT(after.towards_viewer[0], -0.5);
+    EXPECT_GT(hands.moves, 0);
+    EXPECT_EQ(hands.dragged, Vec3::Zero());
+    // And no more once the button is up.
+    QTest::mouseMove(&hands.scene, {100, 100});
+    EXPECT_EQ(hands.scene.camera().towards_viewer, after.towards_viewer);
+}
+
+TEST(SceneHand, middle_drag_and_shift_with_left_pan) {
+    for (const bool middle : {true, false}) {
+        Hands hands;
+        const Camera before = hands.scene.camera();
+        hands.drag(middle ? Qt::MiddleButton : Qt::LeftButton, {200, 160}, {250, 130},
+                   middle ? Qt::NoModifier : Qt::ShiftModifier);
+        const Camera after = hands.scene.camera();
+        EXPECT_EQ(after.towards_viewer, before.towards_viewer);
+        EXPECT_LT((after.focus - before.focus - Vec3(-10, 0, -6)).norm(), 1e-9);
+    }
+}
+
+TEST(SceneHand, wheel_zooms_about_the_pointer_and_right_drag_about_where_it_began) {
+    Hands hands;
+    const auto seen = [&](const QPoint& at) {
+        return point_at(hands.scene.camera(), {400, 320}, {double(at.x()), double(at.y())});
+    };
+    const Vec3 point = seen({300, 60});
+    hands.wheel({300, 60}, 3);
+    EXPECT_LT(hands.scene.camera().half_height, 25);
+    EXPECT_LT((seen({300, 60}) - point).norm(), 1e-9);
+    hands.wheel({300, 60}, -3);
+    EXPECT_NEAR(hands.scene.camera().half_height, 32, 1e-9);
+    hands.drag(Qt::RightButton, {300, 60}, {300, 20});
+    EXPECT_LT(hands.scene.camera().half_height, 31);
+    EXPECT_LT((seen({300, 60}) - point).norm(), 1e-9);
+}
+
+TEST(SceneHand, double_click_recentres_on_the_surface_and_beside_it_does_nothing) {
+    Hands hands;
+    hands.settled();
+    const Vec3 before = hands.scene.camera().focus;
+    QTest::mouseDClick(&hands.scene, Qt::LeftButton, Qt::NoModifier, {10, 10});
+    EXPECT_EQ(hands.scene.camera().focus, before);
+    QTest::mouseDClick(&hands.scene, Qt::LeftButton, Qt::NoModifier, {225, 160});
+    const Vec3 focus = hands.scene.camera().focus;
+    EXPECT_NEAR(focus.norm(), 0.35 * 32, 0.4);  // on the ball, where it was clicked
+    EXPECT_NEAR(focus[0], 25.5 * 0.2, 0.15);
+    EXPECT_LT(focus[1], -5);
+}
+
+TEST(SceneHand, left_drag_moves_the_probe_by_what_the_pointer_went) {
+    Hands hands;
+    hands.scene.set_hand(Scene::Hand::probe);
+    const Camera before = hands.scene.camera();
+    hands.drag(Qt::LeftButton, {200, 160}, {240, 150});
+    EXPECT_LT((hands.dragged - Vec3(8, 0, 2)).norm(), 1e-9);
+    hands.dragged = Vec3::Zero();
+    hands.drag(Qt::LeftButton, {200, 160}, {240, 150}, Qt::ShiftModifier);
+    EXPECT_LT((hands.dragged - 0.2 * Vec3(8, 0, 2)).norm(), 1e-9);
+    EXPECT_EQ(hands.scene.camera().towards_viewer, before.towards_viewer);
+    EXPECT_EQ(hands.moves, 0);
+}
+
+TEST(SceneHand, wheel_forward_moves_the_probe_into_the_screen) {
+    Hands hands;
+    hands.scene.set_hand(Scene::Hand::probe);
+    hands.wheel({200, 160}, 2);
+    EXPECT_LT((hands.dragged - Vec3(0, 6, 0)).norm(), 1e-9);  // 15 pixels a notch
+    hands.dragged = Vec3::Zero();
+    hands.wheel({200, 160}, -1, Qt::ShiftModifier);
+    EXPECT_LT((hands.dragged - Vec3(0, -0.6, 0)).norm(), 1e-9);
+    EXPECT_EQ(hands.moves, 0);
+}
+
+TEST(SceneHand, with_the_probe_in_hand_the_camera_still_turns_pans_and_zooms) {
+    Hands hands;
+    hands.scene.set_hand(Scene::Hand::probe);
+    hands.drag(Qt::RightButton, {200, 160}, {240, 160});
+    const Vec3 turned = hands.scene.camera().towards_viewer;
+    EXPECT_LT(turned[0], -0.2);
+    hands.drag(Qt::LeftButton, {200, 160}, {160, 160}, Qt::AltModifier);
+    EXPECT_NEAR(hands.scene.camera().towards_viewer[0], 0, 1e-9);
+    const Vec3 focus = hands.scene.camera().focus;
+    hands.drag(Qt::MiddleButton, {200, 160}, {240, 160});
+    EXPECT_GT((hands.scene.camera().focus - focus).norm(), 5);
+    hands.wheel({200, 160}, 2, Qt::ControlModifier);
+    EXPECT_LT(hands.scene.camera().half_height, 30);
+    EXPECT_EQ(hands.dragged, Vec3::Zero());
+}
+
+TEST(SceneHand, camera_that_was_set_is_told_and_one_that_cannot_be_looked_through_is_refused) {
+    Hands hands;
+    const Camera camera{Vec3(1, 2, 3), Vec3(1, 1, 0), Vec3(0, 0, 1), 12};
+    hands.scene.set_camera(camera);
+    EXPECT_EQ(hands.scene.camera().focus, camera.focus);
+    EXPECT_EQ(hands.moves, 1);
+    Camera flat = camera;
+    flat.up = camera.towards_viewer;
+    EXPECT_THROW(hands.scene.set_camera(flat), std::invalid_argument);
+    Camera none = camera;
+    none.half_height = 0;
+    EXPECT_THROW(hands.scene.set_camera(none), std::invalid_argument);
+    hands.scene.look_from(pictures::view_named("top"));
+    EXPECT_EQ(hands.scene.camera().half_height, 12);
+    EXPECT_EQ(hands.scene.camera().focus, camera.focus);
+    EXPECT_EQ(hands.scene.camera().towards_viewer, Vec3(0, 0, 1));
+}
+
+TEST(SceneHand, a_view_of_the_whole_stays_one_when_the_window_changes_its_shape) {
+    Hands hands;
+    hands.scene.reset_camera();
+    const double wide = hands.scene.camera().half_height;
+    hands.scene.resize(160, 320);
+    hands.settled();
+    EXPECT_GT(hands.scene.camera().half_height, 1.4 * wide);
+    hands.scene.set_camera(hands.scene.camera());
+    const double own = hands.scene.camera().half_height;
+    hands.scene.resize(400, 320);
+    hands.settled();
+    EXPECT_EQ(hands.scene.camera().half_height, own);
+}
+
+}  // namespace
+}  // namespace palpate::viewer

@@ -1,0 +1,197 @@
+// Measures the 3-D view on this machine: how long a picture takes while the camera turns, how soon
+// the fine one is there, how long the window was busy at a stretch. For docs/performance.md:
+//   scripts/with_display.sh build/dev/tests/viewer/scene/viewer_frames synthetic:sphere:256x256x256
+#include <QApplication>
+#include <QElapsedTimer>
+#include <QSurfaceFormat>
+#include <QTimer>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "apps/live/volume_options.hpp"
+#include "apps/viewer/scene/scene.hpp"
+
+namespace {
+
+using namespace palpate;
+using viewer::Scene;
+
+double seconds(const QElapsedTimer& timer) {
+    return double(timer.nsecsElapsed()) * 1e-9;
+}
+
+/// Runs the event loop until `done` or `limit` [s].
+void run_until(const std::function<bool()>& done, double limit) {
+    QElapsedTimer timer;
+    timer.start();
+    while (!done() && seconds(timer) < limit) {
+        QApplication::processEvents(QEventLoop::AllEvents | QEventLoop::WaitForMoreEvents, 5);
+    }
+}
+
+double quantile(std::vector<double> values, double part) {
+    if (values.empty()) return 0;
+    std::ranges::sort(values);
+    return values[std::min(values.size() - 1, std::size_t(part * double(values.size())))];
+}
+
+void print(const char* what, const std::vector<double>& frames) {
+    std::printf("%-28s %4zu pictures  p50 %6.1f ms  p99 %6.1f ms  longest %6.1f ms\n", what,
+                frames.size(), 1e3 * quantile(frames, 0.5), 1e3 * quantile(frames, 0.99),
+                1e3 * quantile(frames, 1));
+    std::fflush(stdout);
+}
+
+/// The longest times that the event loop did not come round.
+class Pulse {
+  public:
+    Pulse() {
+        since_.start();
+        QObject::connect(&timer_, &QTimer::timeout, [this] { gaps_.push_back(lap()); });
+        timer_.start(2);
+    }
+    void report(const char* what) {
+        std::printf("%-28s window busy at a stretch: p99 %.1f ms, longest %.1f ms\n", what,
+                    1e3 * quantile(gaps_, 0.99), 1e3 * quantile(gaps_, 1));
+        gaps_.clear();
+    }
+
+  private:
+    double lap() {
+        const double elapsed = seconds(since_);
+        since_.restart();
+        return elapsed;
+    }
+    QElapsedTimer since_;
+    QTimer timer_;
+    std::vector<double> gaps_;
+};
+
+struct Meter {
+    Scene& scene;
+    Pulse pulse{};
+
+    void turn(const char* what) {
+        std::vector<double> frames;
+        QElapsedTimer since;
+        since.start();
+        const auto swapped = QObject::connect(&scene, &Scene::frameSwapped, [&] {
+            frames.push_back(seconds(since));
+            since.restart();
+        });
+        QTimer hand;
+        QObject::connect(&hand, &QTimer::timeout, [&] {
+            scene.set_camera(viewer::turned(scene.camera(), {1280, 800}, 3, 1));
+        });
+        hand.start(8);
+        run_until([] { return false; }, 5);
+        hand.stop();
+        QObject::disconnect(swapped);
+        if (!frames.empty()) frames.erase(frames.begin());
+        print(what, frames);
+        pulse.report(what);
+        rest(what);
+    }
+    /// The probe goes round, as snapshots of a session would show it.
+    void probe(const Field& field) {
+        std::vector<double> frames;
+        QElapsedTimer since;
+        since.start();
+        const auto swapped = QObject::connect(&scene, &Scene::frameSwapped, [&] {
+            frames.push_back(seconds(since));
+            since.restart();
+        });
+        QTimer hand;
+        Snapshot snapshot;
+        snapshot.session.device.status = DeviceStatus::ready;
+        const Vec3 middle = physical_centre(field.geometry());
+        const double radius =
+            0.2 *
+            field.geometry().size.cast<double>().cwiseProduct(field.geometry().spacing).norm();
+        QObject::connect(&hand, &QTimer::timeout, [&] {
+            const double angle = 0.02 * double(++snapshot.number);
+            Tick& tick = snapshot.session.tick;
+            tick.proxy.scp = middle + radius * Vec3(std::cos(angle), std::sin(angle), 0.5);
+            tick.proxy.hip = middle + 0.8 * (tick.proxy.scp - middle);
+            tick.force = (tick.proxy.scp - tick.proxy.hip).normalized();
+            scene.show_snapshot(snapshot);
+        });
+        hand.start(8);
+        run_until([] { return false; }, 4);
+        hand.stop();
+        QObject::disconnect(swapped);
+        print("probe", frames);
+        pulse.report("probe");
+        scene.show_snapshot({});
+    }
+    void rest(const char* what) {
+        QElapsedTimer timer;
+        timer.start();
+        run_until([&] { return scene.settled(); }, 120);
+        std::printf("%-28s at full quality %.0f ms after the last move\n", what,
+                    1e3 * seconds(timer));
+        pulse.report("  meanwhile");
+    }
+};
+
+void measure(const std::string& name, std::optional<double> level) {
+    app::VolumeOptions options;
+    options.volume = name;
+    options.quiet = true;
+    const app::LoadedVolume loaded = app::load(options, {});
+    const Field field(loaded.volume);
+    const double isovalue = level ? *level : loaded.isovalue.value_or(loaded.volume.minimum());
+    Scene scene;
+    scene.resize(1280, 800);
+    scene.show();
+    QObject::connect(&scene, &Scene::surface_ready, [](double, double taken) {
+        std::printf("surface at full detail after %.2f s\n", taken);
+    });
+    QObject::connect(&scene, &Scene::problem, [](const QString& what) {
+        std::fprintf(stderr, "problem: %s\n", qPrintable(what));
+    });
+    Meter meter{scene};
+    scene.set_field(field, isovalue);
+    meter.rest("opening");
+    if (const char* folder = std::getenv("PALPATE_FRAMES_PICTURES")) {
+        scene.picture().save(QString(folder) + "/surface.png");
+    }
+    meter.probe(field);
+    meter.turn("surface");
+    viewer::Look look;
+    look.surface = false;
+    look.volume = true;
+    const double low = loaded.volume.minimum(), range = loaded.volume.range();
+    look.transfer.points = {{isovalue - 0.05 * range, {0.5, 0.3, 0.2}, 0},
+                            {isovalue + 0.05 * range, {0.9, 0.75, 0.6}, 0.3},
+                            {low + 1.01 * range, {1, 1, 0.95}, 0.8}};
+    scene.set_look(look);
+    meter.rest("volume, first");
+    meter.turn("volume");
+    if (const char* folder = std::getenv("PALPATE_FRAMES_PICTURES")) {
+        scene.picture().save(QString(folder) + "/volume.png");
+    }
+    std::printf("%s\n", scene.on_hardware() ? "graphics hardware" : "software OpenGL");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    QSurfaceFormat::setDefaultFormat(QVTKOpenGLNativeWidget::defaultFormat());
+    QApplication application(argc, argv);
+    try {
+        const std::string name = argc > 1 ? argv[1] : "synthetic:sphere:256x256x256";
+        measure(name, argc > 2 ? std::optional(std::stod(argv[2])) : std::nullopt);
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "viewer_frames: %s\n", error.what());
+        return 1;
+    }
+    return 0;
+}
