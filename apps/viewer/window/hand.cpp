@@ -1,4 +1,6 @@
 // The mouse and the keys as a hand.
+#include <Eigen/Geometry>
+
 #include <QAction>
 #include <QMenu>
 #include <QMenuBar>

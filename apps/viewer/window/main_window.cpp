@@ -119,7 +119,7 @@ void MainWindow::tick() {
 void MainWindow::observe() {
     std::optional<Snapshot> now;
     if (live_) {
-        now = live_->snapshot();
+        now = held_ ? held_ : live_->snapshot();
     } else if (playback_) {
         now = playback_->at(shown_time_);
     }
@@ -227,8 +227,8 @@ void MainWindow::use_solid(Solid solid) {
     });
 }
 
-void MainWindow::freeze() {
-    if (live_) send(command::Freeze{true});
+void MainWindow::hold_picture() {
+    if (live_) held_ = live_->snapshot();
 }
 
 bool MainWindow::settled() const {

@@ -57,8 +57,8 @@ class MainWindow : public QMainWindow {
     double shown_time() const { return shown_time_; }
     void show_time(double time);
     /// Nothing is being loaded or drawn: what is seen is what there is.
-    /// Hand and proxy stand still from now on.
-    void freeze();
+    /// What is shown of the hand stays as it is now, for a picture; the session goes on.
+    void hold_picture();
     bool settled() const;
     /// What went wrong last, as shown; empty if nothing did.
     const QString& problem() const { return problem_; }
@@ -133,6 +133,7 @@ class MainWindow : public QMainWindow {
     std::unique_ptr<Live> live_;
     std::optional<Playback> playback_;
     double shown_time_ = 0;
+    std::optional<Snapshot> held_;
     std::optional<double> shown_isovalue_;  // of the surface in the scene
     std::optional<DeviceStatus> device_status_;
     std::vector<devices::DeviceFinding> findings_;

@@ -66,8 +66,9 @@ void MainWindow::make_menus() {
     make_view_menu();
     make_hand_actions();
     QMenu* help = menuBar()->addMenu(tr("&Help"));
-    add(help, "shortcuts_action", tr("&Shortcuts"), QKeySequence("?"),
-        [this] { make_shortcuts_dialog(this)->show(); });
+    add(help, "shortcuts_action", tr("&Shortcuts"), QKeySequence("?"), [this] {
+        make_shortcuts_dialog(this)->show();
+    })->setShortcuts({QKeySequence("?"), QKeySequence("Shift+?"), QKeySequence::HelpContents});
     auto* bar = addToolBar(tr("Tools"));
     bar->setObjectName("tools");
     for (const char* name :

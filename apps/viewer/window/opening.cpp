@@ -110,9 +110,10 @@ void MainWindow::begin(std::shared_ptr<Opened> opened, const app::TouchOptions& 
     views_->set_look(look);
     show_volume(live_->field(), live_->isovalue(), live_->settings(), live_->device());
     const Mat3& hand = live_->settings().transform.rotation;
-    views_->scene().look_from({hand.col(2), hand.col(1)});
     views_->scene().reset_camera();
+    views_->scene().look_from({hand.col(2), hand.col(1)});
     views_->set_window(opened_->dark(), opened_->bright());
+    show_done(tr("Felt through the device %1").arg(QString::fromStdString(options.device)));
     device_changed();
     if (!options.record.empty()) start_recording(QString::fromStdString(options.record));
     remember(QString::fromStdString(opened_->options.volume));
@@ -123,6 +124,7 @@ void MainWindow::begin(std::shared_ptr<Opened> opened, const app::TouchOptions& 
 void MainWindow::close_all() {
     live_.reset();
     playback_.reset();
+    held_.reset();
     opened_.reset();
     shown_isovalue_.reset();
     time_line_->hide();

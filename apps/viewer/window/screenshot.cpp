@@ -22,21 +22,21 @@ Screenshot::Screenshot(MainWindow& window, const QString& path, double after)
     timer_.start(look_ms);
 }
 
-/// Whether the hand is where the picture wants it; a session is frozen there.
+/// Whether the hand is where the picture wants it; it is shown there from then on.
 bool Screenshot::reached() {
     if (const Playback* playback = window_.playback()) {
-        if (!frozen_) window_.show_time(playback->begin() + after_);
-        frozen_ = true;
+        if (!held_) window_.show_time(playback->begin() + after_);
+        held_ = true;
         return true;
     }
     const Live* live = window_.live();
     const auto now = live ? live->snapshot() : std::nullopt;
     if (!now) return false;
-    if (!frozen_ && now->session.tick.time >= after_) {
-        window_.freeze();
-        frozen_ = true;
+    if (!held_ && now->session.tick.time >= after_) {
+        window_.hold_picture();
+        held_ = true;
     }
-    return frozen_;
+    return held_;
 }
 
 void Screenshot::look() {

@@ -28,7 +28,7 @@ class Screenshot : public QObject {
     MainWindow& window_;
     QString path_;
     double after_;
-    bool opened_ = false, frozen_ = false;
+    bool held_ = false;
     int quiet_ = 0, status_ = 0;
     QTimer timer_;
 };

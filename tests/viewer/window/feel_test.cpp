@@ -1,0 +1,218 @@
+// Opening, feeling, recording, playing: what a person does on the first day.
+#include <Eigen/Geometry>
+
+#include <QAction>
+#include <QDoubleSpinBox>
+#include <QLineEdit>
+#include <QMessageBox>
+#include <QSlider>
+#include <QTimer>
+
+#include "viewer/window/window_fixture.hpp"
+
+namespace palpate::viewer::test {
+namespace {
+
+using Window = InWindow;
+
+constexpr const char* sphere = "synthetic:sphere:48x48x48";
+
+TEST_F(Window, a_file_is_opened_through_the_dialog_by_keys) {
+    app::VolumeOptions options;
+    options.volume = sphere;
+    const Volume ball = app::load(options, [](double) {}).volume;
+    io::write_volume(ball, scratch_.path() / "ball.nrrd");
+    // The dialog has an event loop of its own: the keys come from within.
+    QTimer typist;
+    bool typed = false;
+    QObject::connect(&typist, &QTimer::timeout, [&] {
+        QWidget* dialog = QApplication::activeModalWidget();
+        auto* name = dialog ? dialog->findChild<QLineEdit*>("fileNameEdit") : nullptr;
+        if (!name || typed) return;
+        typed = true;
+        name->clear();
+        QTest::keyClicks(name, scratch("ball.nrrd"));
+        QTest::keyClick(name, Qt::Key_Return);
+    });
+    typist.start(50);
+    QTest::keyClick(window_.get(), Qt::Key_O, Qt::ControlModifier);
+    ASSERT_TRUE(typed);
+    ASSERT_TRUE(wait_until([&] { return window_->live() != nullptr; }));
+    EXPECT_EQ(window_->live()->field().geometry().size, Index3(48, 48, 48));
+    EXPECT_TRUE(window_->windowTitle().startsWith("ball.nrrd"));
+    EXPECT_TRUE(QSettings().value("recent").toStringList().contains(scratch("ball.nrrd")));
+}
+
+TEST_F(Window, pressing_with_the_mouse_makes_force_and_letting_go_ends_it) {
+    feel(sphere);
+    EXPECT_EQ(force(), 0);
+    press_until_force();
+    save("pressed");
+    EXPECT_EQ(now().session.tick.proxy.mode, Mode::constrained);
+    turn_wheel(window_->views().scene(), -20);
+    ASSERT_TRUE(wait_until([&] { return force() == 0; }));
+}
+
+TEST_F(Window, dragging_in_the_scene_moves_the_probe_in_the_plane_of_the_view) {
+    feel(sphere);
+    const Vec3 before = now().session.tick.proxy.hip;
+    Scene& scene = window_->views().scene();
+    const QPoint centre = scene.rect().center();
+    drag(scene, centre, centre + QPoint(60, 0));
+    ASSERT_TRUE(wait_until([&] { return (now().session.tick.proxy.hip - before).norm() > 1; }));
+    QTest::qWait(300);
+    const Vec3 way = now().session.tick.proxy.hip - before;
+    const pictures::Camera camera = scene.camera();
+    EXPECT_LT(std::abs(way.dot(camera.towards_viewer.normalized())), 1e-3 * way.norm());
+    const Vec3 right = Vec3(camera.up.cross(camera.towards_viewer)).normalized();
+    EXPECT_GT(way.dot(right), 0.99 * way.norm());
+    const double mm_per_pixel = 2 * camera.half_height / scene.height();
+    EXPECT_NEAR(way.norm(), 60 * mm_per_pixel, 2 * mm_per_pixel);
+}
+
+TEST_F(Window, keys_nudge_the_probe_by_a_voxel_in_the_view) {
+    feel(sphere);
+    const Vec3 before = now().session.tick.proxy.hip;
+    window_->views().scene().setFocus();
+    QTest::keyClick(&window_->views().scene(), Qt::Key_Right);
+    const double voxel = window_->live()->field().geometry().spacing.minCoeff();
+    ASSERT_TRUE(wait_until([&] {
+        return std::abs((now().session.tick.proxy.hip - before).norm() - voxel) < 0.01 * voxel;
+    }));
+}
+
+TEST_F(Window, dragging_the_slider_changes_the_level_that_is_felt_and_seen) {
+    feel(sphere);
+    auto& slider = part<QSlider>("isovalue_slider");
+    const double before = window_->live()->isovalue();
+    const int x = slider.width() / 2, y = slider.height() / 2;
+    drag(slider, {x, y}, {x + slider.width() / 4, y});
+    ASSERT_TRUE(wait_until([&] { return now().session.tick.proxy.isovalue != before; }));
+    QTest::qWait(200);
+    EXPECT_EQ(now().session.tick.proxy.isovalue, window_->live()->isovalue());
+    ASSERT_TRUE(wait_until([&] { return window_->settled(); }));
+}
+
+TEST_F(Window, space_switches_the_forces_off_and_on) {
+    feel(sphere);
+    press_until_force();
+    QTest::keyClick(window_.get(), Qt::Key_Space);
+    ASSERT_TRUE(wait_until([&] { return !now().forces_on && force() == 0; }));
+    save("off");
+    QTest::keyClick(window_.get(), Qt::Key_Space);
+    // The hand is deep enough for a force, which begins once a small one is wanted.
+    ASSERT_TRUE(wait_until([&] { return now().forces_on; }));
+}
+
+TEST_F(Window, freeze_holds_hand_and_proxy) {
+    feel(sphere);
+    QTest::keyClick(window_.get(), Qt::Key_F);
+    ASSERT_TRUE(wait_until([&] { return now().session.frozen; }));
+    const Vec3 before = now().session.tick.proxy.hip;
+    turn_wheel(window_->views().scene(), 10);
+    QTest::qWait(300);
+    EXPECT_EQ(now().session.tick.proxy.hip, before);
+}
+
+TEST_F(Window, a_session_is_recorded_and_played_back_with_its_time_line) {
+    feel(sphere);
+    const QString file = scratch("session.csv");
+    window_->start_recording(file);
+    ASSERT_NE(window_->live()->recording(), nullptr);
+    press_until_force();
+    QTest::qWait(300);
+    save("recording");
+    window_->stop_recording();
+    window_->open_path(file);
+    ASSERT_TRUE(wait_until([&] { return window_->playback() != nullptr; }))
+        << window_->problem().toStdString();
+    EXPECT_EQ(window_->live(), nullptr);
+    EXPECT_EQ(window_->playback()->different(), 0U);
+    EXPECT_TRUE(window_->time_line().isVisible());
+    // At the end the hand presses, at the beginning it does not.
+    window_->show_time(window_->playback()->end());
+    EXPECT_GT(window_->playback()->at(window_->shown_time()).session.tick.force.norm(), 0.2);
+    QTest::qWait(100);
+    save("played");
+    window_->show_time(window_->playback()->begin());
+    EXPECT_EQ(window_->playback()->at(window_->shown_time()).session.tick.force.norm(), 0);
+    window_->time_line().set_playing(true);
+    ASSERT_TRUE(
+        wait_until([&] { return window_->shown_time() > window_->playback()->begin() + 0.1; }));
+    // And back to feeling.
+    QTest::keyClick(window_.get(), Qt::Key_Escape);
+    ASSERT_TRUE(wait_until([&] { return window_->live() != nullptr; }));
+    EXPECT_FALSE(window_->time_line().isVisible());
+}
+
+TEST_F(Window, what_cannot_be_opened_is_told_and_the_session_goes_on) {
+    feel(sphere);
+    const Live* live = window_->live();
+    window_->open_path(scratch("missing.nrrd"));
+    ASSERT_TRUE(wait_until([&] { return !window_->problem().isEmpty(); }));
+    EXPECT_TRUE(window_->problem().contains("missing.nrrd"));
+    auto* box = window_->findChild<QMessageBox*>("problem");
+    ASSERT_NE(box, nullptr);
+    EXPECT_TRUE(box->isVisible());
+    save("told");
+    QTest::keyClick(box, Qt::Key_Return);
+    EXPECT_EQ(window_->live(), live);
+    const std::int64_t number = now().number;
+    ASSERT_TRUE(wait_until([&] { return now().number > number; }));
+}
+
+TEST_F(Window, a_session_file_brings_back_what_was_set) {
+    feel(sphere);
+    ForceSettings force = window_->live()->settings().force;
+    force.stiffness = 0.31;
+    Q_EMIT window_->panel().asked(force);
+    Q_EMIT window_->panel().asked(command::Isovalue{100});
+    window_->views().scene().look_from(pictures::view_named("left"));
+    Look look = window_->panel().look();
+    look.surface_opacity = 0.5;
+    window_->panel().set_look(look);
+    const pictures::Camera camera = window_->views().scene().camera();
+    window_->save_session(scratch("day.json"));
+    feel("synthetic:torus:32x32x16");
+    window_->open_path(scratch("day.json"));
+    ASSERT_TRUE(wait_until([&] {
+        return window_->live() && window_->live()->field().geometry().size[0] == 48;
+    })) << window_->problem().toStdString();
+    EXPECT_EQ(window_->live()->settings().force.stiffness, 0.31);
+    EXPECT_EQ(window_->live()->isovalue(), 100);
+    EXPECT_EQ(window_->panel().look().surface_opacity, 0.5);
+    EXPECT_LT((window_->views().scene().camera().towards_viewer - camera.towards_viewer).norm(),
+              1e-9);
+}
+
+TEST_F(Window, another_device_takes_over_with_what_was_set) {
+    feel(sphere);
+    Q_EMIT window_->panel().asked(command::Isovalue{90});
+    Q_EMIT window_->panel().device_chosen("simulated:hand=press");
+    ASSERT_NE(window_->live(), nullptr);
+    EXPECT_EQ(window_->live()->mouse(), nullptr);
+    EXPECT_EQ(window_->live()->isovalue(), 90);
+    ASSERT_TRUE(wait_until([&] { return force() > 0.2; }));
+    Q_EMIT window_->panel().device_chosen("nonsense");
+    EXPECT_TRUE(window_->problem().contains("nonsense"));
+    EXPECT_EQ(window_->live()->options().device, "simulated:hand=press");
+}
+
+TEST_F(Window, control_q_ends_the_window_and_the_session) {
+    feel(sphere);
+    QTest::keyClick(window_.get(), Qt::Key_Q, Qt::ControlModifier);
+    EXPECT_FALSE(window_->isVisible());
+    window_.reset();
+}
+
+TEST_F(Window, question_mark_lists_every_shortcut) {
+    QTest::keyClick(window_.get(), Qt::Key_Question, Qt::ShiftModifier);
+    auto* dialog = window_->findChild<QDialog*>("shortcuts");
+    ASSERT_NE(dialog, nullptr);
+    ASSERT_TRUE(wait_until([&] { return dialog->isVisible(); }));
+    dialog->grab().save(QString(PALPATE_PICTURES) + "/shortcuts.png");
+    dialog->close();
+}
+
+}  // namespace
+}  // namespace palpate::viewer::test

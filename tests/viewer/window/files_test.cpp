@@ -1,0 +1,159 @@
+// Files: dropped, recent, raw, given up, pictures.
+#include <QAction>
+#include <QComboBox>
+#include <QDialog>
+#include <QDragEnterEvent>
+#include <QDropEvent>
+#include <QMenu>
+#include <QMimeData>
+#include <QPushButton>
+#include <QSpinBox>
+#include <QUrl>
+#include <fstream>
+
+#include "apps/viewer/window/raw_dialog.hpp"
+#include "apps/viewer/window/screenshot.hpp"
+#include "viewer/window/window_fixture.hpp"
+
+namespace palpate::viewer::test {
+namespace {
+
+class Files : public InWindow {
+  protected:
+    /// A volume in a file, of this size.
+    QString file_of(int size, const char* name) {
+        app::VolumeOptions options;
+        options.volume = "synthetic:sphere:" + std::to_string(size) + "x" + std::to_string(size) +
+                         "x" + std::to_string(size);
+        io::write_volume(app::load(options, [](double) {}).volume, scratch_.path() / name);
+        return scratch(name);
+    }
+};
+
+TEST_F(Files, a_dropped_file_is_opened) {
+    QMimeData data;
+    data.setUrls({QUrl::fromLocalFile(file_of(24, "dropped.mha"))});
+    QDragEnterEvent enter({10, 10}, Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
+    QApplication::sendEvent(window_.get(), &enter);
+    EXPECT_TRUE(enter.isAccepted());
+    QDropEvent drop({10, 10}, Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
+    QApplication::sendEvent(window_.get(), &drop);
+    ASSERT_TRUE(wait_until([&] { return window_->live() != nullptr; }));
+    EXPECT_EQ(window_->live()->field().geometry().size, Index3(24, 24, 24));
+}
+
+TEST_F(Files, recent_files_are_listed_newest_first_and_open_again) {
+    const QString first = file_of(16, "first.nrrd"), second = file_of(20, "second.nrrd");
+    feel(first.toStdString());
+    feel(second.toStdString());
+    ASSERT_TRUE(wait_until([&] { return window_->live()->field().geometry().size[0] == 20; }));
+    auto& menu = part<QMenu>("recent");
+    Q_EMIT menu.aboutToShow();
+    ASSERT_GE(menu.actions().size(), 2);
+    EXPECT_EQ(menu.actions()[0]->text(), second);
+    EXPECT_EQ(menu.actions()[1]->text(), first);
+    menu.actions()[1]->trigger();
+    ASSERT_TRUE(wait_until(
+        [&] { return window_->live() && window_->live()->field().geometry().size[0] == 16; }));
+}
+
+TEST_F(Files, loading_can_be_cancelled_and_what_was_felt_goes_on) {
+    feel("synthetic:sphere:32x32x32");
+    const Live* before = window_->live();
+    // Smoothing so often takes seconds: time enough to find the button.
+    app::VolumeOptions slow;
+    slow.volume = file_of(160, "slow.nrrd").toStdString();
+    window_->open_volume(slow);
+    auto& cancel = part<QPushButton>("cancel");
+    ASSERT_TRUE(cancel.isVisible());
+    QTest::mouseClick(&cancel, Qt::LeftButton);
+    ASSERT_TRUE(wait_until([&] { return window_->settled(); }));
+    EXPECT_FALSE(cancel.isVisible());
+    // Whether it was cancelled in time or not, there is a session and no complaint.
+    EXPECT_NE(window_->live(), nullptr);
+    EXPECT_TRUE(window_->problem().isEmpty());
+    if (window_->live()->field().geometry().size[0] == 32) {
+        EXPECT_EQ(window_->live(), before);
+    }
+}
+
+TEST_F(Files, a_raw_file_is_opened_once_the_dialog_knows_its_size) {
+    std::ofstream(scratch_.path() / "samples.raw", std::ios::binary)
+        << std::string(2 * 12 * 10 * 8, '\x05');
+    RawDialog dialog(scratch("samples.raw"));
+    const auto set = [&](const char* name, int value) {
+        dialog.findChild<QSpinBox*>(name)->setValue(value);
+    };
+    auto* open = dialog.findChild<QPushButton*>();
+    for (auto* button : dialog.findChildren<QPushButton*>()) {
+        if (button->text().contains("Open")) open = button;
+    }
+    EXPECT_FALSE(open->isEnabled()) << "256^3 samples are more than the file holds";
+    set("size0", 12);
+    set("size1", 10);
+    set("size2", 8);
+    dialog.findChild<QComboBox*>()->setCurrentText("uint16");
+    EXPECT_TRUE(open->isEnabled());
+    const app::VolumeOptions options = dialog.options();
+    EXPECT_EQ(options.dims, "12x10x8");
+    EXPECT_EQ(options.type, "uint16");
+    const Volume volume = app::load(options, [](double) {}).volume;
+    EXPECT_EQ(volume.minimum(), 0x0505);
+}
+
+TEST_F(Files, pictures_of_scene_and_window_are_what_is_seen) {
+    feel("synthetic:torus:48x48x24");
+    window_->save_picture(scratch("scene.png"), false);
+    window_->save_picture(scratch("window.png"), true);
+    const QImage scene(scratch("scene.png")), whole(scratch("window.png"));
+    EXPECT_EQ(scene.size(), window_->views().scene().size() * window_->devicePixelRatioF());
+    EXPECT_EQ(whole.size(), window_->size() * window_->devicePixelRatioF());
+    // The scene lies in the window, pixel for pixel.
+    const QPoint corner = window_->views().scene().mapTo(window_.get(), {0, 0});
+    int different = 0;
+    for (int y = 0; y < scene.height(); y += 3) {
+        for (int x = 0; x < scene.width(); x += 3) {
+            const QColor a = scene.pixelColor(x, y);
+            const QColor b = whole.pixelColor(corner.x() + x, corner.y() + y);
+            if (std::abs(a.red() - b.red()) + std::abs(a.green() - b.green()) > 12) ++different;
+        }
+    }
+    EXPECT_LT(different, 30);
+    EXPECT_THROW(window_->save_picture("/no/such/folder/a.png", false), io::OutputError);
+}
+
+TEST_F(Files, screenshot_waits_for_the_hand_writes_and_closes) {
+    window_->open_path("synthetic:sphere:32x32x32");
+    const Screenshot screenshot(*window_, scratch("shot.png"), 0.3);
+    ASSERT_TRUE(wait_until([&] { return !window_->isVisible(); }));
+    EXPECT_EQ(screenshot.status(), 0);
+    EXPECT_FALSE(QImage(scratch("shot.png")).isNull());
+}
+
+TEST_F(Files, screenshot_of_what_cannot_be_opened_ends_with_its_status) {
+    window_->open_path(scratch("missing.nrrd"));
+    const Screenshot screenshot(*window_, scratch("shot.png"), 0);
+    ASSERT_TRUE(wait_until([&] { return !window_->isVisible(); }));
+    EXPECT_EQ(screenshot.status(), 3);
+    EXPECT_FALSE(QFile::exists(scratch("shot.png")));
+}
+
+TEST_F(Files, a_slice_puts_the_probe_where_it_is_clicked) {
+    feel("synthetic:sphere:48x48x48");
+    SlicePane& axial = window_->views().slice(2);
+    const QPoint at(axial.width() / 2, axial.height() / 8);
+    const Vec3 wanted = axial.point_at(at);
+    QTest::mouseClick(&axial, Qt::LeftButton, {}, at);
+    ASSERT_TRUE(wait_until([&] { return (now().session.tick.proxy.hip - wanted).norm() < 0.1; }));
+}
+
+TEST(WindowSize, is_read_or_refused) {
+    EXPECT_EQ(window_size("1280x800"), QSize(1280, 800));
+    EXPECT_FALSE(window_size("").isValid());
+    for (const char* wrong : {"1280", "1280x", "x800", "1280x800x3", "10x10", "big"}) {
+        EXPECT_THROW((void)window_size(wrong), std::invalid_argument) << wrong;
+    }
+}
+
+}  // namespace
+}  // namespace palpate::viewer::test

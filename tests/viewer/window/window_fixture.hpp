@@ -1,0 +1,134 @@
+// A window that a test drives as a person does: keys, mouse, time.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <QApplication>
+#include <QDir>
+#include <QElapsedTimer>
+#include <QSettings>
+#include <QWheelEvent>
+#include <QtTest>
+#include <functional>
+#include <memory>
+
+#include "apps/viewer/panel/panel.hpp"
+#include "apps/viewer/scene/scene.hpp"
+#include "apps/viewer/slices/slice_pane.hpp"
+#include "apps/viewer/slices/time_line.hpp"
+#include "apps/viewer/window/main_window.hpp"
+#include "apps/viewer/window/views.hpp"
+#include "support/scratch_folder.hpp"
+
+namespace palpate::viewer::test {
+
+/// Lets the window live until it is so; false if it never is within `ms`, which is meant to be far
+/// longer than it takes.
+inline bool wait_until(const std::function<bool()>& so, int ms = 30'000) {
+    QElapsedTimer clock;
+    clock.start();
+    while (!so()) {
+        if (clock.elapsed() > ms) return false;
+        QTest::qWait(10);
+    }
+    return true;
+}
+
+class InWindow : public testing::Test {
+  protected:
+    void SetUp() override {
+        QSettings::setPath(QSettings::NativeFormat, QSettings::UserScope,
+                           QString::fromStdString(scratch_.path().string()));
+        QSettings().clear();
+        open_window("mouse");
+    }
+    void TearDown() override {
+        if (!window_) return;
+        save("at-the-end");
+        window_.reset();
+    }
+
+    void open_window(const std::string& device) {
+        app::TouchOptions options;
+        options.device = device;
+        options.normal_priority = true;
+        window_ = std::make_unique<MainWindow>(options);
+        window_->resize(1280, 860);
+        window_->show();
+        ASSERT_TRUE(QTest::qWaitForWindowExposed(window_.get()));
+        window_->activateWindow();
+        ASSERT_TRUE(QTest::qWaitForWindowActive(window_.get()));
+    }
+
+    /// Opens a volume and waits until it is felt.
+    void feel(const std::string& name) {
+        window_->open_path(QString::fromStdString(name));
+        ASSERT_TRUE(wait_until([&] { return window_->live() && window_->live()->snapshot(); }))
+            << window_->problem().toStdString();
+        ASSERT_TRUE(wait_until([&] { return window_->settled(); }));
+    }
+
+    /// What is felt; right after a start, once there is something.
+    Snapshot now() const {
+        (void)wait_until([&] { return window_->live()->snapshot().has_value(); });
+        return window_->live()->snapshot().value();
+    }
+    double force() const { return now().session.tick.force.norm(); }
+
+    /// In the middle of a widget, a notch forward for each step.
+    void turn_wheel(QWidget& widget, int steps) {
+        const QPointF at = QRectF(widget.rect()).center();
+        for (int i = 0; i < std::abs(steps); ++i) {
+            QWheelEvent event(at, widget.mapToGlobal(at.toPoint()), {}, {0, steps > 0 ? 120 : -120},
+                              Qt::NoButton, Qt::NoModifier, Qt::NoScrollPhase, false);
+            QApplication::sendEvent(&widget, &event);
+            QTest::qWait(20);
+        }
+    }
+    void drag(QWidget& widget, const QPoint& from, const QPoint& to,
+              Qt::MouseButton button = Qt::LeftButton) {
+        QTest::mousePress(&widget, button, {}, from);
+        constexpr int steps = 8;
+        for (int i = 1; i <= steps; ++i) {
+            const QPoint at = from + (to - from) * i / steps;
+            // QTest's own move has no button: the event is made as the window system would.
+            QMouseEvent event(QEvent::MouseMove, at, widget.mapToGlobal(at), Qt::NoButton, button,
+                              Qt::NoModifier);
+            QApplication::sendEvent(&widget, &event);
+            QTest::qWait(15);
+        }
+        QTest::mouseRelease(&widget, button, {}, to);
+    }
+    /// Pushes the probe into the depth of the view until there is force.
+    void press_until_force() {
+        QWidget& scene = window_->views().scene();
+        for (int i = 0; i < 200 && !(force() > 0.3); ++i) {
+            turn_wheel(scene, 1);
+            QTest::qWait(20);
+        }
+        ASSERT_GT(force(), 0.3);
+    }
+
+    template <class Widget>
+    Widget& part(const char* name) {
+        auto* widget = window_->findChild<Widget*>(name);
+        if (!widget) throw std::runtime_error(std::string("no widget ") + name);
+        return *widget;
+    }
+    QString scratch(const char* name) const {
+        return QString::fromStdString((scratch_.path() / name).string());
+    }
+    /// A picture for people to look at.
+    void save(const std::string& name) {
+        QDir().mkpath(PALPATE_PICTURES);
+        const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+        window_->grab().save(
+            QString("%1/%2-%3.png")
+                .arg(PALPATE_PICTURES, test->name(), QString::fromStdString(name)));
+    }
+
+    support::ScratchFolder scratch_;
+    std::unique_ptr<MainWindow> window_;
+};
+
+}  // namespace palpate::viewer::test
