@@ -18,6 +18,7 @@ Quantity* ForceControls::row(QFormLayout& form, const QString& label, const QStr
                              const QString& unit, double high, double step, const QString& tip) {
     auto* quantity = new Quantity(name, unit, 0, high, step);
     quantity->setToolTip(tip);
+    quantity->set_accessible_name(label);
     auto* text = new QLabel(label);
     text->setToolTip(tip);
     text->setBuddy(quantity);

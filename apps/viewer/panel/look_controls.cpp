@@ -60,6 +60,7 @@ QWidget* LookControls::make_surface() {
     row->addWidget(add_switch("surface", "Surface", "The isosurface that is felt", &Look::surface));
     row->addWidget(surface_colour_);
     row->addWidget(surface_opacity_, 1);
+    surface_opacity_->set_accessible_name("Opacity of the isosurface");
     surface_opacity_->setToolTip("Opacity of the isosurface, 0 to 1");
     return all;
 }

@@ -51,6 +51,7 @@ PenetrabilityControls::PenetrabilityControls(LevelChart& chart, QWidget* parent)
         "PT, the penetration threshold [mm of the hand]: pulled further apart than this, hand and "
         "proxy get the surface to give way. The spring never exceeds stiffness x PT.");
     threshold_->box().set_infinite(true);
+    threshold_->set_accessible_name("PT, penetration threshold");
     minimum_->setObjectName("minimum");
     minimum_->set_infinite(true);
     minimum_->setToolTip(

@@ -52,6 +52,11 @@ Quantity::Quantity(const QString& name, const QString& unit, double low, double 
     set_value(low);
 }
 
+void Quantity::set_accessible_name(const QString& name) {
+    slider_->setAccessibleName(name);
+    box_->setAccessibleName(name);
+}
+
 void Quantity::set_value(double value) {
     value_ = value;
     box_->show_value(value);

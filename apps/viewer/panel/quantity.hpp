@@ -28,6 +28,7 @@ class Quantity : public QWidget {
     /// Forgets a wish that waits.
     void drop() { pacer_.drop(); }
     NumberBox& box() { return *box_; }
+    void set_accessible_name(const QString& name);
 
   Q_SIGNALS:
     void wanted(double value);  ///< at most 60 a second while the slider moves

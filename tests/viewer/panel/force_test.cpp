@@ -270,5 +270,22 @@ TEST_F(Forces, return_presses_a_button_that_has_the_focus) {
     EXPECT_TRUE(of<command::Freeze>().back().on);
 }
 
+TEST_F(Forces, tab_goes_through_the_panel_from_top_to_bottom) {
+    RendererSettings settings = unusual();
+    settings.penetrability = penetrability_threshold(1, 0);
+    set(settings);
+    int visited = 0;
+    int before = -1;
+    for (QWidget* one = panel.nextInFocusChain(); one != &panel; one = one->nextInFocusChain()) {
+        if (!panel.isAncestorOf(one) || !one->isVisible() || !one->isEnabled()) continue;
+        if (!(one->focusPolicy() & Qt::TabFocus) || one->focusProxy()) continue;
+        const int top = one->mapTo(&panel, QPoint(0, 0)).y();
+        EXPECT_GE(top, before - one->fontMetrics().height()) << one->objectName().toStdString();
+        before = top;
+        ++visited;
+    }
+    EXPECT_GT(visited, 50);
+}
+
 }  // namespace
 }  // namespace palpate::viewer
