@@ -1,5 +1,5 @@
-// Settings and commands as JSON. Private to io/. Numbers read back bit for bit; infinities are
-// "inf" and "-inf", which JSON has no number for.
+// Settings and commands as JSON. For io/ and for the viewer's session files. Numbers read back bit
+// for bit; infinities are "inf" and "-inf", which JSON has no number for.
 #pragma once
 
 #include <nlohmann/json.hpp>

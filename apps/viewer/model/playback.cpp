@@ -9,7 +9,7 @@
 namespace palpate::viewer {
 namespace {
 
-constexpr std::size_t most_snapshots = Playback::most_bytes / sizeof(Snapshot);
+constexpr std::size_t least_snapshots = 16;
 /// Ticks come a little early or late; every fourth is meant where it is 4 ms.
 constexpr double punctual = 0.9;
 
@@ -65,7 +65,8 @@ Overview::Piece piece_of(const SessionTick& session) {
 }  // namespace
 
 Playback Playback::read(const std::filesystem::path& recording, const app::LoadedVolume& loaded,
-                        const io::Progress& progress) {
+                        const io::Progress& progress, std::size_t most_bytes) {
+    const std::size_t most = std::max(most_bytes / sizeof(Snapshot), least_snapshots);
     io::RecordingReader reader(recording);
     Session session = app::recorded_session(reader.head(), loaded, recording.string());
     Playback playback(reader.head(), session.renderer.field);
@@ -89,7 +90,7 @@ Playback Playback::read(const std::filesystem::path& recording, const app::Loade
         kept = playback.snapshots_.empty() ||
                time >= playback.snapshots_.back().session.tick.time + punctual * playback.interval_;
         playback.survey(again);
-        if (kept) playback.keep(last);
+        if (kept) playback.keep(last, most);
     }
     if (playback.snapshots_.empty()) {
         throw io::InputError(recording.string() + ": has no ticks: nothing was recorded");
@@ -102,8 +103,8 @@ Playback Playback::read(const std::filesystem::path& recording, const app::Loade
 }
 
 /// Where there is no more room, every second goes.
-void Playback::keep(const Snapshot& snapshot) {
-    if (snapshots_.size() + 1 >= most_snapshots) {
+void Playback::keep(const Snapshot& snapshot, std::size_t most) {
+    if (snapshots_.size() + 1 >= most) {
         std::size_t to = 0;
         for (std::size_t from = 0; from < snapshots_.size(); from += 2) {
             snapshots_[to++] = snapshots_[from];

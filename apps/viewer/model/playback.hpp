@@ -33,10 +33,10 @@ struct Overview {
 
 /// A recording, rendered again once; any moment of it at once. Memory is bounded: it holds
 /// snapshots at least 4 ms apart, and of a recording of more than some half an hour ever fewer of
-/// them, so that they never take more than most_bytes.
+/// them, so that they never take more than `most_bytes`.
 class Playback {
   public:
-    static constexpr std::size_t most_bytes = std::size_t{256} << 20;
+    static constexpr std::size_t usual_bytes = std::size_t{256} << 20;
     static constexpr double least_interval = 0.004;  ///< [s] between snapshots
 
     /// Reads a recording and renders it. `loaded` is its volume (app::recorded_volume). `progress`
@@ -44,7 +44,7 @@ class Playback {
     /// without ticks, another volume's, or one that asks for what cannot be rendered. One that was
     /// cut off is read up to there.
     static Playback read(const std::filesystem::path& recording, const app::LoadedVolume& loaded,
-                         const io::Progress& progress);
+                         const io::Progress& progress, std::size_t most_bytes = usual_bytes);
 
     /// [s] of the first and the last tick, by the session's clock.
     double begin() const { return overview_.begin; }
@@ -65,9 +65,9 @@ class Playback {
     const Field& field() const { return field_; }
 
   private:
-    explicit Playback(io::RecordingHead head, Field field)
+    Playback(io::RecordingHead head, Field field)
         : head_(std::move(head)), field_(std::move(field)) {}
-    void keep(const Snapshot& snapshot);
+    void keep(const Snapshot& snapshot, std::size_t most);
     void survey(const SessionTick& tick);
     void finish();
 
