@@ -34,7 +34,7 @@ void LineMask::draw(double x0, double y0, double x1, double y1, double radius) {
     clip(x0, dx, -margin, width_ + margin);
     clip(y0, dy, -margin, height_ + margin);
     if (!(from <= to)) return;
-    const double length = (to - from) * std::hypot(dx, dy);
+    const double length = (to - from) * std::sqrt(dx * dx + dy * dy);
     const int parts = std::max(1, static_cast<int>(std::ceil(length / longest)));
     for (int i = 0; i < parts; ++i) {
         const double a = from + (to - from) * i / parts, b = from + (to - from) * (i + 1) / parts;
@@ -49,6 +49,8 @@ void LineMask::draw_short(double x0, double y0, double x1, double y1, double rad
     const float squared = dx * dx + dy * dy;
     const float scale = squared > 0 ? 1 / squared : 0;
     const double reach = radius + 0.5;
+    const float outer = (r + 0.5F) * (r + 0.5F);                  // beyond this nothing is covered,
+    const float inner = r > 0.5F ? (r - 0.5F) * (r - 0.5F) : -1;  // up to this all
     const auto pixel = [](double at, int count) {
         return static_cast<int>(std::clamp(std::floor(at), 0.0, double(count)));
     };
@@ -63,8 +65,9 @@ void LineMask::draw_short(double x0, double y0, double x1, double y1, double rad
             const float px = static_cast<float>(x) + 0.5F - fx0;
             const float along = std::clamp((px * dx + py * dy) * scale, 0.0F, 1.0F);
             const float ex = px - along * dx, ey = py - along * dy;
-            const float near = r + 0.5F - std::sqrt(ex * ex + ey * ey);
-            if (near <= 0) continue;
+            const float away = ex * ex + ey * ey;
+            if (away >= outer) continue;
+            const float near = away <= inner ? 1 : r + 0.5F - std::sqrt(away);
             const auto value = static_cast<std::uint8_t>(255 * std::min(near, 1.0F));
             covered[x] = std::max(covered[x], value);
         }
