@@ -39,6 +39,7 @@ double rounded_to(double value, double unit) {
 LevelAxis axis_of(const app::Histogram& histogram, const QRectF& plot) {
     LevelAxis axis{histogram.low, histogram.high, plot.left(),
                    std::max(plot.right(), plot.left() + 1)};
+    if (histogram.whole_numbers) axis.high -= 1;  // the last number itself
     if (!(axis.high > axis.low)) {
         const double room = std::max(0.5, 1e-3 * std::abs(axis.low));
         axis.low -= room;
@@ -50,25 +51,26 @@ LevelAxis axis_of(const app::Histogram& histogram, const QRectF& plot) {
 void paint_histogram(QPainter& painter, const app::Histogram& histogram, const LevelAxis& axis,
                      const QRectF& plot, const QColor& colour) {
     if (histogram.counts.empty()) return;
-    const auto most = *std::ranges::max_element(histogram.counts);
-    const double scale =
-        plot.height() / std::log1p(static_cast<double>(std::max<std::int64_t>(1, most)));
-    const auto bins = static_cast<double>(histogram.counts.size());
-    const double width = (histogram.high - histogram.low) / bins;
+    const auto most = std::max<std::int64_t>(1, *std::ranges::max_element(histogram.counts));
+    const double scale = plot.height() / std::log1p(static_cast<double>(most));
+    const double width = (histogram.high - histogram.low) / double(histogram.counts.size());
+    // A whole number stands in the middle of its bar.
+    const double first = histogram.low - (histogram.whole_numbers ? 0.5 : 0);
     QPainterPath bars(plot.bottomLeft());
     for (std::size_t i = 0; i < histogram.counts.size(); ++i) {
-        const double from = histogram.low + static_cast<double>(i) * width;
+        const double from = first + static_cast<double>(i) * width;
         double left = axis.x_of(from);
         double right = axis.x_of(from + width);
-        if (right - left < 0.5 && bins < 2) {  // all samples have one value
-            left -= 1;
-            right += 1;
+        if (width == 0) {  // all samples have one value
+            left -= 1.5;
+            right += 1.5;
+            bars.lineTo(left, plot.bottom());
         }
         const double top =
             plot.bottom() - scale * std::log1p(static_cast<double>(histogram.counts[i]));
         bars.lineTo(left, top);
         bars.lineTo(right, top);
-        if (bins < 2) bars.lineTo(right, plot.bottom());
+        if (width == 0) bars.lineTo(right, plot.bottom());
     }
     bars.lineTo(plot.bottomRight());
     bars.closeSubpath();

@@ -1,10 +1,11 @@
 // Pictures of the panel for people to look at, and what must be true of them on any screen.
 #include <QDir>
 #include <QPalette>
-#include <QStyleFactory>
 
+#include <filesystem>
+
+#include "apps/live/volume_options.hpp"
 #include "apps/viewer/model/transfer.hpp"
-#include "apps/viewer/panel/level_chart.hpp"
 #include "tests/viewer/panel/panel_stage.hpp"
 
 namespace palpate::viewer {
@@ -106,6 +107,30 @@ TEST_F(Pictures, narrow_with_a_threshold_and_refusals) {
     EXPECT_LE(panel.minimumSizeHint().width(), 26 * panel.fontMetrics().height());
     QApplication::processEvents();
     picture("panel_narrow");
+}
+
+TEST_F(Pictures, real_volumes_get_a_preset_that_shows_something) {
+    for (const std::string name : {"cthead_unc", "lobster", "daisy_pollen", "neuron_confocal"}) {
+        SCOPED_TRACE(name);
+        app::VolumeOptions options;
+        options.volume = std::string(PALPATE_DATA_FOLDER) + "/" + name + ".nrrd";
+        options.quiet = true;
+        if (!std::filesystem::exists(options.volume))
+            GTEST_SKIP() << options.volume << " is absent";
+        field.emplace(app::load(options, {}).volume);
+        histogram = app::histogram_of(field->volume(), 256);
+        const double isovalue = app::suggested_isovalues(histogram).front();
+        panel.set_session(*field, histogram, isovalue, {}, desktop_device());
+        Look look;
+        look.volume = true;
+        look.transfer =
+            preset(suggested_preset(histogram, field->volume()), histogram, field->volume());
+        panel.set_look(look);
+        // Air is clear, the brightest is not.
+        EXPECT_EQ(sampled(look.transfer, field->volume().minimum()).opacity, 0);
+        EXPECT_GT(sampled(look.transfer, field->volume().maximum()).opacity, 0.3);
+        picture("panel_" + QString::fromStdString(name));
+    }
 }
 
 TEST_F(Pictures, without_a_volume) {
