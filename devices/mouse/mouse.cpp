@@ -11,7 +11,9 @@ constexpr double lag = 0.03;
 /// A gap between two reads counts as no more [s].
 constexpr double longest_gap = 0.02;
 
-const Vec3 workspace = Vec3(100, 100, 100);  // [mm] half; a little larger than the volume fits into
+/// [mm] Half of the usable box, into which a volume is fitted, and of what can be reached: room to
+/// go round the volume.
+const Vec3 workspace(80, 80, 80), reach(100, 100, 100);
 
 }  // namespace
 
@@ -31,12 +33,11 @@ std::unique_ptr<Device> open_mouse(const DeviceChoice& choice, const DeviceScene
     return std::make_unique<Mouse>(speed);
 }
 
-Mouse::Mouse(double speed)
-    : aim_(0, 0, workspace[2]), speed_(speed), target_(aim_), position_(aim_) {}
+Mouse::Mouse(double speed) : aim_(0, 0, reach[2]), speed_(speed), target_(aim_), position_(aim_) {}
 
 void Mouse::aim(const Vec3& position) noexcept {
     if (!position.allFinite()) return;
-    aim_ = position.cwiseMax(-workspace).cwiseMin(workspace);
+    aim_ = position.cwiseMax(-reach).cwiseMin(reach);
     going_.put(aim_);
 }
 

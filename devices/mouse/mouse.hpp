@@ -17,15 +17,15 @@ std::unique_ptr<Device> open_mouse(const DeviceChoice& choice, const DeviceScene
 
 /// A hand that goes where a window's pointer aims. Pointers jump a hundred times a second; the hand
 /// follows smoothly, a thousand times, never faster than its speed. Axes and workspace as of every
-/// device: x to the right, y up, z towards the person. Begins in the middle of the side that is
-/// nearest to the person.
+/// device: x to the right, y up, z towards the person. Begins in front of the volume,
+/// before the person.
 class Mouse final : public Device {
   public:
     /// `speed` [mm/s]: the hand's greatest.
     explicit Mouse(double speed);
 
-    /// Where the hand is to go [device mm], cut to the workspace. By one thread, the window's; not
-    /// finite: nothing happens.
+    /// Where the hand is to go [device mm], cut to a quarter more than the workspace. By one
+    /// thread, the window's; not finite: nothing happens.
     void aim(const Vec3& position) noexcept;
     /// Where it is going. The thread that aims.
     const Vec3& aimed() const noexcept { return aim_; }

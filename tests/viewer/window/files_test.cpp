@@ -144,7 +144,9 @@ TEST_F(Files, a_slice_puts_the_probe_where_it_is_clicked) {
     const QPoint at(axial.width() / 2, axial.height() / 8);
     const Vec3 wanted = axial.point_at(at);
     QTest::mouseClick(&axial, Qt::LeftButton, {}, at);
-    ASSERT_TRUE(wait_until([&] { return (now().session.tick.proxy.hip - wanted).norm() < 0.1; }));
+    ASSERT_TRUE(
+        wait_until([&] { return (now().session.tick.proxy.hip - wanted).norm() < 0.1; }, 5000))
+        << "wanted " << wanted.transpose() << ", is " << now().session.tick.proxy.hip.transpose();
 }
 
 TEST(WindowSize, is_read_or_refused) {
