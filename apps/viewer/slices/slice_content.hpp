@@ -1,6 +1,8 @@
 // What a pane holds of a volume. Private to the pane.
 #pragma once
 
+#include <QElapsedTimer>
+
 #include "apps/viewer/slices/slice_pane.hpp"
 #include "apps/viewer/slices/slice_picture.hpp"
 
@@ -11,7 +13,9 @@ struct SlicePane::Content {
     SliceSamples samples;
     GreyWindow usual;
     bool usual_given = false;  ///< from outside
-    QImage picture;            ///< grey levels and contour as they are seen now; null: to be made
+    QImage picture;            ///< grey levels and contour; null: to be made
+    QElapsedTimer made;        ///< since then
+    qint64 took_ms = 0;
 
     Content(const Field& field, const SlicePlane& across, const GreyWindow& window)
         : plane(across), samples(field, across), usual(window) {}

@@ -12,6 +12,12 @@
 #include "palpate/lattice.hpp"
 
 namespace palpate::viewer {
+namespace {
+
+/// Times as long as a slice took to draw, the next one waits.
+constexpr qint64 rest = 3;
+
+}  // namespace
 
 SlicePane::SlicePane(int axis, QWidget* parent) : QWidget(parent), axis_(axis) {
     setObjectName(QStringLiteral("slice%1").arg(axis));
@@ -24,6 +30,8 @@ SlicePane::SlicePane(int axis, QWidget* parent) : QWidget(parent), axis_(axis) {
     setMouseTracking(true);
     setAttribute(Qt::WA_OpaquePaintEvent);
     setCursor(Qt::CrossCursor);
+    later_.setSingleShot(true);
+    connect(&later_, &QTimer::timeout, this, qOverload<>(&QWidget::update));
 }
 
 SlicePane::~SlicePane() = default;
@@ -70,8 +78,6 @@ void SlicePane::set_isovalue(double isovalue) {
 void SlicePane::set_crosshair(const Vec3& physical) {
     if (!physical.allFinite()) return;
     crosshair_ = physical;
-    if (!content_) return;
-    if (layer() != content_->samples.position()) content_->picture = {};
     update();
 }
 
@@ -144,6 +150,28 @@ void SlicePane::picture_changed() {
     update();
 }
 
+/// Where need be. A hand moves all the time, and a slice of a large volume takes milliseconds: as
+/// long as the slice alone has changed, most of the time is left to others, and it is drawn a
+/// little later.
+void SlicePane::make_picture(const SliceMap& where) {
+    Content& c = *content_;
+    const double scale = devicePixelRatioF();
+    const bool moved = layer() != c.samples.position();
+    if (!c.picture.isNull() && c.picture.size() == (QSizeF(size()) * scale).toSize()) {
+        if (!moved) return;
+        const auto wait = rest * c.took_ms - c.made.elapsed();
+        if (wait > 0) {
+            if (!later_.isActive()) later_.start(static_cast<int>(wait) + 1);
+            return;
+        }
+    }
+    c.made.start();
+    c.samples.go_to(layer());
+    c.picture = slice_picture(c.samples, where, {low_, high_}, isovalue_, size(), scale);
+    c.took_ms = c.made.elapsed();
+    c.made.start();
+}
+
 void SlicePane::paintEvent(QPaintEvent*) {
     QPainter painter(this);
     if (!content_) {
@@ -152,14 +180,9 @@ void SlicePane::paintEvent(QPaintEvent*) {
         painter.drawText(rect(), Qt::AlignCenter | Qt::TextWordWrap, tr("No volume"));
         return;
     }
-    content_->samples.go_to(layer());
     const SliceMap where = map();
-    const double scale = devicePixelRatioF();
-    QImage& picture = content_->picture;
-    if (picture.isNull() || picture.size() != (QSizeF(size()) * scale).toSize()) {
-        picture = slice_picture(content_->samples, where, {low_, high_}, isovalue_, size(), scale);
-    }
-    painter.drawImage(QPointF(0, 0), picture);
+    make_picture(where);
+    painter.drawImage(QPointF(0, 0), content_->picture);
     const SliceSheet sheet{content_->plane, geometry(), where, content_->samples.position(),
                            size()};
     paint_crosshair(painter, sheet, sheet.pixel(crosshair_));

@@ -2,6 +2,7 @@
 // proxy. What users of ITK-SNAP and 3D Slicer expect of one.
 #pragma once
 
+#include <QTimer>
 #include <QWidget>
 
 #include <memory>
@@ -81,6 +82,7 @@ class SlicePane : public QWidget {
     double margin() const;
     double layer() const;
     void picture_changed();
+    void make_picture(const SliceMap& where);
     void choose(const Vec3& physical);
     void choose_at(const QPointF& pixel);
     void aim_at(const QPointF& pixel);
@@ -104,6 +106,7 @@ class SlicePane : public QWidget {
     double drag_layer_ = 0;  // of the slice that the probe is dragged in
     QPointF drag_from_;
     std::optional<QPointF> pointer_;
+    QTimer later_;
     int wheel_ = 0;  // [eighths of a degree] not yet a step
 };
 

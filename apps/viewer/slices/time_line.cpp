@@ -7,7 +7,7 @@
 #include <QHBoxLayout>
 #include <QHideEvent>
 #include <QLabel>
-#include <QStyle>
+#include <QPainter>
 #include <QToolButton>
 
 #include <array>
@@ -156,9 +156,29 @@ void TimeLine::show_time() {
     label_->setText(clock_text(track_->time()) + " / " + clock_text(track_->length()));
 }
 
+/// In the colour of words, which a style's own icons are not.
+QIcon TimeLine::icon(bool pause) const {
+    const QSize size = button_->iconSize();
+    QPixmap picture(size * devicePixelRatioF());
+    picture.setDevicePixelRatio(devicePixelRatioF());
+    picture.fill(Qt::transparent);
+    QPainter painter(&picture);
+    painter.setRenderHint(QPainter::Antialiasing);
+    painter.setPen(Qt::NoPen);
+    painter.setBrush(palette().buttonText());
+    painter.scale(size.width(), size.height());
+    if (pause) {
+        painter.drawRect(QRectF(0.22, 0.15, 0.2, 0.7));
+        painter.drawRect(QRectF(0.58, 0.15, 0.2, 0.7));
+    } else {
+        painter.drawPolygon(QPolygonF({{0.25, 0.12}, {0.25, 0.88}, {0.85, 0.5}}));
+    }
+    return picture;
+}
+
 void TimeLine::show_state() {
     const bool on = playing();
-    button_->setIcon(style()->standardIcon(on ? QStyle::SP_MediaPause : QStyle::SP_MediaPlay));
+    button_->setIcon(icon(on));
     button_->setAccessibleName(on ? tr("Pause") : tr("Play"));
     button_->setToolTip(on ? tr("Pause") : tr("Play the recording"));
 }
@@ -169,7 +189,7 @@ void TimeLine::hideEvent(QHideEvent* event) {
 }
 
 void TimeLine::changeEvent(QEvent* event) {
-    if (event->type() == QEvent::StyleChange) show_state();
+    if (event->type() == QEvent::PaletteChange) show_state();
     QWidget::changeEvent(event);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <QElapsedTimer>
+#include <QIcon>
 #include <QTimer>
 #include <QWidget>
 
@@ -56,6 +57,7 @@ class TimeLine : public QWidget {
     void advance();
     void show_time();
     void show_state();
+    QIcon icon(bool pause) const;
 
     Overview overview_;
     QToolButton* button_;

@@ -157,7 +157,7 @@ void TimeTrack::paint_course(QPainter& painter, const QRectF& box) const {
         if (most_force_ > 0) {
             const double top = box.height() * column.most_force / most_force_;
             const double inner = box.height() * column.least_force / most_force_;
-            const QColor colour = qt_colour(pictures::force_colour, 0.45);
+            const QColor colour = qt_colour(pictures::force_colour, 0.55);
             painter.fillRect(QRectF(x, box.bottom() - top, step, top), colour);
             painter.fillRect(QRectF(x, box.bottom() - inner, step, inner), colour);
         }

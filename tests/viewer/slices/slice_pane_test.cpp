@@ -241,6 +241,20 @@ TEST(SlicePane, the_same_samples_again_keep_the_view_and_others_do_not) {
     EXPECT_NE(shown.pane.window_low(), 0.2);
 }
 
+TEST(SlicePane, however_fast_the_crosshair_moves_the_last_slice_is_shown) {
+    const Field field = ball_on(oblique_direction());
+    ShownPane moved(2, field), there(2, field);
+    const Vec3 last = physical_from_index(field.geometry(), {30, 12, 20.3});
+    there.pane.set_crosshair(last);
+    const QImage expected = there.picture();
+    for (int i = 0; i < 50; ++i) {
+        moved.pane.set_crosshair(physical_from_index(field.geometry(), {30, 12, 5 + 0.31 * i}));
+        moved.picture();
+    }
+    moved.pane.set_crosshair(last);
+    EXPECT_TRUE(QTest::qWaitFor([&] { return moved.picture() == expected; }, 20'000));
+}
+
 TEST(SlicePane, empty_or_emptied_in_the_middle_of_a_drag_it_takes_everything) {
     ShownPane shown(1);
     shown.picture();
