@@ -26,6 +26,7 @@ IsovalueControls::IsovalueControls(QWidget* parent)
       solid_(new QComboBox),
       felt_(new QLabel),
       warning_(new Note("isovalue_warning", Note::Kind::warning)),
+      overruled_(new Note("isovalue_overruled", Note::Kind::plain)),
       pacer_(this) {
     slider_->setObjectName("isovalue_slider");
     slider_->setRange(0, places);
@@ -60,6 +61,7 @@ IsovalueControls::IsovalueControls(QWidget* parent)
     column->addWidget(slider_);
     column->addLayout(row);
     column->addWidget(warning_);
+    column->addWidget(overruled_);
     connect_inputs();
 }
 
@@ -96,6 +98,7 @@ void IsovalueControls::clear() {
     field_.reset();
     chart_->clear();
     felt_->clear();
+    overruled_->say({});
     warning_->say({});
 }
 
@@ -105,6 +108,10 @@ void IsovalueControls::set_isovalue(double isovalue) {
 
 void IsovalueControls::set_solid(Solid solid) {
     solid_->setCurrentIndex(solid == Solid::above ? 0 : 1);
+}
+
+void IsovalueControls::set_overruled(bool overruled) {
+    overruled_->say(overruled ? "The level felt follows the hand: pressing through is on." : "");
 }
 
 void IsovalueControls::show_felt(double isovalue, bool penetrability_on) {

@@ -25,6 +25,8 @@ class IsovalueControls : public QWidget {
     /// Shows the level asked for; emits nothing.
     void set_isovalue(double isovalue);
     void set_solid(Solid solid);
+    /// Whether penetrability has the say over the level felt.
+    void set_overruled(bool overruled);
     /// What is felt now, shown apart where it is not what was asked for.
     void show_felt(double isovalue, bool penetrability_on);
     LevelChart& chart() { return *chart_; }
@@ -45,7 +47,7 @@ class IsovalueControls : public QWidget {
     NumberBox* box_;
     QComboBox* solid_;
     QLabel* felt_;
-    Note* warning_;
+    Note *warning_, *overruled_;
     Pacer pacer_;
     double isovalue_ = 0;
     int differing_ = 0;  // snapshots that tell of another level, in a row

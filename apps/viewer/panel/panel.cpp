@@ -168,6 +168,7 @@ const Look& Panel::look() const {
 void Panel::show_effect() {
     isovalue_->set_isovalue(now_.isovalue);
     isovalue_->set_solid(solid_);
+    isovalue_->set_overruled(now_.settings.penetrability.on);
     penetrability_->set_in_use(now_.settings.penetrability);
     force_->set_settings(now_.settings.force, now_.settings.proxy.friction, now_.settings.device);
     device_->set_scale(now_.settings.transform.scale);

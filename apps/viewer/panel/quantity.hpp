@@ -24,7 +24,6 @@ class Quantity : public QWidget {
     double value() const { return value_; }
     /// The ends of the slider; the value stays.
     void set_ends(double low, double high);
-    double high() const { return high_; }
     /// Forgets a wish that waits.
     void drop() { pacer_.drop(); }
     NumberBox& box() { return *box_; }

@@ -38,7 +38,6 @@ class Section : public QWidget {
     bool is_open() const { return heading_->isChecked(); }
     /// Why something was refused; empty: all is well. Opens the section.
     void say(const QString& why);
-    QString message() const { return message_->text(); }
 
   private:
     QToolButton* heading_;

@@ -5,7 +5,10 @@
 #include <QColorDialog>
 #include <QComboBox>
 
+#include <memory>
+
 #include "apps/viewer/model/transfer.hpp"
+#include "apps/viewer/panel/colour_button.hpp"
 #include "apps/viewer/panel/number_box.hpp"
 #include "apps/viewer/panel/transfer_editor.hpp"
 
@@ -173,6 +176,26 @@ TEST_F(Looks, a_colour_is_chosen_in_a_dialog_and_cancelled) {
     dialog->accept();
     EXPECT_NEAR(last().transfer.points[3].colour.blue, 1, 1e-4);
     EXPECT_EQ(last().transfer.points[3].opacity, look.transfer.points[3].opacity);
+}
+
+TEST_F(Looks, the_panel_can_go_in_the_middle_of_a_drag_with_a_dialog_open) {
+    auto other = std::make_unique<Panel>();
+    int heard = 0;
+    QObject::connect(other.get(), &Panel::look_changed, [&](const Look&) { ++heard; });
+    other->set_session(*field, histogram, 300, {}, desktop_device());
+    other->set_look(look);
+    other->show();
+    (void)QTest::qWaitForWindowExposed(other.get());
+    auto* held = other->findChild<TransferEditor*>();
+    const QPointF at = held->place_of(look.transfer.points[3]);
+    drag(held, at, at + QPointF(8, -15), Qt::NoModifier, false);
+    drag(other->findChild<QWidget*>("level_chart"), QPointF(80, 40), QPointF(200, 40),
+         Qt::NoModifier, false);
+    other->findChild<ColourButton*>("surface_colour")->click();
+    const int before = heard;
+    other.reset();
+    QTest::qWait(40);
+    EXPECT_EQ(heard, before);
 }
 
 TEST_F(Looks, random_pulling_about_never_makes_a_function_that_is_none) {

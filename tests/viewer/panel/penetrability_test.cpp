@@ -73,6 +73,9 @@ TEST_F(Pressing, threshold_begins_at_the_isovalue_and_takes_pt_and_minimum) {
     type("minimum", "-200");
     EXPECT_EQ(last().ranges[0].low, -200);
     EXPECT_EQ(last().threshold, 2.25);
+    EXPECT_TRUE(find<QLabel>("isovalue_overruled")->isVisible());
+    press("penetrability_off");
+    EXPECT_FALSE(find<QLabel>("isovalue_overruled")->isVisible());
 }
 
 TEST_F(Pressing, the_minimum_is_the_end_of_the_band_and_is_dragged_there) {
