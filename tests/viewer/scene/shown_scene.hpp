@@ -24,8 +24,7 @@ inline bool wait_until(const std::function<bool()>& done) {
     timer.start();
     while (!done()) {
         if (timer.elapsed() > 60'000) return false;
-        QCoreApplication::processEvents(QEventLoop::AllEvents | QEventLoop::WaitForMoreEvents, 5);
-        QTest::qWait(1);
+        QTest::qWait(2);
     }
     return true;
 }

@@ -1,0 +1,105 @@
+// Pictures of the 3-D view beside those that were looked at and committed. After a wanted change:
+// run with PALPATE_WRITE_REFERENCES=1, look at what is in references/, commit it.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "scenes/volumes.hpp"
+#include "support/fields.hpp"
+#include "viewer/scene/shown_scene.hpp"
+
+namespace palpate::viewer {
+namespace {
+
+/// Edges and letters differ with drivers and fonts, a little everywhere or much in few pixels.
+void expect_as_committed(const QImage& image, const std::string& name) {
+    const QString path = QString::fromStdString(PALPATE_REFERENCES + ("/" + name + ".png"));
+    if (std::getenv("PALPATE_WRITE_REFERENCES")) {
+        std::filesystem::create_directories(PALPATE_REFERENCES);
+        ASSERT_TRUE(image.save(path));
+    }
+    const QImage reference = QImage(path).convertToFormat(QImage::Format_RGB32);
+    ASSERT_EQ(reference.size(), image.size()) << path.toStdString();
+    EXPECT_LT(difference(image, reference), 1.5) << name;
+    int others = 0;
+    for (int y = 0; y < image.height(); ++y) {
+        for (int x = 0; x < image.width(); ++x) {
+            const QRgb p = image.pixel(x, y), q = reference.pixel(x, y);
+            others += std::abs(qGray(p) - qGray(q)) > 50;
+        }
+    }
+    EXPECT_LT(others, image.width() * image.height() / 100) << name;
+}
+
+struct Torus : ShownScene {
+    scenes::Scene torus = scenes::make_volume("torus:48x48x32");
+    Field field{torus.volume};
+
+    explicit Torus(const Look& look) {
+        scene.set_look(look);
+        scene.set_field(field, torus.isovalue);
+    }
+    /// Pressed on the side that is seen.
+    Snapshot pressed() const {
+        const RayHit hit = cast_ray(field, torus.isovalue, Vec3(5, -23, 14), Vec3(5, -13, 0));
+        EXPECT_TRUE(hit.hit);
+        Snapshot snapshot = snapshot_at(hit.point - 6 * hit.normal, hit.point, 0.8 * hit.normal);
+        snapshot.scp = locate(index_from_physical(field.geometry(), hit.point));
+        snapshot.session.tick.proxy.isovalue = torus.isovalue;
+        return snapshot;
+    }
+};
+
+TEST(SceneLooks, surface_with_probe_proxy_spring_and_force) {
+    Torus shown{Look()};
+    shown.scene.show_snapshot(shown.pressed());
+    expect_as_committed(shown.settled("look_contact"), "contact");
+}
+
+TEST(SceneLooks, glass_in_a_dark_window) {
+    Look look;
+    look.surface_opacity = 0.35;
+    Torus shown(look);
+    QPalette dark;
+    dark.setColor(QPalette::Window, QColor(40, 40, 44));
+    shown.scene.setPalette(dark);
+    shown.scene.show_snapshot(shown.pressed());
+    expect_as_committed(shown.settled("look_glass"), "glass");
+}
+
+TEST(SceneLooks, volume_with_slices) {
+    Look look;
+    look.surface = false;
+    look.volume = look.slices = true;
+    look.transfer.points = {{70, {0.7, 0.3, 0.2}, 0}, {160, pictures::bone, 0.5}};
+    Torus shown(look);
+    shown.scene.set_crosshair(Vec3(8, 6, -6));
+    expect_as_committed(shown.settled("look_volume"), "volume");
+}
+
+TEST(SceneLooks, lattice_and_planes_round_the_proxy) {
+    Look look;
+    look.surface_opacity = 0.4;
+    look.tetrahedra = look.planes = true;
+    look.box = false;
+    Torus shown(look);
+    // Where a wall between two tetrahedra meets the surface.
+    Snapshot snapshot = shown.pressed();
+    const Vec3 index = index_of(snapshot.scp);
+    LatticePoint on_wall = snapshot.scp;
+    on_wall.folded = snap(on_wall.folded, 1U << wall_plus);
+    snapshot.scp = on_wall;
+    const Vec3 scp = physical_from_index(shown.field.geometry(), index_of(on_wall));
+    EXPECT_LT((index_of(on_wall) - index).norm(), 1);
+    snapshot.session.tick.proxy.scp = scp;
+    snapshot.session.tick.proxy.isovalue = value_at(shown.field, on_wall);
+    Camera camera = shown.scene.camera();
+    camera.focus = scp;
+    camera.half_height = 2.2;
+    shown.scene.set_camera(camera);
+    shown.scene.show_snapshot(snapshot);
+    expect_as_committed(shown.settled("look_lattice"), "lattice");
+}
+
+}  // namespace
+}  // namespace palpate::viewer
