@@ -67,6 +67,45 @@ TEST(Servo, is_started_once) {
     EXPECT_THROW(servo.start(), std::logic_error);
 }
 
+TEST(Servo, a_session_that_has_stopped_goes_on_in_another_servo) {
+    ScriptedDevice device(&press);
+    Session left = ramp_session();
+    {
+        Servo servo(ramp_session(), device);
+        servo.start();
+        EXPECT_THROW((void)servo.session(), std::logic_error);
+        servo.send(command::Isovalue{25});
+        ASSERT_TRUE(soon([&] {
+            const auto now = servo.snapshot();
+            return now && now->session.tick.proxy.isovalue == 25;
+        }));
+        servo.stop();
+        left = servo.session();
+        const SessionTick last = servo.snapshot()->session;
+        EXPECT_EQ(left.renderer.proxy.scp_physical, last.tick.proxy.scp);
+        EXPECT_EQ(left.renderer.proxy.isovalue, 25);
+    }
+    Servo servo({make_renderer(left.renderer.field, left.renderer.proxy.isovalue), left.settings},
+                device);
+    servo.start();
+    ASSERT_TRUE(soon([&] { return servo.snapshot().has_value(); }));
+    EXPECT_EQ(servo.snapshot()->session.tick.proxy.isovalue, 25);
+}
+
+TEST(Servo, a_snapshot_tells_where_the_proxy_is_in_its_tetrahedron) {
+    Session session = ramp_session();
+    for (int i = 1; i < 400; ++i) {
+        const SessionTick tick = advance(session, 1e-3 * i, press(1e-3 * i));
+        const Snapshot seen = snapshot_of(session, tick, i, 0);
+        EXPECT_NEAR((physical_from_index(session.renderer.field.geometry(), index_of(seen.scp)) -
+                     tick.tick.proxy.scp)
+                        .norm(),
+                    0, 1e-9);
+        EXPECT_EQ(seen.number, i);
+        EXPECT_EQ(seen.stiffness, session.renderer.settings.force.stiffness);
+    }
+}
+
 TEST(Servo, forces_rise_from_zero_and_end_at_zero) {
     ScriptedDevice device(&press);
     Servo servo(ramp_session(), device);
