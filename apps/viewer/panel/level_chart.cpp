@@ -222,12 +222,13 @@ void LevelChart::contextMenuEvent(QContextMenuEvent* event) {
     if (!editable_ || band < 0) return;
     choose_band(band);
     Q_EMIT band_chosen(band);
-    QMenu menu(this);
+    auto* menu = new QMenu(this);
+    menu->setAttribute(Qt::WA_DeleteOnClose);
     const DensityRange& range = bands_[static_cast<std::size_t>(band)];
-    menu.addAction(
+    menu->addAction(
         QString("Delete range %1 to %2").arg(level_text(range.low), level_text(range.high)), this,
         [this, band] { Q_EMIT band_deleted(band); });
-    menu.exec(event->globalPos());
+    menu->popup(event->globalPos());  // the window goes on meanwhile
 }
 
 void LevelChart::keyPressEvent(QKeyEvent* event) {

@@ -205,6 +205,38 @@ TEST_F(Isovalue, the_other_side_is_asked_for_once) {
     EXPECT_EQ(message("isovalue_part"), "this field is solid all over");
 }
 
+TEST_F(Isovalue, any_data_can_be_shown_and_stepped_through) {
+    std::mt19937_64 random(8);
+    for (int round = 0; round < 60; ++round) {
+        const double size = std::pow(10.0, std::uniform_real_distribution(-30.0, 30.0)(random));
+        const double shift = random() % 2 ? 0 : 1000 * size;
+        std::vector<float> samples(1 + random() % 50);
+        for (float& s : samples) {
+            s = static_cast<float>(shift +
+                                   size * std::uniform_real_distribution(-1.0, 1.0)(random));
+        }
+        Geometry geometry;
+        geometry.size = {static_cast<int>(samples.size()), 1, 1};
+        const Field data(Volume(geometry, samples));
+        histogram = app::histogram_of(data.volume(), 64);
+        panel.set_session(data, histogram, data.volume().minimum(), {}, desktop_device());
+        commands.clear();
+        chart()->setFocus();
+        chart()->grab();
+        QTest::keyClick(chart(), Qt::Key_End);
+        QTest::keyClick(chart(), Qt::Key_PageDown);
+        drag(chart(), {20, 30}, {200, 30});
+        press("penetrability_ranges");
+        press("add_range");
+        chart()->grab();
+        for (const double level : levels()) {
+            ASSERT_GE(level, chart()->axis().low) << round;
+            ASSERT_LE(level, chart()->axis().high) << round;
+        }
+        ASSERT_FALSE(levels().empty()) << round;
+    }
+}
+
 TEST_F(Isovalue, without_a_volume_nothing_can_be_asked_for) {
     drag(chart(), QPointF(50, 30), QPointF(200, 30));
     set();

@@ -1,7 +1,9 @@
 // Pressing through, by bands on the histogram, by the table and by its modes.
 #include "tests/viewer/panel/panel_stage.hpp"
 
+#include <QContextMenuEvent>
 #include <QLineEdit>
+#include <QMenu>
 #include <QPushButton>
 #include <QRadioButton>
 
@@ -148,6 +150,20 @@ TEST_F(Pressing, del_on_a_chosen_band_deletes_it_but_not_the_last) {
     QTest::keyClick(chart(), Qt::Key_Delete);
     EXPECT_EQ(of<Penetrability>().size(), before);
     EXPECT_TRUE(message("penetrability_part").contains("last range"));
+}
+
+TEST_F(Pressing, a_right_click_on_a_band_offers_to_delete_it) {
+    set_ranges({{-400, 100}, {700, 1500}});
+    const QPoint at = on_strip(0).toPoint();
+    QContextMenuEvent click(QContextMenuEvent::Mouse, at, chart()->mapToGlobal(at));
+    QApplication::sendEvent(chart(), &click);
+    auto* menu = chart()->findChild<QMenu*>();
+    ASSERT_NE(menu, nullptr);
+    EXPECT_EQ(menu->actions().front()->text(), "Delete range -400 to 100");
+    menu->actions().front()->trigger();
+    menu->close();
+    ASSERT_EQ(last().range_count, 1);
+    expect_range(last(), 0, 700, 1500, 0);
 }
 
 TEST_F(Pressing, the_table_takes_numbers_and_infinity) {
