@@ -246,11 +246,6 @@ void Scene::lay_out() {
     parts_->outdated = false;
 }
 
-void Scene::paintGL() {
-    if (parts_->outdated) lay_out();
-    QVTKOpenGLNativeWidget::paintGL();
-}
-
 void Scene::resizeEvent(QResizeEvent* event) {
     QVTKOpenGLNativeWidget::resizeEvent(event);
     if (fitted_ && parts_->backstage.field()) {

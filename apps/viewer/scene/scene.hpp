@@ -78,7 +78,6 @@ class Scene : public QVTKOpenGLNativeWidget {
     void mouseReleaseEvent(QMouseEvent* event) override;
     void mouseDoubleClickEvent(QMouseEvent* event) override;
     void wheelEvent(QWheelEvent* event) override;
-    void paintGL() override;
 
   private:
     struct Parts;

@@ -20,7 +20,7 @@ void expect_as_committed(const QImage& image, const std::string& name) {
     }
     const QImage reference = QImage(path).convertToFormat(QImage::Format_RGB32);
     ASSERT_EQ(reference.size(), image.size()) << path.toStdString();
-    EXPECT_LT(difference(image, reference), 1.5) << name;
+    EXPECT_LT(difference(image, reference), 2) << name;
     int others = 0;
     for (int y = 0; y < image.height(); ++y) {
         for (int x = 0; x < image.width(); ++x) {

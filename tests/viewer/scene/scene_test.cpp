@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <limits>
 
+#include "apps/viewer/scene/painter.hpp"
 #include "scenes/volumes.hpp"
 #include "support/fields.hpp"
 #include "viewer/scene/shown_scene.hpp"
@@ -270,6 +271,7 @@ TEST(Scene, asks_for_nothing_while_nothing_changes) {
     ShownScene shown;
     shown.scene.set_field(ball(), 0.5);
     shown.settled();
+    QTest::qWait(200);  // until the window has shown it
     int frames = 0;
     QObject::connect(&shown.scene, &Scene::frameSwapped, [&] { ++frames; });
     QTest::qWait(500);
@@ -285,6 +287,17 @@ TEST(Scene, asks_for_nothing_while_nothing_changes) {
         QTest::qWait(5);
     }
     EXPECT_EQ(frames, 0);
+}
+
+TEST(Scene, tells_graphics_hardware_from_the_processor) {
+    for (const char* name : {"llvmpipe (LLVM 15.0.6, 256 bits)", "softpipe", "SWR (LLVM 12.0)",
+                             "Software Rasterizer", "Apple Software Renderer", ""}) {
+        EXPECT_FALSE(is_hardware(name)) << name;
+    }
+    for (const char* name : {"Mesa Intel(R) UHD Graphics 620 (KBL GT2)",
+                             "NVIDIA GeForce RTX 3080/PCIe/SSE2", "AMD Radeon RX 6800 (navi21)"}) {
+        EXPECT_TRUE(is_hardware(name)) << name;
+    }
 }
 
 TEST(Scene, follows_a_dark_palette) {
