@@ -4,6 +4,8 @@
 #include <vtkCellArray.h>
 #include <vtkFloatArray.h>
 #include <vtkNew.h>
+#include <vtkOpenGLRenderWindow.h>
+#include <vtkOpenGLState.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkPolyDataMapper.h>
@@ -23,6 +25,25 @@ namespace {
 
 constexpr double ghost_opacity = 0.4;
 constexpr Colour plane_colour{0.8, 0.475, 0.655};  // reddish purple (Okabe and Ito)
+
+/// Switches the writing of colours, among the opaque props in its turn.
+class ColourWriting : public vtkProp {
+  public:
+    static ColourWriting* New() {
+        auto* const made = new ColourWriting;
+        made->InitializeObjectBase();
+        return made;
+    }
+    double* GetBounds() override { return nullptr; }
+    int RenderOpaqueGeometry(vtkViewport* viewport) override {
+        auto* const window = vtkOpenGLRenderWindow::SafeDownCast(
+            vtkRenderer::SafeDownCast(viewport)->GetRenderWindow());
+        const unsigned char write = on ? 1 : 0;
+        window->GetState()->vtkglColorMask(write, write, write, write);
+        return 0;
+    }
+    bool on = true;
+};
 
 vtkSmartPointer<vtkPolyData> unit_ball() {
     vtkNew<vtkSphereSource> source;
@@ -58,29 +79,46 @@ std::optional<Contact> contact_of(const std::optional<Snapshot>& snapshot, const
 
 Markers::Markers(vtkRenderer& solid, vtkRenderer& ghost) : solid_(solid), ghost_(ghost) {
     const auto nothing = [] { return vtkSmartPointer<vtkPolyData>::New(); };
-    edges_ = add(pictures::spring_colour, nothing());
-    spring_ = add(pictures::spring_colour, nothing());
-    arrow_ = add(pictures::force_colour, nothing());
-    scp_ = add(pictures::scp_colour, unit_ball());
-    hip_ = add(pictures::hip_colour, unit_ball());
-    normals_ = add(plane_colour, nothing());
-    discs_ = add(plane_colour, nothing());
-    patches_ = add(pictures::scp_colour, nothing());
-    for (const Twin& twin : {edges_, normals_}) {
-        flat(*twin.solid, 1);
-        flat(*twin.ghost, ghost_opacity);
+    edges_ = twin_of(pictures::spring_colour, nothing());
+    spring_ = twin_of(pictures::spring_colour, nothing());
+    arrow_ = twin_of(pictures::force_colour, nothing());
+    scp_ = twin_of(pictures::scp_colour, unit_ball());
+    hip_ = twin_of(pictures::hip_colour, unit_ball());
+    normals_ = twin_of(plane_colour, nothing());
+    discs_ = twin_of(plane_colour, nothing());
+    patches_ = twin_of(pictures::scp_colour, nothing());
+    for (const Twin* twin :
+         {&edges_, &spring_, &arrow_, &scp_, &hip_, &normals_, &discs_, &patches_}) {
+        solid_.AddActor(twin->solid);
+    }
+    for (const Twin* twin : {&edges_, &normals_}) {
+        flat(*twin->solid, 1);
+        flat(*twin->ghost, ghost_opacity);
     }
     flat(*discs_.solid, 0.35);
     flat(*patches_.solid, 0.6);
-    for (const Twin& twin : {discs_, patches_}) {
-        twin.ghost->SetVisibility(false);
-        ghost_.RemoveActor(twin.ghost);
-    }
+    add_ghosts();
 }
 
-Markers::Twin Markers::add(const Colour& colour, vtkSmartPointer<vtkPolyData> data) {
-    Twin twin{vtkSmartPointer<vtkActor>::New(), vtkSmartPointer<vtkActor>::New(), std::move(data)};
-    for (vtkActor* actor : {twin.solid.Get(), twin.ghost.Get()}) {
+/// Over itself a ghost changes nothing; over a surface that hides its twin it is a hint. Depths
+/// come first, so that of all ghosts the nearest part alone is drawn.
+void Markers::add_ghosts() {
+    const auto all = {&edges_, &spring_, &arrow_, &scp_, &hip_, &normals_};
+    const auto writing = [this](bool on) {
+        vtkNew<ColourWriting> prop;
+        prop->on = on;
+        ghost_.AddViewProp(prop);
+    };
+    writing(false);
+    for (const Twin* twin : all) ghost_.AddActor(twin->depth);
+    writing(true);
+    for (const Twin* twin : all) ghost_.AddActor(twin->ghost);
+}
+
+Markers::Twin Markers::twin_of(const Colour& colour, vtkSmartPointer<vtkPolyData> data) {
+    const auto make = [] { return vtkSmartPointer<vtkActor>::New(); };
+    Twin twin{make(), make(), make(), std::move(data)};
+    for (vtkActor* actor : {twin.solid.Get(), twin.depth.Get(), twin.ghost.Get()}) {
         vtkNew<vtkPolyDataMapper> mapper;
         mapper->SetInputData(twin.data);
         mapper->ScalarVisibilityOff();
@@ -90,18 +128,14 @@ Markers::Twin Markers::add(const Colour& colour, vtkSmartPointer<vtkPolyData> da
         actor->GetProperty()->SetSpecular(0.35);
         actor->SetVisibility(false);
     }
-    // Over itself a ghost changes nothing; over a surface that hides its twin it is a hint. Its
-    // nearest part alone is drawn.
     twin.ghost->GetProperty()->SetOpacity(ghost_opacity);
-    twin.ghost->GetProperty()->BackfaceCullingOn();
     twin.ghost->ForceOpaqueOn();
-    solid_.AddActor(twin.solid);
-    ghost_.AddActor(twin.ghost);
     return twin;
 }
 
 void Markers::set_visible(const Twin& twin, bool visible) {
     twin.solid->SetVisibility(visible);
+    twin.depth->SetVisibility(visible);
     twin.ghost->SetVisibility(visible);
 }
 
@@ -109,8 +143,8 @@ void Markers::show_probe(const Contact& contact, const Vec3& origin, double pixe
     const double radius = ball_radius_px * pixel;
     const Vec3 hip = contact.hip - origin, scp = contact.scp - origin;
     const bool apart = contact.hip != contact.scp;
-    for (vtkActor* actor : {hip_.solid.Get(), hip_.ghost.Get()}) place(*actor, hip, radius);
-    for (vtkActor* actor : {scp_.solid.Get(), scp_.ghost.Get()}) place(*actor, scp, radius);
+    for (const auto& actor : {hip_.solid, hip_.depth, hip_.ghost}) place(*actor, hip, radius);
+    for (const auto& actor : {scp_.solid, scp_.depth, scp_.ghost}) place(*actor, scp, radius);
     set_visible(hip_, true);
     set_visible(scp_, apart);
     const bool sprung = apart && (scp - hip).norm() > 2 * radius;
@@ -146,11 +180,11 @@ void Markers::show(const std::optional<Contact>& contact, const Look& look, cons
     patches_.solid->SetVisibility(false);
     discs_.solid->SetVisibility(false);
     if (!contact) return;
-    for (vtkActor* actor : {edges_.solid.Get(), edges_.ghost.Get()}) {
+    for (const auto& actor : {edges_.solid, edges_.depth, edges_.ghost}) {
         actor->GetProperty()->SetColor(ink.red, ink.green, ink.blue);
         actor->GetProperty()->SetLineWidth(static_cast<float>(1.5 * pixel_ratio));
     }
-    for (vtkActor* actor : {normals_.solid.Get(), normals_.ghost.Get()}) {
+    for (const auto& actor : {normals_.solid, normals_.depth, normals_.ghost}) {
         actor->GetProperty()->SetLineWidth(static_cast<float>(2 * pixel_ratio));
     }
     if (look.contact) show_probe(*contact, origin, pixel);

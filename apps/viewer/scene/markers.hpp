@@ -43,10 +43,11 @@ class Markers {
 
   private:
     struct Twin {
-        vtkSmartPointer<vtkActor> solid, ghost;
+        vtkSmartPointer<vtkActor> solid, depth, ghost;
         vtkSmartPointer<vtkPolyData> data;
     };
-    Twin add(const Colour& colour, vtkSmartPointer<vtkPolyData> data);
+    static Twin twin_of(const Colour& colour, vtkSmartPointer<vtkPolyData> data);
+    void add_ghosts();
     static void set_visible(const Twin& twin, bool visible);
     void show_probe(const Contact& contact, const Vec3& origin, double pixel);
     void show_lattice(const Contact& contact, const Look& look, const Vec3& origin, double voxel);

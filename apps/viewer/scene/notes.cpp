@@ -8,6 +8,7 @@
 #include <vtkPoints.h>
 #include <vtkPolyDataMapper2D.h>
 #include <vtkProperty.h>
+#include <vtkRenderWindow.h>
 #include <vtkTextProperty.h>
 
 #include <algorithm>
@@ -116,7 +117,10 @@ void Notes::show_bar(const What& what) {
     bar_data_->Modified();
     bar_->GetProperty()->SetColor(what.ink.red, what.ink.green, what.ink.blue);
     text_->SetInput(in_millimetres(length).c_str());
-    text_->GetTextProperty()->SetFontSize(static_cast<int>(std::lround(em)));
+    // VTK's sizes are points, of which there are 72 an inch.
+    vtkRenderWindow* const window = writing_->GetRenderWindow();
+    const double size = em * 72 / (window ? window->GetDPI() : 72);
+    text_->GetTextProperty()->SetFontSize(static_cast<int>(std::lround(size)));
     text_->GetTextProperty()->SetColor(what.ink.red, what.ink.green, what.ink.blue);
     text_->SetPosition(right - 0.5 * pixels, y + 0.5 * em);
 }
