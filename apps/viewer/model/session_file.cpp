@@ -62,6 +62,10 @@ struct Writer {
             json[name] = json_from(value);
         }
     }
+    template <class T>
+    void operator()(const char* name, const std::optional<T>& value) {
+        if (value) (*this)(name, *value);
+    }
     void operator()(const char* name, const std::vector<ControlPoint>& points);
 };
 
@@ -88,6 +92,10 @@ struct Reader {
         } else {
             get(*j, where + name, value);
         }
+    }
+    template <class T>
+    void operator()(const char* name, std::optional<T>& value) {
+        if (find(name)) (*this)(name, value.emplace());
     }
     static void get(const Json& j, const std::string& name, bool& value) {
         if (!j.is_boolean()) wrong(name, "must be true or false");
@@ -149,8 +157,9 @@ void members(auto& v, Is<pictures::Camera> auto& s) {
     v("half_height", s.half_height);
 }
 
-/// All but volume, solid side, background, isovalue and settings, which are not plain members.
+/// All but volume, solid side, isovalue and settings, which are not plain members.
 void members(auto& v, Is<SessionFile> auto& s) {
+    v("background", s.background);
     v("device", s.device);
     v("method", s.method);
     v("look", s.look);
@@ -224,13 +233,13 @@ void check_session(const SessionFile& s) {
     check_finite("isovalue", s.isovalue);
     if (s.background) check_finite("background", *s.background);
     if (s.device.empty()) wrong("device", "must have a name");
-    RendererSettings settings = s.settings;
+    RendererSettings settings = s.settings.value_or(RendererSettings{});
     settings.method = baselines::method_named(s.method);
     check(settings);
     check(settings.penetrability, s.solid);
     check_look(s.look);
-    check_camera(s.camera);
-    if (!s.crosshair.allFinite()) wrong("crosshair", "must be finite");
+    if (s.camera) check_camera(*s.camera);
+    if (s.crosshair && !s.crosshair->allFinite()) wrong("crosshair", "must be finite");
     check_finite("window_low", s.window_low);
     check_finite("window_high", s.window_high);
     if (!(s.window_low <= s.window_high)) wrong("window_low", "must not be above 'window_high'");
@@ -292,14 +301,13 @@ SessionFile session_from(const Json& json, const std::filesystem::path& folder) 
     reader("solid", solid);
     if (solid != "above" && solid != "below") wrong("solid", "must be above or below");
     session.solid = solid == "above" ? Solid::above : Solid::below;
-    if (reader.find("background")) reader("background", session.background.emplace());
     if (const Json* const settings = reader.find("settings")) {
         if (!settings->is_object()) wrong("settings", "must be an object");
-        io::from_json(*settings, session.settings);
+        io::from_json(*settings, session.settings.emplace());
     }
     members(reader, session);
     check_session(session);
-    session.settings.method = baselines::method_named(session.method);
+    if (session.settings) session.settings->method = baselines::method_named(session.method);
     return session;
 }
 
@@ -331,9 +339,8 @@ void write_session(const std::filesystem::path& path, const SessionFile& session
     writer.json["version"] = version;
     writer.json["volume"] = app::to_names(volume);
     writer.json["solid"] = session.solid == Solid::above ? "above" : "below";
-    if (session.background) writer.json["background"] = *session.background;
     writer.json["isovalue"] = session.isovalue;
-    writer.json["settings"] = io::to_json(session.settings);
+    if (session.settings) writer.json["settings"] = io::to_json(*session.settings);
     members(writer, session);
     std::string text;
     try {

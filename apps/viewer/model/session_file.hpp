@@ -21,11 +21,11 @@ struct SessionFile {
     std::string device = "simulated";  ///< as for --device, options and all
     std::string method = "exact";      ///< of the proxy, by name
     /// `method` goes with the name above when it is read, and is not looked at when it is written;
-    /// a penetrability function is code and cannot be kept.
-    RendererSettings settings;
+    /// a penetrability function is code and cannot be kept. Nothing: what suits device and volume.
+    std::optional<RendererSettings> settings;
     Look look;
-    pictures::Camera camera;
-    Vec3 crosshair = Vec3::Zero();           ///< [mm, physical]
+    std::optional<pictures::Camera> camera;  ///< nothing: the whole volume
+    std::optional<Vec3> crosshair;           ///< [mm, physical]; nothing: the middle
     bool follow = true;                      ///< the crosshair goes with the hand
     double window_low = 0, window_high = 0;  ///< [data units] grey levels; equal: the usual ones
     bool slices_shown = true;                ///< the panes

@@ -89,6 +89,7 @@ class MainWindow : public QMainWindow {
     void close_all();
     void show_volume(const Field& field, double isovalue, const RendererSettings& settings,
                      const DeviceInfo& device);
+    void restore(const RendererSettings& settings);
     void resume(std::shared_ptr<Opened> opened, const SessionFile& session);
     void play(std::shared_ptr<Opened> opened, const QString& path);
     void leave_playback();

@@ -19,7 +19,7 @@ SessionFile MainWindow::session_now() const {
         session.device = live_->options().device;
         session.method = live_->options().render.method;
         session.settings = live_->settings();
-        if (now) session.settings.transform = now->session.transform;
+        if (now) session.settings->transform = now->session.transform;
     } else {
         const io::RecordingHead& head = playback_->head();
         session.solid = head.solid;
@@ -57,6 +57,15 @@ void MainWindow::open_session(const QString& path) {
     });
 }
 
+/// What the device at hand cannot render stays as it is, and is told.
+void MainWindow::restore(const RendererSettings& settings) {
+    send(settings.force);
+    send(settings.proxy.friction);
+    send(settings.penetrability);
+    send(settings.transform);
+    send(command::Forces{settings.forces_on});
+}
+
 void MainWindow::resume(std::shared_ptr<Opened> opened, const SessionFile& session) {
     app::TouchOptions options = options_;
     options.volume = session.volume;
@@ -68,12 +77,7 @@ void MainWindow::resume(std::shared_ptr<Opened> opened, const SessionFile& sessi
     options.record.clear();
     begin(std::move(opened), options);
     options_.device = session.device;
-    // What the device at hand cannot render stays as it is, and is told.
-    send(session.settings.force);
-    send(session.settings.proxy.friction);
-    send(session.settings.penetrability);
-    send(session.settings.transform);
-    send(command::Forces{session.settings.forces_on});
+    if (session.settings) restore(*session.settings);
     panel_->set_session(live_->field(), opened_->histogram, live_->isovalue(), live_->settings(),
                         live_->device());
     Look look = session.look;
@@ -83,10 +87,10 @@ void MainWindow::resume(std::shared_ptr<Opened> opened, const SessionFile& sessi
     if (session.window_low < session.window_high) {
         views_->set_window(session.window_low, session.window_high);
     }
-    views_->set_crosshair(session.crosshair);
+    if (session.crosshair) views_->set_crosshair(*session.crosshair);
     views_->set_follow(session.follow);
     views_->show_slices(session.slices_shown);
-    views_->scene().set_camera(session.camera);
+    if (session.camera) views_->scene().set_camera(*session.camera);
     refresh_actions();
 }
 
