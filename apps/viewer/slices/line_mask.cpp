@@ -18,6 +18,7 @@ LineMask::LineMask(int width, int height)
       covered_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), 0) {}
 
 void LineMask::draw(double x0, double y0, double x1, double y1, double radius) {
+    if (!std::isfinite(x0 + y0 + x1 + y1)) return;
     const double margin = radius + 1;
     // The part inside the picture, for a line may be far longer than it (Liang and Barsky 1984).
     double from = 0, to = 1;
