@@ -70,10 +70,10 @@ void IsovalueControls::connect_inputs() {
     connect(chart_, &LevelChart::level_settled, &pacer_, &Pacer::flush);
     connect(slider_, &QSlider::sliderReleased, &pacer_, &Pacer::flush);
     connect(slider_, &QSlider::valueChanged, this, [this](int at) {
-        LevelAxis axis = chart_->axis();
+        LevelAxis axis = chart_->whole_axis();
+        const double fine = std::min(chart_->fine_step(), axis.step());
         axis.left = 0;
         axis.right = places;
-        const double fine = std::min(chart_->fine_step(), chart_->axis().step());
         const double level = rounded_to(axis.level_of(at), fine);
         ask(std::clamp(level, axis.low, axis.high));
     });
@@ -134,7 +134,7 @@ void IsovalueControls::place(double isovalue) {
     box_->show_value(isovalue);
     if (!slider_->isSliderDown()) {
         const QSignalBlocker quiet(slider_);
-        LevelAxis axis = chart_->axis();
+        LevelAxis axis = chart_->whole_axis();
         axis.left = 0;
         axis.right = places;
         slider_->setValue(static_cast<int>(std::lround(axis.x_of(isovalue))));

@@ -4,6 +4,7 @@
 #include <QPainter>
 #include <QPainterPath>
 #include <QString>
+#include <QWheelEvent>
 
 #include <algorithm>
 #include <cmath>
@@ -26,6 +27,42 @@ double LevelAxis::step() const {
 
 double LevelAxis::round_level_of(double x) const {
     return std::clamp(rounded_to(level_of(x), step()), low, high);
+}
+
+LevelAxis LevelView::seen(const LevelAxis& whole) const {
+    const double range = whole.high - whole.low;
+    LevelAxis axis = whole;
+    if (from > 0) axis.low = whole.low + from * range;
+    if (to < 1) axis.high = whole.low + to * range;
+    return axis.low < axis.high ? axis : whole;  // of data with few digits
+}
+
+void LevelView::zoom(double factor, double about) {
+    constexpr double least = 1.0 / 256;
+    const double width = std::clamp((to - from) / factor, least, 1.0);
+    const double place = (about - from) / (to - from);
+    from = std::clamp(about - place * width, 0.0, 1 - width);
+    to = width == 1 ? 1 : from + width;
+}
+
+void LevelView::move(double part) {
+    const double width = to - from;
+    from = std::clamp(from + part * width, 0.0, 1 - width);
+    to = from + width;
+}
+
+bool LevelView::wheel(const QWheelEvent& event, const LevelAxis& whole) {
+    const double notches = (event.angleDelta().y() + event.angleDelta().x()) / 120.0;
+    if (event.modifiers() & Qt::ControlModifier) {
+        const double level = seen(whole).level_of(event.position().x());
+        zoom(std::pow(1.25, notches), (level - whole.low) / (whole.high - whole.low));
+        return true;
+    }
+    if (event.modifiers() & Qt::ShiftModifier) {
+        move(-0.1 * notches);
+        return true;
+    }
+    return false;
 }
 
 double rounded_to(double value, double unit) {

@@ -9,6 +9,7 @@
 #include "apps/live/statistics.hpp"
 
 class QPainter;
+class QWheelEvent;
 
 namespace palpate::viewer {
 
@@ -24,6 +25,21 @@ struct LevelAxis {
     double step() const;
     /// The multiple of step() nearest to the level at x, not beyond the ends.
     double round_level_of(double x) const;
+};
+
+/// The part of the data that is seen, 0 <= from < to <= 1 of its whole axis.
+struct LevelView {
+    double from = 0, to = 1;
+
+    /// The axis of that part, between the same pixels.
+    LevelAxis seen(const LevelAxis& whole) const;
+    /// `factor` > 1 shows less of the data in more detail; `about`, 0 to 1 of the whole, stays
+    /// where it is as long as the ends allow.
+    void zoom(double factor, double about);
+    /// Moves on by a part of what is seen.
+    void move(double part);
+    /// Control and wheel zooms about the pointer, shift and wheel moves. False: neither is held.
+    bool wheel(const QWheelEvent& event, const LevelAxis& whole);
 };
 
 /// The multiple of `unit`, a power of ten, that is nearest.

@@ -28,12 +28,14 @@ LevelChart::LevelChart(QWidget* parent) : QWidget(parent) {
         "Drag: the isovalue. Arrow keys or wheel after a click: fine steps; Page keys: ten.\n"
         "Ticks on the upper edge: levels that are likely worth feeling.\n"
         "Shift-drag: a new range of interest. Drag the strip below: move or resize it;\n"
-        "right click or Del: delete it.");
+        "right click or Del: delete it.\n"
+        "Ctrl-wheel zooms, shift-wheel moves, Ctrl+0 shows all again.");
 }
 
 void LevelChart::set_data(const app::Histogram& histogram, const std::vector<double>& suggested) {
     histogram_ = histogram;
     suggested_ = suggested;
+    view_ = {};
     drag_ = Drag::none;
     update();
 }
@@ -86,8 +88,12 @@ QRectF LevelChart::strip() const {
     return {p.left(), p.bottom(), p.width(), 0.5 * text_height()};
 }
 
-LevelAxis LevelChart::axis() const {
+LevelAxis LevelChart::whole_axis() const {
     return axis_of(histogram_, plot());
+}
+
+LevelAxis LevelChart::axis() const {
+    return view_.seen(whole_axis());
 }
 
 double LevelChart::fine_step() const {
@@ -113,7 +119,7 @@ void LevelChart::ask_level(double level) {
 }
 
 void LevelChart::step_level(double steps) {
-    const LevelAxis a = axis();
+    const LevelAxis a = whole_axis();
     const double from = std::isfinite(level_) ? level_ : a.low;
     ask_level(std::clamp(from + steps * fine_step(), a.low, a.high));
 }
@@ -180,7 +186,7 @@ void LevelChart::mouseMoveEvent(QMouseEvent* event) {
             return;
         case Drag::band: {
             DensityRange& band = bands_[static_cast<std::size_t>(grip_.band)];
-            const DensityRange moved = dragged(held_, grip_.grip, held_at_, level, a);
+            const DensityRange moved = dragged(held_, grip_.grip, held_at_, level, whole_axis());
             if (moved.low == band.low && moved.high == band.high) return;
             band = moved;
             update();
@@ -250,10 +256,15 @@ void LevelChart::keyPressEvent(QKeyEvent* event) {
             step_level(10);
             break;
         case Qt::Key_Home:
-            ask_level(axis().low);
+            ask_level(whole_axis().low);
             break;
         case Qt::Key_End:
-            ask_level(axis().high);
+            ask_level(whole_axis().high);
+            break;
+        case Qt::Key_0:
+            if (!(event->modifiers() & Qt::ControlModifier)) return event->ignore();
+            view_ = {};
+            update();
             break;
         case Qt::Key_Delete:
         case Qt::Key_Backspace:
@@ -265,7 +276,13 @@ void LevelChart::keyPressEvent(QKeyEvent* event) {
 }
 
 void LevelChart::wheelEvent(QWheelEvent* event) {
-    if (!hasFocus() || histogram_.counts.empty()) return event->ignore();
+    if (histogram_.counts.empty()) return event->ignore();
+    if (view_.wheel(*event, whole_axis())) {
+        event->accept();
+        update();
+        return;
+    }
+    if (!hasFocus()) return event->ignore();
     event->accept();
     wheel_ += event->angleDelta().y();
     const int steps = wheel_ / 120;  // touch pads send parts of a step

@@ -13,7 +13,8 @@ namespace palpate::viewer {
 
 /// Mouse: press or drag in the plot moves the level; a tick on the upper edge is taken exactly;
 /// bands are moved and resized by their strip on the lower edge; shift-drag makes a new one; right
-/// click or Del on a band deletes it. Keys: arrows one step, Page 10, Home and End, Tab to leave.
+/// click or Del on a band deletes it. Control and wheel zooms, shift and wheel moves what is seen.
+/// Keys: arrows one step, Page 10, Home and End, Ctrl+0 shows all again.
 class LevelChart : public QWidget {
     Q_OBJECT
 
@@ -38,7 +39,9 @@ class LevelChart : public QWidget {
     void choose_band(int band);
     /// What an arrow key moves the level by [data units].
     double fine_step() const;
+    /// What is seen, and the whole of the data.
     LevelAxis axis() const;
+    LevelAxis whole_axis() const;
     /// Where bands are taken hold of [logical pixels].
     QRectF strip() const;
 
@@ -89,7 +92,8 @@ class LevelChart : public QWidget {
     BandGrip grip_;
     double held_at_ = 0;         // level under the pointer when the drag began
     DensityRange held_, fresh_;  // the band then; the one that is being made
-    int wheel_ = 0;              // eighths of degrees that make no step yet
+    LevelView view_;
+    int wheel_ = 0;  // eighths of degrees that make no step yet
 };
 
 }  // namespace palpate::viewer

@@ -6,6 +6,7 @@
 #include <QMouseEvent>
 #include <QPainter>
 #include <QPainterPath>
+#include <QWheelEvent>
 
 #include <algorithm>
 #include <cmath>
@@ -30,11 +31,14 @@ TransferEditor::TransferEditor(QWidget* parent) : QWidget(parent) {
         "Opacity (upwards, 0 to 1) and colour by level [data units].\n"
         "Drag a point; double click adds one, or on a point chooses its colour; right click or Del "
         "deletes.\nArrow keys move the chosen point, comma and period choose the next, Return its "
-        "colour.\nChoose the preset again to undo.");
+        "colour.\nChoose the preset again to undo. Ctrl-wheel zooms, shift-wheel moves, Ctrl+0 "
+        "shows "
+        "all again.");
 }
 
 void TransferEditor::set_data(const app::Histogram& histogram) {
     histogram_ = histogram;
+    view_ = {};
     update();
 }
 
@@ -59,7 +63,7 @@ QRectF TransferEditor::plot() const {
 }
 
 LevelAxis TransferEditor::axis() const {
-    return axis_of(histogram_, plot());
+    return view_.seen(axis_of(histogram_, plot()));
 }
 
 QPointF TransferEditor::place_of(const ControlPoint& point) const {
@@ -194,6 +198,10 @@ void TransferEditor::keyPressEvent(QKeyEvent* event) {
             return choose((chosen_ + 1) % count);
         case Qt::Key_Comma:
             return choose((std::max(0, chosen_) + count - 1) % count);
+        case Qt::Key_0:
+            if (!(event->modifiers() & Qt::ControlModifier)) return event->ignore();
+            view_ = {};
+            return update();
         case Qt::Key_Delete:
         case Qt::Key_Backspace:
             return remove(chosen_);
@@ -210,6 +218,11 @@ void TransferEditor::keyPressEvent(QKeyEvent* event) {
         default:
             QWidget::keyPressEvent(event);
     }
+}
+
+void TransferEditor::wheelEvent(QWheelEvent* event) {
+    event->setAccepted(view_.wheel(*event, axis_of(histogram_, plot())));
+    if (event->isAccepted()) update();
 }
 
 /// The area under the opacity in the function's colours, the line over it, colours alone below.

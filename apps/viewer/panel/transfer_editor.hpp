@@ -10,7 +10,7 @@ namespace palpate::viewer {
 
 /// Mouse: drag a point; double click adds one, or on one chooses its colour; right click deletes.
 /// Keys: arrows move the chosen point (shift: farther), comma and period choose the one before and
-/// after, Insert adds, Del deletes, Return its colour.
+/// after, Insert adds, Del deletes, Return its colour. Zoom as in the level chart.
 class TransferEditor : public QWidget {
     Q_OBJECT
 
@@ -46,6 +46,7 @@ class TransferEditor : public QWidget {
     void mouseReleaseEvent(QMouseEvent* event) override;
     void mouseDoubleClickEvent(QMouseEvent* event) override;
     void keyPressEvent(QKeyEvent* event) override;
+    void wheelEvent(QWheelEvent* event) override;
 
   private:
     QRectF plot() const;
@@ -61,6 +62,7 @@ class TransferEditor : public QWidget {
     TransferFunction transfer_;
     int chosen_ = -1;
     bool dragging_ = false;
+    LevelView view_;
 };
 
 }  // namespace palpate::viewer

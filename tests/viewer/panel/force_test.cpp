@@ -102,7 +102,7 @@ TEST_F(Forces, every_slider_end_can_be_rendered) {
             auto* slider = find<QSlider>((std::string(name) + "_slider").c_str());
             slider->setFocus();
             QTest::keyClick(slider, end);
-            QTest::qWait(20);
+            settle();
             EXPECT_EQ(message("force_part"), "");
             EXPECT_LE(commands.size(), 1U);  // none where it was there already
         }
@@ -151,7 +151,7 @@ TEST_F(Forces, the_wheel_over_a_number_without_focus_scrolls_the_panel) {
         QApplication::sendEvent(widget, &event);
         EXPECT_FALSE(event.isAccepted()) << name;
     }
-    QTest::qWait(40);
+    settle();
     EXPECT_TRUE(commands.empty());
 }
 

@@ -51,6 +51,37 @@ TEST(LevelAxis, levels_come_back_from_their_pixels) {
     }
 }
 
+TEST(LevelView, zooming_keeps_what_is_under_the_pointer_and_stays_within_the_data) {
+    std::mt19937_64 random(6);
+    const LevelAxis whole{-1000, 3000, 6, 306};
+    for (int round = 0; round < 300; ++round) {
+        LevelView view;
+        for (int i = 0; i < 20; ++i) {
+            const LevelAxis before = view.seen(whole);
+            const double x = std::uniform_real_distribution(6.0, 306.0)(random);
+            const double level = before.level_of(x);
+            const double factor = std::uniform_real_distribution(0.5, 2.0)(random);
+            view.zoom(factor, (level + 1000) / 4000);
+            const LevelAxis after = view.seen(whole);
+            ASSERT_LT(after.low, after.high);
+            ASSERT_GE(after.low, whole.low);
+            ASSERT_LE(after.high, whole.high + 1e-9);
+            // Zooming in never meets an end.
+            if (factor > 1) {
+                ASSERT_NEAR(after.x_of(level), x, 1e-6);
+            }
+            view.move(std::uniform_real_distribution(-2.0, 2.0)(random));
+            const LevelAxis moved = view.seen(whole);
+            ASSERT_NEAR(moved.high - moved.low, after.high - after.low, 1e-6);
+            ASSERT_GE(moved.low, whole.low);
+            ASSERT_LE(moved.high, whole.high + 1e-9);
+        }
+        view.zoom(1e-9, 0.3);
+        ASSERT_EQ(view.seen(whole).low, whole.low);
+        ASSERT_EQ(view.seen(whole).high, whole.high);
+    }
+}
+
 TEST(LevelAxis, rounded_levels_have_short_numbers) {
     EXPECT_EQ(rounded_to(0.30000000000000004, 0.1), 0.3);
     EXPECT_EQ(rounded_to(1234.4, 10), 1230);

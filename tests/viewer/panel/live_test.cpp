@@ -94,7 +94,7 @@ TEST_F(WithLive, random_wishes_by_mouse_and_keys_are_all_carried_out) {
         }
         if (const auto now = live->snapshot()) panel.show_snapshot(*now);
     }
-    QTest::qWait(40);
+    settle();
     EXPECT_TRUE(refusals.empty()) << refusals.front();
     EXPECT_GT(commands.size(), 100U);
     expect_agreement();

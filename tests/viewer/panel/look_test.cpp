@@ -33,7 +33,7 @@ class Looks : public PanelStage {
         return editor()->place_of(editor()->transfer().points.at(point));
     }
     const Look& last() {
-        QTest::qWait(40);
+        settle();
         EXPECT_FALSE(looks.empty());
         return looks.empty() ? look : looks.back();
     }
@@ -67,7 +67,7 @@ TEST_F(Looks, a_look_that_is_set_is_shown_and_not_told_of) {
     other.volume = true;
     other.transfer = preset("MR", histogram, field->volume());
     panel.set_look(other);
-    QTest::qWait(40);
+    settle();
     EXPECT_TRUE(looks.empty());
     EXPECT_FALSE(find<QCheckBox>("show_surface")->isChecked());
     EXPECT_EQ(find<NumberBox>("surface_opacity_box")->value(), 0.4);
@@ -194,7 +194,7 @@ TEST_F(Looks, the_panel_can_go_in_the_middle_of_a_drag_with_a_dialog_open) {
     other->findChild<ColourButton*>("surface_colour")->click();
     const int before = heard;
     other.reset();
-    QTest::qWait(40);
+    settle();
     EXPECT_EQ(heard, before);
 }
 

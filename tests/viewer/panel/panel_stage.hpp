@@ -72,6 +72,12 @@ class PanelStage : public testing::Test {
         QApplication::processEvents();
     }
 
+    /// Until nothing is held back any more, however busy the machine is.
+    static void settle() {
+        QTest::qWait(40);  // longer than anything is held back
+        QApplication::processEvents();
+    }
+
     template <class T>
     T* find(const char* name) {
         T* found = panel.findChild<T*>(name);
@@ -82,7 +88,7 @@ class PanelStage : public testing::Test {
     /// All commands of a kind so far, and none that wait.
     template <class T>
     std::vector<T> of() {
-        QTest::qWait(40);  // longer than anything is held back
+        settle();
         std::vector<T> found;
         for (const Command& command : commands) {
             if (const auto* one = std::get_if<T>(&command)) found.push_back(*one);
