@@ -31,12 +31,19 @@ shot() {
         --window 1400x880 --screenshot "docs/images/viewer-$name.png"
 }
 
+# This head was stored upside down.
 shot cthead 2.5 '"volume": {"volume": "DATA/cthead_unc.nrrd"}, "isovalue": 1150,
-    "device": "simulated:hand=press",
-    "look": {"box": false}'
+    "device": "simulated:hand=press", "look": {"box": false},
+    "camera": {"focus": [127.5, 127.5, 112], "up": [0, 0, -1],
+        "towards_viewer": [-0.75, -0.65, -0.2], "half_height": 130}'
 shot lobster 2 '"volume": {"volume": "DATA/lobster.nrrd"}, "isovalue": 35,
-    "device": "simulated:hand=press",
-    "look": {"tetrahedra": true, "planes": true}'
+    "device": "simulated:hand=slide,seed=4", "look": {"box": false},
+    "camera": {"focus": [150, 175, 39], "up": [0, -1, 0],
+        "towards_viewer": [0.25, 0.35, 0.9], "half_height": 170}'
 shot daisy 2 '"volume": {"volume": "DATA/daisy_pollen.nrrd"}, "isovalue": 60,
-    "device": "simulated:hand=slide",
-    "look": {"surface": false, "volume": true}'
+    "device": "simulated:hand=slide", "look": {"surface": false, "volume": true}'
+shot local 2 '"volume": {"volume": "synthetic:sphere:14x14x14"}, "isovalue": 100,
+    "device": "simulated:hand=press", "slices_shown": false,
+    "look": {"surface_opacity": 0.4, "tetrahedra": true, "planes": true},
+    "camera": {"focus": [-3.9, -0.4, -1.4], "up": [0, 0, 1],
+        "towards_viewer": [-0.55, -0.75, 0.4], "half_height": 1.3}'
