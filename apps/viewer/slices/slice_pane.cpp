@@ -207,17 +207,18 @@ void SlicePane::paint_words(QPainter& painter) const {
          samples.in_data() ? tr("%1 / %2").arg(std::lround(samples.position()) + 1).arg(layers)
                            : tr("outside the data"),
          QString::fromStdString(position_text(content_->plane, geometry(), middle))});
+    // Short where the letter of the lower edge is, so that narrow panes have room for both.
     paint_corner(
         painter, size(), Qt::AlignRight | Qt::AlignBottom,
-        {tr("W %1  L %2").arg(high_ - low_, 0, 'g', 4).arg(0.5 * (low_ + high_), 0, 'g', 4)});
+        {tr("W %1").arg(high_ - low_, 0, 'g', 5), tr("L %1").arg(0.5 * (low_ + high_), 0, 'g', 5)});
     if (!pointer_) return;
     const Vec3 at = point_at(*pointer_);
     const Vec3 index = index_from_physical(geometry(), at);
     if (!(index.cwiseAbs().maxCoeff() <= farthest_index)) return;
-    paint_corner(
-        painter, size(), Qt::AlignLeft | Qt::AlignBottom,
-        {QString::number(value_at(samples.field(), at), 'g', 6),
-         tr("(%1, %2, %3) mm").arg(at[0], 0, 'f', 1).arg(at[1], 0, 'f', 1).arg(at[2], 0, 'f', 1)});
+    const auto mm = [](double x) { return QString::number(x, 'f', 1); };
+    paint_corner(painter, size(), Qt::AlignLeft | Qt::AlignBottom,
+                 {tr("(%1, %2, %3) mm").arg(mm(at[0]), mm(at[1]), mm(at[2])),
+                  QString::number(value_at(samples.field(), at), 'g', 6)});
 }
 
 }  // namespace palpate::viewer

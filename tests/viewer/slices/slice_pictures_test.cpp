@@ -64,6 +64,19 @@ TEST(SlicePictures, ct_of_a_head) {
     keep_picture(*shown.panes[2], "slices_ct_head_zoomed");
 }
 
+TEST(SlicePictures, a_small_pane_under_the_pointer) {
+    if (!there_is("cthead_unc.nrrd")) GTEST_SKIP() << "needs cthead_unc.nrrd";
+    SlicePane pane(2);
+    pane.resize(240, 260);
+    pane.set_field(Field(real("cthead_unc.nrrd")), 500);
+    pane.show();
+    (void)QTest::qWaitForWindowExposed(&pane);
+    QMouseEvent move(QEvent::MouseMove, QPointF(140, 120), Qt::NoButton, Qt::NoButton,
+                     Qt::NoModifier);
+    QApplication::sendEvent(&pane, &move);
+    keep_picture(pane, "slices_small");
+}
+
 TEST(SlicePictures, lobster) {
     if (!there_is("lobster.nrrd")) GTEST_SKIP() << "needs lobster.nrrd";
     const Field field(real("lobster.nrrd"));
