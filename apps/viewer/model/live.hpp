@@ -57,6 +57,9 @@ class Live {
     void use_device(const std::string& device);
     /// The other side is solid, or the field goes on with another background outside the grid. The
     /// session starts anew with all that was asked for but penetrability, which is switched off.
+    /// A recording is finished before; should that fail, io::OutputError says so, and the field is
+    /// as it was. Throws std::invalid_argument for a background that is not finite; then nothing
+    /// has changed.
     void use_field(Solid solid, std::optional<double> background = {});
 
     /// Records from now on: the session starts anew (forces ramp up) with all that was asked for.
