@@ -56,6 +56,16 @@ void check_abort(vtkObject* window, unsigned long, void* give_up, void*) {
     }
 }
 
+/// VTK 9.1 takes the aspect ratio as known if the numbers it was computed from are those of the
+/// last time, which are not initialised: a renderer in the memory of an older one may keep 1, and a
+/// volume is drawn too wide.
+void renew_aspect(vtkRenderer& renderer) {
+    renderer.SetPixelAspect(2, 1);
+    renderer.ComputeAspect();
+    renderer.SetPixelAspect(1, 1);
+    renderer.ComputeAspect();
+}
+
 constexpr std::int64_t moving_samples = 128 * 128 * 144;
 constexpr std::int64_t most_samples = 512LL * 512 * 640;  // with what VTK keeps beside, 1 GB
 constexpr double moving_seconds = 0.06;  // what a moving picture of a volume may take
@@ -211,6 +221,7 @@ void Stage::show(const Shot& shot) {
 
 Layer Stage::layer_of(vtkRenderer& renderer, const Shot& shot) {
     window_->AddRenderer(&renderer);
+    renew_aspect(renderer);
     window_->SetAbortRender(0);
     window_->Render();
     Layer layer;
