@@ -28,7 +28,7 @@ struct DrawnSurface {
 
 struct SurfaceLimits {
     std::size_t most_triangles = 6'000'000;  ///< past that, coarser: some 0.5 GB
-    std::size_t moving_triangles = 60'000;
+    std::size_t moving_triangles = 40'000;
 };
 
 class SurfaceWork {
