@@ -15,11 +15,22 @@ bool same(const pictures::Camera& a, const pictures::Camera& b) {
            a.half_height == b.half_height;
 }
 
+/// What painters have to do with: the rest the window lays over their pictures.
+Look painted_part(Look look) {
+    look.contact = look.tetrahedra = look.planes = look.orientation = look.scale_bar = false;
+    if (!look.volume) {
+        look.transfer = {};
+        look.shading = false;
+    }
+    return look;
+}
+
 bool same_picture(const Shot& a, const Shot& b) {
     const bool slices = a.look.slices;
-    return a.look == b.look && (!slices || a.crosshair == b.crosshair) &&
-           a.background == b.background && a.ink == b.ink && same(a.camera, b.camera) &&
-           a.width == b.width && a.height == b.height && a.pixel_ratio == b.pixel_ratio;
+    return painted_part(a.look) == painted_part(b.look) &&
+           (!slices || a.crosshair == b.crosshair) && a.background == b.background &&
+           a.ink == b.ink && same(a.camera, b.camera) && a.width == b.width &&
+           a.height == b.height && a.pixel_ratio == b.pixel_ratio;
 }
 
 /// What is done with results that come from other threads: in the thread of `object`, and never if
