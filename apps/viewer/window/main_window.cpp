@@ -16,6 +16,7 @@
 #include <QVBoxLayout>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "apps/viewer/model/transfer.hpp"
 #include "apps/viewer/panel/panel.hpp"
@@ -71,6 +72,7 @@ MainWindow::MainWindow(const app::TouchOptions& options)
     restoreGeometry(settings.value("geometry").toByteArray());
     restoreState(settings.value("state").toByteArray());
     find_devices();
+    since_report_.start();
     timer_.start(frame_ms);
 }
 
@@ -104,7 +106,7 @@ void MainWindow::tick() {
     ++rounds_;
     observe();
     if (rounds_ % report_rounds != 0) return;
-    if (live_) panel_->show_report(live_->report(), options_.render.rate);
+    show_rate();
     const double seconds = views_->scene().frame_seconds();
     frames_->setText(seconds > 0 ? tr("%1 ms a frame").arg(1e3 * seconds, 0, 'f', 0) : QString());
     if (live_ && live_->recording() && !recording_told_) {
@@ -114,6 +116,17 @@ void MainWindow::tick() {
             show_problem(QString::fromStdString(problem));
         }
     }
+}
+
+/// How the loop has done since the last time.
+void MainWindow::show_rate() {
+    if (!live_) return;
+    const ServoReport report = live_->report();
+    const double seconds = 1e-3 * static_cast<double>(since_report_.restart());
+    const std::int64_t ticks = report.ticks - std::exchange(reported_ticks_, report.ticks);
+    // Fewer than before: another servo.
+    if (ticks >= 0 && seconds > 0)
+        panel_->show_report(report, static_cast<double>(ticks) / seconds);
 }
 
 void MainWindow::observe() {

@@ -2,6 +2,7 @@
 // It observes snapshots and sends commands.
 #pragma once
 
+#include <QElapsedTimer>
 #include <QMainWindow>
 #include <QTimer>
 #include <functional>
@@ -72,6 +73,7 @@ class MainWindow : public QMainWindow {
     // main_window.cpp: what goes on.
     void connect_parts();
     void tick();
+    void show_rate();
     void observe();
     void send(const Command& command);
     void guarded(const std::function<void()>& action);
@@ -127,6 +129,8 @@ class MainWindow : public QMainWindow {
     QMenu* recent_ = nullptr;
     QTimer timer_;
     int rounds_ = 0;
+    QElapsedTimer since_report_;
+    std::int64_t reported_ticks_ = 0;
 
     std::unique_ptr<Work> work_, finding_;
     std::function<void()> then_;

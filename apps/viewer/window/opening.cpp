@@ -183,10 +183,13 @@ void MainWindow::play(std::shared_ptr<Opened> opened, const QString& path) {
             time_line_->show();
             show_time(playback_->begin());
             remember(path);
-            show_done(playback_->complete()
-                          ? tr("%1 ticks").arg(playback_->ticks())
-                          : tr("%1 ticks; the recording was cut off before its end")
-                                .arg(playback_->ticks()));
+            QString words = tr("%1 ticks").arg(playback_->ticks());
+            if (!playback_->complete()) words += tr("; the recording was cut off before its end");
+            if (playback_->different() > 0) {
+                words += tr("; %1 of them come out otherwise than they were recorded")
+                             .arg(playback_->different());
+            }
+            show_done(words);
         });
 }
 
