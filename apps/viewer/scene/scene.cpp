@@ -11,6 +11,7 @@
 #include <vtkNew.h>
 #include <vtkRenderWindowInteractor.h>
 #include <vtkRenderer.h>
+#include <vtkTimerLog.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -57,6 +58,7 @@ struct Scene::Parts {
     std::unique_ptr<Markers> markers;
 
     Parts() {
+        vtkTimerLog::LoggingOff();  // one log for all threads, unprotected; windows write into it
         window->SetMultiSamples(0);
         window->SetNumberOfLayers(3);
         for (vtkRenderer* renderer : {front.Get(), ghosts.Get()}) light(*renderer);
