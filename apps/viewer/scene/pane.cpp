@@ -71,6 +71,9 @@ int Pane::RenderOpaqueGeometry(vtkViewport* viewport) {
     auto* const renderer = vtkRenderer::SafeDownCast(viewport);
     auto* const window = vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow());
     if (!uploaded_) upload(*window);
+    const bool enlarged = owner_->width != viewport->GetSize()[0];
+    colour_->SetMagnificationFilter(enlarged ? vtkTextureObject::Linear
+                                             : vtkTextureObject::Nearest);
     if (!quad_) {
         quad_ = std::make_unique<vtkOpenGLQuadHelper>(window, nullptr, shader, "");
     } else {

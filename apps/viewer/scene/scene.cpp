@@ -327,9 +327,9 @@ void Scene::mouseDoubleClickEvent(QMouseEvent* event) {
         mousePressEvent(event);
         return;
     }
-    const double ratio = devicePixelRatioF();
-    const auto x = static_cast<int>(event->localPos().x() * ratio);
-    const int y = shown->height - 1 - static_cast<int>(event->localPos().y() * ratio);
+    const auto x = static_cast<int>(event->localPos().x() * shown->width / width());
+    const int y =
+        shown->height - 1 - static_cast<int>(event->localPos().y() * shown->height / height());
     if (x < 0 || y < 0 || x >= shown->width || y >= shown->height) return;
     const auto depth_at = [&](const Layer& layer) {
         const std::size_t i = std::size_t(y) * std::size_t(shown->width) + std::size_t(x);

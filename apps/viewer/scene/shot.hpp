@@ -36,7 +36,7 @@ struct Layer {
 /// What a painter has drawn.
 struct Backdrop {
     std::uint64_t number = 0;
-    int width = 0, height = 0;
+    int width = 0, height = 0;  ///< as asked for, or half of it while things move slowly
     pictures::Camera camera;
     double reach = 1;  ///< [mm] see reach_of(), of the volume that is shown
     Layer solid;

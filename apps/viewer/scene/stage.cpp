@@ -68,6 +68,8 @@ void renew_aspect(vtkRenderer& renderer) {
 
 constexpr std::int64_t moving_samples = 128 * 128 * 144;
 constexpr std::int64_t most_samples = 512LL * 512 * 640;  // with what VTK keeps beside, 1 GB
+// Slower than the one, moving pictures have half the pixels a side; quicker than the other, all.
+constexpr double slow_seconds = 0.065, fast_seconds = 0.012;
 constexpr double moving_seconds = 0.06;  // what a moving picture of a volume may take
 
 }  // namespace
@@ -191,7 +193,7 @@ void Stage::show_volume(const Shot& shot) {
                       shot.field->geometry().spacing.minCoeff());
     const bool coarse = shot.moving && !hardware_;
     const double spacing = field.geometry().spacing.minCoeff();
-    volume_->set_fineness(coarse ? coarseness_ * shot.pixel_ratio : 1,
+    volume_->set_fineness(coarse ? coarseness_ * shot.pixel_ratio / pixel_ : 1,
                           coarse ? spacing : 0.5 * spacing);
 }
 
@@ -219,14 +221,14 @@ void Stage::show(const Shot& shot) {
     direct(*solid_->GetActiveCamera(), shot.camera, physical_centre(geometry), reach_of(geometry));
 }
 
-Layer Stage::layer_of(vtkRenderer& renderer, const Shot& shot) {
+Layer Stage::layer_of(vtkRenderer& renderer, int width, int height) {
     window_->AddRenderer(&renderer);
     renew_aspect(renderer);
     window_->SetAbortRender(0);
     window_->Render();
     Layer layer;
-    const int right = shot.width - 1, top = shot.height - 1;
-    const auto count = std::size_t(shot.width) * std::size_t(shot.height);
+    const int right = width - 1, top = height - 1;
+    const auto count = std::size_t(width) * std::size_t(height);
     layer.depth.resize(count);
     vtkNew<vtkUnsignedCharArray> pixels;
     const bool read =
@@ -241,30 +243,34 @@ Layer Stage::layer_of(vtkRenderer& renderer, const Shot& shot) {
 
 std::optional<Backdrop> Stage::draw(const Shot& shot) {
     const auto start = std::chrono::steady_clock::now();
-    window_->SetSize(shot.width, shot.height);
+    const bool quick = shot.moving && !hardware_;
+    const int every = quick ? pixel_ : 1;
+    Backdrop backdrop;
+    backdrop.width = (shot.width + every - 1) / every;
+    backdrop.height = (shot.height + every - 1) / every;
+    window_->SetSize(backdrop.width, backdrop.height);
     // A volume is cast up to the depths that lie before it: those of whole pixels.
     const bool smooth = (hardware_ || !shot.moving) && !shot.look.volume;
     window_->SetMultiSamples(smooth ? 4 : 0);
     show(shot);
-    Backdrop backdrop;
     backdrop.number = shot.number;
-    backdrop.width = shot.width;
-    backdrop.height = shot.height;
     backdrop.camera = shot.camera;
     backdrop.reach = shot.field ? reach_of(shot.field->geometry()) : 1;
-    backdrop.moving = shot.moving && !hardware_;
+    backdrop.moving = quick;
     backdrop.hardware = hardware_;
-    backdrop.solid = layer_of(*solid_, shot);
+    backdrop.solid = layer_of(*solid_, backdrop.width, backdrop.height);
     if (!give_up_ && shot.field && shot.look.surface && opacity_ > 0 && opacity_ < 1) {
         window_->SetMultiSamples(0);
-        backdrop.glass = layer_of(*glass_, shot);
+        backdrop.glass = layer_of(*glass_, backdrop.width, backdrop.height);
     }
     if (give_up_) return std::nullopt;
     backdrop.seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    if (volume_ && shot.moving && !hardware_) {
+    if (quick && backdrop.seconds > slow_seconds) pixel_ = 2;
+    if (quick && backdrop.seconds < fast_seconds) pixel_ = 1;
+    if (volume_ && quick) {
         const double wanted = coarseness_ * std::sqrt(backdrop.seconds / moving_seconds);
-        coarseness_ = std::clamp(0.5 * (coarseness_ + wanted), 1.5, 8.0);
+        coarseness_ = std::clamp(0.5 * (coarseness_ + wanted), 2.0, 8.0);
     }
     return backdrop;
 }

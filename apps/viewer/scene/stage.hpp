@@ -37,7 +37,7 @@ class Stage {
     void show_box(const Shot& shot);
     void show_volume(const Shot& shot);
     const Field& volume_field(const Shot& shot);
-    Layer layer_of(vtkRenderer& renderer, const Shot& shot);
+    Layer layer_of(vtkRenderer& renderer, int width, int height);
 
     const std::atomic<bool>& give_up_;
     vtkSmartPointer<vtkGenericOpenGLRenderWindow> window_;
@@ -55,6 +55,7 @@ class Stage {
     std::unique_ptr<VolumePart> volume_;
     std::optional<Field> thinned_;  // few enough samples for moving pictures
     const void* thinned_from_ = nullptr;
+    int pixel_ = 1;  // of a moving picture, in pixels of the shot: 1, or 2 where that is slow
     double coarseness_ = 3;  // pixels a ray while moving, as quick as it turned out
 };
 
