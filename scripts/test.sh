@@ -4,7 +4,7 @@ set -euo pipefail
 
 usage() {
     cat <<'TEXT'
-usage: scripts/test.sh [--no-packages] [PRESET] [CTEST OPTION...]
+usage: scripts/test.sh [--no-packages] [--target TARGET] [PRESET] [CTEST OPTION...]
 
 Installs the packages that are missing, builds a preset in build/PRESET and runs its tests.
 
@@ -16,7 +16,8 @@ presets (default: dev)
   asan     address and undefined-behaviour sanitizers (clang), and the fuzz targets
   tsan     thread sanitizer
 
-  --no-packages   do not look for packages; use what is there
+  --no-packages     do not look for packages; use what is there
+  --target TARGET   build that only; threaded_tests are those with the label `threads`
 
 example: scripts/test.sh asan -R Surface
 TEXT
@@ -24,10 +25,12 @@ TEXT
 
 packages=yes
 preset=dev
+target=all
 while [ $# -gt 0 ]; do
     case "$1" in
         -h | --help) usage; exit 0 ;;
         --no-packages) packages=no; shift ;;
+        --target) target=$2; shift 2 ;;
         dev | release | clang | core | asan | tsan) preset=$1; shift; break ;;
         -*) break ;;
         *) echo "test.sh: no preset '$1'" >&2; usage >&2; exit 2 ;;
@@ -56,6 +59,6 @@ fi
 echo "== configure ($preset)"
 cmake --preset "$preset"
 echo "== build ($preset)"
-"${fixed[@]}" cmake --build --preset "$preset" --parallel "$(nproc)"
+"${fixed[@]}" cmake --build --preset "$preset" --target "$target" --parallel "$(nproc)"
 echo "== test ($preset)"
 "${fixed[@]}" ctest --preset "$preset" "$@"
