@@ -2,22 +2,21 @@
 #include "pictures/helper/notes.hpp"
 
 #include <vtkActor2D.h>
-#include <vtkAnnotatedCubeActor.h>
 #include <vtkCamera.h>
 #include <vtkCellArray.h>
 #include <vtkNew.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkPolyDataMapper2D.h>
-#include <vtkProperty.h>
 #include <vtkProperty2D.h>
 #include <vtkTextActor.h>
 #include <vtkTextProperty.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <string>
+
+#include "pictures/vtk/furnishing.hpp"
 
 namespace palpate::pictures {
 namespace {
@@ -79,25 +78,6 @@ void add_text(vtkRenderer& renderer, const std::string& text, const Text& where)
     renderer.AddActor2D(actor);
 }
 
-/// 1, 2 or 5 times a power of ten: the greatest that is at most `most`.
-double round_length(double most) {
-    const double power = std::pow(10, std::floor(std::log10(most)));
-    for (const double digit : {5.0, 2.0}) {
-        if (digit * power <= most) return digit * power;
-    }
-    return power;
-}
-
-std::string in_millimetres(double length) {
-    char text[32];
-    if (length >= 1) {
-        std::snprintf(text, sizeof text, "%g mm", length);
-    } else {
-        std::snprintf(text, sizeof text, "%g \xC2\xB5m", 1000 * length);
-    }
-    return text;
-}
-
 struct Entry {
     Colour colour;
     std::string label;
@@ -152,34 +132,12 @@ void add_scale_bar(vtkRenderer& renderer, const PictureScene& scene, double em, 
 /// A cube whose faces say which side of the body they are, seen as the body is.
 vtkSmartPointer<vtkRenderer> orientation_of(const PictureScene& scene, int width, int height,
                                             int layer) {
-    vtkNew<vtkAnnotatedCubeActor> cube;
-    cube->SetXPlusFaceText("L");
-    cube->SetXMinusFaceText("R");
-    cube->SetYPlusFaceText("P");
-    cube->SetYMinusFaceText("A");
-    cube->SetZPlusFaceText("S");
-    cube->SetZMinusFaceText("I");
-    cube->SetFaceTextScale(0.62);
-    cube->SetXFaceTextRotation(90);
-    cube->SetYFaceTextRotation(0);
-    cube->SetZFaceTextRotation(90);
-    cube->GetCubeProperty()->SetColor(0.86, 0.88, 0.9);
-    cube->GetCubeProperty()->SetAmbient(0.35);
-    cube->GetCubeProperty()->SetDiffuse(0.7);
-    cube->GetTextEdgesProperty()->SetColor(ink, ink, ink);
-    for (vtkProperty* face : {cube->GetXPlusFaceProperty(), cube->GetXMinusFaceProperty(),
-                              cube->GetYPlusFaceProperty(), cube->GetYMinusFaceProperty(),
-                              cube->GetZPlusFaceProperty(), cube->GetZMinusFaceProperty()}) {
-        face->SetColor(ink, ink, ink);
-        face->SetAmbient(1);
-        face->SetDiffuse(0);
-    }
     auto renderer = vtkSmartPointer<vtkRenderer>::New();
     const double side = 0.17 * std::min(width, height);
     renderer->SetViewport(0, 0, side / width, side / height);
     renderer->SetLayer(layer);
     renderer->InteractiveOff();
-    renderer->AddActor(cube);
+    renderer->AddActor(body_cube());
     vtkCamera* const camera = renderer->GetActiveCamera();
     camera->ParallelProjectionOn();
     camera->SetFocalPoint(0, 0, 0);

@@ -3,7 +3,6 @@
 
 #include <vtkCallbackCommand.h>
 #include <vtkCamera.h>
-#include <vtkLight.h>
 #include <vtkNew.h>
 #include <vtkOpenGLState.h>
 #include <vtkProperty.h>
@@ -18,28 +17,12 @@
 #include "pictures/helper/layers.hpp"
 #include "pictures/helper/notes.hpp"
 #include "pictures/helper/window.hpp"
+#include "pictures/vtk/furnishing.hpp"
 
 namespace palpate::pictures {
 namespace {
 
 constexpr double ghost_opacity = 0.4;  // of what lies behind a surface
-
-/// From over the viewer's left shoulder, with weaker ones that keep the shadows from going black.
-void light(vtkRenderer& renderer) {
-    struct Lamp {
-        double x, y, z, intensity;
-    };
-    renderer.AutomaticLightCreationOff();
-    for (const Lamp& lamp : {Lamp{-0.55, 0.75, 1, 0.78}, Lamp{0.9, -0.1, 0.6, 0.26},
-                             Lamp{0, 0, 1, 0.2}, Lamp{0.2, -1, 0.2, 0.12}}) {
-        vtkNew<vtkLight> l;
-        l->SetLightTypeToCameraLight();
-        l->SetPosition(lamp.x, lamp.y, lamp.z);
-        l->SetFocalPoint(0, 0, 0);
-        l->SetIntensity(lamp.intensity);
-        renderer.AddLight(l);
-    }
-}
 
 struct Size {
     int width, height;

@@ -1,7 +1,6 @@
 // Cube and scale bar.
 #include "apps/viewer/scene/notes.hpp"
 
-#include <vtkAnnotatedCubeActor.h>
 #include <vtkCamera.h>
 #include <vtkCellArray.h>
 #include <vtkNew.h>
@@ -13,37 +12,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+
+#include "pictures/vtk/furnishing.hpp"
 
 namespace palpate::viewer {
 namespace {
-
-vtkSmartPointer<vtkAnnotatedCubeActor> body_cube() {
-    auto cube = vtkSmartPointer<vtkAnnotatedCubeActor>::New();
-    cube->SetXPlusFaceText("L");
-    cube->SetXMinusFaceText("R");
-    cube->SetYPlusFaceText("P");
-    cube->SetYMinusFaceText("A");
-    cube->SetZPlusFaceText("S");
-    cube->SetZMinusFaceText("I");
-    cube->SetFaceTextScale(0.62);
-    cube->SetXFaceTextRotation(90);
-    cube->SetYFaceTextRotation(0);
-    cube->SetZFaceTextRotation(90);
-    cube->GetCubeProperty()->SetColor(0.86, 0.88, 0.9);
-    cube->GetCubeProperty()->SetAmbient(0.35);
-    cube->GetCubeProperty()->SetDiffuse(0.7);
-    constexpr double ink = 0.13;
-    cube->GetTextEdgesProperty()->SetColor(ink, ink, ink);
-    for (vtkProperty* face : {cube->GetXPlusFaceProperty(), cube->GetXMinusFaceProperty(),
-                              cube->GetYPlusFaceProperty(), cube->GetYMinusFaceProperty(),
-                              cube->GetZPlusFaceProperty(), cube->GetZMinusFaceProperty()}) {
-        face->SetColor(ink, ink, ink);
-        face->SetAmbient(1);
-        face->SetDiffuse(0);
-    }
-    return cube;
-}
 
 void add_box(vtkPoints& points, vtkCellArray& polygons, double x, double y, double width,
              double height) {
@@ -57,24 +30,6 @@ void add_box(vtkPoints& points, vtkCellArray& polygons, double x, double y, doub
 
 }  // namespace
 
-double round_length(double most) {
-    const double power = std::pow(10, std::floor(std::log10(most)));
-    for (const double digit : {5.0, 2.0}) {
-        if (digit * power <= most) return digit * power;
-    }
-    return power;
-}
-
-std::string in_millimetres(double length) {
-    char text[32];
-    if (length >= 1) {
-        std::snprintf(text, sizeof text, "%g mm", length);
-    } else {
-        std::snprintf(text, sizeof text, "%g \xC2\xB5m", 1000 * length);
-    }
-    return text;
-}
-
 Notes::Notes(int layer)
     : writing_(vtkSmartPointer<vtkRenderer>::New()),
       orientation_(vtkSmartPointer<vtkRenderer>::New()),
@@ -85,7 +40,7 @@ Notes::Notes(int layer)
         renderer->SetLayer(layer);
         renderer->InteractiveOff();
     }
-    orientation_->AddActor(body_cube());
+    orientation_->AddActor(pictures::body_cube());
     orientation_->GetActiveCamera()->ParallelProjectionOn();
     vtkNew<vtkPolyDataMapper2D> mapper;
     mapper->SetInputData(bar_data_);
@@ -103,7 +58,7 @@ void Notes::show_bar(const What& what) {
     text_->SetVisibility(what.scale_bar);
     if (!what.scale_bar) return;
     const double pixels_per_mm = what.height / (2 * what.camera.half_height);
-    const double length = round_length(0.22 * what.width / pixels_per_mm);
+    const double length = pictures::round_length(0.22 * what.width / pixels_per_mm);
     const double pixels = length * pixels_per_mm, em = what.em;
     const double right = what.width - 1.3 * em, y = 1.1 * em, thick = std::max(1.0, 0.14 * em);
     vtkNew<vtkPoints> points;
@@ -116,7 +71,7 @@ void Notes::show_bar(const What& what) {
     bar_data_->SetPolys(polygons);
     bar_data_->Modified();
     bar_->GetProperty()->SetColor(what.ink.red, what.ink.green, what.ink.blue);
-    text_->SetInput(in_millimetres(length).c_str());
+    text_->SetInput(pictures::in_millimetres(length).c_str());
     // VTK's sizes are points, of which there are 72 an inch.
     vtkRenderWindow* const window = writing_->GetRenderWindow();
     const double size = em * 72 / (window ? window->GetDPI() : 72);

@@ -8,16 +8,9 @@
 #include <vtkSmartPointer.h>
 #include <vtkTextActor.h>
 
-#include <string>
-
 #include "pictures/scene.hpp"
 
 namespace palpate::viewer {
-
-/// 1, 2 or 5 times a power of ten: the greatest that is at most `most` > 0.
-double round_length(double most);
-/// "20 mm", below a millimetre "500 µm".
-std::string in_millimetres(double length);
 
 class Notes {
   public:

@@ -23,6 +23,7 @@
 #include "apps/viewer/scene/notes.hpp"
 #include "apps/viewer/scene/pane.hpp"
 #include "apps/viewer/scene/view_space.hpp"
+#include "pictures/vtk/furnishing.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -61,7 +62,7 @@ struct Scene::Parts {
         vtkTimerLog::LoggingOff();  // one log for all threads, unprotected; windows write into it
         window->SetMultiSamples(0);
         window->SetNumberOfLayers(3);
-        for (vtkRenderer* renderer : {front.Get(), ghosts.Get()}) light(*renderer);
+        for (vtkRenderer* renderer : {front.Get(), ghosts.Get()}) pictures::light(*renderer);
         ghosts->SetLayer(1);
         ghosts->SetActiveCamera(front->GetActiveCamera());
         front->AddViewProp(solid);

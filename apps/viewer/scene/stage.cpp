@@ -19,6 +19,7 @@
 #include "apps/viewer/scene/bodies.hpp"
 #include "apps/viewer/scene/view_space.hpp"
 #include "pictures/surface.hpp"
+#include "pictures/vtk/furnishing.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -90,7 +91,7 @@ Stage::Stage(const std::atomic<bool>& give_up, bool hardware)
     glass_->SetBackgroundAlpha(0);
     glass_->SetActiveCamera(solid_->GetActiveCamera());
     for (vtkRenderer* renderer : {solid_.Get(), glass_.Get()}) {
-        light(*renderer);
+        pictures::light(*renderer);
     }
     vtkNew<vtkCallbackCommand> before;
     before->SetCallback(stop_blending);

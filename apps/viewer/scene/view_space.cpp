@@ -1,8 +1,5 @@
-// Camera and lights for VTK.
+// The camera for VTK.
 #include "apps/viewer/scene/view_space.hpp"
-
-#include <vtkLight.h>
-#include <vtkNew.h>
 
 #include <algorithm>
 
@@ -30,22 +27,6 @@ void direct(vtkCamera& camera, const pictures::Camera& wanted, const Vec3& origi
 
 double height_of(double depth, double reach) {
     return (1 - 2 * depth) * reach;
-}
-
-void light(vtkRenderer& renderer) {
-    struct Lamp {
-        double x, y, z, intensity;
-    };
-    renderer.AutomaticLightCreationOff();
-    for (const Lamp& lamp : {Lamp{-0.55, 0.75, 1, 0.78}, Lamp{0.9, -0.1, 0.6, 0.26},
-                             Lamp{0, 0, 1, 0.2}, Lamp{0.2, -1, 0.2, 0.12}}) {
-        vtkNew<vtkLight> l;
-        l->SetLightTypeToCameraLight();
-        l->SetPosition(lamp.x, lamp.y, lamp.z);
-        l->SetFocalPoint(0, 0, 0);
-        l->SetIntensity(lamp.intensity);
-        renderer.AddLight(l);
-    }
 }
 
 }  // namespace palpate::viewer

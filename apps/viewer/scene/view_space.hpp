@@ -3,7 +3,6 @@
 #pragma once
 
 #include <vtkCamera.h>
-#include <vtkRenderer.h>
 
 #include "palpate/volume.hpp"
 #include "pictures/scene.hpp"
@@ -18,9 +17,5 @@ void direct(vtkCamera& camera, const pictures::Camera& wanted, const Vec3& origi
 
 /// How far towards the viewer from `origin` what has this depth (0 near, 1 far) lies [mm].
 double height_of(double depth, double reach);
-
-/// The lights of all our pictures: from over the viewer's left shoulder, with weaker ones that keep
-/// the shadows from going black.
-void light(vtkRenderer& renderer);
 
 }  // namespace palpate::viewer
