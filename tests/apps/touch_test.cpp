@@ -214,8 +214,8 @@ TEST(Devices, ListsEachWithWhatWasFoundOrWhatIsMissing) {
         EXPECT_FALSE(device[device["found"] ? "what" : "missing"].get<std::string>().empty());
         EXPECT_FALSE(device["options"].get<std::string>().empty());
     }
-    EXPECT_EQ(names, (std::vector<std::string>{"simulated", "recorded", "haply", "openhaptics",
-                                               "forcedimension", "spacenav"}));
+    EXPECT_EQ(names, (std::vector<std::string>{"simulated", "recorded", "mouse", "haply",
+                                               "openhaptics", "forcedimension", "spacenav"}));
     const Outcome text = palpate(folder, "devices");
     for (const std::string& name : names) EXPECT_TRUE(contains(text.out, name));
 }
