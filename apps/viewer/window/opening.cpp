@@ -60,7 +60,9 @@ void MainWindow::run(const QString& label, Work::Task task, std::function<void()
 
 void MainWindow::load(const app::VolumeOptions& volume,
                       std::function<void(std::shared_ptr<Opened>)> then) {
-    if (opened_ && app::to_names(opened_->options) == app::to_names(volume)) return then(opened_);
+    if (opened_ && app::to_names(opened_->options) == app::to_names(volume)) {
+        return guarded([&] { then(opened_); });
+    }
     auto result = std::make_shared<std::shared_ptr<Opened>>();
     run(
         tr("Reading %1").arg(short_name(QString::fromStdString(volume.volume))),
