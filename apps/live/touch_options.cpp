@@ -101,6 +101,7 @@ void TouchOptions::finish(const CLI::App& command) {
     stiffness_given = command.count("--stiffness") > 0;
     budget_given = command.count("--step-budget") > 0;
     scale_given = command.count("--scale") > 0;
+    device_given = command.count("--device") > 0;
 }
 
 LiveScene make_scene(LoadedVolume loaded, const TouchOptions& options) {

@@ -26,7 +26,8 @@ struct TouchOptions {
     bool json = false;
     bool normal_priority = false;
     /// Options that were given; the rest is what the device is rated for.
-    bool limit_given = false, stiffness_given = false, scale_given = false, budget_given = false;
+    bool limit_given = false, stiffness_given = false, scale_given = false, budget_given = false,
+         device_given = false;
 
     /// `record` has --output in place of --record; `view` can do without a volume, and has nothing
     /// for scripts (--commands, --seconds, --json).

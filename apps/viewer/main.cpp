@@ -58,7 +58,8 @@ int show(QApplication& application, const app::ViewOptions& options) {
     }
     const int status = application.exec();
     if (stop_signal != 0) return fail("interrupted", app::stopped);
-    return screenshot ? screenshot->status() : status;
+    if (screenshot && screenshot->status() != 0) return screenshot->status();
+    return status != 0 ? status : window.exit_status();
 }
 
 }  // namespace
@@ -90,7 +91,7 @@ int main(int argc, char** argv) {
     QApplication application(qt_arguments, argv);
     QCoreApplication::setOrganizationName("palpate");
     QCoreApplication::setApplicationName("palpate");
-    viewer::set_appearance(viewer::Appearance::system);
+    viewer::set_appearance(viewer::last_appearance());
     try {
         return show(application, options);
     } catch (const std::exception& e) {

@@ -62,12 +62,13 @@ void Live::start(Session session) {
     isovalue_ = session.renderer.proxy.isovalue;
     frozen_ = false;
     sent_.clear();
-    servo_ = std::make_unique<Servo>(
+    auto servo = std::make_unique<Servo>(
         std::move(session), *device_,
         ServoSettings{.rate = options_.render.rate,
                       .real_time = !options_.normal_priority,
                       .recorder = recording_ ? &recording_->queue() : nullptr});
-    servo_->start();
+    servo->start();
+    servo_ = std::move(servo);  // without a thread, the one that has stopped is still there
 }
 
 /// A new one with all that was asked for, and the level and place to which penetrability, clutch

@@ -152,6 +152,13 @@ void Panel::clear() {
     }
 }
 
+void Panel::set_observing(bool observing) {
+    for (Section* part :
+         {session_part_, isovalue_part_, penetrability_part_, force_part_, device_part_}) {
+        part->setEnabled(!observing);
+    }
+}
+
 void Panel::set_look(const Look& look) {
     look_->set_look(look);
 }

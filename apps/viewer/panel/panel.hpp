@@ -37,6 +37,9 @@ class Panel : public QWidget {
                      const RendererSettings& settings, const DeviceInfo& device);
     /// No volume: nothing can be set.
     void clear();
+    /// True: there is no session, only something to look at; nothing can be set but the look. Until
+    /// the next set_session().
+    void set_observing(bool observing);
     void set_look(const Look& look);
     const Look& look() const;
 

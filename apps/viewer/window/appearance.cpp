@@ -3,6 +3,7 @@
 
 #include <QApplication>
 #include <QPalette>
+#include <QSettings>
 #include <QStyle>
 
 namespace palpate::viewer {
@@ -10,7 +11,10 @@ namespace {
 
 QPalette palette_of(const QColor& window, const QColor& base, const QColor& text,
                     const QColor& faint) {
-    QPalette palette(text, window);
+    QPalette palette(window, window);  // buttons, and what is made from them
+    for (const auto role : {QPalette::WindowText, QPalette::ButtonText, QPalette::BrightText}) {
+        palette.setColor(role, text);
+    }
     palette.setColor(QPalette::Base, base);
     palette.setColor(QPalette::AlternateBase, window);
     palette.setColor(QPalette::Text, text);
@@ -30,6 +34,7 @@ QPalette palette_of(const QColor& window, const QColor& base, const QColor& text
 
 void set_appearance(Appearance appearance) {
     static const QPalette system = QApplication::palette();
+    QSettings().setValue("appearance", static_cast<int>(appearance));
     switch (appearance) {
         case Appearance::system:
             QApplication::setPalette(system);
@@ -43,6 +48,11 @@ void set_appearance(Appearance appearance) {
                                                 QColor(226, 226, 226), QColor(130, 130, 130)));
             break;
     }
+}
+
+Appearance last_appearance() {
+    const int last = QSettings().value("appearance", 0).toInt();
+    return last == 1 ? Appearance::light : last == 2 ? Appearance::dark : Appearance::system;
 }
 
 }  // namespace palpate::viewer

@@ -10,6 +10,7 @@
 #include <QMenu>
 #include <QMessageBox>
 #include <QMimeData>
+#include <QScreen>
 #include <QScrollArea>
 #include <QSettings>
 #include <QStatusBar>
@@ -69,7 +70,9 @@ MainWindow::MainWindow(const app::TouchOptions& options)
     make_menus();
     connect_parts();
     const QSettings settings;
-    restoreGeometry(settings.value("geometry").toByteArray());
+    if (!restoreGeometry(settings.value("geometry").toByteArray())) {
+        resize(QSize(1360, 860).boundedTo(0.9 * screen()->availableSize()));
+    }
     restoreState(settings.value("state").toByteArray());
     find_devices();
     since_report_.start();
@@ -78,16 +81,17 @@ MainWindow::MainWindow(const app::TouchOptions& options)
 
 MainWindow::~MainWindow() {
     timer_.stop();
+    live_.reset();  // before anything that takes time
     finding_.reset();
     work_.reset();
-    live_.reset();
 }
 
 void MainWindow::connect_parts() {
     connect(&timer_, &QTimer::timeout, this, &MainWindow::tick);
     connect(views_, &Views::probe_dragged, this, &MainWindow::drag_probe);
     connect(views_, &Views::probe_aimed, this, &MainWindow::aim_probe);
-    connect(&views_->scene(), &Scene::problem, this, &MainWindow::show_problem);
+    connect(&views_->scene(), &Scene::problem, this,
+            [this](const QString& what) { show_problem(what); });
     connect(panel_, &Panel::asked, this, &MainWindow::send);
     connect(panel_, &Panel::device_chosen, this, &MainWindow::use_device);
     connect(panel_, &Panel::devices_wanted, this, &MainWindow::find_devices);
@@ -109,13 +113,8 @@ void MainWindow::tick() {
     show_rate();
     const double seconds = views_->scene().frame_seconds();
     frames_->setText(seconds > 0 ? tr("%1 ms a frame").arg(1e3 * seconds, 0, 'f', 0) : QString());
-    if (live_ && live_->recording() && !recording_told_) {
-        const std::string problem = live_->recording()->problem();
-        if (!problem.empty()) {
-            recording_told_ = true;
-            show_problem(QString::fromStdString(problem));
-        }
-    }
+    // One that cannot be written any more is ended: that tells why.
+    if (live_ && live_->recording() && !live_->recording()->problem().empty()) stop_recording();
 }
 
 /// How the loop has done since the last time.
@@ -173,15 +172,15 @@ void MainWindow::send(const Command& command) {
 void MainWindow::guarded(const std::function<void()>& action) {
     try {
         action();
-    } catch (const std::bad_alloc&) {
-        show_problem(tr("not enough memory: use a smaller volume, or one of fewer bits"));
     } catch (const std::exception& e) {
-        show_problem(QString::fromStdString(e.what()));
+        const app::Failure failure = app::failure_of(e);
+        show_problem(QString::fromStdString(failure.text), failure.status);
     }
 }
 
-void MainWindow::show_problem(const QString& what) {
+void MainWindow::show_problem(const QString& what, int status) {
     problem_ = what;
+    problem_status_ = status;
     std::fprintf(stderr, "palpate: %s\n", what.toLocal8Bit().constData());
     auto* box = new QMessageBox(QMessageBox::Warning, tr("Palpate"), what, QMessageBox::Ok, this);
     box->setObjectName("problem");
@@ -205,30 +204,33 @@ void MainWindow::find_devices() {
                                        [this, found] {
                                            if (!finding_ || !finding_->ended()) return;
                                            findings_ = *found;
-                                           device_changed();
+                                           show_devices();
                                        },
                                        Qt::QueuedConnection);
                                });
 }
 
-void MainWindow::device_changed() {
+void MainWindow::show_devices() {
     const std::string current = live_ ? live_->options().device : options_.device;
     panel_->set_devices(findings_, QString::fromStdString(current));
     device_status_.reset();
-    use_pointer_for(live_ && live_->mouse());
 }
 
 void MainWindow::use_device(const QString& option) {
     guarded([&] {
         (void)devices::parse_device(option.toStdString());
         if (live_) {
+            const io::RecordingWriter* recording = live_->recording();
+            const std::int64_t ticks = recording ? recording->ticks() : 0;
             live_->use_device(option.toStdString());
+            if (ticks > 0) show_done(tr("%1 ticks recorded, up to the other device").arg(ticks));
+            use_pointer_for(live_->mouse() != nullptr);
             panel_->set_session(live_->field(), opened_->histogram, live_->isovalue(),
                                 live_->settings(), live_->device());
         }
         options_.device = option.toStdString();
     });
-    device_changed();
+    show_devices();
     refresh_actions();
 }
 
@@ -252,9 +254,7 @@ void MainWindow::closeEvent(QCloseEvent* event) {
     QSettings settings;
     settings.setValue("geometry", saveGeometry());
     settings.setValue("state", saveState());
-    if (live_ && live_->recording()) {
-        guarded([&] { live_->stop_recording(); });
-    }
+    stop_recording();
     event->accept();
 }
 

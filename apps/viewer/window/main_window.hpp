@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 
+#include "apps/live/exit_status.hpp"
 #include "apps/live/view_options.hpp"
 #include "apps/viewer/model/live.hpp"
 #include "apps/viewer/model/opening.hpp"
@@ -57,12 +58,16 @@ class MainWindow : public QMainWindow {
     /// [s] of the recording that is shown.
     double shown_time() const { return shown_time_; }
     void show_time(double time);
-    /// Nothing is being loaded or drawn: what is seen is what there is.
     /// What is shown of the hand stays as it is now, for a picture; the session goes on.
     void hold_picture();
+    /// Nothing is being loaded or drawn: what is seen is what there is.
     bool settled() const;
-    /// What went wrong last, as shown; empty if nothing did.
+    /// What went wrong last, as shown, and the exit status that stands for it; empty if nothing did
+    /// since something was opened.
     const QString& problem() const { return problem_; }
+    int problem_status() const { return problem_status_; }
+    /// 0, or what a program ends with in which a recording was lost.
+    int exit_status() const { return exit_status_; }
 
   protected:
     void closeEvent(QCloseEvent* event) override;
@@ -77,22 +82,30 @@ class MainWindow : public QMainWindow {
     void observe();
     void send(const Command& command);
     void guarded(const std::function<void()>& action);
-    void show_problem(const QString& what);
+    void show_problem(const QString& what, int status = app::bad_input);
     void show_done(const QString& what);
     void find_devices();
     void use_device(const QString& option);
     void use_solid(Solid solid);
-    void device_changed();
+    void show_devices();
+    app::TouchOptions options_once();
+    void give_up_work();
     void refresh_actions();
     // opening.cpp
     void run(const QString& label, Work::Task task, std::function<void()> then);
-    void load(const app::VolumeOptions& volume, std::function<void(std::shared_ptr<Opened>)> then);
+    using Then = std::function<void(std::shared_ptr<Opened>)>;
+    void load(const app::VolumeOptions& volume, Then then);
+    void load_or_reuse(const app::VolumeOptions& volume, Then then);
     void begin(std::shared_ptr<Opened> opened, const app::TouchOptions& options);
+    void begin_with(std::shared_ptr<Opened> opened, app::TouchOptions options);
+    void use_usual_look();
+    void look_from_hand(const DeviceTransform& transform);
     void close_all();
     void show_volume(const Field& field, double isovalue, const RendererSettings& settings,
                      const DeviceInfo& device);
     void restore(const RendererSettings& settings);
-    void resume(std::shared_ptr<Opened> opened, const SessionFile& session);
+    void resume(std::shared_ptr<Opened> opened, const SessionFile& session,
+                app::TouchOptions options);
     void play(std::shared_ptr<Opened> opened, const QString& path);
     void leave_playback();
     void remember(const QString& path);
@@ -116,6 +129,8 @@ class MainWindow : public QMainWindow {
     void ask_open();
     void ask_open_folder();
     void ask_open_raw();
+    QString ask_save(const QString& title, const QString& name, const QString& suffix,
+                     bool replaces);
     void ask_save_session();
     void ask_save_picture(bool whole_window);
     void ask_record(bool on);
@@ -143,7 +158,7 @@ class MainWindow : public QMainWindow {
     std::optional<DeviceStatus> device_status_;
     std::vector<devices::DeviceFinding> findings_;
     QString problem_, device_problem_;
-    bool recording_told_ = false;
+    int problem_status_ = 0, exit_status_ = 0;
 };
 
 }  // namespace palpate::viewer

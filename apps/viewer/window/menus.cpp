@@ -27,10 +27,6 @@ QString last_folder() {
     return QSettings().value("folder", QDir::currentPath()).toString();
 }
 
-QString in_last_folder(const QString& name) {
-    return QDir(last_folder()).filePath(name);
-}
-
 QString stamp() {
     return QDateTime::currentDateTime().toString("yyyyMMdd-hhmmss");
 }
@@ -42,6 +38,7 @@ QAction* MainWindow::add(QMenu* menu, const char* name, const QString& text,
     auto* entry = new QAction(text, this);
     entry->setObjectName(name);
     entry->setShortcut(key);
+    entry->setAutoRepeat(false);  // a key that is held is one wish
     connect(entry, &QAction::triggered, this,
             [this, action = std::move(action)] { guarded(action); });
     menu->addAction(entry);
@@ -53,6 +50,7 @@ QAction* MainWindow::add_switch(QMenu* menu, const char* name, const QString& te
     auto* entry = new QAction(text, this);
     entry->setObjectName(name);
     entry->setShortcut(key);
+    entry->setAutoRepeat(false);  // a key that is held is one wish
     entry->setCheckable(true);
     connect(entry, &QAction::triggered, this,
             [this, action = std::move(action)](bool on) { guarded([&] { action(on); }); });
@@ -83,7 +81,7 @@ void MainWindow::make_file_menu() {
     add(file, "open", tr("&Open…"), QKeySequence::Open, [this] { ask_open(); });
     add(file, "open_folder", tr("Open a &folder (DICOM, TIFF)…"), QKeySequence("Ctrl+Shift+O"),
         [this] { ask_open_folder(); });
-    add(file, "open_raw", tr("Open &raw data…"), {}, [this] { ask_open_raw(); });
+    add(file, "open_raw", tr("Open ra&w data…"), {}, [this] { ask_open_raw(); });
     recent_ = file->addMenu(tr("Open &recent"));
     recent_->setObjectName("recent");
     connect(recent_, &QMenu::aboutToShow, this, &MainWindow::fill_recent);
@@ -114,9 +112,12 @@ void MainWindow::make_session_menu() {
         const double step = 0.01 * percent * live_->field().volume().range();
         send(command::Isovalue{live_->isovalue() + step});
     };
-    add(session, "level_up", tr("Isovalue &up by 1 %"), QKeySequence("+"), [level] { level(1); });
-    add(session, "level_down", tr("Isovalue &down by 1 %"), QKeySequence("-"),
-        [level] { level(-1); });
+    add(session, "level_up", tr("Isovalue &up by 1 %"), QKeySequence("+"), [level] {
+        level(1);
+    })->setAutoRepeat(true);
+    add(session, "level_down", tr("Isovalue &down by 1 %"), QKeySequence("-"), [level] {
+        level(-1);
+    })->setAutoRepeat(true);
     const auto scale = [this](double factor) {
         if (live_) send(command::Scale{live_->settings().transform.scale * factor});
     };
@@ -219,25 +220,34 @@ void MainWindow::ask_open_raw() {
     if (dialog.exec() == QDialog::Accepted) open_volume(dialog.options());
 }
 
+/// Empty if the person thinks better of it. A name without an extension gets `suffix`.
+QString MainWindow::ask_save(const QString& title, const QString& name, const QString& suffix,
+                             bool replaces) {
+    QFileDialog dialog(this, title, last_folder(), QString("*.%1 (*.%1)").arg(suffix));
+    dialog.setAcceptMode(QFileDialog::AcceptSave);
+    dialog.setDefaultSuffix(suffix);
+    dialog.setOption(QFileDialog::DontConfirmOverwrite, !replaces);
+    dialog.selectFile(name);
+    if (dialog.exec() != QDialog::Accepted) return {};
+    QSettings().setValue("folder", dialog.directory().absolutePath());
+    return dialog.selectedFiles().value(0);
+}
+
 void MainWindow::ask_save_session() {
-    const QString path = QFileDialog::getSaveFileName(
-        this, tr("Save the session"), in_last_folder("session.json"), tr("Sessions (*.json)"));
+    const QString path = ask_save(tr("Save the session"), "session.json", "json", true);
     if (!path.isEmpty()) save_session(path);
 }
 
 void MainWindow::ask_save_picture(bool whole_window) {
-    const QString path = QFileDialog::getSaveFileName(this, tr("Save a picture"),
-                                                      in_last_folder("palpate-" + stamp() + ".png"),
-                                                      tr("Pictures (*.png)"));
+    const QString path = ask_save(tr("Save a picture"), "palpate-" + stamp() + ".png", "png", true);
     if (!path.isEmpty()) save_picture(path, whole_window);
 }
 
 void MainWindow::ask_record(bool on) {
     refresh_actions();  // the switch shows what is, not what is wanted
     if (!on) return stop_recording();
-    const QString path = QFileDialog::getSaveFileName(
-        this, tr("Record the session"), in_last_folder("session-" + stamp() + ".csv"),
-        tr("Recordings (*.csv)"), nullptr, QFileDialog::DontConfirmOverwrite);
+    const QString path =
+        ask_save(tr("Record the session"), "session-" + stamp() + ".csv", "csv", false);
     if (!path.isEmpty()) start_recording(path);
 }
 

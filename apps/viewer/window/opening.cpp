@@ -38,7 +38,7 @@ QString short_name(const QString& path) {
 /// Does it in the background, with progress; `then` runs here once it is done. Work that is under
 /// way is given up for it.
 void MainWindow::run(const QString& label, Work::Task task, std::function<void()> then) {
-    work_.reset();
+    give_up_work();
     then_ = std::move(then);
     progress_->begin(label);
     const auto look = [this] {
@@ -58,11 +58,13 @@ void MainWindow::run(const QString& label, Work::Task task, std::function<void()
     });
 }
 
-void MainWindow::load(const app::VolumeOptions& volume,
-                      std::function<void(std::shared_ptr<Opened>)> then) {
-    if (opened_ && app::to_names(opened_->options) == app::to_names(volume)) {
-        return guarded([&] { then(opened_); });
-    }
+void MainWindow::give_up_work() {
+    work_.reset();
+    then_ = nullptr;
+    progress_->end();
+}
+
+void MainWindow::load(const app::VolumeOptions& volume, Then then) {
     auto result = std::make_shared<std::shared_ptr<Opened>>();
     run(
         tr("Reading %1").arg(short_name(QString::fromStdString(volume.volume))),
@@ -72,8 +74,16 @@ void MainWindow::load(const app::VolumeOptions& volume,
         [result, then = std::move(then)] { then(*result); });
 }
 
+/// The same, without reading what is open already.
+void MainWindow::load_or_reuse(const app::VolumeOptions& volume, Then then) {
+    if (!opened_ || app::to_names(opened_->options) != app::to_names(volume)) {
+        return load(volume, std::move(then));
+    }
+    give_up_work();
+    guarded([&] { then(opened_); });
+}
+
 void MainWindow::open_path(const QString& path) {
-    problem_.clear();
     if (!path.startsWith("synthetic:")) {
         QSettings().setValue("folder", QFileInfo(path).absolutePath());
     }
@@ -84,18 +94,24 @@ void MainWindow::open_path(const QString& path) {
     open_volume(volume);
 }
 
+/// Those of the command line. Its level and recording are for the first volume only.
+app::TouchOptions MainWindow::options_once() {
+    app::TouchOptions options = options_;
+    options_.field.isovalue.clear();
+    options_.record.clear();
+    return options;
+}
+
 void MainWindow::open_volume(const app::VolumeOptions& volume) {
     problem_.clear();
-    load(volume, [this](std::shared_ptr<Opened> opened) {
-        app::TouchOptions options = options_;
+    load(volume, [this, options = options_once()](std::shared_ptr<Opened> opened) mutable {
         options.volume = opened->options;
+        options.device = options_.device;
         if (options.field.isovalue.empty()) {
             options.field.isovalue = fmt::format("{}", first_isovalue(*opened));
         }
         begin(std::move(opened), options);
-        // Those of the command line were for its volume.
-        options_.field.isovalue.clear();
-        options_.record.clear();
+        use_usual_look();
     });
 }
 
@@ -104,26 +120,35 @@ void MainWindow::begin(std::shared_ptr<Opened> opened, const app::TouchOptions& 
     close_all();
     live_ = std::make_unique<Live>(opened->loaded, options);
     opened_ = std::move(opened);
-    recording_told_ = false;
-    Look look = panel_->look();
-    look.transfer = preset(suggested_preset(opened_->histogram, opened_->loaded.volume),
-                           opened_->histogram, opened_->loaded.volume);
-    panel_->set_look(look);
-    views_->set_look(look);
     show_volume(live_->field(), live_->isovalue(), live_->settings(), live_->device());
-    const Mat3& hand = live_->settings().transform.rotation;
-    views_->scene().reset_camera();
-    views_->scene().look_from({hand.col(2), hand.col(1)});
+    look_from_hand(live_->settings().transform);
     views_->set_window(opened_->dark(), opened_->bright());
     show_done(tr("Felt through the device %1").arg(QString::fromStdString(options.device)));
-    device_changed();
+    show_devices();
+    use_pointer_for(live_->mouse() != nullptr);
     if (!options.record.empty()) start_recording(QString::fromStdString(options.record));
     remember(QString::fromStdString(opened_->options.volume));
     for (const std::string& note : opened_->loaded.notes) show_done(QString::fromStdString(note));
 }
 
+void MainWindow::use_usual_look() {
+    const Volume& volume = opened_->loaded.volume;
+    Look look = panel_->look();
+    look.transfer =
+        preset(suggested_preset(opened_->histogram, volume), opened_->histogram, volume);
+    panel_->set_look(look);
+    views_->set_look(look);
+}
+
+/// The whole volume, as the person sees it who holds the device.
+void MainWindow::look_from_hand(const DeviceTransform& transform) {
+    views_->scene().reset_camera();
+    views_->scene().look_from({transform.rotation.col(2), transform.rotation.col(1)});
+}
+
 /// Back to an empty window.
 void MainWindow::close_all() {
+    stop_recording();
     live_.reset();
     playback_.reset();
     held_.reset();
@@ -163,23 +188,19 @@ void MainWindow::play(std::shared_ptr<Opened> opened, const QString& path) {
             *result = Playback::read(path_of(path), opened->loaded, progress);
         },
         [this, result, opened, path] {
+            const bool same = opened_ == opened;
             close_all();
             opened_ = opened;
             playback_ = std::move(*result);
             const io::RecordingHead& head = playback_->head();
-            const Field field(opened->loaded.volume, head.solid, head.background);
-            if (panel_->look().transfer.points.empty()) {
-                Look look = panel_->look();
-                look.transfer = preset(suggested_preset(opened->histogram, field.volume()),
-                                       opened->histogram, field.volume());
-                panel_->set_look(look);
-                views_->set_look(look);
-            }
             DeviceInfo device;
             device.name = device.model = head.device;
             device.limits = head.settings.device;
-            show_volume(field, head.isovalue, head.settings, device);
+            show_volume(playback_->field(), head.isovalue, head.settings, device);
+            if (!same) use_usual_look();
+            look_from_hand(head.settings.transform);
             views_->set_window(opened->dark(), opened->bright());
+            panel_->set_observing(true);
             use_pointer_for(false);
             time_line_->set_playback(*playback_);
             time_line_->show();
@@ -201,16 +222,19 @@ void MainWindow::show_time(double time) {
     time_line_->set_time(time);
 }
 
-/// Feels the volume of the recording.
+/// Feels the volume of the recording, at the level and in the view that were shown.
 void MainWindow::leave_playback() {
-    if (playback_) open_volume(opened_->options);
+    if (!playback_) return;
+    SessionFile session = session_now();
+    session.isovalue = shown_isovalue_.value_or(session.isovalue);
+    session.settings.reset();  // the recorded device's
+    resume(opened_, session, options_);
 }
 
 void MainWindow::start_recording(const QString& path) {
     if (!live_) return;
     guarded([&] {
         live_->record(path_of(path));
-        recording_told_ = false;
         show_done(tr("Recording to %1").arg(path));
     });
     refresh_actions();
@@ -218,7 +242,11 @@ void MainWindow::start_recording(const QString& path) {
 
 void MainWindow::stop_recording() {
     if (!live_ || !live_->recording()) return;
-    guarded([&] { show_done(tr("%1 ticks recorded").arg(live_->stop_recording())); });
+    guarded([&] {
+        exit_status_ = app::bad_output;  // unless it is whole
+        show_done(tr("%1 ticks recorded").arg(live_->stop_recording()));
+        exit_status_ = app::done;
+    });
     refresh_actions();
 }
 

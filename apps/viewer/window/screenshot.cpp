@@ -41,7 +41,7 @@ bool Screenshot::reached() {
 
 void Screenshot::look() {
     if (!window_.problem().isEmpty()) {
-        status_ = app::bad_input;  // what, the window has said
+        status_ = window_.problem_status();  // what, the window has said
         window_.close();
         return;
     }

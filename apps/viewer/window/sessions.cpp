@@ -50,8 +50,9 @@ void MainWindow::open_session(const QString& path) {
     problem_.clear();
     guarded([&] {
         const SessionFile session = read_session(path.toStdString());
-        load(session.volume, [this, session, path](std::shared_ptr<Opened> opened) {
-            resume(std::move(opened), session);
+        load_or_reuse(session.volume, [this, session, path,
+                                       options = options_once()](std::shared_ptr<Opened> opened) {
+            resume(std::move(opened), session, options);
             remember(path);
         });
     });
@@ -66,17 +67,32 @@ void MainWindow::restore(const RendererSettings& settings) {
     send(command::Forces{settings.forces_on});
 }
 
-void MainWindow::resume(std::shared_ptr<Opened> opened, const SessionFile& session) {
-    app::TouchOptions options = options_;
+/// With the device that the options name; where that cannot be had, with the one of this window.
+void MainWindow::begin_with(std::shared_ptr<Opened> opened, app::TouchOptions options) {
+    try {
+        begin(opened, options);
+        options_.device = options.device;
+    } catch (const std::exception& e) {
+        if (options.device == options_.device) throw;
+        const QString why = QString::fromStdString(app::failure_of(e).text);
+        options.device = options_.device;
+        begin(opened, options);
+        show_done(
+            tr("%1; felt through the device %2").arg(why, QString::fromStdString(options.device)));
+    }
+}
+
+/// `options`: of the command line; a device that it names wins.
+void MainWindow::resume(std::shared_ptr<Opened> opened, const SessionFile& session,
+                        app::TouchOptions options) {
     options.volume = session.volume;
     options.field.solid = session.solid == Solid::above ? "above" : "below";
     options.field.background = session.background ? fmt::format("{}", *session.background) : "";
     options.field.isovalue = fmt::format("{}", session.isovalue);
-    options.device = session.device;
+    if (!options.device_given) options.device = session.device;
     options.render.method = session.method;
-    options.record.clear();
-    begin(std::move(opened), options);
-    options_.device = session.device;
+    begin_with(std::move(opened), options);
+    use_usual_look();
     if (session.settings) restore(*session.settings);
     panel_->set_session(live_->field(), opened_->histogram, live_->isovalue(), live_->settings(),
                         live_->device());

@@ -19,8 +19,8 @@ QString mouse_table() {
     return "<h3>" + QDialog::tr("Mouse in the scene") + "</h3><table>" +
            row(QDialog::tr("Left drag"), QDialog::tr("turn; with the mouse as device: move the "
                                                      "probe in the plane of the view")) +
-           row(QDialog::tr("Wheel"),
-               QDialog::tr("zoom; with the mouse as device: probe into the depth (Ctrl: finely)")) +
+           row(QDialog::tr("Wheel"), QDialog::tr("zoom; with the mouse as device: probe into the "
+                                                 "depth (Shift: finely; Ctrl: zoom)")) +
            row(QDialog::tr("Right drag"),
                QDialog::tr("zoom; with the mouse as device: turn (Shift or middle: pan)")) +
            row(QDialog::tr("Double click"), QDialog::tr("centre there")) + "</table><h3>" +

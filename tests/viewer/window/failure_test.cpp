@@ -1,0 +1,139 @@
+// When things go wrong, and what stays as it was.
+#include <QAction>
+#include <QMessageBox>
+#include <QPalette>
+#include <fstream>
+
+#include "apps/viewer/window/appearance.hpp"
+#include "viewer/window/window_fixture.hpp"
+
+namespace palpate::viewer::test {
+namespace {
+
+using Failures = InWindow;
+
+constexpr const char* sphere = "synthetic:sphere:40x40x40";
+
+TEST_F(Failures, a_device_that_cannot_be_had_is_told_wherever_it_is_asked_for) {
+    feel(sphere);
+    window_->start_recording(scratch("a.csv"));
+    ASSERT_TRUE(wait_until([&] { return window_->live()->recording()->ticks() > 50; }));
+    window_->stop_recording();
+    window_.reset();
+    open_window("recorded:file=missing.csv");
+    window_->open_path(scratch("a.csv"));
+    ASSERT_TRUE(wait_until([&] { return window_->playback() != nullptr; }));
+    // The volume that is open already: nothing is loaded in between.
+    window_->open_path(sphere);
+    ASSERT_TRUE(wait_until([&] { return !window_->problem().isEmpty(); }));
+    EXPECT_TRUE(window_->problem().contains("missing.csv"));
+    EXPECT_EQ(window_->live(), nullptr);
+}
+
+TEST_F(Failures, leaving_a_recording_keeps_level_and_view) {
+    feel(sphere);
+    Q_EMIT window_->panel().asked(command::Isovalue{110});
+    ASSERT_TRUE(wait_until([&] { return now().session.tick.proxy.isovalue == 110; }));
+    window_->start_recording(scratch("a.csv"));
+    ASSERT_TRUE(wait_until([&] { return window_->live()->recording()->ticks() > 50; }));
+    window_->stop_recording();
+    window_->open_path(scratch("a.csv"));
+    ASSERT_TRUE(wait_until([&] { return window_->playback() != nullptr; }));
+    QTest::qWait(100);
+    window_->views().scene().look_from(pictures::view_named("top"));
+    QTest::keyClick(window_.get(), Qt::Key_Escape);
+    ASSERT_TRUE(wait_until([&] { return window_->live() != nullptr; }));
+    EXPECT_EQ(window_->live()->isovalue(), 110);
+    EXPECT_NE(window_->live()->mouse(), nullptr);
+    EXPECT_GT(window_->views().scene().camera().towards_viewer.normalized()[2], 0.99);
+}
+
+TEST_F(Failures, a_session_of_another_persons_device_is_felt_with_the_one_at_hand) {
+    std::ofstream(scratch_.path() / "s.json")
+        << R"({"format": "palpate-session", "version": 1, "isovalue": 90,
+               "volume": {"volume": "synthetic:sphere:40x40x40"}, "device": "recorded:none.csv"})";
+    window_->open_path(scratch("s.json"));
+    ASSERT_TRUE(wait_until([&] { return window_->live() != nullptr; }));
+    EXPECT_EQ(window_->live()->isovalue(), 90);
+    EXPECT_NE(window_->live()->mouse(), nullptr);
+    EXPECT_TRUE(window_->problem().isEmpty()) << window_->problem().toStdString();
+}
+
+TEST_F(Failures, a_recording_that_cannot_be_begun_leaves_the_session_as_it_was) {
+    feel(sphere);
+    std::ofstream(scratch_.path() / "there.csv") << "mine";
+    const std::int64_t before = now().number;
+    window_->start_recording(scratch("there.csv"));
+    EXPECT_TRUE(window_->problem().contains("there.csv"));
+    EXPECT_EQ(window_->problem_status(), 5);
+    EXPECT_EQ(window_->live()->recording(), nullptr);
+    EXPECT_GE(now().number, before);
+    std::ifstream file(scratch_.path() / "there.csv");
+    std::string text;
+    file >> text;
+    EXPECT_EQ(text, "mine");
+}
+
+TEST_F(Failures, opening_what_is_open_gives_up_what_is_being_loaded) {
+    feel(sphere);
+    window_->start_recording(scratch("a.csv"));
+    ASSERT_TRUE(wait_until([&] { return window_->live()->recording()->ticks() > 50; }));
+    window_->stop_recording();
+    app::VolumeOptions other;
+    other.volume = "synthetic:noise:200x200x200";
+    window_->open_volume(other);
+    window_->open_path(scratch("a.csv"));
+    ASSERT_TRUE(wait_until([&] { return window_->playback() != nullptr; }));
+    QTest::qWait(500);
+    ASSERT_NE(window_->playback(), nullptr) << "the other volume came after all";
+    EXPECT_EQ(window_->live(), nullptr);
+}
+
+TEST_F(Failures, looking_for_devices_again_changes_neither_pointer_nor_device) {
+    feel(sphere);
+    auto* pointer = window_->findChild<QAction*>("pointer");
+    ASSERT_TRUE(pointer->isChecked());
+    QTest::keyClick(window_.get(), Qt::Key_H);
+    ASSERT_FALSE(pointer->isChecked());
+    Q_EMIT window_->panel().devices_wanted();
+    QTest::qWait(1500);
+    EXPECT_FALSE(pointer->isChecked());
+    EXPECT_NE(window_->live()->mouse(), nullptr);
+}
+
+TEST_F(Failures, a_key_that_is_held_switches_once) {
+    for (const char* name : {"forces", "freeze", "clutch", "record", "open", "quit"}) {
+        EXPECT_FALSE(window_->findChild<QAction*>(name)->autoRepeat()) << name;
+    }
+    EXPECT_TRUE(window_->findChild<QAction*>("level_up")->autoRepeat());
+}
+
+TEST_F(Failures, words_can_be_read_in_light_and_dark) {
+    const auto contrast = [](QPalette::ColorRole text, QPalette::ColorRole ground) {
+        const QPalette palette = QApplication::palette();
+        return std::abs(palette.color(text).lightness() - palette.color(ground).lightness());
+    };
+    feel(sphere);
+    for (const Appearance appearance : {Appearance::light, Appearance::dark, Appearance::system}) {
+        set_appearance(appearance);
+        EXPECT_EQ(last_appearance(), appearance);
+        EXPECT_GT(contrast(QPalette::WindowText, QPalette::Window), 120);
+        EXPECT_GT(contrast(QPalette::ButtonText, QPalette::Button), 120);
+        EXPECT_GT(contrast(QPalette::Text, QPalette::Base), 120);
+        ASSERT_TRUE(wait_until([&] { return window_->settled(); }));
+        QTest::qWait(100);
+        save(appearance == Appearance::dark ? "dark" : "light");
+    }
+}
+
+TEST_F(Failures, the_servo_ends_before_what_takes_long_when_the_window_goes) {
+    feel(sphere);
+    app::VolumeOptions slow;
+    slow.volume = "synthetic:marschner-lobb:260x260x260";
+    window_->open_volume(slow);
+    QTest::qWait(50);
+    window_.reset();  // neither hangs nor crashes
+}
+
+}  // namespace
+}  // namespace palpate::viewer::test
