@@ -2,6 +2,7 @@
 #include <Eigen/Geometry>
 
 #include <QAction>
+#include <QDialog>
 #include <QDoubleSpinBox>
 #include <QLineEdit>
 #include <QMessageBox>
@@ -24,19 +25,20 @@ TEST_F(Window, a_file_is_opened_through_the_dialog_by_keys) {
     io::write_volume(ball, scratch_.path() / "ball.nrrd");
     // The dialog has an event loop of its own: the keys come from within.
     QTimer typist;
-    bool typed = false;
+    int typed = 0;
     QObject::connect(&typist, &QTimer::timeout, [&] {
         QWidget* dialog = QApplication::activeModalWidget();
         auto* name = dialog ? dialog->findChild<QLineEdit*>("fileNameEdit") : nullptr;
-        if (!name || typed) return;
-        typed = true;
+        if (!name || !name->isVisible()) return;
+        // A dialog that was not ready for the first words gets them again, and goes in the end.
+        if (++typed > 20) return static_cast<QDialog*>(dialog)->reject();
         name->clear();
         QTest::keyClicks(name, scratch("ball.nrrd"));
         QTest::keyClick(name, Qt::Key_Return);
     });
-    typist.start(50);
+    typist.start(300);
     QTest::keyClick(window_.get(), Qt::Key_O, Qt::ControlModifier);
-    ASSERT_TRUE(typed);
+    ASSERT_GT(typed, 0);
     ASSERT_TRUE(wait_until([&] { return window_->live() != nullptr; }));
     EXPECT_EQ(window_->live()->field().geometry().size, Index3(48, 48, 48));
     EXPECT_TRUE(window_->windowTitle().startsWith("ball.nrrd"));
