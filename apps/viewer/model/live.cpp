@@ -140,7 +140,6 @@ void Live::use_device(const std::string& device) {
     stop_recording();
     servo_->stop();
     device_->stop();
-    servo_.reset();
     options_ = std::move(options);
     session_settings_ = session.settings;
     hold(std::move(scene.device));

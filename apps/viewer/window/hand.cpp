@@ -2,8 +2,6 @@
 #include <Eigen/Geometry>
 
 #include <QAction>
-#include <QMenu>
-#include <QMenuBar>
 #include <QStatusBar>
 
 #include "apps/viewer/scene/scene.hpp"
@@ -38,18 +36,17 @@ void MainWindow::nudge(const Vec3& screen) {
 
 void MainWindow::make_hand_actions() {
     struct Key {
-        const char* name;
         QString text;
         int key;
         Vec3 step;
     };
     const Key keys[] = {
-        {"left", tr("Nudge the probe to the left"), Qt::Key_Left, {-1, 0, 0}},
-        {"right", tr("Nudge the probe to the right"), Qt::Key_Right, {1, 0, 0}},
-        {"up", tr("Nudge the probe up"), Qt::Key_Up, {0, 1, 0}},
-        {"down", tr("Nudge the probe down"), Qt::Key_Down, {0, -1, 0}},
-        {"in", tr("Nudge the probe into the depth"), Qt::Key_PageUp, {0, 0, -1}},
-        {"out", tr("Nudge the probe towards you"), Qt::Key_PageDown, {0, 0, 1}},
+        {tr("Nudge the probe to the left"), Qt::Key_Left, {-1, 0, 0}},
+        {tr("Nudge the probe to the right"), Qt::Key_Right, {1, 0, 0}},
+        {tr("Nudge the probe up"), Qt::Key_Up, {0, 1, 0}},
+        {tr("Nudge the probe down"), Qt::Key_Down, {0, -1, 0}},
+        {tr("Nudge the probe into the depth"), Qt::Key_PageUp, {0, 0, -1}},
+        {tr("Nudge the probe towards you"), Qt::Key_PageDown, {0, 0, 1}},
     };
     // Where the scene has the focus: elsewhere arrows belong to sliders, numbers and slices.
     for (const Key& key : keys) {

@@ -1,13 +1,10 @@
 // What goes on in the window: snapshots to who shows them, wishes to the session.
 #include "apps/viewer/window/main_window.hpp"
 
-#include <fmt/format.h>
-
 #include <QCloseEvent>
 #include <QDockWidget>
 #include <QDragEnterEvent>
 #include <QLabel>
-#include <QMenu>
 #include <QMessageBox>
 #include <QMimeData>
 #include <QScreen>
@@ -19,7 +16,6 @@
 #include <cstdio>
 #include <utility>
 
-#include "apps/viewer/model/transfer.hpp"
 #include "apps/viewer/panel/panel.hpp"
 #include "apps/viewer/scene/scene.hpp"
 #include "apps/viewer/slices/time_line.hpp"

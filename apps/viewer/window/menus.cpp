@@ -9,7 +9,6 @@
 #include <QMenuBar>
 #include <QSettings>
 #include <QToolBar>
-#include <cmath>
 
 #include "apps/viewer/panel/panel.hpp"
 #include "apps/viewer/scene/scene.hpp"

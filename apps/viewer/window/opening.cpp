@@ -4,10 +4,9 @@
 #include <QBuffer>
 #include <QDir>
 #include <QFileInfo>
-#include <QMenu>
 #include <QSettings>
-#include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include "apps/live/recorded_scene.hpp"
 #include "apps/viewer/model/transfer.hpp"
@@ -175,8 +174,10 @@ void MainWindow::open_recording(const QString& path) {
     guarded([&] {
         const io::RecordingReader reader(path_of(path));
         const auto volume = app::recorded_volume(reader.head(), path_of(path));
-        load(volume,
-             [this, path](std::shared_ptr<Opened> opened) { play(std::move(opened), path); });
+        (void)options_once();  // they were for a volume to feel
+        load_or_reuse(volume, [this, path](std::shared_ptr<Opened> opened) {
+            play(std::move(opened), path);
+        });
     });
 }
 
@@ -243,9 +244,9 @@ void MainWindow::start_recording(const QString& path) {
 void MainWindow::stop_recording() {
     if (!live_ || !live_->recording()) return;
     guarded([&] {
-        exit_status_ = app::bad_output;  // unless it is whole
+        const int before = std::exchange(exit_status_, app::bad_output);  // unless it is whole
         show_done(tr("%1 ticks recorded").arg(live_->stop_recording()));
-        exit_status_ = app::done;
+        exit_status_ = before;
     });
     refresh_actions();
 }
