@@ -11,7 +11,6 @@
 #include <vtkPolyData.h>
 #include <vtkPolyDataNormals.h>
 #include <vtkProperty.h>
-#include <vtkShaderProperty.h>
 #include <vtkSphereSource.h>
 #include <vtkTubeFilter.h>
 #include <vtkTypeInt32Array.h>
@@ -19,8 +18,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
+
+#include "pictures/vtk/material.hpp"
 
 namespace palpate::pictures {
 namespace {
@@ -37,39 +37,6 @@ vtkSmartPointer<vtkFloatArray> vectors(std::span<float> values) {
     array->SetNumberOfComponents(3);
     array->SetArray(values.data(), static_cast<vtkIdType>(values.size()), 1);
     return array;
-}
-
-/// VTK turns the normal of a triangle that faces away. A sliver that rounding has turned would be a
-/// dark dot, so the normal alone decides.
-void face_the_viewer(vtkActor* actor) {
-    actor->GetShaderProperty()->AddFragmentShaderReplacement(
-        "//VTK::Normal::Impl", true,
-        "//VTK::Normal::Impl\n"
-        "  if (normalVCVSOutput.z < 0.0) normalVCVSOutput = -normalVCVSOutput;\n",
-        false);
-}
-
-/// Like glass: clear where one looks straight through, denser towards the outline. It is drawn as
-/// if opaque, its nearest part alone, with how dense that is as alpha.
-void look_like_glass(vtkActor* actor, double opacity) {
-    actor->ForceOpaqueOn();
-    char code[256];
-    std::snprintf(code, sizeof code,
-                  "//VTK::Light::Impl\n"
-                  "  float aslant = 1.0 - abs(normalVCVSOutput.z);\n"
-                  "  gl_FragData[0].a = %.3f + %.3f * aslant * aslant * aslant;\n",
-                  opacity, std::min(0.6, 1 - opacity));
-    actor->GetShaderProperty()->AddFragmentShaderReplacement("//VTK::Light::Impl", false, code,
-                                                             false);
-}
-
-void look_matt(vtkActor* actor) {
-    vtkProperty* const p = actor->GetProperty();
-    p->SetInterpolationToPhong();
-    p->SetAmbient(0.16);
-    p->SetDiffuse(0.9);
-    p->SetSpecular(0.08);
-    p->SetSpecularPower(25);
 }
 
 /// A polyline without points so near to each other that a tube would fold there.
@@ -190,9 +157,9 @@ vtkSmartPointer<vtkActor> surface_actor(const Surface& surface, const SharedMesh
     mapper->ScalarVisibilityOff();
     mapper->StaticOn();
     auto actor = actor_of(mapper, surface.colour);
-    look_matt(actor);
-    face_the_viewer(actor);
-    if (surface.opacity < 1) look_like_glass(actor, surface.opacity);
+    look_matt(*actor);
+    face_the_viewer(*actor);
+    if (surface.opacity < 1) set_glass(*actor, surface.opacity);
     return actor;
 }
 
@@ -217,7 +184,7 @@ std::vector<vtkSmartPointer<vtkActor>> marker_actors(const PictureScene& scene) 
         actors.push_back(cone(neck - origin, a.to - origin, 2.4 * a.radius, a.colour));
     }
     for (const auto& actor : actors) {
-        look_matt(actor);
+        look_matt(*actor);
         actor->GetProperty()->SetSpecular(0.35);
     }
     return actors;

@@ -30,7 +30,6 @@ class Live {
     Live& operator=(const Live&) = delete;
 
     const Field& field() const { return field_; }
-    const app::LoadedVolume& loaded() const { return loaded_; }
     const app::TouchOptions& options() const { return options_; }
     DeviceInfo device() const { return device_->info(); }
     /// What is wrong with the device and what to do, in words; empty where all is well.

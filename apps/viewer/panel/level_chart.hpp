@@ -35,7 +35,6 @@ class LevelChart : public QWidget {
     const Ranges& bands() const { return bands_; }
     /// Whether bands can be added, deleted and moved as a whole; else only their ends move.
     void set_editable(bool editable) { editable_ = editable; }
-    int chosen_band() const { return chosen_; }
     void choose_band(int band);
     /// What an arrow key moves the level by [data units].
     double fine_step() const;

@@ -14,14 +14,14 @@
 #include <vtkProperty.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
-#include <vtkShaderProperty.h>
 #include <vtkTexture.h>
 #include <vtkTypeInt32Array.h>
 #include <vtkUnsignedCharArray.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+
+#include "pictures/vtk/material.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -78,16 +78,6 @@ vtkSmartPointer<vtkPolyData> polydata_of(const DrawnMesh& mesh) {
     return data;
 }
 
-/// VTK turns the normal of a triangle that faces away. A sliver that rounding has turned would be a
-/// dark dot, so the normal alone decides.
-void face_the_viewer(vtkActor& actor) {
-    actor.GetShaderProperty()->AddFragmentShaderReplacement(
-        "//VTK::Normal::Impl", true,
-        "//VTK::Normal::Impl\n"
-        "  if (normalVCVSOutput.z < 0.0) normalVCVSOutput = -normalVCVSOutput;\n",
-        false);
-}
-
 vtkSmartPointer<PatientActor> part_actor(std::shared_ptr<const DrawnMesh> part,
                                          const std::atomic<bool>& give_up) {
     auto actor = vtkSmartPointer<PatientActor>::New();
@@ -98,8 +88,8 @@ vtkSmartPointer<PatientActor> part_actor(std::shared_ptr<const DrawnMesh> part,
     actor->SetMapper(mapper);
     actor->give_up = &give_up;
     actor->mesh = std::move(part);
-    look_matt(*actor);
-    face_the_viewer(*actor);
+    pictures::look_matt(*actor);
+    pictures::face_the_viewer(*actor);
     return actor;
 }
 
@@ -171,15 +161,6 @@ vtkSmartPointer<vtkActor> slice_actor(const Volume& volume, int axis, double whe
 
 }  // namespace
 
-void look_matt(vtkActor& actor) {
-    vtkProperty* const p = actor.GetProperty();
-    p->SetInterpolationToPhong();
-    p->SetAmbient(0.16);
-    p->SetDiffuse(0.9);
-    p->SetSpecular(0.08);
-    p->SetSpecularPower(25);
-}
-
 std::vector<vtkSmartPointer<vtkActor>> mesh_actors(const std::shared_ptr<const DrawnMesh>& mesh,
                                                    bool hardware,
                                                    const std::atomic<bool>& give_up) {
@@ -194,20 +175,6 @@ std::vector<vtkSmartPointer<vtkActor>> mesh_actors(const std::shared_ptr<const D
         actors.back()->waits = true;
     }
     return {actors.begin(), actors.end()};
-}
-
-void set_glass(vtkActor& actor, double opacity) {
-    vtkShaderProperty* const shader = actor.GetShaderProperty();
-    shader->ClearFragmentShaderReplacement("//VTK::Light::Impl", false);
-    actor.ForceOpaqueOn();  // its nearest part alone is seen
-    if (opacity >= 1) return;
-    char code[256];
-    std::snprintf(code, sizeof code,
-                  "//VTK::Light::Impl\n"
-                  "  float aslant = 1.0 - abs(normalVCVSOutput.z);\n"
-                  "  gl_FragData[0].a = %.3f + %.3f * aslant * aslant * aslant;\n",
-                  opacity, std::min(0.6, 1 - opacity));
-    shader->AddFragmentShaderReplacement("//VTK::Light::Impl", false, code, false);
 }
 
 std::array<vtkSmartPointer<vtkActor>, 3> slice_actors(const Volume& volume, const Vec3& crosshair) {

@@ -13,17 +13,10 @@
 
 namespace palpate::viewer {
 
-/// The material of all bodies in our pictures.
-void look_matt(vtkActor& actor);
-
 /// A mesh, without graphics hardware in parts, none so large that drawing it is long: between two
 /// of them drawing can be given up. `give_up` must outlive the actors.
 std::vector<vtkSmartPointer<vtkActor>> mesh_actors(const std::shared_ptr<const DrawnMesh>& mesh,
                                                    bool hardware, const std::atomic<bool>& give_up);
-/// Like glass: clear where one looks straight through, denser towards the outline; `opacity` is
-/// that of a part that faces the viewer. 1: not glass.
-void set_glass(vtkActor& actor, double opacity);
-
 /// Three planes of the grid through a point, grey from the least sample to the greatest. Positions
 /// from the middle of the grid.
 std::array<vtkSmartPointer<vtkActor>, 3> slice_actors(const Volume& volume, const Vec3& crosshair);

@@ -17,8 +17,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "apps/viewer/scene/bodies.hpp"
 #include "apps/viewer/scene/shapes.hpp"
+#include "pictures/vtk/material.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -124,7 +124,7 @@ Markers::Twin Markers::twin_of(const Colour& colour, vtkSmartPointer<vtkPolyData
         mapper->ScalarVisibilityOff();
         actor->SetMapper(mapper);
         actor->GetProperty()->SetColor(colour.red, colour.green, colour.blue);
-        look_matt(*actor);
+        pictures::look_matt(*actor);
         actor->GetProperty()->SetSpecular(0.35);
         actor->SetVisibility(false);
     }

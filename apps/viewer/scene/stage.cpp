@@ -20,6 +20,7 @@
 #include "apps/viewer/scene/view_space.hpp"
 #include "pictures/surface.hpp"
 #include "pictures/vtk/furnishing.hpp"
+#include "pictures/vtk/material.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -126,7 +127,7 @@ void Stage::show_surface(const Shot& shot) {
         part->GetProperty()->SetColor(c.red, c.green, c.blue);
         part->SetVisibility(shot.look.surface && opacity > 0);
         if (opacity == opacity_) continue;
-        set_glass(*part, opacity);
+        pictures::set_glass(*part, opacity);
         (opacity < 1 ? solid_ : glass_)->RemoveActor(part);
         (opacity < 1 ? glass_ : solid_)->AddActor(part);
     }

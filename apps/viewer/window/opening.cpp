@@ -122,7 +122,11 @@ void MainWindow::begin(std::shared_ptr<Opened> opened, const app::TouchOptions& 
     show_volume(live_->field(), live_->isovalue(), live_->settings(), live_->device());
     look_from_hand(live_->settings().transform);
     views_->set_window(opened_->dark(), opened_->bright());
-    show_done(tr("Felt through the device %1").arg(QString::fromStdString(options.device)));
+    QString words = tr("Felt through the device %1").arg(QString::fromStdString(options.device));
+    for (const std::string& sentence : live_->privileges()) {
+        words += "; " + QString::fromStdString(sentence);
+    }
+    show_done(words);
     show_devices();
     use_pointer_for(live_->mouse() != nullptr);
     if (!options.record.empty()) start_recording(QString::fromStdString(options.record));

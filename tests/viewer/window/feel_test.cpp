@@ -2,12 +2,10 @@
 #include <Eigen/Geometry>
 
 #include <QAction>
-#include <QDialog>
 #include <QDoubleSpinBox>
-#include <QLineEdit>
 #include <QMessageBox>
 #include <QSlider>
-#include <QTimer>
+#include <QToolButton>
 
 #include "viewer/window/window_fixture.hpp"
 
@@ -23,22 +21,7 @@ TEST_F(Window, a_file_is_opened_through_the_dialog_by_keys) {
     options.volume = sphere;
     const Volume ball = app::load(options, [](double) {}).volume;
     io::write_volume(ball, scratch_.path() / "ball.nrrd");
-    // The dialog has an event loop of its own: the keys come from within.
-    QTimer typist;
-    int typed = 0;
-    QObject::connect(&typist, &QTimer::timeout, [&] {
-        QWidget* dialog = QApplication::activeModalWidget();
-        auto* name = dialog ? dialog->findChild<QLineEdit*>("fileNameEdit") : nullptr;
-        if (!name || !name->isVisible()) return;
-        // A dialog that was not ready for the first words gets them again, and goes in the end.
-        if (++typed > 20) return static_cast<QDialog*>(dialog)->reject();
-        name->clear();
-        QTest::keyClicks(name, scratch("ball.nrrd"));
-        QTest::keyClick(name, Qt::Key_Return);
-    });
-    typist.start(300);
-    QTest::keyClick(window_.get(), Qt::Key_O, Qt::ControlModifier);
-    ASSERT_GT(typed, 0);
+    type_in_dialog(Qt::Key_O, scratch("ball.nrrd"));
     ASSERT_TRUE(wait_until([&] { return window_->live() != nullptr; }));
     EXPECT_EQ(window_->live()->field().geometry().size, Index3(48, 48, 48));
     EXPECT_TRUE(window_->windowTitle().startsWith("ball.nrrd"));
@@ -119,13 +102,15 @@ TEST_F(Window, freeze_holds_hand_and_proxy) {
 TEST_F(Window, a_session_is_recorded_and_played_back_with_its_time_line) {
     feel(sphere);
     const QString file = scratch("session.csv");
-    window_->start_recording(file);
+    type_in_dialog(Qt::Key_R, scratch("session"));  // the dialog adds the extension
     ASSERT_NE(window_->live()->recording(), nullptr);
     press_until_force();
     QTest::qWait(300);
     save("recording");
-    window_->stop_recording();
-    window_->open_path(file);
+    QTest::keyClick(window_.get(), Qt::Key_R, Qt::ControlModifier);
+    EXPECT_EQ(window_->live()->recording(), nullptr);
+    ASSERT_TRUE(QFile::exists(file));
+    type_in_dialog(Qt::Key_O, file);
     ASSERT_TRUE(wait_until([&] { return window_->playback() != nullptr; }))
         << window_->problem().toStdString();
     EXPECT_EQ(window_->live(), nullptr);
@@ -138,7 +123,8 @@ TEST_F(Window, a_session_is_recorded_and_played_back_with_its_time_line) {
     save("played");
     window_->show_time(window_->playback()->begin());
     EXPECT_EQ(window_->playback()->at(window_->shown_time()).session.tick.force.norm(), 0);
-    window_->time_line().set_playing(true);
+    QTest::mouseClick(&part<QToolButton>("play"), Qt::LeftButton);
+    EXPECT_TRUE(window_->time_line().playing());
     ASSERT_TRUE(
         wait_until([&] { return window_->shown_time() > window_->playback()->begin() + 0.1; }));
     // And back to feeling.

@@ -4,9 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <QApplication>
+#include <QDialog>
 #include <QDir>
 #include <QElapsedTimer>
+#include <QLineEdit>
 #include <QSettings>
+#include <QTimer>
 #include <QWheelEvent>
 #include <QtTest>
 #include <functional>
@@ -107,6 +110,29 @@ class InWindow : public testing::Test {
             QTest::qWait(20);
         }
         ASSERT_GT(force(), 0.3);
+    }
+
+    /// Presses a key that opens a file dialog, and types a name there. The dialog has an event loop
+    /// of its own: the keys come from within.
+    void type_in_dialog(Qt::Key key, const QString& name) {
+        QTimer typist;
+        int typed = 0;
+        QObject::connect(&typist, &QTimer::timeout, [&] {
+            QWidget* dialog = QApplication::activeModalWidget();
+            auto* line = dialog ? dialog->findChild<QLineEdit*>("fileNameEdit") : nullptr;
+            if (!line || !line->isVisible()) return;
+            // A dialog that was not ready for the first words gets them again, and goes in the end.
+            if (++typed > 20) return static_cast<QDialog*>(dialog)->reject();
+            line->clear();
+            QTest::keyClicks(line, name);
+            QTest::keyClick(line, Qt::Key_Return);
+        });
+        typist.start(300);
+        QTest::keyClick(window_.get(), key, Qt::ControlModifier);
+        ASSERT_GT(typed, 0);
+        // Without a window manager nothing makes the window active again after its dialog.
+        window_->activateWindow();
+        ASSERT_TRUE(QTest::qWaitForWindowActive(window_.get()));
     }
 
     template <class Widget>
