@@ -152,7 +152,7 @@ std::optional<SessionEvent> RecordingReader::next() {
         rows_->waiting.emplace_back(rows_->tick());
     }
     if (rows_->waiting.empty()) return std::nullopt;
-    SessionEvent event = rows_->waiting.front();
+    std::optional<SessionEvent> event(std::move(rows_->waiting.front()));
     rows_->waiting.pop_front();
     return event;
 }

@@ -7,6 +7,7 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace palpate::io {
 namespace {
@@ -24,6 +25,7 @@ struct Writer {
     void operator()(const char* name, const bool& value) { json[name] = value; }
     void operator()(const char* name, const int& value) { json[name] = value; }
     void operator()(const char* name, const std::uint32_t& value) { json[name] = value; }
+    void operator()(const char* name, const std::uint64_t& value) { json[name] = value; }
     void operator()(const char* name, const Vec3& value) {
         Json& list = json[name] = Json::array();
         for (int i = 0; i < 3; ++i) list.push_back(number_to_json(value[i]));
@@ -59,12 +61,13 @@ struct Reader {
     }
     void operator()(const char* name, int& value) { whole(name, value); }
     void operator()(const char* name, std::uint32_t& value) { whole(name, value); }
+    void operator()(const char* name, std::uint64_t& value) { whole(name, value); }
     template <class T>
     void whole(const char* name, T& value) {
         const Json* j = find(name);
         if (!j) return;
         const auto number = j->is_number_integer() ? j->get<std::int64_t>() : -1;
-        if (number < 0 || number > std::int64_t{std::numeric_limits<T>::max()}) {
+        if (number < 0 || !std::in_range<T>(number)) {
             wrong(name, "a whole number");
         }
         value = static_cast<T>(number);
@@ -183,6 +186,16 @@ void members(auto& v, Is<command::Scale> auto& s) {
     v("scale", s.scale);
 }
 
+void members(auto& v, Is<command::Samples> auto& s) {
+    v("version", s.version);
+}
+void members(auto& v, Is<command::Moment> auto& s) {
+    v("time", s.time);
+}
+void members(auto& v, Is<command::Speed> auto& s) {
+    v("speed", s.speed);
+}
+
 template <class T>
 void Writer::part(const char* name, const T& value) {
     Writer part;
@@ -207,7 +220,8 @@ Json written(const T& value) {
 }
 
 /// The name of each alternative of Command, in its order.
-constexpr std::array command_names{"isovalue", "freeze",   "clutch",        "forces",   "scale",
+constexpr std::array command_names{"isovalue", "freeze",   "clutch",        "forces",
+                                   "scale",    "samples",  "moment",        "speed",
                                    "force",    "friction", "penetrability", "transform"};
 static_assert(command_names.size() == std::variant_size_v<Command>);
 

@@ -1,4 +1,5 @@
-// Field: the eight samples of any cell in space, background outside the grid.
+// Field: the eight samples of any cell in space; background outside the grid, edits and moments
+// between frames inside.
 #include "palpate/field.hpp"
 
 #include <algorithm>
@@ -7,34 +8,105 @@
 #include <stdexcept>
 
 namespace palpate {
+namespace {
+
+/// The eight corners of a cell in samples of type T; `at` is its lowest one.
+template <class T>
+CellSamples corners(const void* data, std::ptrdiff_t at, std::ptrdiff_t row, std::ptrdiff_t slice) {
+    const T* p = static_cast<const T*>(data) + at;
+    const T* q = p + slice;
+    return {double(p[0]), double(p[1]), double(p[row]), double(p[row + 1]),
+            double(q[0]), double(q[1]), double(q[row]), double(q[row + 1])};
+}
+
+CellSamples corners(SampleType type, const void* data, std::ptrdiff_t at, std::ptrdiff_t row,
+                    std::ptrdiff_t slice) {
+    switch (type) {
+        case SampleType::uint8:
+            return corners<std::uint8_t>(data, at, row, slice);
+        case SampleType::int16:
+            return corners<std::int16_t>(data, at, row, slice);
+        case SampleType::uint16:
+            return corners<std::uint16_t>(data, at, row, slice);
+        case SampleType::float32:
+            break;
+    }
+    return corners<float>(data, at, row, slice);
+}
+
+}  // namespace
 
 Field::Field(Volume volume, Solid solid, std::optional<double> background)
-    : volume_(std::move(volume)),
-      data_(volume_.data()),
-      row_(volume_.geometry().size[0]),
-      slice_(row_ * volume_.geometry().size[1]),
+    : Field(std::make_shared<const Samples>(std::move(volume)), solid, background) {}
+
+Field::Field(std::shared_ptr<const Samples> samples, Solid solid, std::optional<double> background)
+    : samples_(std::move(samples)),
+      row_(geometry().size[0]),
+      slice_(row_ * geometry().size[1]),
       background_(
-          background.value_or(solid == Solid::above ? volume_.minimum() : volume_.maximum())),
+          background.value_or(solid == Solid::above ? samples_->minimum() : samples_->maximum())),
+      voxels_per_mm_(geometry().spacing.cwiseInverse()),
       sign_(solid == Solid::above ? 1 : -1),
-      size_(volume_.geometry().size),
-      type_(volume_.type()),
+      size_(geometry().size),
       solid_(solid) {
     if (!std::isfinite(background_)) throw std::invalid_argument("the background is not finite");
-    const double low = std::min(volume_.minimum(), background_);
-    const double high = std::max(volume_.maximum(), background_);
+    look();
+}
+
+void Field::use(const std::shared_ptr<const Samples>& samples) noexcept {
+    samples_ = samples;
+    look();
+}
+
+void Field::set_time(double time) noexcept {
+    if (time == time_) return;
+    time_ = time;
+    look();
+}
+
+/// Brings everything in line with samples and time.
+void Field::look() noexcept {
+    moment_ = samples_->moment_at(time_);
+    data_ = samples_->frames()[moment_.from].volume.data();
+    type_ = samples_->type();
+    // Samples that change are looked up one by one: unedited ones do not pay for them.
+    const bool changing = samples_->bricks() || moment_.weight > 0;
+    plain_ = changing ? Index3(Index3::Zero()) : Index3(size_ - Index3::Ones());
+    const double low = std::min(samples_->minimum(), background_);
+    const double high = std::max(samples_->maximum(), background_);
     range_ = high > low ? high - low : 1.0;
     // Samples far from zero (a float volume of 1e6 +- 1) cost digits in every sum of eight.
     const double largest = std::max(std::abs(low), std::abs(high));
     tolerance_ = std::max(1e-12 * range_, 8 * std::numeric_limits<double>::epsilon() * largest);
-    voxels_per_mm_ = volume_.geometry().spacing.cwiseInverse();
 }
 
-CellSamples Field::border_cell(const Index3& cell) const {
-    CellSamples samples;
-    for (int corner = 0; corner < 8; ++corner) {
-        const Index3 at = cell + Index3(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
-        const bool inside = (at.array() >= 0).all() && (at.array() < size_.array()).all();
-        samples[corner] = inside ? volume_.sample(at) : background_;
+CellSamples Field::other_cell(const Index3& cell) const {
+    const bool inside =
+        (cell.array() >= 0).all() && (cell.array() < (size_ - Index3::Ones()).array()).all();
+    if (!inside) {
+        CellSamples samples;
+        for (int corner = 0; corner < 8; ++corner) {
+            const Index3 at = cell + Index3(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
+            const bool in_grid = (at.array() >= 0).all() && (at.array() < size_.array()).all();
+            samples[corner] = in_grid ? samples_->sample(at, moment_) : background_;
+        }
+        return samples;
+    }
+    if (const Bricks* bricks = samples_->bricks()) {
+        if (const std::byte* brick = bricks->of_cell(cell)) {
+            constexpr std::ptrdiff_t row = Bricks::samples, slice = row * Bricks::samples;
+            const auto at = (cell[0] & 15) + (cell[1] & 15) * row + (cell[2] & 15) * slice;
+            return corners(type_, brick, at, row, slice);
+        }
+    }
+    const std::ptrdiff_t at = cell[0] + cell[1] * row_ + cell[2] * slice_;
+    CellSamples samples = corners(type_, data_, at, row_, slice_);
+    if (moment_.weight > 0) {
+        const void* next = samples_->frames()[moment_.to].volume.data();
+        const CellSamples later = corners(type_, next, at, row_, slice_);
+        for (int i = 0; i < 8; ++i) {
+            samples[i] = (1 - moment_.weight) * samples[i] + moment_.weight * later[i];
+        }
     }
     return samples;
 }

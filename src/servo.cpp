@@ -105,6 +105,8 @@ Servo::Servo(Session session, Device& device, const ServoSettings& settings)
       settings_(settings),
       start_(session_.renderer.settings),
       solid_(session_.renderer.field.solid()),
+      geometry_(session_.renderer.field.geometry()),
+      held_{session_.renderer.field.shared_samples()},
       commands_(settings.command_room) {
     check(session_.renderer.settings);
     check(session_.settings);
@@ -139,7 +141,18 @@ void Servo::stop() noexcept {
 
 bool Servo::send(const Command& command) {
     check(command, start_, solid_);
+    if (const auto* samples = std::get_if<command::Samples>(&command)) {
+        check(*samples, geometry_);
+        hold(samples->samples);
+    }
     return commands_.push(command);
+}
+
+/// Lets go of those that nobody else holds any more, and holds these.
+void Servo::hold(const std::shared_ptr<const Samples>& samples) {
+    const std::lock_guard lock(held_mutex_);
+    std::erase_if(held_, [](const auto& held) { return held.use_count() == 1; });
+    held_.push_back(samples);
 }
 
 ServoReport Servo::report() const noexcept {

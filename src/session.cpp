@@ -56,7 +56,27 @@ void scale_about_scp(Renderer& renderer, double scale) {
     transform.scale = scale;
 }
 
+/// A sequence goes on with the time of the ticks, as far as its frames are there.
+void play(Session& session, double time) {
+    Field& field = session.renderer.field;
+    const double dt = session.begun ? time - session.last_tick : 0;
+    if (session.speed != 0 && dt > 0) {
+        field.set_time(field.samples().within(field.time() + session.speed * dt));
+    }
+    if (std::isfinite(time)) {
+        session.begun = true;
+        session.last_tick = time;
+    }
+}
+
 }  // namespace
+
+void check(const command::Samples& to, const Geometry& geometry) {
+    if (!to.samples) throw std::invalid_argument("no samples are given");
+    if (!(to.samples->geometry() == geometry)) {
+        throw std::invalid_argument("the samples do not lie on the grid of those that are felt");
+    }
+}
 
 void check(const SessionSettings& s) {
     if (!(s.fastest_hand > 0)) {
@@ -71,6 +91,14 @@ void check(const Command& command, const RendererSettings& settings, Solid solid
     RendererSettings changed = settings;
     if (const auto* to = std::get_if<command::Isovalue>(&command)) {
         if (std::isnan(to->isovalue)) throw std::invalid_argument("the isovalue is not a number");
+    } else if (const auto* samples = std::get_if<command::Samples>(&command)) {
+        if (!samples->samples) throw std::invalid_argument("no samples are given");
+    } else if (const auto* moment = std::get_if<command::Moment>(&command)) {
+        if (!std::isfinite(moment->time)) throw std::invalid_argument("the time is not finite");
+    } else if (const auto* speed = std::get_if<command::Speed>(&command)) {
+        if (!(std::abs(speed->speed) <= 1000)) {
+            throw std::invalid_argument("a sequence is played at most 1000 times as fast");
+        }
     } else if (const auto* force = std::get_if<ForceSettings>(&command)) {
         changed.force = *force;
     } else if (const auto* friction = std::get_if<Friction>(&command)) {
@@ -99,6 +127,16 @@ void apply(Session& session, const Command& command) noexcept {
     } else if (const auto* scale = std::get_if<command::Scale>(&command)) {
         scale_about_scp(session.renderer, scale->scale);
         session.holding = false;  // what was held was held at the other scale
+    } else if (const auto* samples = std::get_if<command::Samples>(&command)) {
+        Field& field = session.renderer.field;
+        field.use(samples->samples);
+        field.set_time(samples->samples->within(field.time()));
+        session.version = samples->version;
+    } else if (const auto* moment = std::get_if<command::Moment>(&command)) {
+        Field& field = session.renderer.field;
+        field.set_time(field.samples().within(moment->time));
+    } else if (const auto* speed = std::get_if<command::Speed>(&command)) {
+        session.speed = speed->speed;
     } else if (const auto* force = std::get_if<ForceSettings>(&command)) {
         settings.force = *force;
     } else if (const auto* friction = std::get_if<Friction>(&command)) {
@@ -137,12 +175,15 @@ SessionTick advance(Session& session, double time, const DeviceReading& reading)
     }
     session.holding = hangs && (state.valid || session.holding);
     state.position = session.frozen ? session.frozen_hand : reading.position;
+    play(session, time);
     SessionTick result;
     result.tick = render(session.renderer, state);
     result.device = reading;
     result.transform = session.renderer.settings.transform;
     result.frozen = session.frozen;
     result.clutched = clutched;
+    result.moment = session.renderer.field.time();
+    result.version = session.version;
     return result;
 }
 

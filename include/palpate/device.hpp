@@ -1,4 +1,4 @@
-// Stage 10, device: what the hand holds. A device gives positions and takes forces; how it is
+// Stage 13, device: what the hand holds. A device gives positions and takes forces; how it is
 // reached is its own affair (folder devices/).
 #pragma once
 

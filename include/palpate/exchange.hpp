@@ -1,4 +1,4 @@
-// Stage 8, exchange: how threads hand values to each other without waiting. Everything between the
+// Stage 11, exchange: how threads hand values to each other without waiting. Everything between the
 // servo thread and the rest (snapshots, commands, recordings, devices) goes through these two.
 #pragma once
 
@@ -11,6 +11,7 @@
 #include <new>
 #include <optional>
 #include <type_traits>
+#include <utility>
 
 namespace palpate {
 
@@ -113,10 +114,11 @@ class Queue {  // NOLINT(clang-analyzer-optin.performance.Padding)
     }
 
     /// The oldest value, or nothing. By one thread only.
-    std::optional<T> pop() noexcept(std::is_nothrow_copy_constructible_v<T>) {
+    std::optional<T> pop() noexcept(std::is_nothrow_move_constructible_v<T>) {
         Cell& cell = cells_[head_ & mask_];
         if (cell.turn.load(std::memory_order_acquire) != head_ + 1) return std::nullopt;
-        std::optional<T> value(cell.value);
+        // Moved: a cell that waits to be filled again holds on to nothing.
+        std::optional<T> value(std::move(cell.value));
         cell.turn.store(head_ + mask_ + 1, std::memory_order_release);
         ++head_;
         return value;

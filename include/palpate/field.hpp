@@ -1,11 +1,12 @@
-// Stage 2, field: a volume continued over all of space, and which side of a level is solid.
-// The one narrow door to the samples: the eight of a cell. Nothing above knows how they are stored.
+// Stage 3, field: samples continued over all of space, and which side of a level is solid.
+// The one narrow door to the samples: the eight of a cell. Nothing above knows how they are stored,
+// nor whether they were edited or lie between two frames.
 #pragma once
 
 #include <array>
 #include <optional>
 
-#include "palpate/volume.hpp"
+#include "palpate/samples.hpp"
 
 namespace palpate {
 
@@ -17,7 +18,7 @@ enum class Solid : std::uint8_t { above, below };
 /// Corner c has x offset (c & 1), y offset (c >> 1 & 1), z offset (c >> 2 & 1).
 using CellSamples = std::array<double, 8>;
 
-/// What to feel in a volume. A small value: copies share the samples.
+/// What to feel in a volume, at one moment. A small value: copies share the samples.
 class Field {
   public:
     /// `background` is the density outside the grid; without it the data's minimum, or its maximum
@@ -25,9 +26,24 @@ class Field {
     /// Throws std::invalid_argument for a background that is not finite.
     explicit Field(Volume volume, Solid solid = Solid::above,
                    std::optional<double> background = std::nullopt);
+    /// The same for samples that change; of a sequence its first moment. They must not be null.
+    explicit Field(std::shared_ptr<const Samples> samples, Solid solid = Solid::above,
+                   std::optional<double> background = std::nullopt);
 
-    const Volume& volume() const { return volume_; }
-    const Geometry& geometry() const { return volume_.geometry(); }
+    /// Goes on with another version of the samples, on the same grid, not null; background, side
+    /// and time stay. Neither allocates, locks nor throws, and frees the version before only if
+    /// nobody else holds it.
+    void use(const std::shared_ptr<const Samples>& samples) noexcept;
+    /// Which moment of a sequence [s]; Samples::moment_at().
+    void set_time(double time) noexcept;
+
+    const Samples& samples() const { return *samples_; }
+    const std::shared_ptr<const Samples>& shared_samples() const { return samples_; }
+    double time() const { return time_; }
+    const Moment& moment() const { return moment_; }
+    /// As it was before edits; of a sequence its first frame.
+    const Volume& volume() const { return samples_->volume(); }
+    const Geometry& geometry() const { return volume().geometry(); }
     Solid solid() const { return solid_; }
     double background() const { return background_; }
     /// +1 for above, -1 for below: sign * (density - isovalue) > 0 is solid.
@@ -67,18 +83,22 @@ class Field {
   private:
     template <class T>
     CellSamples cell_of(const Index3& cell) const;
-    CellSamples border_cell(const Index3& cell) const;
+    CellSamples other_cell(const Index3& cell) const;
+    void look() noexcept;
 
-    Volume volume_;
-    const void* data_ = nullptr;
-    std::ptrdiff_t row_ = 0;    // samples between neighbours in y
-    std::ptrdiff_t slice_ = 0;  // samples between neighbours in z
+    std::shared_ptr<const Samples> samples_;
+    double time_ = 0;
+    Moment moment_;
+    const void* data_ = nullptr;  // of the frame before the moment
+    std::ptrdiff_t row_ = 0;      // samples between neighbours in y
+    std::ptrdiff_t slice_ = 0;    // samples between neighbours in z
     double background_ = 0;
     double range_ = 1;
     double tolerance_ = 0;
     Vec3 voxels_per_mm_;
     double sign_ = 1;
     Index3 size_;
+    Index3 plain_;  // cells along each axis that lie in one piece at data_; none if samples change
     SampleType type_ = SampleType::uint8;
     Solid solid_ = Solid::above;
 };
@@ -86,10 +106,10 @@ class Field {
 template <class T>
 inline CellSamples Field::cell_of(const Index3& cell) const {
     // One unsigned comparison an axis covers both ends of the grid.
-    const bool interior = static_cast<unsigned>(cell[0]) < static_cast<unsigned>(size_[0] - 1) &&
-                          static_cast<unsigned>(cell[1]) < static_cast<unsigned>(size_[1] - 1) &&
-                          static_cast<unsigned>(cell[2]) < static_cast<unsigned>(size_[2] - 1);
-    if (!interior) return border_cell(cell);
+    const bool plain = static_cast<unsigned>(cell[0]) < static_cast<unsigned>(plain_[0]) &&
+                       static_cast<unsigned>(cell[1]) < static_cast<unsigned>(plain_[1]) &&
+                       static_cast<unsigned>(cell[2]) < static_cast<unsigned>(plain_[2]);
+    if (!plain) return other_cell(cell);
     const T* p = static_cast<const T*>(data_) + (cell[0] + cell[1] * row_ + cell[2] * slice_);
     const T* q = p + slice_;
     return {double(p[0]), double(p[1]), double(p[row_]), double(p[row_ + 1]),

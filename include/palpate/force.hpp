@@ -1,4 +1,4 @@
-// Stage 6, force: from hand and proxy to newtons (Corenthy et al. 2012, Eq. 4, and what a device
+// Stage 9, force: from hand and proxy to newtons (Corenthy et al. 2012, Eq. 4, and what a device
 // needs on top). Lengths in device mm, forces in N, time in s, all vectors in device axes.
 #pragma once
 

@@ -1,4 +1,4 @@
-// Stage 9, latency: how long things took, counted without locks while they happen. A mean says
+// Stage 12, latency: how long things took, counted without locks while they happen. A mean says
 // nothing about a servo loop; percentiles and the worst do.
 #pragma once
 

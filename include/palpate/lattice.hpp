@@ -1,4 +1,4 @@
-// Stage 3, lattice: every cell cut into 24 tetrahedra with a linear field in each (Corenthy et al.
+// Stage 6, lattice: every cell cut into 24 tetrahedra with a linear field in each (Corenthy et al.
 // 2012, section 3). Nothing is stored per tetrahedron: where one is, is a cell and a frame.
 //
 // A tetrahedron is: cell centre, centre of one face, the two ends of one edge of that face. Its

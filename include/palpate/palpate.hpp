@@ -1,8 +1,8 @@
 // Everything, in the order of the flow of data. One tick:
 //
-//   volume -> field -> lattice --+
-//                penetrability --+--> proxy -> force -> device
-//                      renderer: one call for proxy..force
+//   volume -> samples -> field -> lattice --+
+//      edit, editor --^     penetrability --+--> proxy -> force -> device
+//                                 renderer: one call for proxy..force
 //
 // surface (the whole isosurface as a mesh) observes volume, field and lattice.
 #pragma once
@@ -10,7 +10,10 @@
 // The order is the flow of data, not the alphabet.
 // clang-format off
 #include "palpate/volume.hpp"
+#include "palpate/samples.hpp"
 #include "palpate/field.hpp"
+#include "palpate/edit.hpp"
+#include "palpate/editor.hpp"
 #include "palpate/lattice.hpp"
 #include "palpate/proxy.hpp"
 #include "palpate/penetrability.hpp"

@@ -1,4 +1,4 @@
-// Stage 5, penetrability: pressing through (Corenthy et al. 2012, section 5, Eq. 5 and Fig. 7).
+// Stage 8, penetrability: pressing through (Corenthy et al. 2012, section 5, Eq. 5 and Fig. 7).
 // Past a penetration threshold the proxy gives way and the felt isovalue follows the hand inwards,
 // and outwards again, so that a whole data set is explored in one stroke.
 #pragma once

@@ -1,4 +1,4 @@
-// Stage 4, proxy: the point that stays on the free side of the isosurface while the hand presses
+// Stage 7, proxy: the point that stays on the free side of the isosurface while the hand presses
 // into it (Corenthy et al. 2012, section 4). A proxy is a small value: copy it and there are two.
 // Nothing here allocates, locks or throws.
 #pragma once

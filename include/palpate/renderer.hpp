@@ -1,4 +1,4 @@
-// Stage 7, renderer: one call renders a tick, device state in, force and proxy out. A value: copy
+// Stage 10, renderer: one call renders a tick, device state in, force and proxy out. A value: copy
 // it and there are two. Nothing in render() allocates, locks, does I/O or throws.
 #pragma once
 

@@ -1,9 +1,10 @@
-// Stage 12, servo: the real-time thread. It reads the device, advances the session and writes the
+// Stage 15, servo: the real-time thread. It reads the device, advances the session and writes the
 // force, a thousand times a second; everyone else observes snapshots and sends commands.
 #pragma once
 
 #include <atomic>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
@@ -92,7 +93,9 @@ class Servo {
     void stop() noexcept;
 
     /// Checks a command and puts it in the queue; false if the queue is full. Throws
-    /// std::invalid_argument as check(Command) does. Any thread.
+    /// std::invalid_argument as check(Command) does. Any thread; the servo thread is never waited
+    /// for. Samples that were sent are held until the servo has gone on to others, so that it is
+    /// never its thread that frees them.
     bool send(const Command& command);
     /// The newest tick; nothing before the first. Any thread, never waits.
     std::optional<Snapshot> snapshot() const noexcept { return snapshot_.get(); }
@@ -116,16 +119,20 @@ class Servo {
     void count(Clock& clock, std::int64_t number, const Stamps& stamps) noexcept;
     void record(const SessionEvent& event) noexcept;
     void publish(std::int64_t number, const SessionTick& tick) noexcept;
+    void hold(const std::shared_ptr<const Samples>& samples);
 
     Session session_;
     Device& device_;
     const ServoSettings settings_;
     const RendererSettings start_;
     const Solid solid_;
+    const Geometry geometry_;
     std::vector<std::string> privileges_;
     std::jthread thread_;
     std::atomic<bool> ready_{false}, stopping_{false};
 
+    std::mutex held_mutex_;  // among those who send; the servo thread never comes near
+    std::vector<std::shared_ptr<const Samples>> held_;
     Queue<Command> commands_;
     Newest<Snapshot> snapshot_;
     Newest<WorstTick> worst_;

@@ -1,10 +1,11 @@
-// Stage 11, session: a live tick. What the servo thread does between reading a device and writing
+// Stage 14, session: a live tick. What the servo thread does between reading a device and writing
 // to it, as a value without clock or thread, so that a recording gives the same ticks again.
 #pragma once
 
 #include <variant>
 
 #include "palpate/device.hpp"
+#include "palpate/edit.hpp"
 #include "palpate/renderer.hpp"
 
 namespace palpate {
@@ -36,25 +37,48 @@ struct Clutch {
 struct Forces {
     bool on;
 };
+/// Other samples on the same grid, from the next tick on: after an edit, or the next frames. The
+/// sequence's time stays, within the frames there are.
+struct Samples {
+    std::shared_ptr<const palpate::Samples> samples;  ///< not null
+    std::uint64_t version = 0;  ///< any number that tells who observes which samples are felt
+    /// For recordings: the edit that made them of the version `from`. Null where they were sent
+    /// before, are frames of a file, or cannot be made again.
+    std::shared_ptr<const Edit> edit = nullptr;
+    std::uint64_t from = 0;
+};
+/// Goes to a time of a sequence [s], and stays there or plays on as before.
+struct Moment {
+    double time;
+};
+/// How fast a sequence is played: seconds of it per second, backwards if negative; 0: it stands
+/// still.
+struct Speed {
+    double speed;
+};
 /// Another scale about the SCP: neither the proxy nor the force changes with it.
 struct Scale {
     double scale;  ///< physical mm per device mm, > 0
 };
 }  // namespace command
 /// A new DeviceTransform may move the HIP: forces are let go and start anew.
-using Command =
-    std::variant<command::Isovalue, command::Freeze, command::Clutch, command::Forces,
-                 command::Scale, ForceSettings, Friction, Penetrability, DeviceTransform>;
+using Command = std::variant<command::Isovalue, command::Freeze, command::Clutch, command::Forces,
+                             command::Scale, command::Samples, command::Moment, command::Speed,
+                             ForceSettings, Friction, Penetrability, DeviceTransform>;
 
 /// Everything between two ticks. A value: copied, and given the same readings and commands, both
 /// go on alike, bit for bit.
 struct Session {
     Renderer renderer;
     SessionSettings settings;
-    bool frozen = false;    ///< from the first accepted position on
-    bool clutched = false;  ///< by command
+    bool frozen = false;        ///< from the first accepted position on
+    bool clutched = false;      ///< by command
+    double speed = 0;           ///< at which a sequence is played
+    std::uint64_t version = 0;  ///< of the samples, as it was sent with them
 
     // What the last ticks left.
+    bool begun = false;                 ///< there was a tick
+    double last_tick = 0;               ///< [s] its time
     bool seen = false;                  ///< a position was accepted
     double seen_at = 0;                 ///< [s] when the last one was
     Vec3 hand = Vec3::Zero();           ///< [device mm] the last one
@@ -72,6 +96,8 @@ struct SessionTick {
     DeviceTransform transform;  ///< in use in this tick
     bool frozen = false;
     bool clutched = false;
+    double moment = 0;          ///< [s] of the sequence
+    std::uint64_t version = 0;  ///< of the samples
 };
 
 /// Throws std::invalid_argument for settings out of range.
@@ -79,8 +105,11 @@ void check(const SessionSettings& settings);
 /// Throws std::invalid_argument, saying what is wrong, for a command that this session could not
 /// carry out. `settings` are the session's; its rate and device limits count.
 void check(const Command& command, const RendererSettings& settings, Solid solid);
+/// Throws std::invalid_argument for samples that are null or do not lie on the session's grid.
+void check(const command::Samples& samples, const Geometry& geometry);
 
-/// Carries out a command that passed check(). Never throws or allocates.
+/// Carries out a command that passed check(). Never throws or allocates; samples that it replaces
+/// are freed here unless somebody else holds them (Servo::send() sees to that).
 void apply(Session& session, const Command& command) noexcept;
 
 /// One tick at a time [s] after the last. Never throws or allocates. No force for input that is not

@@ -1,0 +1,73 @@
+// Editor: undo and redo as other versions of the same samples.
+#include "palpate/editor.hpp"
+
+#include <stdexcept>
+#include <utility>
+
+namespace palpate {
+
+Editor::Editor(std::shared_ptr<const Samples> samples, std::size_t history_bytes)
+    : samples_(std::move(samples)), saved_(samples_), most_bytes_(history_bytes) {
+    if (!samples_) throw std::invalid_argument("an editor needs samples");
+}
+
+namespace {
+
+/// What a step holds that the version after it does not, and its table of bricks.
+std::size_t bytes_between(const Samples& before, const Samples& after) {
+    return bytes_apart(before, after) + bytes_apart(after, before) +
+           after.bricks()->at.size() * sizeof(after.bricks()->at.front());
+}
+
+}  // namespace
+
+SampleBox Editor::apply(const Edit& edit, EditStep step) {
+    Edited result = edited(samples_, edit);
+    const bool same = step == EditStep::same && undone_from_ > 0 && redo_steps() == 0;
+    if (result.changed.empty()) return {};
+    steps_.resize(undone_from_);
+    if (same) {
+        steps_.back().after = result.samples;
+        steps_.back().box = united(steps_.back().box, result.changed);
+    } else {
+        steps_.push_back({samples_, result.samples, result.changed});
+    }
+    undone_from_ = steps_.size();
+    Step& last = steps_.back();
+    last.bytes = bytes_between(*last.before, *last.after);
+    samples_ = std::move(result.samples);
+    forget();
+    return result.changed;
+}
+
+SampleBox Editor::undo() {
+    if (undone_from_ == 0) return {};
+    const Step& step = steps_[--undone_from_];
+    samples_ = step.before;
+    return step.box;
+}
+
+SampleBox Editor::redo() {
+    if (redo_steps() == 0) return {};
+    const Step& step = steps_[undone_from_++];
+    samples_ = step.after;
+    return step.box;
+}
+
+std::size_t Editor::history_bytes() const {
+    std::size_t bytes = 0;
+    for (const Step& step : steps_) bytes += step.bytes;
+    return bytes;
+}
+
+/// The oldest steps go; the last one stays, whatever it holds.
+void Editor::forget() {
+    std::size_t bytes = history_bytes();
+    while (steps_.size() > 1 && bytes > most_bytes_) {
+        bytes -= steps_.front().bytes;
+        steps_.pop_front();
+        --undone_from_;
+    }
+}
+
+}  // namespace palpate

@@ -1,0 +1,209 @@
+// Samples: versions of the numbers on a grid, their bricks, and where a time lies between frames.
+#include "palpate/samples.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <stdexcept>
+
+namespace palpate {
+namespace {
+
+double sample_of(SampleType type, const void* data, std::size_t at) {
+    switch (type) {
+        case SampleType::uint8:
+            return static_cast<const std::uint8_t*>(data)[at];
+        case SampleType::int16:
+            return static_cast<const std::int16_t*>(data)[at];
+        case SampleType::uint16:
+            return static_cast<const std::uint16_t*>(data)[at];
+        case SampleType::float32:
+            break;
+    }
+    return static_cast<const float*>(data)[at];
+}
+
+void check_frames(const std::vector<Frame>& frames, double period) {
+    if (frames.empty()) throw std::invalid_argument("a sequence needs at least one frame");
+    const Volume& first = frames.front().volume;
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        const Frame& frame = frames[i];
+        const std::string which = "frame " + std::to_string(i);
+        if (!(frame.volume.geometry() == first.geometry())) {
+            throw std::invalid_argument(which + " does not lie on the grid of the first frame");
+        }
+        if (frame.volume.type() != first.type()) {
+            throw std::invalid_argument(which + " has samples of another type than the first");
+        }
+        if (!std::isfinite(frame.time) || (i > 0 && !(frame.time > frames[i - 1].time))) {
+            throw std::invalid_argument("the time of " + which + " does not lie after the last");
+        }
+    }
+    if (!(period == 0 || period > frames.back().time - frames.front().time)) {
+        throw std::invalid_argument("the period does not end after the last frame");
+    }
+}
+
+/// Copies the samples of a brick that lie in the grid into their places in the whole.
+void copy_brick(const std::byte* brick, const Index3& low, const Geometry& geometry,
+                std::size_t bytes, std::byte* whole) {
+    const Index3 last =
+        (low + Index3::Constant(Bricks::cells)).cwiseMin(geometry.size - Index3::Ones());
+    const auto run = static_cast<std::size_t>(last[0] - low[0] + 1) * bytes;
+    for (int k = low[2]; k <= last[2]; ++k) {
+        for (int j = low[1]; j <= last[1]; ++j) {
+            const auto from = static_cast<std::size_t>((k - low[2]) * Bricks::samples + j - low[1]);
+            const auto to =
+                (static_cast<std::size_t>(k) * geometry.size[1] + j) * geometry.size[0] + low[0];
+            std::memcpy(whole + to * bytes, brick + from * Bricks::samples * bytes, run);
+        }
+    }
+}
+
+template <class T>
+void blend(const Volume& from, const Volume& to, double weight, std::byte* whole) {
+    const auto a = from.samples<T>();
+    const auto b = to.samples<T>();
+    auto* out = reinterpret_cast<T*>(whole);
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        const double value = (1 - weight) * double(a[i]) + weight * double(b[i]);
+        out[i] = static_cast<T>(std::is_integral_v<T> ? std::nearbyint(value) : value);
+    }
+}
+
+}  // namespace
+
+SampleBox united(const SampleBox& a, const SampleBox& b) {
+    if (a.empty()) return b;
+    if (b.empty()) return a;
+    return {a.low.cwiseMin(b.low), a.high.cwiseMax(b.high)};
+}
+
+SampleBox whole_box(const Geometry& geometry) {
+    return {Index3::Zero(), geometry.size - Index3::Ones()};
+}
+
+Bricks no_bricks(const Geometry& geometry) {
+    Bricks bricks;
+    // A grid of one sample has no cell inside; its samples still need a brick.
+    bricks.count = (geometry.size + Index3::Constant(Bricks::cells - 1)) / Bricks::cells;
+    bricks.at.resize(static_cast<std::size_t>(bricks.count.cast<std::int64_t>().prod()));
+    return bricks;
+}
+
+Samples::Samples(Volume volume) : minimum_(volume.minimum()), maximum_(volume.maximum()) {
+    frames_.push_back({0, std::move(volume), -1});
+}
+
+Samples::Samples(Volume volume, Bricks bricks, double minimum, double maximum)
+    : Samples(std::move(volume)) {
+    const Bricks fitting = no_bricks(geometry());
+    if (bricks.count != fitting.count || bricks.at.size() != fitting.at.size()) {
+        throw std::invalid_argument("the bricks do not fit the grid");
+    }
+    bricks_ = std::move(bricks);
+    minimum_ = std::min(minimum_, minimum);
+    maximum_ = std::max(maximum_, maximum);
+}
+
+Samples::Samples(std::vector<Frame> frames, double period)
+    : frames_(std::move(frames)), period_(period) {
+    check_frames(frames_, period);
+    minimum_ = volume().minimum();
+    maximum_ = volume().maximum();
+    for (const Frame& frame : frames_) {
+        minimum_ = std::min(minimum_, frame.volume.minimum());
+        maximum_ = std::max(maximum_, frame.volume.maximum());
+    }
+}
+
+Moment Samples::moment_at(double time) const noexcept {
+    const double begin = frames_.front().time;
+    const std::size_t last = frames_.size() - 1;
+    if (last == 0 || !std::isfinite(time)) return {};
+    if (period_ > 0) {
+        time = begin + std::fmod(time - begin, period_);
+        if (time < begin) time += period_;
+    }
+    if (time <= begin) return {};
+    const auto after = std::upper_bound(frames_.begin(), frames_.end(), time,
+                                        [](double t, const Frame& f) { return t < f.time; });
+    const auto next = static_cast<std::size_t>(after - frames_.begin());
+    const std::size_t from = next - 1;
+    if (next > last && period_ == 0) return {last, last, 0};
+    const std::size_t to = next > last ? 0 : next;
+    const double end = next > last ? begin + period_ : frames_[next].time;
+    const double weight = (time - frames_[from].time) / (end - frames_[from].time);
+    if (!(weight > 0)) return {from, from, 0};
+    return weight < 1 ? Moment{from, to, weight} : Moment{to, to, 0};
+}
+
+double Samples::within(double time) const noexcept {
+    return period_ > 0 ? time : std::clamp(time, frames_.front().time, frames_.back().time);
+}
+
+double Samples::sample(const Index3& i, const Moment& moment) const {
+    if (const Bricks* edits = bricks()) {
+        const std::byte* brick = edits->of_cell(i);
+        if (brick) {
+            const Index3 in(i[0] & 15, i[1] & 15, i[2] & 15);
+            const auto at = (in[2] * Bricks::samples + in[1]) * Bricks::samples + in[0];
+            return sample_of(type(), brick, static_cast<std::size_t>(at));
+        }
+    }
+    const double from = frames_[moment.from].volume.sample(i);
+    if (!(moment.weight > 0)) return from;
+    return (1 - moment.weight) * from + moment.weight * frames_[moment.to].volume.sample(i);
+}
+
+Volume flattened(const Samples& samples, const Moment& moment) {
+    const Volume& from = samples.frames()[moment.from].volume;
+    const bool between = moment.weight > 0;
+    const Bricks* bricks = samples.bricks();
+    if (!between && !bricks) return from;
+
+    const Geometry& geometry = samples.geometry();
+    const std::shared_ptr<std::byte[]> whole(new std::byte[from.bytes()]);
+    if (between) {
+        const Volume& to = samples.frames()[moment.to].volume;
+        switch (samples.type()) {
+            case SampleType::uint8:
+                blend<std::uint8_t>(from, to, moment.weight, whole.get());
+                break;
+            case SampleType::int16:
+                blend<std::int16_t>(from, to, moment.weight, whole.get());
+                break;
+            case SampleType::uint16:
+                blend<std::uint16_t>(from, to, moment.weight, whole.get());
+                break;
+            case SampleType::float32:
+                blend<float>(from, to, moment.weight, whole.get());
+                break;
+        }
+    } else {
+        std::memcpy(whole.get(), from.data(), from.bytes());
+    }
+    for (std::size_t i = 0; bricks && i < bricks->at.size(); ++i) {
+        if (!bricks->at[i]) continue;
+        const auto at = static_cast<int>(i);
+        const Index3 brick(at % bricks->count[0], at / bricks->count[0] % bricks->count[1],
+                           at / (bricks->count[0] * bricks->count[1]));
+        copy_brick(bricks->at[i].get(), brick * Bricks::cells, geometry, size_of(samples.type()),
+                   whole.get());
+    }
+    return {geometry, samples.type(), std::shared_ptr<const void>(whole, whole.get()),
+            from.bytes()};
+}
+
+std::size_t bytes_apart(const Samples& samples, const Samples& other) {
+    const Bricks* mine = samples.bricks();
+    if (!mine) return 0;
+    const Bricks* theirs = other.bricks();
+    std::size_t apart = 0;
+    for (std::size_t i = 0; i < mine->at.size(); ++i) {
+        apart += mine->at[i] && (!theirs || theirs->at[i] != mine->at[i]);
+    }
+    return apart * Bricks::per_brick * size_of(samples.type());
+}
+
+}  // namespace palpate
