@@ -23,8 +23,9 @@ std::size_t bytes_between(const Samples& before, const Samples& after) {
 
 SampleBox Editor::apply(const Edit& edit, EditStep step) {
     Edited result = edited(samples_, edit);
-    const bool same = step == EditStep::same && undone_from_ > 0 && redo_steps() == 0;
+    begun_ |= step == EditStep::own;
     if (result.changed.empty()) return {};
+    const bool same = !std::exchange(begun_, false) && undone_from_ > 0 && redo_steps() == 0;
     steps_.resize(undone_from_);
     if (same) {
         steps_.back().after = result.samples;

@@ -120,8 +120,9 @@ Samples::Samples(std::vector<Frame> frames, double period)
 Moment Samples::moment_at(double time) const noexcept {
     const double begin = frames_.front().time;
     const std::size_t last = frames_.size() - 1;
-    if (last == 0 || !std::isfinite(time)) return {};
+    if (last == 0 || std::isnan(time)) return {};
     if (period_ > 0) {
+        if (std::isinf(time)) return {};
         time = begin + std::fmod(time - begin, period_);
         if (time < begin) time += period_;
     }

@@ -48,6 +48,7 @@ class Editor {
     std::shared_ptr<const Samples> samples_, saved_;
     std::deque<Step> steps_;  // in order; those from undone_from_ on were taken back
     std::size_t undone_from_ = 0;
+    bool begun_ = false;  // a step of its own has begun, and changed nothing so far
     std::size_t most_bytes_;
 };
 
