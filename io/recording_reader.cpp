@@ -48,6 +48,7 @@ struct RecordingReader::Rows {
     TraceColumns trace;
     VectorColumns position;
     std::size_t status, force_flags, device_status, buttons, age, frozen, clutched;
+    std::optional<std::size_t> moment, samples;  // recordings of fixed samples may lack them
     std::array<std::size_t, 9> tool;
 
     Rows(std::string whole, std::string called)
@@ -63,6 +64,8 @@ struct RecordingReader::Rows {
           age(csv.column("age")),
           frozen(csv.column("frozen")),
           clutched(csv.column("clutched")) {
+        if (csv.has_column("moment")) moment = csv.column("moment");
+        if (csv.has_column("samples")) samples = csv.column("samples");
         in_head = false;
         std::size_t i = 0;
         for (const char r : {'x', 'y', 'z'}) {
@@ -122,6 +125,11 @@ struct RecordingReader::Rows {
         }
         result.frozen = code(frozen, 1) == 1;
         result.clutched = code(clutched, 1) == 1;
+        if (moment) result.moment = csv.number(*moment);
+        if (samples) {
+            result.version = static_cast<std::uint64_t>(
+                code(*samples, std::numeric_limits<std::int64_t>::max()));
+        }
         return result;
     }
 };

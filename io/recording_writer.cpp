@@ -21,7 +21,8 @@ constexpr std::size_t buffer_bytes = std::size_t{1} << 20;
 
 constexpr std::string_view session_columns =
     ",status,force_flags,device_status,device_x,device_y,device_z,buttons,age,"
-    "tool_xx,tool_xy,tool_xz,tool_yx,tool_yy,tool_yz,tool_zx,tool_zy,tool_zz,frozen,clutched";
+    "tool_xx,tool_xy,tool_xz,tool_yx,tool_yy,tool_yz,tool_zx,tool_zy,tool_zz,frozen,clutched,"
+    "moment,samples";
 
 std::string reason(int error) {
     return std::generic_category().message(error);
@@ -38,6 +39,8 @@ void append_tick(std::string& text, const SessionTick& tick) {
     for (int r = 0; r < 3; ++r) append_cells(text, tick.device.orientation.row(r));
     append_cell(text, static_cast<std::int64_t>(tick.frozen));
     append_cell(text, static_cast<std::int64_t>(tick.clutched));
+    append_cell(text, tick.moment);
+    append_cell(text, static_cast<std::int64_t>(tick.version));
     text += '\n';
 }
 

@@ -9,6 +9,8 @@
 #include <string>
 #include <utility>
 
+#include "io/samples_json.hpp"
+
 namespace palpate::io {
 namespace {
 
@@ -261,8 +263,14 @@ Json to_json(const SessionSettings& settings) {
 }
 
 Json to_json(const Command& command) {
-    return {{command_names[command.index()],
-             std::visit([](const auto& alternative) { return written(alternative); }, command)}};
+    const auto to_written = [](const auto& alternative) {
+        using T = std::remove_cvref_t<decltype(alternative)>;
+        if constexpr (std::same_as<T, command::Samples>)
+            return to_json(alternative);
+        else
+            return written(alternative);
+    };
+    return {{command_names[command.index()], std::visit(to_written, command)}};
 }
 
 void from_json(const Json& json, RendererSettings& settings) {
@@ -279,6 +287,7 @@ Command command_from_json(const Json& json) {
     if (!json.is_object() || json.size() != 1) {
         throw std::invalid_argument("a command is an object of one member");
     }
+    if (json.begin().key() == "samples") return samples_command_from_json(json.begin().value());
     return command_named(json.begin().key(), json.begin().value());
 }
 

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "apps/live/recorded_samples.hpp"
 #include "apps/live/recorded_scene.hpp"
 #include "apps/palpate/progress.hpp"
 #include "io/recording.hpp"
@@ -53,6 +54,12 @@ std::string difference(const SessionTick& recorded, const SessionTick& again) {
     if (recorded.clutched != again.clutched) {
         return differs("clutched", recorded.clutched, again.clutched);
     }
+    if (!same(recorded.moment, again.moment)) {
+        return differs("moment", recorded.moment, again.moment);
+    }
+    if (recorded.version != again.version) {
+        return differs("samples", recorded.version, again.version);
+    }
     return {};
 }
 
@@ -79,19 +86,21 @@ void validate(const std::string& recording, const std::string& volume, bool quie
     options.quiet = quiet;
     const LoadedVolume loaded = load_for_terminal(options);
     Session session = recorded_session(reader.head(), loaded, recording);
+    RecordedSamples samples(session.renderer.field.shared_samples());
     ProgressBar bar("validating", quiet);
     std::int64_t ticks = 0, commands = 0;
     while (const auto event = reader.next()) {
         if (const auto* command = std::get_if<Command>(&*event)) {
             try {
-                check(*command, session.renderer.settings, session.renderer.field.solid());
+                const Command whole = samples.whole(*command);
+                check(whole, session.renderer.settings, session.renderer.field.solid());
+                apply(session, whole);
             } catch (const std::invalid_argument& e) {
                 throw io::InputError(
                     fmt::format("{}, before tick {}: a command that cannot be "
                                 "carried out: {}",
                                 recording, ticks, e.what()));
             }
-            apply(session, *command);
             ++commands;
             continue;
         }

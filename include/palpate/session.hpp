@@ -23,6 +23,19 @@ struct SessionSettings {
     double overrun = 0.02;
 };
 
+/// How samples came about, so that a recording of a session can make them again.
+struct EditOf {
+    std::uint64_t version = 0;  ///< of the samples that were edited
+    Edit edit;
+};
+/// Frames of the sequence that the session plays.
+struct FramesOf {
+    std::vector<int> numbers;   ///< which ones, from 0
+    std::vector<double> times;  ///< [s] of each
+    double period = 0;          ///< [s]
+};
+using Recipe = std::variant<EditOf, FramesOf>;
+
 /// Asks of a running session; each is applied between two ticks.
 namespace command {
 struct Isovalue {
@@ -42,10 +55,9 @@ struct Forces {
 struct Samples {
     std::shared_ptr<const palpate::Samples> samples;  ///< not null
     std::uint64_t version = 0;  ///< any number that tells who observes which samples are felt
-    /// For recordings: the edit that made them of the version `from`. Null where they were sent
-    /// before, are frames of a file, or cannot be made again.
-    std::shared_ptr<const Edit> edit = nullptr;
-    std::uint64_t from = 0;
+    /// For recordings. Null where this version was sent before, is that of the start (0), or
+    /// cannot be made again.
+    std::shared_ptr<const Recipe> recipe = nullptr;
 };
 /// Goes to a time of a sequence [s], and stays there or plays on as before.
 struct Moment {

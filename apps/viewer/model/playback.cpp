@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "apps/live/recorded_samples.hpp"
+
 namespace palpate::viewer {
 namespace {
 
@@ -24,13 +26,15 @@ bool same(const Tick& a, const Tick& b) {
            equal(a.force, b.force) && a.proxy.mode == b.proxy.mode;
 }
 
-void carry_out(const Command& command, Session& session, const std::string& recording) {
+void carry_out(const Command& recorded, app::RecordedSamples& samples, Session& session,
+               const std::string& recording) {
     try {
+        const Command command = samples.whole(recorded);
         check(command, session.renderer.settings, session.renderer.field.solid());
+        apply(session, command);
     } catch (const std::invalid_argument& e) {
         throw io::InputError(recording + ": a command that cannot be carried out: " + e.what());
     }
-    apply(session, command);
 }
 
 void join(Overview::Piece& piece, const Overview::Piece& other) {
@@ -69,12 +73,13 @@ Playback Playback::read(const std::filesystem::path& recording, const app::Loade
     const std::size_t most = std::max(most_bytes / sizeof(Snapshot), least_snapshots);
     io::RecordingReader reader(recording);
     Session session = app::recorded_session(reader.head(), loaded, recording.string());
+    app::RecordedSamples samples(session.renderer.field.shared_samples());
     Playback playback(reader.head(), session.renderer.field);
     Snapshot last;
     bool kept = true;
     while (const auto event = reader.next()) {
         if (const auto* command = std::get_if<Command>(&*event)) {
-            carry_out(*command, session, recording.string());
+            carry_out(*command, samples, session, recording.string());
             continue;
         }
         const auto& recorded = std::get<SessionTick>(*event);

@@ -1,0 +1,31 @@
+// Makes the samples again that a recorded session went on with.
+#pragma once
+
+#include <functional>
+#include <map>
+
+#include "palpate/session.hpp"
+
+namespace palpate::app {
+
+class RecordedSamples {
+  public:
+    /// `start` are those of the session's begin. `frame` reads one of its sequence, and may throw;
+    /// null if it is none.
+    explicit RecordedSamples(std::shared_ptr<const Samples> start,
+                             std::function<Volume(int)> frame = {});
+
+    /// A command as it was recorded, with its samples if it is one for samples. Throws
+    /// std::invalid_argument for samples that cannot be made again, and as check(Edit).
+    Command whole(const Command& recorded);
+
+  private:
+    std::shared_ptr<const Samples> made(const command::Samples& recorded);
+    std::shared_ptr<const Samples> frames_of(const FramesOf& frames);
+
+    std::map<std::uint64_t, std::shared_ptr<const Samples>> versions_;
+    std::function<Volume(int)> frame_;
+    std::map<int, Volume> read_;  // of the last ones
+};
+
+}  // namespace palpate::app

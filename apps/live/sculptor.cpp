@@ -1,0 +1,196 @@
+// The brush in the hand, and who edits beside it.
+#include "apps/live/sculptor.hpp"
+
+#include <cmath>
+#include <stdexcept>
+
+namespace palpate::app {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Between two touches of the brush: fast enough to feel smooth, and a version each is no burden.
+constexpr auto between_dabs = 4ms;
+/// [s] A brush that found nothing to do for so long begins a new step for undo.
+constexpr double rest = 0.5;
+/// [s] Longer than this the brush does not work at a stretch, whatever held the thread up.
+constexpr double longest_dab = 0.1;
+/// How often a full queue of commands is tried again, a millisecond apart.
+constexpr int patience = 200;
+
+}  // namespace
+
+void check(const HandBrush& brush) {
+    if (!(brush.radius > 0) || !std::isfinite(brush.radius)) {
+        throw std::invalid_argument("the brush's radius [mm] must be finite and above 0");
+    }
+    if (!(brush.hardness >= 0 && brush.hardness <= 1)) {
+        throw std::invalid_argument("the brush's hardness must be 0 to 1");
+    }
+    if (!(brush.rate > 0)) {
+        throw std::invalid_argument("the brush's rate [1/s] must be above 0 (inf: at once)");
+    }
+    if (brush.value && !std::isfinite(*brush.value)) {
+        throw std::invalid_argument("the brush's value must be finite");
+    }
+    if (brush.kind == BrushKind::paint && !brush.value) {
+        throw std::invalid_argument("a brush that paints needs a value");
+    }
+}
+
+Sculptor::Sculptor(const Field& field, std::function<void()> on_change)
+    : on_change_(std::move(on_change)),
+      field_(field),
+      editor_(field.shared_samples()),
+      versions_{{field.shared_samples(), {}}} {
+    thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+}
+
+Sculptor::~Sculptor() {
+    thread_.request_stop();
+    thread_.join();
+}
+
+void Sculptor::attach(Servo* servo) {
+    const std::scoped_lock lock(mutex_);
+    servo_ = servo;
+    stroke_.reset();
+    fresh_ = true;
+}
+
+void Sculptor::set_brush(const std::optional<HandBrush>& brush) {
+    if (brush) check(*brush);
+    const std::scoped_lock lock(mutex_);
+    if (brush.has_value() != brush_.has_value()) {
+        stroke_.reset();
+        fresh_ = true;
+    }
+    brush_ = brush;
+}
+
+void Sculptor::apply(const Edit& asked) {
+    const std::scoped_lock lock(mutex_);
+    edit(asked, EditStep::own);
+    fresh_ = true;
+}
+
+bool Sculptor::undo() {
+    const std::scoped_lock lock(mutex_);
+    return go_to(editor_.undo());
+}
+
+bool Sculptor::redo() {
+    const std::scoped_lock lock(mutex_);
+    return go_to(editor_.redo());
+}
+
+/// Tells of the version that the editor went back or forth to.
+bool Sculptor::go_to(SampleBox changed) {
+    fresh_ = true;
+    if (changed.empty()) return false;
+    changed_ = united(changed_, changed);
+    send({editor_.samples(), version_of(editor_.samples())});
+    return true;
+}
+
+std::uint64_t Sculptor::version_of(const std::shared_ptr<const Samples>& samples) const {
+    for (std::size_t i = versions_.size(); i-- > 0;) {
+        // By owner: a version that is gone may have left its place in memory to this one.
+        const auto& known = versions_[i].samples;
+        if (!known.owner_before(samples) && !samples.owner_before(known)) return i;
+    }
+    return 0;  // not reached: the editor holds what it made
+}
+
+void Sculptor::edit(const Edit& asked, EditStep step) {
+    const std::uint64_t from = version_of(editor_.samples());
+    const SampleBox changed = editor_.apply(asked, step);
+    if (changed.empty()) return;
+    changed_ = united(changed_, changed);
+    command::Samples told{editor_.samples(), versions_.size(),
+                          std::make_shared<const Recipe>(EditOf{from, asked})};
+    versions_.push_back({editor_.samples(), {nullptr, told.version, told.recipe}});
+    send(told);
+}
+
+void Sculptor::send(const command::Samples& command) {
+    for (int i = 0; servo_ && !servo_->send(command); ++i) {
+        if (i == patience) throw std::invalid_argument("the session takes no commands");
+        std::this_thread::sleep_for(1ms);
+    }
+    if (on_change_) on_change_();
+}
+
+void Sculptor::run(const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+        std::this_thread::sleep_for(between_dabs);
+        const std::scoped_lock lock(mutex_);
+        try {
+            dab();
+        } catch (const std::exception&) {
+            brush_.reset();  // a session that takes no commands, or no memory: the hand only feels
+        }
+    }
+}
+
+void Sculptor::dab() {
+    if (!brush_ || !servo_) return;
+    const auto now = servo_->snapshot();
+    if (!now || (stroke_ && now->number <= stroke_->tick)) return;
+    const SessionTick& session = now->session;
+    const bool works = session.device.status == DeviceStatus::ready && !session.frozen &&
+                       !session.clutched && now->forces_on &&
+                       session.tick.proxy.status == UpdateStatus::done;
+    if (!works) return stroke_.reset();
+    if (stroke_ && dab_from(*stroke_, *now)) last_dab_ = session.tick.time;
+    if (session.tick.time - last_dab_ > rest) fresh_ = true;
+    stroke_ = Stroke{session.tick.proxy.scp, session.tick.time, now->number};
+}
+
+/// True if it changed something.
+bool Sculptor::dab_from(const Stroke& from, const Snapshot& now) {
+    const Tick& tick = now.session.tick;
+    if (!std::isfinite(tick.proxy.isovalue)) return false;
+    const double dt = std::min(tick.time - from.time, longest_dab);
+    Brush brush = brush_for(brush_->kind, field_, tick.proxy.isovalue, brush_->radius);
+    brush.hardness = brush_->hardness;
+    brush.strength = -std::expm1(-brush_->rate * dt);
+    if (brush_->value) brush.value = *brush_->value;
+    if (!(brush.strength > 0)) return false;
+    const std::shared_ptr<const Samples> before = editor_.samples();
+    try {
+        edit(edit::Stroke{brush, from.at, tick.proxy.scp}, fresh_ ? EditStep::own : EditStep::same);
+    } catch (const std::invalid_argument&) {
+        return false;  // a value on the wrong side of the level that is felt now: nothing to do
+    }
+    const bool changed = editor_.samples() != before;
+    if (changed) fresh_ = false;
+    return changed;
+}
+
+Work Sculptor::work() const {
+    const std::scoped_lock lock(mutex_);
+    return {editor_.samples(), version_of(editor_.samples()), editor_.undo_steps(),
+            editor_.redo_steps(), editor_.changed()};
+}
+
+SampleBox Sculptor::take_changed() {
+    const std::scoped_lock lock(mutex_);
+    return std::exchange(changed_, {});
+}
+
+void Sculptor::set_saved(const std::shared_ptr<const Samples>& samples) {
+    const std::scoped_lock lock(mutex_);
+    if (editor_.samples() == samples) editor_.set_saved();
+}
+
+std::vector<command::Samples> Sculptor::history() const {
+    const std::scoped_lock lock(mutex_);
+    std::vector<command::Samples> history;
+    for (std::size_t i = 1; i < versions_.size(); ++i) history.push_back(versions_[i].told);
+    const std::uint64_t now = version_of(editor_.samples());
+    if (!history.empty() && history.back().version != now) history.push_back({nullptr, now});
+    return history;
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,102 @@
+// Edits the samples of a running session: a brush that follows the proxy, edits that were asked
+// for, undo and redo, from a thread of its own. The servo feels each within two ticks.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include "palpate/editor.hpp"
+#include "palpate/servo.hpp"
+
+namespace palpate::app {
+
+/// A brush in the hand. It works where the proxy is, along the way that it goes.
+struct HandBrush {
+    BrushKind kind = BrushKind::carve;
+    double radius = 3;    ///< [mm, physical]
+    double hardness = 1;  ///< Brush::hardness
+    double rate = 10;     ///< [1/s] after a second 1 - exp(-rate) of the work is done; inf: at once
+    /// [data units] What it leaves; none: what brush_for() takes. Paint needs one.
+    std::optional<double> value;
+};
+/// Throws std::invalid_argument, saying what is wrong, for a brush that cannot work.
+void check(const HandBrush& brush);
+
+/// Samples in work, as they are at one moment.
+struct Work {
+    std::shared_ptr<const Samples> samples;
+    std::uint64_t version = 0;  ///< as snapshots tell it
+    std::size_t undo_steps = 0, redo_steps = 0;
+    bool changed = false;  ///< since the start, or since they were saved
+};
+
+/// Any thread may call anything.
+class Sculptor {
+  public:
+    /// `on_change` is called whenever samples have changed, from the thread that changed them: it
+    /// must only wake its owner.
+    explicit Sculptor(const Field& field, std::function<void()> on_change = {});
+    ~Sculptor();
+    Sculptor(const Sculptor&) = delete;
+    Sculptor& operator=(const Sculptor&) = delete;
+
+    /// Whom to watch and to tell; it must stay until the next attach(). Null: nobody. It begins
+    /// with the samples as they are, and knows their version.
+    void attach(Servo* servo);
+    /// No brush: the hand only feels. Throws as check().
+    void set_brush(const std::optional<HandBrush>& brush);
+    /// Makes an edit, a step of its own for undo(). Throws std::invalid_argument as check(Edit),
+    /// and for a servo that takes no commands.
+    void apply(const Edit& edit);
+    /// False if there is nothing to take back, or to make again.
+    bool undo();
+    bool redo();
+
+    Work work() const;
+    /// The box of samples that changed since the last call.
+    SampleBox take_changed();
+    /// These samples were written to a file.
+    void set_saved(const std::shared_ptr<const Samples>& samples);
+    /// What a recording needs to know before its first tick: every version so far by how it came
+    /// about, without samples, and the one that is felt.
+    std::vector<command::Samples> history() const;
+
+  private:
+    /// The samples of one version, and where the next stroke begins.
+    struct Stroke {
+        Vec3 at = Vec3::Zero();  ///< [mm, physical]
+        double time = 0;         ///< [s] of the session
+        std::int64_t tick = -1;
+    };
+
+    void run(const std::stop_token& stop);
+    void dab();
+    bool dab_from(const Stroke& from, const Snapshot& now);
+    void edit(const Edit& edit, EditStep step);
+    bool go_to(SampleBox changed);
+    void send(const command::Samples& command);
+    std::uint64_t version_of(const std::shared_ptr<const Samples>& samples) const;
+
+    mutable std::mutex mutex_;
+    std::function<void()> on_change_;
+    Field field_;  // for its side and background
+    Editor editor_;
+    Servo* servo_ = nullptr;
+    std::optional<HandBrush> brush_;
+    std::optional<Stroke> stroke_;
+    double last_dab_ = 0;  // [s] of the session, when the last one changed something
+    bool fresh_ = true;    // the next dab begins a step
+    struct Version {
+        std::weak_ptr<const Samples> samples;
+        command::Samples told;  // without samples
+    };
+    std::vector<Version> versions_;  // by number
+    SampleBox changed_;
+    std::jthread thread_;
+};
+
+}  // namespace palpate::app
