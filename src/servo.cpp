@@ -106,7 +106,7 @@ Servo::Servo(Session session, Device& device, const ServoSettings& settings)
       start_(session_.renderer.settings),
       solid_(session_.renderer.field.solid()),
       geometry_(session_.renderer.field.geometry()),
-      held_{{session_.renderer.field.shared_samples()}},
+      held_{session_.renderer.field.shared_samples()},
       commands_(settings.command_room) {
     check(session_.renderer.settings);
     check(session_.settings);
@@ -143,18 +143,19 @@ bool Servo::send(const Command& command) {
     check(command, start_, solid_);
     if (const auto* samples = std::get_if<command::Samples>(&command)) {
         check(*samples, geometry_);
-        hold(*samples);
+        hold(samples->samples);
+        hold(samples->recipe);
     }
     return commands_.push(command);
 }
 
-/// Lets go of those that nobody else holds any more, and holds these.
-void Servo::hold(const command::Samples& samples) {
+/// Lets go of what nobody else holds any more, and holds this; once, however often it is sent, for
+/// two of our own would look like somebody else.
+void Servo::hold(const std::shared_ptr<const void>& sent) {
+    if (!sent) return;
     const std::lock_guard lock(held_mutex_);
-    std::erase_if(held_, [](const command::Samples& held) {
-        return held.samples.use_count() == 1 && held.recipe.use_count() <= 1;
-    });
-    held_.push_back(samples);
+    std::erase_if(held_, [](const auto& held) { return held.use_count() == 1; });
+    if (std::find(held_.begin(), held_.end(), sent) == held_.end()) held_.push_back(sent);
 }
 
 ServoReport Servo::report() const noexcept {

@@ -119,7 +119,7 @@ class Servo {
     void count(Clock& clock, std::int64_t number, const Stamps& stamps) noexcept;
     void record(const SessionEvent& event) noexcept;
     void publish(std::int64_t number, const SessionTick& tick) noexcept;
-    void hold(const command::Samples& samples);
+    void hold(const std::shared_ptr<const void>& sent);
 
     Session session_;
     Device& device_;
@@ -132,7 +132,7 @@ class Servo {
     std::atomic<bool> ready_{false}, stopping_{false};
 
     std::mutex held_mutex_;  // among those who send; the servo thread never comes near
-    std::vector<command::Samples> held_;
+    std::vector<std::shared_ptr<const void>> held_;  // none twice
     Queue<Command> commands_;
     Newest<Snapshot> snapshot_;
     Newest<WorstTick> worst_;

@@ -6,6 +6,7 @@
 #include <array>
 #include <atomic>
 #include <thread>
+#include <variant>
 #include <vector>
 
 using namespace palpate;
@@ -127,6 +128,24 @@ TEST(Queue, many_pushers_lose_nothing_and_keep_each_ones_order) {
         ASSERT_EQ(item->number, next[static_cast<std::size_t>(item->pusher)]++);
     }
     EXPECT_FALSE(queue.pop());
+}
+
+TEST(Queue, a_cell_that_was_popped_holds_nothing) {
+    Queue<std::variant<int, std::shared_ptr<int>>> queue(4);
+    for (int round = 0; round < 10; ++round) {
+        const auto value = std::make_shared<int>(round);
+        queue.push(value);
+        queue.push(value);
+        EXPECT_EQ(value.use_count(), 3);
+        {
+            const auto popped = queue.pop();
+            EXPECT_EQ(std::get<1>(*popped), value);
+            EXPECT_EQ(value.use_count(), 3);  // it went over
+        }
+        EXPECT_EQ(value.use_count(), 2);
+        queue.pop();
+        EXPECT_EQ(value.use_count(), 1);
+    }
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Replaces the global operator new by one that counts. See allocation_counter.hpp.
+// Replaces the global operators new and delete by ones that count. See allocation_counter.hpp.
 #include "support/allocation_counter.hpp"
 
 #include <atomic>
@@ -9,6 +9,7 @@ namespace {
 
 std::atomic<std::int64_t> count{0};
 thread_local std::int64_t thread_count = 0;
+thread_local std::int64_t thread_frees = 0;
 
 void* counted(std::size_t size) noexcept {
     count.fetch_add(1, std::memory_order_relaxed);
@@ -21,6 +22,11 @@ void* counted(std::size_t size, std::align_val_t alignment) noexcept {
     ++thread_count;
     const auto a = static_cast<std::size_t>(alignment);
     return std::aligned_alloc(a, (size + a) / a * a);  // a multiple of a, never 0
+}
+
+void give_back(void* memory) noexcept {
+    thread_frees += memory != nullptr;
+    std::free(memory);
 }
 
 void* or_throw(void* memory) {
@@ -40,6 +46,10 @@ std::int64_t thread_allocation_count() {
     return thread_count;
 }
 
+std::int64_t thread_free_count() {
+    return thread_frees;
+}
+
 }  // namespace palpate::support
 
 // The array and nothrow forms of the standard library call these.
@@ -50,14 +60,14 @@ void* operator new(std::size_t size, std::align_val_t alignment) {
     return or_throw(counted(size, alignment));
 }
 void operator delete(void* memory) noexcept {
-    std::free(memory);
+    give_back(memory);
 }
 void operator delete(void* memory, std::size_t) noexcept {
-    std::free(memory);
+    give_back(memory);
 }
 void operator delete(void* memory, std::align_val_t) noexcept {
-    std::free(memory);
+    give_back(memory);
 }
 void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
-    std::free(memory);
+    give_back(memory);
 }

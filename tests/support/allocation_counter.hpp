@@ -1,5 +1,5 @@
 // Counts what the program asks of the heap. Link allocation_counter.cpp, once a program: it
-// replaces the global operator new.
+// replaces the global operators new and delete.
 #pragma once
 
 #include <cstdint>
@@ -10,5 +10,7 @@ namespace palpate::support {
 std::int64_t allocation_count();
 /// The same by the calling thread alone.
 std::int64_t thread_allocation_count();
+/// Calls of operator delete by the calling thread that had something to free.
+std::int64_t thread_free_count();
 
 }  // namespace palpate::support

@@ -1,0 +1,219 @@
+// Session: samples that are exchanged and sequences that play, by the times of the ticks.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "palpate/session.hpp"
+#include "support/allocation_counter.hpp"
+#include "support/edits.hpp"
+#include "support/scripted_device.hpp"
+
+using namespace palpate;
+using namespace palpate::support;
+
+namespace {
+
+/// Density = z + shift [voxel, mm]: the level 30 lies at z = 30 - shift.
+Volume shifted_ramp(double shift) {
+    return volume_of<float>(grid({9, 9, 101}), [&](const Index3& i) { return i[2] + shift; });
+}
+
+/// At 0, 1 and 2 s the level lies at 30, 28 and 32.
+std::shared_ptr<const Samples> swinging(double period = 0) {
+    return std::make_shared<const Samples>(
+        std::vector<Frame>{{0, shifted_ramp(0)}, {1, shifted_ramp(2)}, {2, shifted_ramp(-2)}},
+        period);
+}
+
+struct Live {
+    Session session;
+    double time = 0;
+    DeviceReading reading = ready_at({4.2, 3.9, 40});
+
+    explicit Live(std::shared_ptr<const Samples> samples)
+        : session{make_renderer(Field(std::move(samples)), 30), {}} {}
+    SessionTick next(double dt = 1e-3) { return advance(session, time += dt, reading); }
+    double moment() const { return session.renderer.field.time(); }
+};
+
+TEST(LivingSession, plays_a_sequence_by_the_times_of_the_ticks) {
+    Live live(swinging());
+    Random random(1);
+    live.next();
+    EXPECT_EQ(live.next().moment, 0);  // stands still until it is played
+    apply(live.session, command::Speed{0.5});
+    double expected = 0;
+    while (expected < 1.9) {
+        const double dt = random.uniform(1e-4, 0.015);
+        const SessionTick tick = live.next(dt);
+        expected += 0.5 * dt;
+        ASSERT_NEAR(tick.moment, expected, 1e-12);
+        // What is felt is the field of this moment.
+        const double shift = expected < 1 ? 2 * expected : 2 - 4 * (expected - 1);
+        ASSERT_NEAR(tick.tick.proxy.scp[2], 30 - shift, 1e-4);
+    }
+}
+
+TEST(LivingSession, a_sequence_stops_at_its_ends_and_goes_on_backwards) {
+    Live live(swinging());
+    live.next();
+    apply(live.session, command::Speed{100});
+    for (int i = 0; i < 50; ++i) live.next();
+    EXPECT_EQ(live.moment(), 2);
+    apply(live.session, command::Speed{-1});
+    live.next();
+    EXPECT_NEAR(live.moment(), 1.999, 1e-12);
+    apply(live.session, command::Speed{-1000});
+    for (int i = 0; i < 5; ++i) live.next();
+    EXPECT_EQ(live.moment(), 0);
+}
+
+TEST(LivingSession, a_sequence_with_a_period_goes_round_both_ways) {
+    for (const double speed : {1.0, -1.0}) {
+        Live live(swinging(3));
+        live.next();
+        apply(live.session, command::Speed{speed});
+        double highest = -1e9, lowest = 1e9;
+        for (int i = 1; i <= 7000; ++i) {
+            const SessionTick tick = live.next();
+            const double t = std::fmod(speed * 1e-3 * i + 300, 3);
+            const double shift = t < 1 ? 2 * t : t < 2 ? 2 - 4 * (t - 1) : -2 + 2 * (t - 2);
+            ASSERT_NEAR(tick.tick.proxy.scp[2], 30 - shift, 1e-4);
+            highest = std::max(highest, tick.tick.proxy.scp[2]);
+            lowest = std::min(lowest, tick.tick.proxy.scp[2]);
+        }
+        EXPECT_NEAR(highest, 32, 1e-2);
+        EXPECT_NEAR(lowest, 28, 1e-2);
+        EXPECT_NEAR(live.moment(), 7 * speed, 1e-9);
+    }
+}
+
+TEST(LivingSession, goes_to_a_moment_and_stays_or_plays_on) {
+    Live live(swinging());
+    live.next();
+    apply(live.session, command::Moment{1.5});
+    EXPECT_EQ(live.next().moment, 1.5);
+    EXPECT_EQ(live.next().moment, 1.5);
+    apply(live.session, command::Moment{7});  // beyond the frames: the last
+    EXPECT_EQ(live.next().moment, 2);
+    apply(live.session, command::Speed{1});
+    apply(live.session, command::Moment{0.25});
+    EXPECT_NEAR(live.next().moment, 0.251, 1e-12);
+}
+
+TEST(LivingSession, other_samples_take_effect_in_the_next_tick_and_keep_the_time) {
+    Live live(swinging());
+    live.next();
+    apply(live.session, command::Moment{1.5});
+    live.next();
+    apply(live.session, command::Samples{swinging(), 7});
+    SessionTick tick = live.next();
+    EXPECT_EQ(tick.version, 7U);
+    EXPECT_EQ(tick.moment, 1.5);
+    apply(live.session, command::Samples{samples_of(shifted_ramp(5)), 8});
+    tick = live.next();
+    EXPECT_EQ(tick.version, 8U);
+    EXPECT_EQ(tick.moment, 0);
+    EXPECT_NEAR(tick.tick.proxy.scp[2], 25, 1e-4);
+}
+
+TEST(LivingSession, ticks_whose_time_is_broken_play_nothing) {
+    Live live(swinging());
+    live.next();
+    apply(live.session, command::Speed{1});
+    live.next();
+    const double before = live.moment();
+    for (const double time : {std::nan(""), std::numeric_limits<double>::infinity(), 0.0}) {
+        advance(live.session, time, live.reading);
+        EXPECT_TRUE(std::isfinite(live.moment()));
+    }
+    EXPECT_LE(live.moment(), 2);
+    EXPECT_GE(live.moment(), before);
+}
+
+TEST(LivingSession, samples_and_moments_that_are_none_are_refused) {
+    const RendererSettings settings;
+    const auto refused = [&](const Command& command) {
+        EXPECT_THROW(check(command, settings, Solid::above), std::invalid_argument);
+    };
+    refused(command::Samples{});
+    refused(command::Moment{std::nan("")});
+    refused(command::Moment{std::numeric_limits<double>::infinity()});
+    refused(command::Speed{1001});
+    refused(command::Speed{std::nan("")});
+    const Geometry geometry = shifted_ramp(0).geometry();
+    EXPECT_THROW(check(command::Samples{}, geometry), std::invalid_argument);
+    EXPECT_THROW(check(command::Samples{samples_of(noise_of(SampleType::uint8, grid(cube(3)), 1))},
+                       geometry),
+                 std::invalid_argument);
+    EXPECT_NO_THROW(check(command::Samples{swinging()}, geometry));
+}
+
+/// Everything that makes samples change, at random.
+struct LivingHand {
+    Random random{5};
+    std::vector<std::shared_ptr<const Samples>> versions;
+
+    LivingHand() {
+        auto edits = samples_of(shifted_ramp(0));
+        for (int i = 0; i < 20; ++i) {
+            versions.push_back(edits);
+            const Vec3 at(4, 4, random.uniform(25, 35));
+            const Brush brush = brush_for(i % 2 ? BrushKind::add : BrushKind::carve, Field(edits),
+                                          30, random.uniform(1, 3));
+            edits = edited(edits, edit::Stroke{brush, at, at}).samples;
+        }
+        versions.push_back(swinging());
+        versions.push_back(swinging(2.5));
+    }
+    void step(Live& live) {
+        live.reading.position = {random.uniform(3, 5), random.uniform(3, 5),
+                                 31 + 3 * std::sin(30 * live.time)};
+        if (random.chance(0.1)) {
+            const std::size_t i = random.bits() % versions.size();
+            apply(live.session, command::Samples{versions[i], i});
+        }
+        if (random.chance(0.02)) apply(live.session, command::Moment{random.uniform(-1, 4)});
+        if (random.chance(0.02)) apply(live.session, command::Speed{random.uniform(-5, 5)});
+    }
+};
+
+TEST(LivingSession, copies_go_on_alike_bit_for_bit) {
+    LivingHand hand;
+    Live one(hand.versions.front());
+    for (int i = 0; i < 1000; ++i) {
+        hand.step(one);
+        one.next();
+    }
+    LivingHand other = hand;
+    Live two = one;
+    int felt = 0, played = 0;
+    for (int i = 0; i < scaled(20'000); ++i) {
+        hand.step(one);
+        other.step(two);
+        const SessionTick a = one.next(), b = two.next();
+        ASSERT_EQ(a.tick.force, b.tick.force);
+        ASSERT_EQ(a.tick.proxy.scp, b.tick.proxy.scp);
+        ASSERT_EQ(a.moment, b.moment);
+        ASSERT_EQ(a.version, b.version);
+        felt += !a.tick.force.isZero(0);
+        played += a.moment > 0;
+    }
+    EXPECT_GT(felt, scaled(2000));
+    EXPECT_GT(played, scaled(500));
+}
+
+TEST(LivingSession, neither_ticks_nor_new_samples_allocate_or_free) {
+    LivingHand hand;
+    Live live(hand.versions.front());
+    const std::int64_t allocations = allocation_count(), frees = thread_free_count();
+    for (int i = 0; i < scaled(20'000); ++i) {
+        hand.step(live);
+        live.next();
+    }
+    EXPECT_EQ(allocation_count(), allocations);
+    EXPECT_EQ(thread_free_count(), frees);
+}
+
+}  // namespace
