@@ -66,8 +66,11 @@ VolumeFile volume_from(const nlohmann::json& done, const Descriptor& samples) {
         throw std::invalid_argument("the helper process gave too few samples");
     }
     return {Volume(geometry, type, map_shared(samples, bytes), bytes),
-            done.at("format").get<std::string>(), done.at("time_steps").get<int>(),
-            done.at("notes").get<std::vector<std::string>>()};
+            done.at("format").get<std::string>(),
+            done.at("time_steps").get<int>(),
+            done.at("notes").get<std::vector<std::string>>(),
+            done.value("frame_interval", 0.0),
+            done.value("first_time", 0.0)};
 }
 
 }  // namespace

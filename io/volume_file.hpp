@@ -53,7 +53,9 @@ struct VolumeFile {
     std::string format;  ///< "NRRD", "DICOM series", ...
     int time_steps = 1;  ///< how many volumes the file holds
     std::vector<std::string>
-        notes;  ///< one sentence each: conversions, gaps, tilt, missing spacing
+        notes;                  ///< one sentence each: conversions, gaps, tilt, missing spacing
+    double frame_interval = 0;  ///< [s] from one volume to the next; 0: the file does not say
+    double first_time = 0;      ///< [s] of the first volume
 };
 
 /// Reads a file, or a folder of DICOM or TIFF slices. Physical space is LPS, mm. Samples of uint8,

@@ -6,9 +6,11 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <limits>
+#include <map>
 
 #include "io/finite.hpp"
 #include "io/helper/protocol.hpp"
@@ -188,6 +190,31 @@ void finish(Result& result, const Request& request, std::span<std::byte> samples
         throw Failure("none of its samples is a finite number; export it again");
     }
     if (count > 0) result.notes.push_back(non_finite_note(count));
+}
+
+FrameTimes frame_times(double interval, double first, const std::string& unit,
+                       std::vector<std::string>& notes) {
+    static const std::map<std::string, double> units = {{"", 1},
+                                                        {"s", 1},
+                                                        {"sec", 1},
+                                                        {"second", 1},
+                                                        {"seconds", 1},
+                                                        {"ms", 1e-3},
+                                                        {"msec", 1e-3},
+                                                        {"millisecond", 1e-3},
+                                                        {"milliseconds", 1e-3},
+                                                        {"us", 1e-6},
+                                                        {"usec", 1e-6},
+                                                        {"microsecond", 1e-6},
+                                                        {"microseconds", 1e-6},
+                                                        {"min", 60},
+                                                        {"minute", 60},
+                                                        {"minutes", 60}};
+    const auto known = units.find(unit);
+    if (known == units.end() || !(std::isfinite(interval) && interval > 0)) return {};
+    if (unit.empty()) notes.push_back("its header gives no unit of time: seconds were taken");
+    const double second = known->second;
+    return {interval * second, std::isfinite(first) ? first * second : 0};
 }
 
 void say_progress(double fraction) {

@@ -30,12 +30,24 @@ struct Request {
     std::optional<Vec3> spacing;              ///< [mm] instead of the file's
 };
 
+/// When the volumes of a 4-D file were taken.
+struct FrameTimes {
+    double interval = 0;  ///< [s] from one to the next; 0: the file does not say
+    double first = 0;     ///< [s]
+};
+/// Times as a header gives them, in seconds: `unit` is "s", "ms", "us", "min" or one of their
+/// longer names; none counts as seconds, with a note; any other is no time. What is not finite or
+/// not above 0 is not known.
+FrameTimes frame_times(double interval, double first, const std::string& unit,
+                       std::vector<std::string>& notes);
+
 struct Result {
     std::string format;
     Geometry geometry;
     SampleType type = SampleType::uint8;
     int time_steps = 1;
     std::vector<std::string> notes;
+    FrameTimes times;
 };
 
 /// How a file stores a sample.

@@ -14,6 +14,7 @@ struct HeaderFacts {
     /// The axis that counts volumes if it is not the last one (NRRD's "list" and "time" kinds).
     std::optional<std::size_t> list_axis;
     std::vector<std::string> notes;
+    FrameTimes times;  ///< of a file with such an axis
 };
 
 HeaderFacts check_nrrd(const Request& request);

@@ -154,6 +154,7 @@ Result read_checked(itk::ImageIOBase& io, const HeaderFacts& facts, const Reques
     const int step = checked_time_step(request, layout.steps);
     result.time_steps = static_cast<int>(layout.steps);
     if (layout.steps > 1) {
+        result.times = facts.times;
         result.notes.push_back("time step " + std::to_string(step) + " of " +
                                std::to_string(layout.steps) + " (0 to " +
                                std::to_string(layout.steps - 1) + ") was taken");

@@ -93,6 +93,8 @@ nlohmann::json run_read(const fs::path& path, const nlohmann::json& asked) {
             {"type", name_of(result.type)},
             {"format", result.format},
             {"time_steps", result.time_steps},
+            {"frame_interval", result.times.interval},
+            {"first_time", result.times.first},
             {"notes", result.notes}};
 }
 

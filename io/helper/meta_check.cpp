@@ -109,6 +109,9 @@ void check_geometry(const Fields& fields, HeaderFacts& facts) {
         const auto spacings = numbers_in(fields.value(name), name);
         for (std::size_t a = 0; a < spacings.size() && a < 3; ++a) check_spacing(spacings[a], name);
         given |= !spacings.empty();
+        if (spacings.size() == 4 && facts.sizes.size() == 4 && facts.sizes[3] > 1) {
+            facts.times = frame_times(spacings[3], 0, "", facts.notes);
+        }
     }
     if (!given) facts.notes.push_back("its header gives no spacing: 1 mm was taken");
 }

@@ -108,6 +108,14 @@ Stored stored_from(std::int16_t type) {
     return found->second;
 }
 
+/// pixdim[4], toffset and the time bits of xyzt_units.
+FrameTimes times_of(const Header& header, std::vector<std::string>& notes) {
+    static const std::map<int, std::string> units = {{0, ""}, {8, "s"}, {16, "ms"}, {24, "us"}};
+    const auto unit = units.find(header.number<std::uint8_t>(123) & 0x38);
+    return frame_times(header.number<float>(92), header.number<float>(136),
+                       unit == units.end() ? "no time" : unit->second, notes);
+}
+
 }  // namespace
 
 HeaderFacts check_nifti(const Request& request) {
@@ -148,6 +156,7 @@ HeaderFacts check_nifti(const Request& request) {
         throw Failure("it has " + text_of(facts.sizes) +
                       " samples in more than 4 axes (vectors?); save one volume of it");
     }
+    if (facts.sizes.size() == 4) facts.times = times_of(header, facts.notes);
     if (header.number<std::int16_t>(252) == 0 && header.number<std::int16_t>(254) == 0) {
         facts.notes.push_back("its header says nothing of its orientation in the body");
     }

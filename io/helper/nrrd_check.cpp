@@ -47,6 +47,7 @@ Fields read_fields(const std::filesystem::path& path) {
         if (text[0] == '#' || colon == std::string::npos || text.substr(colon, 2) == ":=") continue;
         std::string name = lower(trimmed(text.substr(0, colon)));
         if (name == "datafile") name = "data file";
+        if (name == "axismins") name = "axis mins";
         if (name == "lineskip") name = "line skip";
         if (name == "byteskip") name = "byte skip";
         fields.values[name] = trimmed(text.substr(colon + 1));
@@ -188,6 +189,30 @@ bool is_list(const std::string& kind) {
     return kind == "list" || kind == "time";
 }
 
+/// A number of a field that has one for each axis; 0 if it has none.
+double number_of_axis(const Fields& fields, const std::string& name, std::size_t axis) {
+    const auto numbers = numbers_in(fields.value(name), name);
+    return axis < numbers.size() ? numbers[axis] : 0;
+}
+
+/// The `axis`th of the quoted words of a field.
+std::string quoted_word(const std::string& text, std::size_t axis) {
+    std::size_t at = 0;
+    for (std::size_t i = 0;; ++i) {
+        const auto open = text.find('"', at);
+        const auto close = open == std::string::npos ? open : text.find('"', open + 1);
+        if (close == std::string::npos) return "";
+        if (i == axis) return lower(trimmed(text.substr(open + 1, close - open - 1)));
+        at = close + 1;
+    }
+}
+
+FrameTimes times_of(const Fields& fields, std::size_t axis, std::vector<std::string>& notes) {
+    return frame_times(number_of_axis(fields, "spacings", axis),
+                       number_of_axis(fields, "axis mins", axis),
+                       quoted_word(fields.value("units"), axis), notes);
+}
+
 void check_geometry(const Fields& fields, HeaderFacts& facts) {
     const std::size_t axes = facts.sizes.size();
     std::vector<std::string> kinds;
@@ -199,18 +224,20 @@ void check_geometry(const Fields& fields, HeaderFacts& facts) {
         }
     }
     const std::size_t list = facts.list_axis.value_or(axes - (axes > 3 ? 1 : 0));
+    const bool has_directions = fields.has("space directions");
+    if (has_directions) direction_lengths(fields.value("space directions"));
     if (fields.has("spacings")) {
         const auto spacings = numbers_in(fields.value("spacings"), "spacings");
         for (std::size_t a = 0; a < spacings.size(); ++a) {
             const bool spatial = a != list && (a >= kinds.size() || kinds[a] == "domain" ||
                                                kinds[a] == "space" || kinds[a] == "???");
-            if (spatial) check_spacing(spacings[a], "spacings");
+            const bool left_open = has_directions && std::isnan(spacings[a]);
+            if (spatial && !left_open) check_spacing(spacings[a], "spacings");
         }
-    } else if (fields.has("space directions")) {
-        direction_lengths(fields.value("space directions"));
-    } else {
+    } else if (!has_directions) {
         facts.notes.push_back("its header gives no spacing: 1 mm was taken");
     }
+    if (axes == 4) facts.times = times_of(fields, list, facts.notes);
     const std::string units = lower(fields.value("space units"));
     if (!units.empty() && units.find("\"mm\"") == std::string::npos &&
         units.find("millimet") == std::string::npos) {
