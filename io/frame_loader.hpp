@@ -1,0 +1,112 @@
+// Keeps the frames of a sequence round the play position in memory, ahead of play and within a
+// bound, with a thread of its own. See docs/sequences.md.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "io/sequence.hpp"
+#include "palpate/samples.hpp"
+
+namespace palpate::io {
+
+struct LoaderSettings {
+    /// [bytes] Most that frames may take: those in the loader, the one being read, and those that
+    /// only versions it handed out still hold.
+    std::uint64_t memory_bytes = std::uint64_t{1} << 30;
+    bool loop = true;  ///< after the last frame the first comes again
+};
+
+struct LoaderStatus {
+    int frames = 0;           ///< in the loader
+    std::uint64_t bytes = 0;  ///< of all frames, wherever they are held
+    /// Every frame that was wanted when look() was last called is there, or cannot be read.
+    bool settled = false;
+    /// Why frames are missing: what was wrong with the last one that could not be read. Empty if
+    /// there is none.
+    std::string problem;
+};
+
+/// If all frames fit, what it hands out in the end is the whole sequence with its period. If not,
+/// it is the part of it round the play position, without a period and in times that do not jump at
+/// the seam: the first frame of lap 3 comes at 3 periods. Before all are read that is so, too.
+class FrameLoader {
+  public:
+    /// Called from the loader's thread; must not throw.
+    using OnChange = std::function<void(std::shared_ptr<const Samples>)>;
+
+    /// Throws std::invalid_argument for a sequence that is none, or if two of its frames do not fit
+    /// into the memory.
+    explicit FrameLoader(Sequence sequence, const LoaderSettings& settings = {},
+                         OnChange on_change = {});
+    /// Gives up a frame that is being read.
+    ~FrameLoader();
+    FrameLoader(const FrameLoader&) = delete;
+    FrameLoader& operator=(const FrameLoader&) = delete;
+
+    /// Where play is: the sequence's time [s] that the session tells, laps included, and its speed.
+    /// At speed 0 the way it went last counts. Any thread; never waits for a read.
+    void look(double time, double speed) noexcept;
+    /// The newest version; null before the first frame is read. Any thread. Whoever plays it should
+    /// take each soon, and let the last one go: frames that only old versions hold take memory.
+    std::shared_ptr<const Samples> newest() const;
+    LoaderStatus status() const;
+    /// LoaderStatus::problem.
+    std::string problem() const { return status().problem; }
+    /// Tries frames again that could not be read.
+    void retry();
+
+  private:
+    struct Control;
+    struct Held;
+    struct View;
+
+    using Clock = std::chrono::steady_clock;
+
+    void run();
+    void wait(std::uint64_t seen, bool for_memory);
+    void forget(const View& view);
+    int next_frame(const View& view) const;
+    bool there_is_room() const;
+    void read(int frame);
+    void tell_problem(const std::string& problem);
+    void publish(const View& view);
+    std::vector<Frame> frames_for(const View& view, double& period) const;
+    std::vector<std::int64_t> run_of_loaded(const View& view) const;
+    bool is_wanted(const View& view, int frame) const;
+    std::int64_t place_from(std::int64_t low, int frame) const;
+    std::int64_t nearest_place(std::int64_t to, int frame) const;
+    double time_at(std::int64_t place) const;
+    View view_of(double time, int way) const;
+
+    const Sequence sequence_;
+    const LoaderSettings settings_;
+    const OnChange on_change_;
+    const std::uint64_t frame_bytes_;
+    const std::int64_t room_;  ///< frames at a time
+    const std::shared_ptr<Control> control_;
+
+    // The thread's own.
+    std::map<int, Volume> loaded_;
+    std::set<int> failed_;
+    std::vector<double> published_;  ///< period and times of the version that is out
+    Clock::time_point reminder_ = Clock::time_point::max();  ///< when it is handed out again
+    int reminders_ = 0;
+
+    mutable std::mutex newest_mutex_;
+    std::shared_ptr<const Samples> newest_;
+    int frames_ = 0;
+    std::string problem_;
+
+    std::thread thread_;  // last: it uses all of the above
+};
+
+}  // namespace palpate::io
