@@ -61,6 +61,7 @@ void play(Session& session, double time) {
     Field& field = session.renderer.field;
     const double dt = session.begun ? time - session.last_tick : 0;
     if (session.speed != 0 && dt > 0) {
+        field_will_change(session.renderer.proxy, field);
         field.set_time(field.samples().within(field.time() + session.speed * dt));
     }
     if (std::isfinite(time)) {
@@ -129,11 +130,13 @@ void apply(Session& session, const Command& command) noexcept {
         session.holding = false;  // what was held was held at the other scale
     } else if (const auto* samples = std::get_if<command::Samples>(&command)) {
         Field& field = session.renderer.field;
+        field_will_change(session.renderer.proxy, field);
         field.use(samples->samples);
         field.set_time(samples->samples->within(field.time()));
         session.version = samples->version;
     } else if (const auto* moment = std::get_if<command::Moment>(&command)) {
         Field& field = session.renderer.field;
+        field_will_change(session.renderer.proxy, field);
         field.set_time(field.samples().within(moment->time));
     } else if (const auto* speed = std::get_if<command::Speed>(&command)) {
         session.speed = speed->speed;

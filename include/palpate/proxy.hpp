@@ -29,6 +29,8 @@ struct Proxy {
     bool placed = false;        ///< false: the next update starts at its HIP
     bool sliding = false;       ///< dynamic friction applies
     double recovery_reach = 0;  ///< [voxel] how far the way out was searched so far
+    /// Unit normal of the surface felt before the field changed, physical axes; zero: none
+    Vec3 ahead = Vec3::Zero();
 };
 
 /// Coulomb friction as a cone on the proxy's motion: it stays until the tangential pull exceeds
@@ -102,6 +104,11 @@ ProxyUpdate update_paper(Proxy& proxy, const Field& field, const Vec3& hip,
 /// takes (so not for the servo thread). False if no free point was found: all of space is solid.
 bool place(Proxy& proxy, const Field& field, const Vec3& hip, double isovalue,
            StepObserver observer = {});
+
+/// To be called before the field is exchanged or goes on in time: keeps on which side of the
+/// surface the proxy is, so that a wall that comes over it pushes it ahead, however thin
+/// (recovery).
+void field_will_change(Proxy& proxy, const Field& field);
 
 /// Unit normal of the level set at the SCP, out of the solid, physical axes; zero where the field
 /// is constant. On a wall that of one of the tetrahedra that meet there.

@@ -19,6 +19,13 @@ Vec3 normal_at(const Proxy& proxy, const Field& field) {
     return normal_of(field, proxy.scp.tetrahedron);
 }
 
+void field_will_change(Proxy& proxy, const Field& field) {
+    // Of several changes before the next update, the first one had the surface that was felt.
+    if (proxy.mode == Mode::constrained && proxy.ahead.isZero(0)) {
+        proxy.ahead = normal_at(proxy, field);
+    }
+}
+
 bool place(Proxy& proxy, const Field& field, const Vec3& hip, double isovalue,
            StepObserver observer) {
     proxy = Proxy{};

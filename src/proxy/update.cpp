@@ -22,6 +22,29 @@ void prefer_free_hip(Site& site, Course& course, const Vec3& start_index) {
     course.report(StepKind::recover, site);
 }
 
+/// Farther than this [voxel] a change of the field is not taken for a surface that moved.
+constexpr double farthest_push = 8;
+
+/// A wall that came over the proxy pushes it ahead, to the side on which it was, though the other
+/// side may be nearer. True if the way out lies, or was found, ahead.
+bool push_ahead(Site& site, Course& course, const Vec3& start_index, const Vec3& ahead) {
+    const Vec3& spacing = course.geometry.spacing;
+    const Vec3 out = grid_axes_from_physical(course.geometry, ahead);
+    const Vec3 way = (index_of(site.point) - start_index).cwiseProduct(spacing);
+    const double farthest = farthest_push * spacing.maxCoeff();
+    if (dot(way, out) >= 0) return dot(way, way) <= farthest * farthest;
+    // The solid is the free side of the field with its sign turned.
+    Site probe(site.field, site.isovalue, -site.sign, locate(start_index));
+    Course silent{course.geometry, {}, start_index, course.budget};
+    const Vec3 push = (farthest * out).cwiseQuotient(spacing);
+    const WalkEnd end = walk(probe, fold(probe.point.tetrahedron, push), silent);
+    course.budget = silent.budget;
+    if (end != WalkEnd::surface) return false;
+    site.move_to(probe.point);
+    course.report(StepKind::recover, site);
+    return true;
+}
+
 }  // namespace
 
 ProxyUpdate refuse_update(const Proxy& proxy, const Field& field, const Vec3& hip) {
@@ -61,12 +84,15 @@ Update::Update(Proxy& proxy, const Field& field, const Vec3& hip_index,
     }
     const Vec3 start = index_of(site.point);
     recovering = !recover(site, course, proxy.recovery_reach);
-    if (!recovering) prefer_free_hip(site, course, start);
+    if (recovering) return;
+    if (!proxy.ahead.isZero(0) && push_ahead(site, course, start, proxy.ahead)) return;
+    prefer_free_hip(site, course, start);
 }
 
 ProxyUpdate finish_update(Proxy& proxy, const Update& update, const Vec3& hip, Rest rest) {
     const Site& site = update.site;
     proxy.scp = site.point;
+    if (rest != Rest::recovering) proxy.ahead.setZero();
     proxy.scp_physical = rest == Rest::at_target
                              ? hip
                              : physical_from_index(update.course.geometry, index_of(site.point));
