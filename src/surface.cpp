@@ -167,12 +167,14 @@ std::array<double, node_count> node_values(const CellSamples& f) {
 /// cleared.
 class Extraction {
   public:
-    Extraction(const Field& field, double isovalue, std::uint64_t max_vertices, SurfaceMesh& mesh)
+    Extraction(const Field& field, double isovalue, const SampleBox& box,
+               std::uint64_t max_vertices, SurfaceMesh& mesh)
         : field_(field),
           isovalue_(isovalue),
           max_vertices_(max_vertices),
           mesh_(mesh),
-          cells_(field.geometry().size + Index3::Ones()),
+          low_(box.low),
+          cells_(box.high - box.low + Index3::Ones()),
           row_(cells_[0]),
           slab_(static_cast<std::size_t>(cells_[0]) * cells_[1]) {
         // A mirrored grid turns every triangle over.
@@ -195,9 +197,9 @@ class Extraction {
 
     bool is_solid(double value) const { return field_.sign() * (value - isovalue_) > 0; }
 
-    /// `at` counts from 0 for the cell that starts one sample before the grid.
+    /// `at` counts from 0 for the first cell of the box.
     void visit(const Index3& at) {
-        const CellSamples samples = field_.cell(at - Index3::Ones());
+        const CellSamples samples = field_.cell(low_ + at);
         int solid_corners = 0;
         for (const double value : samples) solid_corners += is_solid(value);
         // Rounded means stay between the least and the greatest sample: no node can differ.
@@ -210,14 +212,27 @@ class Extraction {
         std::array<FaceVertices*, 3> shared{
             &last_, &row_[at[0]], &slab_[at[0] + static_cast<std::size_t>(at[1]) * cells_[0]]};
         std::array<std::uint32_t, edge_count> vertex;
-        for (int axis = 0; axis < 3; ++axis) {
-            const auto& face = partition.of_face[axis][0];
-            for (int i = 0; i < 8; ++i) vertex[face[i]] = (*shared[axis])[i];
-        }
-        for (const Edge edge : partition.own) {
+        const auto make = [&](Edge edge) {
             const auto [a, b] = partition.edges[edge];
             vertex[edge] = solid[a] != solid[b] ? add_vertex(at, a, b, value) : 0;
+        };
+        std::array<bool, edge_count> known{};
+        for (int axis = 0; axis < 3; ++axis) {
+            if (at[axis] == 0) continue;
+            const auto& face = partition.of_face[axis][0];
+            for (int i = 0; i < 8; ++i) {
+                vertex[face[i]] = (*shared[axis])[i];
+                known[face[i]] = true;
+            }
         }
+        for (int axis = 0; axis < 3; ++axis) {  // where the box begins there is no neighbour
+            if (at[axis] > 0) continue;
+            for (const Edge edge : partition.of_face[axis][0]) {
+                if (!known[edge]) make(edge);
+                known[edge] = true;
+            }
+        }
+        for (const Edge edge : partition.own) make(edge);
         for (int axis = 0; axis < 3; ++axis) {
             const auto& face = partition.of_face[axis][1];
             for (int i = 0; i < 8; ++i) (*shared[axis])[i] = vertex[face[i]];
@@ -236,7 +251,7 @@ class Extraction {
         if (!(t > surface_margin)) t = surface_margin;
         if (t > 1 - surface_margin) t = 1 - surface_margin;
         const Vec3 in_cell = position_[a] + t * (position_[b] - position_[a]);
-        const Vec3 index = (at - Index3::Ones()).cast<double>() + in_cell;
+        const Vec3 index = (low_ + at).cast<double>() + in_cell;
         mesh_.vertices.push_back(physical_from_index(field_.geometry(), index));
         return static_cast<std::uint32_t>(mesh_.vertices.size() - 1);
     }
@@ -262,7 +277,7 @@ class Extraction {
     double isovalue_;
     std::uint64_t max_vertices_;
     SurfaceMesh& mesh_;
-    Index3 cells_;
+    Index3 low_, cells_;
     bool mirrored_ = false;
     std::array<Vec3, node_count> position_;  // [voxel] in the cell
     FaceVertices last_{};
@@ -276,7 +291,14 @@ SurfaceMesh extract_surface(const Field& field, double isovalue, const SurfaceOp
     if (!std::isfinite(isovalue)) throw std::invalid_argument("the isovalue is not finite");
     const std::uint64_t nameable = std::numeric_limits<std::uint32_t>::max();
     SurfaceMesh mesh;
-    Extraction extraction(field, isovalue, std::min(options.max_vertices, nameable), mesh);
+    // The cells that touch the grid: one sample before it is background.
+    SampleBox box{Index3::Constant(-1), field.geometry().size - Index3::Ones()};
+    if (options.cells) {
+        box.low = box.low.cwiseMax(options.cells->low);
+        box.high = box.high.cwiseMin(options.cells->high);
+        if (box.empty()) return mesh;
+    }
+    Extraction extraction(field, isovalue, box, std::min(options.max_vertices, nameable), mesh);
     if (!extraction.run(options.progress)) {
         mesh = {};
         mesh.complete = false;

@@ -6,14 +6,15 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "palpate/field.hpp"
 
 namespace palpate {
 
-/// A closed, oriented triangle mesh. Every edge has exactly two triangles, which run along it in
-/// opposite directions.
+/// An oriented triangle mesh, closed unless it is that of a part: every edge has exactly two
+/// triangles, which run along it in opposite directions.
 struct SurfaceMesh {
     std::vector<Vec3> vertices;  ///< [mm, physical]
     /// Indices into `vertices`, counter-clockwise seen from the free side: normals point out of the
@@ -28,6 +29,10 @@ struct SurfaceOptions {
     /// More vertices than this are an error. The default is what a 32-bit index can name; a vertex
     /// with its two triangles takes 48 bytes.
     std::uint64_t max_vertices = std::numeric_limits<std::uint32_t>::max();
+    /// Only the part in these cells (by their lowest corner; -1 is the ring before the grid), cut
+    /// at the border of the grid and its ring. It is open where the surface leaves the box, and
+    /// fits the parts in the boxes beside it: there both have the same vertices, bit for bit.
+    std::optional<SampleBox> cells = std::nullopt;
 };
 
 /// How close to the end of a tetrahedron's edge a vertex may lie, as a fraction of the edge. Data

@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <algorithm>
 #include <numbers>
 #include <random>
 
@@ -262,6 +263,46 @@ TEST(Surface, is_the_same_bit_for_bit_when_extracted_again) {
     const SurfaceMesh b = extract_surface(field, 77);
     EXPECT_EQ(a.vertices, b.vertices);
     EXPECT_EQ(a.triangles, b.triangles);
+}
+
+TEST(Surface, in_boxes_of_cells_is_the_whole_one_in_parts_bit_for_bit) {
+    using Corners = std::array<std::array<double, 3>, 3>;
+    const auto add_triangles = [](const SurfaceMesh& mesh, std::vector<Corners>& all) {
+        for (const auto& t : mesh.triangles) {
+            Corners corners;
+            for (std::size_t c = 0; c < 3; ++c) {
+                const Vec3& v = mesh.vertices[t[c]];
+                corners[c] = {v[0], v[1], v[2]};
+            }
+            std::rotate(corners.begin(), std::ranges::min_element(corners), corners.end());
+            all.push_back(corners);
+        }
+    };
+    for (const Geometry& geometry : {grid(20, 17, 9), mirrored(grid(9, 12, 14)), grid(1, 7, 3)}) {
+        for (const Volume& volume : {noise(geometry, 21), salt(geometry, 22)}) {
+            const Field field(volume, Solid::above, 100);
+            std::vector<Corners> whole, parts;
+            add_triangles(extract_surface(field, 99.5), whole);
+            const int step = 5;
+            for (int k = -1; k < geometry.size[2]; k += step) {
+                for (int j = -1; j < geometry.size[1]; j += step) {
+                    for (int i = -1; i < geometry.size[0]; i += step) {
+                        SurfaceOptions options;
+                        const Index3 low(i, j, k);
+                        options.cells = SampleBox{low, low + Index3::Constant(step - 1)};
+                        add_triangles(extract_surface(field, 99.5, options), parts);
+                    }
+                }
+            }
+            std::ranges::sort(whole);
+            std::ranges::sort(parts);
+            EXPECT_GT(whole.size(), 100U);
+            EXPECT_EQ(whole, parts);
+        }
+    }
+    SurfaceOptions outside;
+    outside.cells = SampleBox{Index3(30, 0, 0), Index3(40, 9, 9)};
+    EXPECT_TRUE(extract_surface(Field(noise(grid(8, 8, 8), 3)), 100, outside).triangles.empty());
 }
 
 TEST(Surface, extraction_reports_progress_and_can_be_cancelled) {
