@@ -10,6 +10,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "apps/viewer/panel/brush_controls.hpp"
 #include "apps/viewer/panel/device_controls.hpp"
 #include "apps/viewer/panel/force_controls.hpp"
 #include "apps/viewer/panel/isovalue_controls.hpp"
@@ -41,6 +42,7 @@ Panel::Panel(QWidget* parent)
     : QWidget(parent),
       isovalue_(new IsovalueControls),
       penetrability_(new PenetrabilityControls(isovalue_->chart())),
+      edit_(new BrushControls),
       force_(new ForceControls),
       device_(new DeviceControls),
       loop_(new LoopView),
@@ -61,14 +63,15 @@ void Panel::build() {
     isovalue_part_ = new Section("Isovalue", "isovalue_part", isovalue_);
     penetrability_part_ =
         new Section("Pressing through (penetrability)", "penetrability_part", penetrability_);
+    edit_part_ = new Section("Edit", "edit_part", edit_);
     force_part_ = new Section("Force", "force_part", force_);
     device_part_ = new Section("Device", "device_part", device_);
     loop_part_ = new Section("Servo loop", "loop_part", loop_);
     look_part_ = new Section("Look", "look_part", look_);
     auto* column = new QVBoxLayout(this);
     column->setContentsMargins(6, 6, 6, 6);
-    for (Section* part : {session_part_, isovalue_part_, penetrability_part_, force_part_,
-                          device_part_, loop_part_, look_part_}) {
+    for (Section* part : {session_part_, isovalue_part_, penetrability_part_, edit_part_,
+                          force_part_, device_part_, loop_part_, look_part_}) {
         column->addWidget(part);
     }
     column->addStretch(1);
@@ -108,6 +111,31 @@ void Panel::connect_sections() {
     connect(bar_, &SessionBar::clutch_wanted, this,
             [this](bool on) { ask(session_part_, command::Clutch{on}); });
     connect(look_, &LookControls::look_changed, this, &Panel::look_changed);
+    connect_edits();
+}
+
+void Panel::connect_edits() {
+    connect(edit_, &BrushControls::changed, this, [this](const BrushChoice& brush) {
+        if (!live_) return;
+        edit_part_->say({});
+        asked_by_ = edit_part_;
+        before_ = now_;
+        now_.brush = brush;
+        Q_EMIT brush_changed(brush);
+    });
+    connect(edit_, &BrushControls::nonsense, edit_part_, &Section::say);
+    // What is refused of these changes nothing that is shown here.
+    const auto pass = [this](void (Panel::*signal)()) {
+        return [this, signal] {
+            edit_part_->say({});
+            asked_by_ = edit_part_;
+            before_ = now_;
+            Q_EMIT(this->*signal)();
+        };
+    };
+    connect(edit_, &BrushControls::undo, this, pass(&Panel::undo_asked));
+    connect(edit_, &BrushControls::redo, this, pass(&Panel::redo_asked));
+    connect(edit_, &BrushControls::save, this, pass(&Panel::save_asked));
 }
 
 void Panel::set_session(const Field& field, const app::Histogram& histogram, double isovalue,
@@ -116,11 +144,16 @@ void Panel::set_session(const Field& field, const app::Histogram& histogram, dou
     force_->drop();
     live_ = true;
     solid_ = field.solid();
-    now_ = before_ = {settings, isovalue, false, false};
+    unedited_.emplace(field.volume(), field.solid(), field.background());
+    edit_->set_grid(field.geometry());
+    edit_->reset();
+    edit_->set_history(0, 0, false);
+    edit_->set_reason({});
+    now_ = before_ = {settings, isovalue, false, false, edit_->choice()};
     asked_by_ = nullptr;
     last_.reset();
-    for (Section* part : {session_part_, isovalue_part_, penetrability_part_, force_part_,
-                          device_part_, loop_part_, look_part_}) {
+    for (Section* part : {session_part_, isovalue_part_, penetrability_part_, edit_part_,
+                          force_part_, device_part_, loop_part_, look_part_}) {
         part->say({});
         part->setEnabled(true);
     }
@@ -141,20 +174,25 @@ void Panel::clear() {
     isovalue_->clear();
     penetrability_->drop();
     force_->drop();
+    edit_->reset();
+    edit_->set_history(0, 0, false);
+    edit_->set_reason({});
+    now_.brush = before_.brush = edit_->choice();
+    unedited_.reset();
     bar_->clear();
     loop_->clear();
     device_->clear();
     look_->clear();
-    for (Section* part : {session_part_, isovalue_part_, penetrability_part_, force_part_,
-                          device_part_, loop_part_, look_part_}) {
+    for (Section* part : {session_part_, isovalue_part_, penetrability_part_, edit_part_,
+                          force_part_, device_part_, loop_part_, look_part_}) {
         part->say({});
         part->setEnabled(false);
     }
 }
 
 void Panel::set_observing(bool observing) {
-    for (Section* part :
-         {session_part_, isovalue_part_, penetrability_part_, force_part_, device_part_}) {
+    for (Section* part : {session_part_, isovalue_part_, penetrability_part_, edit_part_,
+                          force_part_, device_part_}) {
         part->setEnabled(!observing);
     }
 }
@@ -163,8 +201,29 @@ void Panel::set_look(const Look& look) {
     look_->set_look(look);
 }
 
+void Panel::set_brush(const BrushChoice& brush) {
+    edit_->set_choice(brush);
+    now_.brush = brush;
+}
+
+const BrushChoice& Panel::brush() const {
+    return edit_->choice();
+}
+
+void Panel::set_history(std::size_t undo_steps, std::size_t redo_steps, bool changed) {
+    edit_->set_history(undo_steps, redo_steps, changed);
+}
+
+void Panel::set_edit_reason(const QString& why) {
+    edit_->set_reason(why);
+}
+
 void Panel::toggle_forces() {
     bar_->toggle_forces();
+}
+
+void Panel::toggle_brush() {
+    edit_->toggle();
 }
 
 const Look& Panel::look() const {
@@ -179,6 +238,17 @@ void Panel::show_effect() {
     penetrability_->set_in_use(now_.settings.penetrability);
     force_->set_settings(now_.settings.force, now_.settings.proxy.friction, now_.settings.device);
     device_->set_scale(now_.settings.transform.scale);
+    edit_->set_choice(now_.brush);
+    show_fitting();
+}
+
+/// What the brush does without a value of its own, at the level in effect.
+void Panel::show_fitting() {
+    if (!unedited_) return;
+    const auto fitting = [&](BrushKind kind) {
+        return brush_for(kind, *unedited_, now_.isovalue, now_.brush.radius).value;
+    };
+    edit_->set_fitting(fitting(BrushKind::carve), fitting(BrushKind::add));
 }
 
 /// Asks for a command if it is one that the session can carry out; else says why not. Whoever hears

@@ -9,11 +9,13 @@
 
 #include "apps/live/statistics.hpp"
 #include "apps/viewer/model/look.hpp"
+#include "apps/viewer/panel/brush_choice.hpp"
 #include "devices/backend.hpp"
 #include "palpate/servo.hpp"
 
 namespace palpate::viewer {
 
+class BrushControls;
 class DeviceControls;
 class ForceControls;
 class IsovalueControls;
@@ -32,7 +34,8 @@ class Panel : public QWidget {
     explicit Panel(QWidget* parent = nullptr);
     ~Panel() override;
 
-    /// A session, as it is: shows these values.
+    /// A session, as it is: shows these values. The brush is off, its values are automatic, there
+    /// are no edits and no reason against them: what is otherwise is to be set after this.
     void set_session(const Field& field, const app::Histogram& histogram, double isovalue,
                      const RendererSettings& settings, const DeviceInfo& device);
     /// No volume: nothing can be set.
@@ -42,6 +45,13 @@ class Panel : public QWidget {
     void set_observing(bool observing);
     void set_look(const Look& look);
     const Look& look() const;
+    void set_brush(const BrushChoice& brush);
+    /// The radius is one that fits the grid.
+    const BrushChoice& brush() const;
+    /// Steps that can be undone and redone, and whether there is something to save.
+    void set_history(std::size_t undo_steps, std::size_t redo_steps, bool changed);
+    /// One sentence why these samples cannot be edited (a sequence, say); empty: they can.
+    void set_edit_reason(const QString& why);
 
     /// About thirty times a second.
     void show_snapshot(const Snapshot& snapshot);
@@ -63,6 +73,8 @@ class Panel : public QWidget {
 
     /// As if the button was pressed: for the window's space bar.
     void toggle_forces();
+    /// The same for the brush; nothing where there is nothing to edit.
+    void toggle_brush();
 
   Q_SIGNALS:
     /// A command that has passed palpate::check for the session that is shown.
@@ -71,30 +83,39 @@ class Panel : public QWidget {
     void devices_wanted();
     void solid_chosen(palpate::Solid solid);
     void look_changed(const palpate::viewer::Look& look);
+    /// May be answered by show_refused(): the choice before holds again.
+    void brush_changed(const palpate::viewer::BrushChoice& brush);
+    void undo_asked();
+    void redo_asked();
+    void save_asked();
 
   private:
     struct Effect {
         RendererSettings settings;
         double isovalue = 0;
         bool frozen = false, clutched = false;
+        BrushChoice brush;
     };
 
     void build();
     void connect_sections();
+    void connect_edits();
     void ask(Section* by, const Command& command);
     void ask_penetrability(const PressThrough& wish);
     void refuse(Section* by, const QString& why);
     void show_effect();
+    void show_fitting();
 
     IsovalueControls* isovalue_;
     PenetrabilityControls* penetrability_;
+    BrushControls* edit_;
     ForceControls* force_;
     DeviceControls* device_;
     LoopView* loop_;
     LookControls* look_;
     SessionBar* bar_;
-    Section *session_part_, *isovalue_part_, *penetrability_part_, *force_part_, *device_part_,
-        *loop_part_, *look_part_;
+    Section *session_part_, *isovalue_part_, *penetrability_part_, *edit_part_, *force_part_,
+        *device_part_, *loop_part_, *look_part_;
 
     bool live_ = false;  // there is a session
     Solid solid_ = Solid::above;
@@ -102,6 +123,7 @@ class Panel : public QWidget {
     Section* asked_by_ = nullptr;
     bool refused_ = false;
     std::optional<Snapshot> last_;
+    std::optional<Field> unedited_;  // what automatic values are reckoned from
 };
 
 }  // namespace palpate::viewer

@@ -1,0 +1,25 @@
+// The brush that a person has chosen: a plain value between the panel and whoever edits.
+#pragma once
+
+#include <limits>
+#include <optional>
+
+#include "palpate/edit.hpp"
+
+namespace palpate::viewer {
+
+struct BrushChoice {
+    BrushKind kind = BrushKind::carve;
+    double radius = 3;    ///< [mm]
+    double hardness = 1;  ///< 0 to 1, Brush::hardness
+    /// [1/s], Brush::strength says what it means for a touch; infinity: all of it at once.
+    double rate = std::numeric_limits<double>::infinity();
+    /// What a whole touch leaves [data units], Brush::value; none: what fits the level felt, as
+    /// brush_for() has it. Smoothing has none.
+    std::optional<double> value;
+    bool on = false;  ///< the probe edits where it is
+
+    bool operator==(const BrushChoice&) const = default;
+};
+
+}  // namespace palpate::viewer

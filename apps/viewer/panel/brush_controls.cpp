@@ -1,0 +1,326 @@
+// Controls to a choice and back.
+#include "apps/viewer/panel/brush_controls.hpp"
+
+#include <QButtonGroup>
+#include <QFormLayout>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QLineEdit>
+#include <QSignalBlocker>
+#include <QToolButton>
+#include <QVBoxLayout>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace palpate::viewer {
+namespace {
+
+constexpr double least_rate = 1, most_rate = 100, first_rate = 10;  // [1/s]
+
+struct Kind {
+    BrushKind kind;
+    const char *text, *tip;
+};
+constexpr Kind all_kinds[] = {
+    {BrushKind::carve, "Carve", "Takes solid away where the brush is"},
+    {BrushKind::add, "Add", "Puts solid on where the brush is"},
+    {BrushKind::smooth, "Smooth", "Blurs: edges and noise wear off"},
+    {BrushKind::paint, "Paint", "Brings the samples to the value, up or down"},
+};
+
+QString steps_text(const QString& what, std::size_t steps) {
+    return steps > 0 ? QString("%1 (%2)").arg(what).arg(steps) : what;
+}
+
+QString in_words(std::size_t steps) {
+    return steps == 0 ? "none" : steps == 1 ? "one step" : QString("%1 steps").arg(steps);
+}
+
+/// A row of a form, and the label that names it.
+void add_row(QFormLayout& form, const QString& name, QWidget* field, const QString& tip) {
+    auto* label = new QLabel(name);
+    label->setToolTip(tip);
+    label->setBuddy(field);
+    field->setToolTip(tip);
+    form.addRow(label, field);
+}
+
+QWidget* row_of(std::initializer_list<QWidget*> widgets) {
+    auto* all = new QWidget;
+    auto* row = new QHBoxLayout(all);
+    row->setContentsMargins(0, 0, 0, 0);
+    for (QWidget* one : widgets) row->addWidget(one);
+    return all;
+}
+
+}  // namespace
+
+BrushControls::BrushControls(QWidget* parent)
+    : QWidget(parent),
+      rate_(first_rate),
+      body_(new QWidget),
+      reason_(new Note("brush_reason", Note::Kind::plain)),
+      on_(new QPushButton),
+      kinds_(new QButtonGroup(this)),
+      radius_(new LogQuantity("brush_radius", "mm", 1, 25)),
+      hardness_(new Quantity("brush_hardness", "", 0, 1, 0.05)),
+      rate_box_(new LogQuantity("brush_rate", "/s", least_rate, most_rate)),
+      at_once_(new QCheckBox("At once")),
+      value_(new NumberBox),
+      automatic_(new QCheckBox("Automatic")),
+      undo_(new QPushButton),
+      redo_(new QPushButton),
+      save_(new QPushButton("Save as...")),
+      state_(new QLabel) {
+    setObjectName("brush_controls");
+    build();
+    connect_inputs();
+    set_history(0, 0, false);
+    show_choice();
+}
+
+void BrushControls::build() {
+    on_->setObjectName("brush");
+    on_->setCheckable(true);
+    on_->setToolTip("While it is on, the probe edits the samples where it is");
+    QFont bold = on_->font();
+    bold.setBold(true);
+    on_->setFont(bold);
+    radius_->set_accessible_name("Radius of the brush");
+    hardness_->set_accessible_name("Hardness of the brush");
+    auto* form = new QFormLayout;
+    form->setVerticalSpacing(3);
+    add_row(*form, "Radius", radius_,
+            "Where half of the effect is left [mm in the volume]: from a voxel to a quarter of "
+            "the grid");
+    add_row(*form, "Hardness", hardness_,
+            "1: an edge of two voxels; 0: an edge as wide as the brush");
+    add_row(*form, "Rate", make_rate(),
+            "How fast the samples go to their aim [1/s]: after 1/rate s, 63 % of the way is done");
+    add_row(*form, "Value", make_value(),
+            "What a whole touch leaves [data units]. Automatic: what fits the level that is felt");
+    auto* column = new QVBoxLayout(body_);
+    column->setContentsMargins(0, 0, 0, 0);
+    column->addWidget(on_);
+    column->addWidget(make_kinds());
+    column->addLayout(form);
+    column->addWidget(make_history());
+    column->addWidget(state_);
+    auto* all = new QVBoxLayout(this);
+    all->setContentsMargins(0, 0, 0, 0);
+    all->addWidget(reason_);
+    all->addWidget(body_);
+}
+
+QWidget* BrushControls::make_kinds() {
+    auto* all = row_of({});
+    all->setAccessibleName("Kind of brush");
+    all->layout()->setSpacing(2);
+    for (const Kind& kind : all_kinds) {
+        auto* button = new QToolButton;
+        button->setObjectName("brush_" + QString::fromStdString(std::string(name_of(kind.kind))));
+        button->setText(kind.text);
+        button->setToolTip(kind.tip);
+        button->setCheckable(true);
+        button->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
+        kinds_->addButton(button, static_cast<int>(kind.kind));
+        all->layout()->addWidget(button);
+    }
+    return all;
+}
+
+QWidget* BrushControls::make_rate() {
+    rate_box_->set_accessible_name("Rate of the brush");
+    at_once_->setObjectName("brush_at_once");
+    auto* row = row_of({rate_box_, at_once_});
+    row->setFocusProxy(rate_box_);
+    return row;
+}
+
+QWidget* BrushControls::make_value() {
+    value_->setObjectName("brush_value");
+    value_->setAccessibleName("Value of the brush");
+    value_->setStepType(QAbstractSpinBox::AdaptiveDecimalStepType);
+    value_->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
+    value_->setMinimumWidth(radius_->box().minimumWidth());
+    automatic_->setObjectName("brush_automatic");
+    auto* row = row_of({value_, automatic_});
+    row->setFocusProxy(value_);
+    return row;
+}
+
+QWidget* BrushControls::make_history() {
+    undo_->setObjectName("undo");
+    redo_->setObjectName("redo");
+    save_->setObjectName("save_edits");
+    save_->setToolTip("Writes the volume as it is now to a file");
+    state_->setObjectName("edit_state");
+    for (QPushButton* button : {undo_, redo_, save_}) {
+        button->setMinimumWidth(fontMetrics().horizontalAdvance("Undo (000)  "));
+    }
+    return row_of({undo_, redo_, save_});
+}
+
+void BrushControls::connect_inputs() {
+    connect(on_, &QPushButton::clicked, this,
+            [this](bool on) { change([on](BrushChoice& c) { c.on = on; }); });
+    connect(kinds_, &QButtonGroup::idClicked, this, [this](int id) {
+        change([this, id](BrushChoice& c) {
+            c.kind = static_cast<BrushKind>(id);
+            c.value = values_[static_cast<std::size_t>(id)];
+        });
+    });
+    connect(at_once_, &QCheckBox::clicked, this, [this](bool at_once) {
+        rate_box_->drop();
+        const double rate = at_once ? std::numeric_limits<double>::infinity() : rate_;
+        change([rate](BrushChoice& c) { c.rate = rate; });
+    });
+    connect(automatic_, &QCheckBox::clicked, this, [this](bool automatic) {
+        typed_ = false;
+        change([&](BrushChoice& c) {
+            c.value = automatic ? std::optional<double>() : value_->value();
+        });
+    });
+    connect(undo_, &QPushButton::clicked, this, &BrushControls::undo);
+    connect(redo_, &QPushButton::clicked, this, &BrushControls::redo);
+    connect(save_, &QPushButton::clicked, this, &BrushControls::save);
+    connect_numbers();
+}
+
+void BrushControls::connect_numbers() {
+    connect(radius_, &LogQuantity::wanted, this, [this](double radius) {
+        if (radius >= radius_->low() && radius <= radius_->high()) {
+            return change([radius](BrushChoice& c) { c.radius = radius; });
+        }
+        refuse(QString("the brush's radius must be from %1 mm (a voxel) to %2 mm (a quarter of the "
+                       "grid), not %3 mm")
+                   .arg(radius_->low(), 0, 'g', 4)
+                   .arg(radius_->high(), 0, 'g', 4)
+                   .arg(radius, 0, 'g', 4));
+    });
+    connect(hardness_, &Quantity::wanted, this, [this](double hardness) {
+        if (hardness >= 0 && hardness <= 1) {
+            return change([hardness](BrushChoice& c) { c.hardness = hardness; });
+        }
+        refuse(QString("the brush's hardness must be from 0 to 1, not %1").arg(hardness));
+    });
+    connect(rate_box_, &LogQuantity::wanted, this, [this](double rate) {
+        if (rate >= least_rate && rate <= most_rate) {
+            return change([rate](BrushChoice& c) { c.rate = rate; });
+        }
+        refuse(QString("the brush's rate must be from %1 to %2 /s or at once, not %3 /s")
+                   .arg(least_rate)
+                   .arg(most_rate)
+                   .arg(rate));
+    });
+    // A number of one's own is not automatic any more, also where it is the same.
+    const auto own = [this](double value) { change([value](BrushChoice& c) { c.value = value; }); };
+    connect(value_, QOverload<double>::of(&QDoubleSpinBox::valueChanged), this, own);
+    connect(value_->findChild<QLineEdit*>(), &QLineEdit::textEdited, this, [this] {
+        typed_ = value_->hasAcceptableInput();
+        automatic_->setChecked(!typed_ && !choice_.value);
+    });
+    connect(value_, &QDoubleSpinBox::editingFinished, this, [this, own] {
+        if (std::exchange(typed_, false)) own(value_->value());
+    });
+}
+
+void BrushControls::change(const std::function<void(BrushChoice&)>& how) {
+    BrushChoice wish = choice_;
+    how(wish);
+    const bool same = wish == choice_;
+    set_choice(wish);
+    if (!same) Q_EMIT changed(choice_);
+}
+
+void BrushControls::refuse(const QString& why) {
+    show_choice();
+    Q_EMIT nonsense(why);
+}
+
+void BrushControls::set_choice(const BrushChoice& choice) {
+    choice_ = choice;
+    values_[static_cast<std::size_t>(choice.kind)] = choice.value;
+    if (std::isfinite(choice.rate)) rate_ = choice.rate;
+    show_choice();
+}
+
+double BrushControls::fitting() const {
+    return choice_.kind == BrushKind::carve ? carve_fits_ : add_fits_;
+}
+
+void BrushControls::show_choice() {
+    const bool on = choice_.on && reason_->text().isEmpty();
+    on_->setChecked(on);
+    on_->setText(on ? "Brush at the probe is ON" : "Brush at the probe is off");
+    kinds_->button(static_cast<int>(choice_.kind))->setChecked(true);
+    radius_->set_value(choice_.radius);
+    hardness_->set_value(choice_.hardness);
+    const bool at_once = std::isinf(choice_.rate);
+    at_once_->setChecked(at_once);
+    rate_box_->setEnabled(!at_once);
+    rate_box_->set_value(rate_);
+    const bool valued = choice_.kind != BrushKind::smooth;
+    value_->setEnabled(valued);
+    automatic_->setEnabled(valued);
+    automatic_->setChecked(!choice_.value);
+    value_->show_value(choice_.value.value_or(fitting()));
+}
+
+void BrushControls::set_grid(const Geometry& geometry) {
+    const double voxel = geometry.spacing.maxCoeff();
+    const double side = geometry.size.cast<double>().cwiseProduct(geometry.spacing).minCoeff();
+    radius_->drop();
+    radius_->set_ends(voxel, std::max(side / 4, 4 * voxel));  // some room also in a thin slab
+    choice_.radius = std::clamp(choice_.radius, radius_->low(), radius_->high());
+    show_choice();
+}
+
+void BrushControls::set_fitting(double carve, double add) {
+    if (carve == carve_fits_ && add == add_fits_) return;
+    carve_fits_ = carve;
+    add_fits_ = add;
+    show_choice();
+}
+
+void BrushControls::reset() {
+    drop();
+    values_ = {};
+    choice_.value.reset();
+    choice_.on = false;
+    show_choice();
+}
+
+void BrushControls::set_history(std::size_t undo_steps, std::size_t redo_steps, bool changed) {
+    const auto show = [](QPushButton* button, const QString& what, std::size_t steps,
+                         const QString& tip) {
+        button->setText(steps_text(what, steps));
+        button->setEnabled(steps > 0);
+        button->setToolTip(QString("%1: %2").arg(tip, in_words(steps)));
+        button->setAccessibleName(QString("%1, %2").arg(what, in_words(steps)));
+    };
+    show(undo_, "Undo", undo_steps, "Takes the last edit back");
+    show(redo_, "Redo", redo_steps, "Makes the edit again that was taken back");
+    state_->setText(changed                        ? "There are edits that are not saved"
+                    : undo_steps + redo_steps == 0 ? "Nothing was edited"
+                                                   : "Nothing is left to save");
+}
+
+void BrushControls::set_reason(const QString& why) {
+    if (why == reason_->text()) return;
+    drop();
+    reason_->say(why);
+    body_->setEnabled(why.isEmpty());
+    show_choice();
+}
+
+void BrushControls::drop() {
+    radius_->drop();
+    hardness_->drop();
+    rate_box_->drop();
+}
+
+}  // namespace palpate::viewer

@@ -1,0 +1,88 @@
+// The brush at the probe, and what was done with it: undo, redo, save.
+#pragma once
+
+#include <QCheckBox>
+#include <QPushButton>
+#include <QWidget>
+
+#include <array>
+#include <functional>
+
+#include "apps/viewer/panel/brush_choice.hpp"
+#include "apps/viewer/panel/log_quantity.hpp"
+#include "apps/viewer/panel/quantity.hpp"
+#include "apps/viewer/panel/section.hpp"
+
+class QButtonGroup;
+
+namespace palpate::viewer {
+
+/// Values that were typed are remembered for each kind, as what carves does not fit to add. No
+/// setter emits anything. Object names of the controls: brush, brush_carve (_add, _smooth, _paint),
+/// brush_radius, brush_hardness, brush_rate, brush_at_once, brush_value, brush_automatic, undo,
+/// redo, save_edits.
+class BrushControls : public QWidget {
+    Q_OBJECT
+
+  public:
+    explicit BrushControls(QWidget* parent = nullptr);
+
+    /// The radius goes from a voxel, the coarsest way, to a quarter of the shortest side of the
+    /// grid; one that lies outside goes to the nearer end. See choice() for what has come of it.
+    void set_grid(const Geometry& geometry);
+    /// What "automatic" stands for now [data units]: for carving, and for adding and painting.
+    void set_fitting(double carve, double add);
+    /// Shows a choice, also one that the controls would not let through.
+    void set_choice(const BrushChoice& choice);
+    const BrushChoice& choice() const { return choice_; }
+    /// Off, and the values of all kinds automatic: another volume.
+    void reset();
+    void set_history(std::size_t undo_steps, std::size_t redo_steps, bool changed);
+    /// One sentence why nothing can be edited; the switch is shown off meanwhile. Empty: it can.
+    void set_reason(const QString& why);
+    /// As if the switch was pressed.
+    void toggle() { on_->click(); }
+    /// Forgets wishes that wait.
+    void drop();
+
+  Q_SIGNALS:
+    void changed(const palpate::viewer::BrushChoice& choice);
+    void undo();
+    void redo();
+    void save();
+    /// What cannot be chosen, and why; the choice stays.
+    void nonsense(const QString& why);
+
+  private:
+    void build();
+    QWidget* make_kinds();
+    QWidget* make_rate();
+    QWidget* make_value();
+    QWidget* make_history();
+    void connect_inputs();
+    void connect_numbers();
+    void change(const std::function<void(BrushChoice&)>& how);
+    void refuse(const QString& why);
+    void show_choice();
+    double fitting() const;
+
+    BrushChoice choice_;
+    std::array<std::optional<double>, 4> values_;  // by kind
+    double carve_fits_ = 0, add_fits_ = 0;
+    double rate_;         // [1/s] while it is not at once
+    bool typed_ = false;  // a whole number that does not count yet
+    QWidget* body_;
+    Note* reason_;
+    QPushButton* on_;
+    QButtonGroup* kinds_;
+    LogQuantity* radius_;
+    Quantity* hardness_;
+    LogQuantity* rate_box_;
+    QCheckBox* at_once_;
+    NumberBox* value_;
+    QCheckBox* automatic_;
+    QPushButton *undo_, *redo_, *save_;
+    QLabel* state_;
+};
+
+}  // namespace palpate::viewer

@@ -1,0 +1,288 @@
+// Views to controls, and controls to wishes.
+#include "apps/viewer/panel/sequence_bar.hpp"
+
+#include <QCheckBox>
+#include <QEvent>
+#include <QHBoxLayout>
+#include <QKeyEvent>
+#include <QLabel>
+#include <QPainter>
+#include <QToolButton>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "apps/viewer/panel/number_box.hpp"
+#include "apps/viewer/panel/sequence_track.hpp"
+
+namespace palpate::viewer {
+namespace {
+
+/// Views come thirty times a second, a command is obeyed within a tick.
+constexpr int views_of_grace = 3;
+
+constexpr std::array steps{0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0};  // of the speed
+
+/// Any speed; steps are those that people use.
+class SpeedBox : public NumberBox {
+  public:
+    void stepBy(int count) override {
+        double to = value();
+        for (int i = 0; i < std::abs(count); ++i) {
+            if (count > 0) {
+                const auto above = std::ranges::upper_bound(steps, to);
+                to = above == steps.end() ? steps.back() : *above;
+            } else {
+                const auto from = std::ranges::lower_bound(steps, to);
+                to = from == steps.begin() ? steps.front() : *(from - 1);
+            }
+        }
+        setValue(to);
+        selectAll();
+    }
+};
+
+QToolButton* make_button(const QString& name, const QString& accessible, const QString& tip) {
+    auto* button = new QToolButton;
+    button->setObjectName(name);
+    button->setAutoRaise(true);
+    button->setAccessibleName(accessible);
+    button->setToolTip(tip);
+    return button;
+}
+
+}  // namespace
+
+SequenceBar::SequenceBar(QWidget* parent)
+    : QWidget(parent),
+      back_(make_button("sequence_back", tr("Step back"), tr("To the frame before"))),
+      play_(make_button("sequence_play", tr("Play"), tr("Play the sequence"))),
+      forward_(make_button("sequence_forward", tr("Step forward"), tr("To the next frame"))),
+      track_(new SequenceTrack),
+      text_(new QLabel),
+      speed_(new SpeedBox),
+      loop_(new QCheckBox(tr("&Loop"))),
+      pacer_(this) {
+    setObjectName("sequence_bar");
+    build();
+    connect_inputs();
+    show_playing(false);
+    show_icons();
+    show_possible();
+}
+
+void SequenceBar::build() {
+    auto* row = new QHBoxLayout(this);
+    row->setContentsMargins(6, 2, 6, 2);
+    for (QToolButton* button : {back_, play_, forward_}) row->addWidget(button);
+    row->addWidget(track_, 1);
+    row->addWidget(text_);
+    row->addWidget(speed_);
+    row->addWidget(loop_);
+    back_->setAutoRepeat(true);
+    forward_->setAutoRepeat(true);
+    text_->setObjectName("sequence_time");
+    text_->setToolTip(tr("Time in the sequence, and the frame there [s]"));
+    speed_->setObjectName("sequence_speed");
+    speed_->setAccessibleName(tr("Speed"));
+    speed_->setToolTip(tr("Seconds of the sequence in a second, 0.1 to 10"));
+    speed_->setSuffix(QString::fromUtf8("×"));
+    speed_->show_value(play_speed_);
+    speed_->setFixedWidth(fontMetrics().horizontalAdvance(QString::fromUtf8("0.0000×")) +
+                          2 * fontMetrics().height());
+    loop_->setObjectName("sequence_loop");
+    loop_->setToolTip(tr("After its end the sequence begins again"));
+}
+
+void SequenceBar::connect_inputs() {
+    connect(back_, &QToolButton::clicked, this, [this] { step(-1); });
+    connect(forward_, &QToolButton::clicked, this, [this] { step(1); });
+    connect(play_, &QToolButton::clicked, this, [this] {
+        const bool play = !playing_;
+        show_playing(play);
+        ask_speed(play ? play_speed_ : 0);
+    });
+    connect(speed_, QOverload<double>::of(&QDoubleSpinBox::valueChanged), this,
+            [this](double speed) {
+                const double bounded = std::clamp(speed, steps.front(), steps.back());
+                speed_->show_value(bounded);
+                const double wish = std::copysign(bounded, play_speed_);
+                if (wish == play_speed_) return;
+                play_speed_ = wish;
+                if (playing_) ask_speed(wish);
+            });
+    connect(loop_, &QCheckBox::clicked, this, [this](bool loop) {
+        loop_grace_ = views_of_grace;
+        Q_EMIT loop_asked(loop);
+    });
+    connect(track_, &SequenceTrack::chosen, this, &SequenceBar::ask_moment);
+    connect(track_, &SequenceTrack::stepped, this, &SequenceBar::step);
+    connect(track_, &SequenceTrack::sliderReleased, &pacer_, &Pacer::flush);
+}
+
+void SequenceBar::toggle_playing() {
+    play_->click();
+}
+
+void SequenceBar::step(int way) {
+    if (!track_->isEnabled()) return;
+    const auto time = frame_beside(track_->view(), track_->time(), way);
+    if (!time) return;
+    if (playing_) {
+        show_playing(false);
+        ask_speed(0);
+    }
+    track_->set_time(*time);
+    ask_moment(track_->time());
+    pacer_.flush();
+}
+
+void SequenceBar::ask_speed(double speed) {
+    speed_grace_ = views_of_grace;
+    Q_EMIT speed_asked(speed);
+}
+
+void SequenceBar::ask_moment(double time) {
+    asked_time_ = time;
+    time_grace_ = views_of_grace;
+    show_text();
+    pacer_.put([this, time] { Q_EMIT moment_asked(time); });
+}
+
+void SequenceBar::set_view(const SequenceView& view) {
+    if (track_->set_view(view)) {
+        pacer_.drop();  // a moment of what was there before
+        time_grace_ = 0;
+        show_possible();
+    }
+    show_speed(view.speed);
+    show_loop(view.loop);
+    show_time(view.time);
+}
+
+void SequenceBar::show_speed(double speed) {
+    const bool playing = speed != 0;
+    if (playing == playing_ && (!playing || speed == play_speed_)) {
+        speed_grace_ = 0;
+    } else if (speed_grace_ > 0) {
+        --speed_grace_;
+    } else {
+        if (playing) {
+            play_speed_ = speed;
+            speed_->show_value(std::abs(speed));
+        }
+        show_playing(playing);
+    }
+}
+
+void SequenceBar::show_loop(bool loop) {
+    if (loop == loop_->isChecked()) {
+        loop_grace_ = 0;
+    } else if (loop_grace_ > 0) {
+        --loop_grace_;
+    } else {
+        loop_->setChecked(loop);
+    }
+}
+
+void SequenceBar::show_time(double time) {
+    if (track_->isSliderDown()) return;  // the hand has it
+    if (time_grace_ > 0 && time != asked_time_) {
+        --time_grace_;
+        return;
+    }
+    time_grace_ = 0;
+    track_->set_time(time);
+    show_text();
+}
+
+void SequenceBar::show_text() {
+    const QString words = track_->text_at(track_->time());
+    if (text_->text() != words) text_->setText(words);
+}
+
+/// What can be done with the sequence there is; the text as wide as it will ever be, so that
+/// nothing moves while it plays.
+void SequenceBar::show_possible() {
+    const SequenceView& view = track_->view();
+    const bool seeks = track_->isEnabled() && !empty(view);
+    setEnabled(!empty(view));
+    back_->setEnabled(seeks);
+    forward_->setEnabled(seeks);
+    loop_->setEnabled(seeks);
+    speed_->setEnabled(seeks);
+    int width = 0;
+    for (const double time : {view.begin, view.end}) {
+        QString words = track_->text_at(time);
+        for (QChar& c : words) c = c.isDigit() ? QChar('0') : c;
+        width = std::max(width, fontMetrics().horizontalAdvance(words));
+    }
+    text_->setMinimumWidth(width);
+    show_text();
+}
+
+void SequenceBar::show_playing(bool playing) {
+    if (playing == playing_ && !play_->icon().isNull()) return;
+    playing_ = playing;
+    play_->setIcon(icon(playing ? Shape::pause : Shape::play));
+    play_->setAccessibleName(playing ? tr("Pause") : tr("Play"));
+    play_->setToolTip(playing ? tr("Pause") : tr("Play the sequence"));
+}
+
+void SequenceBar::show_icons() {
+    back_->setIcon(icon(Shape::back));
+    forward_->setIcon(icon(Shape::forward));
+    play_->setIcon(icon(playing_ ? Shape::pause : Shape::play));
+}
+
+/// In the colour of words, which a style's own icons are not.
+QIcon SequenceBar::icon(Shape shape) const {
+    const QSize size = play_->iconSize();
+    QIcon icon;
+    for (const auto mode : {QIcon::Normal, QIcon::Disabled}) {
+        QPixmap picture(size * devicePixelRatioF());
+        picture.setDevicePixelRatio(devicePixelRatioF());
+        picture.fill(Qt::transparent);
+        QPainter painter(&picture);
+        painter.setRenderHint(QPainter::Antialiasing);
+        painter.setPen(Qt::NoPen);
+        painter.setBrush(palette().brush(
+            mode == QIcon::Disabled ? QPalette::Disabled : QPalette::Active, QPalette::ButtonText));
+        painter.scale(size.width(), size.height());
+        if (shape == Shape::back) {
+            painter.translate(1, 0);
+            painter.scale(-1, 1);
+        }
+        if (shape == Shape::pause) {
+            painter.drawRect(QRectF(0.22, 0.15, 0.2, 0.7));
+            painter.drawRect(QRectF(0.58, 0.15, 0.2, 0.7));
+        } else if (shape == Shape::play) {
+            painter.drawPolygon(QPolygonF({{0.25, 0.12}, {0.25, 0.88}, {0.85, 0.5}}));
+        } else {
+            painter.drawRect(QRectF(0.2, 0.2, 0.13, 0.6));
+            painter.drawPolygon(QPolygonF({{0.42, 0.18}, {0.42, 0.82}, {0.85, 0.5}}));
+        }
+        painter.end();
+        icon.addPixmap(picture, mode);
+    }
+    return icon;
+}
+
+void SequenceBar::changeEvent(QEvent* event) {
+    if (event->type() == QEvent::PaletteChange) show_icons();
+    QWidget::changeEvent(event);
+}
+
+/// Return presses buttons: the space bar is the window's, for the forces.
+void SequenceBar::keyPressEvent(QKeyEvent* event) {
+    auto* button = qobject_cast<QAbstractButton*>(focusWidget());
+    const bool presses = event->key() == Qt::Key_Return || event->key() == Qt::Key_Enter;
+    if (presses && button && button->hasFocus()) {
+        button->click();
+    } else {
+        QWidget::keyPressEvent(event);
+    }
+}
+
+}  // namespace palpate::viewer
