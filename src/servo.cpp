@@ -65,6 +65,7 @@ Snapshot snapshot_of(const Session& session, const SessionTick& tick, std::int64
     snapshot.normal = normal_at(renderer.proxy, renderer.field);
     snapshot.stiffness = renderer.settings.force.stiffness;
     snapshot.penetrability_on = renderer.settings.penetrability.on;
+    snapshot.speed = session.speed;
     snapshot.forces_on = renderer.settings.forces_on;
     snapshot.missed = missed;
     return snapshot;

@@ -6,6 +6,16 @@
 
 namespace palpate::app {
 
+std::function<Volume(int)> frames_of(const LoadedVolume& loaded) {
+    if (loaded.sequence.count() == 0) return {};
+    return [sequence = loaded.sequence](int frame) {
+        if (frame < 0 || frame >= sequence.count()) {
+            throw std::invalid_argument("a frame that the sequence does not have");
+        }
+        return io::read_frame(sequence, frame);
+    };
+}
+
 RecordedSamples::RecordedSamples(std::shared_ptr<const Samples> start,
                                  std::function<Volume(int)> frame)
     : versions_{{0, std::move(start)}}, frame_(std::move(frame)) {}

@@ -4,9 +4,13 @@
 #include <functional>
 #include <map>
 
+#include "apps/live/volume_options.hpp"
 #include "palpate/session.hpp"
 
 namespace palpate::app {
+
+/// Reads the frames of a volume that is a sequence; null if it is none.
+std::function<Volume(int)> frames_of(const LoadedVolume& loaded);
 
 class RecordedSamples {
   public:

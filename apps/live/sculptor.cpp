@@ -20,6 +20,12 @@ constexpr int patience = 200;
 
 }  // namespace
 
+HandBrush usual_brush(const Geometry& geometry) {
+    HandBrush brush;
+    brush.radius = 3 * geometry.spacing.maxCoeff();
+    return brush;
+}
+
 void check(const HandBrush& brush) {
     if (!(brush.radius > 0) || !std::isfinite(brush.radius)) {
         throw std::invalid_argument("the brush's radius [mm] must be finite and above 0");

@@ -23,6 +23,8 @@ struct HandBrush {
     /// [data units] What it leaves; none: what brush_for() takes. Paint needs one.
     std::optional<double> value;
 };
+/// One that carves a few voxels.
+HandBrush usual_brush(const Geometry& geometry);
 /// Throws std::invalid_argument, saying what is wrong, for a brush that cannot work.
 void check(const HandBrush& brush);
 

@@ -77,6 +77,7 @@ void TouchOptions::add_to(CLI::App& command, For purpose) {
                            "Recording to write (CSV; never replaces a file)");
     if (purpose == For::record) file->required();
     if (purpose != For::view) add_script_options(command);
+    add_data_options(command);
     field.add_to(command);
     render.force.start_below = start_below;
     render.add_to(command);
@@ -93,7 +94,29 @@ void TouchOptions::add_script_options(CLI::App& command) {
     command
         .add_option("--seconds", seconds, "End after so long (default: when the hand has finished)")
         ->check(CLI::PositiveNumber);
+    command.add_option("--brush", brush,
+                       "Brush that follows the proxy from the start: 'KIND RADIUS [RATE [VALUE]]', "
+                       "KIND carve, add, smooth or paint, RADIUS [mm], RATE [1/s] or inf");
+    command.add_option("--save", save, "File for the volume as it is at the end, edits included");
     command.add_flag("--json", json, "Print the report as JSON");
+}
+
+void TouchOptions::add_data_options(CLI::App& command) {
+    command
+        .add_option("--playback", playback,
+                    "Speed at which a sequence is played from the start; 0: it stands still")
+        ->check(CLI::Range(-1000, 1000))
+        ->capture_default_str();
+    command.add_flag("--once", once, "A sequence stops at its end instead of beginning anew");
+    command
+        .add_option("--sequence-memory", sequence_memory_mb,
+                    "Most memory that frames of a sequence may take [MB]")
+        ->check(CLI::Range(1, 1 << 20))
+        ->capture_default_str();
+}
+
+io::LoaderSettings TouchOptions::loader() const {
+    return {std::uint64_t(sequence_memory_mb) << 20, !once};
 }
 
 void TouchOptions::finish(const CLI::App& command) {

@@ -9,6 +9,7 @@
 #include "apps/live/render_options.hpp"
 #include "apps/live/volume_options.hpp"
 #include "devices/devices.hpp"
+#include "io/frame_loader.hpp"
 #include "io/recording.hpp"
 #include "palpate/session.hpp"
 
@@ -22,7 +23,12 @@ struct TouchOptions {
     std::string facing = "anterior";
     std::string clutch = "auto", deadman = "none";  ///< a button's number from 1, none, auto
     std::string record, commands;
-    double seconds = 0;  ///< 0: until the hand has finished or the session is stopped
+    double seconds = 0;             ///< 0: until the hand has finished or the session is stopped
+    std::string brush;              ///< as the command's words: "carve 3", empty: none
+    std::string save;               ///< file for the edited volume; empty: none
+    double playback = 1;            ///< speed at which a sequence is played from the start
+    bool once = false;              ///< a sequence stops at its end
+    int sequence_memory_mb = 1024;  ///< for its frames
     bool json = false;
     bool normal_priority = false;
     /// Options that were given; the rest is what the device is rated for.
@@ -36,8 +42,11 @@ struct TouchOptions {
     /// To be called when the command line has been read.
     void finish(const CLI::App& command);
 
+    io::LoaderSettings loader() const;
+
   private:
     void add_script_options(CLI::App& command);
+    void add_data_options(CLI::App& command);
 };
 
 /// What a session is made of.

@@ -24,26 +24,51 @@ LoadedVolume make_synthetic(const VolumeOptions& options) {
             "--dims and --spacing are for files; a synthetic volume's size is part of its name: "
             "synthetic:NAME:WxHxD");
     }
-    if (!options.series.empty() || options.time_step != 0 || options.skip != 0) {
+    if (!options.series.empty() || options.time_step || options.skip != 0) {
         throw std::invalid_argument("--series, --time-step and --skip are for files");
     }
     scenes::Scene scene = scenes::make_volume(options.volume, type);
-    return {scene.volume, options.volume, "synthetic (" + scene.description + ")", 1,
-            {},           scene.isovalue};
+    return {scene.volume, options.volume, "synthetic (" + scene.description + ")",
+            {},           scene.isovalue, {}};
 }
 
 LoadedVolume read_file(const VolumeOptions& options, const io::Progress& progress) {
-    io::ReadOptions read;
+    io::SequenceOptions asked;
+    asked.interval = options.frame_interval;
+    io::ReadOptions& read = asked.read;
     if (!options.dims.empty() || !options.type.empty()) {
         read.raw = io::raw_layout_from(options.dims, options.type, options.spacing, options.skip);
     }
     if (!options.spacing.empty()) read.spacing = io::spacing_from(options.spacing);
     read.series = options.series;
-    read.time_step = options.time_step;
     read.progress = progress;
-    io::VolumeFile file = io::read_volume(options.volume, read);
-    return {std::move(file.volume), options.volume,        std::move(file.format),
-            file.time_steps,        std::move(file.notes), {}};
+    if (options.time_step && !io::names_a_series(options.volume)) {
+        read.time_step = *options.time_step;
+        io::VolumeFile file = io::read_volume(options.volume, read);
+        return {std::move(file.volume),
+                options.volume,
+                std::move(file.format),
+                std::move(file.notes),
+                {},
+                {},
+                file.time_steps};
+    }
+    io::SequenceFile file = io::open_sequence(options.volume, asked);
+    LoadedVolume loaded{
+        std::move(file.first),   options.volume, std::move(file.format), std::move(file.notes), {},
+        std::move(file.sequence)};
+    loaded.time_steps = loaded.sequence.count();
+    if (loaded.time_steps == 1) loaded.sequence = {};
+    if (!options.time_step) return loaded;
+    if (*options.time_step >= loaded.time_steps) {
+        throw io::InputError(fmt::format("{}: there is no time step {}: it has {} frames",
+                                         options.volume, *options.time_step, loaded.time_steps));
+    }
+    if (*options.time_step > 0) {
+        loaded.volume = io::read_frame(loaded.sequence, *options.time_step, progress);
+    }
+    loaded.sequence = {};
+    return loaded;
 }
 
 }  // namespace
@@ -68,8 +93,14 @@ void VolumeOptions::add_to(CLI::App& command, bool optional) {
     command.add_option("--skip", skip, "Bytes of header to skip in a raw file")
         ->check(flaw_in_count);
     command.add_option("--series", series, "DICOM series: its number in the list, or its UID");
-    command.add_option("--time-step", time_step, "Which volume of a 4-D file, from 0")
+    command
+        .add_option("--time-step", time_step,
+                    "This frame alone of a 4-D file or a numbered series (heart_%d.nrrd), from 0")
         ->check(flaw_in_count);
+    command
+        .add_option("--frame-interval", frame_interval,
+                    "Time from frame to frame [s] instead of what the file gives or lacks")
+        ->check(CLI::PositiveNumber);
     command
         .add_option("--smooth", smooth,
                     "Smooth the samples so many times (3x3x3 binomial), against the terraces of 8 "
@@ -82,7 +113,14 @@ LoadedVolume load(const VolumeOptions& options, const io::Progress& progress) {
     LoadedVolume loaded = options.volume.starts_with(synthetic_prefix)
                               ? make_synthetic(options)
                               : read_file(options, progress);
+    if (options.smooth == 0) return loaded;
     loaded.volume = smoothed(loaded.volume, options.smooth);
+    if (loaded.sequence.count() == 0) return loaded;
+    loaded.sequence.type = loaded.volume.type();
+    loaded.sequence.reader = [read = std::move(loaded.sequence.reader), passes = options.smooth](
+                                 int frame, const io::Progress& each) {
+        return smoothed(read(frame, each), passes);
+    };
     return loaded;
 }
 
@@ -96,7 +134,12 @@ std::map<std::string, std::string> to_names(const VolumeOptions& options) {
     add("spacing", options.spacing);
     add("series", options.series);
     if (options.skip > 0) add("skip", std::to_string(options.skip));
-    if (options.time_step > 0) add("time-step", std::to_string(options.time_step));
+    if (options.time_step) add("time-step", std::to_string(*options.time_step));
+    if (options.frame_interval > 0) {
+        std::string interval;
+        io::append_number(interval, options.frame_interval);
+        add("frame-interval", interval);
+    }
     if (options.smooth > 0) add("smooth", std::to_string(options.smooth));
     return names;
 }
@@ -113,7 +156,8 @@ VolumeOptions options_from(const std::map<std::string, std::string>& names) {
     options.spacing = value("spacing");
     options.series = value("series");
     options.skip = io::number_from<std::uint64_t>(value("skip")).value_or(0);
-    options.time_step = io::number_from<int>(value("time-step")).value_or(0);
+    options.time_step = io::number_from<int>(value("time-step"));
+    options.frame_interval = io::number_from<double>(value("frame-interval")).value_or(0);
     options.smooth = io::number_from<int>(value("smooth")).value_or(0);
     return options;
 }

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "io/volume_file.hpp"
+#include "io/sequence.hpp"
 #include "palpate/field.hpp"
 
 namespace palpate::app {
@@ -18,8 +18,9 @@ struct VolumeOptions {
     std::string dims, type, spacing;  ///< for raw files
     std::uint64_t skip = 0;           ///< [bytes] header to skip in a raw file
     std::string series;               ///< DICOM series UID or number
-    int time_step = 0;
-    int smooth = 0;  ///< passes of the binomial kernel
+    std::optional<int> time_step;     ///< of a sequence this frame alone
+    double frame_interval = 0;        ///< [s] between frames; 0: what the file says
+    int smooth = 0;                   ///< passes of the binomial kernel
     bool quiet = false;
 
     /// Declares VOLUME and its options on a command. An `optional` VOLUME has a default.
@@ -31,9 +32,10 @@ struct LoadedVolume {
     Volume volume;
     std::string name;
     std::string format;
-    int time_steps = 1;
     std::vector<std::string> notes;
     std::optional<double> isovalue;  ///< a good one, of a synthetic volume
+    io::Sequence sequence;  ///< `volume` is its first frame; none where `volume` is all there is
+    int time_steps = 1;     ///< how many volumes there are, asked for or not
 };
 
 /// Reads or makes the volume. `progress` may throw to stop. Throws std::invalid_argument (wrong

@@ -65,6 +65,13 @@ Request LiveCommands::from_words(std::string_view line) {
     for (std::string word; stream >> word;) words.push_back(word);
     if (words.empty()) wrong("a command");
     const std::string& name = words[0];
+    if (auto data = data_request(words, field_.volume())) {
+        if (const auto* set = std::get_if<ask::SetBrush>(&*data)) {
+            brush_ = set->brush;
+            if (brush_) last_brush_ = brush_;
+        }
+        return *data;
+    }
     if (name == "quit" && words.size() == 1) return Quit{};
     if (name == "forces") return command::Forces{on_or_off(words)};
     if (name == "freeze") return command::Freeze{on_or_off(words)};
@@ -98,7 +105,8 @@ Request LiveCommands::from_words(std::string_view line) {
         throw std::invalid_argument("there is no command '" + name +
                                     "'; there are isovalue, stiffness, damping, viscosity, "
                                     "friction, penetrability, forces, "
-                                    "freeze, clutch, scale, quit");
+                                    "freeze, clutch, scale, brush, carve, add, smooth, paint, "
+                                    "fill, undo, redo, save, play, pause, step, seek, loop, quit");
     }
     check(command, settings_, field_.solid());
     settings_ = next;
@@ -128,6 +136,20 @@ std::optional<Request> LiveCommands::from_key(char key, const Snapshot& now) {
             // From what is felt now, unless something else was asked for before.
             return Command(
                 penetrability_.value_or(penetrability_threshold(1, isovalue, field_.solid())));
+        case 'b':
+            brush_ = brush_ ? std::nullopt
+                            : std::optional(last_brush_.value_or(usual_brush(field_.geometry())));
+            return DataRequest(ask::SetBrush{brush_});
+        case 'u':
+            return DataRequest(ask::Undo{});
+        case 'r':
+            return DataRequest(ask::Redo{});
+        case 'k':
+            return DataRequest(ask::Play{now.speed != 0 ? 0.0 : 1.0});
+        case ',':
+            return DataRequest(ask::Step{-1});
+        case '.':
+            return DataRequest(ask::Step{1});
         case 'q':
             return Quit{};
         case '?':
@@ -139,7 +161,8 @@ std::optional<Request> LiveCommands::from_key(char key, const Snapshot& now) {
 
 std::string LiveCommands::key_help() {
     return "keys: space forces on/off, f freeze, c clutch (the volume follows the hand), + - "
-           "isovalue by 1 %, [ ] scale, p penetrability, q quit, ? this";
+           "isovalue by 1 %, [ ] scale, p penetrability, b brush on/off, u undo, r redo, k play or "
+           "pause a sequence, , . a frame back or on, q quit, ? this";
 }
 
 std::vector<TimedRequest> read_commands(const std::string& path, LiveCommands& commands) {

@@ -8,6 +8,7 @@
 #include <memory>
 #include <thread>
 
+#include "apps/live/data_in_hand.hpp"
 #include "apps/live/touch_options.hpp"
 #include "apps/palpate/commands.hpp"
 #include "apps/palpate/live_commands.hpp"
@@ -26,11 +27,12 @@ using namespace std::chrono_literals;
 /// Looks after a running session from outside: words, keys, the line on the terminal.
 class Attendant {
   public:
-    Attendant(Servo& servo, LiveScene& scene, const io::RecordingWriter* recording,
-              const TouchOptions& options, std::vector<TimedRequest> requests,
-              LiveCommands& commands)
+    Attendant(Servo& servo, LiveScene& scene, DataInHand& data,
+              const io::RecordingWriter* recording, const TouchOptions& options,
+              std::vector<TimedRequest> requests, LiveCommands& commands)
         : servo_(servo),
           scene_(scene),
+          data_(data),
           recording_(recording),
           options_(options),
           requests_(std::move(requests)),
@@ -49,11 +51,12 @@ class Attendant {
         if (!ask(*now)) return false;
         if (const auto key = keys_.next()) {
             const auto request = commands_.from_key(*key, *now);
-            if (request && !carry_out(*request)) return false;
+            if (request && !obey(*request, *now)) return false;
         }
         ++rounds_;
         watch_device(now->session.device.status);
         watch_recording();
+        watch_sequence();
         if (line_ && rounds_ % 20 == 0) {
             fmt::print(stderr, "\r\033[K{}",
                        status_line(*now, servo_.report(), terminal_columns() - 1));
@@ -61,6 +64,9 @@ class Attendant {
         const bool over = options_.seconds > 0 && now->session.tick.time >= options_.seconds;
         return !over && now->session.device.status != DeviceStatus::finished;
     }
+
+    /// Why the volume could not be written when that was asked for; empty if it could.
+    const std::string& unsaved() const { return unsaved_; }
 
   private:
     void note(const std::string& text) const {
@@ -70,23 +76,30 @@ class Attendant {
     /// Carries out what has become due.
     bool ask(const Snapshot& now) {
         while (next_ < requests_.size() && requests_[next_].time <= now.session.tick.time) {
-            if (!carry_out(requests_[next_].request)) return false;
+            if (!obey(requests_[next_].request, now)) return false;
             ++next_;
         }
         return true;
     }
 
-    bool carry_out(const Request& request) {
+    bool obey(const Request& request, const Snapshot& now) {
         if (std::holds_alternative<Quit>(request)) return false;
         if (std::holds_alternative<Help>(request)) {
             note(LiveCommands::key_help());
             return true;
         }
         try {
-            if (!servo_.send(std::get<Command>(request)))
+            if (const auto* data = std::get_if<DataRequest>(&request)) {
+                const std::string word = carry_out(*data, data_, now);
+                if (!word.empty() && !options_.volume.quiet) note(word);
+            } else if (!servo_.send(std::get<Command>(request))) {
                 note("too many commands at once: one was left out");
+            }
         } catch (const std::invalid_argument& e) {
             note(e.what());
+        } catch (const io::OutputError& e) {
+            note(std::string("palpate: ") + e.what());
+            unsaved_ = e.what();
         }
         return true;
     }
@@ -112,8 +125,16 @@ class Attendant {
         note("palpate: " + problem);
     }
 
+    void watch_sequence() {
+        if (!data_.is_sequence() || rounds_ % 50 != 0) return;
+        const std::string problem = data_.player().view().problem;
+        if (problem.empty() || problem == sequence_problem_) return;
+        note("palpate: " + (sequence_problem_ = problem));
+    }
+
     Servo& servo_;
     LiveScene& scene_;
+    DataInHand& data_;
     const io::RecordingWriter* recording_;
     const TouchOptions& options_;
     std::vector<TimedRequest> requests_;
@@ -123,6 +144,7 @@ class Attendant {
     std::optional<DeviceStatus> status_;
     std::string problem_;  // of the device, as told
     bool recording_told_ = false;
+    std::string sequence_problem_, unsaved_;
     bool line_;
     int rounds_ = 0;
 };
@@ -141,8 +163,15 @@ void announce(const Servo& servo, const LiveScene& scene, bool quiet) {
     for (const std::string& sentence : servo.privileges()) fmt::print(stderr, "{}\n", sentence);
 }
 
+/// The brush that --brush asks for.
+void take_up_brush(const TouchOptions& options, LiveCommands& commands, DataInHand& data) {
+    const Request request = commands.from_words("brush " + options.brush);
+    const auto& asked = std::get<ask::SetBrush>(std::get<DataRequest>(request));
+    data.sculptor().set_brush(asked.brush);
+}
+
 void touch(const TouchOptions& options) {
-    check_outputs({options.volume.volume, options.commands}, {options.record});
+    check_outputs({options.volume.volume, options.commands}, {options.record, options.save});
     if (devices::parse_device(options.device).name == "mouse") {
         throw devices::DeviceError(
             "device mouse: there is no window to move it in (--headless, --json, --seconds and "
@@ -153,10 +182,15 @@ void touch(const TouchOptions& options) {
     LiveCommands commands(scene.field, scene.isovalue, scene.session.renderer.settings);
     std::vector<TimedRequest> requests;
     if (!options.commands.empty()) requests = read_commands(options.commands, commands);
+    DataInHand data(scene.loaded, scene.field, options.loader());
+    if (data.is_sequence()) data.player().play(options.playback);
+    if (!options.brush.empty()) take_up_brush(options, commands, data);
+    data.bring(scene.session);
     std::unique_ptr<io::RecordingWriter> recording;
     if (!options.record.empty()) {
         recording = std::make_unique<io::RecordingWriter>(
             options.record, recording_head(scene.session, scene.info, options));
+        for (const Command& told : data.history()) recording->queue().push(told);
     }
     const devices::LastResort last_resort(*scene.device);
     Servo servo(std::move(scene.session), *scene.device,
@@ -168,10 +202,15 @@ void touch(const TouchOptions& options) {
     servo.start();
     announce(servo, scene, options.volume.quiet);
     const auto begin = std::chrono::steady_clock::now();
+    std::string unsaved;
+    data.attach(&servo);
     {
-        Attendant attendant(servo, scene, recording.get(), options, std::move(requests), commands);
+        Attendant attendant(servo, scene, data, recording.get(), options, std::move(requests),
+                            commands);
         while (!interrupted() && attendant.attend()) std::this_thread::sleep_for(10ms);
+        unsaved = attendant.unsaved();
     }
+    data.attach(nullptr);
     servo.stop();
     scene.device->stop();
     const double seconds =
@@ -189,12 +228,20 @@ void touch(const TouchOptions& options) {
             fmt::print("recorded {} ticks in {}\n", recording->ticks(), options.record);
         }
     }
+    if (!options.save.empty()) {
+        ProgressBar bar("saving", options.volume.quiet);
+        data.save(options.save, [&](double fraction) { bar.at(fraction); });
+    } else if (!data.is_sequence() && data.sculptor().work().changed && !options.volume.quiet) {
+        fmt::print(stderr, "the edits were not saved (--save FILE, or the command save FILE)\n");
+    }
+    if (!unsaved.empty()) throw io::OutputError(unsaved);
     stop_if_interrupted();
 }
 
 /// Scripts and terminals without a display get no window.
 bool wants_window(const TouchOptions& options, bool headless) {
-    const bool script = options.json || options.seconds > 0 || !options.commands.empty();
+    const bool script = options.json || options.seconds > 0 || !options.commands.empty() ||
+                        !options.brush.empty() || !options.save.empty();
     return !headless && !script && has_display() && !viewer_program().empty();
 }
 

@@ -86,7 +86,7 @@ void validate(const std::string& recording, const std::string& volume, bool quie
     options.quiet = quiet;
     const LoadedVolume loaded = load_for_terminal(options);
     Session session = recorded_session(reader.head(), loaded, recording);
-    RecordedSamples samples(session.renderer.field.shared_samples());
+    RecordedSamples samples(session.renderer.field.shared_samples(), frames_of(loaded));
     ProgressBar bar("validating", quiet);
     std::int64_t ticks = 0, commands = 0;
     while (const auto event = reader.next()) {

@@ -73,7 +73,7 @@ Playback Playback::read(const std::filesystem::path& recording, const app::Loade
     const std::size_t most = std::max(most_bytes / sizeof(Snapshot), least_snapshots);
     io::RecordingReader reader(recording);
     Session session = app::recorded_session(reader.head(), loaded, recording.string());
-    app::RecordedSamples samples(session.renderer.field.shared_samples());
+    app::RecordedSamples samples(session.renderer.field.shared_samples(), app::frames_of(loaded));
     Playback playback(reader.head(), session.renderer.field);
     Snapshot last;
     bool kept = true;

@@ -1,0 +1,60 @@
+// Which of the two it is.
+#include "apps/live/data_in_hand.hpp"
+
+#include <stdexcept>
+
+namespace palpate::app {
+
+DataInHand::DataInHand(const LoadedVolume& loaded, const Field& field,
+                       const io::LoaderSettings& settings, std::function<void()> on_change)
+    : field_(field) {
+    if (loaded.sequence.count() > 1) {
+        player_ = std::make_unique<Player>(loaded.sequence, settings, std::move(on_change));
+    } else {
+        sculptor_ = std::make_unique<Sculptor>(field, std::move(on_change));
+    }
+}
+
+Sculptor& DataInHand::sculptor() const {
+    if (sculptor_) return *sculptor_;
+    throw std::invalid_argument(
+        "a sequence cannot be edited: open one frame of it (--time-step N)");
+}
+
+Player& DataInHand::player() const {
+    if (player_) return *player_;
+    throw std::invalid_argument("this volume is no sequence: there is nothing to play");
+}
+
+Field DataInHand::field() const {
+    Session session{{field_, {}, {}, {}}, {}};
+    bring(session);
+    return session.renderer.field;
+}
+
+void DataInHand::attach(Servo* servo) {
+    if (sculptor_) sculptor_->attach(servo);
+    if (player_) player_->attach(servo);
+}
+
+void DataInHand::bring(Session& session) const {
+    if (player_) return player_->bring(session);
+    const Work work = sculptor_->work();
+    apply(session, command::Samples{work.samples, work.version});
+}
+
+std::vector<Command> DataInHand::history() const {
+    if (player_) return player_->history();
+    const auto versions = sculptor_->history();
+    return {versions.begin(), versions.end()};
+}
+
+void DataInHand::save(const std::filesystem::path& path, const io::Progress& progress) {
+    const Field now = field();
+    io::WriteOptions options;
+    options.progress = progress;
+    io::write_volume(flattened(now.samples(), now.moment()), path, options);
+    if (sculptor_) sculptor_->set_saved(now.shared_samples());
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,169 @@
+// From the loader to the servo, and from people to both.
+#include "apps/live/player.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+
+namespace palpate::app {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto between_looks = 5ms;
+
+bool covers(const Samples& samples, double time) {
+    return samples.within(time) == time;
+}
+
+std::shared_ptr<const Recipe> recipe_of(const Samples& samples) {
+    FramesOf frames;
+    for (const Frame& frame : samples.frames()) {
+        frames.numbers.push_back(frame.number);
+        frames.times.push_back(frame.time);
+    }
+    frames.period = samples.period();
+    return std::make_shared<const Recipe>(std::move(frames));
+}
+
+}  // namespace
+
+Player::Player(io::Sequence sequence, const io::LoaderSettings& settings,
+               std::function<void()> on_change)
+    : sequence_(std::move(sequence)),
+      settings_(settings),
+      on_change_(std::move(on_change)),
+      loader_(std::make_unique<io::FrameLoader>(sequence_, settings_)),
+      time_(sequence_.times.front()) {
+    thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+}
+
+Player::~Player() {
+    thread_.request_stop();
+    thread_.join();
+}
+
+void Player::attach(Servo* servo) {
+    const std::scoped_lock lock(mutex_);
+    servo_ = servo;
+}
+
+void Player::play(double speed) {
+    if (!(std::abs(speed) <= 1000)) {
+        throw std::invalid_argument("a sequence is played at most 1000 times as fast");
+    }
+    const std::scoped_lock lock(mutex_);
+    speed_ = speed;
+    send(command::Speed{speed});
+}
+
+void Player::seek(double time) {
+    if (!std::isfinite(time)) throw std::invalid_argument("the time is not finite");
+    const std::scoped_lock lock(mutex_);
+    wanted_ = std::clamp(time, sequence_.times.front(), sequence_.times.back());
+    if (settings_.loop && time > *wanted_) wanted_ = within(time);
+}
+
+void Player::step(int frames) {
+    const std::scoped_lock lock(mutex_);
+    speed_ = 0;
+    send(command::Speed{0});
+    const double now = within(wanted_.value_or(time_));
+    const std::vector<double>& times = sequence_.times;
+    // Between two frames a step on is to the next, a step back to the one before.
+    const auto before =
+        std::upper_bound(times.begin(), times.end(), now + 1e-9) - times.begin() - 1;
+    const bool on_frame = before >= 0 && std::abs(now - times[std::size_t(before)]) <= 1e-9;
+    const auto count = static_cast<std::ptrdiff_t>(times.size());
+    std::ptrdiff_t to = before + frames + (frames < 0 && !on_frame ? 1 : 0);
+    to = settings_.loop ? (to % count + count) % count
+                        : std::clamp<std::ptrdiff_t>(to, 0, count - 1);
+    wanted_ = times[std::size_t(to)];
+}
+
+void Player::set_loop(bool on) {
+    const std::scoped_lock lock(mutex_);
+    if (on == settings_.loop) return;
+    wanted_ = within(wanted_.value_or(time_));
+    settings_.loop = on;
+    loader_.reset();  // first let go of its frames
+    loader_ = std::make_unique<io::FrameLoader>(sequence_, settings_);
+}
+
+/// A time with laps as one of the sequence.
+double Player::within(double time) const {
+    const double begin = sequence_.times.front();
+    if (!settings_.loop || !(sequence_.period > 0)) return time;
+    const double into = std::fmod(time - begin, sequence_.period);
+    return begin + (into < 0 ? into + sequence_.period : into);
+}
+
+PlayView Player::view() const {
+    const std::scoped_lock lock(mutex_);
+    PlayView view;
+    view.frames = sequence_.times;
+    view.begin = sequence_.times.front();
+    view.end = settings_.loop ? view.begin + sequence_.period : sequence_.times.back();
+    view.time = within(wanted_.value_or(time_));
+    view.speed = speed_;
+    view.loop = settings_.loop;
+    view.problem = loader_->problem();
+    if (const Samples* samples = sent_.samples.get()) {
+        const bool all = samples->frames().size() >= sequence_.times.size();
+        view.loaded_from = all ? view.begin : within(samples->frames().front().time);
+        view.loaded_to = all ? view.end : within(samples->frames().back().time);
+    }
+    return view;
+}
+
+void Player::bring(Session& session) const {
+    const std::scoped_lock lock(mutex_);
+    if (sent_.samples) apply(session, sent_);
+    apply(session, command::Moment{time_});
+    apply(session, command::Speed{speed_});
+}
+
+std::vector<Command> Player::history() const {
+    const std::scoped_lock lock(mutex_);
+    std::vector<Command> history;
+    if (sent_.samples) history.push_back(command::Samples{nullptr, sent_.version, sent_.recipe});
+    history.push_back(command::Moment{time_});
+    history.push_back(command::Speed{speed_});
+    return history;
+}
+
+void Player::send(const Command& command) const {
+    if (servo_) (void)servo_->send(command);
+}
+
+void Player::run(const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+        std::this_thread::sleep_for(between_looks);
+        const std::scoped_lock lock(mutex_);
+        attend();
+    }
+}
+
+void Player::attend() {
+    if (servo_) {
+        if (const auto now = servo_->snapshot()) time_ = now->session.moment;
+    }
+    loader_->look(wanted_.value_or(time_), speed_);
+    const auto newest = loader_->newest();
+    if (!newest || !servo_) return;
+    if (newest != sent_.samples) {
+        const command::Samples next{newest, sent_.version + 1, recipe_of(*newest)};
+        if (!servo_->send(next)) return;  // again in a moment
+        sent_ = next;
+        if (on_change_) on_change_();
+    }
+    if (wanted_ && (covers(*newest, *wanted_) || loader_->status().settled)) {
+        if (!servo_->send(command::Moment{*wanted_})) return;
+        time_ = *wanted_;
+        wanted_.reset();
+        if (on_change_) on_change_();
+    }
+}
+
+}  // namespace palpate::app
