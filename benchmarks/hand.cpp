@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <numbers>
 
+#include "palpate/edit.hpp"
 #include "scenes/volumes.hpp"
 
 namespace palpate::benchmarks {
@@ -107,6 +108,29 @@ Touch ramp_touch(int size) {
         }
     }
     return {Field(Volume(geometry, std::move(samples))), 0, {}};
+}
+
+Touch all_in_bricks(Touch touch) {
+    const auto& samples = touch.field.shared_samples();
+    const double background = touch.field.background();
+    // There and back: every brick is made anew, and holds what was there.
+    const SampleBox all = whole_box(samples->geometry());
+    const auto blank = edited(edited(samples, edit::Fill{all, samples->maximum()}).samples,
+                              edit::Fill{all, samples->minimum()});
+    const Edited back = edited(blank.samples, edit::Replace{Index3::Zero(), samples->volume()});
+    touch.field = Field(back.samples, touch.field.solid(), background);
+    return touch;
+}
+
+Touch between_frames(Touch touch) {
+    const Volume& volume = touch.field.volume();
+    const double background = touch.field.background();
+    Field between(
+        std::make_shared<const Samples>(std::vector<Frame>{{0, volume, 0}, {1, volume, 1}}),
+        touch.field.solid(), background);
+    between.set_time(0.5);
+    touch.field = std::move(between);
+    return touch;
 }
 
 }  // namespace palpate::benchmarks

@@ -43,6 +43,11 @@ Touch ball_touch(int size, double voxels_per_mm);
 /// The path is left empty.
 Touch ramp_touch(int size);
 
+/// The same body, level and hand with all samples in edited bricks.
+Touch all_in_bricks(Touch touch);
+/// The same half way between two frames, both of them alike.
+Touch between_frames(Touch touch);
+
 /// Goes along a path forth and back for ever: every step is as long as the path's steps are.
 class Stroke {
   public:

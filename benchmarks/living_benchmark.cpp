@@ -1,0 +1,70 @@
+// What living data cost: updates in edited samples and between two frames, beside the same in one
+// piece; and edits themselves, on whichever thread makes them. docs/living_data.md.
+#include <string>
+
+#include "benchmarks/hand.hpp"
+#include "benchmarks/timing.hpp"
+#include "palpate/edit.hpp"
+#include "scenes/volumes.hpp"
+
+namespace palpate::benchmarks {
+namespace {
+
+void contact(benchmark::State& state, const Touch& touch) {
+    Proxy proxy;
+    place(proxy, touch.field, touch.path.front(), touch.isovalue);
+    Stroke stroke(touch.path);
+    const auto tick = [&] { update_exact(proxy, touch.field, stroke.next()); };
+    for (std::size_t i = 0; i < touch.path.size(); ++i) tick();
+    time_ticks(state, tick);
+}
+
+void add_contact(const std::string& resolution, double voxels_per_mm) {
+    const auto add = [&](const std::string& kind, auto make) {
+        const std::string name = "living/contact/" + kind + "/uint8/" + resolution;
+        benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
+            contact(state, make(cylinder_touch(SampleType::uint8, voxels_per_mm, 1)));
+        })->Unit(benchmark::kMicrosecond);
+    };
+    add("plain", [](Touch touch) { return touch; });
+    add("edited", all_in_bricks);
+    add("between", between_frames);
+}
+
+/// A ball carved in the middle of a solid uint8 block; the bytes that it takes beyond the samples.
+void carve(benchmark::State& state) {
+    const double radius = static_cast<double>(state.range(0));
+    const int size = 256;
+    const auto block = std::make_shared<const Samples>(
+        Volume(scenes::centred(Index3::Constant(size)),
+               std::vector<std::uint8_t>(std::size_t{size} * size * size, 200)));
+    const Field field(block, Solid::above, 0);
+    const Brush brush = brush_for(BrushKind::carve, field, 100, radius);
+    const edit::Stroke stroke{brush, Vec3(0.3, 0.2, 0.4), Vec3(0.3, 0.2, 0.4)};
+    std::size_t bytes = 0;
+    for (auto _ : state) {
+        const Edited after = edited(block, stroke);
+        bytes = bytes_apart(*after.samples, *block);
+    }
+    const Bricks table = no_bricks(block->geometry());
+    state.counters["bricks"] = double(bytes) / Bricks::per_brick;
+    state.counters["edited_bytes"] = double(bytes);
+    // Beyond the samples, where a single sample was edited.
+    state.counters["table_share"] =
+        double(table.at.size() * sizeof(table.at.front())) / double(block->volume().bytes());
+}
+BENCHMARK(carve)
+    ->Name("living/edit/carve_voxels")
+    ->Arg(2)
+    ->Arg(5)
+    ->Arg(20)
+    ->Unit(benchmark::kMillisecond);
+
+[[maybe_unused]] const bool added = [] {
+    add_contact("0.5", 0.5);
+    add_contact("3", 3);
+    return true;
+}();
+
+}  // namespace
+}  // namespace palpate::benchmarks
