@@ -16,7 +16,7 @@ struct BrushChoice {
     double rate = std::numeric_limits<double>::infinity();
     /// What a whole touch leaves [data units], Brush::value; none: what fits the level felt, as
     /// brush_for() has it. Smoothing has none.
-    std::optional<double> value;
+    std::optional<double> value = std::nullopt;
     bool on = false;  ///< the probe edits where it is
 
     bool operator==(const BrushChoice&) const = default;

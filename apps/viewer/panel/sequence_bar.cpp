@@ -206,8 +206,8 @@ void SequenceBar::show_text() {
 /// nothing moves while it plays.
 void SequenceBar::show_possible() {
     const SequenceView& view = track_->view();
-    const bool seeks = track_->isEnabled() && !empty(view);
     setEnabled(!empty(view));
+    const bool seeks = track_->isEnabled();
     back_->setEnabled(seeks);
     forward_->setEnabled(seeks);
     loop_->setEnabled(seeks);

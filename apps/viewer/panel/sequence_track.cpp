@@ -6,6 +6,7 @@
 #include <QKeyEvent>
 #include <QMouseEvent>
 #include <QPainter>
+#include <QSignalBlocker>
 #include <QToolTip>
 
 #include <algorithm>
@@ -47,6 +48,7 @@ bool SequenceTrack::set_view(const SequenceView& view) {
     const bool seen = other || view.loop != view_.loop || view.loaded_from != view_.loaded_from ||
                       view.loaded_to != view_.loaded_to;
     if (other) {
+        const QSignalBlocker quiet(this);  // a drag that ends by this asks for nothing
         view_ = view;
         digits_ = digits_for(view);
         const double milliseconds = std::min(std::ceil(1e3 * length()), 2e9);

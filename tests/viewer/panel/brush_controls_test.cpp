@@ -1,0 +1,333 @@
+// The brush by mouse and keys, alone and in the panel.
+#include "apps/viewer/panel/brush_controls.hpp"
+
+#include <QDir>
+#include <QPalette>
+#include <QSlider>
+#include <QToolButton>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <utility>
+
+#include "tests/viewer/panel/panel_stage.hpp"
+
+namespace palpate::viewer {
+namespace {
+
+constexpr double at_once = std::numeric_limits<double>::infinity();
+
+class Brushes : public PanelStage {
+  protected:
+    Brushes() {
+        QObject::connect(&panel, &Panel::brush_changed, [this](const BrushChoice& brush) {
+            choices.push_back(brush);
+            if (!refuse_with.isEmpty()) panel.show_refused(refuse_with);
+        });
+    }
+    /// What has been chosen since the last look, and nothing that waits.
+    std::vector<BrushChoice> chosen() {
+        settle();
+        return std::exchange(choices, {});
+    }
+    /// A grid of 32 mm: radius from 1 to 8 mm.
+    void edit(const BrushChoice& brush = {}) {
+        set();
+        panel.set_brush(brush);
+        choices.clear();
+    }
+    std::vector<BrushChoice> choices;
+};
+
+TEST_F(Brushes, each_control_changes_its_part_of_the_choice_and_says_so_once) {
+    const BrushChoice start{BrushKind::add, 4, 0.5, 20, 900.0, false};
+    struct Case {
+        const char* name;
+        std::function<void()> act;
+        std::function<void(BrushChoice&)> change;
+    };
+    const Case cases[] = {
+        {"switch", [&] { press("brush"); }, [](BrushChoice& c) { c.on = true; }},
+        {"radius", [&] { type("brush_radius_box", "5.5"); },
+         [](BrushChoice& c) { c.radius = 5.5; }},
+        {"hardness", [&] { type("brush_hardness_box", "0.25"); },
+         [](BrushChoice& c) { c.hardness = 0.25; }},
+        {"rate", [&] { type("brush_rate_box", "50"); }, [](BrushChoice& c) { c.rate = 50; }},
+        {"at once", [&] { QTest::keyClick(find<QWidget>("brush_at_once"), Qt::Key_Space); },
+         [](BrushChoice& c) { c.rate = at_once; }},
+        {"value", [&] { type("brush_value", "1200"); }, [](BrushChoice& c) { c.value = 1200; }},
+        {"automatic", [&] { QTest::keyClick(find<QWidget>("brush_automatic"), Qt::Key_Space); },
+         [](BrushChoice& c) { c.value.reset(); }},
+        {"paint", [&] { press("brush_paint"); },
+         [](BrushChoice& c) { c.value.reset(), c.kind = BrushKind::paint; }},
+    };
+    for (const Case& one : cases) {
+        SCOPED_TRACE(one.name);
+        edit(start);
+        one.act();
+        BrushChoice expected = start;
+        one.change(expected);
+        const auto asked = chosen();
+        ASSERT_EQ(asked.size(), 1U);
+        EXPECT_EQ(asked.front(), expected);
+        EXPECT_EQ(panel.brush(), expected);
+        EXPECT_TRUE(commands.empty());
+    }
+}
+
+TEST_F(Brushes, setters_show_and_tell_nobody) {
+    set();
+    QSignalSpy undo(&panel, &Panel::undo_asked), redo(&panel, &Panel::redo_asked),
+        save(&panel, &Panel::save_asked);
+    panel.set_brush({BrushKind::smooth, 7, 0.3, 12, 100.0, true});
+    panel.set_history(3, 1, true);
+    panel.set_edit_reason("A sequence cannot be edited.");
+    panel.set_edit_reason({});
+    EXPECT_TRUE(find<QToolButton>("brush_smooth")->isChecked());
+    EXPECT_TRUE(find<QPushButton>("brush")->isChecked());
+    EXPECT_EQ(find<NumberBox>("brush_radius_box")->value(), 7);
+    EXPECT_EQ(find<NumberBox>("brush_hardness_box")->value(), 0.3);
+    EXPECT_EQ(find<NumberBox>("brush_rate_box")->value(), 12);
+    EXPECT_FALSE(find<QWidget>("brush_value")->isEnabled()) << "smoothing has no value";
+    panel.set_brush({BrushKind::carve, 5, 1, at_once, {}, false});
+    EXPECT_TRUE(find<QCheckBox>("brush_at_once")->isChecked());
+    EXPECT_FALSE(find<QWidget>("brush_rate")->isEnabled());
+    set();  // another volume
+    EXPECT_TRUE(chosen().empty());
+    EXPECT_EQ(undo.count() + redo.count() + save.count(), 0);
+    EXPECT_TRUE(commands.empty());
+}
+
+TEST_F(Brushes, a_kind_that_is_chosen_already_is_not_told_again) {
+    edit({.kind = BrushKind::smooth});
+    press("brush_smooth");
+    EXPECT_TRUE(chosen().empty());
+    press("brush_carve");
+    EXPECT_EQ(chosen().size(), 1U);
+    EXPECT_FALSE(find<QToolButton>("brush_smooth")->isChecked());
+}
+
+TEST_F(Brushes, arrow_keys_go_from_kind_to_kind) {
+    edit();
+    auto* carve = find<QToolButton>("brush_carve");
+    carve->setFocus(Qt::TabFocusReason);
+    QTest::keyClick(carve, Qt::Key_Right);
+    const auto asked = chosen();
+    ASSERT_EQ(asked.size(), 1U);
+    EXPECT_EQ(asked[0].kind, BrushKind::add);
+}
+
+TEST_F(Brushes, the_radius_goes_from_a_voxel_to_a_quarter_of_the_grid_by_factors) {
+    edit();
+    auto* slider = find<QSlider>("brush_radius_slider");
+    slider->setFocus();
+    QTest::keyClick(slider, Qt::Key_End);
+    auto asked = chosen();
+    ASSERT_EQ(asked.size(), 1U);
+    EXPECT_EQ(asked[0].radius, 8);  // 32 samples, a millimetre apart
+    QTest::keyClick(slider, Qt::Key_Home);
+    asked = chosen();
+    ASSERT_EQ(asked.size(), 1U);
+    EXPECT_EQ(asked[0].radius, 1);
+    // Half the way is the geometric mean.
+    drag(slider, QPointF(slider->width() * 0.02, slider->height() / 2.0),
+         QPointF(slider->width() / 2.0, slider->height() / 2.0));
+    asked = chosen();
+    ASSERT_FALSE(asked.empty());
+    EXPECT_NEAR(asked.back().radius, std::sqrt(8.0), 0.25);
+    EXPECT_EQ(panel.brush(), asked.back());
+}
+
+TEST_F(Brushes, what_is_out_of_range_is_refused_with_the_reason_and_nothing_told) {
+    const BrushChoice start{BrushKind::carve, 4, 0.5, 20, {}, false};
+    edit(start);
+    type("brush_radius_box", "500");
+    EXPECT_TRUE(message("edit_part").contains("from 1 mm (a voxel) to 8 mm"))
+        << message("edit_part").toStdString();
+    EXPECT_EQ(find<NumberBox>("brush_radius_box")->value(), 4);
+    type("brush_hardness_box", "1.5");
+    EXPECT_TRUE(message("edit_part").contains("hardness"));
+    type("brush_rate_box", "0.5");
+    EXPECT_TRUE(message("edit_part").contains("from 1 to 100 /s"));
+    EXPECT_TRUE(chosen().empty());
+    EXPECT_EQ(panel.brush(), start);
+    type("brush_radius_box", "6");
+    EXPECT_EQ(message("edit_part"), "");
+}
+
+TEST_F(Brushes, an_automatic_value_is_the_one_that_fits_and_follows_the_level) {
+    edit();
+    auto* box = find<NumberBox>("brush_value");
+    const auto fits = [&](BrushKind kind, double level) {
+        return brush_for(kind, *field, level, 3).value;
+    };
+    EXPECT_EQ(box->value(), fits(BrushKind::carve, 300));
+    press("brush_add");
+    EXPECT_EQ(box->value(), fits(BrushKind::add, 300));
+    type("isovalue_box", "500");
+    EXPECT_EQ(box->value(), fits(BrushKind::add, 500));
+    const auto asked = chosen();
+    ASSERT_EQ(asked.size(), 1U) << "only the kind was chosen";
+    EXPECT_FALSE(asked[0].value);
+    // Without it, the number that stands there counts.
+    QTest::keyClick(find<QWidget>("brush_automatic"), Qt::Key_Space);
+    EXPECT_EQ(chosen().back().value, fits(BrushKind::add, 500));
+}
+
+TEST_F(Brushes, a_typed_value_is_remembered_for_its_kind) {
+    edit();
+    type("brush_value", "-900");
+    press("brush_add");
+    EXPECT_FALSE(panel.brush().value) << "what carves does not fit to add";
+    press("brush_carve");
+    EXPECT_EQ(panel.brush().value, -900);
+    EXPECT_FALSE(find<QCheckBox>("brush_automatic")->isChecked());
+    EXPECT_EQ(chosen().size(), 3U);
+}
+
+TEST_F(Brushes, typing_the_number_that_is_there_makes_it_ones_own) {
+    edit();
+    const double fits = find<NumberBox>("brush_value")->value();
+    type("brush_value", QString::number(fits));
+    const auto asked = chosen();
+    ASSERT_EQ(asked.size(), 1U);
+    EXPECT_EQ(asked[0].value, fits);
+}
+
+TEST_F(Brushes, the_rate_comes_back_when_it_is_not_at_once_any_more) {
+    edit({.rate = 40});
+    auto* box = find<QWidget>("brush_at_once");
+    QTest::keyClick(box, Qt::Key_Space);
+    EXPECT_FALSE(find<QWidget>("brush_rate_box")->isEnabled());
+    QTest::keyClick(box, Qt::Key_Space);
+    const auto asked = chosen();
+    ASSERT_EQ(asked.size(), 2U);
+    EXPECT_EQ(asked[1].rate, 40);
+}
+
+TEST_F(Brushes, undo_redo_and_save_ask_once_a_press_and_say_how_many_steps_there_are) {
+    set();
+    QSignalSpy undo(&panel, &Panel::undo_asked), redo(&panel, &Panel::redo_asked),
+        save(&panel, &Panel::save_asked);
+    press("undo");
+    press("redo");
+    EXPECT_EQ(undo.count() + redo.count(), 0) << "there is nothing to undo";
+    EXPECT_EQ(find<QLabel>("edit_state")->text(), "Nothing was edited");
+    panel.set_history(12, 1, true);
+    EXPECT_EQ(find<QPushButton>("undo")->text(), "Undo (12)");
+    EXPECT_EQ(find<QPushButton>("redo")->accessibleName(), "Redo, one step");
+    EXPECT_EQ(find<QLabel>("edit_state")->text(), "There are edits that are not saved");
+    press("undo");
+    EXPECT_EQ(undo.count(), 1);
+    auto* button = find<QPushButton>("redo");
+    button->setFocus();
+    QTest::keyClick(button, Qt::Key_Return);
+    EXPECT_EQ(redo.count(), 1);
+    press("save_edits");
+    EXPECT_EQ(save.count(), 1);
+    EXPECT_EQ(undo.count(), 1);
+    panel.set_history(12, 1, false);
+    EXPECT_EQ(find<QLabel>("edit_state")->text(), "Nothing is left to save");
+    EXPECT_TRUE(chosen().empty());
+}
+
+TEST_F(Brushes, a_sequence_cannot_be_edited_and_it_says_why) {
+    edit({.on = true});
+    panel.set_history(2, 0, true);
+    panel.set_edit_reason("A sequence cannot be edited: open one frame of it.");
+    auto* why = find<QLabel>("brush_reason");
+    EXPECT_EQ(why->text(), "A sequence cannot be edited: open one frame of it.");
+    EXPECT_TRUE(why->isVisible());
+    EXPECT_TRUE(why->isEnabled()) << "it is to be read";
+    for (const char* name : {"brush", "brush_carve", "brush_radius", "undo", "save_edits"}) {
+        EXPECT_FALSE(find<QWidget>(name)->isEnabled()) << name;
+    }
+    EXPECT_FALSE(find<QPushButton>("brush")->isChecked());
+    press("brush");
+    panel.toggle_brush();
+    EXPECT_TRUE(chosen().empty());
+    panel.set_edit_reason({});
+    EXPECT_FALSE(why->isVisible());
+    EXPECT_TRUE(find<QPushButton>("brush")->isChecked()) << "as it was chosen";
+}
+
+TEST_F(Brushes, another_volume_begins_with_the_brush_off_and_a_radius_that_fits) {
+    edit({BrushKind::carve, 7, 0.5, 20, -800.0, true});
+    panel.set_history(2, 1, true);
+    Geometry small;
+    small.size = {12, 12, 12};
+    const Field other(Volume(small, std::vector<std::uint8_t>(12 * 12 * 12, 9)));
+    panel.set_session(other, app::histogram_of(other.volume(), 16), 4, {}, desktop_device());
+    EXPECT_FALSE(panel.brush().on);
+    EXPECT_FALSE(panel.brush().value);
+    EXPECT_EQ(panel.brush().radius, 4);  // a thin grid leaves four voxels
+    EXPECT_EQ(panel.brush().hardness, 0.5);
+    EXPECT_FALSE(find<QPushButton>("undo")->isEnabled());
+    EXPECT_TRUE(chosen().empty());
+}
+
+TEST_F(Brushes, a_refused_choice_goes_back_and_says_why) {
+    edit();
+    refuse_with = "nothing to edit here";
+    press("brush");
+    EXPECT_FALSE(panel.brush().on);
+    EXPECT_FALSE(find<QPushButton>("brush")->isChecked());
+    EXPECT_EQ(message("edit_part"), "nothing to edit here");
+    refuse_with.clear();
+    panel.toggle_brush();
+    EXPECT_TRUE(panel.brush().on);
+    EXPECT_EQ(message("edit_part"), "");
+    EXPECT_EQ(chosen().size(), 2U);
+}
+
+TEST_F(Brushes, without_a_volume_or_while_looking_at_a_recording_nothing_can_be_edited) {
+    panel.toggle_brush();
+    edit();
+    panel.set_observing(true);
+    press("brush");
+    panel.toggle_brush();
+    panel.clear();
+    panel.toggle_brush();
+    EXPECT_TRUE(chosen().empty());
+}
+
+TEST_F(Brushes, pictures_light_and_dark) {
+    const QPalette usual = QApplication::palette();
+    const auto picture = [&](const QString& name) {
+        settle();
+        const QImage image = find<QWidget>("edit_part")->grab().toImage();
+        QDir().mkpath(PALPATE_PICTURES);
+        const QString scale = image.devicePixelRatio() > 1.5 ? "_2x" : "";
+        EXPECT_TRUE(image.save(QString(PALPATE_PICTURES) + "/" + name + scale + ".png"));
+    };
+    edit({.kind = BrushKind::add, .rate = 20, .on = true});
+    panel.set_history(12, 1, true);
+    picture("brush_light");
+    QPalette dark(QColor(58, 58, 62), QColor(45, 45, 48));
+    dark.setColor(QPalette::Base, QColor(28, 28, 30));
+    QApplication::setPalette(dark);
+    picture("brush_dark");
+    panel.set_edit_reason("A sequence cannot be edited: open one frame of it by its time step.");
+    picture("brush_reason_dark");
+    QApplication::setPalette(usual);
+}
+
+TEST_F(Brushes, every_control_has_a_name_and_a_tip) {
+    edit();
+    auto* controls = find<QWidget>("brush_controls");
+    for (auto* one : controls->findChildren<QWidget*>()) {
+        if (one->focusProxy() || !(one->focusPolicy() & Qt::TabFocus)) continue;
+        QString tip;
+        for (QWidget* at = one; at != controls && tip.isEmpty(); at = at->parentWidget()) {
+            tip = at->toolTip();
+        }
+        EXPECT_NE(tip, "") << one->objectName().toStdString();
+        const auto* button = qobject_cast<QAbstractButton*>(one);
+        EXPECT_FALSE(one->accessibleName().isEmpty() && (!button || button->text().isEmpty()))
+            << one->objectName().toStdString();
+    }
+}
+
+}  // namespace
+}  // namespace palpate::viewer

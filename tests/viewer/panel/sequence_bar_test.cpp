@@ -1,0 +1,394 @@
+// The bar of a sequence, and a person at it.
+#include "apps/viewer/panel/sequence_bar.hpp"
+
+#include <QApplication>
+#include <QCheckBox>
+#include <QDir>
+#include <QLabel>
+#include <QMouseEvent>
+#include <QPalette>
+#include <QSignalSpy>
+#include <QTest>
+#include <QToolButton>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "apps/viewer/panel/number_box.hpp"
+#include "apps/viewer/panel/sequence_track.hpp"
+
+namespace palpate::viewer {
+namespace {
+
+/// Six frames, 0.8 s apart from 0 to 4 s; round in 4.8 s where it loops.
+SequenceView six() {
+    SequenceView view;
+    view.end = 4.8;
+    for (int i = 0; i < 6; ++i) view.frames.push_back(0.8 * i);
+    view.time = 1.7;
+    view.loaded_from = 0.8;
+    view.loaded_to = 3.2;
+    return view;
+}
+
+class Sequence : public testing::Test {
+  protected:
+    Sequence() {
+        bar.resize(900, bar.sizeHint().height());
+        bar.set_view(six());
+        bar.show();
+        QApplication::setActiveWindow(&bar);
+        (void)QTest::qWaitForWindowExposed(&bar);
+        QObject::connect(&bar, &SequenceBar::speed_asked,
+                         [this](double s) { speeds.push_back(s); });
+        QObject::connect(&bar, &SequenceBar::moment_asked,
+                         [this](double t) { times.push_back(t); });
+        QObject::connect(&bar, &SequenceBar::loop_asked, [this](bool l) { loops.push_back(l); });
+    }
+    template <class T>
+    T* find(const char* name) {
+        T* found = bar.findChild<T*>(name);
+        if (!found) throw std::runtime_error(std::string("no widget ") + name);
+        return found;
+    }
+    SequenceTrack* track() { return find<SequenceTrack>("sequence_track"); }
+    QString text() { return find<QLabel>("sequence_time")->text(); }
+    void press(const char* name) { QTest::mouseClick(find<QWidget>(name), Qt::LeftButton); }
+    static void settle() {
+        QTest::qWait(40);  // longer than anything is held back
+        QApplication::processEvents();
+    }
+    void move_to(double part) {
+        QMouseEvent event(QEvent::MouseMove, QPointF(part * track()->width(), 5), Qt::NoButton,
+                          Qt::LeftButton, Qt::NoModifier);
+        QApplication::sendEvent(track(), &event);
+    }
+    void picture(const QString& name) {
+        QApplication::processEvents();
+        const QImage image = bar.grab().toImage();
+        QDir().mkpath(PALPATE_PICTURES);
+        const QString scale = image.devicePixelRatio() > 1.5 ? "_2x" : "";
+        EXPECT_TRUE(image.save(QString(PALPATE_PICTURES) + "/" + name + scale + ".png"));
+    }
+
+    std::vector<double> speeds, times;
+    std::vector<bool> loops;
+    SequenceBar bar;
+};
+
+TEST_F(Sequence, views_are_shown_and_tell_nobody) {
+    EXPECT_EQ(text(), "1.70 s, frame 3 of 6");
+    SequenceView view = six();
+    view.time = 1.6;
+    view.speed = 2;
+    view.loop = true;
+    bar.set_view(view);
+    EXPECT_EQ(text(), "1.60 s, frame 3 of 6");
+    EXPECT_EQ(find<NumberBox>("sequence_speed")->value(), 2);
+    EXPECT_TRUE(find<QCheckBox>("sequence_loop")->isChecked());
+    EXPECT_EQ(find<QToolButton>("sequence_play")->accessibleName(), "Pause");
+    view.time = 10.4;  // the session's clock goes on: twice round and 0.8 s
+    bar.set_view(view);
+    EXPECT_EQ(text(), "0.80 s, frame 2 of 6");
+    bar.set_view({});
+    EXPECT_EQ(text(), "");
+    EXPECT_FALSE(bar.isEnabled());
+    settle();
+    EXPECT_TRUE(times.empty());
+    EXPECT_TRUE(speeds.empty());
+    EXPECT_TRUE(loops.empty());
+}
+
+TEST_F(Sequence, play_asks_for_the_speed_in_the_box_and_pause_for_none) {
+    press("sequence_play");
+    EXPECT_EQ(speeds, (std::vector<double>{1}));
+    SequenceView view = six();
+    view.speed = 1;
+    bar.set_view(view);
+    press("sequence_play");
+    EXPECT_EQ(speeds, (std::vector<double>{1, 0}));
+    EXPECT_TRUE(times.empty());
+}
+
+TEST_F(Sequence, the_speed_of_the_box_is_asked_for_at_once_while_it_plays_else_with_play) {
+    auto* box = find<NumberBox>("sequence_speed");
+    const auto type = [&](const QString& number) {
+        box->setFocus();
+        QTest::keyClick(box, Qt::Key_A, Qt::ControlModifier);
+        QTest::keyClicks(box, number);
+        QTest::keyClick(box, Qt::Key_Return);
+    };
+    type("0.25");
+    EXPECT_TRUE(speeds.empty());
+    press("sequence_play");
+    EXPECT_EQ(speeds, (std::vector<double>{0.25}));
+    type("4");
+    EXPECT_EQ(speeds, (std::vector<double>{0.25, 4}));
+    type("1000");  // as fast as it goes
+    EXPECT_EQ(speeds.back(), 10);
+    EXPECT_EQ(box->value(), 10);
+    QTest::keyClick(box, Qt::Key_Down);
+    EXPECT_EQ(speeds, (std::vector<double>{0.25, 4, 10, 5}));
+    press("sequence_play");
+    press("sequence_play");
+    EXPECT_EQ(speeds, (std::vector<double>{0.25, 4, 10, 5, 0, 5})) << "it remembers";
+}
+
+TEST_F(Sequence, a_view_taken_before_a_wish_was_obeyed_does_not_flicker_but_a_refusal_shows) {
+    press("sequence_play");
+    bar.set_view(six());
+    EXPECT_EQ(find<QToolButton>("sequence_play")->accessibleName(), "Pause");
+    for (int i = 0; i < 10; ++i) bar.set_view(six());
+    EXPECT_EQ(find<QToolButton>("sequence_play")->accessibleName(), "Play");
+    QTest::mouseClick(track(), Qt::LeftButton, Qt::NoModifier, track()->rect().center());
+    const double asked = track()->time();
+    bar.set_view(six());
+    EXPECT_EQ(track()->time(), asked);
+    for (int i = 0; i < 10; ++i) bar.set_view(six());
+    EXPECT_EQ(track()->time(), 1.7);
+}
+
+TEST_F(Sequence, steps_go_to_the_frame_before_and_after) {
+    press("sequence_forward");
+    EXPECT_EQ(times, (std::vector<double>{0.8 * 3}));
+    press("sequence_forward");
+    EXPECT_EQ(times.back(), 0.8 * 4);
+    press("sequence_back");
+    press("sequence_back");
+    EXPECT_EQ(times.back(), 0.8 * 2);
+    EXPECT_EQ(times.size(), 4U);
+    EXPECT_EQ(text(), "1.60 s, frame 3 of 6");
+    EXPECT_TRUE(speeds.empty()) << "it stood still already";
+}
+
+TEST_F(Sequence, a_step_past_the_last_frame_goes_round_only_where_it_loops) {
+    SequenceView view = six();
+    view.time = 4.5;
+    bar.set_view(view);
+    press("sequence_forward");
+    EXPECT_TRUE(times.empty());
+    view.loop = true;
+    bar.set_view(view);
+    press("sequence_forward");
+    EXPECT_EQ(times, (std::vector<double>{0}));
+    press("sequence_back");
+    EXPECT_EQ(times.back(), 0.8 * 5);
+}
+
+TEST_F(Sequence, a_step_ends_playing) {
+    SequenceView view = six();
+    view.speed = 1;
+    bar.set_view(view);
+    press("sequence_back");
+    EXPECT_EQ(speeds, (std::vector<double>{0}));
+    EXPECT_EQ(times, (std::vector<double>{0.8 * 2}));
+    EXPECT_EQ(find<QToolButton>("sequence_play")->accessibleName(), "Play");
+}
+
+TEST_F(Sequence, a_click_on_the_track_seeks_once) {
+    QTest::mouseClick(track(), Qt::LeftButton, Qt::NoModifier, track()->rect().center());
+    settle();
+    ASSERT_EQ(times.size(), 1U);
+    EXPECT_NEAR(times[0], 2.4, 0.02);
+    EXPECT_TRUE(speeds.empty());
+}
+
+TEST_F(Sequence, views_do_not_fight_a_drag_and_its_last_moment_comes) {
+    QTest::mousePress(track(), Qt::LeftButton, Qt::NoModifier, track()->rect().center());
+    SequenceView view = six();
+    view.speed = 1;
+    for (int i = 1; i <= 20; ++i) {
+        move_to(0.5 + 0.02 * i);
+        const double held = track()->time();
+        view.time = 0.1 * i;
+        bar.set_view(view);
+        EXPECT_EQ(track()->time(), held);
+    }
+    move_to(2);
+    QTest::mouseRelease(track(), Qt::LeftButton, Qt::NoModifier, {track()->width() * 2, 5});
+    ASSERT_GE(times.size(), 2U);
+    EXPECT_EQ(times.back(), 4.8);
+    EXPECT_TRUE(std::is_sorted(times.begin(), times.end()));
+    const std::size_t count = times.size();
+    settle();
+    EXPECT_EQ(times.size(), count) << "nothing comes after the release";
+    bar.set_view(view);
+    EXPECT_EQ(track()->time(), 4.8) << "a view from before";
+    view.time = 4.79;
+    for (int i = 0; i < 4; ++i) bar.set_view(view);
+    EXPECT_EQ(track()->time(), 4.79);
+}
+
+TEST_F(Sequence, keys_go_by_frames_by_tenths_and_to_the_ends) {
+    track()->setFocus();
+    QTest::keyClick(track(), Qt::Key_Right);
+    EXPECT_EQ(times.back(), 0.8 * 3);
+    QTest::keyClick(track(), Qt::Key_Left);
+    EXPECT_EQ(times.back(), 0.8 * 2);
+    QTest::keyClick(track(), Qt::Key_PageUp);
+    settle();
+    EXPECT_NEAR(times.back(), 1.6 + 0.48, 1e-9);
+    QTest::keyClick(track(), Qt::Key_Home);
+    settle();
+    EXPECT_EQ(times.back(), 0);
+    QTest::keyClick(track(), Qt::Key_End);
+    settle();
+    EXPECT_EQ(times.back(), 4.8);
+    EXPECT_EQ(times.size(), 5U);
+}
+
+TEST_F(Sequence, loop_and_return_on_a_button_are_told_once) {
+    auto* loop = find<QCheckBox>("sequence_loop");
+    loop->setFocus();
+    QTest::keyClick(loop, Qt::Key_Space);
+    EXPECT_EQ(loops, (std::vector<bool>{true}));
+    bar.set_view(six());
+    EXPECT_TRUE(loop->isChecked()) << "a view from before";
+    auto* play = find<QToolButton>("sequence_play");
+    play->setFocus();
+    QTest::keyClick(play, Qt::Key_Return);
+    bar.toggle_playing();
+    EXPECT_EQ(speeds, (std::vector<double>{1, 0}));
+}
+
+TEST_F(Sequence, a_live_source_can_be_held_but_not_sought) {
+    SequenceView view = six();
+    view.live = true;
+    view.speed = 1;
+    bar.set_view(view);
+    EXPECT_EQ(text(), "1.70 s, live");
+    for (const char* name : {"sequence_back", "sequence_forward", "sequence_track",
+                             "sequence_speed", "sequence_loop"}) {
+        EXPECT_FALSE(find<QWidget>(name)->isEnabled()) << name;
+    }
+    QTest::mouseClick(track(), Qt::LeftButton, Qt::NoModifier, track()->rect().center());
+    bar.step(1);
+    settle();
+    EXPECT_TRUE(times.empty());
+    press("sequence_play");
+    EXPECT_EQ(speeds, (std::vector<double>{0}));
+}
+
+TEST_F(Sequence, a_drag_ends_when_another_sequence_or_a_live_source_comes) {
+    QTest::mousePress(track(), Qt::LeftButton, Qt::NoModifier, track()->rect().center());
+    move_to(0.6);
+    move_to(0.7);
+    const std::size_t count = times.size();
+    SequenceView view = six();
+    view.live = true;
+    bar.set_view(view);
+    settle();
+    EXPECT_EQ(times.size(), count) << "the moment that waited was one of the former";
+    EXPECT_EQ(text(), "1.70 s, live");
+}
+
+/// Counts how often a widget is drawn.
+struct Paints : QObject {
+    int count = 0;
+    bool eventFilter(QObject*, QEvent* event) override {
+        count += event->type() == QEvent::Paint;
+        return false;
+    }
+};
+
+TEST_F(Sequence, a_view_like_the_last_draws_nothing) {
+    settle();
+    Paints paints;
+    for (auto* one : bar.findChildren<QWidget*>()) one->installEventFilter(&paints);
+    for (int i = 0; i < 30; ++i) bar.set_view(six());
+    settle();
+    EXPECT_EQ(paints.count, 0);
+    SequenceView view = six();
+    view.time = 1.9;
+    bar.set_view(view);
+    ASSERT_TRUE(QTest::qWaitFor([&] { return paints.count > 0; }, 20'000));
+}
+
+TEST(SequenceValues, what_is_in_memory_may_go_round_the_end) {
+    SequenceView view = six();
+    view.loop = true;
+    view.loaded_from = 4;
+    view.loaded_to = 5.6;
+    auto parts = loaded_stretches(view);
+    ASSERT_EQ(parts.size(), 2U);
+    EXPECT_EQ(parts[0].from, 0);
+    EXPECT_NEAR(parts[0].to, 0.8, 1e-12);
+    EXPECT_EQ(parts[1].from, 4);
+    EXPECT_EQ(parts[1].to, 4.8);
+    view.loaded_to = 0.8;  // the same, told the other way
+    parts = loaded_stretches(view);
+    ASSERT_EQ(parts.size(), 2U);
+    EXPECT_NEAR(parts[0].to, 0.8, 1e-12);
+    view.loop = false;
+    EXPECT_TRUE(loaded_stretches(view).empty());
+    view.loaded_from = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_TRUE(loaded_stretches(view).empty());
+}
+
+TEST(SequenceValues, times_outside_go_round_or_to_the_ends) {
+    SequenceView view = six();
+    EXPECT_EQ(within(view, -1), 0);
+    EXPECT_EQ(within(view, 7), 4.8);
+    EXPECT_EQ(within(view, std::nan("")), 0);
+    view.loop = true;
+    EXPECT_NEAR(within(view, -1), 3.8, 1e-12);
+    EXPECT_NEAR(within(view, 7), 2.2, 1e-12);
+    EXPECT_EQ(within(view, 4.8), 4.8);
+    EXPECT_EQ(within({}, 3), 0);
+}
+
+TEST_F(Sequence, tab_goes_from_left_to_right_and_every_control_has_a_name_and_a_tip) {
+    int x = -1, visited = 0;
+    for (QWidget* one = bar.nextInFocusChain(); one != &bar; one = one->nextInFocusChain()) {
+        if (!bar.isAncestorOf(one) || !(one->focusPolicy() & Qt::TabFocus) || one->focusProxy()) {
+            continue;
+        }
+        if (one->objectName().startsWith("qt_")) continue;  // the line in a box
+        EXPECT_GT(one->x(), x) << one->objectName().toStdString();
+        x = one->x();
+        ++visited;
+        const auto* box = qobject_cast<QCheckBox*>(one);
+        EXPECT_TRUE(!one->accessibleName().isEmpty() || (box && !box->text().isEmpty()))
+            << one->objectName().toStdString();
+        const bool tells = one == track() || !one->toolTip().isEmpty();  // the track: where it is
+        EXPECT_TRUE(tells) << one->objectName().toStdString();
+    }
+    EXPECT_EQ(visited, 6);
+}
+
+TEST_F(Sequence, pictures_light_dark_and_live) {
+    SequenceView view = six();
+    view.loop = true;
+    view.loaded_from = 3.2;
+    view.loaded_to = 0.8;
+    bar.set_view(view);
+    picture("sequence_light");
+    const QPalette usual = QApplication::palette();
+    QPalette dark(QColor(58, 58, 62), QColor(45, 45, 48));
+    dark.setColor(QPalette::Base, QColor(28, 28, 30));
+    dark.setColor(QPalette::Highlight, QColor(42, 130, 218));
+    QApplication::setPalette(dark);
+    view.speed = 0.5;
+    bar.set_view(view);
+    picture("sequence_dark");
+    view.live = true;
+    bar.set_view(view);
+    picture("sequence_live_dark");
+    QApplication::setPalette(usual);
+    SequenceView many;
+    for (int i = 0; i < 3000; ++i) many.frames.push_back(1e-3 * i);
+    many.end = 3;
+    many.time = 1.2345;
+    many.loaded_from = 1;
+    many.loaded_to = 2;
+    bar.set_view(many);
+    bar.resize(bar.minimumSizeHint().width(), bar.height());
+    EXPECT_EQ(text(), "1.2345 s, frame 1235 of 3000");
+    picture("sequence_many_narrow");
+}
+
+}  // namespace
+}  // namespace palpate::viewer
