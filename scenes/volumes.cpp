@@ -7,6 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "scenes/beating.hpp"
 #include "scenes/fill.hpp"
 #include "scenes/head_phantom.hpp"
 
@@ -107,11 +108,15 @@ Scene white_noise(const Recipe& recipe, const Geometry& geometry, SampleType typ
             {}};
 }
 
+Scene beating(const Recipe&, const Geometry& geometry, SampleType type) {
+    return beating_frame(geometry, 0, type);
+}
+
 constexpr auto u8 = SampleType::uint8;
 constexpr auto f32 = SampleType::float32;
 
-const std::array<Recipe, 8>& recipes() {
-    static const std::array<Recipe, 8> all{{
+const std::array<Recipe, 9>& recipes() {
+    static const std::array<Recipe, 9> all{{
         {"cylinder",
          "the paper's: density 1 at the z axis, falling linearly to 0 at the radius",
          {100, 100, 30},
@@ -150,6 +155,12 @@ const std::array<Recipe, 8>& recipes() {
          u8,
          0.5,
          white_noise},
+        {"beating",
+         "a heart-like shell of two chambers, at the beginning of a beat",
+         {64, 64, 64},
+         u8,
+         0.5,
+         beating},
     }};
     return all;
 }
@@ -196,7 +207,8 @@ Scene make_volume(std::string_view spec, std::optional<SampleType> type) {
     const std::size_t colon = spec.find(':');
     const Recipe& recipe = recipe_of(spec.substr(0, colon));
     const Index3 size = colon == spec.npos ? recipe.size : size_from_text(spec.substr(colon + 1));
-    return recipe.make(recipe, centred(size), type.value_or(recipe.type));
+    const Geometry grid = recipe.make == beating ? beating_grid(size) : centred(size);
+    return recipe.make(recipe, grid, type.value_or(recipe.type));
 }
 
 Scene make_volume(std::string_view name, const Geometry& geometry, std::optional<SampleType> type) {

@@ -27,15 +27,15 @@ struct Scene {
 /// The most that make_volume and the builders allocate for samples: 8 GiB, so 1024^3 of any type.
 inline constexpr std::uint64_t largest_scene_bytes = std::uint64_t{8} << 30;
 
-/// cylinder, sphere, torus, plane, shell, marschner-lobb, shepp-logan, noise.
+/// cylinder, sphere, torus, plane, shell, marschner-lobb, shepp-logan, noise, beating.
 std::vector<std::string> volume_names();
 
 /// A scene from its specification: "NAME", "NAME:WxHxD", each also with "synthetic:" in front.
-/// Spacing 1 mm, physical_centre() exactly (0, 0, 0). Without `type` the scene's own.
-/// Density 0..1 is stored as 0..1 in float32 and as 0..largest value in an integer type;
-/// shepp-logan is in Hounsfield units in int16 and float32, HU + 1000 in uint16, and -1000..2000 HU
-/// as 0..255 in uint8.
-/// Throws std::invalid_argument that lists the names or the form, or says which size is too large.
+/// Spacing 1 mm (beating: 100 mm along the longest axis), physical_centre() exactly (0, 0, 0).
+/// Without `type` the scene's own. Density 0..1 is stored as 0..1 in float32 and as 0..largest
+/// value in an integer type; shepp-logan is in Hounsfield units in int16 and float32, HU + 1000 in
+/// uint16, and -1000..2000 HU as 0..255 in uint8. Throws std::invalid_argument that lists the names
+/// or the form, or says which size is too large.
 Scene make_volume(std::string_view spec, std::optional<SampleType> type = {});
 
 /// The same scene on a given grid. The shape is in millimetres, as large as the grid allows, round

@@ -32,7 +32,8 @@ TEST_P(SurfaceOfScenes, is_closed_and_encloses_what_is_solid) {
         for (double& x : index) x = -1 + 41 * random.uniform();
         solid += value_at(field, locate(index)) > scene.isovalue;
     }
-    const double box = std::pow(41.0, 3);  // [mm^3]: 1 mm voxels, padded by one
+    const double voxel = scene.volume.geometry().spacing.prod();
+    const double box = std::pow(41.0, 3) * voxel;  // [mm^3]: padded by one
     const double part = double(solid) / count;
     const double tolerance = 4 * std::sqrt(part * (1 - part) / count) * box;
     EXPECT_NEAR(enclosed_volume(mesh), part * box, tolerance);

@@ -89,7 +89,7 @@ TEST(Volumes, samples_are_the_exact_density_rounded_to_the_type) {
             }
         }
     }
-    EXPECT_EQ(analytic_scenes, 6 * 4);
+    EXPECT_EQ(analytic_scenes, 7 * 4);
 }
 
 TEST(Volumes, integer_types_use_their_whole_positive_range) {
