@@ -82,7 +82,7 @@ template <class T>
 T touched(const edit::Stroke& stroke, const Touch& touch, const Samples& before, const Index3& at,
           T old) {
     const double w = touch.weight(at);
-    if (w <= 0) return old;
+    if (!(w > 0)) return old;  // nor where ends are so far apart that their distance overflows
     const Brush& brush = stroke.brush;
     if (brush.kind == BrushKind::paint) return moved(old, brush.value, w * brush.strength);
     if (brush.kind == BrushKind::smooth) {

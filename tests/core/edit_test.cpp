@@ -233,6 +233,16 @@ TEST(Edit, far_outside_the_grid_changes_nothing) {
         edit::Stroke stroke{{.value = -1}, Vec3::Constant(far), Vec3::Constant(far)};
         EXPECT_EQ(edited(samples, stroke).samples, samples);
     }
+    for (const BrushKind kind : brush_kinds) {
+        Brush brush{.kind = kind};
+        brush.value = kind == BrushKind::add ? 9 : -9;
+        const edit::Stroke endless{brush, Vec3::Constant(-1e300), Vec3::Constant(1e300)};
+        EXPECT_EQ(edited(samples, endless).samples, samples);
+    }
+    constexpr int least = std::numeric_limits<int>::min(), most = std::numeric_limits<int>::max();
+    const edit::Fill all{{Index3::Constant(least), Index3::Constant(most)}, 3};
+    EXPECT_EQ(edited(samples, all).samples->maximum(), samples->maximum());
+    EXPECT_EQ(flattened(*edited(samples, all).samples).maximum(), 3);
     // Through it all, from far off to far off.
     edit::Stroke through{
         {.kind = BrushKind::paint, .radius = 2, .value = 7}, Vec3(10, 10, -1e6), Vec3(10, 10, 1e6)};
