@@ -257,6 +257,11 @@ void BrushControls::show_choice() {
     on_->setChecked(on);
     on_->setText(on ? "Brush at the probe is ON" : "Brush at the probe is off");
     kinds_->button(static_cast<int>(choice_.kind))->setChecked(true);
+    for (auto* button : kinds_->buttons()) {  // bold, as dark palettes hardly show what is pressed
+        QFont words = font();
+        words.setBold(button->isChecked());
+        button->setFont(words);
+    }
     radius_->set_value(choice_.radius);
     hardness_->set_value(choice_.hardness);
     const bool at_once = std::isinf(choice_.rate);
