@@ -283,7 +283,7 @@ TEST(MovingSurface, an_isovalue_swept_over_noise_keeps_the_guarantee) {
             contact.tick();
             if (HasFatalFailure()) return;
         }
-        EXPECT_GT(contact.constrained, contact.ticks / 20);
+        EXPECT_GT(contact.constrained, contact.ticks / 100);
         EXPECT_LT(contact.recovering, contact.ticks / 4);
     }
 }
@@ -389,7 +389,7 @@ TEST(MovingSurface, where_all_of_space_is_solid_there_is_no_force_until_there_is
     EXPECT_NEAR(contact.proxy().scp[0], 8.3, 1e-6);
     for (int round = 0; round < 5; ++round) {
         apply(contact.session, command::Samples{full});
-        for (int i = 0; i < 500; ++i) {
+        for (int i = 0; i < scaled(500); ++i) {
             contact.tick();
             if (HasFatalFailure()) return;
             ASSERT_EQ(contact.proxy().status, UpdateStatus::recovering);

@@ -58,7 +58,7 @@ TEST(Samples, a_field_of_edited_bricks_is_the_field_of_the_same_samples_in_one_p
         EXPECT_LE(after.samples->minimum(), plain.volume().minimum());
         EXPECT_GE(after.samples->maximum(), plain.volume().maximum());
     });
-    EXPECT_GT(edited_cells, cells / 10);
+    EXPECT_GT(edited_cells, cells / 100);
 }
 
 TEST(Samples, neighbouring_bricks_hold_the_samples_between_them_alike) {
