@@ -4,6 +4,9 @@
 #include <QMetaObject>
 
 #include <cmath>
+#include <stdexcept>
+
+#include "apps/viewer/scene/sample_block.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -116,6 +119,21 @@ void Backstage::set_field(const Field& field, double isovalue) {
     paint();
 }
 
+void Backstage::update_field(const Field& field, const std::optional<SampleBox>& changed) {
+    if (!shot_.field || shot_.field->geometry() != field.geometry()) {
+        throw std::invalid_argument("the scene shows no other version of these data");
+    }
+    const bool edited = same_but_for_edits(*shot_.field, field);
+    const SampleBox box = edited && changed ? *changed : changed_between(*shot_.field, field);
+    shot_.field = field;
+    if (box.empty()) return;
+    if (std::isfinite(isovalue_)) {
+        extracting_ = true;
+        surface_work_.update(++wish_, field, isovalue_, box);
+    }
+    if (shot_.look.volume || shot_.look.slices) paint();
+}
+
 void Backstage::clear() {
     shot_.field.reset();
     shot_.surface = {};
@@ -128,7 +146,7 @@ void Backstage::clear() {
 void Backstage::set_isovalue(double isovalue) {
     if (!shot_.field || isovalue == isovalue_) return;
     isovalue_ = isovalue;
-    extracting_ = true;
+    extracting_ = asked_ = true;
     surface_work_.ask(++wish_, *shot_.field, isovalue);
 }
 
@@ -138,7 +156,8 @@ void Backstage::take(DrawnSurface surface) {
     if (surface.wish < oldest_wish_ || surface.wish < shot_.surface.wish) return;
     if (surface.wish == wish_ && surface.finished) {
         extracting_ = false;
-        announce_ = true;
+        announce_ = announce_ || asked_;
+        asked_ = false;
     }
     shot_.surface = std::move(surface);
     paint();
@@ -148,7 +167,7 @@ void Backstage::take(Backdrop backdrop) {
     const bool older = shown_ && backdrop.number < shown_->number;
     const bool coarser = shown_ && backdrop.number == shown_->number && !shown_->moving;
     if (older || (coarser && backdrop.moving)) return;
-    if (backdrop.hardware && backdrop.number == shot_.number) rest_.stop();
+    if (backdrop.hardware && !backdrop.moving && backdrop.number == shot_.number) rest_.stop();
     if (backdrop.moving || backdrop.hardware) {
         frame_seconds_ =
             frame_seconds_ > 0 ? 0.8 * frame_seconds_ + 0.2 * backdrop.seconds : backdrop.seconds;

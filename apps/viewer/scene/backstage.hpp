@@ -23,6 +23,8 @@ class Backstage : public QObject {
     ~Backstage() override;
 
     void set_field(const Field& field, double isovalue);
+    /// As Scene has it.
+    void update_field(const Field& field, const std::optional<SampleBox>& changed);
     void clear();
     void set_isovalue(double isovalue);
     /// Of what is painted next: all but number, field and surface, which are kept here. Paints only
@@ -50,7 +52,8 @@ class Backstage : public QObject {
     Shot shot_;
     std::shared_ptr<const Backdrop> shown_;
     std::uint64_t wish_ = 0, oldest_wish_ = 1;
-    bool extracting_ = false, announce_ = false;
+    bool extracting_ = false;
+    bool asked_ = false, announce_ = false;  // not by an update
     double isovalue_ = 0;
     double frame_seconds_ = 0;
     bool broken_ = false;  // no painter can paint

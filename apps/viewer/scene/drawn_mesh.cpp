@@ -41,25 +41,16 @@ class Numbering {
     std::int32_t count_ = 0;
 };
 
-double area_of(const DrawnMesh& mesh) {
-    double twice = 0;
-    for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
-        const auto corner = [&](std::size_t c) {
-            return at(mesh.positions, static_cast<std::size_t>(mesh.triangles[t + c]));
-        };
-        const Vector3f a = corner(0);
-        twice += (corner(1) - a).cross(corner(2) - a).norm();
-    }
-    return 0.5 * twice;
-}
-
 /// The box of a grid, and the octant that the vertex faces: the two sides of a thin wall stay two.
-std::uint64_t key_of(const Vector3f& p, const Vector3f& normal, float size) {
-    std::uint64_t key = 0;
+std::uint64_t key_of(const Vector3f& p, const Vector3f& normal, float size, std::uint8_t seams) {
+    constexpr int bits = 18;
+    // Not 0: blocks that meet at a plane of symmetry must not differ by rounding.
+    constexpr float edge_on = -0.01F;
+    std::uint64_t key = seams;
     for (int a = 0; a < 3; ++a) {
-        const auto box = static_cast<std::int64_t>(std::floor(p[a] / size)) + (1 << 19);
-        key = key << 21 | (static_cast<std::uint64_t>(box & ((1 << 20) - 1)) << 1) |
-              std::uint64_t(normal[a] < 0);
+        const auto box = static_cast<std::int64_t>(std::floor(p[a] / size)) + (1 << (bits - 1));
+        key = key << (bits + 1) | (static_cast<std::uint64_t>(box & ((1 << bits) - 1)) << 1) |
+              std::uint64_t(normal[a] < edge_on);
     }
     return key;
 }
@@ -81,32 +72,6 @@ void add_triangles(const DrawnMesh& mesh, const std::vector<std::int32_t>& clust
     std::ranges::sort(kept);
     kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
     for (const auto& t : kept) result.triangles.insert(result.triangles.end(), t.begin(), t.end());
-}
-
-DrawnMesh clustered(const DrawnMesh& mesh, float size) {
-    DrawnMesh result;
-    std::vector<std::int32_t> cluster(mesh.vertex_count());
-    std::vector<float> members;
-    Numbering numbering(std::min<std::size_t>(mesh.vertex_count(), 1u << 24));
-    for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
-        const Vector3f p = at(mesh.positions, v), n = at(mesh.normals, v);
-        cluster[v] = numbering.number_of(key_of(p, n, size));
-        const auto c = static_cast<std::size_t>(cluster[v]);
-        if (members.size() < numbering.count()) {
-            members.push_back(0);
-            result.positions.insert(result.positions.end(), 3, 0.0F);
-            result.normals.insert(result.normals.end(), 3, 0.0F);
-        }
-        members[c] += 1;
-        Map<Vector3f>(result.positions.data() + 3 * c) += p;
-        Map<Vector3f>(result.normals.data() + 3 * c) += n;
-    }
-    for (std::size_t c = 0; c < members.size(); ++c) {
-        Map<Vector3f>(result.positions.data() + 3 * c) /= members[c];
-        Map<Vector3f>(result.normals.data() + 3 * c).normalize();
-    }
-    add_triangles(mesh, cluster, result);
-    return result;
 }
 
 }  // namespace
@@ -131,6 +96,49 @@ DrawnMesh drawn_mesh(const pictures::Surface& surface, const Vec3& origin) {
     return drawn;
 }
 
+double area_of(const DrawnMesh& mesh) {
+    double twice = 0;
+    for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
+        const auto corner = [&](std::size_t c) {
+            return at(mesh.positions, static_cast<std::size_t>(mesh.triangles[t + c]));
+        };
+        const Vector3f a = corner(0);
+        twice += (corner(1) - a).cross(corner(2) - a).norm();
+    }
+    return 0.5 * twice;
+}
+
+DrawnMesh clustered(const DrawnMesh& mesh, float size) {
+    DrawnMesh result;
+    std::vector<std::int32_t> cluster(mesh.vertex_count());
+    std::vector<Eigen::Vector3d> positions, normals;
+    std::vector<int> members;
+    Numbering numbering(std::min<std::size_t>(mesh.vertex_count(), 1u << 24));
+    for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
+        const Vector3f p = at(mesh.positions, v), n = at(mesh.normals, v);
+        const std::uint8_t seams = mesh.seams.empty() ? 0 : mesh.seams[v];
+        cluster[v] = numbering.number_of(key_of(p, n, size, seams));
+        const auto c = static_cast<std::size_t>(cluster[v]);
+        if (members.size() < numbering.count()) {
+            members.push_back(0);
+            positions.emplace_back(Eigen::Vector3d::Zero());
+            normals.emplace_back(Eigen::Vector3d::Zero());
+        }
+        // In doubles, and it is the same in whatever order: neighbouring blocks meet.
+        members[c] += 1;
+        positions[c] += p.cast<double>();
+        normals[c] += n.cast<double>();
+    }
+    result.positions.resize(3 * members.size());
+    result.normals.resize(3 * members.size());
+    for (std::size_t c = 0; c < members.size(); ++c) {
+        Map<Vector3f>(result.positions.data() + 3 * c) = (positions[c] / members[c]).cast<float>();
+        Map<Vector3f>(result.normals.data() + 3 * c) = normals[c].normalized().cast<float>();
+    }
+    add_triangles(mesh, cluster, result);
+    return result;
+}
+
 DrawnMesh simplified(const DrawnMesh& mesh, std::size_t most_triangles) {
     if (mesh.triangle_count() <= most_triangles) return mesh;
     constexpr int most_attempts = 12;
@@ -145,27 +153,31 @@ DrawnMesh simplified(const DrawnMesh& mesh, std::size_t most_triangles) {
     }
 }
 
-DrawnMesh part_of(const DrawnMesh& mesh, std::size_t first, std::size_t last) {
-    DrawnMesh part;
-    if (first >= last) return part;
-    const auto from = mesh.triangles.begin() + static_cast<std::ptrdiff_t>(3 * first);
-    const auto to = mesh.triangles.begin() + static_cast<std::ptrdiff_t>(3 * last);
-    std::vector<std::int32_t> used(from, to);
-    std::ranges::sort(used);
-    used.erase(std::unique(used.begin(), used.end()), used.end());
-    for (const std::int32_t v : used) {
-        const auto i = 3 * static_cast<std::ptrdiff_t>(v);
-        part.positions.insert(part.positions.end(), mesh.positions.begin() + i,
-                              mesh.positions.begin() + i + 3);
-        part.normals.insert(part.normals.end(), mesh.normals.begin() + i,
-                            mesh.normals.begin() + i + 3);
+std::size_t triangle_count(std::span<const std::shared_ptr<const DrawnMesh>> blocks) {
+    std::size_t count = 0;
+    for (const auto& block : blocks) count += block ? block->triangle_count() : 0;
+    return count;
+}
+
+std::shared_ptr<const DrawnMesh> joined(std::span<const std::shared_ptr<const DrawnMesh>> blocks) {
+    const auto there = [](const auto& block) { return block && !block->triangles.empty(); };
+    const auto first = std::ranges::find_if(blocks, there);
+    if (first == blocks.end()) return nullptr;
+    if (std::none_of(first + 1, blocks.end(), there)) return *first;
+    std::size_t vertices = 0;
+    for (const auto& block : blocks) vertices += block ? block->vertex_count() : 0;
+    DrawnMesh all;
+    all.positions.reserve(3 * vertices);
+    all.normals.reserve(3 * vertices);
+    all.triangles.reserve(3 * triangle_count(blocks));
+    for (const auto& block : blocks) {
+        if (!block) continue;
+        const auto before = static_cast<std::int32_t>(all.vertex_count());
+        all.positions.insert(all.positions.end(), block->positions.begin(), block->positions.end());
+        all.normals.insert(all.normals.end(), block->normals.begin(), block->normals.end());
+        for (const std::int32_t v : block->triangles) all.triangles.push_back(before + v);
     }
-    part.triangles.reserve(3 * (last - first));
-    for (auto i = from; i != to; ++i) {
-        part.triangles.push_back(
-            static_cast<std::int32_t>(std::ranges::lower_bound(used, *i) - used.begin()));
-    }
-    return part;
+    return std::make_shared<const DrawnMesh>(std::move(all));
 }
 
 }  // namespace palpate::viewer

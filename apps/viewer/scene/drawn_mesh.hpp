@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <vector>
 
 #include "pictures/scene.hpp"
@@ -13,6 +15,9 @@ struct DrawnMesh {
     std::vector<float> positions;  ///< [mm, physical axes] from an origin, so that floats do
     std::vector<float> normals;    ///< unit, out of the solid
     std::vector<std::int32_t> triangles;
+    /// Of a block of a larger mesh: on which of its sides a vertex lies, 0 inside. Vertices that
+    /// lie alike go together when it is simplified, so that blocks fit as they did. Or empty.
+    std::vector<std::uint8_t> seams;
 
     std::size_t vertex_count() const { return positions.size() / 3; }
     std::size_t triangle_count() const { return triangles.size() / 3; }
@@ -26,8 +31,15 @@ DrawnMesh drawn_mesh(const pictures::Surface& surface, const Vec3& origin);
 /// where it is to within the box's size.
 DrawnMesh simplified(const DrawnMesh& mesh, std::size_t most_triangles);
 
-/// A part of the mesh, triangles `first` to `last` (not included), with the vertices these need.
-/// Cheap where triangles that follow each other use vertices that do.
-DrawnMesh part_of(const DrawnMesh& mesh, std::size_t first, std::size_t last);
+/// Vertices in one box of a grid of `size` [mm] become one if they face the same way.
+DrawnMesh clustered(const DrawnMesh& mesh, float size);
+/// [mm^2]
+double area_of(const DrawnMesh& mesh);
+
+/// Blocks of a mesh; null: there is nothing of it.
+using MeshBlocks = std::vector<std::shared_ptr<const DrawnMesh>>;
+std::size_t triangle_count(std::span<const std::shared_ptr<const DrawnMesh>> blocks);
+/// All in one, without seams; the only one itself. Null if there is no triangle.
+std::shared_ptr<const DrawnMesh> joined(std::span<const std::shared_ptr<const DrawnMesh>> blocks);
 
 }  // namespace palpate::viewer

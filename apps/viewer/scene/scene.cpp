@@ -114,6 +114,11 @@ void Scene::set_field(const Field& field, double isovalue) {
     changed();
 }
 
+void Scene::update_field(const Field& field, const std::optional<SampleBox>& changed) {
+    parts_->backstage.update_field(field, changed);
+    if (parts_->snapshot) refresh();  // the lattice round the proxy is that of the new version
+}
+
 void Scene::clear() {
     parts_->snapshot.reset();
     parts_->backstage.clear();

@@ -30,6 +30,12 @@ class Scene : public QVTKOpenGLNativeWidget {
     /// New data, seen as a whole; the extraction of its surface starts. An isovalue that is not
     /// finite shows no surface and is a problem().
     void set_field(const Field& field, double isovalue);
+    /// Another version of the data that are shown, on the same grid: edited, or at another moment.
+    /// Camera, probe and crosshair stay. `changed`: the samples that edits have changed since the
+    /// version that is shown; without it they are found by the bricks that differ, which is never
+    /// too few and takes microseconds. As often as versions come: the newest is shown. Throws
+    /// std::invalid_argument where nothing, or another grid, is shown.
+    void update_field(const Field& field, const std::optional<SampleBox>& changed = {});
     /// An empty scene.
     void clear();
     /// The surface is extracted again in the background, coarse first; the newest isovalue wins.

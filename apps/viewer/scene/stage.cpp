@@ -17,8 +17,8 @@
 #include <string>
 
 #include "apps/viewer/scene/bodies.hpp"
+#include "apps/viewer/scene/sample_block.hpp"
 #include "apps/viewer/scene/view_space.hpp"
-#include "pictures/surface.hpp"
 #include "pictures/vtk/furnishing.hpp"
 #include "pictures/vtk/material.hpp"
 
@@ -81,7 +81,8 @@ Stage::Stage(const std::atomic<bool>& give_up, bool hardware)
       window_(vtkSmartPointer<UnseenWindow>::New()),
       solid_(vtkSmartPointer<vtkRenderer>::New()),
       glass_(vtkSmartPointer<vtkRenderer>::New()),
-      hardware_(hardware) {
+      hardware_(hardware),
+      surface_(give_up, hardware) {
     window_->SetIsCurrent(true);
     window_->SetIsDirect(1);
     window_->SetSupportsOpenGL(1);
@@ -109,44 +110,43 @@ Stage::~Stage() {
 }
 
 void Stage::show_surface(const Shot& shot) {
-    const auto& wanted = shot.moving && !hardware_ ? shot.surface.moving : shot.surface.mesh;
-    if (wanted != mesh_) {
-        for (const auto& part : parts_) {
-            solid_->RemoveActor(part);
-            glass_->RemoveActor(part);
-            part->ReleaseGraphicsResources(window_);
-        }
-        parts_ = mesh_actors(wanted, hardware_, give_up_);
-        mesh_ = wanted;
-        opacity_ = -1;
-        if (give_up_) mesh_.reset();  // not all parts were made
-    }
+    const bool quick = shot.moving && !hardware_;
+    surface_.show(quick ? MeshBlocks{shot.surface.moving} : shot.surface.blocks,
+                  [&](vtkActor* actor) {
+                      solid_->RemoveActor(actor);
+                      glass_->RemoveActor(actor);
+                      actor->ReleaseGraphicsResources(window_);
+                  });
     const double opacity = std::clamp(shot.look.surface_opacity, 0.0, 1.0);
-    for (const auto& part : parts_) {
+    vtkRenderer& in = opacity < 1 ? *glass_ : *solid_;
+    vtkRenderer& out = opacity < 1 ? *solid_ : *glass_;
+    for (const auto& part : surface_.actors()) {
+        vtkActor* const actor = part.actor;
+        if (!actor) continue;
         const Colour& c = shot.look.surface_colour;
-        part->GetProperty()->SetColor(c.red, c.green, c.blue);
-        part->SetVisibility(shot.look.surface && opacity > 0);
-        if (opacity == opacity_) continue;
-        pictures::set_glass(*part, opacity);
-        (opacity < 1 ? solid_ : glass_)->RemoveActor(part);
-        (opacity < 1 ? glass_ : solid_)->AddActor(part);
+        actor->GetProperty()->SetColor(c.red, c.green, c.blue);
+        actor->SetVisibility(shot.look.surface && opacity > 0);
+        if (actor->GetProperty()->GetOpacity() == opacity && in.HasViewProp(actor)) continue;
+        pictures::set_glass(*actor, opacity);
+        out.RemoveActor(actor);
+        in.AddActor(actor);
     }
-    opacity_ = opacity;
 }
 
 void Stage::show_slices(const Shot& shot) {
-    const Volume& volume = shot.field->volume();
-    const bool outdated = sliced_ != volume.data() || crosshair_ != shot.crosshair;
+    const bool outdated =
+        !sliced_ || !same_samples(*sliced_, *shot.field) || crosshair_ != shot.crosshair;
     if (slices_[0] && (outdated || !shot.look.slices)) {
         for (auto& slice : slices_) {
             solid_->RemoveActor(slice);
             slice->ReleaseGraphicsResources(window_);
             slice = nullptr;
         }
+        sliced_.reset();
     }
     if (!shot.look.slices || slices_[0]) return;
-    slices_ = slice_actors(volume, shot.crosshair);
-    sliced_ = volume.data();
+    slices_ = slice_actors(*shot.field, shot.crosshair);
+    sliced_ = shot.field;
     crosshair_ = shot.crosshair;
     for (const auto& slice : slices_) solid_->AddActor(slice);
 }
@@ -164,37 +164,47 @@ void Stage::show_box(const Shot& shot) {
     box_->GetProperty()->SetLineWidth(static_cast<float>(std::round(shot.pixel_ratio)));
 }
 
-const Field& Stage::volume_field(const Shot& shot) {
-    const auto samples = static_cast<double>(sample_count(shot.field->geometry()));
-    const auto limit =
-        static_cast<double>(shot.moving && !hardware_ ? moving_samples : most_samples);
-    if (samples <= limit || !shot.look.volume) return *shot.field;
-    if (thinned_from_ != shot.field->volume().data()) {
-        thinned_ =
-            pictures::coarser(*shot.field, static_cast<int>(std::ceil(std::cbrt(samples / limit))));
-        thinned_from_ = shot.field->volume().data();
+/// Samples that change are put in one piece: few of them for moving pictures, all once they rest.
+const Volume& Stage::volume_of(const Field& field, bool coarse) {
+    const auto samples = static_cast<double>(sample_count(field.geometry()));
+    const auto limit = static_cast<double>(coarse ? moving_samples : most_samples);
+    const int every = samples > limit ? static_cast<int>(std::ceil(std::cbrt(samples / limit))) : 1;
+    if (!cast_ || cast_->every != every || !same_samples(cast_->field, field)) {
+        cast_.reset();
+        cast_.emplace(
+            Cast{field, every,
+                 every > 1 ? thinned(field, every) : flattened(field.samples(), field.moment())});
     }
-    return *thinned_;
+    return cast_->volume;
 }
 
 void Stage::show_volume(const Shot& shot) {
     const bool wanted = shot.look.volume && shot.look.transfer.points.size() > 1;
-    const Field& field = volume_field(shot);
-    if (volume_ && (!wanted || !volume_->shows(field.volume()))) {
+    const auto remove = [&] {
+        if (!volume_) return;
         solid_->RemoveVolume(volume_->prop());
         volume_->prop()->ReleaseGraphicsResources(window_);
         volume_.reset();
+    };
+    cast_coarse_ = false;
+    if (!wanted) {
+        remove();
+        cast_.reset();
+        return;
     }
-    if (!wanted) return;
+    const Field& field = *shot.field;
+    const bool copied = field.samples().bricks() || field.moment().weight > 0;
+    const bool coarse = shot.moving && !hardware_;
+    cast_coarse_ = shot.moving && hardware_ && copied;
+    const Volume& volume = volume_of(field, coarse || cast_coarse_);
+    if (volume_ && !volume_->shows(volume)) remove();
     if (!volume_) {
-        volume_ = std::make_unique<VolumePart>(field.volume(),
-                                               physical_centre(shot.field->geometry()), hardware_);
+        volume_ =
+            std::make_unique<VolumePart>(volume, physical_centre(field.geometry()), hardware_);
         solid_->AddVolume(volume_->prop());
     }
-    volume_->set_look(shot.look.transfer, shot.look.shading,
-                      shot.field->geometry().spacing.minCoeff());
-    const bool coarse = shot.moving && !hardware_;
-    const double spacing = field.geometry().spacing.minCoeff();
+    volume_->set_look(shot.look.transfer, shot.look.shading, field.geometry().spacing.minCoeff());
+    const double spacing = volume.geometry().spacing.minCoeff();
     volume_->set_fineness(coarse ? coarseness_ * shot.pixel_ratio / pixel_ : 1,
                           coarse ? spacing : 0.5 * spacing);
 }
@@ -205,14 +215,13 @@ void Stage::show(const Shot& shot) {
     if (!shot.field) {
         solid_->RemoveAllViewProps();
         glass_->RemoveAllViewProps();
-        parts_.clear();
-        mesh_.reset();
+        surface_.show({}, [](vtkActor*) {});
         slices_ = {};
+        sliced_.reset();
         box_ = nullptr;
         boxed_.reset();
         volume_.reset();
-        thinned_.reset();
-        thinned_from_ = nullptr;
+        cast_.reset();
         return;
     }
     const Geometry& geometry = shot.field->geometry();
@@ -258,10 +267,11 @@ std::optional<Backdrop> Stage::draw(const Shot& shot) {
     backdrop.number = shot.number;
     backdrop.camera = shot.camera;
     backdrop.reach = shot.field ? reach_of(shot.field->geometry()) : 1;
-    backdrop.moving = quick;
+    backdrop.moving = quick || cast_coarse_;
     backdrop.hardware = hardware_;
     backdrop.solid = layer_of(*solid_, backdrop.width, backdrop.height);
-    if (!give_up_ && shot.field && shot.look.surface && opacity_ > 0 && opacity_ < 1) {
+    if (!give_up_ && shot.field && shot.look.surface && shot.look.surface_opacity > 0 &&
+        shot.look.surface_opacity < 1) {
         window_->SetMultiSamples(0);
         backdrop.glass = layer_of(*glass_, backdrop.width, backdrop.height);
     }

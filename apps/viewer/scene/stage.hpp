@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "apps/viewer/scene/shot.hpp"
+#include "apps/viewer/scene/surface_part.hpp"
 #include "apps/viewer/scene/volume_part.hpp"
 
 namespace palpate::viewer {
@@ -36,7 +37,7 @@ class Stage {
     void show_slices(const Shot& shot);
     void show_box(const Shot& shot);
     void show_volume(const Shot& shot);
-    const Field& volume_field(const Shot& shot);
+    const Volume& volume_of(const Field& field, bool coarse);
     Layer layer_of(vtkRenderer& renderer, int width, int height);
 
     const std::atomic<bool>& give_up_;
@@ -44,17 +45,21 @@ class Stage {
     vtkSmartPointer<vtkRenderer> solid_, glass_;
     bool hardware_;
 
-    std::shared_ptr<const DrawnMesh> mesh_;
-    std::vector<vtkSmartPointer<vtkActor>> parts_;
-    double opacity_ = -1;
-    const void* sliced_ = nullptr;  // the samples that the slices show
+    SurfacePart surface_;
+    std::optional<Field> sliced_;  // what the slices show
     Vec3 crosshair_ = Vec3::Zero();
     std::array<vtkSmartPointer<vtkActor>, 3> slices_;
     std::optional<Geometry> boxed_;
     vtkSmartPointer<vtkActor> box_;
     std::unique_ptr<VolumePart> volume_;
-    std::optional<Field> thinned_;  // few enough samples for moving pictures
-    const void* thinned_from_ = nullptr;
+    /// A volume in one piece, and what of.
+    struct Cast {
+        Field field;
+        int every;
+        Volume volume;
+    };
+    std::optional<Cast> cast_;
+    bool cast_coarse_ = false;  // another one is to come, even where pictures are not quick ones
     int pixel_ = 1;  // of a moving picture, in pixels of the shot: 1, or 2 where that is slow
     double coarseness_ = 3;  // pixels a ray while moving, as quick as it turned out
 };

@@ -1,23 +1,36 @@
-// Extraction in steps.
+// Extraction in steps and in blocks.
 #include "apps/viewer/scene/surface_work.hpp"
 
-#include <chrono>
+#include <algorithm>
 #include <cmath>
 #include <exception>
+#include <iterator>
+#include <limits>
 #include <new>
+#include <stdexcept>
 
 #include "apps/viewer/scene/patience.hpp"
-#include "pictures/surface.hpp"
 
 namespace palpate::viewer {
 namespace {
 
-struct GivenUp {};
-
 using Clock = std::chrono::steady_clock;
+using namespace std::chrono_literals;
+
+// A change of more blocks is shown coarsely first. So many take about a twentieth of a second.
+constexpr std::size_t few_blocks = 64;
+// Without a large change for so long, finer surfaces are worth it.
+constexpr auto still = 150ms;
+// What a surface may take while large changes come one after the other [s].
+constexpr double flowing_seconds = 0.04;
+constexpr std::size_t no_limit = std::numeric_limits<std::size_t>::max();
 
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+bool is_small(const SurfaceBlocks& blocks) {
+    return blocks.outdated() <= few_blocks;
 }
 
 }  // namespace
@@ -46,7 +59,19 @@ SurfaceWork::~SurfaceWork() {
 void SurfaceWork::ask(std::uint64_t wish, const Field& field, double isovalue) {
     {
         const std::lock_guard lock(mutex_);
-        next_.emplace(Wish{wish, field, isovalue});
+        next_.emplace(Wish{wish, field, isovalue, true, {}});
+        waiting_ = true;
+    }
+    changed_.notify_all();
+}
+
+void SurfaceWork::update(std::uint64_t wish, const Field& field, double isovalue,
+                         const SampleBox& changed) {
+    {
+        const std::lock_guard lock(mutex_);
+        const bool anew = next_ && next_->anew;
+        const SampleBox all = next_ ? united(next_->changed, changed) : changed;
+        next_.emplace(Wish{wish, field, isovalue, anew, all});
         waiting_ = true;
     }
     changed_.notify_all();
@@ -59,65 +84,156 @@ void SurfaceWork::forget() {
     forgotten_ = true;
 }
 
-bool SurfaceWork::outdated(const std::stop_token& stop, bool first) const {
-    return stop.stop_requested() || forgotten_ || (waiting_ && !first);
-}
-
 void SurfaceWork::run(const std::stop_token& stop) {
     stand_back();
     while (!stop.stop_requested()) {
-        std::optional<Wish> wish;
         {
             std::unique_lock lock(mutex_);
             if (!changed_.wait(lock, stop, [this] { return next_.has_value(); })) return;
-            wish.swap(next_);
+            // What was forgotten has left nothing to go on with.
+            if (forgotten_) shown_.reset();
+            Wish wish = *std::move(next_);
+            next_.reset();
             waiting_ = false;
             forgotten_ = false;
+            lock.unlock();
+            take_up(std::move(wish));
         }
         try {
-            carry_out(*wish, stop);
-        } catch (const GivenUp&) {
+            carry_out(stop);
+            continue;
         } catch (const std::bad_alloc&) {
-            results_.failed(wish->number, "there is not enough memory for the surface");
+            results_.failed(wish_->number, "there is not enough memory for the surface");
         } catch (const std::exception& error) {
-            results_.failed(wish->number, error.what());
+            results_.failed(wish_->number, error.what());
         }
+        shown_.reset();
+        finer_.reset();
     }
 }
 
-void SurfaceWork::carry_out(const Wish& wish, const std::stop_token& stop) {
-    const auto start = Clock::now();
-    const Vec3 origin = physical_centre(wish.field.geometry());
-    const std::vector<int> steps = steps_for(wish.field.geometry().size);
-    for (std::size_t i = 0; i < steps.size(); ++i) {
-        const bool first = i == 0 && steps.size() > 1;
-        const auto check = [&] {
-            if (outdated(stop, first)) throw GivenUp();
-        };
-        check();
-        pictures::SurfaceWork work;
-        work.every = steps[i];
-        work.most_triangles = limits_.most_triangles;
-        work.progress = [&](double) { check(); };
-        const pictures::ShadedSurface made =
-            pictures::shaded_surface(wish.field, wish.isovalue, work);
-        DrawnSurface result;
-        result.mesh = std::make_shared<const DrawnMesh>(drawn_mesh(made.surface, origin));
-        check();
-        result.moving = result.mesh->triangle_count() <= limits_.moving_triangles
-                            ? result.mesh
-                            : std::make_shared<const DrawnMesh>(
-                                  simplified(*result.mesh, limits_.moving_triangles));
-        check();
-        result.wish = wish.number;
-        result.isovalue = wish.isovalue;
-        result.every = made.every;
-        // One that was too large for its step came out coarser; a finer step would, too.
-        result.finished = i + 1 == steps.size() || made.every > steps[i];
-        result.seconds = seconds_since(start);
-        const bool finished = result.finished;
-        results_.made(std::move(result));
-        if (finished) return;
+/// What is there already of the surface that the wish wants, and the steps that lead to it.
+void SurfaceWork::take_up(Wish wish) {
+    begun_ = Clock::now();
+    const bool anew = wish.anew || !shown_ || wish.isovalue != wish_->isovalue;
+    wish_.emplace(std::move(wish));
+    const std::vector<int> steps = steps_for(wish_->field.geometry().size);
+    if (anew) {
+        finer_.reset();
+        flowing_ = false;
+        pace_ = 0;
+        shown_.emplace(wish_->field.geometry(), steps.front());
+        steps_.assign(steps.begin() + 1, steps.end());
+        return;
+    }
+    shown_->mark(wish_->changed);
+    if (finer_) finer_->mark(wish_->changed);
+    if (is_small(*shown_) && !(wish_->changed == whole_box(wish_->field.geometry()))) {
+        flowing_ = false;
+        return;
+    }
+    flow(steps);
+}
+
+/// A large change: its first picture is as coarse as can be had at once. What is finer is kept, to
+/// be brought up to date when there is time.
+void SurfaceWork::flow(const std::vector<int>& steps) {
+    flowing_ = true;
+    if (pace_ == 0) pace_ = steps.front();
+    if (shown_->every() == pace_) return;
+    if (shown_->every() > pace_) {
+        finer_.reset();
+        steps_.clear();
+        std::ranges::copy_if(steps, std::back_inserter(steps_),
+                             [&](int step) { return step < pace_; });
+    } else if (!finer_) {
+        steps_.insert(steps_.begin(), shown_->every());
+        finer_ = std::move(shown_);
+    }
+    shown_.emplace(wish_->field.geometry(), pace_);
+}
+
+void SurfaceWork::carry_out(const std::stop_token& stop) {
+    if (!std::isfinite(wish_->isovalue)) throw std::invalid_argument("the isovalue is not finite");
+    const auto wanted = [&] { return !stop.stop_requested() && !forgotten_; };
+    if (!make_first(wanted)) {
+        shown_.reset();
+        return;
+    }
+    if (flowing_) rest(stop);
+    while (!steps_.empty()) {
+        if (!make_finer([&] { return wanted() && !waiting_; })) return;
+    }
+}
+
+/// The first picture that has the change in it; the newest wish waits for it.
+bool SurfaceWork::make_first(const std::function<bool()>& go_on) {
+    for (;;) {
+        const bool coarse = shown_->triangles() == 0;
+        const auto outcome = shown_->renew(wish_->field, wish_->isovalue, go_on,
+                                           coarse ? limits_.most_triangles : no_limit);
+        if (outcome == SurfaceBlocks::Outcome::done) break;
+        if (outcome == SurfaceBlocks::Outcome::interrupted) return false;
+        shown_.emplace(wish_->field.geometry(), shown_->every() + 1);
+        steps_.clear();
+    }
+    publish(steps_.empty());
+    if (flowing_) pace(seconds_since(begun_));
+    return true;
+}
+
+/// False if something newer is there; what was made of the step is kept.
+bool SurfaceWork::make_finer(const std::function<bool()>& go_on) {
+    const int step = finer_ ? finer_->every() : steps_.front();
+    if (!finer_) finer_.emplace(wish_->field.geometry(), step);
+    switch (finer_->renew(wish_->field, wish_->isovalue, go_on, limits_.most_triangles)) {
+        case SurfaceBlocks::Outcome::interrupted:
+            return false;
+        case SurfaceBlocks::Outcome::too_many:
+            // A finer step would be too large as well. What is shown may be the next coarser one.
+            finer_.reset();
+            steps_.clear();
+            if (step + 1 < shown_->every()) {
+                steps_.push_back(step + 1);
+            } else {
+                publish(true);
+            }
+            return true;
+        case SurfaceBlocks::Outcome::done:
+            break;
+    }
+    shown_ = std::move(finer_);
+    finer_.reset();
+    steps_.erase(steps_.begin());
+    publish(steps_.empty());
+    return true;
+}
+
+void SurfaceWork::publish(bool finished) {
+    DrawnSurface result;
+    result.wish = wish_->number;
+    result.isovalue = wish_->isovalue;
+    result.blocks = shown_->meshes();
+    result.moving = shown_->simplified(limits_.moving_triangles);
+    result.every = shown_->every();
+    result.finished = finished;
+    result.seconds = seconds_since(begun_);
+    if (!forgotten_) results_.made(std::move(result));
+}
+
+/// Until something is asked for, or nothing was for a while.
+void SurfaceWork::rest(const std::stop_token& stop) {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, stop, still, [this] { return waiting_ || forgotten_; });
+}
+
+/// As fine as it can be had in the time that there is.
+void SurfaceWork::pace(double seconds) {
+    const double p = shown_->every();
+    if (seconds > 1.25 * flowing_seconds) {
+        pace_ = shown_->every() + 1;
+    } else if (p > 1 && seconds * std::pow(p / (p - 1), 3) < flowing_seconds) {
+        pace_ = shown_->every() - 1;
     }
 }
 

@@ -99,25 +99,22 @@ TEST(DrawnMesh, two_sides_of_a_thin_sheet_stay_two) {
     EXPECT_GT(in, 1);
 }
 
-TEST(DrawnMesh, parts_are_the_whole) {
-    const DrawnMesh mesh = ball();
-    std::size_t triangles = 0;
-    double volume = 0;
-    for (std::size_t first = 0; first < mesh.triangle_count(); first += 5'000) {
-        const std::size_t last = std::min(first + 5'000, mesh.triangle_count());
-        const DrawnMesh part = part_of(mesh, first, last);
-        EXPECT_LE(part.vertex_count(), 3 * part.triangle_count());
-        for (std::size_t t = 0; t < part.triangles.size(); ++t) {
-            const std::int32_t whole = mesh.triangles[3 * first + t], own = part.triangles[t];
-            ASSERT_EQ(vertex(part, own), vertex(mesh, whole));
-            ASSERT_EQ(normal(part, own), normal(mesh, whole));
-        }
-        triangles += part.triangle_count();
-        volume += volume_of(part);
+TEST(DrawnMesh, blocks_that_are_joined_are_all_of_them) {
+    const auto one = std::make_shared<const DrawnMesh>(ball());
+    const auto other = std::make_shared<const DrawnMesh>(ball(Vec3(50, 0, 0)));
+    const MeshBlocks blocks{nullptr, one, nullptr, other};
+    EXPECT_EQ(triangle_count(blocks), 2 * one->triangle_count());
+    const auto all = joined(blocks);
+    ASSERT_EQ(all->triangle_count(), 2 * one->triangle_count());
+    ASSERT_EQ(all->vertex_count(), 2 * one->vertex_count());
+    for (std::size_t t = 0; t < one->triangles.size(); ++t) {
+        ASSERT_EQ(vertex(*all, all->triangles[t]), vertex(*one, one->triangles[t]));
+        const std::size_t there = one->triangles.size() + t;
+        ASSERT_EQ(vertex(*all, all->triangles[there]), vertex(*other, other->triangles[t]));
+        ASSERT_EQ(normal(*all, all->triangles[there]), normal(*other, other->triangles[t]));
     }
-    EXPECT_EQ(triangles, mesh.triangle_count());
-    EXPECT_NEAR(volume, volume_of(mesh), 1e-6 * volume);
-    EXPECT_EQ(part_of(mesh, 7, 7).triangle_count(), 0U);
+    EXPECT_EQ(joined(MeshBlocks{nullptr, one}), one);
+    EXPECT_EQ(joined(MeshBlocks{nullptr, nullptr}), nullptr);
 }
 
 }  // namespace

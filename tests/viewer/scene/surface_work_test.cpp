@@ -65,7 +65,7 @@ TEST(SurfaceWork, comes_coarse_first_and_then_as_the_proxy_meets_it) {
         EXPECT_EQ(results.made[i].finished, i == 1);
     }
     const SurfaceMesh mesh = extract_surface(field, 128);
-    EXPECT_EQ(results.made.back().mesh->triangle_count(), mesh.triangles.size());
+    EXPECT_EQ(triangle_count(results.made.back().blocks), mesh.triangles.size());
     EXPECT_LE(results.made.back().moving->triangle_count(),
               SurfaceLimits().moving_triangles * 5 / 4);
 }
@@ -103,7 +103,7 @@ TEST(SurfaceWork, keeps_within_its_triangles) {
     work.ask(1, ball(64), 128);
     ASSERT_TRUE(results.wait_for(finished(1)));
     EXPECT_GT(results.made.back().every, 1);
-    EXPECT_LE(results.made.back().mesh->triangle_count(), 20'000U);
+    EXPECT_LE(triangle_count(results.made.back().blocks), 20'000U);
     EXPECT_LE(results.made.back().moving->triangle_count(), 2'500U);
     EXPECT_GT(results.made.back().moving->triangle_count(), 100U);
 }

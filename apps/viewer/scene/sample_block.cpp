@@ -1,0 +1,196 @@
+// Rows of the frames, then the bricks over them.
+#include "apps/viewer/scene/sample_block.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate::viewer {
+namespace {
+
+/// A box of a grid that has every so manieth sample of another.
+struct Box {
+    Index3 low, size;
+    int every;
+
+    std::size_t place(const Index3& at) const {
+        const Index3 in = at - low;
+        return (static_cast<std::size_t>(in[2]) * size[1] + in[1]) * size[0] + in[0];
+    }
+};
+
+/// The part of the box, in its own indices, that lies in `low` to `high` of the full grid.
+SampleBox cut(const Box& box, const Index3& low, const Index3& high) {
+    SampleBox part;
+    for (int a = 0; a < 3; ++a) {
+        part.low[a] = std::max(box.low[a], (std::max(low[a], 0) + box.every - 1) / box.every);
+        part.high[a] =
+            high[a] < 0 ? -1 : std::min(box.low[a] + box.size[a] - 1, high[a] / box.every);
+    }
+    return part;
+}
+
+/// Calls f(to, from, count) for each row: `count` samples, the first at index `from` of the grid.
+template <class F>
+void for_rows(const Box& box, const SampleBox& part, F f) {
+    if (part.empty()) return;
+    const int count = part.high[0] - part.low[0] + 1;
+    for (int k = part.low[2]; k <= part.high[2]; ++k) {
+        for (int j = part.low[1]; j <= part.high[1]; ++j) {
+            const Index3 at(part.low[0], j, k);
+            f(box.place(at), Index3(at * box.every), count);
+        }
+    }
+}
+
+template <class T>
+void copy_frames(const Field& field, const Box& box, float* out) {
+    const Index3& size = field.geometry().size;
+    const Moment& moment = field.moment();
+    const auto frames = field.samples().frames();
+    const T* const first = static_cast<const T*>(frames[moment.from].volume.data());
+    const T* const later = static_cast<const T*>(frames[moment.to].volume.data());
+    const double weight = moment.weight;
+    for_rows(box, cut(box, Index3::Zero(), size - Index3::Ones()),
+             [&](std::size_t to, const Index3& from, int count) {
+                 const auto at =
+                     (static_cast<std::size_t>(from[2]) * size[1] + from[1]) * size[0] + from[0];
+                 const auto step = static_cast<std::size_t>(box.every);
+                 float* const row = out + to;
+                 for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+                     const std::size_t s = at + i * step;
+                     row[i] = weight > 0 ? static_cast<float>((1 - weight) * double(first[s]) +
+                                                              weight * double(later[s]))
+                                         : static_cast<float>(first[s]);
+                 }
+             });
+}
+
+template <class T>
+void copy_bricks(const Field& field, const Bricks& bricks, const Box& box, float* out) {
+    const Index3 last = field.geometry().size - Index3::Ones();
+    const Index3 from = (box.low * box.every).cwiseMax(0);
+    const Index3 to = ((box.low + box.size - Index3::Ones()) * box.every).cwiseMin(last);
+    constexpr int n = Bricks::cells;
+    for (int k = from[2] / n; k <= to[2] / n && to[2] >= 0; ++k) {
+        for (int j = from[1] / n; j <= to[1] / n && to[1] >= 0; ++j) {
+            for (int i = from[0] / n; i <= to[0] / n && to[0] >= 0; ++i) {
+                const Index3 low = n * Index3(i, j, k);
+                const T* const brick = reinterpret_cast<const T*>(bricks.of_cell(low));
+                if (!brick) continue;
+                // Its last layer is the first of the next, which holds the same there.
+                const SampleBox part =
+                    cut(box, low, Index3((low + Index3::Constant(n - 1)).cwiseMin(last)));
+                for_rows(box, part, [&](std::size_t place, const Index3& at, int count) {
+                    const Index3 in = at - low;
+                    const T* const row =
+                        brick + (in[2] * Bricks::samples + in[1]) * Bricks::samples + in[0];
+                    for (int s = 0; s < count; ++s) {
+                        out[place + static_cast<std::size_t>(s)] =
+                            static_cast<float>(row[static_cast<std::ptrdiff_t>(s) * box.every]);
+                    }
+                });
+            }
+        }
+    }
+}
+
+template <class T>
+void copy(const Field& field, const Box& box, float* out) {
+    copy_frames<T>(field, box, out);
+    if (const Bricks* bricks = field.samples().bricks()) copy_bricks<T>(field, *bricks, box, out);
+}
+
+template <class T>
+Volume thinned_in(const Field& field, const Geometry& geometry, int every) {
+    std::vector<T> samples;
+    samples.reserve(static_cast<std::size_t>(sample_count(geometry)));
+    for (int k = 0; k < geometry.size[2]; ++k) {  // a layer at a time: floats are not kept
+        const Index3 low(0, 0, k), size(geometry.size[0], geometry.size[1], 1);
+        for (const float value : sample_block(field, low, size, every)) {
+            samples.push_back(
+                static_cast<T>(std::is_integral_v<T> ? std::nearbyint(value) : value));
+        }
+    }
+    return Volume(geometry, std::move(samples));
+}
+
+}  // namespace
+
+std::vector<float> sample_block(const Field& field, const Index3& low, const Index3& size,
+                                int every) {
+    const Box box{low, size, every};
+    std::vector<float> values(static_cast<std::size_t>(size.cast<std::int64_t>().prod()),
+                              static_cast<float>(field.background()));
+    switch (field.samples().type()) {
+        case SampleType::uint8:
+            copy<std::uint8_t>(field, box, values.data());
+            break;
+        case SampleType::int16:
+            copy<std::int16_t>(field, box, values.data());
+            break;
+        case SampleType::uint16:
+            copy<std::uint16_t>(field, box, values.data());
+            break;
+        case SampleType::float32:
+            copy<float>(field, box, values.data());
+            break;
+    }
+    return values;
+}
+
+Volume thinned(const Field& field, int every) {
+    Geometry geometry = field.geometry();
+    geometry.size = thinned_size(geometry.size, every);
+    geometry.spacing *= every;
+    switch (field.samples().type()) {
+        case SampleType::uint8:
+            return thinned_in<std::uint8_t>(field, geometry, every);
+        case SampleType::int16:
+            return thinned_in<std::int16_t>(field, geometry, every);
+        case SampleType::uint16:
+            return thinned_in<std::uint16_t>(field, geometry, every);
+        case SampleType::float32:
+            break;
+    }
+    return thinned_in<float>(field, geometry, every);
+}
+
+bool same_samples(const Field& a, const Field& b) {
+    const Moment &m = a.moment(), &n = b.moment();
+    return a.shared_samples() == b.shared_samples() && m.from == n.from && m.to == n.to &&
+           m.weight == n.weight;
+}
+
+bool same_but_for_edits(const Field& a, const Field& b) {
+    const Moment &m = a.moment(), &n = b.moment();
+    const auto data = [](const Field& f, std::size_t frame) {
+        return f.samples().frames()[frame].volume.data();
+    };
+    // By the frames at hand: others may have come into memory.
+    return a.solid() == b.solid() && a.background() == b.background() &&
+           a.geometry() == b.geometry() && a.samples().type() == b.samples().type() &&
+           m.weight == n.weight && data(a, m.from) == data(b, n.from) &&
+           (m.weight == 0 || data(a, m.to) == data(b, n.to));
+}
+
+SampleBox changed_between(const Field& a, const Field& b) {
+    if (!same_but_for_edits(a, b)) return whole_box(b.geometry());
+    const Bricks *old = a.samples().bricks(), *now = b.samples().bricks();
+    SampleBox changed;
+    if (!old && !now) return changed;
+    const Index3 count = (now ? now : old)->count;
+    const std::size_t bricks = (now ? now : old)->at.size();
+    const auto of = [](const Bricks* all, std::size_t i) {
+        return all ? all->at[i].get() : nullptr;
+    };
+    for (std::size_t i = 0; i < bricks; ++i) {
+        if (of(old, i) == of(now, i)) continue;
+        const auto at = static_cast<int>(i);
+        const Index3 low = Bricks::cells * Index3(at % count[0], at / count[0] % count[1],
+                                                  at / (count[0] * count[1]));
+        changed = united(changed, {low, low + Index3::Constant(Bricks::cells)});
+    }
+    return changed;
+}
+
+}  // namespace palpate::viewer

@@ -1,0 +1,34 @@
+// A box of a field's samples in one piece, whatever they are stored as: what painters and the
+// surface are made from. Costs the box, never the volume.
+#pragma once
+
+#include <vector>
+
+#include "palpate/field.hpp"
+
+namespace palpate::viewer {
+
+/// Samples [data units] at `low` + (0, 0, 0) to `size` - 1, x fastest, at the field's moment and
+/// with its edits. `every`: of the grid that has only every so manieth sample along each axis (at
+/// least 1), in whose indices the box is. Outside the grid they are background.
+std::vector<float> sample_block(const Field& field, const Index3& low, const Index3& size,
+                                int every = 1);
+
+/// How many samples along each axis are left of `size` if every so manieth is taken.
+inline Index3 thinned_size(const Index3& size, int every) {
+    return (size.array() - 1) / every + 1;
+}
+
+/// The field as it is at its moment, of every so manieth sample, as a volume in the same type
+/// (between two frames rounded to it).
+Volume thinned(const Field& field, int every);
+
+/// True if both are the same samples at the same moment.
+bool same_samples(const Field& a, const Field& b);
+/// The samples that differ between two versions on one grid, or a few more: whole bricks, or all
+/// where more than edits has changed.
+SampleBox changed_between(const Field& a, const Field& b);
+/// False where more than edits differs: the moment, the volume under them, the side that is solid.
+bool same_but_for_edits(const Field& a, const Field& b);
+
+}  // namespace palpate::viewer

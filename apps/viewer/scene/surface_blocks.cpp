@@ -1,0 +1,167 @@
+// Blocks, renewed by several threads.
+#include "apps/viewer/scene/surface_blocks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <mutex>
+#include <thread>
+
+#include "apps/viewer/scene/block_mesh.hpp"
+#include "apps/viewer/scene/sample_block.hpp"
+
+namespace palpate::viewer {
+namespace {
+
+/// work(item) for all of them, in as many threads as there are processors, until one says no.
+/// Throws what one of them throws. Threads keep the caller's priority.
+bool for_each_at_once(const std::vector<std::size_t>& items,
+                      const std::function<bool(std::size_t)>& work) {
+    std::atomic<std::size_t> next{0};
+    std::atomic<bool> stopped{false};
+    std::mutex mutex;
+    std::exception_ptr error;
+    const auto run = [&] {
+        try {
+            for (std::size_t i = next++; i < items.size() && !stopped; i = next++) {
+                if (!work(items[i])) stopped = true;
+            }
+        } catch (...) {
+            const std::lock_guard lock(mutex);
+            error = std::current_exception();
+            stopped = true;
+        }
+    };
+    {
+        const std::size_t processors = std::max(1U, std::thread::hardware_concurrency());
+        std::vector<std::jthread> threads;
+        for (std::size_t t = 1; t < std::min(processors, items.size()); ++t) {
+            threads.emplace_back(run);
+        }
+        run();
+    }
+    if (error) std::rethrow_exception(error);
+    return !stopped;
+}
+
+std::vector<std::size_t> zeros_of(const std::vector<std::uint8_t>& flags) {
+    std::vector<std::size_t> places;
+    for (std::size_t i = 0; i < flags.size(); ++i) {
+        if (flags[i] == 0) places.push_back(i);
+    }
+    return places;
+}
+
+}  // namespace
+
+SurfaceBlocks::SurfaceBlocks(const Geometry& geometry, int every)
+    : geometry_(geometry), every_(every) {
+    // The cells of the ring count: from -1 to the last sample.
+    const Index3 cells_there = thinned_size(geometry.size, every) + Index3::Ones();
+    count_ = (cells_there.array() + cells - 1) / cells;
+    const auto blocks = static_cast<std::size_t>(count_.cast<std::int64_t>().prod());
+    meshes_.resize(blocks);
+    simple_.resize(blocks);
+    fresh_.resize(blocks, 0);
+    fresh_simple_.resize(blocks, 0);
+    area_.resize(blocks, 0);
+}
+
+Index3 SurfaceBlocks::first_cell(std::size_t block) const {
+    const auto b = static_cast<int>(block);
+    const Index3 at(b % count_[0], b / count_[0] % count_[1], b / (count_[0] * count_[1]));
+    return at * cells - Index3::Ones();
+}
+
+void SurfaceBlocks::mark(const SampleBox& changed) {
+    if (changed.empty()) return;
+    Index3 low, high;
+    for (int a = 0; a < 3; ++a) {
+        // Samples of the thinned grid; a block looks at those from one before its first cell to
+        // two after its last.
+        const int first = (std::max(changed.low[a], 0) + every_ - 1) / every_;
+        const int last = std::min(changed.high[a], geometry_.size[a] - 1) / every_;
+        if (last < first || changed.high[a] < 0) return;
+        low[a] = std::max(0, (first - cells) / cells);
+        while ((low[a] + 1) * cells < first) ++low[a];  // its last sample: low * cells + cells
+        high[a] = std::min(count_[a] - 1, (last + 2) / cells);
+    }
+    for (int k = low[2]; k <= high[2]; ++k) {
+        for (int j = low[1]; j <= high[1]; ++j) {
+            for (int i = low[0]; i <= high[0]; ++i) {
+                fresh_[(static_cast<std::size_t>(k) * count_[1] + j) * count_[0] + i] = 0;
+            }
+        }
+    }
+}
+
+std::size_t SurfaceBlocks::outdated() const {
+    return static_cast<std::size_t>(std::ranges::count(fresh_, 0));
+}
+
+SurfaceBlocks::Outcome SurfaceBlocks::renew(const Field& field, double isovalue,
+                                            const std::function<bool()>& go_on,
+                                            std::size_t most_triangles) {
+    std::atomic<std::size_t> triangles{triangle_count(meshes_)};
+    std::atomic<bool> too_many{false};
+    const bool all = for_each_at_once(zeros_of(fresh_), [&](std::size_t b) {
+        if (!go_on()) return false;
+        auto mesh = block_mesh(field, isovalue, first_cell(b), cells, every_);
+        const auto count = [](const auto& m) { return m ? m->triangle_count() : 0; };
+        triangles += count(mesh) - count(meshes_[b]);
+        meshes_[b] = std::move(mesh);
+        area_[b] = meshes_[b] ? area_of(*meshes_[b]) : 0;
+        fresh_[b] = 1;
+        fresh_simple_[b] = 0;
+        if (triangles > most_triangles) too_many = true;
+        return !too_many;
+    });
+    if (too_many) return Outcome::too_many;
+    return all ? Outcome::done : Outcome::interrupted;
+}
+
+/// Simplifies what is not, with the present grain. False if that has left too many.
+bool SurfaceBlocks::simplify(std::size_t most_triangles, double slack) {
+    for_each_at_once(zeros_of(fresh_simple_), [&](std::size_t b) {
+        simple_[b] = nullptr;
+        if (meshes_[b]) {
+            simple_[b] = std::make_shared<const DrawnMesh>(
+                clustered(*meshes_[b], static_cast<float>(grain_)));
+        }
+        fresh_simple_[b] = 1;
+        return true;
+    });
+    return double(triangle_count(simple_)) <= slack * double(most_triangles);
+}
+
+std::shared_ptr<const DrawnMesh> SurfaceBlocks::simplified(std::size_t most_triangles) {
+    const auto refresh_all = [&] { std::ranges::fill(fresh_simple_, std::uint8_t{0}); };
+    if (triangle_count(meshes_) <= most_triangles) {
+        simple_.assign(simple_.size(), nullptr);
+        refresh_all();
+        grain_ = 0;
+        return joined(meshes_);
+    }
+    // A surface that grows may have half as many again before all of it is made coarser.
+    if (grain_ > 0 && simplify(most_triangles, 1.5)) return joined(simple_);
+    const double most = static_cast<double>(std::max<std::size_t>(most_triangles, 1));
+    if (grain_ == 0) {
+        double area = 0;
+        for (const double a : area_) area += a;
+        // About three triangles a box that the surface goes through, and more where blocks meet.
+        grain_ = 1.2 * std::sqrt(3 * area / most);
+        refresh_all();
+        if (simplify(most_triangles, 1.25)) return joined(simple_);
+    }
+    const double widest = 0.5 * cells * every_ * geometry_.spacing.minCoeff();
+    while (grain_ < widest) {
+        grain_ *= std::max(1.1, std::sqrt(double(triangle_count(simple_)) / most));
+        refresh_all();
+        if (simplify(most_triangles, 1.25)) return joined(simple_);
+    }
+    // Of noise even the coarsest blocks are too many: the seams between them go, too.
+    const auto coarse = joined(simple_);
+    return std::make_shared<const DrawnMesh>(viewer::simplified(*coarse, most_triangles));
+}
+
+}  // namespace palpate::viewer

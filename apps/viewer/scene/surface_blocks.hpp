@@ -1,0 +1,58 @@
+// The isosurface in blocks of cells, so that a change costs the blocks that it touches.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "apps/viewer/scene/drawn_mesh.hpp"
+#include "palpate/field.hpp"
+
+namespace palpate::viewer {
+
+/// The surface of a field of which every so manieth sample along each axis is taken; made piece by
+/// piece, by as many threads as there are processors. Blocks meet without cracks, simplified ones
+/// too, and do not depend on what was there before: the same field has the same blocks.
+class SurfaceBlocks {
+  public:
+    static constexpr int cells = 32;  ///< along each axis of a block
+
+    /// Nothing is made yet. `every` at least 1.
+    SurfaceBlocks(const Geometry& geometry, int every);
+
+    int every() const { return every_; }
+    /// These samples, of the full grid, are no longer what they were: the blocks that they touch
+    /// are to be made again.
+    void mark(const SampleBox& changed);
+    /// How many blocks are to be made.
+    std::size_t outdated() const;
+
+    enum class Outcome : std::uint8_t { done, interrupted, too_many };
+    /// Makes what is to be made, as long as `go_on` (called from several threads) says so, and
+    /// until there are more than `most_triangles`. What was made stays made.
+    Outcome renew(const Field& field, double isovalue, const std::function<bool()>& go_on,
+                  std::size_t most_triangles);
+
+    std::size_t triangles() const { return triangle_count(meshes_); }
+    /// The blocks, always in the same order.
+    const MeshBlocks& meshes() const { return meshes_; }
+    /// One mesh of at most about `most_triangles`; blocks that did not change are not simplified
+    /// again.
+    std::shared_ptr<const DrawnMesh> simplified(std::size_t most_triangles);
+
+  private:
+    Index3 first_cell(std::size_t block) const;
+    bool simplify(std::size_t most_triangles, double slack);
+
+    Geometry geometry_;
+    int every_;
+    Index3 count_;
+    MeshBlocks meshes_, simple_;
+    std::vector<std::uint8_t> fresh_;         // the mesh is what it should be
+    std::vector<std::uint8_t> fresh_simple_;  // the simple one is made from the mesh
+    std::vector<double> area_;                // [mm^2]
+    double grain_ = 0;                        // [mm] of the simple ones
+};
+
+}  // namespace palpate::viewer

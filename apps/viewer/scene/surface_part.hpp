@@ -1,0 +1,48 @@
+// The isosurface as VTK's actors, each of several blocks: none so large that drawing it is long.
+#pragma once
+
+#include <vtkActor.h>
+#include <vtkSmartPointer.h>
+
+#include <atomic>
+#include <memory>
+#include <vector>
+
+#include "apps/viewer/scene/drawn_mesh.hpp"
+
+namespace palpate::viewer {
+
+class SurfacePart {
+  public:
+    struct Actor {
+        std::size_t first, last;          ///< its blocks, the last not included
+        vtkSmartPointer<vtkActor> actor;  ///< null where these have no triangle
+    };
+
+    /// While `give_up` is true nothing is drawn; must outlive the actors. `hardware`: drawn by
+    /// graphics hardware.
+    SurfacePart(const std::atomic<bool>& give_up, bool hardware)
+        : give_up_(give_up), hardware_(hardware) {}
+
+    /// Goes on to other blocks. Actors whose blocks are the same stay; those that are no longer
+    /// wanted are handed to `gone`. If it is given up in the middle, the rest is made the next
+    /// time.
+    template <class Gone>
+    void show(const MeshBlocks& blocks, Gone gone) {
+        for (Actor& actor : change_to(blocks)) {
+            if (actor.actor) gone(actor.actor);
+        }
+    }
+    const std::vector<Actor>& actors() const { return actors_; }
+
+  private:
+    std::vector<Actor> change_to(const MeshBlocks& blocks);
+    void divide();
+
+    const std::atomic<bool>& give_up_;
+    bool hardware_;
+    MeshBlocks blocks_;
+    std::vector<Actor> actors_;
+};
+
+}  // namespace palpate::viewer
