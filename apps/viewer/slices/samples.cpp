@@ -47,6 +47,12 @@ SliceSamples::SliceSamples(Field field, const SlicePlane& plane)
     go_to(0);
 }
 
+void SliceSamples::use(const Field& field) {
+    field_ = field;
+    for (Layer& layer : layers_) layer.number = nowhere;
+    go_to(position_);
+}
+
 double SliceSamples::nearest(double position) const {
     if (std::isnan(position)) return 0;
     return std::clamp(position, -2.0, field_.geometry().size[plane_.axis] + 1.0);
@@ -73,6 +79,8 @@ void SliceSamples::load(Layer& layer, int number) const {
     const Geometry& geometry = field_.geometry();
     layer.values.assign(count, static_cast<float>(field_.background()));
     if (number < 0 || number >= geometry.size[plane_.axis]) return;
+    const Moment& moment = field_.moment();
+    if (field_.samples().bricks() || moment.weight > 0) return load_changed(layer);
     const std::array<std::ptrdiff_t, 3> stride{
         1, geometry.size[0], static_cast<std::ptrdiff_t>(geometry.size[0]) * geometry.size[1]};
     const auto of = [&](int axis) { return stride[static_cast<std::size_t>(axis)]; };
@@ -85,9 +93,9 @@ void SliceSamples::load(Layer& layer, int number) const {
         s.first += (size_[1] - 1) * s.along_v;
         s.along_v = -s.along_v;
     }
-    const void* const data = field_.volume().data();
+    const void* const data = field_.samples().frames()[moment.from].volume.data();
     float* const to = layer.values.data();
-    switch (field_.volume().type()) {
+    switch (field_.samples().type()) {
         case SampleType::uint8:
             return copy_layer<std::uint8_t>(data, s, size_[0], size_[1], to);
         case SampleType::int16:
@@ -96,6 +104,25 @@ void SliceSamples::load(Layer& layer, int number) const {
             return copy_layer<std::uint16_t>(data, s, size_[0], size_[1], to);
         case SampleType::float32:
             return copy_layer<float>(data, s, size_[0], size_[1], to);
+    }
+}
+
+/// Of edited samples, or between two frames: one by one.
+void SliceSamples::load_changed(Layer& layer) const {
+    const Geometry& geometry = field_.geometry();
+    Index3 at;
+    at[plane_.axis] = layer.number;
+    const auto along = [&](const ScreenAxis& screen, int i) {
+        at[screen.axis] = screen.flip ? geometry.size[screen.axis] - 1 - i : i;
+    };
+    for (int v = 0; v < size_[1]; ++v) {
+        along(plane_.down, v);
+        float* const to =
+            layer.values.data() + static_cast<std::ptrdiff_t>(v + 1) * (size_[0] + 2) + 1;
+        for (int u = 0; u < size_[0]; ++u) {
+            along(plane_.right, u);
+            to[u] = static_cast<float>(field_.samples().sample(at, field_.moment()));
+        }
     }
 }
 

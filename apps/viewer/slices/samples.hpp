@@ -22,6 +22,8 @@ class SliceSamples {
   public:
     SliceSamples(Field field, const SlicePlane& plane);
 
+    /// Goes on with another version of the same grid, at the same place.
+    void use(const Field& field);
     /// Goes to `position`, in layers along the grid axis from 0. Outside the grid all is
     /// background.
     void go_to(double position);
@@ -49,6 +51,7 @@ class SliceSamples {
 
   private:
     void load(Layer& layer, int number) const;
+    void load_changed(Layer& layer) const;
 
     Field field_;
     SlicePlane plane_;

@@ -3,6 +3,8 @@
 
 #include <QElapsedTimer>
 
+#include <optional>
+
 #include "apps/viewer/slices/slice_pane.hpp"
 #include "apps/viewer/slices/slice_picture.hpp"
 
@@ -12,9 +14,10 @@ struct SlicePane::Content {
     SlicePlane plane;
     SliceSamples samples;
     GreyWindow usual;
-    bool usual_given = false;  ///< from outside
-    QImage picture;            ///< grey levels and contour; null: to be made
-    QElapsedTimer made;        ///< since then
+    bool usual_given = false;    ///< from outside
+    QImage picture;              ///< grey levels and contour; null: to be made
+    std::optional<Field> newer;  ///< not yet in samples: another version of the same grid
+    QElapsedTimer made;          ///< since then
     qint64 took_ms = 0;
 
     Content(const Field& field, const SlicePlane& across, const GreyWindow& window)

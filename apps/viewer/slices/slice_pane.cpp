@@ -6,6 +6,7 @@
 #include <QPainter>
 
 #include <cmath>
+#include <stdexcept>
 
 #include "apps/viewer/slices/slice_content.hpp"
 #include "apps/viewer/slices/slice_marks.hpp"
@@ -59,6 +60,14 @@ void SlicePane::set_field(const Field& field, double isovalue) {
     setAccessibleName(tr("%1 slice").arg(title()));
     set_crosshair(crosshair_);
     picture_changed();
+}
+
+void SlicePane::update_field(const Field& field) {
+    if (!content_ || geometry() != field.geometry()) {
+        throw std::invalid_argument("the pane shows no other version of these data");
+    }
+    content_->newer = field;
+    update();
 }
 
 void SlicePane::clear() {
@@ -150,15 +159,15 @@ void SlicePane::picture_changed() {
     update();
 }
 
-/// Where need be. A hand moves all the time, and a slice of a large volume takes milliseconds: as
-/// long as the slice alone has changed, most of the time is left to others, and it is drawn a
-/// little later.
+/// Where need be. A hand moves all the time, data may change all the time, and a slice of a large
+/// volume takes milliseconds: as long as only these have changed, most of the time is left to
+/// others, and it is drawn a little later.
 void SlicePane::make_picture(const SliceMap& where) {
     Content& c = *content_;
     const double scale = devicePixelRatioF();
     const bool moved = layer() != c.samples.position();
     if (!c.picture.isNull() && c.picture.size() == (QSizeF(size()) * scale).toSize()) {
-        if (!moved) return;
+        if (!moved && !c.newer) return;
         const auto wait = rest * c.took_ms - c.made.elapsed();
         if (wait > 0) {
             if (!later_.isActive()) later_.start(static_cast<int>(wait) + 1);
@@ -166,6 +175,8 @@ void SlicePane::make_picture(const SliceMap& where) {
         }
     }
     c.made.start();
+    if (c.newer) c.samples.use(*c.newer);
+    c.newer.reset();
     c.samples.go_to(layer());
     c.picture = slice_picture(c.samples, where, {low_, high_}, isovalue_, size(), scale);
     c.took_ms = c.made.elapsed();

@@ -29,6 +29,11 @@ class SlicePane : public QWidget {
     /// are the usual ones. For the same samples with another solid side or background all of these
     /// stay.
     void set_field(const Field& field, double isovalue);
+    /// Another version of the data that are shown, on the same grid: edited, or at another moment.
+    /// All stays but picture and contour; drawn as often as the pane can be without being busy most
+    /// of the time, the newest last. Throws std::invalid_argument where nothing, or another grid,
+    /// is shown.
+    void update_field(const Field& field);
     void clear();
     /// [data units] Whose contour is shown.
     void set_isovalue(double isovalue);
