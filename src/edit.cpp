@@ -55,8 +55,8 @@ class Touch {
         const Vec3 high = (from_.cwiseMax(from_ + way_) + reach).cwiseQuotient(spacing_);
         // Kept within what an index can hold; the grid cuts the rest.
         const Vec3 most = Vec3::Constant(1 << 21);
-        return {low.cwiseMax(-most).array().ceil().cast<int>(),
-                high.cwiseMin(most).array().floor().cast<int>()};
+        return {low.cwiseMax(-most).cwiseMin(most).array().ceil().cast<int>(),
+                high.cwiseMin(most).cwiseMax(-most).array().floor().cast<int>()};
     }
 
   private:
