@@ -8,7 +8,9 @@ namespace palpate::app {
 DataInHand::DataInHand(const LoadedVolume& loaded, const Field& field,
                        const io::LoaderSettings& settings, std::function<void()> on_change)
     : field_(field) {
-    if (loaded.sequence.count() > 1) {
+    if (loaded.live) {
+        player_ = std::make_unique<Player>(loaded.live, std::move(on_change));
+    } else if (loaded.sequence.count() > 1) {
         player_ = std::make_unique<Player>(loaded.sequence, settings, std::move(on_change));
     } else {
         sculptor_ = std::make_unique<Sculptor>(field, std::move(on_change));
@@ -30,6 +32,11 @@ Field DataInHand::field() const {
     Session session{{field_, {}, {}, {}}, {}};
     bring(session);
     return session.renderer.field;
+}
+
+void DataInHand::set_field(const Field& field) {
+    field_ = field;
+    if (sculptor_) sculptor_->set_field(field);
 }
 
 void DataInHand::attach(Servo* servo) {

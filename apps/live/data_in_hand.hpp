@@ -26,6 +26,9 @@ class DataInHand {
 
     /// The field as it is now: with the edits, or the frames and the moment.
     Field field() const;
+    /// Another side is solid from now on, or another background lies round the grid. The samples
+    /// stay.
+    void set_field(const Field& field);
     /// Whom to watch and to tell; it must stay until the next attach(). Null: nobody.
     void attach(Servo* servo);
     /// Brings a session that is about to run to what the data are now.

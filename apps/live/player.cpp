@@ -39,6 +39,12 @@ Player::Player(io::Sequence sequence, const io::LoaderSettings& settings,
     thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
 
+Player::Player(std::shared_ptr<const io::LiveFrames> live, std::function<void()> on_change)
+    : on_change_(std::move(on_change)), live_(std::move(live)) {
+    settings_.loop = false;
+    thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+}
+
 Player::~Player() {
     thread_.request_stop();
     thread_.join();
@@ -58,7 +64,15 @@ void Player::play(double speed) {
     send(command::Speed{speed});
 }
 
+void Player::require_sequence() const {
+    if (live_) {
+        throw std::invalid_argument(
+            "a live source goes its own way: it can be paused and played, no more");
+    }
+}
+
 void Player::seek(double time) {
+    require_sequence();
     if (!std::isfinite(time)) throw std::invalid_argument("the time is not finite");
     const std::scoped_lock lock(mutex_);
     wanted_ = std::clamp(time, sequence_.times.front(), sequence_.times.back());
@@ -66,6 +80,7 @@ void Player::seek(double time) {
 }
 
 void Player::step(int frames) {
+    require_sequence();
     const std::scoped_lock lock(mutex_);
     speed_ = 0;
     send(command::Speed{0});
@@ -83,6 +98,7 @@ void Player::step(int frames) {
 }
 
 void Player::set_loop(bool on) {
+    require_sequence();
     const std::scoped_lock lock(mutex_);
     if (on == settings_.loop) return;
     wanted_ = within(wanted_.value_or(time_));
@@ -93,6 +109,7 @@ void Player::set_loop(bool on) {
 
 /// A time with laps as one of the sequence.
 double Player::within(double time) const {
+    if (live_) return time;
     const double begin = sequence_.times.front();
     if (!settings_.loop || !(sequence_.period > 0)) return time;
     const double into = std::fmod(time - begin, sequence_.period);
@@ -102,6 +119,18 @@ double Player::within(double time) const {
 PlayView Player::view() const {
     const std::scoped_lock lock(mutex_);
     PlayView view;
+    if (live_) {
+        view.live = true;
+        view.loop = false;
+        view.speed = speed_;
+        view.time = time_;
+        view.problem = live_->status().problem;
+        if (!sent_.samples) return view;
+        for (const Frame& frame : sent_.samples->frames()) view.frames.push_back(frame.time);
+        view.begin = view.loaded_from = view.frames.front();
+        view.end = view.loaded_to = view.frames.back();
+        return view;
+    }
     view.frames = sequence_.times;
     view.begin = sequence_.times.front();
     view.end = settings_.loop ? view.begin + sequence_.period : sequence_.times.back();
@@ -145,15 +174,21 @@ void Player::run(const std::stop_token& stop) {
     }
 }
 
+std::shared_ptr<const Samples> Player::newest() const {
+    return live_ ? live_->newest() : loader_->newest();
+}
+
 void Player::attend() {
     if (servo_) {
         if (const auto now = servo_->snapshot()) time_ = now->session.moment;
     }
-    loader_->look(wanted_.value_or(time_), speed_);
-    const auto newest = loader_->newest();
+    if (loader_) loader_->look(wanted_.value_or(time_), speed_);
+    const std::shared_ptr<const Samples> newest = this->newest();
     if (!newest || !servo_) return;
     if (newest != sent_.samples) {
-        const command::Samples next{newest, sent_.version + 1, recipe_of(*newest)};
+        // What comes from outside cannot be made again.
+        const command::Samples next{newest, sent_.version + 1,
+                                    live_ ? nullptr : recipe_of(*newest)};
         if (!servo_->send(next)) return;  // again in a moment
         sent_ = next;
         if (on_change_) on_change_();

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "io/frame_loader.hpp"
+#include "io/live_frames.hpp"
 #include "palpate/servo.hpp"
 
 namespace palpate::app {
@@ -24,6 +25,7 @@ struct PlayView {
     bool loop = true;
     double loaded_from = 0, loaded_to = 0;  ///< what is in memory
     std::string problem;                    ///< why frames are missing
+    bool live = false;  ///< from another program: `frames` are the last ones, nowhere to go
 };
 
 /// Any thread may call anything.
@@ -33,6 +35,9 @@ class Player {
     /// it must only wake its owner. Throws std::invalid_argument as io::FrameLoader.
     Player(io::Sequence sequence, const io::LoaderSettings& settings,
            std::function<void()> on_change = {});
+    /// The same for what another program pushes: it can be held and let go, no more.
+    explicit Player(std::shared_ptr<const io::LiveFrames> live,
+                    std::function<void()> on_change = {});
     ~Player();
     Player(const Player&) = delete;
     Player& operator=(const Player&) = delete;
@@ -42,7 +47,8 @@ class Player {
     /// At so many seconds a second, backwards if negative; 0 stops. Throws std::invalid_argument
     /// beyond 1000.
     void play(double speed);
-    /// To a time of the sequence, as soon as its frames are in memory.
+    /// To a time of the sequence, as soon as its frames are in memory. This and what follows throws
+    /// std::invalid_argument for a live source.
     void seek(double time);
     /// So many frames on, or back, and stops there.
     void step(int frames);
@@ -60,12 +66,15 @@ class Player {
     void attend();
     void send(const Command& command) const;
     double within(double time) const;
+    void require_sequence() const;
+    std::shared_ptr<const Samples> newest() const;
 
     mutable std::mutex mutex_;
     const io::Sequence sequence_;
     io::LoaderSettings settings_;
     const std::function<void()> on_change_;
-    std::unique_ptr<io::FrameLoader> loader_;
+    std::unique_ptr<io::FrameLoader> loader_;     // of a sequence
+    std::shared_ptr<const io::LiveFrames> live_;  // of a live source
     Servo* servo_ = nullptr;
     double speed_ = 0;
     double time_ = 0;               // as the session told it last; laps included

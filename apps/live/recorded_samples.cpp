@@ -63,7 +63,14 @@ std::shared_ptr<const Samples> RecordedSamples::frames_of(const FramesOf& frames
         window.push_back({frames.times[i], at->second, number});
     }
     read_ = std::move(held);
-    return std::make_shared<const Samples>(std::move(window), frames.period);
+    frames_ = std::make_shared<const Samples>(std::move(window), frames.period);
+    return frames_;
+}
+
+std::shared_ptr<const Samples> RecordedSamples::of(std::uint64_t version) const {
+    const auto known = versions_.find(version);
+    if (frames_ || known == versions_.end()) return frames_ ? frames_ : versions_.at(0);
+    return known->second;
 }
 
 }  // namespace palpate::app

@@ -23,6 +23,9 @@ class RecordedSamples {
     /// std::invalid_argument for samples that cannot be made again, and as check(Edit).
     Command whole(const Command& recorded);
 
+    /// The samples of a version that was made before; of frames those that came last.
+    std::shared_ptr<const Samples> of(std::uint64_t version) const;
+
   private:
     std::shared_ptr<const Samples> made(const command::Samples& recorded);
     std::shared_ptr<const Samples> frames_of(const FramesOf& frames);
@@ -30,6 +33,7 @@ class RecordedSamples {
     std::map<std::uint64_t, std::shared_ptr<const Samples>> versions_;
     std::function<Volume(int)> frame_;
     std::map<int, Volume> read_;  // of the last ones
+    std::shared_ptr<const Samples> frames_;
 };
 
 }  // namespace palpate::app

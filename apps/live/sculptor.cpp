@@ -44,6 +44,17 @@ void check(const HandBrush& brush) {
     }
 }
 
+std::optional<edit::Stroke> stroke_of(const HandBrush& hand, const Field& field, double isovalue,
+                                      const Vec3& from, const Vec3& to, double dt) {
+    if (!std::isfinite(isovalue) || !(dt > 0)) return std::nullopt;
+    edit::Stroke stroke{brush_for(hand.kind, field, isovalue, hand.radius), from, to};
+    stroke.brush.hardness = hand.hardness;
+    stroke.brush.strength = -std::expm1(-hand.rate * dt);
+    if (hand.value) stroke.brush.value = *hand.value;
+    if (!(stroke.brush.strength > 0)) return std::nullopt;
+    return stroke;
+}
+
 Sculptor::Sculptor(const Field& field, std::function<void()> on_change)
     : on_change_(std::move(on_change)),
       field_(field),
@@ -62,6 +73,11 @@ void Sculptor::attach(Servo* servo) {
     servo_ = servo;
     stroke_.reset();
     fresh_ = true;
+}
+
+void Sculptor::set_field(const Field& field) {
+    const std::scoped_lock lock(mutex_);
+    field_ = field;
 }
 
 void Sculptor::set_brush(const std::optional<HandBrush>& brush) {
@@ -146,6 +162,7 @@ void Sculptor::dab() {
     const SessionTick& session = now->session;
     const bool works = session.device.status == DeviceStatus::ready && !session.frozen &&
                        !session.clutched && now->forces_on &&
+                       session.tick.proxy.mode == Mode::constrained &&
                        session.tick.proxy.status == UpdateStatus::done;
     if (!works) return stroke_.reset();
     if (stroke_ && dab_from(*stroke_, *now)) last_dab_ = session.tick.time;
@@ -156,16 +173,12 @@ void Sculptor::dab() {
 /// True if it changed something.
 bool Sculptor::dab_from(const Stroke& from, const Snapshot& now) {
     const Tick& tick = now.session.tick;
-    if (!std::isfinite(tick.proxy.isovalue)) return false;
-    const double dt = std::min(tick.time - from.time, longest_dab);
-    Brush brush = brush_for(brush_->kind, field_, tick.proxy.isovalue, brush_->radius);
-    brush.hardness = brush_->hardness;
-    brush.strength = -std::expm1(-brush_->rate * dt);
-    if (brush_->value) brush.value = *brush_->value;
-    if (!(brush.strength > 0)) return false;
+    const auto stroke = stroke_of(*brush_, field_, tick.proxy.isovalue, from.at, tick.proxy.scp,
+                                  std::min(tick.time - from.time, longest_dab));
+    if (!stroke) return false;
     const std::shared_ptr<const Samples> before = editor_.samples();
     try {
-        edit(edit::Stroke{brush, from.at, tick.proxy.scp}, fresh_ ? EditStep::own : EditStep::same);
+        edit(*stroke, fresh_ ? EditStep::own : EditStep::same);
     } catch (const std::invalid_argument&) {
         return false;  // a value on the wrong side of the level that is felt now: nothing to do
     }

@@ -14,19 +14,25 @@
 
 namespace palpate::app {
 
-/// A brush in the hand. It works where the proxy is, along the way that it goes.
+/// A brush in the hand. It works where the proxy touches the surface, along the way that it goes:
+/// in the air it would have carved away what is to be felt before it is.
 struct HandBrush {
     BrushKind kind = BrushKind::carve;
     double radius = 3;    ///< [mm, physical]
     double hardness = 1;  ///< Brush::hardness
     double rate = 10;     ///< [1/s] after a second 1 - exp(-rate) of the work is done; inf: at once
     /// [data units] What it leaves; none: what brush_for() takes. Paint needs one.
-    std::optional<double> value;
+    std::optional<double> value = {};
 };
 /// One that carves a few voxels.
 HandBrush usual_brush(const Geometry& geometry);
 /// Throws std::invalid_argument, saying what is wrong, for a brush that cannot work.
 void check(const HandBrush& brush);
+
+/// What the brush does while a proxy in contact goes from one point to another [mm, physical] in
+/// `dt` [s]; nothing where it has nothing to do. `isovalue` is the level felt.
+std::optional<edit::Stroke> stroke_of(const HandBrush& brush, const Field& field, double isovalue,
+                                      const Vec3& from, const Vec3& to, double dt);
 
 /// Samples in work, as they are at one moment.
 struct Work {
@@ -49,6 +55,8 @@ class Sculptor {
     /// Whom to watch and to tell; it must stay until the next attach(). Null: nobody. It begins
     /// with the samples as they are, and knows their version.
     void attach(Servo* servo);
+    /// Another side is solid from now on, or another background lies round the grid.
+    void set_field(const Field& field);
     /// No brush: the hand only feels. Throws as check().
     void set_brush(const std::optional<HandBrush>& brush);
     /// Makes an edit, a step of its own for undo(). Throws std::invalid_argument as check(Edit),

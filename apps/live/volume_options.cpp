@@ -9,12 +9,54 @@
 #include "io/number.hpp"
 #include "io/raw_options.hpp"
 #include "palpate/renderer.hpp"
+#include "scenes/beating.hpp"
 #include "scenes/volumes.hpp"
 
 namespace palpate::app {
 namespace {
 
 constexpr std::string_view synthetic_prefix = "synthetic:";
+constexpr std::string_view live_prefix = "live:";
+/// [s] For the first frame of a live source.
+constexpr double longest_wait = 5;
+
+/// "synthetic:beating", with or without a size.
+bool is_beating(const std::string& name) {
+    const std::string scene = std::string(synthetic_prefix) + "beating";
+    return name == scene || name.starts_with(scene + ":");
+}
+
+LoadedVolume synthetic(const scenes::Scene& scene, const std::string& name) {
+    LoadedVolume loaded{scene.volume, name};
+    loaded.format = "synthetic (" + scene.description + ")";
+    loaded.isovalue = scene.isovalue;
+    return loaded;
+}
+
+/// The synthetic volume that is a sequence.
+LoadedVolume make_beating(const VolumeOptions& options, std::optional<SampleType> type) {
+    const scenes::Scene first = scenes::make_volume(options.volume, type);
+    const Geometry grid = first.volume.geometry();
+    const SampleType kept = first.volume.type();
+    const auto frame = [grid, kept](int number, const io::Progress&) {
+        return scenes::beating_frame(grid, double(number) / scenes::beating_frames, kept).volume;
+    };
+    LoadedVolume loaded = synthetic(first, options.volume);
+    loaded.time_steps = scenes::beating_frames;
+    if (options.time_step) {
+        if (*options.time_step >= loaded.time_steps) {
+            throw std::invalid_argument(
+                fmt::format("{} has {} frames, from 0", options.volume, loaded.time_steps));
+        }
+        loaded.volume = frame(*options.time_step, {});
+        return loaded;
+    }
+    const double interval = options.frame_interval > 0
+                                ? options.frame_interval
+                                : scenes::beating_period / scenes::beating_frames;
+    loaded.sequence = io::made_sequence(scenes::beating_frames, interval, frame);
+    return loaded;
+}
 
 LoadedVolume make_synthetic(const VolumeOptions& options) {
     std::optional<SampleType> type;
@@ -24,12 +66,27 @@ LoadedVolume make_synthetic(const VolumeOptions& options) {
             "--dims and --spacing are for files; a synthetic volume's size is part of its name: "
             "synthetic:NAME:WxHxD");
     }
-    if (!options.series.empty() || options.time_step || options.skip != 0) {
-        throw std::invalid_argument("--series, --time-step and --skip are for files");
+    if (!options.series.empty() || options.skip != 0) {
+        throw std::invalid_argument("--series and --skip are for files");
     }
-    scenes::Scene scene = scenes::make_volume(options.volume, type);
-    return {scene.volume, options.volume, "synthetic (" + scene.description + ")",
-            {},           scene.isovalue, {}};
+    if (is_beating(options.volume)) return make_beating(options, type);
+    if (options.time_step) throw std::invalid_argument("--time-step is for sequences");
+    return synthetic(scenes::make_volume(options.volume, type), options.volume);
+}
+
+/// What another program pushes, from its newest frames on.
+LoadedVolume follow(const VolumeOptions& options) {
+    const std::string path = options.volume.substr(live_prefix.size());
+    if (options.smooth > 0) throw std::invalid_argument("--smooth is not for live sources");
+    auto live = std::make_shared<const io::LiveFrames>(path);
+    const std::shared_ptr<const Samples> samples = live->wait(longest_wait);
+    if (!samples) {
+        throw io::InputError(path + ": no frame has come yet; start the program that writes it");
+    }
+    LoadedVolume loaded{samples->volume(), options.volume};
+    loaded.format = "live source";
+    loaded.live = std::move(live);
+    return loaded;
 }
 
 LoadedVolume read_file(const VolumeOptions& options, const io::Progress& progress) {
@@ -45,18 +102,17 @@ LoadedVolume read_file(const VolumeOptions& options, const io::Progress& progres
     if (options.time_step && !io::names_a_series(options.volume)) {
         read.time_step = *options.time_step;
         io::VolumeFile file = io::read_volume(options.volume, read);
-        return {std::move(file.volume),
-                options.volume,
-                std::move(file.format),
-                std::move(file.notes),
-                {},
-                {},
-                file.time_steps};
+        LoadedVolume loaded{std::move(file.volume), options.volume};
+        loaded.format = std::move(file.format);
+        loaded.notes = std::move(file.notes);
+        loaded.time_steps = file.time_steps;
+        return loaded;
     }
     io::SequenceFile file = io::open_sequence(options.volume, asked);
-    LoadedVolume loaded{
-        std::move(file.first),   options.volume, std::move(file.format), std::move(file.notes), {},
-        std::move(file.sequence)};
+    LoadedVolume loaded{std::move(file.first), options.volume};
+    loaded.format = std::move(file.format);
+    loaded.notes = std::move(file.notes);
+    loaded.sequence = std::move(file.sequence);
     loaded.time_steps = loaded.sequence.count();
     if (loaded.time_steps == 1) loaded.sequence = {};
     if (!options.time_step) return loaded;
@@ -80,7 +136,9 @@ std::string flaw_in_count(const std::string& text) {
 
 void VolumeOptions::add_to(CLI::App& command, bool optional) {
     auto* positional =
-        command.add_option("VOLUME", volume, "File, folder, or synthetic:NAME[:WxHxD]");
+        command.add_option("VOLUME", volume,
+                           "File, folder, series (heart_%03d.nrrd), synthetic:NAME[:WxHxD], or "
+                           "live:FILE");
     if (!optional) positional->required();
     command.add_option("--dims", dims, "Size of a raw file in samples: WxHxD")->type_name("WxHxD");
     command.add_option("--type", type,
@@ -110,9 +168,10 @@ void VolumeOptions::add_to(CLI::App& command, bool optional) {
 }
 
 LoadedVolume load(const VolumeOptions& options, const io::Progress& progress) {
-    LoadedVolume loaded = options.volume.starts_with(synthetic_prefix)
-                              ? make_synthetic(options)
-                              : read_file(options, progress);
+    const std::string& name = options.volume;
+    LoadedVolume loaded = name.starts_with(synthetic_prefix) ? make_synthetic(options)
+                          : name.starts_with(live_prefix)    ? follow(options)
+                                                             : read_file(options, progress);
     if (options.smooth == 0) return loaded;
     loaded.volume = smoothed(loaded.volume, options.smooth);
     if (loaded.sequence.count() == 0) return loaded;

@@ -4,10 +4,12 @@
 
 #include <CLI/CLI.hpp>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "io/live_frames.hpp"
 #include "io/sequence.hpp"
 #include "palpate/field.hpp"
 
@@ -31,11 +33,14 @@ struct VolumeOptions {
 struct LoadedVolume {
     Volume volume;
     std::string name;
-    std::string format;
-    std::vector<std::string> notes;
-    std::optional<double> isovalue;  ///< a good one, of a synthetic volume
-    io::Sequence sequence;  ///< `volume` is its first frame; none where `volume` is all there is
-    int time_steps = 1;     ///< how many volumes there are, asked for or not
+    std::string format = {};
+    std::vector<std::string> notes = {};
+    std::optional<double> isovalue = {};  ///< a good one, of a synthetic volume
+    io::Sequence sequence =
+        {};  ///< `volume` is its first frame; none where `volume` is all there is
+    std::shared_ptr<const io::LiveFrames> live =
+        {};              ///< `volume` is what it began with; null: none
+    int time_steps = 1;  ///< how many volumes there are, asked for or not
 };
 
 /// Reads or makes the volume. `progress` may throw to stop. Throws std::invalid_argument (wrong

@@ -89,6 +89,7 @@ OfflineSummary render_offline(Renderer& renderer, const io::Trajectory& trajecto
         const auto at = static_cast<std::size_t>(i);
         const Vec3 hand =
             device_from_physical(renderer.settings.transform, trajectory.position[at]);
+        if (sinks.change) sinks.change(renderer, i);
         const DeviceState device{trajectory.time[at], hand, true};
         // A renderer is a value: a copy of it is watched, so that the time of the update is that of
         // the update and nothing else.

@@ -29,6 +29,8 @@ struct OfflineSummary {
 
 /// Where the ticks go; any may be empty. The last corner of a tick is its SCP, bit for bit.
 struct OfflineSinks {
+    /// Not a sink: called before each tick, it may change what is felt.
+    std::function<void(Renderer& renderer, std::int64_t tick)> change;
     std::function<void(const io::TraceRow&)> row;
     std::function<void(std::int64_t tick, const Vec3& corner)> corner;  ///< of the SCP's path [mm]
     std::function<void(double fraction)> progress;

@@ -170,14 +170,60 @@ void take_up_brush(const TouchOptions& options, LiveCommands& commands, DataInHa
     data.sculptor().set_brush(asked.brush);
 }
 
+/// Those who change the data know the servo as long as this lives.
+class Attachment {
+  public:
+    Attachment(DataInHand& data, Servo& servo) : data_(data) { data_.attach(&servo); }
+    ~Attachment() { data_.attach(nullptr); }
+    Attachment(const Attachment&) = delete;
+    Attachment& operator=(const Attachment&) = delete;
+
+  private:
+    DataInHand& data_;
+};
+
+void print_report(const ServoReport& report, double seconds, const DeviceInfo& device,
+                  const TouchOptions& options) {
+    if (options.json) {
+        fmt::print("{}", report_json(report, seconds, device.name + " (" + device.model + ")"));
+    } else if (!options.volume.quiet) {
+        fmt::print("{}", report_text(report, seconds));
+    }
+}
+
+/// What --save asks for; or a word about edits that are lost.
+void save_at_end(DataInHand& data, const TouchOptions& options) {
+    if (!options.save.empty()) {
+        // After Ctrl-C as well: then without a bar, which would give it up.
+        ProgressBar bar("saving", options.volume.quiet || interrupted());
+        data.save(options.save, [&](double fraction) {
+            if (!interrupted()) bar.at(fraction);
+        });
+    } else if (!data.is_sequence() && data.sculptor().work().changed && !options.volume.quiet) {
+        fmt::print(stderr, "the edits were not saved (--save FILE, or the command save FILE)\n");
+    }
+}
+
+std::unique_ptr<io::RecordingWriter> recording_of(const LiveScene& scene, const DataInHand& data,
+                                                  const TouchOptions& options) {
+    if (options.record.empty()) return nullptr;
+    auto recording = std::make_unique<io::RecordingWriter>(
+        options.record, recording_head(scene.session, scene.info, options));
+    for (const Command& told : data.history()) recording->queue().push(told);
+    return recording;
+}
+
+void require_no_mouse(const TouchOptions& options) {
+    if (devices::parse_device(options.device).name != "mouse") return;
+    throw devices::DeviceError(
+        "device mouse: there is no window to move it in (--headless, --json, --seconds and "
+        "--commands have none, nor has a machine without a display); palpate devices lists "
+        "others");
+}
+
 void touch(const TouchOptions& options) {
     check_outputs({options.volume.volume, options.commands}, {options.record, options.save});
-    if (devices::parse_device(options.device).name == "mouse") {
-        throw devices::DeviceError(
-            "device mouse: there is no window to move it in (--headless, --json, --seconds and "
-            "--commands have none, nor has a machine without a display); palpate devices lists "
-            "others");
-    }
+    require_no_mouse(options);
     LiveScene scene = make_scene(load_for_terminal(options.volume), options);
     LiveCommands commands(scene.field, scene.isovalue, scene.session.renderer.settings);
     std::vector<TimedRequest> requests;
@@ -186,12 +232,7 @@ void touch(const TouchOptions& options) {
     if (data.is_sequence()) data.player().play(options.playback);
     if (!options.brush.empty()) take_up_brush(options, commands, data);
     data.bring(scene.session);
-    std::unique_ptr<io::RecordingWriter> recording;
-    if (!options.record.empty()) {
-        recording = std::make_unique<io::RecordingWriter>(
-            options.record, recording_head(scene.session, scene.info, options));
-        for (const Command& told : data.history()) recording->queue().push(told);
-    }
+    const auto recording = recording_of(scene, data, options);
     const devices::LastResort last_resort(*scene.device);
     Servo servo(std::move(scene.session), *scene.device,
                 {.rate = options.render.rate,
@@ -203,36 +244,25 @@ void touch(const TouchOptions& options) {
     announce(servo, scene, options.volume.quiet);
     const auto begin = std::chrono::steady_clock::now();
     std::string unsaved;
-    data.attach(&servo);
     {
+        const Attachment attachment(data, servo);
         Attendant attendant(servo, scene, data, recording.get(), options, std::move(requests),
                             commands);
         while (!interrupted() && attendant.attend()) std::this_thread::sleep_for(10ms);
         unsaved = attendant.unsaved();
     }
-    data.attach(nullptr);
     servo.stop();
     scene.device->stop();
     const double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     const ServoReport report = servo.report();
-    if (options.json) {
-        fmt::print("{}",
-                   report_json(report, seconds, scene.info.name + " (" + scene.info.model + ")"));
-    } else if (!options.volume.quiet) {
-        fmt::print("{}", report_text(report, seconds));
-    }
+    print_report(report, seconds, scene.info, options);
+    save_at_end(data, options);
     if (recording) {
         recording->finish(report.unrecorded);
         if (!options.json && !options.volume.quiet) {
             fmt::print("recorded {} ticks in {}\n", recording->ticks(), options.record);
         }
-    }
-    if (!options.save.empty()) {
-        ProgressBar bar("saving", options.volume.quiet);
-        data.save(options.save, [&](double fraction) { bar.at(fraction); });
-    } else if (!data.is_sequence() && data.sculptor().work().changed && !options.volume.quiet) {
-        fmt::print(stderr, "the edits were not saved (--save FILE, or the command save FILE)\n");
     }
     if (!unsaved.empty()) throw io::OutputError(unsaved);
     stop_if_interrupted();

@@ -35,13 +35,15 @@ Live::Live(app::LiveScene scene, const app::TouchOptions& options)
     : loaded_(std::move(scene.loaded)),
       options_(options),
       field_(std::move(scene.field)),
+      data_(std::make_unique<app::DataInHand>(loaded_, field_, options.loader())),
       session_settings_(scene.session.settings) {
+    if (data_->is_sequence()) data_->player().play(options.playback);
     hold(std::move(scene.device));
     start(std::move(scene.session));
 }
 
 Live::~Live() {
-    servo_->stop();
+    stop();
     device_->stop();
     try {
         if (recording_) recording_->finish(servo_->report().unrecorded);
@@ -62,6 +64,7 @@ void Live::start(Session session) {
     isovalue_ = session.renderer.proxy.isovalue;
     frozen_ = false;
     sent_.clear();
+    data_->bring(session);
     auto servo = std::make_unique<Servo>(
         std::move(session), *device_,
         ServoSettings{.rate = options_.render.rate,
@@ -69,6 +72,12 @@ void Live::start(Session session) {
                       .recorder = recording_ ? &recording_->queue() : nullptr});
     servo->start();
     servo_ = std::move(servo);  // without a thread, the one that has stopped is still there
+    data_->attach(servo_.get());
+}
+
+void Live::stop() {
+    data_->attach(nullptr);
+    servo_->stop();
 }
 
 /// A new one with all that was asked for, and the level and place to which penetrability, clutch
@@ -138,7 +147,7 @@ void Live::use_device(const std::string& device) {
     Session session{make_renderer(field_, isovalue_, settings), scene.session.settings};
 
     stop_recording();
-    servo_->stop();
+    stop();
     device_->stop();
     options_ = std::move(options);
     session_settings_ = session.settings;
@@ -149,8 +158,9 @@ void Live::use_device(const std::string& device) {
 void Live::use_field(Solid solid, std::optional<double> background) {
     Field field(loaded_.volume, solid, background);
     stop_recording();
-    servo_->stop();
+    stop();
     field_ = std::move(field);
+    data_->set_field(field_);
     settings_.penetrability = no_penetrability();
     start(session_after());
 }
@@ -160,9 +170,16 @@ void Live::record(const std::filesystem::path& path) {
     Session session =
         session_from(now ? now->session.tick.proxy.isovalue : isovalue_,
                      now ? now->session.transform : settings_.transform, now ? now->number : -1);
+    const std::vector<Command> told = data_->history();
+    if (told.size() > options_.render.rate) {
+        throw std::invalid_argument(
+            "too many edits for a recording to begin with: save the volume and open that");
+    }
     auto recording = std::make_unique<io::RecordingWriter>(
         path, app::recording_head(session, device_->info(), options_));
-    servo_->stop();
+    stop();
+    // What came in between is not lost: nobody edits a session that stands still.
+    for (const Command& command : data_->history()) recording->queue().push(command);
     const std::int64_t lost = servo_->report().unrecorded;
     recording_.swap(recording);
     start(std::move(session));
@@ -171,7 +188,7 @@ void Live::record(const std::filesystem::path& path) {
 
 std::int64_t Live::stop_recording() {
     if (!recording_) return 0;
-    servo_->stop();
+    stop();
     const std::int64_t lost = servo_->report().unrecorded;
     const auto recording = std::move(recording_);
     start(session_after());  // first the hand, then the file

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "apps/live/data_in_hand.hpp"
 #include "apps/live/touch_options.hpp"
 #include "devices/last_resort.hpp"
 #include "devices/mouse/mouse.hpp"
@@ -29,7 +30,10 @@ class Live {
     Live(const Live&) = delete;
     Live& operator=(const Live&) = delete;
 
+    /// As it was opened; as it is now, with edits or at a moment of a sequence, data() tells.
     const Field& field() const { return field_; }
+    /// Edits and play. Whatever goes on there, goes on when the session starts anew.
+    app::DataInHand& data() const { return *data_; }
     const app::TouchOptions& options() const { return options_; }
     DeviceInfo device() const { return device_->info(); }
     /// What is wrong with the device and what to do, in words; empty where all is well.
@@ -64,7 +68,7 @@ class Live {
     /// Records from now on: the session starts anew (forces ramp up) with all that was asked for.
     /// Throws io::OutputError for a file that cannot be made; then nothing has changed. A recording
     /// that was running is finished, and should that fail io::OutputError says so, but the new one
-    /// runs.
+    /// runs. Throws std::invalid_argument after more edits than a recording can begin with.
     void record(const std::filesystem::path& path);
     /// Ends the recording; the session starts anew. Returns the ticks in it. Throws io::OutputError
     /// for what could not be written. Nothing without a recording.
@@ -80,10 +84,12 @@ class Live {
     std::int64_t last_tick() const;
     Session session_after() const;
     void start(Session session);
+    void stop();
 
     app::LoadedVolume loaded_;
     app::TouchOptions options_;
     Field field_;
+    std::unique_ptr<app::DataInHand> data_;
     std::unique_ptr<Device> device_;
     devices::Mouse* mouse_ = nullptr;
     std::optional<devices::LastResort> last_resort_;

@@ -6,8 +6,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "apps/live/recorded_samples.hpp"
-
 namespace palpate::viewer {
 namespace {
 
@@ -74,12 +72,12 @@ Playback Playback::read(const std::filesystem::path& recording, const app::Loade
     io::RecordingReader reader(recording);
     Session session = app::recorded_session(reader.head(), loaded, recording.string());
     app::RecordedSamples samples(session.renderer.field.shared_samples(), app::frames_of(loaded));
-    Playback playback(reader.head(), session.renderer.field);
+    Playback playback(reader.head(), session.renderer.field, std::move(samples));
     Snapshot last;
     bool kept = true;
     while (const auto event = reader.next()) {
         if (const auto* command = std::get_if<Command>(&*event)) {
-            carry_out(*command, samples, session, recording.string());
+            carry_out(*command, playback.samples_, session, recording.string());
             continue;
         }
         const auto& recorded = std::get<SessionTick>(*event);
@@ -153,6 +151,13 @@ void Playback::finish() {
             o.contacts.push_back({from, to});
         }
     }
+}
+
+Field Playback::field_at(const Snapshot& snapshot) const {
+    Field field = field_;
+    field.use(samples_.of(snapshot.session.version));
+    field.set_time(snapshot.session.moment);
+    return field;
 }
 
 const Snapshot& Playback::at(double time) const {

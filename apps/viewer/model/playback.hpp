@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "apps/live/recorded_samples.hpp"
 #include "apps/live/recorded_scene.hpp"
 
 namespace palpate::viewer {
@@ -61,18 +62,21 @@ class Playback {
     /// version made it. 0 where all is well.
     std::size_t different() const { return different_; }
     const Overview& overview() const { return overview_; }
-    /// The field that was felt.
+    /// The field that was felt, as it was at the start.
     const Field& field() const { return field_; }
+    /// As it was then: with the edits up to there, or at the moment of the sequence.
+    Field field_at(const Snapshot& snapshot) const;
 
   private:
-    Playback(io::RecordingHead head, Field field)
-        : head_(std::move(head)), field_(std::move(field)) {}
+    Playback(io::RecordingHead head, Field field, app::RecordedSamples samples)
+        : head_(std::move(head)), field_(std::move(field)), samples_(std::move(samples)) {}
     void keep(const Snapshot& snapshot, std::size_t most);
     void survey(const SessionTick& tick);
     void finish();
 
     io::RecordingHead head_;
     Field field_;
+    app::RecordedSamples samples_;
     std::deque<Snapshot> snapshots_;    // grows without a copy of all of it
     double interval_ = least_interval;  // [s] between snapshots
     std::size_t ticks_ = 0, different_ = 0;

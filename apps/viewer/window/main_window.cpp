@@ -17,6 +17,7 @@
 #include <utility>
 
 #include "apps/viewer/panel/panel.hpp"
+#include "apps/viewer/panel/sequence_bar.hpp"
 #include "apps/viewer/scene/scene.hpp"
 #include "apps/viewer/slices/time_line.hpp"
 #include "apps/viewer/window/progress_strip.hpp"
@@ -36,6 +37,7 @@ MainWindow::MainWindow(const app::TouchOptions& options)
       views_(new Views),
       panel_(new Panel),
       time_line_(new TimeLine),
+      sequence_bar_(new SequenceBar),
       progress_(new ProgressStrip),
       frames_(new QLabel) {
     setObjectName("palpate");
@@ -47,8 +49,10 @@ MainWindow::MainWindow(const app::TouchOptions& options)
     layout->setSpacing(0);
     layout->addWidget(views_, 1);
     layout->addWidget(time_line_);
+    layout->addWidget(sequence_bar_);
     layout->addWidget(progress_);
     time_line_->hide();
+    sequence_bar_->hide();
     setCentralWidget(centre);
     auto* scroll = new QScrollArea;
     scroll->setWidget(panel_);
@@ -65,6 +69,7 @@ MainWindow::MainWindow(const app::TouchOptions& options)
     panel_->clear();
     make_menus();
     connect_parts();
+    connect_data();
     const QSettings settings;
     if (!restoreGeometry(settings.value("geometry").toByteArray())) {
         resize(QSize(1360, 860).boundedTo(0.9 * screen()->availableSize()));
@@ -80,6 +85,7 @@ MainWindow::~MainWindow() {
     live_.reset();  // before anything that takes time
     finding_.reset();
     work_.reset();
+    saving_.reset();
 }
 
 void MainWindow::connect_parts() {
@@ -133,6 +139,7 @@ void MainWindow::observe() {
     }
     views_->show_snapshot(now);
     if (!now) return;
+    observe_data(*now);
     const double felt = now->session.tick.proxy.isovalue;
     if (std::isfinite(felt) && shown_isovalue_ != felt) {
         shown_isovalue_ = felt;
@@ -223,6 +230,7 @@ void MainWindow::use_device(const QString& option) {
             use_pointer_for(live_->mouse() != nullptr);
             panel_->set_session(live_->field(), opened_->histogram, live_->isovalue(),
                                 live_->settings(), live_->device());
+            show_data();
         }
         options_.device = option.toStdString();
     });
@@ -235,6 +243,7 @@ void MainWindow::use_solid(Solid solid) {
     guarded([&] {
         live_->use_field(solid);
         show_volume(live_->field(), live_->isovalue(), live_->settings(), live_->device());
+        show_data();
     });
 }
 
@@ -243,10 +252,11 @@ void MainWindow::hold_picture() {
 }
 
 bool MainWindow::settled() const {
-    return !work_ && (!opened_ || views_->scene().settled());
+    return !work_ && !saving_ && (!opened_ || views_->scene().settled());
 }
 
 void MainWindow::closeEvent(QCloseEvent* event) {
+    if (!may_lose_edits()) return event->ignore();
     QSettings settings;
     settings.setValue("geometry", saveGeometry());
     settings.setValue("state", saveState());

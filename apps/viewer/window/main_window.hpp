@@ -24,6 +24,8 @@ class QMenu;
 namespace palpate::viewer {
 
 class Panel;
+class SequenceBar;
+struct BrushChoice;
 class ProgressStrip;
 class Views;
 class TimeLine;
@@ -47,12 +49,15 @@ class MainWindow : public QMainWindow {
     /// Throw io::OutputError.
     void save_session(const QString& path);
     void save_picture(const QString& path, bool whole_window);
+    /// The volume as it is now, edits included, in the background; errors are shown.
+    void save_volume(const QString& path);
     void start_recording(const QString& path);
     void stop_recording();
 
     Views& views() { return *views_; }
     Panel& panel() { return *panel_; }
     TimeLine& time_line() { return *time_line_; }
+    SequenceBar& sequence_bar() { return *sequence_bar_; }
     const Live* live() const { return live_.get(); }
     const Playback* playback() const { return playback_ ? &*playback_ : nullptr; }
     /// [s] of the recording that is shown.
@@ -110,6 +115,15 @@ class MainWindow : public QMainWindow {
     void leave_playback();
     void remember(const QString& path);
     SessionFile session_now() const;
+    // living_data.cpp
+    void connect_data();
+    void make_data_menu();
+    void show_data();
+    void observe_data(const Snapshot& now);
+    void use_brush(const BrushChoice& brush);
+    void undo(bool again);
+    void ask_save_volume();
+    bool may_lose_edits();
     // hand.cpp
     void make_hand_actions();
     void drag_probe(const Vec3& by);
@@ -139,6 +153,7 @@ class MainWindow : public QMainWindow {
     Views* views_;
     Panel* panel_;
     TimeLine* time_line_;
+    SequenceBar* sequence_bar_;
     ProgressStrip* progress_;
     QLabel* frames_;
     QMenu* recent_ = nullptr;
@@ -147,7 +162,7 @@ class MainWindow : public QMainWindow {
     QElapsedTimer since_report_;
     std::int64_t reported_ticks_ = 0;
 
-    std::unique_ptr<Work> work_, finding_;
+    std::unique_ptr<Work> work_, finding_, saving_;
     std::function<void()> then_;
     std::shared_ptr<Opened> opened_;  // what is shown
     std::unique_ptr<Live> live_;
@@ -155,6 +170,12 @@ class MainWindow : public QMainWindow {
     double shown_time_ = 0;
     std::optional<Snapshot> held_;
     std::optional<double> shown_isovalue_;  // of the surface in the scene
+    struct ShownData {
+        std::shared_ptr<const Samples> samples;
+        Moment moment;
+    };
+    ShownData shown_data_;
+    QString data_problem_;
     std::optional<DeviceStatus> device_status_;
     std::vector<devices::DeviceFinding> findings_;
     QString problem_, device_problem_;

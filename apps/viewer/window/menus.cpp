@@ -60,6 +60,7 @@ QAction* MainWindow::add_switch(QMenu* menu, const char* name, const QString& te
 void MainWindow::make_menus() {
     make_file_menu();
     make_session_menu();
+    make_data_menu();
     make_view_menu();
     make_hand_actions();
     QMenu* help = menuBar()->addMenu(tr("&Help"));
@@ -184,6 +185,12 @@ void MainWindow::refresh_actions() {
         set(name, live);
     }
     set("leave_playback", playback_.has_value());
+    const bool sequence = live && live_->data().is_sequence();
+    for (const char* name : {"brush_action", "undo_action", "redo_action"}) {
+        set(name, live && !sequence);
+    }
+    for (const char* name : {"play_sequence", "frame_back", "frame_on"}) set(name, sequence);
+    set("save_volume", live);
     set("slices", true, views_->slices_shown());
     for (const char* name : {"save_session", "picture", "whole"}) set(name, opened_ != nullptr);
 }
@@ -198,6 +205,7 @@ void MainWindow::fill_recent() {
 }
 
 void MainWindow::ask_open() {
+    if (!may_lose_edits()) return;
     const QString path = QFileDialog::getOpenFileName(
         this, tr("Open a volume, a session or a recording"), last_folder(),
         tr("All that can be opened (*.nrrd *.nhdr *.mha *.mhd *.nii *.nii.gz *.dcm *.tif *.tiff "
@@ -206,12 +214,14 @@ void MainWindow::ask_open() {
 }
 
 void MainWindow::ask_open_folder() {
+    if (!may_lose_edits()) return;
     const QString path =
         QFileDialog::getExistingDirectory(this, tr("Open a folder of slices"), last_folder());
     if (!path.isEmpty()) open_path(path);
 }
 
 void MainWindow::ask_open_raw() {
+    if (!may_lose_edits()) return;
     const QString path =
         QFileDialog::getOpenFileName(this, tr("Open raw data"), last_folder(), tr("All files (*)"));
     if (path.isEmpty()) return;

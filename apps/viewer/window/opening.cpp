@@ -120,6 +120,7 @@ void MainWindow::begin(std::shared_ptr<Opened> opened, const app::TouchOptions& 
     live_ = std::make_unique<Live>(opened->loaded, options);
     opened_ = std::move(opened);
     show_volume(live_->field(), live_->isovalue(), live_->settings(), live_->device());
+    show_data();
     look_from_hand(live_->settings().transform);
     views_->set_window(opened_->dark(), opened_->bright());
     QString words = tr("Felt through the device %1").arg(QString::fromStdString(options.device));
@@ -158,6 +159,7 @@ void MainWindow::close_all() {
     opened_.reset();
     shown_isovalue_.reset();
     time_line_->hide();
+    show_data();
     views_->clear();
     panel_->clear();
     setWindowTitle("Palpate");

@@ -96,6 +96,7 @@ void MainWindow::resume(std::shared_ptr<Opened> opened, const SessionFile& sessi
     if (session.settings) restore(*session.settings);
     panel_->set_session(live_->field(), opened_->histogram, live_->isovalue(), live_->settings(),
                         live_->device());
+    show_data();
     Look look = session.look;
     if (look.transfer.points.empty()) look.transfer = panel_->look().transfer;
     panel_->set_look(look);

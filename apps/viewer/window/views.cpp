@@ -43,6 +43,11 @@ void Views::set_field(const Field& field, double isovalue) {
     set_crosshair(physical_centre(field.geometry()));
 }
 
+void Views::update_field(const Field& field) {
+    scene_->update_field(field);
+    for (SlicePane* pane : slices_) pane->update_field(field);
+}
+
 void Views::clear() {
     scene_->clear();
     for (SlicePane* pane : slices_) pane->clear();

@@ -23,6 +23,8 @@ class Views : public QWidget {
     explicit Views(QWidget* parent = nullptr);
 
     void set_field(const Field& field, double isovalue);
+    /// Another version of the data that are shown: edited, or at another moment.
+    void update_field(const Field& field);
     void clear();
     void set_isovalue(double isovalue);
     void set_look(const Look& look);

@@ -40,7 +40,7 @@ TEST(Opening, first_level_lies_within_the_data) {
 TEST(Opening, constant_data_are_refused_with_their_name) {
     Volume constant(Geometry{.size = {4, 4, 4}}, std::vector<std::uint8_t>(64, 9));
     const Opened opened{
-        named("flat"), {constant, "flat", "made", 1, {}, {}}, app::histogram_of(constant, 256)};
+        named("flat"), {constant, "flat", "made"}, app::histogram_of(constant, 256)};
     try {
         (void)first_isovalue(opened);
         FAIL();

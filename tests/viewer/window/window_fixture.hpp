@@ -114,7 +114,7 @@ class InWindow : public testing::Test {
 
     /// Presses a key that opens a file dialog, and types a name there. The dialog has an event loop
     /// of its own: the keys come from within.
-    void type_in_dialog(Qt::Key key, const QString& name) {
+    void type_in_dialog(Qt::Key key, const QString& name, Qt::KeyboardModifiers with = {}) {
         QTimer typist;
         int typed = 0;
         QObject::connect(&typist, &QTimer::timeout, [&] {
@@ -128,7 +128,7 @@ class InWindow : public testing::Test {
             QTest::keyClick(line, Qt::Key_Return);
         });
         typist.start(300);
-        QTest::keyClick(window_.get(), key, Qt::ControlModifier);
+        QTest::keyClick(window_.get(), key, Qt::ControlModifier | with);
         ASSERT_GT(typed, 0);
         // Without a window manager nothing makes the window active again after its dialog.
         window_->activateWindow();

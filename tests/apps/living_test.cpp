@@ -1,0 +1,179 @@
+// Data that change, from the command line: edits, sequences and live sources in live sessions, and
+// the demos of them.
+#include "apps/program.hpp"
+#include "io/live_file.hpp"
+#include "io/recording.hpp"
+#include "io/trace.hpp"
+#include "io/volume_file.hpp"
+#include "support/png.hpp"
+
+namespace palpate::app::test {
+namespace {
+
+using support::bytes_of;
+using support::put_bytes;
+
+const std::string ball = "synthetic:sphere:32x32x32";
+
+TEST(Touch, EditsAndSequencesAreRecordedAndMadeAgain) {
+    const ScratchFolder folder;
+    put_bytes(folder / "c.txt",
+              "0.2 brush carve 4 50\n0.8 brush off\n0.9 undo\n1.0 redo\n"
+              "1.1 carve 0,0,0:3,3,3 5\n1.2 fill 1,1,1:4,4,4 90%\n");
+    const Outcome done = palpate(folder, "touch " + ball +
+                                             " --device simulated:hand=press --seconds 1.5 "
+                                             "--commands c.txt --record r.csv --save out.nrrd");
+    ASSERT_EQ(done.status, 0) << done.err;
+    const Outcome valid = palpate(folder, "replay r.csv --validate");
+    EXPECT_EQ(valid.status, 0) << valid.err;
+    const Volume saved = io::read_volume(folder / "out.nrrd").volume;
+    EXPECT_EQ(saved.geometry().size, Index3(32, 32, 32));
+    EXPECT_EQ(saved.sample({16, 16, 16}), 0);
+    EXPECT_NEAR(saved.sample({2, 2, 2}), 0.9 * 240, 12);
+    // The recording ends on the version that was saved.
+    std::uint64_t version = 0;
+    io::RecordingReader reader(folder / "r.csv");
+    while (const auto event = reader.next()) {
+        if (const auto* tick = std::get_if<SessionTick>(&*event)) version = tick->version;
+    }
+    EXPECT_GE(version, 4U);
+
+    const Outcome beats =
+        palpate(folder,
+                "touch synthetic:beating:24x24x24 --device simulated:hand=press --seconds 1 "
+                "--playback 3 --record b.csv");
+    ASSERT_EQ(beats.status, 0) << beats.err;
+    const Outcome again = palpate(folder, "replay b.csv --validate");
+    EXPECT_EQ(again.status, 0) << again.err;
+}
+
+TEST(Touch, ASeriesOfFilesIsPlayedAndOneFrameOfItIsTaken) {
+    const ScratchFolder folder;
+    for (const int number : {1, 2, 4}) {
+        const Volume frame({Index3::Constant(12)},
+                           std::vector<std::uint8_t>(1728, std::uint8_t(20 * number)));
+        io::write_volume(frame, folder / ("f_00" + std::to_string(number) + ".nrrd"));
+    }
+    const Outcome done =
+        palpate(folder, Words{"touch", "f_%03d.nrrd", "--isovalue", "200", "--frame-interval",
+                              "0.1", "--device", "simulated:hand=hold", "--seconds", "0.8",
+                              "--once", "--record", "r.csv"});
+    ASSERT_EQ(done.status, 0) << done.err;
+    double last = 0;
+    io::RecordingReader reader(folder / "r.csv");
+    while (const auto event = reader.next()) {
+        if (const auto* tick = std::get_if<SessionTick>(&*event)) last = tick->moment;
+    }
+    EXPECT_EQ(last, 0.3) << "one is missing: time goes on";
+    const Outcome one = palpate(folder, Words{"info", "f_%03d.nrrd", "--time-step", "2", "--json"});
+    EXPECT_TRUE(contains(one.out, "80")) << one.out;
+    expect_failure(palpate(folder, Words{"info", "f_%03d.nrrd", "--time-step", "3"}), 3,
+                   "no time step 3");
+}
+
+TEST(Touch, SaysWhatDataCannotDo) {
+    const ScratchFolder folder;
+    put_bytes(folder / "c.txt", "0.1 undo\n0.2 play 2\n0.3 quit\n");
+    const Outcome still =
+        palpate(folder, "touch " + ball + " --device simulated:hand=hold --commands c.txt");
+    EXPECT_EQ(still.status, 0);
+    EXPECT_TRUE(contains(still.err, "nothing to undo")) << still.err;
+    EXPECT_TRUE(contains(still.err, "no sequence")) << still.err;
+    put_bytes(folder / "c.txt", "0.1 brush carve 3\n0.2 quit\n");
+    const Outcome moving = palpate(folder,
+                                   "touch synthetic:beating:16x16x16 --device simulated:hand=hold "
+                                   "--commands c.txt");
+    EXPECT_EQ(moving.status, 0);
+    EXPECT_TRUE(contains(moving.err, "cannot be edited")) << moving.err;
+    for (const char* line :
+         {"0 brush carve", "0 brush drill 3", "0 brush carve -3", "0 paint 1,2,3 4",
+          "0 carve 1,2 3", "0 fill 1,1,1 5", "0 seek", "0 loop maybe", "0 save"}) {
+        put_bytes(folder / "c.txt", std::string(line) + "\n");
+        expect_failure(palpate(folder, "touch " + ball + " --commands c.txt"), 3, "c.txt, line 1");
+    }
+    expect_failure(palpate(folder, Words{"touch", ball, "--brush", "carve"}), 2,
+                   "brush KIND RADIUS");
+    expect_failure(palpate(folder, "touch live:nothing.live"), 3, "nothing.live");
+}
+
+TEST(Touch, AVolumeThatCannotBeSavedIsStatus5AndTheSessionWentOn) {
+    const ScratchFolder folder;
+    put_bytes(folder / "c.txt", "0.1 fill 1,1,1:4,4,4 9\n0.2 save no/such/folder.nrrd\n0.4 quit\n");
+    const Outcome done = palpate(
+        folder, "touch " + ball + " --device simulated:hand=hold --commands c.txt --record r.csv");
+    EXPECT_EQ(done.status, 5);
+    EXPECT_TRUE(contains(done.err, "folder does not exist")) << done.err;
+    EXPECT_EQ(palpate(folder, "replay r.csv --validate").status, 0);
+}
+
+TEST(Touch, FollowsWhatAnotherProgramPushes) {
+    const ScratchFolder folder;
+    Geometry geometry;
+    geometry.size = Index3::Constant(8);
+    io::LiveWriter writer(folder / "feed.live", geometry, SampleType::uint8, 0.02);
+    double time = 0;
+    const auto push = [&](int value) {
+        writer.push(Volume(geometry, std::vector<std::uint8_t>(512, std::uint8_t(value))),
+                    time += 0.02);
+    };
+    push(1);
+    Running session(words_of("touch live:feed.live --isovalue 250 --device simulated:hand=hold "
+                             "--seconds 1.5 --record r.csv"),
+                    folder.path());
+    for (int i = 0; i < 60; ++i) {
+        push(i + 2);
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    const Outcome done = session.finish();
+    ASSERT_EQ(done.status, 0) << done.err;
+    std::uint64_t versions = 0;
+    double before = 0;
+    io::RecordingReader reader(folder / "r.csv");
+    while (const auto event = reader.next()) {
+        const auto* tick = std::get_if<SessionTick>(&*event);
+        if (!tick) continue;
+        versions = tick->version;
+        EXPECT_GE(tick->moment, before);
+        before = tick->moment;
+    }
+    EXPECT_GT(versions, 10U);
+    // What came from outside is not in the recording, and that is said.
+    expect_failure(palpate(folder, "replay r.csv --validate"), 3, "from outside");
+}
+
+TEST(Demo, SculptCarvesWhatItFeelsAndShowsIt) {
+    const ScratchFolder folder;
+    const Outcome done = palpate(folder,
+                                 "demo sculpt synthetic:sphere:32x32x32 --duration 1 --pictures 3 "
+                                 "--picture 160 --radius 3 -o out");
+    ASSERT_EQ(done.status, 0) << done.err;
+    const Volume edited = io::read_volume(folder / "out" / "edited.nrrd").volume;
+    EXPECT_EQ(edited.geometry().size, Index3(32, 32, 32));
+    int felt = 0;
+    for (const io::TraceRow& row : io::read_trace(folder / "out" / "trace.csv")) {
+        felt += row.constrained && row.force.norm() > 0;
+    }
+    EXPECT_GT(felt, 50) << "it carves only what it touches";
+    EXPECT_TRUE(contains(bytes_of(folder / "out" / "animation.png"), "acTL"));
+    EXPECT_GT(support::png_from(bytes_of(folder / "out" / "surface.png")).colours(), 20U);
+}
+
+TEST(Demo, BeatingFeelsEachBeat) {
+    const ScratchFolder folder;
+    const Outcome done = palpate(
+        folder,
+        "demo beating synthetic:beating:32x32x32 --beats 3 --pictures 3 --picture 160 -o out");
+    ASSERT_EQ(done.status, 0) << done.err;
+    int rises = 0;
+    bool high = false;
+    for (const io::TraceRow& row : io::read_trace(folder / "out" / "trace.csv")) {
+        const double force = row.force.norm();
+        if (!high && force > 1.2) ++rises;
+        high = high ? force > 0.8 : force > 1.2;
+    }
+    EXPECT_GE(rises, 3);
+    expect_failure(palpate(folder, "demo beating synthetic:sphere"), 2, "no sequence");
+}
+
+}  // namespace
+}  // namespace palpate::app::test

@@ -1,0 +1,150 @@
+// Sequences that play in a running session.
+#include "apps/live/player.hpp"
+
+#include "live/living_support.hpp"
+
+namespace palpate::app {
+namespace {
+
+using test::comes_true;
+
+constexpr double period = 1;
+
+/// Five frames, 0.2 s apart, each of one value: 0, 10, 20, 30, 40.
+io::Sequence steps() {
+    return io::made_sequence(5, 0.2, [](int frame, const io::Progress&) {
+        return Volume({Index3::Constant(8)},
+                      std::vector<float>(512, static_cast<float>(10 * frame)));
+    });
+}
+
+struct Playing {
+    io::Sequence sequence = steps();
+    Field field{io::read_frame(sequence, 0)};
+    support::ScriptedDevice device{[](double) { return support::ready_at({3, 3, 3}); }};
+    Player player;
+    std::unique_ptr<Servo> servo;
+
+    explicit Playing(const io::LoaderSettings& settings = {}) : player(sequence, settings) {}
+    ~Playing() {
+        player.attach(nullptr);
+        servo->stop();
+    }
+
+    void start(double speed) {
+        player.play(speed);
+        Session session{make_renderer(field, 1000, {}), {}};
+        player.bring(session);
+        servo = std::make_unique<Servo>(session, device,
+                                        ServoSettings{.rate = 1000, .real_time = false});
+        servo->start();
+        player.attach(servo.get());
+    }
+    SessionTick now() const {
+        const auto snapshot = servo->snapshot();
+        return snapshot ? snapshot->session : SessionTick{};
+    }
+    bool all_loaded() const {
+        return comes_true([&] { return player.view().loaded_to == player.view().end; });
+    }
+};
+
+TEST(Player, plays_round_and_the_field_lies_between_the_frames) {
+    Playing p;
+    p.start(1);
+    ASSERT_TRUE(p.all_loaded());
+    ASSERT_TRUE(comes_true([&] { return p.now().moment > 1.5 * period; }));
+    for (int i = 0; i < 200; ++i) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        const SessionTick now = p.now();
+        const double into = std::fmod(now.moment, period);
+        const double want = into < 0.8 ? 50 * into : 40 * (1 - (into - 0.8) / 0.2);
+        EXPECT_NEAR(now.tick.proxy.density, want, 1e-4) << now.moment;
+    }
+    const PlayView view = p.player.view();
+    EXPECT_EQ(view.frames, p.sequence.times);
+    EXPECT_EQ(view.end, period);
+    EXPECT_GE(view.time, 0);
+    EXPECT_LT(view.time, period);
+}
+
+TEST(Player, pauses_steps_and_seeks) {
+    Playing p;
+    p.start(0);
+    ASSERT_TRUE(p.all_loaded());
+    const auto shows = [&](double density) {
+        return comes_true([&] { return std::abs(p.now().tick.proxy.density - density) < 1e-4; });
+    };
+    EXPECT_TRUE(shows(0));
+    p.player.seek(0.3);
+    EXPECT_TRUE(shows(15));
+    p.player.step(1);
+    EXPECT_TRUE(shows(20));
+    p.player.step(1);
+    EXPECT_TRUE(shows(30));
+    p.player.step(-2);
+    EXPECT_TRUE(shows(10));
+    p.player.seek(0.3);
+    EXPECT_TRUE(shows(15));
+    p.player.step(-1);
+    EXPECT_TRUE(shows(10));
+    p.player.step(-2);  // round the beginning
+    EXPECT_TRUE(shows(40));
+    p.player.play(-1);
+    EXPECT_TRUE(comes_true([&] { return p.now().tick.proxy.density < 35; }));
+    p.player.step(0);
+    EXPECT_EQ(p.player.view().speed, 0);
+    EXPECT_THROW(p.player.play(2000), std::invalid_argument);
+    EXPECT_THROW(p.player.seek(std::nan("")), std::invalid_argument);
+}
+
+TEST(Player, without_a_loop_it_stops_at_the_end_and_with_one_it_goes_on) {
+    Playing p({.loop = false});
+    p.start(20);
+    ASSERT_TRUE(comes_true([&] { return p.now().moment == 0.8; }));
+    EXPECT_NEAR(p.now().tick.proxy.density, 40, 1e-4);
+    p.player.set_loop(true);
+    EXPECT_TRUE(comes_true([&] { return p.now().moment > 5; }));
+    EXPECT_TRUE(p.player.view().loop);
+}
+
+TEST(Player, a_sequence_that_does_not_fit_plays_on_over_its_seam) {
+    // Three of the five frames fit.
+    Playing p({.memory_bytes = 3 * 512 * sizeof(float)});
+    p.start(1);
+    double last = 0;
+    ASSERT_TRUE(comes_true([&] {
+        last = std::max(last, p.now().moment);
+        return last > 2.5 * period;
+    }));
+    EXPECT_LE(p.player.view().time, period);
+    p.player.seek(0.6);
+    EXPECT_TRUE(comes_true([&] {
+        const double time = p.player.view().time;
+        return time >= 0.6 && time < 0.8;
+    }));
+}
+
+TEST(Player, a_session_that_begins_anew_begins_where_play_was) {
+    Playing p;
+    p.start(0);
+    ASSERT_TRUE(p.all_loaded());
+    p.player.seek(0.5);
+    ASSERT_TRUE(comes_true([&] { return p.now().moment == 0.5; }));
+    p.player.attach(nullptr);
+    p.servo->stop();
+    Session next{make_renderer(p.field, 1000, {}), {}};
+    p.player.bring(next);
+    EXPECT_EQ(next.renderer.field.time(), 0.5);
+    // And so does one that is rendered from its recording.
+    Session again{make_renderer(p.field, 1000, {}), {}};
+    RecordedSamples samples(p.field.shared_samples(),
+                            [&](int frame) { return io::read_frame(p.sequence, frame); });
+    for (const Command& told : p.player.history()) palpate::apply(again, samples.whole(told));
+    EXPECT_EQ(again.renderer.field.time(), 0.5);
+    EXPECT_EQ(again.renderer.field.cell({1, 1, 1}), next.renderer.field.cell({1, 1, 1}));
+    EXPECT_EQ(again.version, next.version);
+}
+
+}  // namespace
+}  // namespace palpate::app

@@ -1,0 +1,83 @@
+// Samples that are made again by how they came about.
+#include "apps/live/recorded_samples.hpp"
+
+#include <cstring>
+
+#include "io/settings_json.hpp"
+#include "live/living_support.hpp"
+
+namespace palpate::app {
+namespace {
+
+bool same_bits(const Samples& a, const Samples& b) {
+    const Volume left = flattened(a), right = flattened(b);
+    return left.bytes() == right.bytes() &&
+           std::memcmp(left.data(), right.data(), left.bytes()) == 0;
+}
+
+/// To a line of a recording and back.
+Command through_json(const Command& command) {
+    return io::command_from_json(io::Json::parse(io::to_json(command).dump()));
+}
+
+TEST(RecordedSamples, versions_come_out_as_they_were_felt) {
+    const Field field(test::loaded("synthetic:noise:24x24x24").volume);
+    Brush brush = brush_for(BrushKind::add, field, 100.123456789, 3.3);
+    brush.hardness = 0.3;
+    brush.strength = 1.0 / 3;
+    brush.solid = Solid::above;
+    Editor editor(field.shared_samples());
+    RecordedSamples again(field.shared_samples());
+    std::vector<std::shared_ptr<const Samples>> felt{field.shared_samples()};
+    const std::vector<Edit> edits{
+        edit::Stroke{brush, {0.1, 0.2, 0.3}, {5.5, 1e-3, -4}},
+        edit::Fill{{{-3, 2, 2}, {9, 9, 40}}, 7.5},
+        edit::Stroke{brush_for(BrushKind::carve, field, 90, 5), {1, 2, 3}, {1, 2, 3}}};
+    for (std::size_t i = 0; i < edits.size(); ++i) {
+        editor.apply(edits[i]);
+        felt.push_back(editor.samples());
+        const Command recorded =
+            command::Samples{nullptr, i + 1, std::make_shared<const Recipe>(EditOf{i, edits[i]})};
+        const auto whole = std::get<command::Samples>(again.whole(through_json(recorded)));
+        EXPECT_TRUE(same_bits(*whole.samples, *felt.back())) << i;
+        EXPECT_EQ(whole.version, i + 1);
+    }
+    // Back to one that was there, and to the start.
+    for (const std::uint64_t version : {1U, 0U, 3U}) {
+        const Command recorded = command::Samples{nullptr, version};
+        const auto whole = std::get<command::Samples>(again.whole(through_json(recorded)));
+        EXPECT_TRUE(same_bits(*whole.samples, *felt[version]));
+    }
+}
+
+TEST(RecordedSamples, what_came_from_outside_is_refused_with_its_reason) {
+    const Field field(test::loaded("synthetic:sphere:16x16x16").volume);
+    RecordedSamples again(field.shared_samples());
+    const Edit put = edit::Replace{{1, 1, 1}, field.volume()};
+    const Command replaced =
+        command::Samples{nullptr, 1, std::make_shared<const Recipe>(EditOf{0, put})};
+    EXPECT_THROW(again.whole(through_json(replaced)), std::invalid_argument);
+    EXPECT_THROW(again.whole(command::Samples{nullptr, 5}), std::invalid_argument);
+    const auto frames = std::make_shared<const Recipe>(FramesOf{{0, 1}, {0, 1}, 0});
+    EXPECT_THROW(again.whole(command::Samples{nullptr, 2, frames}), std::invalid_argument);
+}
+
+TEST(RecordedSamples, damaged_recipes_are_refused) {
+    const auto refused = [](const std::string& text) {
+        EXPECT_THROW(io::command_from_json(io::Json::parse(text)), std::invalid_argument) << text;
+    };
+    refused(R"({"samples":{}})");
+    refused(R"({"samples":{"version":-1}})");
+    refused(R"({"samples":{"version":1,"of":0,"edit":{"stroke":{"kind":"carve"}}}})");
+    refused(R"({"samples":{"version":1,"of":"x","edit":{"fill":{}}}})");
+    refused(
+        R"({"samples":{"version":1,"of":0,"edit":{"fill":{"low":[0,0],"high":[1,1,1],"value":1}}}})");
+    refused(
+        R"({"samples":{"version":1,"of":0,"edit":{"fill":{"low":[0,0,1e9],"high":[1,1,1],"value":1}}}})");
+    refused(R"({"samples":{"version":1,"frames":[0,1],"times":[0],"period":0}})");
+    refused(R"({"samples":{"version":1,"frames":[-1],"times":[0],"period":0}})");
+    refused(R"({"samples":{"version":1,"frames":5,"times":[0],"period":0}})");
+}
+
+}  // namespace
+}  // namespace palpate::app

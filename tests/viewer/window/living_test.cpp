@@ -1,0 +1,121 @@
+// Data that change, in the window: the brush, undo, saving, sequences.
+#include <QAction>
+#include <QMessageBox>
+#include <QPushButton>
+#include <QTimer>
+#include <QToolButton>
+
+#include "apps/viewer/panel/sequence_bar.hpp"
+#include "io/volume_file.hpp"
+#include "viewer/window/window_fixture.hpp"
+
+namespace palpate::viewer::test {
+namespace {
+
+/// Presses a button of the question that comes.
+void answer(QMessageBox::StandardButton button) {
+    QTimer::singleShot(300, [button] {
+        auto* box = qobject_cast<QMessageBox*>(QApplication::activeModalWidget());
+        if (box) QTest::mouseClick(box->button(button), Qt::LeftButton);
+    });
+}
+
+class Living : public InWindow {
+  protected:
+    app::Work work() { return window_->live()->data().sculptor().work(); }
+    /// Presses, and carves until something is gone.
+    void carve() {
+        press_until_force();
+        QTest::keyClick(window_.get(), Qt::Key_B);
+        ASSERT_TRUE(wait_until([&] { return work().version > 0; }));
+        QTest::keyClick(window_.get(), Qt::Key_B);
+    }
+};
+
+TEST_F(Living, the_brush_carves_what_is_felt_and_undo_and_redo_bring_it_back_and_forth) {
+    feel("synthetic:sphere:48x48x48");
+    save("before");
+    const auto start = work().samples;
+    carve();
+    EXPECT_TRUE(work().changed);
+    ASSERT_TRUE(wait_until([&] { return window_->settled(); }));
+    save("carved");
+    QTest::keyClick(window_.get(), Qt::Key_Z, Qt::ControlModifier);
+    EXPECT_TRUE(wait_until([&] { return work().samples == start; }));
+    EXPECT_TRUE(wait_until([&] { return now().session.version == 0; }));
+    QTest::keyClick(window_.get(), Qt::Key_Z, Qt::ControlModifier | Qt::ShiftModifier);
+    EXPECT_TRUE(wait_until([&] { return work().samples != start; }));
+    QTest::mouseClick(&part<QPushButton>("undo"), Qt::LeftButton);
+    EXPECT_TRUE(wait_until([&] { return work().samples == start; }));
+}
+
+TEST_F(Living, the_edited_volume_is_saved_by_a_dialog_and_can_be_opened) {
+    feel("synthetic:sphere:48x48x48");
+    carve();
+    const auto carved = work().samples;
+    type_in_dialog(Qt::Key_S, scratch("carved.nrrd"), Qt::ShiftModifier);
+    ASSERT_TRUE(wait_until([&] { return !work().changed; }));
+    const Volume saved = io::read_volume(scratch_.path() / "carved.nrrd").volume;
+    const Volume felt = flattened(*carved);
+    ASSERT_EQ(saved.bytes(), felt.bytes());
+    EXPECT_EQ(std::memcmp(saved.data(), felt.data(), felt.bytes()), 0);
+    feel(scratch("carved.nrrd").toStdString());
+    EXPECT_EQ(work().version, 0U);
+}
+
+TEST_F(Living, a_window_with_unsaved_edits_asks_before_it_closes) {
+    feel("synthetic:sphere:48x48x48");
+    carve();
+    answer(QMessageBox::Cancel);
+    EXPECT_FALSE(window_->close());
+    ASSERT_NE(window_->live(), nullptr);
+    answer(QMessageBox::Discard);
+    EXPECT_TRUE(window_->close());
+}
+
+TEST_F(Living, a_recording_of_edits_is_played_with_them) {
+    feel("synthetic:sphere:48x48x48");
+    window_->start_recording(scratch("carving.csv"));
+    carve();
+    const auto carved = work().samples;
+    window_->stop_recording();
+    window_->open_path(scratch("carving.csv"));
+    ASSERT_TRUE(wait_until([&] { return window_->playback() != nullptr; }))
+        << window_->problem().toStdString();
+    EXPECT_EQ(window_->playback()->different(), 0U);
+    window_->show_time(window_->playback()->end());
+    const Playback& playback = *window_->playback();
+    const Volume seen = flattened(playback.field_at(playback.at(playback.end())).samples());
+    const Volume felt = flattened(*carved);
+    EXPECT_EQ(std::memcmp(seen.data(), felt.data(), felt.bytes()), 0);
+    ASSERT_TRUE(wait_until([&] { return window_->settled(); }));
+    save("played");
+}
+
+TEST_F(Living, a_sequence_plays_steps_and_is_sought_with_its_bar) {
+    // Not feel(): what plays does not settle.
+    window_->open_path("synthetic:beating:32x32x32");
+    ASSERT_TRUE(wait_until([&] { return window_->live() && window_->live()->snapshot(); }));
+    EXPECT_TRUE(window_->sequence_bar().isVisible());
+    const double before = now().session.moment;
+    ASSERT_TRUE(wait_until([&] { return now().session.moment > before + 0.1; })) << "it plays";
+    QTest::mouseClick(&part<QToolButton>("sequence_play"), Qt::LeftButton);
+    ASSERT_TRUE(wait_until([&] { return now().speed == 0; }));
+    QTest::mouseClick(&part<QToolButton>("sequence_forward"), Qt::LeftButton);
+    ASSERT_TRUE(wait_until([&] {
+        const double frames = now().session.moment / 0.04;
+        return std::abs(frames - std::round(frames)) < 1e-6;
+    }));
+    ASSERT_TRUE(wait_until([&] { return window_->settled(); }));
+    save("beating");
+    // The brush is not for sequences, and says so.
+    EXPECT_FALSE(part<QAction>("brush_action").isEnabled());
+    QTest::keyClick(window_.get(), Qt::Key_K);
+    EXPECT_TRUE(wait_until([&] { return now().speed == 1; }));
+    feel("synthetic:sphere:32x32x32");
+    EXPECT_FALSE(window_->sequence_bar().isVisible());
+    EXPECT_TRUE(part<QAction>("brush_action").isEnabled());
+}
+
+}  // namespace
+}  // namespace palpate::viewer::test
