@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Takes the pictures of the viewer that README and docs show, so that they never age.
+# Makes the pictures of viewer and demos that README and docs show, so that they never age.
 set -euo pipefail
 
 usage() {
@@ -7,7 +7,8 @@ usage() {
 usage: scripts/screenshots.sh DATA_FOLDER [BUILD_FOLDER]
 
 Opens the viewer of BUILD_FOLDER (build/dev) on a virtual display, on volumes of DATA_FOLDER
-(cthead_unc.nrrd, lobster.nrrd, daisy_pollen.nrrd), and writes docs/images/viewer-*.png.
+(cthead_unc.nrrd, lobster.nrrd, daisy_pollen.nrrd), and writes docs/images/viewer-*.png; and lets the
+demos of data that change make docs/images/demo-*.png.
 TEXT
 }
 
@@ -30,6 +31,15 @@ shot() {
     scripts/with_display.sh "$program" --session "$session" --after "$after" \
         --window 1400x880 --screenshot "docs/images/viewer-$name.png"
 }
+
+echo "== demos"
+demos=$(mktemp -d)
+palpate=${program%/viewer/*}/palpate/palpate
+for demo in sculpt beating; do
+    "$palpate" demo "$demo" --pictures 14 --picture 300 --quiet --output "$demos/$demo"
+    cp "$demos/$demo/animation.png" "docs/images/demo-$demo.png"
+done
+rm -r "$demos"
 
 # This head was stored upside down.
 shot cthead 2.5 '"volume": {"volume": "DATA/cthead_unc.nrrd"}, "isovalue": 1150,

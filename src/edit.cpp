@@ -2,7 +2,6 @@
 #include "palpate/edit.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -10,8 +9,6 @@
 
 namespace palpate {
 namespace {
-
-constexpr std::array kinds{BrushKind::carve, BrushKind::add, BrushKind::smooth, BrushKind::paint};
 
 /// A sample's new value, as a number that need not fit its type yet.
 template <class T>
@@ -251,7 +248,8 @@ std::string_view name_of(BrushKind kind) {
 }
 
 BrushKind brush_kind_from(std::string_view name) {
-    for (const BrushKind kind : kinds) {
+    for (const auto kind :
+         {BrushKind::carve, BrushKind::add, BrushKind::smooth, BrushKind::paint}) {
         if (name == name_of(kind)) return kind;
     }
     throw std::invalid_argument("unknown brush '" + std::string(name) +

@@ -21,6 +21,11 @@ std::string volume_name(const std::string& recorded, const std::filesystem::path
 VolumeOptions recorded_volume(const io::RecordingHead& head, const std::filesystem::path& recording,
                               const std::string& instead) {
     VolumeOptions options = options_from(head.volume.options);
+    if (options.volume.starts_with("live:") && instead.empty()) {
+        throw io::InputError(recording.string() +
+                             ": is of a live source: its frames came from outside and are not in "
+                             "the recording, so it can be plotted but not rendered again");
+    }
     options.volume = instead.empty() ? volume_name(options.volume, recording) : instead;
     return options;
 }

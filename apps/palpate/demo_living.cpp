@@ -116,7 +116,7 @@ pictures::PictureScene picture_of(const Living& demo, const Shot& shot, int widt
             {physical_from_index(shot.field.geometry(), corner.cast<double>()), 1, {}, {}});
     }
     pictures::frame(
-        grid, demo.view.value_or(pictures::natural_view(shot.field.geometry(), towards)), 1.5);
+        grid, demo.view.value_or(pictures::natural_view(shot.field.geometry(), towards)), 1.3);
     scene.camera = grid.camera;
     pictures::Contact contact{shot.row.scp, shot.row.hip, {}};
     if (shot.row.force.norm() > 0) contact.force = shot.row.force;
@@ -323,8 +323,9 @@ void add_demo_sculpt(CLI::App& demo) {
     auto options = std::make_shared<LivingOptions>();
     options->volume.volume = "synthetic:shepp-logan";
     options->output = "palpate-sculpt";
-    options->brush.radius = 6;
-    options->brush.rate = 25;
+    options->brush.radius = 5;
+    options->brush.rate = 6;  // slow enough to be felt
+    options->hand.depth_mm = 4;
     CLI::App* command =
         demo.add_subcommand("sculpt", "A simulated hand carves what it feels; an animation");
     command->footer("Example:\n  palpate demo sculpt lobster.nrrd --isovalue 35 --radius 4");

@@ -65,6 +65,7 @@ nlohmann::ordered_json json_of(const LoadedVolume& loaded, const Histogram& hist
             {"standard_deviation", histogram.deviation},
             {"memory_bytes", volume.bytes()},
             {"time_steps", loaded.time_steps},
+            {"frame_times_s", loaded.sequence.times},
             {"histogram",
              {{"low", histogram.low}, {"high", histogram.high}, {"counts", histogram.counts}}},
             {"suggested_isovalues", suggested},
@@ -109,6 +110,11 @@ void print_text(const LoadedVolume& loaded, const Histogram& histogram,
     fmt::print("size         {} x {} x {} samples, {}\n", g.size[0], g.size[1], g.size[2],
                name_of(volume.type()));
     if (loaded.time_steps > 1) fmt::print("time steps   {}\n", loaded.time_steps);
+    const std::vector<double>& times = loaded.sequence.times;
+    if (!times.empty()) {
+        fmt::print("frames       from {:g} to {:g} s, round in {:g} s\n", times.front(),
+                   times.back(), loaded.sequence.period);
+    }
     fmt::print("spacing      {:g} x {:g} x {:g} mm\n", g.spacing[0], g.spacing[1], g.spacing[2]);
     fmt::print("extent       {:g} x {:g} x {:g} mm\n", extent[0], extent[1], extent[2]);
     fmt::print("origin       {:g}, {:g}, {:g} mm (LPS)\n", g.origin[0] + 0.0, g.origin[1] + 0.0,

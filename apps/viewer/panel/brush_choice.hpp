@@ -1,7 +1,6 @@
 // The brush that a person has chosen: a plain value between the panel and whoever edits.
 #pragma once
 
-#include <limits>
 #include <optional>
 
 #include "palpate/edit.hpp"
@@ -13,7 +12,7 @@ struct BrushChoice {
     double radius = 3;    ///< [mm]
     double hardness = 1;  ///< 0 to 1, Brush::hardness
     /// [1/s], Brush::strength says what it means for a touch; infinity: all of it at once.
-    double rate = std::numeric_limits<double>::infinity();
+    double rate = 10;
     /// What a whole touch leaves [data units], Brush::value; none: what fits the level felt, as
     /// brush_for() has it. Smoothing has none.
     std::optional<double> value = std::nullopt;

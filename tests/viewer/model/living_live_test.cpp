@@ -1,0 +1,159 @@
+// Everything at once, as in the window: a servo, a brush or a player, a recording, surfaces that
+// are extracted and volumes that are saved meanwhile. For the thread sanitizer above all.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <cstring>
+#include <functional>
+#include <thread>
+
+#include "apps/viewer/model/live.hpp"
+#include "apps/viewer/model/playback.hpp"
+#include "apps/viewer/model/work.hpp"
+#include "palpate/surface.hpp"
+#include "support/scratch_folder.hpp"
+
+namespace palpate::viewer {
+namespace {
+
+using namespace std::chrono_literals;
+using support::ScratchFolder;
+
+struct Session {
+    app::TouchOptions options;
+    Live live;
+
+    explicit Session(const std::string& volume)
+        : options(on(volume)), live(app::load(options.volume, {}), options) {}
+
+    static app::TouchOptions on(const std::string& volume) {
+        app::TouchOptions options;
+        options.volume.volume = volume;
+        options.device = "simulated:hand=slide,depth=3,seconds=600";
+        options.normal_priority = true;
+        return options;
+    }
+};
+
+bool comes_true(const std::function<bool()>& happened) {
+    for (int i = 0; i < 30'000; ++i) {
+        if (happened()) return true;
+        std::this_thread::sleep_for(1ms);
+    }
+    return false;
+}
+
+/// Looks at the data from two more threads, as painter and saving do, while `window` runs here.
+void with_observers(const Live& live, const std::function<void()>& window) {
+    std::atomic<bool> done{false};
+    std::atomic<int> surfaces{0};
+    std::jthread painter([&] {
+        while (!done) {
+            const Field field = live.data().field();
+            surfaces += extract_surface(field, 76.5).complete;
+        }
+    });
+    std::jthread observer([&] {
+        while (!done) {
+            (void)live.snapshot();
+            (void)live.report();
+        }
+    });
+    window();
+    EXPECT_TRUE(comes_true([&] { return surfaces > 3; }));
+    done = true;
+}
+
+TEST(LivingLive, a_brush_works_while_all_others_look_record_and_save) {
+    const ScratchFolder folder;
+    std::shared_ptr<const Samples> felt;
+    {
+        Session s("synthetic:sphere:32x32x32");
+        s.live.record(folder / "r.csv");
+        app::Sculptor& sculptor = s.live.data().sculptor();
+        std::unique_ptr<Work> saving;
+        with_observers(s.live, [&] {
+            sculptor.set_brush(app::HandBrush{.radius = 2, .rate = 20});
+            ASSERT_TRUE(comes_true([&] { return sculptor.work().version > 30; }));
+            const auto samples = s.live.data().field().shared_samples();
+            saving = std::make_unique<Work>(
+                [&, samples](const io::Progress&) {
+                    io::write_volume(flattened(*samples), folder / "saved.nrrd");
+                },
+                [] {});
+            for (int i = 0; i < 5; ++i) {
+                sculptor.apply(edit::Fill{{{i, i, i}, {i + 3, i + 3, i + 3}}, 200});
+                sculptor.undo();
+                sculptor.redo();
+            }
+            sculptor.set_brush({});
+        });
+        felt = sculptor.work().samples;
+        EXPECT_TRUE(comes_true([&] { return saving->ended(); }));
+        EXPECT_TRUE(saving->finish());
+        EXPECT_GT(s.live.stop_recording(), 0);
+        EXPECT_EQ(sculptor.work().samples, felt) << "the session began anew with its edits";
+        EXPECT_TRUE(comes_true([&] {
+            const auto now = s.live.snapshot();
+            return now && now->session.version == sculptor.work().version;
+        }));
+    }
+    const Playback played = Playback::read(
+        folder / "r.csv", app::load(Session::on("synthetic:sphere:32x32x32").volume, {}), {});
+    EXPECT_EQ(played.different(), 0U);
+    const Volume seen = flattened(played.field_at(played.at(played.end())).samples());
+    const Volume want = flattened(*felt);
+    EXPECT_EQ(std::memcmp(seen.data(), want.data(), want.bytes()), 0);
+}
+
+TEST(LivingLive, a_sequence_plays_while_all_others_look_and_record) {
+    const ScratchFolder folder;
+    {
+        Session s("synthetic:beating:24x24x24");
+        s.live.record(folder / "r.csv");
+        app::Player& player = s.live.data().player();
+        with_observers(s.live, [&] {
+            ASSERT_TRUE(comes_true([&] {
+                const auto now = s.live.snapshot();
+                return now && now->session.moment > 1;
+            }));
+            player.set_loop(false);
+            player.play(-2);
+            player.seek(0.3);
+            player.step(1);
+            player.set_loop(true);
+            player.play(3);
+            ASSERT_TRUE(comes_true([&] { return player.view().time > 0.5; }));
+        });
+        EXPECT_GT(s.live.stop_recording(), 0);
+        EXPECT_EQ(player.view().speed, 3) << "it goes on in the session that began anew";
+    }
+    const Playback played = Playback::read(
+        folder / "r.csv", app::load(Session::on("synthetic:beating:24x24x24").volume, {}), {});
+    EXPECT_EQ(played.different(), 0U);
+}
+
+TEST(LivingLive, a_recording_that_begins_after_edits_begins_with_them) {
+    const ScratchFolder folder;
+    Session s("synthetic:sphere:32x32x32");
+    app::Sculptor& sculptor = s.live.data().sculptor();
+    sculptor.apply(edit::Fill{{{5, 5, 5}, {20, 20, 20}}, 0});
+    sculptor.apply(edit::Fill{{{5, 5, 5}, {9, 9, 9}}, 200});
+    sculptor.undo();
+    s.live.record(folder / "r.csv");
+    ASSERT_TRUE(comes_true([&] { return s.live.recording()->ticks() > 50; }));
+    (void)s.live.stop_recording();
+    const Playback played = Playback::read(folder / "r.csv", app::load(s.options.volume, {}), {});
+    EXPECT_EQ(played.different(), 0U);
+    EXPECT_EQ(played.at(played.begin()).session.version, 1U);
+    // Edits without end are more than it can begin with.
+    for (int i = 0; i < 1100; ++i) {
+        sculptor.apply(edit::Fill{{{1, 1, 1}, {1, 1, 1}}, double(i % 2 + 1)});
+    }
+    EXPECT_THROW(s.live.record(folder / "s.csv"), std::invalid_argument);
+    EXPECT_FALSE(std::filesystem::exists(folder / "s.csv"));
+}
+
+}  // namespace
+}  // namespace palpate::viewer
