@@ -71,7 +71,7 @@ DataRequest touch_request(const std::vector<std::string>& words, const Volume& v
 }
 
 DataRequest fill_request(const std::vector<std::string>& words, const Volume& volume) {
-    const std::string meant = "fill I,J,K:I,J,K VALUE";
+    const std::string meant = "fill I,J,K[:I,J,K] VALUE";
     if (words.size() != 3) wrong(meant);
     const auto [low, high] = two_points(words[1], meant);
     const double most = std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff());

@@ -45,7 +45,7 @@ using DataRequest = std::variant<ask::SetBrush, ask::Touch, ask::Fill, ask::Undo
                                  ask::Save, ask::Play, ask::Step, ask::Seek, ask::Loop>;
 
 /// `brush KIND RADIUS [RATE [VALUE]]`, `brush off`, `carve|add|smooth|paint X,Y,Z[:X,Y,Z] RADIUS
-/// [VALUE]`, `fill I,J,K:I,J,K VALUE`, `undo`, `redo`, `save FILE`, `play [SPEED]`, `pause`,
+/// [VALUE]`, `fill I,J,K[:I,J,K] VALUE`, `undo`, `redo`, `save FILE`, `play [SPEED]`, `pause`,
 /// `step [FRAMES]`, `seek SECONDS`, `loop on|off`. Nothing for other words; throws
 /// std::invalid_argument, saying what was meant to be there.
 std::optional<DataRequest> data_request(const std::vector<std::string>& words,
