@@ -170,7 +170,10 @@ void Player::run(const std::stop_token& stop) {
     while (!stop.stop_requested()) {
         std::this_thread::sleep_for(between_looks);
         const std::scoped_lock lock(mutex_);
-        attend();
+        try {
+            attend();
+        } catch (const std::exception&) {  // no memory: again in a moment
+        }
     }
 }
 

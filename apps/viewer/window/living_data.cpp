@@ -184,6 +184,10 @@ void MainWindow::save_volume(const QString& path) {
 
 /// False if the person would rather keep edits that were not saved.
 bool MainWindow::may_lose_edits() {
+    if (saving_) {
+        show_done(tr("The volume is still being saved"));
+        return false;
+    }
     if (!live_ || live_->data().is_sequence() || !live_->data().sculptor().work().changed) {
         return true;
     }

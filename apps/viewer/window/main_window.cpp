@@ -272,6 +272,7 @@ void MainWindow::dropEvent(QDropEvent* event) {
     const auto urls = event->mimeData()->urls();
     if (urls.isEmpty()) return;
     event->acceptProposedAction();
+    if (!may_lose_edits()) return;
     open_path(urls.front().toLocalFile());
 }
 

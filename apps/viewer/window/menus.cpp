@@ -198,8 +198,9 @@ void MainWindow::refresh_actions() {
 void MainWindow::fill_recent() {
     recent_->clear();
     for (const QString& path : QSettings().value("recent").toStringList()) {
-        connect(recent_->addAction(path), &QAction::triggered, this,
-                [this, path] { open_path(path); });
+        connect(recent_->addAction(path), &QAction::triggered, this, [this, path] {
+            if (may_lose_edits()) open_path(path);
+        });
     }
     if (recent_->isEmpty()) recent_->addAction(tr("nothing yet"))->setEnabled(false);
 }

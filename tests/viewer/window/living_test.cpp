@@ -45,6 +45,7 @@ TEST_F(Living, the_brush_carves_what_is_felt_and_undo_and_redo_bring_it_back_and
     EXPECT_TRUE(wait_until([&] { return now().session.version == 0; }));
     QTest::keyClick(window_.get(), Qt::Key_Z, Qt::ControlModifier | Qt::ShiftModifier);
     EXPECT_TRUE(wait_until([&] { return work().samples != start; }));
+    ASSERT_TRUE(wait_until([&] { return part<QPushButton>("undo").isEnabled(); }));
     QTest::mouseClick(&part<QPushButton>("undo"), Qt::LeftButton);
     EXPECT_TRUE(wait_until([&] { return work().samples == start; }));
 }
