@@ -196,11 +196,7 @@ void add_demo(CLI::App& app) {
     options->volume.add_to(*command, true);
     options->field.add_to(*command);
     options->render.add_to(*command);
-    command->add_option("--motion", options->motion, "Motion of the hand")
-        ->check(CLI::IsMember(scenes::motion_names()))
-        ->capture_default_str();
-    command->add_option("--duration", options->hand.duration_s, "Length [s]")
-        ->capture_default_str();
+    add_motion_options(*command, options->motion, options->hand);
     command->add_option("--speed", options->hand.speed_mm_s, "Speed of the hand [mm/s]")
         ->capture_default_str();
     command->add_option("--depth", options->hand.depth_mm, "How deep the hand presses [mm]")

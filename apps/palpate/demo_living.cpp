@@ -330,11 +330,7 @@ void add_demo_sculpt(CLI::App& demo) {
         demo.add_subcommand("sculpt", "A simulated hand carves what it feels; an animation");
     command->footer("Example:\n  palpate demo sculpt lobster.nrrd --isovalue 35 --radius 4");
     add_options(*command, *options);
-    command->add_option("--motion", options->motion, "Motion of the hand")
-        ->check(CLI::IsMember(scenes::motion_names()))
-        ->capture_default_str();
-    command->add_option("--duration", options->hand.duration_s, "Length [s]")
-        ->capture_default_str();
+    add_motion_options(*command, options->motion, options->hand);
     command->add_option("--radius", options->brush.radius, "Radius of the brush [mm]")
         ->capture_default_str();
     command->add_option("--brush-rate", options->brush.rate, "How fast the brush works [1/s]")

@@ -10,6 +10,13 @@ namespace palpate::app {
 
 namespace fs = std::filesystem;
 
+void add_motion_options(CLI::App& command, std::string& motion, scenes::MotionSettings& hand) {
+    command.add_option("--motion", motion, "Motion of the hand")
+        ->check(CLI::IsMember(scenes::motion_names()))
+        ->capture_default_str();
+    command.add_option("--duration", hand.duration_s, "Length [s]")->capture_default_str();
+}
+
 void write_trajectory(const io::Trajectory& trajectory, const fs::path& path) {
     io::PendingFile file(path);
     file.write("t,x,y,z\n");

@@ -1,11 +1,17 @@
-// What the demos share: the hand's way in a file and the figure over time.
+// What the demos share: the options of the hand's way in a file and the figure over time.
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
+#include <string>
 
 #include "io/trajectory.hpp"
+#include "scenes/motions.hpp"
 
 namespace palpate::app {
+
+/// --motion and --duration.
+void add_motion_options(CLI::App& command, std::string& motion, scenes::MotionSettings& hand);
 
 /// The hand's way as a file that replay takes. Throws io::OutputError.
 void write_trajectory(const io::Trajectory& trajectory, const std::filesystem::path& path);

@@ -65,9 +65,10 @@ BrushControls::BrushControls(QWidget* parent)
       reason_(new Note("brush_reason", Note::Kind::plain)),
       on_(new QPushButton),
       kinds_(new QButtonGroup(this)),
-      radius_(new LogQuantity("brush_radius", "mm", 1, 25)),
+      radius_(new Quantity("brush_radius", "mm", 1, 25, 0, Quantity::Scale::factors)),
       hardness_(new Quantity("brush_hardness", "", 0, 1, 0.05)),
-      rate_box_(new LogQuantity("brush_rate", "/s", least_rate, most_rate)),
+      rate_box_(
+          new Quantity("brush_rate", "/s", least_rate, most_rate, 0, Quantity::Scale::factors)),
       at_once_(new QCheckBox("At once")),
       value_(new NumberBox),
       automatic_(new QCheckBox("Automatic")),
@@ -191,7 +192,7 @@ void BrushControls::connect_inputs() {
 }
 
 void BrushControls::connect_numbers() {
-    connect(radius_, &LogQuantity::wanted, this, [this](double radius) {
+    connect(radius_, &Quantity::wanted, this, [this](double radius) {
         if (radius >= radius_->low() && radius <= radius_->high()) {
             return change([radius](BrushChoice& c) { c.radius = radius; });
         }
@@ -207,7 +208,7 @@ void BrushControls::connect_numbers() {
         }
         refuse(QString("the brush's hardness must be from 0 to 1, not %1").arg(hardness));
     });
-    connect(rate_box_, &LogQuantity::wanted, this, [this](double rate) {
+    connect(rate_box_, &Quantity::wanted, this, [this](double rate) {
         if (rate >= least_rate && rate <= most_rate) {
             return change([rate](BrushChoice& c) { c.rate = rate; });
         }

@@ -9,7 +9,6 @@
 #include <functional>
 
 #include "apps/viewer/panel/brush_choice.hpp"
-#include "apps/viewer/panel/log_quantity.hpp"
 #include "apps/viewer/panel/quantity.hpp"
 #include "apps/viewer/panel/section.hpp"
 
@@ -75,9 +74,9 @@ class BrushControls : public QWidget {
     Note* reason_;
     QPushButton* on_;
     QButtonGroup* kinds_;
-    LogQuantity* radius_;
+    Quantity* radius_;
     Quantity* hardness_;
-    LogQuantity* rate_box_;
+    Quantity* rate_box_;
     QCheckBox* at_once_;
     NumberBox* value_;
     QCheckBox* automatic_;

@@ -15,10 +15,11 @@ constexpr int places = 1000;  // of the slider
 }  // namespace
 
 Quantity::Quantity(const QString& name, const QString& unit, double low, double high, double step,
-                   QWidget* parent)
+                   Scale scale, QWidget* parent)
     : QWidget(parent),
       low_(low),
       high_(high),
+      scale_(scale),
       slider_(new QSlider(Qt::Horizontal)),
       box_(new NumberBox),
       pacer_(this) {
@@ -31,7 +32,11 @@ Quantity::Quantity(const QString& name, const QString& unit, double low, double 
     let_wheel_pass(*slider_);
     box_->setObjectName(name + "_box");
     box_->setSuffix(unit.isEmpty() ? QString() : " " + unit);
-    box_->setSingleStep(step);
+    if (scale == Scale::factors) {
+        box_->setStepType(QAbstractSpinBox::AdaptiveDecimalStepType);
+    } else {
+        box_->setSingleStep(step);
+    }
     // All alike, so that they stand in a column; the longest unit is N s/mm.
     box_->setMinimumWidth(fontMetrics().horizontalAdvance("0.00000 N s/mm") +
                           2 * fontMetrics().height());
@@ -69,12 +74,16 @@ void Quantity::set_ends(double low, double high) {
     if (!slider_->isSliderDown()) place_slider();
 }
 
-/// Short numbers between the ends, the ends themselves exactly.
+/// Short numbers between the ends (of factors three digits), the ends themselves exactly.
 double Quantity::value_at(int place) const {
     if (place <= 0) return low_;
     if (place >= places) return high_;
-    const double value = low_ + (high_ - low_) * place / places;
-    const double digits = std::ceil(std::log10(places / (high_ - low_)));
+    const double part = static_cast<double>(place) / places;
+    const bool factors = scale_ == Scale::factors;
+    const double value =
+        factors ? low_ * std::pow(high_ / low_, part) : low_ + (high_ - low_) * part;
+    const double digits = factors ? 2 - std::floor(std::log10(value))
+                                  : std::ceil(std::log10(places / (high_ - low_)));
     const double scale = std::pow(10.0, digits);
     const double rounded = std::round(value * scale) / scale;
     return std::isfinite(rounded) ? std::clamp(rounded, low_, high_) : value;
@@ -82,8 +91,13 @@ double Quantity::value_at(int place) const {
 
 void Quantity::place_slider() {
     const QSignalBlocker quiet(slider_);
-    const double part = high_ > low_ ? (value_ - low_) / (high_ - low_) : 0;
-    slider_->setValue(static_cast<int>(std::lround(places * std::clamp(part, 0.0, 1.0))));
+    const double bounded = std::clamp(value_, low_, high_);
+    double part = 0;
+    if (high_ > low_) {
+        part = scale_ == Scale::factors ? std::log(bounded / low_) / std::log(high_ / low_)
+                                        : (bounded - low_) / (high_ - low_);
+    }
+    slider_->setValue(static_cast<int>(std::lround(places * part)));
 }
 
 void Quantity::ask(double value) {

@@ -15,22 +15,30 @@ class Quantity : public QWidget {
     Q_OBJECT
 
   public:
-    /// `unit` stands behind the number.
+    /// What the same way on the slider is: the same amount everywhere, or the same factor, for what
+    /// runs from small to large and stays above 0.
+    enum class Scale { amounts, factors };
+
+    /// `unit` stands behind the number; the box steps by `step`, or by a few percent where the
+    /// slider goes by factors.
     Quantity(const QString& name, const QString& unit, double low, double high, double step,
-             QWidget* parent = nullptr);
+             Scale scale = Scale::amounts, QWidget* parent = nullptr);
 
     /// Shows a value; emits nothing.
     void set_value(double value);
     double value() const { return value_; }
     /// The ends of the slider; the value stays.
     void set_ends(double low, double high);
+    double low() const { return low_; }
+    double high() const { return high_; }
     /// Forgets a wish that waits.
     void drop() { pacer_.drop(); }
     NumberBox& box() { return *box_; }
     void set_accessible_name(const QString& name);
 
   Q_SIGNALS:
-    void wanted(double value);  ///< at most 60 a second while the slider moves
+    /// At most 60 a second while the slider moves. From the box any number may come.
+    void wanted(double value);
 
   private:
     void ask(double value);
@@ -38,6 +46,7 @@ class Quantity : public QWidget {
     void place_slider();
 
     double value_ = 0, low_, high_;
+    Scale scale_;
     QSlider* slider_;
     NumberBox* box_;
     Pacer pacer_;
