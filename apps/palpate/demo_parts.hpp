@@ -1,4 +1,4 @@
-// What the demos share: the options of the hand's way in a file and the figure over time.
+// What the demos share: the hand's options, its way in a file and the figure over time.
 #pragma once
 
 #include <CLI/CLI.hpp>
