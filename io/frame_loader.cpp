@@ -170,12 +170,31 @@ FrameLoader::View FrameLoader::view_of(double time, int way) const {
     View view;
     view.way = way;
     view.at = static_cast<std::int64_t>(lap) * count + frame;
+    // Between which two play is: frames that cannot be read are none.
+    const auto last = settings_.loop ? std::numeric_limits<std::int64_t>::max() : count - 1;
+    const auto begins = settings_.loop ? std::numeric_limits<std::int64_t>::min() : 0;
+    std::int64_t from = view.at;
+    std::int64_t to = std::min(view.at + 1, last);
+    while (has_failed(from) && view.at - from < count && from > begins) --from;
+    while (has_failed(to) && to - view.at < count && to < last) ++to;
     const std::int64_t behind = std::max<std::int64_t>(room_ - 2, 0) / 4;
-    view.low = way > 0 ? view.at - behind : view.at + 2 + behind - room_;
+    view.low = way > 0 ? from - behind : to + 1 + behind - room_;
     if (!settings_.loop) view.low = std::clamp<std::int64_t>(view.low, 0, count - room_);
     view.high = view.low + room_ - 1;
+    // Nor do they take room: for each the window is a frame longer.
+    std::int64_t good = 0;
+    for (std::int64_t place = view.low; place <= view.high; ++place) good += !has_failed(place);
+    while (good < room_ && view.high - view.low + 1 < count) {
+        const bool up = way > 0 ? view.high < last : view.low <= begins;
+        good += !has_failed(up ? ++view.high : --view.low);
+    }
     view.first = std::clamp(way > 0 ? view.at : view.at + 1, view.low, view.high);
     return view;
+}
+
+bool FrameLoader::has_failed(std::int64_t place) const {
+    const std::int64_t count = sequence_.count();
+    return failed_.contains(static_cast<int>(place - lap_of(place, count) * count));
 }
 
 /// The first place from `low` on where a frame comes.
@@ -294,7 +313,6 @@ void FrameLoader::tell_problem(const std::string& problem) {
 /// The places of the frames that are there round the play position, without a gap but for frames
 /// that cannot be read; of one that is not wanted its nearest place.
 std::vector<std::int64_t> FrameLoader::run_of_loaded(const View& view) const {
-    const std::int64_t count = sequence_.count();
     std::vector<std::int64_t> places;
     for (const auto& [frame, volume] : loaded_) {
         places.push_back(is_wanted(view, frame) ? place_from(view.low, frame)
@@ -308,9 +326,7 @@ std::vector<std::int64_t> FrameLoader::run_of_loaded(const View& view) const {
         });
     const auto joined = [&](std::int64_t from, std::int64_t to) {
         for (std::int64_t place = from + 1; place < to; ++place) {
-            if (!failed_.contains(static_cast<int>(place - lap_of(place, count) * count))) {
-                return false;
-            }
+            if (!has_failed(place)) return false;
         }
         return true;
     };

@@ -86,6 +86,7 @@ class FrameLoader {
     std::int64_t nearest_place(std::int64_t to, int frame) const;
     double time_at(std::int64_t place) const;
     View view_of(double time, int way) const;
+    bool has_failed(std::int64_t place) const;
 
     const Sequence sequence_;
     const LoaderSettings settings_;

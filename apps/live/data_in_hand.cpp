@@ -5,6 +5,15 @@
 
 namespace palpate::app {
 
+void check_volume_name(const std::string& path) {
+    for (const char* end : {".nrrd", ".nhdr", ".mha", ".mhd", ".nii", ".nii.gz", ".vti"}) {
+        if (path.ends_with(end)) return;
+    }
+    throw std::invalid_argument(path +
+                                ": a volume is written as .nrrd, .nhdr, .mha, .mhd, .nii, .nii.gz "
+                                "or .vti: name one of these");
+}
+
 DataInHand::DataInHand(const LoadedVolume& loaded, const Field& field,
                        const io::LoaderSettings& settings, std::function<void()> on_change)
     : field_(field) {

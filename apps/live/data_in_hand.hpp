@@ -11,6 +11,9 @@
 
 namespace palpate::app {
 
+/// Throws std::invalid_argument for a file name whose extension no volume can be written under.
+void check_volume_name(const std::string& path);
+
 class DataInHand {
   public:
     /// `field` is what the session begins with, of `loaded`'s volume. `on_change` as the sculptor's

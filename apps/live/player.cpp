@@ -12,6 +12,8 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto between_looks = 5ms;
+/// [s] A live source that gives no frame for so long is told of.
+constexpr double silent = 2;
 
 bool covers(const Samples& samples, double time) {
     return samples.within(time) == time;
@@ -62,6 +64,7 @@ void Player::play(double speed) {
     const std::scoped_lock lock(mutex_);
     speed_ = speed;
     send(command::Speed{speed});
+    if (loader_ && speed != 0) loader_->retry();
 }
 
 void Player::require_sequence() const {
@@ -75,6 +78,7 @@ void Player::seek(double time) {
     require_sequence();
     if (!std::isfinite(time)) throw std::invalid_argument("the time is not finite");
     const std::scoped_lock lock(mutex_);
+    loader_->retry();  // what could not be read may be there by now
     wanted_ = std::clamp(time, sequence_.times.front(), sequence_.times.back());
     if (settings_.loop && time > *wanted_) wanted_ = within(time);
 }
@@ -124,7 +128,12 @@ PlayView Player::view() const {
         view.loop = false;
         view.speed = speed_;
         view.time = time_;
-        view.problem = live_->status().problem;
+        const io::LiveStatus status = live_->status();
+        view.problem = status.problem;
+        if (view.problem.empty() && status.ended) view.problem = "the live source has ended";
+        if (view.problem.empty() && status.age > silent) {
+            view.problem = "the live source is silent: no frame came for more than 2 s";
+        }
         if (!sent_.samples) return view;
         for (const Frame& frame : sent_.samples->frames()) view.frames.push_back(frame.time);
         view.begin = view.loaded_from = view.frames.front();
@@ -188,6 +197,8 @@ void Player::attend() {
     if (loader_) loader_->look(wanted_.value_or(time_), speed_);
     const std::shared_ptr<const Samples> newest = this->newest();
     if (!newest || !servo_) return;
+    // Held: the frames that come meanwhile would push the moment ahead of them.
+    if (live_ && speed_ == 0 && sent_.samples) return;
     if (newest != sent_.samples) {
         // What comes from outside cannot be made again.
         const command::Samples next{newest, sent_.version + 1,

@@ -44,8 +44,8 @@ class Player {
 
     /// Whom to watch and to tell; it must stay until the next attach(). Null: nobody.
     void attach(Servo* servo);
-    /// At so many seconds a second, backwards if negative; 0 stops. Throws std::invalid_argument
-    /// beyond 1000.
+    /// At so many seconds a second, backwards if negative; 0 stops. This and seek() try frames
+    /// again that could not be read. Throws std::invalid_argument beyond 1000.
     void play(double speed);
     /// To a time of the sequence, as soon as its frames are in memory. This and what follows throws
     /// std::invalid_argument for a live source.

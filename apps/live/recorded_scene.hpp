@@ -10,8 +10,8 @@
 namespace palpate::app {
 
 /// How to load the volume of a recording: by its recorded name, looked for from here, then beside
-/// the recording; or `instead`, unless that is empty. Throws io::InputError for a live source, whose
-/// frames are nowhere.
+/// the recording; or `instead`, unless that is empty. Throws io::InputError for a live source,
+/// whose frames are nowhere.
 VolumeOptions recorded_volume(const io::RecordingHead& head, const std::filesystem::path& recording,
                               const std::string& instead = {});
 

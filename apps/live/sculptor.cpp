@@ -60,6 +60,7 @@ Sculptor::Sculptor(const Field& field, std::function<void()> on_change)
       field_(field),
       editor_(field.shared_samples()),
       versions_{{field.shared_samples(), {}}} {
+    show();
     thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
 
@@ -86,8 +87,11 @@ void Sculptor::set_brush(const std::optional<HandBrush>& brush) {
     if (brush.has_value() != brush_.has_value()) {
         stroke_.reset();
         fresh_ = true;
+        resting_ = false;
     }
     brush_ = brush;
+    problem_.clear();
+    show();
 }
 
 void Sculptor::apply(const Edit& asked) {
@@ -109,8 +113,9 @@ bool Sculptor::redo() {
 /// Tells of the version that the editor went back or forth to.
 bool Sculptor::go_to(SampleBox changed) {
     fresh_ = true;
+    resting_ = true;
     if (changed.empty()) return false;
-    changed_ = united(changed_, changed);
+    changed_since(changed);
     send({editor_.samples(), version_of(editor_.samples())});
     return true;
 }
@@ -128,14 +133,29 @@ void Sculptor::edit(const Edit& asked, EditStep step) {
     const std::uint64_t from = version_of(editor_.samples());
     const SampleBox changed = editor_.apply(asked, step);
     if (changed.empty()) return;
-    changed_ = united(changed_, changed);
+    changed_since(changed);
     command::Samples told{editor_.samples(), versions_.size(),
                           std::make_shared<const Recipe>(EditOf{from, asked})};
     versions_.push_back({editor_.samples(), {nullptr, told.version, told.recipe}});
     send(told);
 }
 
+/// What others see without waiting.
+void Sculptor::show() {
+    const Work now{editor_.samples(),    version_of(editor_.samples()),
+                   editor_.undo_steps(), editor_.redo_steps(),
+                   editor_.changed(),    problem_};
+    const std::scoped_lock lock(show_mutex_);
+    shown_ = now;
+}
+
+void Sculptor::changed_since(const SampleBox& box) {
+    const std::scoped_lock lock(show_mutex_);
+    changed_ = united(changed_, box);
+}
+
 void Sculptor::send(const command::Samples& command) {
+    show();
     for (int i = 0; servo_ && !servo_->send(command); ++i) {
         if (i == patience) throw std::invalid_argument("the session takes no commands");
         std::this_thread::sleep_for(1ms);
@@ -149,8 +169,10 @@ void Sculptor::run(const std::stop_token& stop) {
         const std::scoped_lock lock(mutex_);
         try {
             dab();
-        } catch (const std::exception&) {
+        } catch (const std::exception& e) {
             brush_.reset();  // a session that takes no commands, or no memory: the hand only feels
+            problem_ = std::string("the brush was put down: ") + e.what();
+            show();
         }
     }
 }
@@ -160,8 +182,9 @@ void Sculptor::dab() {
     const auto now = servo_->snapshot();
     if (!now || (stroke_ && now->number <= stroke_->tick)) return;
     const SessionTick& session = now->session;
-    const bool works = session.device.status == DeviceStatus::ready && !session.frozen &&
-                       !session.clutched && now->forces_on &&
+    if (session.tick.proxy.mode == Mode::free) resting_ = false;
+    const bool works = !resting_ && session.device.status == DeviceStatus::ready &&
+                       !session.frozen && !session.clutched && now->forces_on &&
                        session.tick.proxy.mode == Mode::constrained &&
                        session.tick.proxy.status == UpdateStatus::done;
     if (!works) return stroke_.reset();
@@ -179,8 +202,17 @@ bool Sculptor::dab_from(const Stroke& from, const Snapshot& now) {
     const std::shared_ptr<const Samples> before = editor_.samples();
     try {
         edit(*stroke, fresh_ ? EditStep::own : EditStep::same);
-    } catch (const std::invalid_argument&) {
-        return false;  // a value on the wrong side of the level that is felt now: nothing to do
+    } catch (const std::invalid_argument& e) {
+        // A value on the wrong side of the level that is felt now, say: nothing to do.
+        if (problem_ != e.what()) {
+            problem_ = e.what();
+            show();
+        }
+        return false;
+    }
+    if (!problem_.empty()) {
+        problem_.clear();
+        show();
     }
     const bool changed = editor_.samples() != before;
     if (changed) fresh_ = false;
@@ -188,19 +220,19 @@ bool Sculptor::dab_from(const Stroke& from, const Snapshot& now) {
 }
 
 Work Sculptor::work() const {
-    const std::scoped_lock lock(mutex_);
-    return {editor_.samples(), version_of(editor_.samples()), editor_.undo_steps(),
-            editor_.redo_steps(), editor_.changed()};
+    const std::scoped_lock lock(show_mutex_);
+    return shown_;
 }
 
 SampleBox Sculptor::take_changed() {
-    const std::scoped_lock lock(mutex_);
+    const std::scoped_lock lock(show_mutex_);
     return std::exchange(changed_, {});
 }
 
 void Sculptor::set_saved(const std::shared_ptr<const Samples>& samples) {
     const std::scoped_lock lock(mutex_);
     if (editor_.samples() == samples) editor_.set_saved();
+    show();
 }
 
 std::vector<command::Samples> Sculptor::history() const {

@@ -6,6 +6,7 @@
 #include <functional>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -39,10 +40,11 @@ struct Work {
     std::shared_ptr<const Samples> samples;
     std::uint64_t version = 0;  ///< as snapshots tell it
     std::size_t undo_steps = 0, redo_steps = 0;
-    bool changed = false;  ///< since the start, or since they were saved
+    bool changed = false;      ///< since the start, or since they were saved
+    std::string problem = {};  ///< why the brush does nothing though it touches; empty if it works
 };
 
-/// Any thread may call anything.
+/// Any thread may call anything; work() and take_changed() do not wait for an edit.
 class Sculptor {
   public:
     /// `on_change` is called whenever samples have changed, from the thread that changed them: it
@@ -62,7 +64,8 @@ class Sculptor {
     /// Makes an edit, a step of its own for undo(). Throws std::invalid_argument as check(Edit),
     /// and for a servo that takes no commands.
     void apply(const Edit& edit);
-    /// False if there is nothing to take back, or to make again.
+    /// False if there is nothing to take back, or to make again. A brush that touches then rests
+    /// until it has been in the air, or off: it would undo the undoing.
     bool undo();
     bool redo();
 
@@ -91,15 +94,22 @@ class Sculptor {
     void send(const command::Samples& command);
     std::uint64_t version_of(const std::shared_ptr<const Samples>& samples) const;
 
-    mutable std::mutex mutex_;
+    void show();
+    void changed_since(const SampleBox& box);
+
+    mutable std::mutex mutex_;       // for as long as an edit takes
+    mutable std::mutex show_mutex_;  // of shown_ and changed_; a moment
+    Work shown_;
     std::function<void()> on_change_;
     Field field_;  // for its side and background
     Editor editor_;
     Servo* servo_ = nullptr;
     std::optional<HandBrush> brush_;
     std::optional<Stroke> stroke_;
-    double last_dab_ = 0;  // [s] of the session, when the last one changed something
-    bool fresh_ = true;    // the next dab begins a step
+    double last_dab_ = 0;   // [s] of the session, when the last one changed something
+    bool fresh_ = true;     // the next dab begins a step
+    bool resting_ = false;  // after an undo, until the brush was in the air
+    std::string problem_;
     struct Version {
         std::weak_ptr<const Samples> samples;
         command::Samples told;  // without samples

@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <ctime>
 #include <stdexcept>
+#include <thread>
 
 #include "io/number.hpp"
 
@@ -105,7 +107,7 @@ void TouchOptions::add_data_options(CLI::App& command) {
     command
         .add_option("--playback", playback,
                     "Speed at which a sequence is played from the start; 0: it stands still")
-        ->check(CLI::Range(-1000, 1000))
+        ->check(CLI::Range(-1000.0, 1000.0))
         ->capture_default_str();
     command.add_flag("--once", once, "A sequence stops at its end instead of beginning anew");
     command
@@ -161,6 +163,14 @@ LiveScene make_scene(LoadedVolume loaded, const TouchOptions& options) {
     }
     return {std::move(loaded), std::move(field), isovalue, std::move(device), info,
             std::move(session)};
+}
+
+void tell(io::RecordingWriter& recording, const std::vector<Command>& commands) {
+    for (const Command& command : commands) {
+        while (recording.problem().empty() && !recording.queue().push(command)) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        }
+    }
 }
 
 io::RecordingHead recording_head(const Session& session, const DeviceInfo& device,

@@ -63,6 +63,10 @@ struct LiveScene {
 /// hand's file), devices::DeviceError.
 LiveScene make_scene(LoadedVolume loaded, const TouchOptions& options);
 
+/// Puts into a recording what its session begins with. Waits where the queue is full: nobody else
+/// may be using it yet.
+void tell(io::RecordingWriter& recording, const std::vector<Command>& commands);
+
 /// What a recording has to say of a session that is about to begin.
 io::RecordingHead recording_head(const Session& session, const DeviceInfo& device,
                                  const TouchOptions& options);

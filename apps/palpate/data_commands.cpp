@@ -76,12 +76,15 @@ DataRequest fill_request(const std::vector<std::string>& words, const Volume& vo
     const auto [low, high] = two_points(words[1], meant);
     const double most = std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff());
     if (!(most <= 1 << 20)) wrong(meant);
-    return ask::Fill{{{low.cast<int>(), high.cast<int>()}, level_from_text(words[2], volume)}};
+    const SampleBox box{low.cwiseMin(high).cast<int>(), low.cwiseMax(high).cast<int>()};
+    return ask::Fill{{box, level_from_text(words[2], volume)}};
 }
 
 DataRequest play_request(const std::vector<std::string>& words) {
     if (words.size() > 2) wrong("play [SPEED]");
-    return ask::Play{words.size() > 1 ? number(words[1], "play [SPEED]") : 1};
+    const double speed = words.size() > 1 ? number(words[1], "play [SPEED]") : 1;
+    if (!(std::abs(speed) <= 1000)) wrong("play [SPEED], at most 1000,");
+    return ask::Play{speed};
 }
 
 std::string carry_out(const ask::Touch& touch, Sculptor& sculptor, const Snapshot& now,
@@ -154,6 +157,7 @@ std::optional<DataRequest> data_request(const std::vector<std::string>& words,
     if (name == "redo" && alone) return ask::Redo{};
     if (name == "save") {
         if (words.size() != 2) wrong("save FILE");
+        check_volume_name(words[1]);
         return ask::Save{words[1]};
     }
     if (name == "play") return play_request(words);
@@ -165,7 +169,9 @@ std::optional<DataRequest> data_request(const std::vector<std::string>& words,
     }
     if (name == "seek") {
         if (words.size() != 2) wrong("seek SECONDS");
-        return ask::Seek{number(words[1], "seek SECONDS")};
+        const double time = number(words[1], "seek SECONDS");
+        if (!std::isfinite(time)) wrong("seek SECONDS");
+        return ask::Seek{time};
     }
     if (name == "loop") {
         if (words.size() != 2 || (words[1] != "on" && words[1] != "off")) wrong("loop on|off");

@@ -11,6 +11,7 @@
 #include "apps/live/data_in_hand.hpp"
 #include "apps/live/touch_options.hpp"
 #include "apps/palpate/commands.hpp"
+#include "apps/palpate/errands.hpp"
 #include "apps/palpate/live_commands.hpp"
 #include "apps/palpate/live_status.hpp"
 #include "apps/palpate/outputs.hpp"
@@ -33,6 +34,7 @@ class Attendant {
         : servo_(servo),
           scene_(scene),
           data_(data),
+          errands_(data),
           recording_(recording),
           options_(options),
           requests_(std::move(requests)),
@@ -54,9 +56,10 @@ class Attendant {
             if (request && !obey(*request, *now)) return false;
         }
         ++rounds_;
+        tell();
         watch_device(now->session.device.status);
         watch_recording();
-        watch_sequence();
+        watch_data();
         if (line_ && rounds_ % 20 == 0) {
             fmt::print(stderr, "\r\033[K{}",
                        status_line(*now, servo_.report(), terminal_columns() - 1));
@@ -65,8 +68,13 @@ class Attendant {
         return !over && now->session.device.status != DeviceStatus::finished;
     }
 
-    /// Why the volume could not be written when that was asked for; empty if it could.
-    const std::string& unsaved() const { return unsaved_; }
+    /// Waits for what was asked for, but for Ctrl-C. Why a volume could not be written, if one
+    /// could not.
+    std::string finish() {
+        if (!interrupted()) errands_.finish();
+        tell();
+        return errands_.unsaved();
+    }
 
   private:
     void note(const std::string& text) const {
@@ -90,16 +98,12 @@ class Attendant {
         }
         try {
             if (const auto* data = std::get_if<DataRequest>(&request)) {
-                const std::string word = carry_out(*data, data_, now);
-                if (!word.empty() && !options_.volume.quiet) note(word);
+                errands_.put(*data, now);
             } else if (!servo_.send(std::get<Command>(request))) {
                 note("too many commands at once: one was left out");
             }
         } catch (const std::invalid_argument& e) {
             note(e.what());
-        } catch (const io::OutputError& e) {
-            note(std::string("palpate: ") + e.what());
-            unsaved_ = e.what();
         }
         return true;
     }
@@ -117,6 +121,12 @@ class Attendant {
                          problem.empty() ? "" : ": ", problem));
     }
 
+    void tell() {
+        for (const Errands::Word& word : errands_.words()) {
+            if (word.is_problem || !options_.volume.quiet) note(word.text);
+        }
+    }
+
     void watch_recording() {
         if (!recording_ || recording_told_ || rounds_ % 50 != 0) return;
         const std::string problem = recording_->problem();
@@ -125,16 +135,18 @@ class Attendant {
         note("palpate: " + problem);
     }
 
-    void watch_sequence() {
-        if (!data_.is_sequence() || rounds_ % 50 != 0) return;
-        const std::string problem = data_.player().view().problem;
-        if (problem.empty() || problem == sequence_problem_) return;
-        note("palpate: " + (sequence_problem_ = problem));
+    void watch_data() {
+        if (rounds_ % 25 != 0) return;
+        const std::string problem =
+            data_.is_sequence() ? data_.player().view().problem : data_.sculptor().work().problem;
+        if (std::exchange(data_problem_, problem) == problem || problem.empty()) return;
+        note("palpate: " + problem);
     }
 
     Servo& servo_;
     LiveScene& scene_;
     DataInHand& data_;
+    Errands errands_;
     const io::RecordingWriter* recording_;
     const TouchOptions& options_;
     std::vector<TimedRequest> requests_;
@@ -144,7 +156,7 @@ class Attendant {
     std::optional<DeviceStatus> status_;
     std::string problem_;  // of the device, as told
     bool recording_told_ = false;
-    std::string sequence_problem_, unsaved_;
+    std::string data_problem_;
     bool line_;
     int rounds_ = 0;
 };
@@ -209,7 +221,12 @@ std::unique_ptr<io::RecordingWriter> recording_of(const LiveScene& scene, const 
     if (options.record.empty()) return nullptr;
     auto recording = std::make_unique<io::RecordingWriter>(
         options.record, recording_head(scene.session, scene.info, options));
-    for (const Command& told : data.history()) recording->queue().push(told);
+    tell(*recording, data.history());
+    if (scene.loaded.live && !options.volume.quiet) {
+        fmt::print(stderr,
+                   "note: what a live source pushes is not recorded: the recording can be plotted, "
+                   "not rendered again\n");
+    }
     return recording;
 }
 
@@ -223,6 +240,7 @@ void require_no_mouse(const TouchOptions& options) {
 
 void touch(const TouchOptions& options) {
     check_outputs({options.volume.volume, options.commands}, {options.record, options.save});
+    if (!options.save.empty()) check_volume_name(options.save);
     require_no_mouse(options);
     LiveScene scene = make_scene(load_for_terminal(options.volume), options);
     LiveCommands commands(scene.field, scene.isovalue, scene.session.renderer.settings);
@@ -249,9 +267,9 @@ void touch(const TouchOptions& options) {
         Attendant attendant(servo, scene, data, recording.get(), options, std::move(requests),
                             commands);
         while (!interrupted() && attendant.attend()) std::this_thread::sleep_for(10ms);
-        unsaved = attendant.unsaved();
+        servo.stop();  // first of all: an edit under way may take seconds
+        unsaved = attendant.finish();
     }
-    servo.stop();
     scene.device->stop();
     const double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

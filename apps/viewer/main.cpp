@@ -45,10 +45,10 @@ int show(QApplication& application, const app::ViewOptions& options) {
     if (size.isValid()) window.resize(size);
     window.show();
     open(window, options);
-    // A signal ends the window as its close button does: forces go to zero.
+    // A signal ends the window at once: forces go to zero, nobody is asked.
     QTimer signals;
     QObject::connect(&signals, &QTimer::timeout, [&] {
-        if (stop_signal != 0) window.close();
+        if (stop_signal != 0) window.end();
     });
     signals.start(50);
     std::unique_ptr<viewer::Screenshot> screenshot;

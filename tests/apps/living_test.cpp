@@ -87,13 +87,15 @@ TEST(Touch, SaysWhatDataCannotDo) {
     EXPECT_TRUE(contains(moving.err, "cannot be edited")) << moving.err;
     for (const char* line :
          {"0 brush carve", "0 brush drill 3", "0 brush carve -3", "0 paint 1,2,3 4",
-          "0 carve 1,2 3", "0 fill 1,1 5", "0 seek", "0 loop maybe", "0 save"}) {
+          "0 carve 1,2 3", "0 fill 1,1 5", "0 seek", "0 loop maybe", "0 save", "0 save o.png",
+          "0 play inf", "0 seek nan"}) {
         put_bytes(folder / "c.txt", std::string(line) + "\n");
         expect_failure(palpate(folder, "touch " + ball + " --commands c.txt"), 3, "c.txt, line 1");
     }
     expect_failure(palpate(folder, Words{"touch", ball, "--brush", "carve"}), 2,
                    "brush KIND RADIUS");
     expect_failure(palpate(folder, "touch live:nothing.live"), 3, "nothing.live");
+    expect_failure(palpate(folder, Words{"touch", ball, "--save", "o.png"}), 2, "o.png");
 }
 
 TEST(Touch, AVolumeThatCannotBeSavedIsStatus5AndTheSessionWentOn) {

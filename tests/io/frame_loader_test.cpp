@@ -6,6 +6,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <random>
+#include <set>
 
 #include "io/volume_support.hpp"
 
@@ -232,6 +233,31 @@ TEST(FrameLoader, a_frame_that_cannot_be_read_is_told_and_passed_over_until_aske
     FrameLoader window(sequence, room_for(4));
     look_and_settle(window, 1.5 * interval, 1);
     EXPECT_EQ(numbers_of(*window.newest()), (std::vector<int>{1, 3}));
+}
+
+TEST(FrameLoader, damaged_frames_take_no_room_and_play_goes_over_them) {
+    for (const std::set<int>& damaged : {std::set<int>{3}, {3, 4}, {0, 8}, {1, 3, 5, 7}}) {
+        for (const int room : {2, 3, 4}) {
+            for (const double speed : {1.0, -1.0}) {
+                Sequence sequence = counted(9);
+                const auto reader = sequence.reader;
+                sequence.reader = [=](int frame, const Progress& progress) {
+                    if (damaged.contains(frame)) throw InputError("damaged");
+                    return reader(frame, progress);
+                };
+                FrameLoader loader(sequence, room_for(room));
+                for (int i = 0; i < 60; ++i) {
+                    const double time = speed * 0.5 * interval * i + 0.25 * interval;
+                    look_and_settle(loader, time, speed);
+                    const auto samples = loader.newest();
+                    ASSERT_TRUE(samples);
+                    ASSERT_EQ(samples->within(time), time)
+                        << room << " " << i << ", damaged " << damaged.size();
+                    ASSERT_LE(static_cast<int>(samples->frames().size()), room);
+                }
+            }
+        }
+    }
 }
 
 TEST(FrameLoader, files_that_vanish_are_a_problem_and_no_more) {

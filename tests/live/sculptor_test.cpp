@@ -117,6 +117,34 @@ TEST(Sculptor, a_stroke_is_one_step_for_undo) {
     EXPECT_TRUE(p.felt(0));
 }
 
+TEST(Sculptor, after_an_undo_the_brush_rests_until_it_is_taken_up_again) {
+    Pressing p;
+    ASSERT_TRUE(p.touches());
+    p.sculptor.set_brush(HandBrush{.radius = 3, .rate = 5});
+    ASSERT_TRUE(comes_true([&] { return p.sculptor.work().version > 20; }));
+    EXPECT_TRUE(p.sculptor.undo());
+    EXPECT_TRUE(p.felt(0));
+    const std::int64_t then = p.servo.snapshot()->number;
+    ASSERT_TRUE(comes_true([&] { return p.servo.snapshot()->number > then + 50; }));
+    EXPECT_EQ(p.sculptor.work().version, 0U);
+    EXPECT_EQ(p.sculptor.work().redo_steps, 1U) << "what was undone can come back";
+    p.sculptor.set_brush({});
+    p.sculptor.set_brush(HandBrush{.radius = 3, .rate = 5});
+    EXPECT_TRUE(comes_true([&] { return p.sculptor.work().version > 0; }));
+}
+
+TEST(Sculptor, a_brush_that_can_do_nothing_says_why) {
+    Pressing p;
+    ASSERT_TRUE(p.touches());
+    p.sculptor.set_brush(
+        HandBrush{.radius = 3, .rate = 5, .value = 200});  // solid: not to carve to
+    EXPECT_TRUE(comes_true([&] { return !p.sculptor.work().problem.empty(); }));
+    EXPECT_EQ(p.sculptor.work().version, 0U);
+    p.sculptor.set_brush(HandBrush{.radius = 3, .rate = 5});
+    EXPECT_TRUE(comes_true([&] { return p.sculptor.work().version > 0; }));
+    EXPECT_EQ(p.sculptor.work().problem, "");
+}
+
 TEST(Sculptor, its_history_makes_the_same_samples_again) {
     Pressing p;
     p.sculptor.apply(edit::Fill{{{20, 20, 20}, {40, 40, 40}}, 200});

@@ -170,16 +170,11 @@ void Live::record(const std::filesystem::path& path) {
     Session session =
         session_from(now ? now->session.tick.proxy.isovalue : isovalue_,
                      now ? now->session.transform : settings_.transform, now ? now->number : -1);
-    const std::vector<Command> told = data_->history();
-    if (told.size() > options_.render.rate) {
-        throw std::invalid_argument(
-            "too many edits for a recording to begin with: save the volume and open that");
-    }
     auto recording = std::make_unique<io::RecordingWriter>(
         path, app::recording_head(session, device_->info(), options_));
     stop();
-    // What came in between is not lost: nobody edits a session that stands still.
-    for (const Command& command : data_->history()) recording->queue().push(command);
+    // After it has stopped: an edit that came in between is in it.
+    app::tell(*recording, data_->history());
     const std::int64_t lost = servo_->report().unrecorded;
     recording_.swap(recording);
     start(std::move(session));

@@ -68,7 +68,7 @@ class Live {
     /// Records from now on: the session starts anew (forces ramp up) with all that was asked for.
     /// Throws io::OutputError for a file that cannot be made; then nothing has changed. A recording
     /// that was running is finished, and should that fail io::OutputError says so, but the new one
-    /// runs. Throws std::invalid_argument after more edits than a recording can begin with.
+    /// runs. After many edits it takes a while: it begins with all of them.
     void record(const std::filesystem::path& path);
     /// Ends the recording; the session starts anew. Returns the ticks in it. Throws io::OutputError
     /// for what could not be written. Nothing without a recording.

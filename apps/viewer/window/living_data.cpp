@@ -1,11 +1,12 @@
 // Data that change while they are felt: the brush, undo, saving; and sequences.
 #include <QAction>
-#include <QFileDialog>
+#include <QApplication>
+#include <QDir>
 #include <QFileInfo>
 #include <QMenu>
 #include <QMenuBar>
 #include <QMessageBox>
-#include <QSettings>
+#include <cstdio>
 #include <utility>
 
 #include "apps/viewer/panel/panel.hpp"
@@ -113,6 +114,10 @@ void MainWindow::observe_data(const Snapshot& now) {
     }
     const app::Work work = live_->data().sculptor().work();
     panel_->set_history(work.undo_steps, work.redo_steps, work.changed);
+    const QString problem = QString::fromStdString(work.problem);
+    if (problem != std::exchange(data_problem_, problem) && !problem.isEmpty()) {
+        show_done(problem);
+    }
 }
 
 void MainWindow::use_brush(const BrushChoice& brush) {
@@ -180,6 +185,32 @@ void MainWindow::save_volume(const QString& path) {
             io::write_volume(flattened(**samples, moment), file, options);
         },
         [this, look] { QMetaObject::invokeMethod(this, look, Qt::QueuedConnection); });
+}
+
+/// For a signal: nobody is asked, and nothing is lost.
+void MainWindow::end() {
+    timer_.stop();
+    std::shared_ptr<const Samples> edited;
+    if (live_ && !live_->data().is_sequence()) {
+        const app::Work work = live_->data().sculptor().work();
+        if (work.changed) edited = work.samples;
+    }
+    stop_recording();
+    live_.reset();  // forces first
+    if (edited) rescue_edits(edited);
+    QApplication::exit(0);
+}
+
+void MainWindow::rescue_edits(const std::shared_ptr<const Samples>& samples) {
+    const QString name = QDir::temp().filePath(
+        QString("palpate-edits-%1.nrrd").arg(QCoreApplication::applicationPid()));
+    try {
+        io::write_volume(flattened(*samples), name.toStdString());
+        std::fprintf(stderr, "palpate: the edits that were not saved are in %s\n",
+                     name.toLocal8Bit().constData());
+    } catch (const std::exception& e) {
+        std::fprintf(stderr, "palpate: the edits could not be kept: %s\n", e.what());
+    }
 }
 
 /// False if the person would rather keep edits that were not saved.

@@ -39,6 +39,9 @@ class MainWindow : public QMainWindow {
     explicit MainWindow(const app::TouchOptions& options);
     /// Ends the session: forces are zero.
     ~MainWindow() override;
+    /// The same, whatever is open; edits that were not saved go to a file of their own in the
+    /// folder for temporary files, which is told on standard error.
+    void end();
 
     /// A volume, a folder, a session or a recording, by what it is. Errors are shown.
     void open_path(const QString& path);
@@ -121,6 +124,7 @@ class MainWindow : public QMainWindow {
     void show_data();
     void observe_data(const Snapshot& now);
     void use_brush(const BrushChoice& brush);
+    void rescue_edits(const std::shared_ptr<const Samples>& samples);
     void undo(bool again);
     void ask_save_volume();
     bool may_lose_edits();
