@@ -1,5 +1,7 @@
 // Data that change, in the window: the brush, undo, saving, sequences.
 #include <QAction>
+#include <QDir>
+#include <QFile>
 #include <QMessageBox>
 #include <QPushButton>
 #include <QTimer>
@@ -72,6 +74,21 @@ TEST_F(Living, a_window_with_unsaved_edits_asks_before_it_closes) {
     ASSERT_NE(window_->live(), nullptr);
     answer(QMessageBox::Discard);
     EXPECT_TRUE(window_->close());
+}
+
+TEST_F(Living, a_signal_ends_it_without_a_question_and_the_edits_are_kept) {
+    feel("synthetic:sphere:48x48x48");
+    carve();
+    const auto carved = work().samples;
+    window_->end();  // what main() does on a signal
+    EXPECT_EQ(window_->live(), nullptr) << "forces are gone";
+    const QString kept = QDir::temp().filePath(
+        QString("palpate-edits-%1.nrrd").arg(QCoreApplication::applicationPid()));
+    ASSERT_TRUE(QFile::exists(kept));
+    const Volume rescued = io::read_volume(kept.toStdString()).volume;
+    QFile::remove(kept);
+    const Volume felt = flattened(*carved);
+    EXPECT_EQ(std::memcmp(rescued.data(), felt.data(), felt.bytes()), 0);
 }
 
 TEST_F(Living, a_recording_of_edits_is_played_with_them) {
