@@ -69,7 +69,7 @@ struct Snapshot {
     double stiffness = 0;        ///< [N/mm] in use
     bool penetrability_on = false;
     bool forces_on = true;
-    double speed = 0;  ///< at which a sequence is played
+    double speed = 0;         ///< at which a sequence is played
     std::int64_t missed = 0;  ///< deadlines so far
 };
 
