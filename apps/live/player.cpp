@@ -62,8 +62,7 @@ void Player::play(double speed) {
         throw std::invalid_argument("a sequence is played at most 1000 times as fast");
     }
     const std::scoped_lock lock(mutex_);
-    speed_ = speed;
-    send(command::Speed{speed});
+    set_speed(speed);
     if (loader_ && speed != 0) loader_->retry();
 }
 
@@ -86,8 +85,7 @@ void Player::seek(double time) {
 void Player::step(int frames) {
     require_sequence();
     const std::scoped_lock lock(mutex_);
-    speed_ = 0;
-    send(command::Speed{0});
+    set_speed(0);
     const double now = within(wanted_.value_or(time_));
     const std::vector<double>& times = sequence_.times;
     // Between two frames a step on is to the next, a step back to the one before.
@@ -171,8 +169,11 @@ std::vector<Command> Player::history() const {
     return history;
 }
 
-void Player::send(const Command& command) const {
-    if (servo_) (void)servo_->send(command);
+void Player::set_speed(double speed) {
+    if (servo_ && !servo_->send(command::Speed{speed})) {
+        throw std::invalid_argument("too many commands at once: this one was left out");
+    }
+    speed_ = speed;
 }
 
 void Player::run(const std::stop_token& stop) {

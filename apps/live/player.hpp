@@ -45,7 +45,8 @@ class Player {
     /// Whom to watch and to tell; it must stay until the next attach(). Null: nobody.
     void attach(Servo* servo);
     /// At so many seconds a second, backwards if negative; 0 stops. This and seek() try frames
-    /// again that could not be read. Throws std::invalid_argument beyond 1000.
+    /// again that could not be read. Throws std::invalid_argument beyond 1000, and
+    /// where the servo takes no more commands.
     void play(double speed);
     /// To a time of the sequence, as soon as its frames are in memory. This and what follows throws
     /// std::invalid_argument for a live source.
@@ -64,7 +65,7 @@ class Player {
   private:
     void run(const std::stop_token& stop);
     void attend();
-    void send(const Command& command) const;
+    void set_speed(double speed);
     double within(double time) const;
     void require_sequence() const;
     std::shared_ptr<const Samples> newest() const;
