@@ -79,11 +79,16 @@ class Sculptor {
     std::vector<command::Samples> history() const;
 
   private:
-    /// The samples of one version, and where the next stroke begins.
+    /// Where the next touch begins: where the proxy was last seen in contact.
     struct Stroke {
         Vec3 at = Vec3::Zero();  ///< [mm, physical]
         double time = 0;         ///< [s] of the session
         std::int64_t tick = -1;
+    };
+
+    struct Version {
+        std::weak_ptr<const Samples> samples;  // gone once nobody can come back to them
+        command::Samples told;                 // without samples
     };
 
     void run(const std::stop_token& stop);
@@ -110,10 +115,6 @@ class Sculptor {
     bool fresh_ = true;     // the next dab begins a step
     bool resting_ = false;  // after an undo, until the brush was in the air
     std::string problem_;
-    struct Version {
-        std::weak_ptr<const Samples> samples;
-        command::Samples told;  // without samples
-    };
     std::vector<Version> versions_;  // by number
     SampleBox changed_;
     std::jthread thread_;
