@@ -7,7 +7,6 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
-#include <utility>
 
 #include "io/samples_json.hpp"
 
@@ -27,7 +26,6 @@ struct Writer {
     void operator()(const char* name, const bool& value) { json[name] = value; }
     void operator()(const char* name, const int& value) { json[name] = value; }
     void operator()(const char* name, const std::uint32_t& value) { json[name] = value; }
-    void operator()(const char* name, const std::uint64_t& value) { json[name] = value; }
     void operator()(const char* name, const Vec3& value) {
         Json& list = json[name] = Json::array();
         for (int i = 0; i < 3; ++i) list.push_back(number_to_json(value[i]));
@@ -63,13 +61,12 @@ struct Reader {
     }
     void operator()(const char* name, int& value) { whole(name, value); }
     void operator()(const char* name, std::uint32_t& value) { whole(name, value); }
-    void operator()(const char* name, std::uint64_t& value) { whole(name, value); }
     template <class T>
     void whole(const char* name, T& value) {
         const Json* j = find(name);
         if (!j) return;
         const auto number = j->is_number_integer() ? j->get<std::int64_t>() : -1;
-        if (number < 0 || !std::in_range<T>(number)) {
+        if (number < 0 || number > std::int64_t{std::numeric_limits<T>::max()}) {
             wrong(name, "a whole number");
         }
         value = static_cast<T>(number);
@@ -188,9 +185,6 @@ void members(auto& v, Is<command::Scale> auto& s) {
     v("scale", s.scale);
 }
 
-void members(auto& v, Is<command::Samples> auto& s) {
-    v("version", s.version);
-}
 void members(auto& v, Is<command::Moment> auto& s) {
     v("time", s.time);
 }
@@ -221,6 +215,11 @@ Json written(const T& value) {
     return std::move(writer.json);
 }
 
+/// Told by their recipe, which is more than a list of members.
+Json written(const command::Samples& samples) {
+    return to_json(samples);
+}
+
 /// The name of each alternative of Command, in its order.
 constexpr std::array command_names{"isovalue", "freeze",   "clutch",        "forces",
                                    "scale",    "samples",  "moment",        "speed",
@@ -234,9 +233,13 @@ Command command_named(const std::string& name, const Json& json) {
     } else {
         if (name != command_names[i]) return command_named<i + 1>(name, json);
         std::variant_alternative_t<i, Command> command{};
-        Reader reader{json};
-        members(reader, command);
-        return command;
+        if constexpr (std::same_as<decltype(command), command::Samples>) {
+            return samples_command_from_json(json);
+        } else {
+            Reader reader{json};
+            members(reader, command);
+            return command;
+        }
     }
 }
 
@@ -263,14 +266,8 @@ Json to_json(const SessionSettings& settings) {
 }
 
 Json to_json(const Command& command) {
-    const auto to_written = [](const auto& alternative) {
-        using T = std::remove_cvref_t<decltype(alternative)>;
-        if constexpr (std::same_as<T, command::Samples>)
-            return to_json(alternative);
-        else
-            return written(alternative);
-    };
-    return {{command_names[command.index()], std::visit(to_written, command)}};
+    return {{command_names[command.index()],
+             std::visit([](const auto& alternative) { return written(alternative); }, command)}};
 }
 
 void from_json(const Json& json, RendererSettings& settings) {
@@ -287,7 +284,6 @@ Command command_from_json(const Json& json) {
     if (!json.is_object() || json.size() != 1) {
         throw std::invalid_argument("a command is an object of one member");
     }
-    if (json.begin().key() == "samples") return samples_command_from_json(json.begin().value());
     return command_named(json.begin().key(), json.begin().value());
 }
 

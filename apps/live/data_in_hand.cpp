@@ -15,14 +15,14 @@ void check_volume_name(const std::string& path) {
 }
 
 DataInHand::DataInHand(const LoadedVolume& loaded, const Field& field,
-                       const io::LoaderSettings& settings, std::function<void()> on_change)
+                       const io::LoaderSettings& settings)
     : field_(field) {
     if (loaded.live) {
-        player_ = std::make_unique<Player>(loaded.live, std::move(on_change));
+        player_ = std::make_unique<Player>(loaded.live);
     } else if (loaded.sequence.count() > 1) {
-        player_ = std::make_unique<Player>(loaded.sequence, settings, std::move(on_change));
+        player_ = std::make_unique<Player>(loaded.sequence, settings);
     } else {
-        sculptor_ = std::make_unique<Sculptor>(field, std::move(on_change));
+        sculptor_ = std::make_unique<Sculptor>(field);
     }
 }
 

@@ -16,11 +16,9 @@ void check_volume_name(const std::string& path);
 
 class DataInHand {
   public:
-    /// `field` is what the session begins with, of `loaded`'s volume. `on_change` as the sculptor's
-    /// and the player's. Throws std::invalid_argument for a sequence of which two frames do not fit
-    /// into the memory.
-    DataInHand(const LoadedVolume& loaded, const Field& field, const io::LoaderSettings& settings,
-               std::function<void()> on_change = {});
+    /// `field` is what the session begins with, of `loaded`'s volume. Throws std::invalid_argument
+    /// for a sequence of which two frames do not fit into the memory.
+    DataInHand(const LoadedVolume& loaded, const Field& field, const io::LoaderSettings& settings);
 
     bool is_sequence() const { return player_ != nullptr; }
     /// Throw std::invalid_argument, saying what to do, for data of the other kind.

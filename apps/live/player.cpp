@@ -31,18 +31,15 @@ std::shared_ptr<const Recipe> recipe_of(const Samples& samples) {
 
 }  // namespace
 
-Player::Player(io::Sequence sequence, const io::LoaderSettings& settings,
-               std::function<void()> on_change)
+Player::Player(io::Sequence sequence, const io::LoaderSettings& settings)
     : sequence_(std::move(sequence)),
       settings_(settings),
-      on_change_(std::move(on_change)),
       loader_(std::make_unique<io::FrameLoader>(sequence_, settings_)),
       time_(sequence_.times.front()) {
     thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
 
-Player::Player(std::shared_ptr<const io::LiveFrames> live, std::function<void()> on_change)
-    : on_change_(std::move(on_change)), live_(std::move(live)) {
+Player::Player(std::shared_ptr<const io::LiveFrames> live) : live_(std::move(live)) {
     settings_.loop = false;
     thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
@@ -206,13 +203,11 @@ void Player::attend() {
                                     live_ ? nullptr : recipe_of(*newest)};
         if (!servo_->send(next)) return;  // again in a moment
         sent_ = next;
-        if (on_change_) on_change_();
     }
     if (wanted_ && (covers(*newest, *wanted_) || loader_->status().settled)) {
         if (!servo_->send(command::Moment{*wanted_})) return;
         time_ = *wanted_;
         wanted_.reset();
-        if (on_change_) on_change_();
     }
 }
 

@@ -2,7 +2,6 @@
 // come into memory, and goes where it is asked to, from a thread of its own.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -31,13 +30,10 @@ struct PlayView {
 /// Any thread may call anything.
 class Player {
   public:
-    /// `on_change` is called when other samples went to the servo, from a thread of the player's:
-    /// it must only wake its owner. Throws std::invalid_argument as io::FrameLoader.
-    Player(io::Sequence sequence, const io::LoaderSettings& settings,
-           std::function<void()> on_change = {});
+    /// Throws std::invalid_argument as io::FrameLoader.
+    Player(io::Sequence sequence, const io::LoaderSettings& settings);
     /// The same for what another program pushes: it can be held and let go, no more.
-    explicit Player(std::shared_ptr<const io::LiveFrames> live,
-                    std::function<void()> on_change = {});
+    explicit Player(std::shared_ptr<const io::LiveFrames> live);
     ~Player();
     Player(const Player&) = delete;
     Player& operator=(const Player&) = delete;
@@ -73,7 +69,6 @@ class Player {
     mutable std::mutex mutex_;
     const io::Sequence sequence_;
     io::LoaderSettings settings_;
-    const std::function<void()> on_change_;
     std::unique_ptr<io::FrameLoader> loader_;     // of a sequence
     std::shared_ptr<const io::LiveFrames> live_;  // of a live source
     Servo* servo_ = nullptr;

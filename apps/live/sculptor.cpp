@@ -55,11 +55,8 @@ std::optional<edit::Stroke> stroke_of(const HandBrush& hand, const Field& field,
     return stroke;
 }
 
-Sculptor::Sculptor(const Field& field, std::function<void()> on_change)
-    : on_change_(std::move(on_change)),
-      field_(field),
-      editor_(field.shared_samples()),
-      versions_{{field.shared_samples(), {}}} {
+Sculptor::Sculptor(const Field& field)
+    : field_(field), editor_(field.shared_samples()), versions_{{field.shared_samples(), {}}} {
     show();
     thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
@@ -115,7 +112,6 @@ bool Sculptor::go_to(SampleBox changed) {
     fresh_ = true;
     resting_ = true;
     if (changed.empty()) return false;
-    changed_since(changed);
     send({editor_.samples(), version_of(editor_.samples())});
     return true;
 }
@@ -131,9 +127,7 @@ std::uint64_t Sculptor::version_of(const std::shared_ptr<const Samples>& samples
 
 void Sculptor::edit(const Edit& asked, EditStep step) {
     const std::uint64_t from = version_of(editor_.samples());
-    const SampleBox changed = editor_.apply(asked, step);
-    if (changed.empty()) return;
-    changed_since(changed);
+    if (editor_.apply(asked, step).empty()) return;
     command::Samples told{editor_.samples(), versions_.size(),
                           std::make_shared<const Recipe>(EditOf{from, asked})};
     versions_.push_back({editor_.samples(), {nullptr, told.version, told.recipe}});
@@ -149,18 +143,12 @@ void Sculptor::show() {
     shown_ = now;
 }
 
-void Sculptor::changed_since(const SampleBox& box) {
-    const std::scoped_lock lock(show_mutex_);
-    changed_ = united(changed_, box);
-}
-
 void Sculptor::send(const command::Samples& command) {
     show();
     for (int i = 0; servo_ && !servo_->send(command); ++i) {
-        if (i == patience) throw std::invalid_argument("the session takes no commands");
+        if (i == patience) throw std::runtime_error("the session takes no commands");
         std::this_thread::sleep_for(1ms);
     }
-    if (on_change_) on_change_();
 }
 
 void Sculptor::run(const std::stop_token& stop) {
@@ -222,11 +210,6 @@ bool Sculptor::dab_from(const Stroke& from, const Snapshot& now) {
 Work Sculptor::work() const {
     const std::scoped_lock lock(show_mutex_);
     return shown_;
-}
-
-SampleBox Sculptor::take_changed() {
-    const std::scoped_lock lock(show_mutex_);
-    return std::exchange(changed_, {});
 }
 
 void Sculptor::set_saved(const std::shared_ptr<const Samples>& samples) {

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <chrono>
-#include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -44,12 +43,10 @@ struct Work {
     std::string problem = {};  ///< why the brush does nothing though it touches; empty if it works
 };
 
-/// Any thread may call anything; work() and take_changed() do not wait for an edit.
+/// Any thread may call anything; work() does not wait for an edit.
 class Sculptor {
   public:
-    /// `on_change` is called whenever samples have changed, from the thread that changed them: it
-    /// must only wake its owner.
-    explicit Sculptor(const Field& field, std::function<void()> on_change = {});
+    explicit Sculptor(const Field& field);
     ~Sculptor();
     Sculptor(const Sculptor&) = delete;
     Sculptor& operator=(const Sculptor&) = delete;
@@ -70,8 +67,6 @@ class Sculptor {
     bool redo();
 
     Work work() const;
-    /// The box of samples that changed since the last call.
-    SampleBox take_changed();
     /// These samples were written to a file.
     void set_saved(const std::shared_ptr<const Samples>& samples);
     /// What a recording needs to know before its first tick: every version so far by how it came
@@ -100,12 +95,10 @@ class Sculptor {
     std::uint64_t version_of(const std::shared_ptr<const Samples>& samples) const;
 
     void show();
-    void changed_since(const SampleBox& box);
 
     mutable std::mutex mutex_;       // for as long as an edit takes
-    mutable std::mutex show_mutex_;  // of shown_ and changed_; a moment
+    mutable std::mutex show_mutex_;  // of shown_; a moment
     Work shown_;
-    std::function<void()> on_change_;
     Field field_;  // for its side and background
     Editor editor_;
     Servo* servo_ = nullptr;
@@ -116,7 +109,6 @@ class Sculptor {
     bool resting_ = false;  // after an undo, until the brush was in the air
     std::string problem_;
     std::vector<Version> versions_;  // by number
-    SampleBox changed_;
     std::jthread thread_;
 };
 

@@ -47,21 +47,9 @@ struct Demo {
     OfflineSummary summary;
 };
 
-io::Trajectory simulate_hand(const DemoOptions& options, const Field& field, double isovalue) {
-    io::Trajectory trajectory;
-    for (const auto& sample : scenes::make_motion(options.motion, field, isovalue, options.hand)) {
-        trajectory.time.push_back(sample.t);
-        trajectory.position.push_back(sample.position);
-    }
-    return trajectory;
-}
-
 /// Renders the motion; trajectory, trace and path go to files on the way.
 void feel(Demo& demo, const DemoOptions& options, const fs::path& folder) {
-    RendererSettings settings = render_settings(options.render, demo.field, demo.isovalue);
-    settings.device.maximum_force = std::max(settings.device.maximum_force, settings.force.limit);
-    settings.force.stale_after = std::numeric_limits<double>::infinity();  // at any --rate
-    Renderer renderer = make_renderer(demo.field, demo.isovalue, settings);
+    Renderer renderer = demo_renderer(options.render, demo.field, demo.isovalue);
     write_trajectory(demo.trajectory, folder / "trajectory.csv");
     io::TraceWriter trace(folder / "trace.csv");
     io::PathWriter path(folder / "path.csv");
@@ -163,7 +151,8 @@ void run_demo(const DemoOptions& options) {
     const Field field = make_field(loaded, options.field);
     const double isovalue = suggested_isovalue_of(loaded, field, options.field);
     Demo demo{std::move(loaded), field, isovalue, {}, {}, {}};
-    demo.trajectory = simulate_hand(options, field, isovalue);
+    demo.trajectory =
+        trajectory_of(scenes::make_motion(options.motion, field, isovalue, options.hand));
     ResultFolder results(options.output);
     const fs::path& folder = results.part();
     feel(demo, options, folder);

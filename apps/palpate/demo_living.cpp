@@ -71,10 +71,7 @@ struct Living {
 
 /// Renders the motion while the data change.
 void feel(Living& demo, const LivingOptions& options, const fs::path& folder) {
-    RendererSettings settings = render_settings(options.render, demo.field, demo.isovalue);
-    settings.device.maximum_force = std::max(settings.device.maximum_force, settings.force.limit);
-    settings.force.stale_after = std::numeric_limits<double>::infinity();  // at any --rate
-    Renderer renderer = make_renderer(demo.field, demo.isovalue, settings);
+    Renderer renderer = demo_renderer(options.render, demo.field, demo.isovalue);
     write_trajectory(demo.trajectory, folder / "trajectory.csv");
     io::TraceWriter trace(folder / "trace.csv");
     const auto ticks = static_cast<std::int64_t>(demo.trajectory.time.size());
@@ -196,15 +193,6 @@ void run(Living& demo, const LivingOptions& options,
     fmt::print("{}\n{}", demo.what, summary_text(demo.summary));
     if (!plotted) fmt::print("No figure over time: gnuplot is not installed.\n");
     fmt::print("Results: {} (open report.html)\n", options.output);
-}
-
-io::Trajectory trajectory_of(const std::vector<scenes::HandSample>& samples) {
-    io::Trajectory trajectory;
-    for (const scenes::HandSample& sample : samples) {
-        trajectory.time.push_back(sample.t);
-        trajectory.position.push_back(sample.position);
-    }
-    return trajectory;
 }
 
 void sculpt(const LivingOptions& options) {

@@ -1,10 +1,12 @@
-// What the demos share: the hand's options, its way in a file and the figure over time.
+// What the demos share: renderer, the hand's options, its way in a file and the figure over time.
 #pragma once
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <string>
+#include <vector>
 
+#include "apps/live/render_options.hpp"
 #include "io/trajectory.hpp"
 #include "scenes/motions.hpp"
 
@@ -12,6 +14,11 @@ namespace palpate::app {
 
 /// --motion and --duration.
 void add_motion_options(CLI::App& command, std::string& motion, scenes::MotionSettings& hand);
+
+/// Renders a motion of any rate, with the force limit that was asked for.
+Renderer demo_renderer(const RenderOptions& options, const Field& field, double isovalue);
+
+io::Trajectory trajectory_of(const std::vector<scenes::HandSample>& samples);
 
 /// The hand's way as a file that replay takes. Throws io::OutputError.
 void write_trajectory(const io::Trajectory& trajectory, const std::filesystem::path& path);

@@ -20,36 +20,17 @@
 #include "apps/viewer/scene/scene.hpp"
 #include "palpate/edit.hpp"
 #include "scenes/volumes.hpp"
+#include "tests/viewer/scene/timing.hpp"
 
 namespace {
 
 using namespace palpate;
 using viewer::Scene;
+using viewer::test::quantile;
+using viewer::test::run_until;
+using viewer::test::seconds;
 
 constexpr double level = 128;
-
-double seconds(const QElapsedTimer& timer) {
-    return 1e-9 * double(timer.nsecsElapsed());
-}
-
-bool run_until(const std::function<bool()>& done, double limit) {
-    QEventLoop loop;
-    QElapsedTimer since;
-    since.start();
-    QTimer look;
-    QObject::connect(&look, &QTimer::timeout, [&] {
-        if (done() || seconds(since) > limit) loop.quit();
-    });
-    look.start(1);
-    loop.exec();
-    return done();
-}
-
-double quantile(std::vector<double> values, double part) {
-    if (values.empty()) return 0;
-    std::ranges::sort(values);
-    return values[std::min(values.size() - 1, std::size_t(part * double(values.size())))];
-}
 
 void print(const std::string& what, const std::vector<double>& times) {
     std::printf("%-44s %4zu  p50 %6.1f ms  p99 %6.1f ms\n", what.c_str(), times.size(),

@@ -19,34 +19,15 @@
 
 #include "apps/live/volume_options.hpp"
 #include "apps/viewer/scene/scene.hpp"
+#include "tests/viewer/scene/timing.hpp"
 
 namespace {
 
 using namespace palpate;
 using viewer::Scene;
-
-double seconds(const QElapsedTimer& timer) {
-    return double(timer.nsecsElapsed()) * 1e-9;
-}
-
-/// Runs the event loop, which sleeps between events, until `done` or `limit` [s].
-void run_until(const std::function<bool()>& done, double limit) {
-    QEventLoop loop;
-    QElapsedTimer since;
-    since.start();
-    QTimer look;
-    QObject::connect(&look, &QTimer::timeout, [&] {
-        if (done() || seconds(since) > limit) loop.quit();
-    });
-    look.start(4);
-    loop.exec();
-}
-
-double quantile(std::vector<double> values, double part) {
-    if (values.empty()) return 0;
-    std::ranges::sort(values);
-    return values[std::min(values.size() - 1, std::size_t(part * double(values.size())))];
-}
+using viewer::test::quantile;
+using viewer::test::run_until;
+using viewer::test::seconds;
 
 /// Of all threads of this program [s]: on a busy machine it tells more than the clock.
 double processor_seconds() {
