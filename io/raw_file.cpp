@@ -11,6 +11,7 @@
 
 #include "io/finite.hpp"
 #include "io/inflate.hpp"
+#include "io/output.hpp"
 
 namespace palpate::io {
 namespace {
@@ -136,6 +137,20 @@ VolumeFile read_raw(const std::filesystem::path& path, const ReadOptions& option
     geometry.spacing = raw.spacing;
     return {Volume(geometry, raw.type, samples, bytes), packed ? "raw, gzip" : "raw", 1,
             std::move(notes)};
+}
+
+void write_raw(const Volume& volume, const std::filesystem::path& path, const Progress& progress) {
+    PendingFile file(path);
+    const std::string_view all(static_cast<const char*>(volume.data()), volume.bytes());
+    constexpr std::size_t chunk = 1 << 20;
+    for (std::size_t at = 0; at < all.size(); at += chunk) {
+        file.write(all.substr(at, chunk));
+        if (progress) {
+            progress(
+                std::min(1.0, static_cast<double>(at + chunk) / static_cast<double>(all.size())));
+        }
+    }
+    file.commit();
 }
 
 }  // namespace palpate::io

@@ -9,4 +9,7 @@ namespace palpate::io {
 /// Throws InputError.
 VolumeFile read_raw(const std::filesystem::path& path, const ReadOptions& options);
 
+/// The samples and nothing else. Throws OutputError.
+void write_raw(const Volume& volume, const std::filesystem::path& path, const Progress& progress);
+
 }  // namespace palpate::io

@@ -5,6 +5,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "io/number.hpp"
+#include "io/written_formats.hpp"
+
 namespace palpate::io {
 
 Vec3 three_numbers_from(std::string_view text, char separator, std::string_view what) {
@@ -50,6 +53,19 @@ RawLayout raw_layout_from(std::string_view dims, std::string_view type, std::str
     if (!spacing.empty()) layout.spacing = spacing_from(spacing);
     layout.skip = skip;
     return layout;
+}
+
+std::string opening_words(const std::filesystem::path& saved, const Volume& volume) {
+    if (written_extension_of(saved) != ".raw") return {};
+    const Geometry& geometry = volume.geometry();
+    std::string dims, spacing;
+    for (int a = 0; a < 3; ++a) {
+        dims += (a > 0 ? "x" : "") + std::to_string(geometry.size[a]);
+        if (a > 0) spacing += ",";
+        append_number(spacing, geometry.spacing[a]);
+    }
+    return " (open it with --dims " + dims + " --type " + std::string(name_of(volume.type())) +
+           " --spacing " + spacing + ")";
 }
 
 }  // namespace palpate::io

@@ -20,4 +20,8 @@ Vec3 spacing_from(std::string_view text);
 RawLayout raw_layout_from(std::string_view dims, std::string_view type, std::string_view spacing,
                           std::uint64_t skip);
 
+/// What to say behind the name of a volume that was saved: for .raw how to open it again,
+/// " (open it with --dims 256x256x113 --type uint16 --spacing 1,1,2)"; for others nothing.
+std::string opening_words(const std::filesystem::path& saved, const Volume& volume);
+
 }  // namespace palpate::io

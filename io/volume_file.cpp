@@ -14,6 +14,7 @@
 #include "io/helper/protocol.hpp"
 #include "io/helper_process.hpp"
 #include "io/raw_file.hpp"
+#include "io/written_formats.hpp"
 
 namespace palpate::io {
 namespace {
@@ -146,6 +147,9 @@ class Workshop {
 
 void write_volume(const Volume& volume, const fs::path& path, const WriteOptions& options) {
     const Workshop workshop(path);
+    const std::string problem = why_not_written(path, volume.geometry());
+    if (!problem.empty()) throw OutputError(problem);
+    if (written_extension_of(path) == ".raw") return write_raw(volume, path, options.progress);
     const nlohmann::json request = {{"caller", getpid()},
                                     {"geometry", json_from(volume.geometry())},
                                     {"type", name_of(volume.type())},

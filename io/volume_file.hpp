@@ -67,17 +67,19 @@ struct VolumeFile {
 VolumeFile read_volume(const std::filesystem::path& path, const ReadOptions& options = {});
 
 struct WriteOptions {
-    /// Pack the samples with zlib (NRRD, MetaImage, VTI). NIfTI is packed when named .nii.gz.
+    /// Pack the samples with zlib (NRRD, MetaImage, VTI, TIFF). NIfTI is packed when named .nii.gz.
     bool compress = false;
     Progress progress;
     std::filesystem::path helper;  ///< as in ReadOptions
     double time_limit_s = 600;     ///< as in ReadOptions
 };
 
-/// Writes .nrrd, .nhdr, .mha, .mhd, .nii, .nii.gz or .vti, by the extension. The file appears under
-/// its name only when it is complete (.nhdr and .mhd: their .raw or .zraw before the header).
-/// MetaImage and VTI keep the geometry to the bit, NRRD to the last bit, NIfTI as 32-bit floats.
-/// Throws OutputError; what was there before is then still there.
+/// Writes one of written_extensions() (io/written_formats.hpp). The file appears under its name
+/// only when it is complete (.nhdr and .mhd: their .raw or .zraw before the header). MetaImage and
+/// VTI keep the geometry to the bit, NRRD to the last bit, NIfTI as 32-bit floats. TIFF, a page a
+/// slice, keeps the spacing as 32-bit floats, in the words of ImageJ; raw keeps none. A volume with
+/// an origin or directions is refused by these two. Throws OutputError; what was there before is
+/// then still there.
 void write_volume(const Volume& volume, const std::filesystem::path& path,
                   const WriteOptions& options = {});
 

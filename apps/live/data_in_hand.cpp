@@ -3,15 +3,14 @@
 
 #include <stdexcept>
 
+#include "io/raw_options.hpp"
+#include "io/written_formats.hpp"
+
 namespace palpate::app {
 
-void check_volume_name(const std::string& path) {
-    for (const char* end : {".nrrd", ".nhdr", ".mha", ".mhd", ".nii", ".nii.gz", ".vti"}) {
-        if (path.ends_with(end)) return;
-    }
-    throw std::invalid_argument(path +
-                                ": a volume is written as .nrrd, .nhdr, .mha, .mhd, .nii, .nii.gz "
-                                "or .vti: name one of these");
+void check_volume_name(const std::string& path, const Geometry& geometry) {
+    const std::string problem = io::why_not_written(path, geometry);
+    if (!problem.empty()) throw std::invalid_argument(problem);
 }
 
 DataInHand::DataInHand(const LoadedVolume& loaded, const Field& field,
@@ -65,12 +64,14 @@ std::vector<Command> DataInHand::history() const {
     return {versions.begin(), versions.end()};
 }
 
-void DataInHand::save(const std::filesystem::path& path, const io::Progress& progress) {
+std::string DataInHand::save(const std::filesystem::path& path, const io::Progress& progress) {
     const Field now = field();
     io::WriteOptions options;
     options.progress = progress;
-    io::write_volume(flattened(now.samples(), now.moment()), path, options);
+    const Volume volume = flattened(now.samples(), now.moment());
+    io::write_volume(volume, path, options);
     if (sculptor_) sculptor_->set_saved(now.shared_samples());
+    return "saved " + path.string() + io::opening_words(path, volume);
 }
 
 }  // namespace palpate::app

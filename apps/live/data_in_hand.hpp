@@ -11,8 +11,8 @@
 
 namespace palpate::app {
 
-/// Throws std::invalid_argument for a file name whose extension no volume can be written under.
-void check_volume_name(const std::string& path);
+/// Throws std::invalid_argument for a file name that no volume on this grid can be written under.
+void check_volume_name(const std::string& path, const Geometry& geometry);
 
 class DataInHand {
   public:
@@ -38,8 +38,9 @@ class DataInHand {
     /// their recipes.
     std::vector<Command> history() const;
     /// Writes the samples as they are (of a sequence, at its moment) to a file, whole or not at
-    /// all. Throws io::OutputError.
-    void save(const std::filesystem::path& path, const io::Progress& progress);
+    /// all. Gives a sentence about it: "saved FILE", and what it takes to open a raw one again.
+    /// Throws io::OutputError.
+    std::string save(const std::filesystem::path& path, const io::Progress& progress);
 
   private:
     Field field_;

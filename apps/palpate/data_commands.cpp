@@ -120,10 +120,7 @@ struct CarryOut {
     std::string operator()(const ask::Redo&) const {
         return data.sculptor().redo() ? "" : "there is nothing to redo";
     }
-    std::string operator()(const ask::Save& asked) const {
-        data.save(asked.path, {});
-        return "saved " + asked.path;
-    }
+    std::string operator()(const ask::Save& asked) const { return data.save(asked.path, {}); }
     std::string operator()(const ask::Play& asked) const {
         data.player().play(asked.speed);
         return {};
@@ -157,7 +154,7 @@ std::optional<DataRequest> data_request(const std::vector<std::string>& words,
     if (name == "redo" && alone) return ask::Redo{};
     if (name == "save") {
         if (words.size() != 2) wrong("save FILE");
-        check_volume_name(words[1]);
+        check_volume_name(words[1], volume.geometry());
         return ask::Save{words[1]};
     }
     if (name == "play") return play_request(words);

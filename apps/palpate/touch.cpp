@@ -207,10 +207,14 @@ void print_report(const ServoReport& report, double seconds, const DeviceInfo& d
 void save_at_end(DataInHand& data, const TouchOptions& options) {
     if (!options.save.empty()) {
         // After Ctrl-C as well: then without a bar, which would give it up.
-        ProgressBar bar("saving", options.volume.quiet || interrupted());
-        data.save(options.save, [&](double fraction) {
-            if (!interrupted()) bar.at(fraction);
-        });
+        std::string saved;
+        {
+            ProgressBar bar("saving", options.volume.quiet || interrupted());
+            saved = data.save(options.save, [&](double fraction) {
+                if (!interrupted()) bar.at(fraction);
+            });
+        }
+        if (!options.json && !options.volume.quiet) fmt::print("{}\n", saved);
     } else if (!data.is_sequence() && data.sculptor().work().changed && !options.volume.quiet) {
         fmt::print(stderr, "the edits were not saved (--save FILE, or the command save FILE)\n");
     }
@@ -240,9 +244,9 @@ void require_no_mouse(const TouchOptions& options) {
 
 void touch(const TouchOptions& options) {
     check_outputs({options.volume.volume, options.commands}, {options.record, options.save});
-    if (!options.save.empty()) check_volume_name(options.save);
     require_no_mouse(options);
     LiveScene scene = make_scene(load_for_terminal(options.volume), options);
+    if (!options.save.empty()) check_volume_name(options.save, scene.field.volume().geometry());
     LiveCommands commands(scene.field, scene.isovalue, scene.session.renderer.settings);
     std::vector<TimedRequest> requests;
     if (!options.commands.empty()) requests = read_commands(options.commands, commands);

@@ -14,6 +14,7 @@
 #include "io/helper/protocol.hpp"
 #include "io/helper/readers.hpp"
 #include "io/helper/report.hpp"
+#include "io/written_formats.hpp"
 
 namespace palpate::io {
 namespace {
@@ -156,17 +157,12 @@ nlohmann::json run_write(const fs::path& path, const nlohmann::json& asked,
     limit_this_process(asked, std::max<std::uint64_t>(4 * bytes, 1 << 30));
     void* const samples = mmap(nullptr, bytes, PROT_READ, MAP_SHARED, samples_descriptor, 0);
     if (samples == MAP_FAILED) throw std::bad_alloc();
-    const std::string extension = extension_of(path);
-    static const char* const known[] = {".nrrd", ".nhdr",   ".mha", ".mhd",
-                                        ".nii",  ".nii.gz", ".vti"};
-    if (std::find(std::begin(known), std::end(known), extension) == std::end(known)) {
-        throw Failure(
-            "has no extension of a format that can be written; use .nrrd, .nhdr, .mha, .mhd, .nii, "
-            ".nii.gz or .vti");
-    }
+    const std::string extension(written_extension_of(path));
     workshop.open();
     if (extension == ".vti") {
         write_vti(workshop.inside(), geometry, type, samples, compress);
+    } else if (extension == ".tif" || extension == ".tiff") {
+        write_tiff(workshop.inside(), geometry, type, samples, compress);
     } else {
         write_with_itk(workshop.inside(), extension, geometry, type, samples,
                        compress || extension == ".nii.gz");

@@ -26,5 +26,7 @@ void write_with_itk(const std::filesystem::path& path, const std::string& extens
                     const Geometry& geometry, SampleType type, const void* samples, bool compress);
 void write_vti(const std::filesystem::path& path, const Geometry& geometry, SampleType type,
                const void* samples, bool compress);
+void write_tiff(const std::filesystem::path& path, const Geometry& geometry, SampleType type,
+                const void* samples, bool compress);
 
 }  // namespace palpate::io

@@ -1,15 +1,13 @@
 // TIFF stacks with libtiff itself: one file of many pages, or a folder of numbered slices. ITK's
 // reader takes a cut-off file for a whole one; libtiff says so.
-#include <tiffio.h>
-
 #include <algorithm>
 #include <cctype>
-#include <cstdarg>
 #include <cstring>
 #include <fstream>
 #include <memory>
 
 #include "io/helper/readers.hpp"
+#include "io/helper/tiff_calibration.hpp"
 #include "io/inflate.hpp"
 
 namespace palpate::io {
@@ -17,18 +15,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string first_error;
-
-extern "C" void keep_error(const char*, const char* format, va_list arguments) {
-    if (!first_error.empty()) return;
-    char text[200];
-    std::vsnprintf(text, sizeof text, format, arguments);
-    first_error = text;
-}
-
 [[noreturn]] void fail_damaged(const fs::path& file) {
     throw Failure(quoted(file) + " is damaged or cut off (" +
-                  (first_error.empty() ? "libtiff" : first_error) + "); copy it again");
+                  (first_tiff_error().empty() ? "libtiff" : first_tiff_error()) +
+                  "); copy it again");
 }
 
 struct Page {
@@ -37,14 +27,10 @@ struct Page {
     bool operator==(const Page&) const = default;
 };
 
-using Tiff = std::unique_ptr<TIFF, decltype(&TIFFClose)>;
-
 Tiff open(const fs::path& file) {
-    TIFFSetErrorHandler(keep_error);
-    TIFFSetWarningHandler(nullptr);
-    Tiff tiff(TIFFOpen(file.c_str(), "rM"), &TIFFClose);  // M: not mapped, a short file is an error
+    Tiff tiff = open_tiff(file, "rM");  // M: not mapped, a short file is an error
     if (!tiff) {
-        throw Failure(quoted(file) + " is no TIFF file or is damaged (" + first_error +
+        throw Failure(quoted(file) + " is no TIFF file or is damaged (" + first_tiff_error() +
                       "); check its name or copy it again");
     }
     return tiff;
@@ -61,6 +47,11 @@ Stored stored_from(std::uint16_t bits, std::uint16_t format, const fs::path& fil
     }
     throw Failure(quoted(file) + " has samples of " + std::to_string(bits) +
                   " bits of a kind that is not read; save it with 8 or 16 bits");
+}
+
+std::string text_of(const Page& page) {
+    return std::to_string(page.width) + "x" + std::to_string(page.height) + " of " +
+           name_of(page.stored);
 }
 
 Page page_of(TIFF* tiff, const fs::path& file, std::vector<std::string>& notes) {
@@ -155,14 +146,15 @@ std::vector<Slice> pages_of(const fs::path& file) {
         TIFFGetField(tiff.get(), TIFFTAG_SUBFILETYPE, &kind);
         if ((kind & (FILETYPE_REDUCEDIMAGE | FILETYPE_MASK)) == 0) slices.push_back({file, page});
         if (slices.size() > 1 << 20) fail_damaged(file);
-        if (!first_error.empty()) fail_damaged(file);
+        if (!first_tiff_error().empty()) fail_damaged(file);
         if (TIFFReadDirectory(tiff.get()) == 0) break;
     }
-    if (!first_error.empty() || slices.empty()) fail_damaged(file);
+    if (!first_tiff_error().empty() || slices.empty()) fail_damaged(file);
     return slices;
 }
 
 Result read_slices(const std::vector<Slice>& slices, const Request& request) {
+    const auto told = image_j_spacing(open(slices.front().file).get());
     Result result;
     Page first;
     std::span<std::byte> samples;
@@ -191,18 +183,15 @@ Result read_slices(const std::vector<Slice>& slices, const Request& request) {
             page_samples.resize(std::size_t{page.width} * page.height * size_of(page.stored));
         }
         if (!(page == first)) {
-            throw Failure("its slice " + std::to_string(i) + " is " + std::to_string(page.width) +
-                          "x" + std::to_string(page.height) + " of " + name_of(page.stored) +
-                          ", the first " + std::to_string(first.width) + "x" +
-                          std::to_string(first.height) + " of " + name_of(first.stored) +
-                          "; put slices of one kind together");
+            throw Failure("its slice " + std::to_string(i) + " is " + text_of(page) +
+                          ", the first " + text_of(first) + "; put slices of one kind together");
         }
         if (TIFFIsTiled(tiff.get()) != 0) {
             read_tiles(tiff.get(), slice.file, page, page_samples.data(), request);
         } else {
             read_strips(tiff.get(), slice.file, page, page_samples.data());
         }
-        if (!first_error.empty()) fail_damaged(slice.file);
+        if (!first_tiff_error().empty()) fail_damaged(slice.file);
         const std::size_t count = std::size_t{page.width} * page.height;
         convert(page.stored, page_samples.data(), 1, result.type,
                 samples.data() + i * count * size_of(result.type), count);
@@ -211,10 +200,12 @@ Result read_slices(const std::vector<Slice>& slices, const Request& request) {
     note_conversion(first.stored, result.notes);
     result.geometry.size = {static_cast<int>(first.width), static_cast<int>(first.height),
                             static_cast<int>(slices.size())};
-    if (!request.spacing) {
+    if (told) {
+        result.geometry.spacing = *told;
+    } else if (!request.spacing) {
         result.notes.emplace_back(
-            "TIFF does not tell the distance between slices: a spacing of 1 mm was taken along "
-            "every axis; give --spacing X,Y,Z");
+            "it does not tell the distance between slices (as ImageJ would): a spacing of 1 mm was "
+            "taken along every axis; give --spacing X,Y,Z");
     }
     checked_time_step(request, 1);
     finish(result, request, samples);

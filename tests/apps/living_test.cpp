@@ -1,5 +1,7 @@
 // Data that change, from the command line: edits, sequences and live sources in live sessions, and
 // the demos of them.
+#include <numeric>
+
 #include "apps/program.hpp"
 #include "io/live_file.hpp"
 #include "io/recording.hpp"
@@ -45,6 +47,30 @@ TEST(Touch, EditsAndSequencesAreRecordedAndMadeAgain) {
     ASSERT_EQ(beats.status, 0) << beats.err;
     const Outcome again = palpate(folder, "replay b.csv --validate");
     EXPECT_EQ(again.status, 0) << again.err;
+}
+
+TEST(Touch, WhatIsSavedAsRawOrTiffIsOpenedAgainAsItIsSaid) {
+    const ScratchFolder folder;
+    Geometry geometry{Index3::Constant(8)};
+    geometry.spacing = Vec3(0.5, 0.5, 2);
+    std::vector<std::uint16_t> samples(512);
+    std::iota(samples.begin(), samples.end(), 100);
+    io::write_volume(Volume(geometry, std::move(samples)), folder / "a.tif");
+    put_bytes(folder / "c.txt", "0.1 fill 1,1,1:4,4,4 9\n0.2 save b.tif\n0.4 quit\n");
+    const Outcome done = palpate(folder,
+                                 "touch a.tif --isovalue 300 --device simulated:hand=hold "
+                                 "--commands c.txt --save b.raw");
+    ASSERT_EQ(done.status, 0) << done.err;
+    const std::string how = "--dims 8x8x8 --type uint16 --spacing 0.5,0.5,2";
+    EXPECT_TRUE(contains(done.out, "saved b.raw (open it with " + how + ")")) << done.out;
+    const Outcome raw = palpate(folder, "info b.raw " + how);
+    EXPECT_EQ(raw.status, 0) << raw.err;
+    const Volume tiff = io::read_volume(folder / "b.tif").volume;
+    EXPECT_EQ(tiff.sample({2, 2, 2}), 9);
+    EXPECT_EQ(tiff.sample({7, 7, 7}), 611);
+    EXPECT_EQ(tiff.geometry(), geometry);
+    EXPECT_EQ(bytes_of(folder / "b.raw"),
+              std::string(static_cast<const char*>(tiff.data()), tiff.bytes()));
 }
 
 TEST(Touch, ASeriesOfFilesIsPlayedAndOneFrameOfItIsTaken) {
@@ -96,6 +122,14 @@ TEST(Touch, SaysWhatDataCannotDo) {
                    "brush KIND RADIUS");
     expect_failure(palpate(folder, "touch live:nothing.live"), 3, "nothing.live");
     expect_failure(palpate(folder, Words{"touch", ball, "--save", "o.png"}), 2, "o.png");
+    Geometry moved{Index3::Constant(3)};
+    moved.origin = Vec3(0, 0, 1);
+    std::vector<std::uint8_t> ramp(27);
+    std::iota(ramp.begin(), ramp.end(), std::uint8_t(0));
+    io::write_volume(Volume(moved, std::move(ramp)), folder / "moved.nrrd");
+    // Found out before there is anything to lose.
+    expect_failure(palpate(folder, Words{"touch", "moved.nrrd", "--save", "o.tif"}), 2,
+                   "no origin and no directions");
 }
 
 TEST(Touch, AVolumeThatCannotBeSavedIsStatus5AndTheSessionWentOn) {

@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "io/raw_options.hpp"
 #include "volume_support.hpp"
 
 namespace palpate::io::test {
@@ -43,6 +44,55 @@ TEST(raw_file, every_type_is_read_plain_packed_and_after_a_header) {
             }
         }
     }
+}
+
+TEST(raw_file, what_is_written_is_read_again_with_the_words_that_were_said) {
+    const ScratchFolder folder;
+    std::mt19937 random(23);
+    Geometry g;
+    g.size = Index3(61, 40, 300);  // more than one piece
+    g.spacing = Vec3(0.1, 1, 2.5);
+    for (const auto type :
+         {SampleType::uint8, SampleType::int16, SampleType::uint16, SampleType::float32}) {
+        const Volume volume = random_volume(random, type, g);
+        double part = 0;
+        WriteOptions options;
+        options.progress = [&](double fraction) { part = fraction; };
+        write_volume(volume, folder / "a.raw", options);
+        EXPECT_EQ(part, 1);
+        EXPECT_EQ(opening_words("a.raw", volume), " (open it with --dims 61x40x300 --type " +
+                                                      std::string(name_of(type)) +
+                                                      " --spacing 0.1,1,2.5)");
+        ReadOptions read;
+        read.raw = raw_layout_from("61x40x300", name_of(type), "0.1,1,2.5", 0);
+        const VolumeFile file = read_volume(folder / "a.raw", read);
+        EXPECT_TRUE(same_samples(file.volume, volume));
+        EXPECT_EQ(file.volume.geometry(), g);
+    }
+    EXPECT_EQ(folder.names(), std::vector<std::string>{"a.raw"});
+    Geometry other;
+    other.size = Index3(2, 2, 2);
+    EXPECT_EQ(opening_words("a.nrrd", random_volume<float>(random, other)), "");
+}
+
+TEST(raw_file, given_up_or_without_room_it_leaves_what_was_there) {
+    const ScratchFolder folder;
+    std::mt19937 random(24);
+    Geometry g;
+    g.size = Index3(64, 64, 600);
+    const Volume volume = random_volume<std::uint8_t>(random, g);
+    put_bytes(folder / "a.raw", "before");
+    WriteOptions options;
+    options.progress = [](double fraction) {
+        if (fraction > 0.5) throw std::runtime_error("given up");
+    };
+    EXPECT_THROW(write_volume(volume, folder / "a.raw", options), std::runtime_error);
+    EXPECT_EQ(bytes_of(folder / "a.raw"), "before");
+    EXPECT_EQ(folder.names(), std::vector<std::string>{"a.raw"});
+    std::filesystem::create_symlink("/dev/full", folder / "full.raw");
+    const std::string full =
+        message_of<OutputError>([&] { write_volume(volume, folder / "full.raw"); });
+    EXPECT_TRUE(contains(full, "No space left")) << full;
 }
 
 TEST(raw_file, a_wrong_size_is_said_with_both_numbers) {

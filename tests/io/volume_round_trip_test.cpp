@@ -105,11 +105,30 @@ TEST(write_volume, refuses_a_name_without_a_known_extension) {
     std::mt19937 random(1);
     const Volume volume =
         random_volume<std::uint8_t>(random, random_geometry(random, false, false));
-    for (const char* name : {"volume", "volume.txt", "volume.tif", "volume.gz"}) {
+    for (const char* name : {"volume", "volume.txt", "volume.png", "volume.gz"}) {
         const auto path = folder / name;
         const std::string message = message_of<OutputError>([&] { write_volume(volume, path); });
         EXPECT_TRUE(one_line_about(message, path)) << message;
         EXPECT_TRUE(contains(message, ".nrrd")) << message;
+    }
+    EXPECT_EQ(folder.names(), std::vector<std::string>{});
+}
+
+TEST(write_volume, refuses_formats_that_would_lose_where_the_volume_lies) {
+    const ScratchFolder folder;
+    std::mt19937 random(2);
+    Geometry moved, turned;
+    moved.size = turned.size = Index3(3, 3, 3);
+    moved.origin = Vec3(0, 0, 5);
+    turned.direction.col(2) *= -1;
+    for (const Geometry& geometry : {moved, turned}) {
+        const Volume volume = random_volume<std::uint8_t>(random, geometry);
+        for (const char* name : {"a.tif", "a.tiff", "a.raw"}) {
+            const auto path = folder / name;
+            const auto message = message_of<OutputError>([&] { write_volume(volume, path); });
+            EXPECT_TRUE(one_line_about(message, path)) << message;
+            EXPECT_TRUE(contains(message, ".nrrd")) << message;
+        }
     }
     EXPECT_EQ(folder.names(), std::vector<std::string>{});
 }

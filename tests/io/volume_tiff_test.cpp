@@ -16,6 +16,8 @@ struct TestPage {
     bool deflate = false;
     int kind = 0;  ///< NewSubfileType; 1: a thumbnail
     std::string samples;
+    std::string description;           ///< none if empty
+    std::uint32_t resolution[2] = {};  ///< pixels a unit, a fraction, along x and y; none if 0
 };
 
 TestPage counting_page(int first) {
@@ -41,12 +43,17 @@ std::string tiff_bytes(const std::vector<TestPage>& pages) {
         const auto data_at = static_cast<std::uint32_t>(file.size());
         file += data;
         if (file.size() % 2 == 1) file += '\0';
+        const auto description_at = static_cast<std::uint32_t>(file.size());
+        if (!page.description.empty()) file += page.description + std::string(2, '\0');
+        if (file.size() % 2 == 1) file += '\0';
+        const auto resolution_at = static_cast<std::uint32_t>(file.size());
+        if (page.resolution[1] > 0) file += little(page.resolution[0]) + little(page.resolution[1]);
         file.replace(link, 4, little(static_cast<std::uint32_t>(file.size())));
         std::string entries;
         std::uint16_t count = 0;
-        const auto entry = [&](std::uint16_t tag, std::uint32_t value) {
-            entries +=
-                little(tag) + little<std::uint16_t>(4) + little<std::uint32_t>(1) + little(value);
+        const auto entry = [&](std::uint16_t tag, std::uint32_t value, std::uint16_t type = 4,
+                               std::uint32_t values = 1) {
+            entries += little(tag) + little(type) + little(values) + little(value);
             ++count;
         };
         entry(254, static_cast<std::uint32_t>(page.kind));
@@ -55,10 +62,17 @@ std::string tiff_bytes(const std::vector<TestPage>& pages) {
         entry(258, static_cast<std::uint32_t>(page.bits));
         entry(259, page.deflate ? 8 : 1);
         entry(262, page.samples_per_pixel == 3 ? 2 : 1);
+        if (!page.description.empty()) {
+            entry(270, description_at, 2, static_cast<std::uint32_t>(page.description.size() + 1));
+        }
         entry(273, data_at);
         entry(277, static_cast<std::uint32_t>(page.samples_per_pixel));
         entry(278, static_cast<std::uint32_t>(page.height));
         entry(279, static_cast<std::uint32_t>(data.size()));
+        if (page.resolution[1] > 0) {
+            entry(282, resolution_at, 5);
+            entry(283, resolution_at, 5);
+        }
         entry(339, static_cast<std::uint32_t>(page.format));
         file += little(count) + entries;
         link = file.size();
@@ -127,6 +141,64 @@ TEST(tiff, a_folder_of_slices_is_put_together_in_the_order_of_their_numbers) {
     EXPECT_FALSE(contains(all_notes(file), "missing"));
     std::filesystem::remove(folder / "slice4.tif");
     EXPECT_TRUE(contains(all_notes(read_volume(folder.path())), "1 numbers are missing"));
+}
+
+TEST(tiff, the_spacing_that_image_j_writes_is_taken) {
+    const ScratchFolder folder;
+    const auto read = [&](const std::string& description) {
+        std::vector<TestPage> pages{counting_page(0), counting_page(12)};
+        pages[0].description = description;
+        pages[0].resolution[0] = 4000;  // four pixels a unit
+        pages[0].resolution[1] = 1000;
+        put_bytes(folder / "a.tif", tiff_bytes(pages));
+        return read_volume(folder / "a.tif");
+    };
+    const auto spacing = [&](const std::string& description) {
+        return read(description).volume.geometry().spacing;
+    };
+    const std::string head = "ImageJ=1.53t\nimages=2\nslices=2\n";
+    EXPECT_EQ(spacing(head + "unit=mm\nspacing=1.5\nloop=false\n"), Vec3(0.25, 0.25, 1.5));
+    EXPECT_EQ(spacing(head + "unit=cm\r\nspacing=-2\r\n"), Vec3(2.5, 2.5, 20));
+    EXPECT_EQ(spacing(head + "unit=mm\n"), Vec3(0.25, 0.25, 1));  // it leaves out a 1
+    for (const char* micron : {"micron", "um", "\xc2\xb5m", "\\u00B5m"}) {
+        EXPECT_TRUE(
+            spacing(head + "unit=" + micron + "\nspacing=3\n").isApprox(Vec3(25e-5, 25e-5, 3e-3)))
+            << micron;
+    }
+    EXPECT_EQ(read(head + "unit=mm\nspacing=1.5\n").notes, std::vector<std::string>{});
+    for (const std::string& silent :
+         {head + "spacing=1.5\n", head + "unit=pixel\nspacing=1.5\n", head + "unit=mm\nspacing=0\n",
+          head + "unit=mm\nspacing=wide\n", head + "unit=mm\nspacing=nan\n",
+          std::string("ImageJ=1.53t\nunit=mm\n"), std::string("unit=mm\nspacing=1.5\n"),
+          std::string("a heart")}) {
+        const VolumeFile file = read(silent);
+        EXPECT_EQ(file.volume.geometry().spacing, Vec3::Ones()) << silent;
+        EXPECT_TRUE(contains(all_notes(file), "1 mm was taken")) << silent;
+    }
+}
+
+TEST(tiff, what_is_written_is_read_again_with_its_spacing) {
+    const ScratchFolder folder;
+    std::mt19937 random(54);
+    for (const auto type :
+         {SampleType::uint8, SampleType::int16, SampleType::uint16, SampleType::float32}) {
+        for (const Index3& size : {Index3(1, 1, 1), Index3(7, 5, 1), Index3(700, 500, 3)}) {
+            Geometry g = random_geometry(random, false, false);
+            g.size = size;
+            g.origin.setZero();
+            const Volume volume = random_volume(random, type, g);
+            for (const char* name : {"a.tif", "a.TIFF"}) {
+                WriteOptions options;
+                options.compress = name[2] == 'T';
+                write_volume(volume, folder / name, options);
+                const VolumeFile file = read_volume(folder / name);
+                EXPECT_TRUE(same_samples(file.volume, volume)) << name_of(type) << " " << name;
+                EXPECT_TRUE(file.volume.geometry().spacing.isApprox(g.spacing, 1e-6));
+                EXPECT_EQ(file.notes, std::vector<std::string>{});
+            }
+        }
+    }
+    EXPECT_EQ(folder.names().size(), 2U);
 }
 
 TEST(tiff, thumbnails_are_left_out) {

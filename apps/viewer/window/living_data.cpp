@@ -14,6 +14,8 @@
 #include "apps/viewer/scene/scene.hpp"
 #include "apps/viewer/window/main_window.hpp"
 #include "apps/viewer/window/views.hpp"
+#include "io/raw_options.hpp"
+#include "io/written_formats.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -143,14 +145,8 @@ void MainWindow::undo(bool again) {
 void MainWindow::ask_save_volume() {
     if (!live_) return;
     const QString name = QString::fromStdString(opened_->options.volume);
-    const QStringList kinds{"nrrd", "nhdr", "mha", "mhd", "nii.gz", "nii", "vti"};
-    QString suffix = "nrrd";
-    for (const QString& kind : kinds) {
-        if (name.endsWith("." + kind, Qt::CaseInsensitive)) {
-            suffix = kind;
-            break;
-        }
-    }
+    const std::string kind(io::written_extension_of(opened_->options.volume));
+    const QString suffix = kind.empty() ? "nrrd" : QString::fromStdString(kind.substr(1));
     QString base = QFileInfo(name).fileName();
     if (base.startsWith("synthetic:")) base = base.section(':', 1, 1);
     if (base.endsWith("." + suffix, Qt::CaseInsensitive)) base.chop(suffix.size() + 1);
@@ -167,7 +163,8 @@ void MainWindow::save_volume(const QString& path) {
     const Moment moment = field.moment();
     const std::filesystem::path file(path.toStdString());
     show_done(tr("Saving %1").arg(path));
-    const auto look = [this, path, samples] {
+    const auto words = QString::fromStdString(io::opening_words(file, field.volume()));
+    const auto look = [this, path, words, samples] {
         if (!saving_ || !saving_->ended()) return;
         const auto ended = std::move(saving_);
         guarded([&] {
@@ -175,7 +172,7 @@ void MainWindow::save_volume(const QString& path) {
             if (live_ && !live_->data().is_sequence()) {
                 live_->data().sculptor().set_saved(*samples);
             }
-            show_done(tr("Saved %1").arg(path));
+            show_done(tr("Saved %1").arg(path) + words);
         });
     };
     saving_ = std::make_unique<Work>(

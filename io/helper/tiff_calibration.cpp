@@ -1,0 +1,84 @@
+// ImageJ's description: lines of key=value after a first line ImageJ=VERSION. Lengths are in its
+// unit; XResolution and YResolution are pixels a unit, whatever ResolutionUnit says.
+#include "io/helper/tiff_calibration.hpp"
+
+#include <cmath>
+#include <map>
+#include <sstream>
+
+#include "io/helper/decode.hpp"
+#include "io/number.hpp"
+
+namespace palpate::io {
+namespace {
+
+using Description = std::map<std::string, std::string>;
+
+Description description_of(TIFF* tiff) {
+    const char* text = nullptr;
+    if (TIFFGetField(tiff, TIFFTAG_IMAGEDESCRIPTION, &text) == 0 || text == nullptr) return {};
+    std::istringstream lines(text);
+    Description description;
+    for (std::string line; std::getline(lines, line);) {
+        const auto equals = line.find('=');
+        if (equals == std::string::npos) continue;
+        description.emplace(trimmed(line.substr(0, equals)), trimmed(line.substr(equals + 1)));
+    }
+    return description;
+}
+
+/// A unit's length [mm], as ImageJ's users write it; nothing for pixels and what is not known.
+std::optional<double> millimetres(const std::string& unit) {
+    static const std::map<std::string, double> known = {
+        {"nm", 1e-6},        {"nanometer", 1e-6},  {"um", 1e-3},        {"\\u00b5m", 1e-3},
+        {"\xc2\xb5m", 1e-3}, {"\xb5m", 1e-3},      {"\xce\xbcm", 1e-3}, {"micron", 1e-3},
+        {"microns", 1e-3},   {"micrometer", 1e-3}, {"mm", 1},           {"millimeter", 1},
+        {"cm", 10},          {"centimeter", 10},   {"m", 1000},         {"meter", 1000},
+        {"inch", 25.4},      {"in", 25.4}};
+    const auto found = known.find(lower(unit));
+    if (found == known.end()) return std::nullopt;
+    return found->second;
+}
+
+/// The distance between slices in ImageJ's unit. ImageJ leaves out a 1 where there are slices.
+std::optional<double> slice_distance(const Description& description) {
+    if (const auto spacing = description.find("spacing"); spacing != description.end()) {
+        const auto distance = number_from<double>(spacing->second);
+        return distance ? std::optional(std::abs(*distance)) : std::nullopt;
+    }
+    if (description.contains("slices")) return 1.0;
+    return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<Vec3> image_j_spacing(TIFF* tiff) {
+    const Description description = description_of(tiff);
+    const auto unit = description.find("unit");
+    if (!description.contains("ImageJ") || unit == description.end()) return std::nullopt;
+    const auto length = millimetres(unit->second);
+    const auto distance = slice_distance(description);
+    float x = 0, y = 0;
+    TIFFGetField(tiff, TIFFTAG_XRESOLUTION, &x);
+    TIFFGetField(tiff, TIFFTAG_YRESOLUTION, &y);
+    if (!length || !distance || !(x > 0) || !(y > 0)) return std::nullopt;
+    const Vec3 spacing = *length * Vec3(1.0 / double(x), 1.0 / double(y), *distance);
+    if (!spacing.allFinite() || !(spacing.minCoeff() > 0)) return std::nullopt;
+    return spacing;
+}
+
+void set_image_j_spacing(TIFF* tiff, const Vec3& spacing, int slices) {
+    std::string text = "ImageJ=1.54f\nimages=" + std::to_string(slices) +
+                       "\nslices=" + std::to_string(slices) + "\nunit=mm\nspacing=";
+    append_number(text, spacing.z());
+    text += "\nloop=false\n";
+    TIFFSetField(tiff, TIFFTAG_IMAGEDESCRIPTION, text.c_str());
+}
+
+void set_resolution(TIFF* tiff, const Vec3& spacing) {
+    TIFFSetField(tiff, TIFFTAG_RESOLUTIONUNIT, RESUNIT_NONE);
+    TIFFSetField(tiff, TIFFTAG_XRESOLUTION, 1 / spacing.x());
+    TIFFSetField(tiff, TIFFTAG_YRESOLUTION, 1 / spacing.y());
+}
+
+}  // namespace palpate::io

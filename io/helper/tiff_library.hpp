@@ -1,0 +1,20 @@
+// libtiff, with its complaints kept instead of printed.
+#pragma once
+
+#include <tiffio.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+namespace palpate::io {
+
+using Tiff = std::unique_ptr<TIFF, decltype(&TIFFClose)>;
+
+/// TIFFOpen; null if that fails. `mode` as there: "r", "w", with letters after it.
+Tiff open_tiff(const std::filesystem::path& file, const char* mode);
+
+/// What libtiff complained of first in this process; empty if it did not.
+const std::string& first_tiff_error();
+
+}  // namespace palpate::io
