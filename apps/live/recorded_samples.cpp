@@ -18,7 +18,7 @@ std::function<Volume(int)> frames_of(const LoadedVolume& loaded) {
 
 RecordedSamples::RecordedSamples(std::shared_ptr<const Samples> start,
                                  std::function<Volume(int)> frame)
-    : versions_{{0, std::move(start)}}, frame_(std::move(frame)) {}
+    : kept_{{0, std::move(start)}}, frame_(std::move(frame)) {}
 
 Command RecordedSamples::whole(const Command& recorded) {
     const auto* samples = std::get_if<command::Samples>(&recorded);
@@ -30,8 +30,7 @@ Command RecordedSamples::whole(const Command& recorded) {
 
 std::shared_ptr<const Samples> RecordedSamples::made(const command::Samples& recorded) {
     if (!recorded.recipe) {
-        const auto known = versions_.find(recorded.version);
-        if (known != versions_.end()) return known->second;
+        if (auto known = made_again(recorded.version)) return known;
         throw std::invalid_argument("the samples of version " + std::to_string(recorded.version) +
                                     " came from outside and are not in the recording");
     }
@@ -39,13 +38,60 @@ std::shared_ptr<const Samples> RecordedSamples::made(const command::Samples& rec
         return frames_of(*frames);
     }
     const auto& edit = std::get<EditOf>(*recorded.recipe);
-    const auto before = versions_.find(edit.version);
-    if (before == versions_.end()) {
+    const auto before = made_again(edit.version);
+    if (!before) {
         throw std::invalid_argument("an edit of samples of version " +
                                     std::to_string(edit.version) +
                                     ", which are not in the recording");
     }
-    return versions_[recorded.version] = edited(before->second, edit.edit).samples;
+    if (recorded.version == 0 || versions_.contains(recorded.version)) {
+        throw std::invalid_argument("the samples of version " + std::to_string(recorded.version) +
+                                    " came about twice");
+    }
+    auto samples = edited(before, edit.edit).samples;
+    const auto parent = versions_.find(edit.version);
+    versions_[recorded.version] = {edit, parent == versions_.end() ? 1 : parent->second.edits + 1};
+    remember(recorded.version, samples);
+    return samples;
+}
+
+std::shared_ptr<const Samples> RecordedSamples::find(std::uint64_t version) const {
+    const auto kept = kept_.find(version);
+    if (kept != kept_.end()) return kept->second;
+    for (const auto& [number, samples] : recent_) {
+        if (number == version) return samples;
+    }
+    return nullptr;
+}
+
+void RecordedSamples::remember(std::uint64_t version,
+                               const std::shared_ptr<const Samples>& samples) {
+    constexpr int edits_between_kept = 16;
+    constexpr std::size_t most_recent = 16;
+    if (versions_.at(version).edits % edits_between_kept == 0) {
+        kept_[version] = samples;
+        return;
+    }
+    recent_.emplace_back(version, samples);
+    if (recent_.size() > most_recent) recent_.pop_front();
+}
+
+/// From the nearest version before it that is in memory; null if it never was.
+std::shared_ptr<const Samples> RecordedSamples::made_again(std::uint64_t version) {
+    std::vector<std::uint64_t> missing;
+    std::shared_ptr<const Samples> samples = find(version);
+    while (!samples) {
+        const auto known = versions_.find(version);
+        if (known == versions_.end()) return nullptr;
+        missing.push_back(version);
+        version = known->second.made.version;
+        samples = find(version);
+    }
+    for (std::size_t i = missing.size(); i-- > 0;) {
+        samples = edited(samples, versions_.at(missing[i]).made.edit).samples;
+        remember(missing[i], samples);
+    }
+    return samples;
 }
 
 std::shared_ptr<const Samples> RecordedSamples::frames_of(const FramesOf& frames) {
@@ -67,10 +113,10 @@ std::shared_ptr<const Samples> RecordedSamples::frames_of(const FramesOf& frames
     return frames_;
 }
 
-std::shared_ptr<const Samples> RecordedSamples::of(std::uint64_t version) const {
-    const auto known = versions_.find(version);
-    if (frames_ || known == versions_.end()) return frames_ ? frames_ : versions_.at(0);
-    return known->second;
+std::shared_ptr<const Samples> RecordedSamples::of(std::uint64_t version) {
+    if (frames_) return frames_;
+    const auto samples = made_again(version);
+    return samples ? samples : kept_.at(0);
 }
 
 }  // namespace palpate::app

@@ -1,6 +1,7 @@
 // Makes the samples again that a recorded session went on with.
 #pragma once
 
+#include <deque>
 #include <functional>
 #include <map>
 
@@ -23,14 +24,29 @@ class RecordedSamples {
     /// std::invalid_argument for samples that cannot be made again, and as check(Edit).
     Command whole(const Command& recorded);
 
-    /// The samples of a version that was made before; of frames those that came last.
-    std::shared_ptr<const Samples> of(std::uint64_t version) const;
+    /// The samples of a version that was made before, those of the start if there was none; of
+    /// frames those that came last. Takes some edits, fifteen at most.
+    std::shared_ptr<const Samples> of(std::uint64_t version);
+
+    /// How many versions are in memory now.
+    std::size_t kept() const { return kept_.size() + recent_.size(); }
 
   private:
+    struct Version {
+        EditOf made;
+        int edits = 0;  ///< from the start
+    };
+
     std::shared_ptr<const Samples> made(const command::Samples& recorded);
     std::shared_ptr<const Samples> frames_of(const FramesOf& frames);
+    std::shared_ptr<const Samples> find(std::uint64_t version) const;
+    std::shared_ptr<const Samples> made_again(std::uint64_t version);
+    void remember(std::uint64_t version, const std::shared_ptr<const Samples>& samples);
 
-    std::map<std::uint64_t, std::shared_ptr<const Samples>> versions_;
+    // All versions of minutes of brushing do not fit into the memory, what was done to them does.
+    std::map<std::uint64_t, Version> versions_;
+    std::map<std::uint64_t, std::shared_ptr<const Samples>> kept_;  // every sixteenth edit
+    std::deque<std::pair<std::uint64_t, std::shared_ptr<const Samples>>> recent_;
     std::function<Volume(int)> frame_;
     std::map<int, Volume> read_;  // of the last ones
     std::shared_ptr<const Samples> frames_;

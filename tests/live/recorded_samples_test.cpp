@@ -5,6 +5,7 @@
 
 #include "io/settings_json.hpp"
 #include "live/living_support.hpp"
+#include "support/random.hpp"
 
 namespace palpate::app {
 namespace {
@@ -48,6 +49,46 @@ TEST(RecordedSamples, versions_come_out_as_they_were_felt) {
         const auto whole = std::get<command::Samples>(again.whole(through_json(recorded)));
         EXPECT_TRUE(same_bits(*whole.samples, *felt[version]));
     }
+}
+
+TEST(RecordedSamples, of_many_versions_few_are_in_memory_and_all_can_be_had) {
+    const Field field(test::loaded("synthetic:noise:24x24x24").volume);
+    RecordedSamples again(field.shared_samples());
+    std::vector<std::shared_ptr<const Samples>> felt{field.shared_samples()};
+    support::Random random(12);
+    for (std::uint64_t version = 1; version <= 300; ++version) {
+        // Mostly on and on, now and then from one that was undone to.
+        const auto of =
+            random.chance(0.9) ? version - 1 : std::uint64_t(random.below(int(version)));
+        const Index3 low(random.below(20), random.below(20), random.below(20));
+        const Edit fill = edit::Fill{{low, low + Index3::Constant(3)}, random.uniform(0, 200)};
+        felt.push_back(edited(felt[of], fill).samples);
+        const Command recorded =
+            command::Samples{nullptr, version, std::make_shared<const Recipe>(EditOf{of, fill})};
+        const auto whole = std::get<command::Samples>(again.whole(through_json(recorded)));
+        EXPECT_TRUE(same_bits(*whole.samples, *felt.back())) << version;
+    }
+    EXPECT_LE(again.kept(), 300U / 6);
+    for (int i = 0; i < 300; ++i) {
+        const auto version = std::uint64_t(random.below(301));
+        EXPECT_TRUE(same_bits(*again.of(version), *felt[version])) << version;
+    }
+    EXPECT_LE(again.kept(), 300U / 6);
+}
+
+TEST(RecordedSamples, a_version_that_comes_about_twice_is_refused) {
+    const Field field(test::loaded("synthetic:sphere:16x16x16").volume);
+    RecordedSamples again(field.shared_samples());
+    const auto made = [](std::uint64_t version, std::uint64_t of) {
+        return Command(command::Samples{
+            nullptr, version,
+            std::make_shared<const Recipe>(EditOf{of, edit::Fill{{{1, 1, 1}, {2, 2, 2}}, 3}})});
+    };
+    EXPECT_THROW(again.whole(made(0, 0)), std::invalid_argument);
+    EXPECT_THROW(again.whole(made(5, 5)), std::invalid_argument);
+    (void)again.whole(made(5, 0));
+    EXPECT_THROW(again.whole(made(5, 0)), std::invalid_argument);
+    EXPECT_THROW(again.whole(made(5, 5)), std::invalid_argument);
 }
 
 TEST(RecordedSamples, what_came_from_outside_is_refused_with_its_reason) {

@@ -153,7 +153,7 @@ void Playback::finish() {
     }
 }
 
-Field Playback::field_at(const Snapshot& snapshot) const {
+Field Playback::field_at(const Snapshot& snapshot) {
     Field field = field_;
     field.use(samples_.of(snapshot.session.version));
     field.set_time(snapshot.session.moment);

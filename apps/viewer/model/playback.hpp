@@ -64,8 +64,9 @@ class Playback {
     const Overview& overview() const { return overview_; }
     /// The field that was felt, as it was at the start.
     const Field& field() const { return field_; }
-    /// As it was then: with the edits up to there, or at the moment of the sequence.
-    Field field_at(const Snapshot& snapshot) const;
+    /// As it was then: with the edits up to there, which may have to be made again, or at the
+    /// moment of the sequence.
+    Field field_at(const Snapshot& snapshot);
 
   private:
     Playback(io::RecordingHead head, Field field, app::RecordedSamples samples)

@@ -62,7 +62,7 @@ class MainWindow : public QMainWindow {
     TimeLine& time_line() { return *time_line_; }
     SequenceBar& sequence_bar() { return *sequence_bar_; }
     const Live* live() const { return live_.get(); }
-    const Playback* playback() const { return playback_ ? &*playback_ : nullptr; }
+    Playback* playback() { return playback_ ? &*playback_ : nullptr; }
     /// [s] of the recording that is shown.
     double shown_time() const { return shown_time_; }
     void show_time(double time);

@@ -10,10 +10,13 @@
 #include <thread>
 
 #include "apps/live/recorded_scene.hpp"
+#include "support/eventually.hpp"
 #include "support/scratch_folder.hpp"
 
 namespace palpate::viewer {
 namespace {
+
+using support::comes_true;
 
 using namespace std::chrono_literals;
 using support::ScratchFolder;
@@ -36,15 +39,6 @@ struct BallSession {
     explicit BallSession(const std::string& device = "mouse")
         : options(on_a_ball(device)), live(app::load(options.volume, {}), options) {}
 };
-
-/// Patience is for slow machines; what is waited for comes in milliseconds.
-bool comes_true(const std::function<bool()>& happened) {
-    for (int i = 0; i < 20'000; ++i) {
-        if (happened()) return true;
-        std::this_thread::sleep_for(1ms);
-    }
-    return false;
-}
 
 /// So many ticks from now on have gone by.
 bool ticks_go_on(const Live& live, std::int64_t count = 20) {

@@ -12,19 +12,21 @@
 #include "apps/viewer/model/playback.hpp"
 #include "apps/viewer/model/work.hpp"
 #include "palpate/surface.hpp"
+#include "support/eventually.hpp"
 #include "support/scratch_folder.hpp"
 
 namespace palpate::viewer {
 namespace {
 
 using namespace std::chrono_literals;
+using support::comes_true;
 using support::ScratchFolder;
 
-struct Session {
+struct LivingSession {
     app::TouchOptions options;
     Live live;
 
-    explicit Session(const std::string& volume)
+    explicit LivingSession(const std::string& volume)
         : options(on(volume)), live(app::load(options.volume, {}), options) {}
 
     static app::TouchOptions on(const std::string& volume) {
@@ -35,14 +37,6 @@ struct Session {
         return options;
     }
 };
-
-bool comes_true(const std::function<bool()>& happened) {
-    for (int i = 0; i < 30'000; ++i) {
-        if (happened()) return true;
-        std::this_thread::sleep_for(1ms);
-    }
-    return false;
-}
 
 /// Looks at the data from two more threads, as painter and saving do, while `window` runs here.
 void with_observers(const Live& live, const std::function<void()>& window) {
@@ -69,7 +63,7 @@ TEST(LivingLive, a_brush_works_while_all_others_look_record_and_save) {
     const ScratchFolder folder;
     std::shared_ptr<const Samples> felt;
     {
-        Session s("synthetic:sphere:32x32x32");
+        LivingSession s("synthetic:sphere:32x32x32");
         s.live.record(folder / "r.csv");
         app::Sculptor& sculptor = s.live.data().sculptor();
         std::unique_ptr<Work> saving;
@@ -101,8 +95,8 @@ TEST(LivingLive, a_brush_works_while_all_others_look_record_and_save) {
             return now && now->session.version == sculptor.work().version;
         }));
     }
-    const Playback played = Playback::read(
-        folder / "r.csv", app::load(Session::on("synthetic:sphere:32x32x32").volume, {}), {});
+    Playback played = Playback::read(
+        folder / "r.csv", app::load(LivingSession::on("synthetic:sphere:32x32x32").volume, {}), {});
     EXPECT_EQ(played.different(), 0U);
     const Volume seen = flattened(played.field_at(played.at(played.end())).samples());
     const Volume want = flattened(*felt);
@@ -112,7 +106,7 @@ TEST(LivingLive, a_brush_works_while_all_others_look_record_and_save) {
 TEST(LivingLive, a_sequence_plays_while_all_others_look_and_record) {
     const ScratchFolder folder;
     {
-        Session s("synthetic:beating:24x24x24");
+        LivingSession s("synthetic:beating:24x24x24");
         s.live.record(folder / "r.csv");
         app::Player& player = s.live.data().player();
         with_observers(s.live, [&] {
@@ -131,14 +125,15 @@ TEST(LivingLive, a_sequence_plays_while_all_others_look_and_record) {
         EXPECT_GT(s.live.stop_recording(), 0);
         EXPECT_EQ(player.view().speed, 3) << "it goes on in the session that began anew";
     }
-    const Playback played = Playback::read(
-        folder / "r.csv", app::load(Session::on("synthetic:beating:24x24x24").volume, {}), {});
+    const Playback played =
+        Playback::read(folder / "r.csv",
+                       app::load(LivingSession::on("synthetic:beating:24x24x24").volume, {}), {});
     EXPECT_EQ(played.different(), 0U);
 }
 
 TEST(LivingLive, a_recording_that_begins_after_edits_begins_with_them) {
     const ScratchFolder folder;
-    Session s("synthetic:sphere:32x32x32");
+    LivingSession s("synthetic:sphere:32x32x32");
     app::Sculptor& sculptor = s.live.data().sculptor();
     sculptor.apply(edit::Fill{{{5, 5, 5}, {20, 20, 20}}, 0});
     sculptor.apply(edit::Fill{{{5, 5, 5}, {9, 9, 9}}, 200});

@@ -102,7 +102,7 @@ TEST_F(Living, a_recording_of_edits_is_played_with_them) {
         << window_->problem().toStdString();
     EXPECT_EQ(window_->playback()->different(), 0U);
     window_->show_time(window_->playback()->end());
-    const Playback& playback = *window_->playback();
+    Playback& playback = *window_->playback();
     const Volume seen = flattened(playback.field_at(playback.at(playback.end())).samples());
     const Volume felt = flattened(*carved);
     EXPECT_EQ(std::memcmp(seen.data(), felt.data(), felt.bytes()), 0);
