@@ -1,9 +1,7 @@
 // The extensions of the formats that are written; see the header.
 #include "io/written_formats.hpp"
 
-#include <algorithm>
 #include <array>
-#include <cctype>
 
 namespace palpate::io {
 
@@ -14,14 +12,35 @@ std::span<const std::string_view> written_extensions() {
 }
 
 std::string_view written_extension_of(const std::filesystem::path& path) {
-    std::string name = path.filename().string();
-    std::transform(name.begin(), name.end(), name.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string name = path.filename().string();
     for (const std::string_view extension : written_extensions()) {
         if (name.ends_with(extension)) return extension;
     }
     return {};
 }
+
+namespace {
+
+/// A .raw is the other half of a .mhd or .nhdr: whoever writes one of them may replace samples that
+/// belong to the other.
+std::string owner_of_data(const std::filesystem::path& path, std::string_view extension) {
+    const auto sibling = [&](const char* other) {
+        std::filesystem::path name = path;
+        name.replace_extension(other);
+        std::error_code error;
+        return std::filesystem::exists(name, error) ? name.filename().string() : std::string();
+    };
+    if (extension == ".raw") {
+        const std::string mhd = sibling(".mhd");
+        return mhd.empty() ? sibling(".nhdr") : mhd;
+    }
+    if ((extension == ".mhd" || extension == ".nhdr") && sibling(extension.data()).empty()) {
+        return sibling(".raw");
+    }
+    return {};
+}
+
+}  // namespace
 
 std::string why_not_written(const std::filesystem::path& path, const Geometry& geometry) {
     const std::string_view extension = written_extension_of(path);
@@ -38,6 +57,11 @@ std::string why_not_written(const std::filesystem::path& path, const Geometry& g
     if (placed && (extension == ".raw" || extension == ".tif" || extension == ".tiff")) {
         return path.string() + ": " + std::string(extension) +
                " keeps no origin and no directions, and this volume has them: name it .nrrd";
+    }
+    const std::string owner = owner_of_data(path, extension);
+    if (!owner.empty()) {
+        return path.string() + ": would replace samples that belong to " + owner +
+               " beside it: choose another name";
     }
     return {};
 }

@@ -9,6 +9,7 @@
 #include <iostream>
 #include <string>
 
+#include "apps/live/empty_values.hpp"
 #include "apps/live/exit_status.hpp"
 #include "apps/palpate/commands.hpp"
 #include "apps/palpate/window.hpp"
@@ -94,6 +95,7 @@ int run(int argc, char** argv) {
         command->set_version_flag("--version", "palpate " PALPATE_VERSION);
     }
     try {
+        refuse_empty_values(app, argc, argv);
         app.parse(argc, argv);
     } catch (const CLI::Success& e) {  // --help, --version
         (void)app.exit(e);

@@ -214,7 +214,7 @@ void save_at_end(DataInHand& data, const TouchOptions& options) {
                 if (!interrupted()) bar.at(fraction);
             });
         }
-        if (!options.json && !options.volume.quiet) fmt::print("{}\n", saved);
+        if (!options.volume.quiet) fmt::print(options.json ? stderr : stdout, "{}\n", saved);
     } else if (!data.is_sequence() && data.sculptor().work().changed && !options.volume.quiet) {
         fmt::print(stderr, "the edits were not saved (--save FILE, or the command save FILE)\n");
     }

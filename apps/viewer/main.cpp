@@ -8,6 +8,7 @@
 #include <csignal>
 #include <cstdio>
 
+#include "apps/live/empty_values.hpp"
 #include "apps/live/exit_status.hpp"
 #include "apps/live/view_options.hpp"
 #include "apps/viewer/window/appearance.hpp"
@@ -70,6 +71,7 @@ int main(int argc, char** argv) {
     app::ViewOptions options;
     options.add_to(command);
     try {
+        app::refuse_empty_values(command, argc, argv);
         command.parse(argc, argv);
         options.finish(command);
     } catch (const CLI::Success& e) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <sstream>
+#include <utility>
 
 #include "io/helper/decode.hpp"
 #include "io/number.hpp"
@@ -50,7 +51,32 @@ std::optional<double> slice_distance(const Description& description) {
     return std::nullopt;
 }
 
+/// A count of the description; 1 if it does not say.
+double count_in(const Description& description, const char* name) {
+    const auto found = description.find(name);
+    if (found == description.end()) return 1;
+    return number_from<double>(found->second).value_or(1);
+}
+
 }  // namespace
+
+void check_image_j_stack(TIFF* tiff, std::size_t pages) {
+    const Description description = description_of(tiff);
+    if (!description.contains("ImageJ")) return;
+    for (const auto& [name, meaning] :
+         {std::pair("channels", " channels"), std::pair("frames", " times")}) {
+        const double count = count_in(description, name);
+        if (count > 1) {
+            throw Failure("holds " + text_of(count) + meaning +
+                          " slice by slice; save one of them (ImageJ: Image > Duplicate)");
+        }
+    }
+    const double images = count_in(description, "images");
+    if (images > static_cast<double>(pages)) {
+        throw Failure("tells of " + text_of(images) + " slices, but has " + std::to_string(pages) +
+                      " as TIFF counts them; save it as BigTIFF (Bio-Formats) or as NRRD");
+    }
+}
 
 std::optional<Vec3> image_j_spacing(TIFF* tiff) {
     const Description description = description_of(tiff);

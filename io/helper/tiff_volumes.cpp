@@ -274,7 +274,9 @@ bool looks_like_tiff(const fs::path& file) {
 }
 
 Result read_tiff_file(const Request& request) {
-    Result result = read_slices(pages_of(request.path), request);
+    const std::vector<Slice> slices = pages_of(request.path);
+    check_image_j_stack(open(request.path).get(), slices.size());
+    Result result = read_slices(slices, request);
     result.format = "TIFF";
     return result;
 }

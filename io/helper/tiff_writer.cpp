@@ -66,8 +66,8 @@ void write_tiff(const std::filesystem::path& path, const Geometry& geometry, Sam
     const std::size_t page = static_cast<std::size_t>(geometry.size.x()) *
                              static_cast<std::size_t>(geometry.size.y()) * size_of(type);
     const auto pages = static_cast<std::size_t>(geometry.size.z());
-    // What classic TIFF can point to, with room for its directories.
-    const bool big = pages * (page + 4096) > UINT32_MAX;
+    // Classic TIFF points to 4 GB; some of them are for its directories and for what does not pack.
+    const bool big = pages * (page + 4096) > 0xF0000000;
     Tiff tiff = open_tiff(path, big ? "w8" : "w");
     if (!tiff) fail_unfinished();
     std::vector<std::byte> slice(page);  // libtiff may turn what it is given

@@ -72,6 +72,18 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"demo synthetic:noise --depth -1", "depth of 0 mm or more"},
                     Case{"extract synthetic:sphere -o a.ply -i 1 --solid left", "left"}));
 
+TEST(Usage, AnEmptyValueIsAMistakeAndNotAnOptionLeftOut) {
+    const ScratchFolder folder;
+    const std::string ball = "synthetic:sphere:8x8x8";
+    for (const Words& words :
+         {Words{"info", ""}, Words{"info", ball, "--type", ""}, Words{"touch", ball, "--save", ""},
+          Words{"touch", ball, "--brush", "", "--headless"}, Words{"touch", ball, "--record", ""},
+          Words{"touch", ball, "--record=", "--headless"}, Words{"view", ball, "--after="},
+          Words{"demo", "sculpt", ball, "-o", ""}, Words{"view", ball, "--screenshot", ""}}) {
+        expect_failure(palpate(folder, words), 2, "the value is empty");
+    }
+}
+
 class WrongSettings : public testing::TestWithParam<Case> {};
 
 TEST_P(WrongSettings, AreRefusedWithTheReasonAndLeaveNothing) {

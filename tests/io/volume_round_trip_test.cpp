@@ -44,7 +44,7 @@ TEST_P(RoundTrip, keeps_every_type_spacing_and_direction) {
             expect_same(file.volume.geometry(), volume.geometry(), precision_of(extension));
             EXPECT_EQ(file.notes, std::vector<std::string>{});
             EXPECT_EQ(file.time_steps, 1);
-            std::filesystem::remove_all(path);
+            for (const std::string& name : folder.names()) std::filesystem::remove(folder / name);
         }
     }
 }
@@ -105,7 +105,7 @@ TEST(write_volume, refuses_a_name_without_a_known_extension) {
     std::mt19937 random(1);
     const Volume volume =
         random_volume<std::uint8_t>(random, random_geometry(random, false, false));
-    for (const char* name : {"volume", "volume.txt", "volume.png", "volume.gz"}) {
+    for (const char* name : {"volume", "volume.txt", "volume.png", "volume.gz", "volume.MHA"}) {
         const auto path = folder / name;
         const std::string message = message_of<OutputError>([&] { write_volume(volume, path); });
         EXPECT_TRUE(one_line_about(message, path)) << message;
@@ -131,6 +131,28 @@ TEST(write_volume, refuses_formats_that_would_lose_where_the_volume_lies) {
         }
     }
     EXPECT_EQ(folder.names(), std::vector<std::string>{});
+}
+
+TEST(write_volume, never_replaces_the_samples_of_another_volume) {
+    const ScratchFolder folder;
+    std::mt19937 random(3);
+    Geometry g;
+    g.size = Index3(3, 4, 5);
+    const Volume volume = random_volume<std::uint8_t>(random, g);
+    const Volume other = random_volume<std::uint8_t>(random, g);
+    const auto refused = [&](const char* name, const char* owner) {
+        const auto message = message_of<OutputError>([&] { write_volume(other, folder / name); });
+        EXPECT_TRUE(contains(message, std::string("belong to ") + owner)) << message;
+    };
+    write_volume(volume, folder / "a.mhd");
+    write_volume(volume, folder / "b.raw");
+    refused("a.raw", "a.mhd");
+    refused("b.mhd", "b.raw");
+    refused("b.nhdr", "b.raw");
+    EXPECT_TRUE(same_samples(read_volume(folder / "a.mhd").volume, volume));
+    write_volume(other, folder / "a.mhd");  // one volume in its own place
+    write_volume(other, folder / "b.raw");
+    EXPECT_TRUE(same_samples(read_volume(folder / "a.mhd").volume, other));
 }
 
 TEST(write_volume, says_so_if_the_folder_is_missing_or_the_name_is_a_folder) {

@@ -177,6 +177,21 @@ TEST(tiff, the_spacing_that_image_j_writes_is_taken) {
     }
 }
 
+TEST(tiff, stacks_of_channels_and_times_and_stacks_that_lack_slices_are_refused) {
+    const ScratchFolder folder;
+    std::vector<TestPage> pages{counting_page(0), counting_page(12)};
+    for (const auto& [text, reason] : std::initializer_list<std::pair<const char*, const char*>>{
+             {"ImageJ=1.53t\nimages=2\nchannels=2\nunit=mm\nspacing=2\n", "2 channels"},
+             {"ImageJ=1.53t\nimages=2\nframes=2\nunit=mm\nspacing=2\n", "2 times"},
+             {"ImageJ=1.53t\nimages=600\nslices=600\nunit=mm\nspacing=2\n", "600"}}) {
+        pages[0].description = text;
+        put_bytes(folder / "a.tif", tiff_bytes(pages));
+        const std::string message = refusal(folder / "a.tif");
+        EXPECT_TRUE(one_line_about(message, folder / "a.tif")) << message;
+        EXPECT_TRUE(contains(message, reason)) << message;
+    }
+}
+
 TEST(tiff, what_is_written_is_read_again_with_its_spacing) {
     const ScratchFolder folder;
     std::mt19937 random(54);
@@ -187,9 +202,9 @@ TEST(tiff, what_is_written_is_read_again_with_its_spacing) {
             g.size = size;
             g.origin.setZero();
             const Volume volume = random_volume(random, type, g);
-            for (const char* name : {"a.tif", "a.TIFF"}) {
+            for (const char* name : {"a.tif", "a.tiff"}) {
                 WriteOptions options;
-                options.compress = name[2] == 'T';
+                options.compress = std::string(name) == "a.tiff";
                 write_volume(volume, folder / name, options);
                 const VolumeFile file = read_volume(folder / name);
                 EXPECT_TRUE(same_samples(file.volume, volume)) << name_of(type) << " " << name;

@@ -159,6 +159,12 @@ void MainWindow::save_volume(const QString& path) {
     if (!live_ || saving_) return;
     // Held until it is written: the samples as they are now, whatever is done to them meanwhile.
     const Field field = live_->data().field();
+    bool good = false;
+    guarded([&] {
+        app::check_volume_name(path.toStdString(), field.geometry());
+        good = true;
+    });
+    if (!good) return;
     auto samples = std::make_shared<std::shared_ptr<const Samples>>(field.shared_samples());
     const Moment moment = field.moment();
     const std::filesystem::path file(path.toStdString());
