@@ -30,10 +30,6 @@ void split(std::string_view line, std::vector<std::string_view>& cells) {
     }
 }
 
-std::string reason(int error) {
-    return std::generic_category().message(error);
-}
-
 }  // namespace
 
 std::string quoted(std::string_view text) {

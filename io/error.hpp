@@ -3,6 +3,8 @@
 #pragma once
 
 #include <stdexcept>
+#include <string>
+#include <system_error>
 
 namespace palpate::io {
 
@@ -17,5 +19,10 @@ class OutputError : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;
 };
+
+/// What the system says of an errno.
+inline std::string reason(int error) {
+    return std::generic_category().message(error);
+}
 
 }  // namespace palpate::io

@@ -14,10 +14,6 @@ namespace {
 
 constexpr std::size_t buffer_bytes = std::size_t{1} << 20;
 
-std::string reason(int error) {
-    return std::generic_category().message(error);
-}
-
 /// What to do about it, for the errors that people meet.
 std::string remedy(int error) {
     switch (error) {

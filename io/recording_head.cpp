@@ -12,13 +12,6 @@ namespace {
 
 constexpr std::array<std::string_view, 4> type_names{"uint8", "int16", "uint16", "float32"};
 
-const Json& member(const Json& json, const char* name) {
-    if (!json.is_object() || !json.contains(name)) {
-        throw std::invalid_argument(std::string("'") + name + "' is missing");
-    }
-    return json.at(name);
-}
-
 std::string text_of(const Json& json, const char* name) {
     const Json& value = member(json, name);
     if (!value.is_string()) {

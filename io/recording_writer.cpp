@@ -17,16 +17,12 @@ using namespace std::chrono_literals;
 
 constexpr auto between_writes = 100ms;
 constexpr auto between_syncs = 500ms;
-constexpr std::size_t buffer_bytes = std::size_t{1} << 20;
+constexpr std::size_t most_buffered = std::size_t{1} << 20;
 
 constexpr std::string_view session_columns =
     ",status,force_flags,device_status,device_x,device_y,device_z,buttons,age,"
     "tool_xx,tool_xy,tool_xz,tool_yx,tool_yy,tool_yz,tool_zx,tool_zy,tool_zz,frozen,clutched,"
     "moment,samples";
-
-std::string reason(int error) {
-    return std::generic_category().message(error);
-}
 
 void append_tick(std::string& text, const SessionTick& tick) {
     append_row(text, trace_row(tick.tick));
@@ -69,7 +65,7 @@ std::size_t room_for(double rate) {
 
 RecordingWriter::RecordingWriter(const std::filesystem::path& path, const RecordingHead& head)
     : path_(path), queue_(room_for(head.rate)) {
-    buffer_.reserve(buffer_bytes);
+    buffer_.reserve(most_buffered);
     std::error_code error;
     const auto status = std::filesystem::status(path, error);
     if (std::filesystem::is_regular_file(status)) {
@@ -151,7 +147,7 @@ void RecordingWriter::drain() {
             buffer_ += command_mark;
             buffer_ += to_json(std::get<Command>(*event)).dump() + "\n";
         }
-        if (buffer_.size() > buffer_bytes) flush();
+        if (buffer_.size() > most_buffered) flush();
     }
 }
 

@@ -43,11 +43,6 @@ Json json_of(const Edit& edit) {
     throw std::invalid_argument(std::string("'") + name + "' of the samples is not valid");
 }
 
-const Json& member(const Json& json, const char* name) {
-    if (!json.is_object() || !json.contains(name)) wrong(name);
-    return json.at(name);
-}
-
 double number(const Json& json, const char* name) {
     return number_from_json(member(json, name), name);
 }

@@ -245,6 +245,13 @@ Command command_named(const std::string& name, const Json& json) {
 
 }  // namespace
 
+const Json& member(const Json& json, const char* name) {
+    if (!json.is_object() || !json.contains(name)) {
+        throw std::invalid_argument(std::string("'") + name + "' is missing");
+    }
+    return json.at(name);
+}
+
 double number_from_json(const Json& json, const char* name) {
     if (json.is_number()) return json.get<double>();
     if (json == "inf") return infinity;

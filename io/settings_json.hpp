@@ -22,6 +22,8 @@ void from_json(const Json& json, RendererSettings& settings);
 void from_json(const Json& json, SessionSettings& settings);
 Command command_from_json(const Json& json);
 
+/// json's member `name`. Throws std::invalid_argument if it is no object or has none.
+const Json& member(const Json& json, const char* name);
 double number_from_json(const Json& json, const char* name);
 Json number_to_json(double value);
 

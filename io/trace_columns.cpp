@@ -9,7 +9,7 @@ namespace {
 bool read_mode(const CsvReader& rows, std::size_t column) {
     const std::string_view mode = rows.cell(column);
     if (mode != "free" && mode != "constrained") {
-        rows.fail(quoted(mode) + " is no mode: it is 'free' or 'constrained'");
+        rows.fail(io::quoted(mode) + " is no mode: it is 'free' or 'constrained'");
     }
     return mode == "constrained";
 }
@@ -17,7 +17,7 @@ bool read_mode(const CsvReader& rows, std::size_t column) {
 int read_count(const CsvReader& rows, std::size_t column) {
     const std::int64_t count = rows.integer(column);
     if (count < 0 || count > std::numeric_limits<int>::max()) {
-        rows.fail(quoted(rows.cell(column)) + " is no count of tetrahedra: write one like 12");
+        rows.fail(io::quoted(rows.cell(column)) + " is no count of tetrahedra: write one like 12");
     }
     return static_cast<int>(count);
 }

@@ -13,14 +13,10 @@
 namespace palpate::app {
 namespace {
 
-[[noreturn]] void wrong(const std::string& meant) {
-    throw std::invalid_argument(meant + " is meant to be there");
-}
-
 double number(const std::string& word, const std::string& meant) {
     if (word == "inf") return std::numeric_limits<double>::infinity();
     const auto value = io::number_from<double>(word);
-    if (!value) wrong(meant);
+    if (!value) wrong_words(meant);
     return *value;
 }
 
@@ -29,7 +25,7 @@ Vec3 point(const std::string& word, const std::string& meant) {
     std::size_t begin = 0;
     for (int a = 0; a < 3; ++a) {
         const std::size_t end = a < 2 ? word.find(',', begin) : word.size();
-        if (end == std::string::npos) wrong(meant);
+        if (end == std::string::npos) wrong_words(meant);
         p[a] = number(word.substr(begin, end - begin), meant);
         begin = end + 1;
     }
@@ -46,7 +42,7 @@ std::array<Vec3, 2> two_points(const std::string& word, const std::string& meant
 DataRequest brush_request(const std::vector<std::string>& words, const Volume& volume) {
     const std::string meant = "brush KIND RADIUS [RATE [VALUE]], or brush off,";
     if (words.size() == 2 && words[1] == "off") return ask::SetBrush{};
-    if (words.size() < 3 || words.size() > 5) wrong(meant);
+    if (words.size() < 3 || words.size() > 5) wrong_words(meant);
     HandBrush brush;
     brush.kind = brush_kind_from(words[1]);
     brush.radius = number(words[2], meant);
@@ -58,7 +54,7 @@ DataRequest brush_request(const std::vector<std::string>& words, const Volume& v
 
 DataRequest touch_request(const std::vector<std::string>& words, const Volume& volume) {
     const std::string meant = words[0] + " X,Y,Z[:X,Y,Z] RADIUS [VALUE]";
-    if (words.size() < 3 || words.size() > 4) wrong(meant);
+    if (words.size() < 3 || words.size() > 4) wrong_words(meant);
     ask::Touch touch;
     touch.brush.kind = brush_kind_from(words[0]);
     touch.brush.radius = number(words[2], meant);
@@ -72,18 +68,18 @@ DataRequest touch_request(const std::vector<std::string>& words, const Volume& v
 
 DataRequest fill_request(const std::vector<std::string>& words, const Volume& volume) {
     const std::string meant = "fill I,J,K[:I,J,K] VALUE";
-    if (words.size() != 3) wrong(meant);
+    if (words.size() != 3) wrong_words(meant);
     const auto [low, high] = two_points(words[1], meant);
     const double most = std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff());
-    if (!(most <= 1 << 20)) wrong(meant);
+    if (!(most <= 1 << 20)) wrong_words(meant);
     const SampleBox box{low.cwiseMin(high).cast<int>(), low.cwiseMax(high).cast<int>()};
     return ask::Fill{{box, level_from_text(words[2], volume)}};
 }
 
 DataRequest play_request(const std::vector<std::string>& words) {
-    if (words.size() > 2) wrong("play [SPEED]");
+    if (words.size() > 2) wrong_words("play [SPEED]");
     const double speed = words.size() > 1 ? number(words[1], "play [SPEED]") : 1;
-    if (!(std::abs(speed) <= 1000)) wrong("play [SPEED], at most 1000,");
+    if (!(std::abs(speed) <= 1000)) wrong_words("play [SPEED], at most 1000,");
     return ask::Play{speed};
 }
 
@@ -141,6 +137,10 @@ struct CarryOut {
 
 }  // namespace
 
+void wrong_words(const std::string& meant) {
+    throw std::invalid_argument(meant + " is meant to be there");
+}
+
 std::optional<DataRequest> data_request(const std::vector<std::string>& words,
                                         const Volume& volume) {
     const std::string& name = words.at(0);
@@ -153,7 +153,7 @@ std::optional<DataRequest> data_request(const std::vector<std::string>& words,
     if (name == "undo" && alone) return ask::Undo{};
     if (name == "redo" && alone) return ask::Redo{};
     if (name == "save") {
-        if (words.size() != 2) wrong("save FILE");
+        if (words.size() != 2) wrong_words("save FILE");
         check_volume_name(words[1], volume.geometry());
         return ask::Save{words[1]};
     }
@@ -161,17 +161,18 @@ std::optional<DataRequest> data_request(const std::vector<std::string>& words,
     if (name == "pause" && alone) return ask::Play{0};
     if (name == "step") {
         const double frames = alone ? 1 : number(words[1], "step [FRAMES]");
-        if (words.size() > 2 || !(std::abs(frames) <= 1e6)) wrong("step [FRAMES]");
+        if (words.size() > 2 || !(std::abs(frames) <= 1e6)) wrong_words("step [FRAMES]");
         return ask::Step{static_cast<int>(frames)};
     }
     if (name == "seek") {
-        if (words.size() != 2) wrong("seek SECONDS");
+        if (words.size() != 2) wrong_words("seek SECONDS");
         const double time = number(words[1], "seek SECONDS");
-        if (!std::isfinite(time)) wrong("seek SECONDS");
+        if (!std::isfinite(time)) wrong_words("seek SECONDS");
         return ask::Seek{time};
     }
     if (name == "loop") {
-        if (words.size() != 2 || (words[1] != "on" && words[1] != "off")) wrong("loop on|off");
+        if (words.size() != 2 || (words[1] != "on" && words[1] != "off"))
+            wrong_words("loop on|off");
         return ask::Loop{words[1] == "on"};
     }
     return std::nullopt;

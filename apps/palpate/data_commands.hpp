@@ -11,6 +11,9 @@
 
 namespace palpate::app {
 
+/// Throws std::invalid_argument: words are not what they are meant to be.
+[[noreturn]] void wrong_words(const std::string& meant);
+
 namespace ask {
 struct SetBrush {
     std::optional<HandBrush> brush;  ///< none: off

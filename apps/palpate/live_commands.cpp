@@ -13,25 +13,21 @@
 namespace palpate::app {
 namespace {
 
-[[noreturn]] void wrong(const std::string& meant) {
-    throw std::invalid_argument(meant + " is meant to be there");
-}
-
 bool on_or_off(const std::vector<std::string>& words) {
     if (words.size() != 2 || (words[1] != "on" && words[1] != "off")) {
-        wrong(words[0] + " on, or " + words[0] + " off,");
+        wrong_words(words[0] + " on, or " + words[0] + " off,");
     }
     return words[1] == "on";
 }
 
 double number(const std::vector<std::string>& words, std::size_t at, const std::string& meant) {
     const auto value = at < words.size() ? io::number_from<double>(words[at]) : std::nullopt;
-    if (!value) wrong(meant);
+    if (!value) wrong_words(meant);
     return *value;
 }
 
 void expect_words(const std::vector<std::string>& words, std::size_t count) {
-    if (words.size() != count) wrong(fmt::format("one value after '{}'", words[0]));
+    if (words.size() != count) wrong_words(fmt::format("one value after '{}'", words[0]));
 }
 
 }  // namespace
@@ -51,7 +47,8 @@ Penetrability LiveCommands::penetrability_from(const std::vector<std::string>& w
             words.size() == 4 ? level_from_text(words[3], field_.volume()) : isovalue_;
         return penetrability_threshold(threshold, minimum, field_.solid());
     }
-    if (mode != "ranges") wrong("penetrability off, threshold PT [MINIMUM] or ranges PT LOW:HIGH");
+    if (mode != "ranges")
+        wrong_words("penetrability off, threshold PT [MINIMUM] or ranges PT LOW:HIGH");
     std::vector<DensityRange> ranges;
     for (std::size_t i = 3; i < words.size(); ++i) {
         ranges.push_back(range_from(words[i], field_.volume()));
@@ -63,7 +60,7 @@ Request LiveCommands::from_words(std::string_view line) {
     std::istringstream stream{std::string(line)};
     std::vector<std::string> words;
     for (std::string word; stream >> word;) words.push_back(word);
-    if (words.empty()) wrong("a command");
+    if (words.empty()) wrong_words("a command");
     const std::string& name = words[0];
     if (auto data = data_request(words, field_.volume())) {
         if (const auto* set = std::get_if<ask::SetBrush>(&*data)) {

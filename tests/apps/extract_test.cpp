@@ -8,7 +8,7 @@
 namespace palpate::app::test {
 namespace {
 
-const std::string sphere = "extract synthetic:sphere:24x24x24 -o ";
+const std::string extract_sphere = "extract synthetic:sphere:24x24x24 -o ";
 
 template <class T>
 T take(const std::string& bytes, std::size_t& at) {
@@ -65,7 +65,7 @@ TEST(Extract, EveryFormatHasTheSameTriangles) {
     const ScratchFolder folder;
     std::size_t triangles = 0;
     for (const std::string name : {"a.ply", "a.stl", "a.obj", "a.vtp", "A.PLY"}) {
-        const Outcome outcome = palpate(folder, sphere + name);
+        const Outcome outcome = palpate(folder, extract_sphere + name);
         ASSERT_EQ(outcome.status, 0) << outcome.err;
         EXPECT_EQ(outcome.out.rfind(name + ": isovalue 76.5, ", 0), 0U) << outcome.out;
         if (triangles == 0) triangles = read_ply(folder / "a.ply").triangles.size();
@@ -96,9 +96,9 @@ TEST(Extract, WhatCannotBeWrittenIsSaidAndNothingStays) {
     std::filesystem::create_directory(folder / "folder.ply");
     std::filesystem::create_symlink("/dev/full", folder / "full.ply");
     const auto before = folder.names();
-    expect_failure(palpate(folder, sphere + "missing/a.ply"), 5, "missing does not exist");
-    expect_failure(palpate(folder, sphere + "folder.ply"), 5, "is a folder");
-    expect_failure(palpate(folder, sphere + "full.ply"), 5, "No space left");
+    expect_failure(palpate(folder, extract_sphere + "missing/a.ply"), 5, "missing does not exist");
+    expect_failure(palpate(folder, extract_sphere + "folder.ply"), 5, "is a folder");
+    expect_failure(palpate(folder, extract_sphere + "full.ply"), 5, "No space left");
     EXPECT_EQ(folder.names(), before);
 }
 

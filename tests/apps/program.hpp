@@ -18,10 +18,12 @@
 #include <thread>
 #include <vector>
 
+#include "support/eventually.hpp"
 #include "support/scratch_folder.hpp"
 
 namespace palpate::app::test {
 
+using support::comes_true;
 using support::contains;
 using support::ScratchFolder;
 using Words = std::vector<std::string>;
@@ -128,16 +130,6 @@ inline Outcome palpate(const ScratchFolder& folder, const Words& words,
 inline Outcome palpate(const ScratchFolder& folder, const std::string& line,
                        Stdout to = Stdout::captured) {
     return palpate(folder, words_of(line), to);
-}
-
-/// Waits until `condition` holds; false if it has not within half a minute.
-inline bool comes_true(const std::function<bool()>& condition) {
-    using namespace std::chrono_literals;
-    for (int i = 0; i < 30'000; ++i) {
-        if (condition()) return true;
-        std::this_thread::sleep_for(1ms);
-    }
-    return false;
 }
 
 inline bool is_one_line(const std::string& text) {

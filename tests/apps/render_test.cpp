@@ -13,7 +13,7 @@ using support::is_green;
 using support::is_vermilion;
 using support::Png;
 
-const std::string ball = "render synthetic:sphere:24x24x24 --size 200x160 -o p.png ";
+const std::string render_ball = "render synthetic:sphere:24x24x24 --size 200x160 -o p.png ";
 
 Png picture_of(const ScratchFolder& folder, const std::string& words) {
     const Outcome outcome = palpate(folder, words);
@@ -39,7 +39,7 @@ std::size_t different(const Png& a, const Png& b) {
 
 TEST(Render, APictureHasItsSizeTheSurfaceInTheMiddleAndPaperAround) {
     const ScratchFolder folder;
-    const Png png = picture_of(folder, ball);
+    const Png png = picture_of(folder, render_ball);
     EXPECT_EQ(png.width, 200U);
     EXPECT_EQ(png.height, 160U);
     EXPECT_TRUE(is_bone(png.at(100, 80)));
@@ -55,10 +55,10 @@ TEST(Render, APictureHasItsSizeTheSurfaceInTheMiddleAndPaperAround) {
 
 TEST(Render, ASecondLevelIsSeen) {
     const ScratchFolder folder;
-    const Png one = picture_of(folder, ball + "-i 180");
-    const Png two = picture_of(folder, ball + "-i 180 -i 30");
+    const Png one = picture_of(folder, render_ball + "-i 180");
+    const Png two = picture_of(folder, render_ball + "-i 180 -i 30");
     EXPECT_GT(different(one, two), 2000U);
-    const Png outer = picture_of(folder, ball + "-i 30");
+    const Png outer = picture_of(folder, render_ball + "-i 30");
     EXPECT_GT(different(outer, two), 2000U);
 }
 
@@ -73,9 +73,10 @@ TEST(Render, TheSolidBelowALevelIsDrawnToo) {
 TEST(Render, AHandAloneGetsItsProxySpringAndForce) {
     const ScratchFolder folder;
     const Outcome outcome =
-        palpate(folder, ball + "--hip 0,-5,0 --view front --azimuth 0 --stiffness 0.2");
+        palpate(folder, render_ball + "--hip 0,-5,0 --view front --azimuth 0 --stiffness 0.2");
     EXPECT_EQ(outcome.status, 2);  // a view by name or by angles
-    const Outcome drawn = palpate(folder, ball + "--hip 0,-5,0.5 --elevation 60 --stiffness 0.2");
+    const Outcome drawn =
+        palpate(folder, render_ball + "--hip 0,-5,0.5 --elevation 60 --stiffness 0.2");
     ASSERT_EQ(drawn.status, 0) << drawn.err;
     const Png png = support::png_from(support::bytes_of(folder / "p.png"));
     EXPECT_GT(png.count(is_vermilion), 5U);
@@ -94,19 +95,20 @@ TEST(Render, AHandAloneGetsItsProxySpringAndForce) {
 
 TEST(Render, AHandInFreeSpaceIsItsOwnProxy) {
     const ScratchFolder folder;
-    const Outcome outcome = palpate(folder, ball + "--hip 0,-30,0");
+    const Outcome outcome = palpate(folder, render_ball + "--hip 0,-30,0");
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_TRUE(contains(outcome.out, "SCP (0, -30, 0) mm, force 0 N")) << outcome.out;
 }
 
 TEST(Render, PointsForcesAndViewsAreTakenAsGiven) {
     const ScratchFolder folder;
-    const std::string front = ball + "--view front ";
+    const std::string front = render_ball + "--view front ";
     const Png plain = picture_of(folder, front);
     EXPECT_EQ(plain.count(is_vermilion), 0U);
     const Png proxy = picture_of(folder, front + "--scp 0,-12,0");
     EXPECT_TRUE(is_vermilion(proxy.at(100, 80)));
-    EXPECT_FALSE(is_vermilion(picture_of(folder, ball + "--view back --scp 0,-12,0").at(100, 80)));
+    EXPECT_FALSE(
+        is_vermilion(picture_of(folder, render_ball + "--view back --scp 0,-12,0").at(100, 80)));
     const Png pushed = picture_of(folder,
                                   "render synthetic:sphere:24x24x24 --size 400x320 -o p.png --view "
                                   "front --scp 0,-12,0 --hip 3,-12,0 --force 0,0,-2");
@@ -121,7 +123,7 @@ TEST(Render, PointsForcesAndViewsAreTakenAsGiven) {
     EXPECT_EQ(above, 0U);
     EXPECT_GT(different(plain, picture_of(folder, front + "--zoom 2")), 4000U);
     EXPECT_GT(different(plain, picture_of(folder, front + "--zoom 0.5")), 4000U);
-    EXPECT_EQ(different(plain, picture_of(folder, ball + "--azimuth 0 --elevation 0")), 0U);
+    EXPECT_EQ(different(plain, picture_of(folder, render_ball + "--azimuth 0 --elevation 0")), 0U);
     const Png lying = picture_of(folder,
                                  "render synthetic:torus:24x24x12 --size 200x160 -o p.png "
                                  "--view front");
@@ -139,7 +141,7 @@ TEST(Render, TheWayComesFromATraceOrAPath) {
                       "--path path.csv")
                   .status,
               0);
-    const std::string left = ball + "--view right ";
+    const std::string left = render_ball + "--view right ";
     const Png trace = picture_of(folder, left + "--path trace.csv");
     EXPECT_GT(trace.count(is_vermilion), 5U);
     EXPECT_GT(trace.count(is_blue), 2U);
@@ -164,7 +166,7 @@ TEST(Render, GoesToStandardOutputAlone) {
 
 TEST(Render, AnEmptyLevelIsWarnedAboutAndDone) {
     const ScratchFolder folder;
-    const Outcome outcome = palpate(folder, ball + "-i 300");
+    const Outcome outcome = palpate(folder, render_ball + "-i 300");
     EXPECT_EQ(outcome.status, 0);
     EXPECT_TRUE(contains(outcome.err, "warning: isovalue 300")) << outcome.err;
     EXPECT_LT(support::png_from(support::bytes_of(folder / "p.png")).count(is_bone),
@@ -199,7 +201,7 @@ TEST(Render, WrongWordsAreRefused) {
 
 TEST(Render, AHandWhereAllIsSolidIsRefused) {
     const ScratchFolder folder;
-    const Outcome outcome = palpate(folder, ball + "-i -5 --hip 0,0,0");
+    const Outcome outcome = palpate(folder, render_ball + "-i -5 --hip 0,0,0");
     EXPECT_EQ(outcome.status, 2);
     EXPECT_TRUE(contains(outcome.err, "all of space is solid")) << outcome.err;
 }
@@ -230,7 +232,7 @@ TEST(Render, AHelperThatFailsIsOneLineAndStatus5) {
     std::filesystem::permissions(folder / "crash", std::filesystem::perms::owner_all);
     const auto fails = [&](const char* variable, const std::string& value,
                            const std::string& reason) {
-        expect_failure(with(variable, value, folder, ball), 5, reason);
+        expect_failure(with(variable, value, folder, render_ball), 5, reason);
         EXPECT_EQ(folder.names(), std::vector<std::string>{"crash"});
     };
     fails("PALPATE_PICTURE_HELPER", (folder / "crash").string(), "libgl1-mesa-dri");
@@ -245,7 +247,7 @@ TEST(Render, CtrlCEndsTheHelperAndLeavesNothing) {
     support::put_bytes(folder / "slow", "#!/bin/sh\ntouch started\nexec sleep 100\n");
     std::filesystem::permissions(folder / "slow", std::filesystem::perms::owner_all);
     ::setenv("PALPATE_PICTURE_HELPER", (folder / "slow").c_str(), 1);
-    Running render(words_of(ball), folder.path());
+    Running render(words_of(render_ball), folder.path());
     ::unsetenv("PALPATE_PICTURE_HELPER");
     ASSERT_TRUE(comes_true([&] { return std::filesystem::exists(folder / "started"); }));
     const Outcome outcome = render.finish(SIGINT);

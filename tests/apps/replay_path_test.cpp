@@ -86,7 +86,7 @@ class PathCheck {
     std::int64_t samples_ = 0;
 };
 
-struct Case {
+struct PathCase {
     std::string volume;
     double isovalue;
     std::string method;
@@ -110,10 +110,10 @@ void put_motion(const ScratchFolder& folder, const Field& field, double isovalue
     }
 }
 
-class Path : public testing::TestWithParam<Case> {};
+class Path : public testing::TestWithParam<PathCase> {};
 
 TEST_P(Path, IsFreeAllAlongAndEndsOnTheSurface) {
-    const Case& c = GetParam();
+    const PathCase& c = GetParam();
     const bool synthetic = c.volume.starts_with("synthetic:");
     if (!synthetic) SKIP_WITHOUT(c.volume);
     const ScratchFolder folder;
@@ -132,15 +132,17 @@ TEST_P(Path, IsFreeAllAlongAndEndsOnTheSurface) {
 
 INSTANTIATE_TEST_SUITE_P(
     Replay, Path,
-    testing::Values(Case{"synthetic:noise:48x48x48", 127.5, "exact"},
-                    Case{"synthetic:noise:48x48x48", 127.5, "paper"},
-                    Case{"synthetic:noise:48x48x48", 127.5, "exact", "--step-budget 2"},
-                    Case{"synthetic:noise:48x48x48", 127.5, "exact", "--friction 0.6,0.4"},
-                    Case{"synthetic:sphere:32x32x32", 76.5, "exact", "--solid below"},
-                    Case{"lobster.nrrd", 35, "exact"}, Case{"lobster.nrrd", 35, "paper"},
-                    Case{"orange.nrrd", 15, "exact"}, Case{"orange.nrrd", 15, "paper"},
-                    Case{"daisy_pollen.nrrd", 40, "exact"}, Case{"daisy_pollen.nrrd", 40, "paper"},
-                    Case{"cthead_unc.nrrd", 500, "exact"}, Case{"cthead_unc.nrrd", 500, "paper"}));
+    testing::Values(PathCase{"synthetic:noise:48x48x48", 127.5, "exact"},
+                    PathCase{"synthetic:noise:48x48x48", 127.5, "paper"},
+                    PathCase{"synthetic:noise:48x48x48", 127.5, "exact", "--step-budget 2"},
+                    PathCase{"synthetic:noise:48x48x48", 127.5, "exact", "--friction 0.6,0.4"},
+                    PathCase{"synthetic:sphere:32x32x32", 76.5, "exact", "--solid below"},
+                    PathCase{"lobster.nrrd", 35, "exact"}, PathCase{"lobster.nrrd", 35, "paper"},
+                    PathCase{"orange.nrrd", 15, "exact"}, PathCase{"orange.nrrd", 15, "paper"},
+                    PathCase{"daisy_pollen.nrrd", 40, "exact"},
+                    PathCase{"daisy_pollen.nrrd", 40, "paper"},
+                    PathCase{"cthead_unc.nrrd", 500, "exact"},
+                    PathCase{"cthead_unc.nrrd", 500, "paper"}));
 
 TEST(Path, StartsAtTheRecoveredPointOfAHandInsideTheBody) {
     const ScratchFolder folder;

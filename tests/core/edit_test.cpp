@@ -5,15 +5,13 @@
 #include <gtest/gtest.h>
 
 #include "palpate/proxy.hpp"
+#include "support/constants.hpp"
 #include "support/edits.hpp"
 
 using namespace palpate;
 using namespace palpate::support;
 
 namespace {
-
-constexpr SampleType types[] = {SampleType::uint8, SampleType::int16, SampleType::uint16,
-                                SampleType::float32};
 
 /// Whether a stored sample is this value, rounded and cut to its type; a half may go either way.
 bool is_rounded(SampleType type, double sample, double value) {
@@ -25,7 +23,7 @@ bool is_rounded(SampleType type, double sample, double value) {
 TEST(Edit, makes_of_each_sample_what_the_formulas_say) {
     int changes[4] = {}, others = 0;
     std::uint64_t seed = 0;
-    for (const SampleType type : types) {
+    for (const SampleType type : sample_types) {
         for (const Geometry& geometry : odd_grids()) {
             for (int i = 0; i < scaled(40) + 1; ++i) {
                 Random random(++seed);
@@ -54,8 +52,8 @@ TEST(Edit, makes_of_each_sample_what_the_formulas_say) {
 TEST(Edit, gives_the_same_bits_again) {
     Random random(3);
     for (int i = 0; i < 30; ++i) {
-        const auto samples = samples_of(noise_of(types[i % 4], odd_grids()[4], 5));
-        const Edit edit = random_edit(random, samples->geometry(), types[i % 4]);
+        const auto samples = samples_of(noise_of(sample_types[i % 4], odd_grids()[4], 5));
+        const Edit edit = random_edit(random, samples->geometry(), sample_types[i % 4]);
         EXPECT_TRUE(same_bits(flattened(*edited(samples, edit).samples),
                               flattened(*edited(samples, edit).samples)));
     }
@@ -215,7 +213,7 @@ TEST(Edit, faint_touches_of_whole_numbers_do_not_stand_still) {
 TEST(Edit, values_are_cut_at_the_limits_of_the_type) {
     const double lowest[] = {0, -32768, 0}, highest[] = {255, 32767, 65535};
     for (int i = 0; i < 3; ++i) {
-        const auto samples = samples_of(noise_of(types[i], grid(cube(5)), 1));
+        const auto samples = samples_of(noise_of(sample_types[i], grid(cube(5)), 1));
         const SampleBox all = whole_box(samples->geometry());
         EXPECT_EQ(edited(samples, edit::Fill{all, 1e9}).samples->sample({2, 2, 2}), highest[i]);
         EXPECT_EQ(edited(samples, edit::Fill{all, -1e9}).samples->sample({2, 2, 2}), lowest[i]);

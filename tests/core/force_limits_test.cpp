@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "palpate/force.hpp"
+#include "support/constants.hpp"
 #include "support/random.hpp"
 
 using namespace palpate;
@@ -12,9 +13,6 @@ using namespace palpate::support;
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-constexpr double tick = 1e-3;
 constexpr double rounding = 1 + 1e-12;
 
 ForceInput pressing(double time, const Vec3& pull = Vec3(0, 0, 2)) {
@@ -34,7 +32,7 @@ struct Running {
 
     Running() { run(1000); }
     ForceResult step(ForceInput input) { return render_force(state, settings, limits, input); }
-    ForceResult next() { return step(pressing(time += tick)); }
+    ForceResult next() { return step(pressing(time += period)); }
     void run(int ticks) {
         for (int i = 0; i < ticks; ++i) next();
     }
@@ -55,7 +53,7 @@ void expect_stop_and_ramp(Running& running, const ForceInput& broken, unsigned w
         if (i != 250) {  // there the sum of the ticks decides
             EXPECT_EQ(bool(result.flags & force_ramping), i < 250) << i;
         }
-        ASSERT_NEAR(result.force[2], std::min(1.0, i * tick / running.settings.ramp), 1e-9) << i;
+        ASSERT_NEAR(result.force[2], std::min(1.0, i * period / running.settings.ramp), 1e-9) << i;
         ASSERT_GE(result.force[2], last);
         last = result.force[2];
     }
@@ -164,7 +162,7 @@ TEST(Force, limits_hold_even_for_settings_that_check_refuses) {
             ForceState state;
             for (int i = 0; i < 600; ++i) {
                 const ForceResult r =
-                    render_force(state, s, limits, pressing(i * tick, Vec3(0, 0, i * 0.1)));
+                    render_force(state, s, limits, pressing(i * period, Vec3(0, 0, i * 0.1)));
                 ASSERT_TRUE(r.force.allFinite()) << bad << " in " << which;
                 ASSERT_LE(r.force.norm(), std::min(device, 3.3 + 1e9 * (which == 3)) * rounding)
                     << bad << " in " << which;
@@ -183,7 +181,7 @@ TEST(Force, the_smaller_of_the_two_maxima_holds_and_the_direction_stays) {
         running.limits.maximum_force = device;
         ForceResult r;
         for (int i = 0; i < 500; ++i) {
-            r = running.step(pressing(running.time += tick, Vec3(60, 0, 80)));
+            r = running.step(pressing(running.time += period, Vec3(60, 0, 80)));
         }
         EXPECT_NEAR((r.force - std::min(asked, device) * Vec3(0.6, 0, 0.8)).norm(), 0, 1e-12);
         EXPECT_TRUE(r.flags & force_limited);
@@ -201,14 +199,14 @@ TEST(Force, changes_no_faster_than_its_rate) {
     Running running;
     running.settings.rate_limit = 100;  // 0.1 N a tick
     for (int i = 1; i <= 10; ++i) {
-        const ForceResult r = running.step(pressing(running.time += tick, Vec3(0, 0, -2)));
+        const ForceResult r = running.step(pressing(running.time += period, Vec3(0, 0, -2)));
         EXPECT_NEAR(r.force[2], 1 - 0.1 * i, 1e-9);
         EXPECT_TRUE(r.flags & force_rate_limited);
     }
     // Leaving contact is no stop: it falls by the rate too.
     Running leaving;
     leaving.settings.rate_limit = 100;
-    ForceInput free = pressing(leaving.time + tick);
+    ForceInput free = pressing(leaving.time + period);
     free.constrained = false;
     EXPECT_NEAR(leaving.step(free).force[2], 0.9, 1e-9);
 }
@@ -217,15 +215,16 @@ TEST(Force, begins_at_zero_and_ramps_up) {
     ForceState state;
     const ForceSettings settings;
     for (int i = 0; i <= 300; ++i) {
-        const ForceResult r = render_force(state, settings, DeviceLimits{}, pressing(7 + i * tick));
-        ASSERT_NEAR(r.force[2], std::min(1.0, i * tick / 0.25), 1e-9);
+        const ForceResult r =
+            render_force(state, settings, DeviceLimits{}, pressing(7 + i * period));
+        ASSERT_NEAR(r.force[2], std::min(1.0, i * period / 0.25), 1e-9);
     }
 }
 
 TEST(Force, any_doubt_about_the_input_stops_it_at_once_and_the_ramp_begins_anew) {
     const auto broken = [](auto&& change) {
         Running running;
-        ForceInput input = pressing(running.time + tick);
+        ForceInput input = pressing(running.time + period);
         change(input);
         return std::pair{running, input};
     };
@@ -235,8 +234,8 @@ TEST(Force, any_doubt_about_the_input_stops_it_at_once_and_the_ramp_begins_anew)
     };
     expect(force_stale, [](ForceInput& i) { i.valid = false; });
     expect(force_off, [](ForceInput& i) { i.enabled = false; });
-    expect(force_stale, [](ForceInput& i) { i.time -= tick; });      // stands still
-    expect(force_stale, [](ForceInput& i) { i.time -= 2 * tick; });  // goes back
+    expect(force_stale, [](ForceInput& i) { i.time -= period; });      // stands still
+    expect(force_stale, [](ForceInput& i) { i.time -= 2 * period; });  // goes back
     expect(force_stale, [](ForceInput& i) { i.time = -1e300; });
     for (const double bad : {not_a_number, infinity, -infinity}) {
         expect(force_not_finite, [=](ForceInput& i) { i.time = bad; });
@@ -255,7 +254,7 @@ TEST(Force, a_normal_that_is_not_finite_stops_the_magnet) {
     for (const double bad : {not_a_number, infinity}) {
         Running running;
         running.settings.magnet = {2, 0.5};
-        ForceInput input = pressing(running.time + tick);
+        ForceInput input = pressing(running.time + period);
         input.constrained = false;
         input.surface_distance = 1;
         input.normal = Vec3(0, bad, 0);
@@ -273,7 +272,7 @@ TEST(Force, a_pause_longer_than_stale_begins_a_ramp_and_a_shorter_one_does_not) 
     EXPECT_EQ(r.force, Vec3::Zero());
     EXPECT_TRUE(r.flags & force_stale);
     EXPECT_TRUE(r.flags & force_ramping);
-    for (int i = 1; i < 240; ++i) ASSERT_NEAR(paused.next().force[2], i * tick / 0.25, 1e-9);
+    for (int i = 1; i < 240; ++i) ASSERT_NEAR(paused.next().force[2], i * period / 0.25, 1e-9);
     Running ages;
     ages.time = 1e300;
     EXPECT_EQ(ages.next().force, Vec3::Zero());
@@ -283,7 +282,7 @@ TEST(Force, a_velocity_from_before_a_pause_is_forgotten) {
     Running running;
     running.settings.viscosity = 0.002;
     for (int i = 0; i < 100; ++i) {
-        ForceInput in = pressing(running.time += tick);
+        ForceInput in = pressing(running.time += period);
         in.hand = Vec3(i * 0.1, 0, 0);
         running.step(in);
     }
@@ -297,14 +296,14 @@ TEST(Force, a_velocity_from_before_a_pause_is_forgotten) {
 TEST(Force, off_stays_zero_and_on_again_ramps) {
     Running running;
     for (int i = 0; i < 50; ++i) {
-        ForceInput in = pressing(running.time += tick);
+        ForceInput in = pressing(running.time += period);
         in.enabled = false;
         const ForceResult r = running.step(in);
         ASSERT_EQ(r.force, Vec3::Zero());
         ASSERT_EQ(r.flags, force_off);
     }
     EXPECT_EQ(running.next().force, Vec3::Zero());
-    EXPECT_NEAR(running.next().force[2], tick / 0.25, 1e-9);
+    EXPECT_NEAR(running.next().force[2], period / 0.25, 1e-9);
 }
 
 TEST(Force, each_bad_setting_is_refused_by_name_with_its_range) {

@@ -4,12 +4,12 @@
 #include <limits>
 
 #include "palpate/force.hpp"
+#include "support/constants.hpp"
 
 using namespace palpate;
+using namespace palpate::support;
 
 namespace {
-
-constexpr double period = 1e-3;
 
 struct Contact {
     ForceSettings settings;

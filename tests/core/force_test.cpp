@@ -6,15 +6,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "support/constants.hpp"
 #include "support/random.hpp"
 
 using namespace palpate;
 using namespace palpate::support;
 
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double tick = 1e-3;
 
 /// No ramp, no rate limit, no practical maximum: the bare effects.
 ForceSettings bare(double stiffness = 0.5) {
@@ -46,7 +44,7 @@ Vec3 settled(const ForceSettings& settings, ForceInput input, const Vec3& veloci
     ForceState state;
     ForceResult result;
     for (int i = 0; i < 200; ++i) {
-        input.time = i * tick;
+        input.time = i * period;
         input.hand = velocity * input.time;
         result = render_force(state, settings, strong(), input);
     }
@@ -64,7 +62,7 @@ TEST(Force, is_equation_4_exactly_when_all_effects_are_neutral) {
         const Vec3 pull = random.point(-3, 3);
         const Vec3 hand = random.point(-5, 5);
         const ForceResult result =
-            render_force(state, settings, strong(), contact(i * tick, pull, hand));
+            render_force(state, settings, strong(), contact(i * period, pull, hand));
         ASSERT_EQ(result.force, settings.stiffness * pull);
         ASSERT_EQ(result.flags, 0);
     }
@@ -112,7 +110,7 @@ TEST(Force, damping_never_pulls_the_hand_in_with_and_without_texture) {
         const Vec3 outward = input.pull.normalized();
         ForceState state;
         render_force(state, settings, strong(), input);
-        input.time = tick;
+        input.time = period;
         input.hand = random.point(-3, 3);
         const double push = render_force(state, settings, strong(), input).force.dot(outward);
         ASSERT_GE(push, -1e-12) << i;
@@ -138,10 +136,10 @@ TEST(Force, viscosity_and_damping_follow_a_100_hz_low_pass) {
     ForceState state;
     ForceInput input;
     render_force(state, settings, strong(), input);
-    const double part = tick / (tick + 1 / (2 * std::numbers::pi * 100));
+    const double part = period / (period + 1 / (2 * std::numbers::pi * 100));
     double velocity = 0;
     for (int i = 1; i < 20; ++i) {
-        input.time = i * tick;
+        input.time = i * period;
         input.hand = Vec3(0.05 * i, 0, 0);  // 50 mm/s from one tick to the next
         velocity += part * (50 - velocity);
         const Vec3 force = render_force(state, settings, strong(), input).force;
@@ -157,7 +155,7 @@ TEST(Force, one_false_position_is_forgotten_within_a_hundredth_of_a_second) {
         ForceInput input;
         Vec3 force = Vec3::Zero();
         for (int i = 0; i < 20; ++i) {
-            input.time = i * tick;
+            input.time = i * period;
             input.hand[0] = i == 5 ? glitch : 0;
             force = render_force(state, settings, strong(), input).force;
             // 10 m/s is the fastest hand that counts.
@@ -251,7 +249,7 @@ TEST(Force, a_copied_state_continues_identically) {
     ForceState state;
     ForceState copy;
     const auto input = [](Random& r, int i) {
-        ForceInput in = contact(i * tick, r.point(-2, 2), r.point(-1, 1));
+        ForceInput in = contact(i * period, r.point(-2, 2), r.point(-1, 1));
         in.texture_slope = r.point(-1, 1);
         return in;
     };

@@ -2,15 +2,13 @@
 #include <gtest/gtest.h>
 
 #include "palpate/field.hpp"
+#include "support/constants.hpp"
 #include "support/edits.hpp"
 
 using namespace palpate;
 using namespace palpate::support;
 
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<Frame> noise_frames(SampleType type, const std::vector<double>& times,
                                 const Geometry& geometry = grid({7, 6, 5})) {

@@ -10,6 +10,7 @@
 #include "palpate/editor.hpp"
 #include "palpate/servo.hpp"
 #include "support/edits.hpp"
+#include "support/eventually.hpp"
 #include "support/scripted_device.hpp"
 
 using namespace palpate;
@@ -18,26 +19,17 @@ using namespace std::chrono_literals;
 
 namespace {
 
-bool soon(auto&& condition) {
-    const auto end = std::chrono::steady_clock::now() + 20s;
-    while (!condition()) {
-        if (std::chrono::steady_clock::now() > end) return false;
-        std::this_thread::sleep_for(500us);
-    }
-    return true;
-}
-
 /// Density = z + shift: the level 30 lies at 30 - shift, everywhere.
-Volume shifted_ramp(double shift) {
+Volume wide_ramp(double shift) {
     return volume_of<float>(grid({40, 40, 60}), [&](const Index3& i) { return i[2] + shift; });
 }
 std::shared_ptr<const Samples> plain_ramp() {
-    return samples_of(shifted_ramp(0));
+    return samples_of(wide_ramp(0));
 }
 /// The same by edits: all of the samples in bricks.
 std::shared_ptr<const Samples> edited_ramp(const std::shared_ptr<const Samples>& from,
                                            double shift) {
-    return edited(from, edit::Replace{Index3::Zero(), shifted_ramp(shift)}).samples;
+    return edited(from, edit::Replace{Index3::Zero(), wide_ramp(shift)}).samples;
 }
 
 /// Slides about inside the solid, whatever the shift.
@@ -65,7 +57,7 @@ TEST(LivingServo, an_edit_that_was_sent_is_felt_within_two_ticks) {
         latest[version] = servo.report().ticks + 1;
         shifts[version] = shift;
         const std::int64_t then = servo.report().ticks;
-        ASSERT_TRUE(soon([&] { return servo.report().ticks >= then + 5; }));
+        ASSERT_TRUE(comes_true([&] { return servo.report().ticks >= then + 5; }));
     }
     servo.stop();
     EXPECT_EQ(servo.report().unrecorded, 0);
@@ -115,7 +107,7 @@ TEST(LivingServo, a_tick_sees_one_version_and_lies_on_its_surface) {
         servo.send(command::Samples{versions[v], v});
         if (i % 4 == 0) std::this_thread::sleep_for(1ms);
     }
-    ASSERT_TRUE(soon([&] { return servo.report().ticks >= scaled(1500) && seen > 0; }));
+    ASSERT_TRUE(comes_true([&] { return servo.report().ticks >= scaled(1500) && seen > 0; }));
     done = true;
     observer.join();
     servo.stop();
@@ -147,7 +139,7 @@ TEST(LivingServo, versions_are_freed_once_it_has_gone_on) {
         sent.push_back(samples);
         recipes.push_back(recipe);
         ASSERT_TRUE(servo.send(command::Samples{samples, version, recipe}));
-        ASSERT_TRUE(soon([&] {
+        ASSERT_TRUE(comes_true([&] {
             const auto now = servo.snapshot();
             return now && now->session.version == version;
         }));
@@ -178,7 +170,7 @@ TEST(LivingServo, versions_that_were_sent_many_times_are_freed_too) {
     }
     for (std::uint64_t version = 3; version <= 5; ++version) {
         ASSERT_TRUE(servo.send(command::Samples{plain_ramp(), version}));
-        ASSERT_TRUE(soon([&] {
+        ASSERT_TRUE(comes_true([&] {
             const auto now = servo.snapshot();
             return now && now->session.version == version;
         }));
@@ -203,7 +195,7 @@ TEST(LivingServo, what_was_recorded_of_living_samples_gives_the_same_ticks_again
     Servo servo(begin, device, {.rate = 4000, .recorder = &recorder});
     Editor editor(begin.renderer.field.shared_samples());
     const auto sequence = std::make_shared<const Samples>(
-        std::vector<Frame>{{0, shifted_ramp(0)}, {0.05, shifted_ramp(3)}}, 0.1);
+        std::vector<Frame>{{0, wide_ramp(0)}, {0.05, wide_ramp(3)}}, 0.1);
     servo.start();
     for (std::uint64_t i = 1; i <= 150; ++i) {
         const auto now = servo.snapshot();
@@ -216,7 +208,7 @@ TEST(LivingServo, what_was_recorded_of_living_samples_gives_the_same_ticks_again
         if (i % 7 == 0) servo.send(command::Speed{i % 2 ? 1.0 : -0.7});
         std::this_thread::sleep_for(3ms);
     }
-    ASSERT_TRUE(soon([&] { return servo.report().ticks >= 500; }));
+    ASSERT_TRUE(comes_true([&] { return servo.report().ticks >= 500; }));
     servo.stop();
     ASSERT_EQ(servo.report().unrecorded, 0);
     Session session = begin;

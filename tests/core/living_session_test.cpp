@@ -26,19 +26,19 @@ std::shared_ptr<const Samples> swinging(double period = 0) {
         period);
 }
 
-struct Live {
+struct LivingSession {
     Session session;
     double time = 0;
     DeviceReading reading = ready_at({4.2, 3.9, 40});
 
-    explicit Live(std::shared_ptr<const Samples> samples)
+    explicit LivingSession(std::shared_ptr<const Samples> samples)
         : session{make_renderer(Field(std::move(samples)), 30), {}} {}
     SessionTick next(double dt = 1e-3) { return advance(session, time += dt, reading); }
     double moment() const { return session.renderer.field.time(); }
 };
 
 TEST(LivingSession, plays_a_sequence_by_the_times_of_the_ticks) {
-    Live live(swinging());
+    LivingSession live(swinging());
     Random random(1);
     live.next();
     EXPECT_EQ(live.next().moment, 0);  // stands still until it is played
@@ -56,7 +56,7 @@ TEST(LivingSession, plays_a_sequence_by_the_times_of_the_ticks) {
 }
 
 TEST(LivingSession, a_sequence_stops_at_its_ends_and_goes_on_backwards) {
-    Live live(swinging());
+    LivingSession live(swinging());
     live.next();
     apply(live.session, command::Speed{100});
     for (int i = 0; i < 50; ++i) live.next();
@@ -71,7 +71,7 @@ TEST(LivingSession, a_sequence_stops_at_its_ends_and_goes_on_backwards) {
 
 TEST(LivingSession, a_sequence_with_a_period_goes_round_both_ways) {
     for (const double speed : {1.0, -1.0}) {
-        Live live(swinging(3));
+        LivingSession live(swinging(3));
         live.next();
         apply(live.session, command::Speed{speed});
         double highest = -1e9, lowest = 1e9;
@@ -90,7 +90,7 @@ TEST(LivingSession, a_sequence_with_a_period_goes_round_both_ways) {
 }
 
 TEST(LivingSession, goes_to_a_moment_and_stays_or_plays_on) {
-    Live live(swinging());
+    LivingSession live(swinging());
     live.next();
     apply(live.session, command::Moment{1.5});
     EXPECT_EQ(live.next().moment, 1.5);
@@ -103,7 +103,7 @@ TEST(LivingSession, goes_to_a_moment_and_stays_or_plays_on) {
 }
 
 TEST(LivingSession, other_samples_take_effect_in_the_next_tick_and_keep_the_time) {
-    Live live(swinging());
+    LivingSession live(swinging());
     live.next();
     apply(live.session, command::Moment{1.5});
     live.next();
@@ -119,7 +119,7 @@ TEST(LivingSession, other_samples_take_effect_in_the_next_tick_and_keep_the_time
 }
 
 TEST(LivingSession, ticks_whose_time_is_broken_play_nothing) {
-    Live live(swinging());
+    LivingSession live(swinging());
     live.next();
     apply(live.session, command::Speed{1});
     live.next();
@@ -167,7 +167,7 @@ struct LivingHand {
         versions.push_back(swinging());
         versions.push_back(swinging(2.5));
     }
-    void step(Live& live) {
+    void step(LivingSession& live) {
         live.reading.position = {random.uniform(3, 5), random.uniform(3, 5),
                                  31 + 3 * std::sin(30 * live.time)};
         if (random.chance(0.1)) {
@@ -181,13 +181,13 @@ struct LivingHand {
 
 TEST(LivingSession, copies_go_on_alike_bit_for_bit) {
     LivingHand hand;
-    Live one(hand.versions.front());
+    LivingSession one(hand.versions.front());
     for (int i = 0; i < 1000; ++i) {
         hand.step(one);
         one.next();
     }
     LivingHand other = hand;
-    Live two = one;
+    LivingSession two = one;
     int felt = 0, played = 0;
     for (int i = 0; i < scaled(20'000); ++i) {
         hand.step(one);
@@ -206,7 +206,7 @@ TEST(LivingSession, copies_go_on_alike_bit_for_bit) {
 
 TEST(LivingSession, neither_ticks_nor_new_samples_allocate_or_free) {
     LivingHand hand;
-    Live live(hand.versions.front());
+    LivingSession live(hand.versions.front());
     const std::int64_t allocations = allocation_count(), frees = thread_free_count();
     for (int i = 0; i < scaled(20'000); ++i) {
         hand.step(live);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "scenes/volumes.hpp"
+#include "support/constants.hpp"
 #include "support/hand.hpp"
 #include "support/stroke.hpp"
 
@@ -12,7 +13,6 @@ using namespace palpate::support;
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int ticks = scaled(100000);
 
 /// How often a run met what it is about.
@@ -82,7 +82,7 @@ Met run(const Field& field, const Penetrability& p, std::uint64_t seed, double s
     return met;
 }
 
-void expect_refused(const char* part, auto&& make) {
+void expect_not_valid(const char* part, auto&& make) {
     try {
         make();
         ADD_FAILURE() << "accepted: " << part;
@@ -175,16 +175,16 @@ TEST(Penetrability, ranges_that_make_no_sense_are_refused_with_the_reason) {
     const auto ranges = [](double low, double high) {
         return [=] { penetrability_ranges(1, std::array{DensityRange{low, high}}); };
     };
-    expect_refused("low <= high", ranges(5, 4));
-    expect_refused("low <= high", ranges(nan, 4));
-    expect_refused("low <= high", ranges(4, nan));
-    expect_refused("no range", [] { penetrability_ranges(1, {}); });
-    expect_refused("threshold", [] { penetrability_threshold(-1, 0); });
-    expect_refused("threshold", [&] { penetrability_threshold(nan, 0); });
-    expect_refused("low <= high", [&] { penetrability_threshold(1, nan); });
+    expect_not_valid("low <= high", ranges(5, 4));
+    expect_not_valid("low <= high", ranges(nan, 4));
+    expect_not_valid("low <= high", ranges(4, nan));
+    expect_not_valid("no range", [] { penetrability_ranges(1, {}); });
+    expect_not_valid("threshold", [] { penetrability_threshold(-1, 0); });
+    expect_not_valid("threshold", [&] { penetrability_threshold(nan, 0); });
+    expect_not_valid("low <= high", [&] { penetrability_threshold(1, nan); });
     std::vector<DensityRange> many;
     for (int i = 0; i < 17; ++i) many.push_back({i + 0.0, i + 0.5});
-    expect_refused("16", [&] { penetrability_ranges(1, many); });
+    expect_not_valid("16", [&] { penetrability_ranges(1, many); });
     many.pop_back();
     EXPECT_EQ(penetrability_ranges(1, many).range_count, 16);
     many.push_back({0.2, 0.7});  // seventeen, but one overlaps
@@ -194,20 +194,20 @@ TEST(Penetrability, ranges_that_make_no_sense_are_refused_with_the_reason) {
 TEST(Penetrability, settings_made_by_hand_are_checked) {
     const std::array<DensityRange, 2> ranges{{{10, 20}, {40, 50}}};
     const Penetrability good = penetrability_ranges(1, ranges);
-    expect_refused("order", [&] { check(good, Solid::below); });
+    expect_not_valid("order", [&] { check(good, Solid::below); });
     Penetrability p = good;
     p.range_count = 17;
-    expect_refused("16", [&] { check(p, Solid::above); });
+    expect_not_valid("16", [&] { check(p, Solid::above); });
     p.range_count = 0;
-    expect_refused("16", [&] { check(p, Solid::above); });
+    expect_not_valid("16", [&] { check(p, Solid::above); });
     p = good;
     p.ranges[1].low = 15;
-    expect_refused("overlap", [&] { check(p, Solid::above); });
+    expect_not_valid("overlap", [&] { check(p, Solid::above); });
     p.ranges[1].low = std::nan("");
-    expect_refused("low <= high", [&] { check(p, Solid::above); });
+    expect_not_valid("low <= high", [&] { check(p, Solid::above); });
     p = good;
     p.threshold = -1;
-    expect_refused("threshold", [&] { check(p, Solid::above); });
+    expect_not_valid("threshold", [&] { check(p, Solid::above); });
     p.on = false;
     EXPECT_NO_THROW(check(p, Solid::above));
 }

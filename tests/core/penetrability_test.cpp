@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "scenes/volumes.hpp"
+#include "support/constants.hpp"
 #include "support/stroke.hpp"
 
 using namespace palpate;
@@ -13,7 +14,6 @@ using namespace palpate::support;
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double tolerance = 1e-9;
 
 bool has_press(const Stroke& stroke) {

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "support/allocation_counter.hpp"
+#include "support/constants.hpp"
 #include "support/fields.hpp"
 #include "support/guarantees.hpp"
 #include "support/hand.hpp"
@@ -16,7 +17,6 @@ using namespace palpate::support;
 namespace {
 
 constexpr double inf = std::numeric_limits<double>::infinity();
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 /// Both methods with all that they keep under any budget.
 struct Method {

@@ -6,6 +6,7 @@
 #include "palpate/renderer.hpp"
 #include "scenes/volumes.hpp"
 #include "support/allocation_counter.hpp"
+#include "support/constants.hpp"
 #include "support/hand.hpp"
 #include "support/stroke.hpp"
 
@@ -13,16 +14,6 @@ using namespace palpate;
 using namespace palpate::support;
 
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double tick = 1e-3;
-
-RendererSettings at_once() {
-    RendererSettings settings;
-    settings.force.ramp = 0;
-    settings.force.rate_limit = infinity;
-    return settings;
-}
 
 RendererSettings everything(const Field& field) {
     RendererSettings settings;
@@ -44,7 +35,7 @@ class DeviceHand {
     DeviceHand(const Field& field, const DeviceTransform& transform, std::uint64_t seed)
         : hand_(field.geometry(), seed, {8, 1, 0, 1, 1, 2}), transform_(transform) {}
     DeviceState next() {
-        return {tick * ++i_, device_from_physical(transform_, hand_.next()), true};
+        return {period * ++i_, device_from_physical(transform_, hand_.next()), true};
     }
 
   private:
@@ -157,7 +148,7 @@ TEST(Renderer, past_the_last_range_of_interest_there_is_no_force_and_nothing_not
     Renderer renderer = make_renderer(ramp_field(), 10, settings);
     int i = 0;
     for (double z = 0; z < 95; z += 0.05, ++i) {
-        const Tick at = render(renderer, {i * tick, at_depth(z), true});
+        const Tick at = render(renderer, {i * period, at_depth(z), true});
         ASSERT_TRUE(at.force.allFinite() && at.proxy.scp.allFinite());
         ASSERT_FALSE(std::isnan(at.proxy.isovalue) || std::isnan(at.proxy.density));
         ASSERT_EQ(at.force_flags & (force_not_finite | force_stale), 0);
@@ -167,8 +158,8 @@ TEST(Renderer, past_the_last_range_of_interest_there_is_no_force_and_nothing_not
         }
     }
     // And back: the range is felt again.
-    render(renderer, {i++ * tick, at_depth(15), true});
-    const Tick again = render(renderer, {i * tick, at_depth(15.5), true});
+    render(renderer, {i++ * period, at_depth(15), true});
+    const Tick again = render(renderer, {i * period, at_depth(15.5), true});
     EXPECT_NEAR(again.force[2], -0.25, 1e-9);
 }
 
@@ -178,7 +169,7 @@ TEST(Renderer, friction_sticks_up_to_the_static_cone_and_then_trails_at_the_dyna
     Renderer renderer = make_renderer(ramp_field(), 30, settings);
     double time = 0;
     const auto at = [&](double x) {
-        return render(renderer, {time += tick, Vec3(2 + x, 4, 31), true});
+        return render(renderer, {time += period, Vec3(2 + x, 4, 31), true});
     };
     render(renderer, {time, Vec3(2, 4, 29), true});
     const Vec3 start = at(0).proxy.scp;
@@ -213,7 +204,7 @@ TEST(Renderer, the_magnet_draws_a_hand_onto_a_sphere_and_joins_the_contact_smoot
     const Vec3 outward = settings.transform.rotation.transpose() * along;
     for (double d = 3.5; d > -0.2; d -= 0.005, ++i) {  // [device mm] above the surface
         const Vec3 hand = device_from_physical(settings.transform, surface.point + 2 * d * along);
-        const Tick at = render(renderer, {i * tick, hand, true});
+        const Tick at = render(renderer, {i * period, hand, true});
         const double strength = at.force.norm();
         if (at.proxy.density == field.background()) continue;  // no gradient, no magnet
         if (d > 3.05) {
@@ -250,7 +241,7 @@ TEST(Renderer, texture_is_fixed_in_physical_space_and_keeps_the_strength) {
     int turned = 0, i = 0;
     for (double x = 1; x < 7; x += 0.02, ++i) {
         const Vec3 hip(x, 3.3, i == 0 ? 29 : 30.6);
-        const DeviceState device{i * tick, device_from_physical(settings.transform, hip), true};
+        const DeviceState device{i * period, device_from_physical(settings.transform, hip), true};
         const Tick smooth = render(a, device);
         const Tick bumpy = render(b, device);
         ASSERT_EQ(smooth.proxy.scp, bumpy.proxy.scp);

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "support/constants.hpp"
 #include "support/hand.hpp"
 #include "support/stroke.hpp"
 
@@ -12,18 +13,6 @@ using namespace palpate;
 using namespace palpate::support;
 
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-constexpr double tick = 1e-3;
-
-/// No ramp and no rate limit: the force of a tick is what its positions say.
-RendererSettings at_once() {
-    RendererSettings settings;
-    settings.force.ramp = 0;
-    settings.force.rate_limit = infinity;
-    return settings;
-}
 
 DeviceTransform oblique(double scale) {
     return {oblique_direction(), Vec3(3, -40, 12), scale};
@@ -46,7 +35,7 @@ struct Resting {
         render(renderer, {time, at_depth(isovalue - 1), true});
         for (int i = 0; i < 400; ++i) next();
     }
-    Tick next() { return render(renderer, {time += tick, hand, true}); }
+    Tick next() { return render(renderer, {time += period, hand, true}); }
 };
 
 void expect_refused(const char* part, auto&& change) {
@@ -99,12 +88,12 @@ TEST(Renderer, force_is_equation_4_in_device_millimetres_and_device_axes) {
             return render(renderer, {t, device, true});
         };
         EXPECT_EQ(at(0, 20).force, Vec3::Zero());
-        const Tick pressed = at(tick, 31.5);
+        const Tick pressed = at(period, 31.5);
         EXPECT_NEAR((pressed.proxy.scp - at_depth(30)).norm(), 0, 1e-9);
         const Vec3 outward = settings.transform.rotation.transpose() * Vec3(0, 0, -1);
         EXPECT_NEAR((pressed.force - 0.7 * 1.5 / voxels * outward).norm(), 0, 1e-9);
         EXPECT_EQ(pressed.force_flags, 0);
-        EXPECT_EQ(pressed.time, tick);
+        EXPECT_EQ(pressed.time, period);
         EXPECT_GE(pressed.update_ns, 0);
     }
 }
@@ -120,7 +109,7 @@ TEST(Renderer, the_proxy_is_the_methods_own_for_every_method) {
         Hand hand(noise.field.geometry(), 3);
         for (int i = 0; i < scaled(20000); ++i) {
             const Vec3 hip = hand.next();
-            const Tick rendered = render(renderer, {i * tick, hip, true});
+            const Tick rendered = render(renderer, {i * period, hip, true});
             const ProxyUpdate direct = method(proxy, noise.field, hip, settings.proxy, {});
             ASSERT_EQ(rendered.proxy.scp, direct.scp) << i;
             ASSERT_EQ(rendered.proxy.mode, direct.mode);
@@ -145,7 +134,7 @@ TEST(Renderer, a_broken_position_leaves_the_proxy_as_it_is_and_stops_the_force) 
         ASSERT_NEAR(hand.next().force[2], -0.5, 1e-9);
         const Proxy before = hand.renderer.proxy;
         DeviceState device = state;
-        device.time = hand.time += tick;
+        device.time = hand.time += period;
         const Tick stopped = render(hand.renderer, device);
         EXPECT_EQ(stopped.force, Vec3::Zero());
         EXPECT_EQ(stopped.force_flags, force_stale);
@@ -156,7 +145,7 @@ TEST(Renderer, a_broken_position_leaves_the_proxy_as_it_is_and_stops_the_force) 
         EXPECT_NEAR(stopped.proxy.density, 30, 1e-9);
         EXPECT_TRUE(same_proxy(hand.renderer.proxy, before));
         for (int i = 0; i < 240; ++i) {
-            ASSERT_NEAR(hand.next().force[2], -0.5 * i * tick / 0.25, 1e-9) << i;
+            ASSERT_NEAR(hand.next().force[2], -0.5 * i * period / 0.25, 1e-9) << i;
         }
     }
 }
@@ -169,7 +158,7 @@ TEST(Renderer, a_broken_position_before_the_first_good_one_is_harmless) {
         EXPECT_TRUE(first.proxy.scp.allFinite());
         EXPECT_FALSE(renderer.proxy.placed);
     }
-    EXPECT_EQ(render(renderer, {tick, at_depth(20), true}).proxy.scp, at_depth(20));
+    EXPECT_EQ(render(renderer, {period, at_depth(20), true}).proxy.scp, at_depth(20));
 }
 
 TEST(Renderer, time_that_goes_wrong_stops_the_force_but_not_the_proxy) {
@@ -187,8 +176,8 @@ TEST(Renderer, a_session_that_begins_inside_comes_out_and_ramps_up) {
     Renderer renderer = make_renderer(ramp_field(), 30);
     Tick at;
     for (int i = 0; i < 400; ++i) {
-        at = render(renderer, {i * tick, at_depth(32), true});
-        ASSERT_LE(at.force.norm(), 1.0 * std::min(1.0, i * tick / 0.25) + 1e-9);
+        at = render(renderer, {i * period, at_depth(32), true});
+        ASSERT_LE(at.force.norm(), 1.0 * std::min(1.0, i * period / 0.25) + 1e-9);
     }
     EXPECT_NEAR((at.proxy.scp - at_depth(30)).norm(), 0, 1e-9);
     EXPECT_NEAR(at.force[2], -1, 1e-9);
@@ -206,7 +195,7 @@ TEST(Renderer, an_isovalue_changed_in_contact_changes_the_force_by_its_rate_only
     int limited = 0, loud = 0;
     for (int i = 0; i < scaled(40000); ++i) {
         if (i % 50 == 0) renderer.proxy.isovalue = random.uniform(60, 220);
-        const Tick at = render(renderer, {i * tick, hand.next(), true});
+        const Tick at = render(renderer, {i * period, hand.next(), true});
         const bool stopped = at.force.isZero(0) && (at.force_flags & force_stale);
         if (!stopped) {
             ASSERT_LE((at.force - last).norm(), 0.2 * (1 + 1e-9)) << i;

@@ -6,6 +6,7 @@
 
 #include <set>
 
+#include "support/constants.hpp"
 #include "support/edits.hpp"
 
 using namespace palpate;
@@ -13,14 +14,11 @@ using namespace palpate::support;
 
 namespace {
 
-constexpr SampleType types[] = {SampleType::uint8, SampleType::int16, SampleType::uint16,
-                                SampleType::float32};
-
 /// Calls `check(name, before, edit, after)` for chains of random edits on all types and grids.
 template <class Check>
 void over_random_edits(int each, Check&& check) {
     std::uint64_t seed = 1;
-    for (const SampleType type : types) {
+    for (const SampleType type : sample_types) {
         for (const Geometry& geometry : odd_grids()) {
             Random random(++seed);
             auto samples = samples_of(noise_of(type, geometry, seed));
@@ -98,7 +96,7 @@ TEST(Samples, neighbouring_bricks_hold_the_samples_between_them_alike) {
 TEST(Samples, the_version_before_an_edit_stays_bit_for_bit) {
     std::vector<std::pair<std::shared_ptr<const Samples>, Volume>> versions;
     std::uint64_t seed = 50;
-    for (const SampleType type : types) {
+    for (const SampleType type : sample_types) {
         for (const Geometry& geometry : odd_grids()) {
             Random random(++seed);
             auto samples = samples_of(noise_of(type, geometry, seed));

@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "support/eventually.hpp"
 #include "support/scripted_device.hpp"
 #include "support/stroke.hpp"
 
@@ -19,16 +20,6 @@ using namespace palpate::support;
 using namespace std::chrono_literals;
 
 namespace {
-
-/// Until it holds, at most for ten seconds.
-bool soon(auto&& condition) {
-    const auto end = std::chrono::steady_clock::now() + 10s;
-    while (!condition()) {
-        if (std::chrono::steady_clock::now() > end) return false;
-        std::this_thread::sleep_for(1ms);
-    }
-    return true;
-}
 
 Session ramp_session(const RendererSettings& settings = {}) {
     return {make_renderer(ramp_field(), 30, settings), {}};
@@ -45,7 +36,7 @@ TEST(Servo, renders_at_its_rate_and_counts) {
     EXPECT_FALSE(servo.snapshot());
     servo.start();
     EXPECT_EQ(servo.privileges().size(), 2U);
-    ASSERT_TRUE(soon([&] { return servo.report().ticks >= 1000; }));
+    ASSERT_TRUE(comes_true([&] { return servo.report().ticks >= 1000; }));
     servo.stop();
     const ServoReport report = servo.report();
     EXPECT_EQ(report.period.count, static_cast<std::uint64_t>(report.ticks - 1));
@@ -75,7 +66,7 @@ TEST(Servo, a_session_that_has_stopped_goes_on_in_another_servo) {
         servo.start();
         EXPECT_THROW((void)servo.session(), std::logic_error);
         servo.send(command::Isovalue{25});
-        ASSERT_TRUE(soon([&] {
+        ASSERT_TRUE(comes_true([&] {
             const auto now = servo.snapshot();
             return now && now->session.tick.proxy.isovalue == 25;
         }));
@@ -88,7 +79,7 @@ TEST(Servo, a_session_that_has_stopped_goes_on_in_another_servo) {
     Servo servo({make_renderer(left.renderer.field, left.renderer.proxy.isovalue), left.settings},
                 device);
     servo.start();
-    ASSERT_TRUE(soon([&] { return servo.snapshot().has_value(); }));
+    ASSERT_TRUE(comes_true([&] { return servo.snapshot().has_value(); }));
     EXPECT_EQ(servo.snapshot()->session.tick.proxy.isovalue, 25);
 }
 
@@ -110,7 +101,7 @@ TEST(Servo, forces_rise_from_zero_and_end_at_zero) {
     ScriptedDevice device(&press);
     Servo servo(ramp_session(), device);
     servo.start();
-    ASSERT_TRUE(soon([&] { return device.force().norm() > 0.49; }));
+    ASSERT_TRUE(comes_true([&] { return device.force().norm() > 0.49; }));
     EXPECT_LT(device.force()[2], 0);  // outwards
     servo.stop();
     EXPECT_EQ(device.force(), Vec3(0, 0, 0));
@@ -121,7 +112,7 @@ TEST(Servo, destroying_it_ends_at_zero_too) {
     {
         Servo servo(ramp_session(), device);
         servo.start();
-        ASSERT_TRUE(soon([&] { return device.force().norm() > 0.1; }));
+        ASSERT_TRUE(comes_true([&] { return device.force().norm() > 0.1; }));
     }
     EXPECT_EQ(device.force(), Vec3(0, 0, 0));
 }
@@ -135,10 +126,10 @@ TEST(Servo, a_device_that_fails_in_contact_gets_no_force) {
     });
     Servo servo(ramp_session(), device);
     servo.start();
-    ASSERT_TRUE(soon([&] { return device.force().norm() > 0.4; }));
+    ASSERT_TRUE(comes_true([&] { return device.force().norm() > 0.4; }));
     status = DeviceStatus::lost;
     const std::int64_t then = device.reads();
-    ASSERT_TRUE(soon([&] { return device.reads() >= then + 2; }));
+    ASSERT_TRUE(comes_true([&] { return device.reads() >= then + 2; }));
     EXPECT_EQ(device.force(), Vec3(0, 0, 0));
     EXPECT_EQ(servo.snapshot()->session.device.status, DeviceStatus::lost);
 }
@@ -152,9 +143,9 @@ TEST(Servo, a_tick_that_takes_too_long_takes_its_force_back) {
     Queue<SessionEvent> recorder(1 << 14);
     Servo servo(ramp_session(), device, {.recorder = &recorder});
     servo.start();
-    ASSERT_TRUE(soon([&] { return device.force().norm() > 0.4; }));
+    ASSERT_TRUE(comes_true([&] { return device.force().norm() > 0.4; }));
     stall = true;
-    ASSERT_TRUE(soon([&] { return servo.report().overruns >= 1; }));
+    ASSERT_TRUE(comes_true([&] { return servo.report().overruns >= 1; }));
     servo.stop();
     EXPECT_GE(servo.report().missed, 50);
     EXPECT_GE(servo.report().worst.work_ns, 50'000'000);
@@ -181,9 +172,9 @@ TEST(Servo, ticks_that_were_due_during_a_stall_are_not_made_up) {
     Queue<SessionEvent> recorder(1 << 14);
     Servo servo(ramp_session(), device, {.recorder = &recorder});
     servo.start();
-    ASSERT_TRUE(soon([&] { return servo.report().ticks >= 50; }));
+    ASSERT_TRUE(comes_true([&] { return servo.report().ticks >= 50; }));
     stall = true;
-    ASSERT_TRUE(soon([&] { return servo.report().missed >= 50; }));
+    ASSERT_TRUE(comes_true([&] { return servo.report().missed >= 50; }));
     servo.stop();
     double last = -1;
     int close = 0;  // ticks that follow at once; a burst would be 50 of them
@@ -201,7 +192,7 @@ TEST(Servo, a_flood_of_commands_is_spread_over_ticks) {
     Servo servo(ramp_session(), device, {.command_room = 64, .recorder = &recorder});
     for (int i = 0; i < 40; ++i) ASSERT_TRUE(servo.send(command::Isovalue{30.0 + i}));
     servo.start();
-    ASSERT_TRUE(soon([&] { return servo.report().ticks >= 4; }));
+    ASSERT_TRUE(comes_true([&] { return servo.report().ticks >= 4; }));
     servo.stop();
     std::vector<int> commands(1);  // before each tick
     while (const auto event = recorder.pop()) {
@@ -228,7 +219,7 @@ TEST(Servo, tells_the_device_from_the_proxy_and_the_machine) {
     settings.device.rate = 500;
     Servo servo(ramp_session(settings), device, {.rate = 500});
     servo.start();
-    ASSERT_TRUE(soon([&] { return servo.report().ticks >= 200; }));
+    ASSERT_TRUE(comes_true([&] { return servo.report().ticks >= 200; }));
     servo.stop();
     EXPECT_GE(servo.report().compute.p50, 150'000);
     EXPECT_NE(servo.report().worst.cause, TickCause::proxy);
@@ -244,7 +235,7 @@ TEST(Servo, commands_take_effect_and_show_in_snapshots) {
     Servo servo(ramp_session(), device);
     servo.start();
     EXPECT_TRUE(servo.send(command::Isovalue{30.5}));
-    ASSERT_TRUE(soon([&] {
+    ASSERT_TRUE(comes_true([&] {
         const auto seen = servo.snapshot();
         return seen && seen->session.tick.proxy.isovalue == 30.5;
     }));
@@ -252,11 +243,11 @@ TEST(Servo, commands_take_effect_and_show_in_snapshots) {
     force.stiffness = 1.25;
     EXPECT_TRUE(servo.send(force));
     EXPECT_TRUE(servo.send(command::Forces{false}));
-    ASSERT_TRUE(soon([&] { return servo.snapshot()->stiffness == 1.25; }));
-    ASSERT_TRUE(soon([&] { return !servo.snapshot()->forces_on; }));
-    ASSERT_TRUE(soon([&] { return device.force().isZero(0); }));
+    ASSERT_TRUE(comes_true([&] { return servo.snapshot()->stiffness == 1.25; }));
+    ASSERT_TRUE(comes_true([&] { return !servo.snapshot()->forces_on; }));
+    ASSERT_TRUE(comes_true([&] { return device.force().isZero(0); }));
     EXPECT_TRUE(servo.send(penetrability_threshold(1, 0)));
-    ASSERT_TRUE(soon([&] { return servo.snapshot()->penetrability_on; }));
+    ASSERT_TRUE(comes_true([&] { return servo.snapshot()->penetrability_on; }));
     const Snapshot seen = *servo.snapshot();
     EXPECT_NEAR((seen.normal - Vec3(0, 0, -1)).norm(), 0, 1e-12);
 }
@@ -331,7 +322,7 @@ TEST(Servo, a_recorder_that_is_full_is_counted_and_holds_nothing_up) {
     Queue<SessionEvent> recorder(8);
     Servo servo(ramp_session(), device, {.recorder = &recorder});
     servo.start();
-    EXPECT_TRUE(soon([&] { return servo.report().unrecorded >= 100; }));
+    EXPECT_TRUE(comes_true([&] { return servo.report().unrecorded >= 100; }));
 }
 
 TEST(Servo, any_number_of_observers_see_ticks_that_only_go_forward) {
@@ -356,7 +347,7 @@ TEST(Servo, any_number_of_observers_see_ticks_that_only_go_forward) {
         });
     }
     servo.start();
-    EXPECT_TRUE(soon([&] { return servo.report().ticks >= 500 && seen >= 500; }));
+    EXPECT_TRUE(comes_true([&] { return servo.report().ticks >= 500 && seen >= 500; }));
     done = true;
     observers.clear();
     EXPECT_EQ(back, 0);

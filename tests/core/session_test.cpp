@@ -5,21 +5,17 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <vector>
 
 #include "support/allocation_counter.hpp"
+#include "support/constants.hpp"
 #include "support/stroke.hpp"
 
 using namespace palpate;
 using namespace palpate::support;
 
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-constexpr double period = 1e-3;
 
 /// A session on the ramp (density = z), level 30, and the hand that is fed to it. Device and
 /// physical space start out the same.

@@ -8,6 +8,7 @@
 #include <limits>
 #include <vector>
 
+#include "support/constants.hpp"
 #include "support/fields.hpp"
 
 using namespace palpate;
@@ -16,7 +17,6 @@ using namespace palpate::support;
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 template <class T>
 class VolumeOf : public testing::Test {};

@@ -57,12 +57,12 @@ TEST(Penetration, stops_where_progress_throws) {
     EXPECT_THROW((void)penetration(options), Stop);
 }
 
-PressingCourse ball() {
+PressingCourse pressed_ball() {
     return pressing_courses({synthetic("sphere:32x32x32")}, {}, true, {}).front();
 }
 
 TEST(Pressing, goes_in_and_comes_out_along_one_line) {
-    const PressingCourse course = ball();
+    const PressingCourse course = pressed_ball();
     const auto ticks = press(course, no_penetrability(), {});
     const auto turn = std::ranges::find_if(ticks, [](const auto& t) { return !t.inwards; });
     ASSERT_NE(turn, ticks.end());
@@ -80,7 +80,7 @@ TEST(Pressing, goes_in_and_comes_out_along_one_line) {
 }
 
 TEST(Pressing, off_is_held_by_a_spring_as_long_as_the_hand_is_deep) {
-    const PressingCourse course = ball();
+    const PressingCourse course = pressed_ball();
     const PressingPlan plan;
     for (const PressingTick& tick : press(course, no_penetrability(), plan)) {
         if (tick.depth < 0.1) continue;
@@ -91,7 +91,7 @@ TEST(Pressing, off_is_held_by_a_spring_as_long_as_the_hand_is_deep) {
 }
 
 TEST(Pressing, a_threshold_lets_the_hand_through_and_the_level_follows_it) {
-    const PressingCourse course = ball();
+    const PressingCourse course = pressed_ball();
     const PressingPlan plan;
     const auto ticks =
         press(course, penetrability_threshold(plan.threshold, course.subject.isovalue), plan);

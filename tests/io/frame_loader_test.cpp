@@ -9,9 +9,12 @@
 #include <set>
 
 #include "io/volume_support.hpp"
+#include "support/eventually.hpp"
 
 namespace palpate::io::test {
 namespace {
+
+using support::comes_true;
 
 constexpr double interval = 0.1;
 constexpr std::uint64_t frame_bytes = 16 * 16 * 16;
@@ -46,19 +49,9 @@ LoaderSettings room_for(int frames, bool loop = true) {
     return {static_cast<std::uint64_t>(frames) * frame_bytes, loop};
 }
 
-/// Waits for what has to come; fails only after minutes.
-template <class F>
-bool comes(F condition) {
-    for (int i = 0; i < 120000; ++i) {
-        if (condition()) return true;
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-    return false;
-}
-
 void look_and_settle(FrameLoader& loader, double time, double speed) {
     loader.look(time, speed);
-    ASSERT_TRUE(comes([&] { return loader.status().settled; }));
+    ASSERT_TRUE(comes_true([&] { return loader.status().settled; }));
 }
 
 std::vector<int> numbers_of(const Samples& samples) {
@@ -185,14 +178,14 @@ TEST(FrameLoader, frames_that_somebody_still_holds_count) {
     const auto kept = loader.newest();
     ASSERT_EQ(numbers_of(*kept), (std::vector<int>{0, 1, 2}));
     loader.look(10 * interval, 1);
-    ASSERT_TRUE(comes([&] { return loader.newest() != kept; }));
+    ASSERT_TRUE(comes_true([&] { return loader.newest() != kept; }));
     EXPECT_EQ(loader.newest()->frames().size(), 1U);  // no room for another one
     EXPECT_EQ(meter->now, static_cast<std::int64_t>(3 * frame_bytes));
     EXPECT_FALSE(loader.status().settled);
     std::weak_ptr<const Samples> gone = kept;
     const_cast<std::shared_ptr<const Samples>&>(kept).reset();
     EXPECT_TRUE(gone.expired());
-    ASSERT_TRUE(comes([&] { return loader.status().settled; }));
+    ASSERT_TRUE(comes_true([&] { return loader.status().settled; }));
     EXPECT_EQ(numbers_of(*loader.newest()), (std::vector<int>{10, 11, 12}));
 }
 
@@ -226,7 +219,7 @@ TEST(FrameLoader, a_frame_that_cannot_be_read_is_told_and_passed_over_until_aske
     EXPECT_EQ(*reads, 1);
     *broken = false;
     loader.retry();
-    ASSERT_TRUE(comes([&] { return loader.status().settled; }));
+    ASSERT_TRUE(comes_true([&] { return loader.status().settled; }));
     EXPECT_EQ(loader.problem(), "");
     EXPECT_EQ(loader.newest()->frames().size(), 6U);
     *broken = true;
@@ -288,7 +281,7 @@ TEST(FrameLoader, looking_never_waits_for_a_read_and_the_end_gives_a_read_up) {
         }
     };
     FrameLoader loader(std::move(sequence), room_for(4));
-    ASSERT_TRUE(comes([&] { return reading.load(); }));
+    ASSERT_TRUE(comes_true([&] { return reading.load(); }));
     for (int i = 0; i < 100; ++i) loader.look(0.01 * i, 1);
     loader.look(std::nan(""), 1);
     loader.look(1e300, 1);

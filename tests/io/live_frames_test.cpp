@@ -11,11 +11,14 @@
 #include <atomic>
 
 #include "io/volume_support.hpp"
+#include "support/eventually.hpp"
 
 extern char** environ;
 
 namespace palpate::io::test {
 namespace {
+
+using support::comes_true;
 
 Geometry grid(const Index3& size = {16, 16, 16}) {
     Geometry geometry;
@@ -29,15 +32,6 @@ Geometry grid(const Index3& size = {16, 16, 16}) {
 Volume filled(int value, const Geometry& geometry = grid()) {
     const auto count = static_cast<std::size_t>(sample_count(geometry));
     return Volume(geometry, std::vector<std::uint8_t>(count, static_cast<std::uint8_t>(value)));
-}
-
-template <class F>
-bool comes(F condition) {
-    for (int i = 0; i < 120000; ++i) {
-        if (condition()) return true;
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-    return false;
 }
 
 std::vector<double> times_of(const Samples& samples) {
@@ -245,16 +239,16 @@ TEST(LiveFrames, a_file_that_is_cut_off_is_a_problem_not_a_crash) {
     ASSERT_TRUE(frames.newest());  // what is there is there at once
     std::filesystem::resize_file(path, 100);
     ASSERT_TRUE(
-        comes([&] { return contains(frames.status().problem, "shorter than its header"); }));
+        comes_true([&] { return contains(frames.status().problem, "shorter than its header"); }));
     EXPECT_EQ(frames.newest()->frames().back().time, 1);
     std::filesystem::resize_file(path, writer->header().file_bytes());
     // Started again, in another file of that name.
     writer = std::make_unique<LiveWriter>(path, grid(), SampleType::uint8);
     writer->push(filled(7), 70);
-    ASSERT_TRUE(comes([&] { return frames.newest()->frames().back().time == 70; }));
+    ASSERT_TRUE(comes_true([&] { return frames.newest()->frames().back().time == 70; }));
     EXPECT_EQ(frames.status().problem, "");
     LiveWriter other(path, grid({4, 4, 4}), SampleType::uint8);
-    ASSERT_TRUE(comes([&] { return contains(frames.status().problem, "another grid"); }));
+    ASSERT_TRUE(comes_true([&] { return contains(frames.status().problem, "another grid"); }));
 }
 
 TEST(LiveFrames, versions_hold_the_last_four_frames_in_the_writers_times) {
@@ -269,7 +263,7 @@ TEST(LiveFrames, versions_hold_the_last_four_frames_in_the_writers_times) {
     EXPECT_EQ(frames.interval(), 0.04);
     for (int i = 0; i < 6; ++i) {
         writer.push(filled(i), 10 + 0.04 * i);
-        ASSERT_TRUE(comes([&] { return frames.status().frames == std::uint64_t(i) + 1; }));
+        ASSERT_TRUE(comes_true([&] { return frames.status().frames == std::uint64_t(i) + 1; }));
     }
     const auto samples = frames.newest();
     ASSERT_EQ(samples->frames().size(), 4U);
@@ -287,11 +281,11 @@ TEST(LiveFrames, another_process_gives_frames_stalls_and_ends) {
     const ScratchFolder folder;
     const auto path = folder / "ball";
     LiveSource source(path);
-    ASSERT_TRUE(comes([&] { return std::filesystem::exists(path); }));
+    ASSERT_TRUE(comes_true([&] { return std::filesystem::exists(path); }));
     LiveFrames frames(path);
     ASSERT_TRUE(frames.wait(120));
     EXPECT_EQ(frames.geometry().size, Index3(48, 48, 48));
-    ASSERT_TRUE(comes([&] { return frames.status().frames > 20; }));
+    ASSERT_TRUE(comes_true([&] { return frames.status().frames > 20; }));
     const auto samples = frames.newest();
     ASSERT_GE(samples->frames().size(), 2U);
     EXPECT_FALSE(same_samples(samples->frames().front().volume, samples->frames().back().volume));
@@ -301,13 +295,13 @@ TEST(LiveFrames, another_process_gives_frames_stalls_and_ends) {
         EXPECT_EQ(frame.volume.maximum(), 255);
     }
     source.end(SIGKILL);
-    ASSERT_TRUE(comes([&] { return frames.status().age > 0.2; }));
+    ASSERT_TRUE(comes_true([&] { return frames.status().age > 0.2; }));
     EXPECT_FALSE(frames.status().ended);  // it could not say so
     const auto count = frames.status().frames;
     LiveSource again(path);
-    ASSERT_TRUE(comes([&] { return frames.status().frames > count; }));
+    ASSERT_TRUE(comes_true([&] { return frames.status().frames > count; }));
     again.end(SIGTERM);
-    ASSERT_TRUE(comes([&] { return frames.status().ended; }));
+    ASSERT_TRUE(comes_true([&] { return frames.status().ended; }));
     EXPECT_EQ(frames.status().problem, "");
 }
 

@@ -14,18 +14,18 @@ using namespace palpate::support;
 
 namespace {
 
-struct Scan {
+struct ProxyScan {
     const char* file;
     double isovalue;
     Solid solid = Solid::above;
 };
 
-class ProxyOnRealVolumes : public testing::TestWithParam<Scan> {};
+class ProxyOnRealVolumes : public testing::TestWithParam<ProxyScan> {};
 
 }  // namespace
 
 TEST_P(ProxyOnRealVolumes, keeps_its_guarantees) {
-    const Scan scan = GetParam();
+    const ProxyScan scan = GetParam();
     const auto path = std::filesystem::path(PALPATE_DATA_FOLDER) / scan.file;
     if (!std::filesystem::exists(path)) GTEST_SKIP() << scan.file << " is not here";
     const Field field(io::read_volume(path).volume, scan.solid);
@@ -48,11 +48,12 @@ TEST_P(ProxyOnRealVolumes, keeps_its_guarantees) {
 
 INSTANTIATE_TEST_SUITE_P(
     Scans, ProxyOnRealVolumes,
-    testing::Values(Scan{"lobster.nrrd", 35}, Scan{"lobster.nrrd", 110}, Scan{"orange.nrrd", 15},
-                    Scan{"orange.nrrd", 60}, Scan{"daisy_pollen.nrrd", 40},
-                    Scan{"daisy_pollen.nrrd", 100}, Scan{"cthead_unc.nrrd", 500},
-                    Scan{"cthead_unc.nrrd", 1200}, Scan{"cthead_unc.nrrd", 500, Solid::below},
-                    Scan{"iguana.nii.gz", 120}),
+    testing::Values(ProxyScan{"lobster.nrrd", 35}, ProxyScan{"lobster.nrrd", 110},
+                    ProxyScan{"orange.nrrd", 15}, ProxyScan{"orange.nrrd", 60},
+                    ProxyScan{"daisy_pollen.nrrd", 40}, ProxyScan{"daisy_pollen.nrrd", 100},
+                    ProxyScan{"cthead_unc.nrrd", 500}, ProxyScan{"cthead_unc.nrrd", 1200},
+                    ProxyScan{"cthead_unc.nrrd", 500, Solid::below},
+                    ProxyScan{"iguana.nii.gz", 120}),
     [](const auto& scan) {
         std::string name = scan.param.file;
         for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';

@@ -2,9 +2,11 @@
 // them.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "palpate/penetrability.hpp"
+#include "palpate/renderer.hpp"
 #include "support/fields.hpp"
 
 namespace palpate::support {
@@ -19,6 +21,14 @@ inline Field ramp_field(Solid solid = Solid::above) {
 /// A point on the ramp's axis.
 inline Vec3 at_depth(double z) {
     return {4.2, 3.9, z};
+}
+
+/// No ramp and no rate limit: the force of a period is what its positions say.
+inline RendererSettings at_once() {
+    RendererSettings settings;
+    settings.force.ramp = 0;
+    settings.force.rate_limit = std::numeric_limits<double>::infinity();
+    return settings;
 }
 
 struct Stroke {
