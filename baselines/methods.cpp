@@ -1,5 +1,5 @@
 // The one table of methods.
-#include "baselines/methods.hpp"
+#include "palpate/baselines/methods.hpp"
 
 #include <array>
 #include <stdexcept>

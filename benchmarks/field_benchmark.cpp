@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "palpate/lattice.hpp"
+#include "palpate/scenes/volumes.hpp"
 #include "palpate/surface.hpp"
 #include "scenes/random.hpp"
-#include "scenes/volumes.hpp"
 
 namespace palpate::benchmarks {
 namespace {

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "palpate/edit.hpp"
-#include "scenes/volumes.hpp"
+#include "palpate/scenes/volumes.hpp"
 
 namespace palpate::benchmarks {
 namespace {

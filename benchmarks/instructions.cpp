@@ -7,8 +7,8 @@
 #include <cstring>
 #include <string>
 
-#include "baselines/methods.hpp"
 #include "benchmarks/hand.hpp"
+#include "palpate/baselines/methods.hpp"
 
 using namespace palpate;
 using namespace palpate::benchmarks;

@@ -5,7 +5,7 @@
 #include "benchmarks/hand.hpp"
 #include "benchmarks/timing.hpp"
 #include "palpate/edit.hpp"
-#include "scenes/volumes.hpp"
+#include "palpate/scenes/volumes.hpp"
 
 namespace palpate::benchmarks {
 namespace {

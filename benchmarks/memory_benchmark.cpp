@@ -11,12 +11,12 @@
 #include <string>
 
 #include "palpate/proxy.hpp"
-#include "scenes/volumes.hpp"
+#include "palpate/scenes/volumes.hpp"
 
 #ifdef PALPATE_IO_HELPER
 #include <filesystem>
 
-#include "io/volume_file.hpp"
+#include "palpate/io/volume_file.hpp"
 #endif
 
 namespace palpate::benchmarks {

@@ -21,11 +21,11 @@
 
 #include "benchmarks/soak_meter.hpp"
 #include "benchmarks/soak_recording.hpp"
-#include "devices/devices.hpp"
-#include "io/recording.hpp"
-#include "io/volume_file.hpp"
+#include "palpate/devices/devices.hpp"
+#include "palpate/io/recording.hpp"
+#include "palpate/io/volume_file.hpp"
+#include "palpate/scenes/volumes.hpp"
 #include "palpate/servo.hpp"
-#include "scenes/volumes.hpp"
 
 namespace palpate::benchmarks {
 namespace {

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "benchmarks/soak_meter.hpp"
-#include "io/recording.hpp"
+#include "palpate/io/recording.hpp"
 
 namespace palpate::benchmarks {
 namespace {

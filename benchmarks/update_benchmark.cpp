@@ -6,9 +6,9 @@
 #include <string>
 #include <utility>
 
-#include "baselines/methods.hpp"
 #include "benchmarks/hand.hpp"
 #include "benchmarks/timing.hpp"
+#include "palpate/baselines/methods.hpp"
 
 namespace palpate::benchmarks {
 namespace {

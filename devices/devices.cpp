@@ -1,16 +1,16 @@
 // The table of devices.
-#include "devices/devices.hpp"
+#include "palpate/devices/devices.hpp"
 
 #include <array>
 #include <stdexcept>
 
 #include "devices/forcedimension/forcedimension.hpp"
 #include "devices/haply/haply.hpp"
-#include "devices/mouse/mouse.hpp"
 #include "devices/openhaptics/openhaptics.hpp"
 #include "devices/recorded/recorded.hpp"
 #include "devices/simulated/simulated.hpp"
 #include "devices/spacenav/spacenav.hpp"
+#include "palpate/devices/mouse.hpp"
 
 namespace palpate::devices {
 namespace {

@@ -1,5 +1,5 @@
 // A handler of signals needs something that it can find: the one writable global of the devices.
-#include "devices/last_resort.hpp"
+#include "palpate/devices/last_resort.hpp"
 
 #include <array>
 #include <atomic>

@@ -1,5 +1,5 @@
 // KEY=VALUE,KEY=VALUE.
-#include "devices/options.hpp"
+#include "palpate/devices/options.hpp"
 
 #include <algorithm>
 #include <stdexcept>

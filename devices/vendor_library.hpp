@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "devices/error.hpp"
 #include "palpate/device.hpp"
+#include "palpate/devices/error.hpp"
 
 namespace palpate::devices {
 

@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "baselines/methods.hpp"
-#include "io/error.hpp"
+#include "palpate/baselines/methods.hpp"
+#include "palpate/io/error.hpp"
 
 namespace palpate::evaluation {
 

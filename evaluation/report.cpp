@@ -9,7 +9,7 @@
 #include <iterator>
 
 #include "evaluation/html.hpp"
-#include "io/output.hpp"
+#include "palpate/io/output.hpp"
 
 namespace palpate::evaluation {
 namespace {

@@ -4,8 +4,8 @@
 #include <array>
 #include <stdexcept>
 
-#include "io/volume_file.hpp"
-#include "scenes/volumes.hpp"
+#include "palpate/io/volume_file.hpp"
+#include "palpate/scenes/volumes.hpp"
 
 namespace palpate::evaluation {
 namespace {

@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-#include "io/live_file.hpp"
+#include "palpate/io/live_file.hpp"
 
 namespace {
 

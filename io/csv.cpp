@@ -1,5 +1,5 @@
 // CSV tables. No quoting and no escapes: the contract's tables hold numbers and bare words.
-#include "io/csv.hpp"
+#include "palpate/io/csv.hpp"
 
 #include <algorithm>
 #include <cerrno>

@@ -1,6 +1,6 @@
 // The frame loader. Places count frames over all laps: frame 2 of 20 is at place 2, and in lap 3 at
 // place 62. What is wanted is a window of places round the play position.
-#include "io/frame_loader.hpp"
+#include "palpate/io/frame_loader.hpp"
 
 #include <algorithm>
 #include <atomic>

@@ -5,7 +5,7 @@
 // a file, which it does not watch either.
 #pragma GCC diagnostic ignored "-Wtsan"
 #endif
-#include "io/live_file.hpp"
+#include "palpate/io/live_file.hpp"
 
 #include <fcntl.h>
 #include <sys/mman.h>

@@ -1,5 +1,5 @@
 // Live sources: the window of the last frames, and the thread that follows a live file.
-#include "io/live_frames.hpp"
+#include "palpate/io/live_frames.hpp"
 
 #include <cmath>
 #include <stdexcept>

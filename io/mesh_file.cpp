@@ -1,5 +1,5 @@
 // Mesh writers. Binary formats are little-endian, as is every machine this runs on.
-#include "io/mesh_file.hpp"
+#include "palpate/io/mesh_file.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -11,7 +11,7 @@
 #include <type_traits>
 
 #include "io/number.hpp"
-#include "io/output.hpp"
+#include "palpate/io/output.hpp"
 
 namespace palpate::io {
 namespace {

@@ -1,5 +1,5 @@
 // Atomic output over POSIX calls: streams report a full disk late or not at all.
-#include "io/output.hpp"
+#include "palpate/io/output.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>

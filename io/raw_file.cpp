@@ -11,7 +11,7 @@
 
 #include "io/finite.hpp"
 #include "io/inflate.hpp"
-#include "io/output.hpp"
+#include "palpate/io/output.hpp"
 
 namespace palpate::io {
 namespace {

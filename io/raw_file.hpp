@@ -1,7 +1,7 @@
 // Headerless files: the caller says what is in them. Private to io/; needs zlib only.
 #pragma once
 
-#include "io/volume_file.hpp"
+#include "palpate/io/volume_file.hpp"
 
 namespace palpate::io {
 

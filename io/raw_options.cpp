@@ -1,12 +1,12 @@
 // Texts to a raw layout.
-#include "io/raw_options.hpp"
+#include "palpate/io/raw_options.hpp"
 
 #include <charconv>
 #include <cmath>
 #include <stdexcept>
 
 #include "io/number.hpp"
-#include "io/written_formats.hpp"
+#include "palpate/io/written_formats.hpp"
 
 namespace palpate::io {
 

@@ -1,8 +1,8 @@
 // The head of a recording as JSON. Private to io/.
 #pragma once
 
-#include "io/recording.hpp"
 #include "io/settings_json.hpp"
+#include "palpate/io/recording.hpp"
 
 namespace palpate::io {
 

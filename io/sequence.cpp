@@ -1,5 +1,5 @@
 // Sequences: which files or volumes of a file are the frames, and when they were taken.
-#include "io/sequence.hpp"
+#include "palpate/io/sequence.hpp"
 
 #include <algorithm>
 #include <cctype>

@@ -1,5 +1,5 @@
 // Traces and paths: the columns of the contract, and nothing that a reader could round.
-#include "io/trace.hpp"
+#include "palpate/io/trace.hpp"
 
 #include <array>
 

@@ -4,9 +4,9 @@
 #include <string>
 #include <string_view>
 
-#include "io/csv.hpp"
 #include "io/number.hpp"
-#include "io/trace.hpp"
+#include "palpate/io/csv.hpp"
+#include "palpate/io/trace.hpp"
 
 namespace palpate::io {
 

@@ -1,8 +1,8 @@
 // Trajectories: the rows of a CSV table with their order checked.
-#include "io/trajectory.hpp"
+#include "palpate/io/trajectory.hpp"
 
-#include "io/csv.hpp"
 #include "io/number.hpp"
+#include "palpate/io/csv.hpp"
 
 namespace palpate::io {
 

@@ -1,6 +1,6 @@
 // Reading and writing volumes: what is checked before a library sees the file, and the way to the
 // helper program and back.
-#include "io/volume_file.hpp"
+#include "palpate/io/volume_file.hpp"
 
 #include <sys/stat.h>
 #include <unistd.h>
@@ -14,7 +14,7 @@
 #include "io/helper/protocol.hpp"
 #include "io/helper_process.hpp"
 #include "io/raw_file.hpp"
-#include "io/written_formats.hpp"
+#include "palpate/io/written_formats.hpp"
 
 namespace palpate::io {
 namespace {

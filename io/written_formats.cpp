@@ -1,5 +1,5 @@
 // The extensions of the formats that are written; see the header.
-#include "io/written_formats.hpp"
+#include "palpate/io/written_formats.hpp"
 
 #include <array>
 

@@ -13,7 +13,7 @@
 #include <system_error>
 
 #include "io/helper_process.hpp"
-#include "io/output.hpp"
+#include "palpate/io/output.hpp"
 #include "pictures/surface.hpp"
 #include "pictures/wire.hpp"
 

@@ -6,7 +6,7 @@
 #include <functional>
 #include <string>
 
-#include "io/error.hpp"
+#include "palpate/io/error.hpp"
 #include "pictures/scene.hpp"
 
 namespace palpate::pictures {

@@ -1,5 +1,5 @@
 // The beating shell: two ellipsoids with walls, how they contract, and how they join.
-#include "scenes/beating.hpp"
+#include "palpate/scenes/beating.hpp"
 
 #include <algorithm>
 #include <cmath>

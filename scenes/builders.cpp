@@ -3,9 +3,9 @@
 #include <array>
 #include <stdexcept>
 
+#include "palpate/scenes/volumes.hpp"
 #include "scenes/fill.hpp"
 #include "scenes/random.hpp"
-#include "scenes/volumes.hpp"
 
 namespace palpate::scenes {
 

@@ -1,5 +1,5 @@
 // The motions: each is a way to the surface and then a track along it, travelled at hand speed.
-#include "scenes/motions.hpp"
+#include "palpate/scenes/motions.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

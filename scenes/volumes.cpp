@@ -1,5 +1,5 @@
 // The named scenes: their densities, and their specifications as text.
-#include "scenes/volumes.hpp"
+#include "palpate/scenes/volumes.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "scenes/beating.hpp"
+#include "palpate/scenes/beating.hpp"
 #include "scenes/fill.hpp"
 #include "scenes/head_phantom.hpp"
 

@@ -3,8 +3,8 @@
 
 #include <stdexcept>
 
-#include "io/raw_options.hpp"
-#include "io/written_formats.hpp"
+#include "palpate/io/raw_options.hpp"
+#include "palpate/io/written_formats.hpp"
 
 namespace palpate::app {
 

@@ -4,8 +4,8 @@
 #include <new>
 #include <stdexcept>
 
-#include "devices/error.hpp"
-#include "io/error.hpp"
+#include "palpate/devices/error.hpp"
+#include "palpate/io/error.hpp"
 
 namespace palpate::app {
 

@@ -9,8 +9,8 @@
 #include <thread>
 #include <vector>
 
-#include "io/frame_loader.hpp"
-#include "io/live_frames.hpp"
+#include "palpate/io/frame_loader.hpp"
+#include "palpate/io/live_frames.hpp"
 #include "palpate/servo.hpp"
 
 namespace palpate::app {

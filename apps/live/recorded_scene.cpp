@@ -3,7 +3,7 @@
 
 #include <stdexcept>
 
-#include "baselines/methods.hpp"
+#include "palpate/baselines/methods.hpp"
 
 namespace palpate::app {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "apps/live/volume_options.hpp"
-#include "io/recording.hpp"
+#include "palpate/io/recording.hpp"
 
 namespace palpate::app {
 

@@ -7,8 +7,8 @@
 #include <limits>
 #include <stdexcept>
 
-#include "baselines/methods.hpp"
 #include "io/number.hpp"
+#include "palpate/baselines/methods.hpp"
 
 namespace palpate::app {
 namespace {

@@ -8,9 +8,9 @@
 
 #include "apps/live/render_options.hpp"
 #include "apps/live/volume_options.hpp"
-#include "devices/devices.hpp"
-#include "io/frame_loader.hpp"
-#include "io/recording.hpp"
+#include "palpate/devices/devices.hpp"
+#include "palpate/io/frame_loader.hpp"
+#include "palpate/io/recording.hpp"
 #include "palpate/session.hpp"
 
 namespace palpate::app {

@@ -7,10 +7,10 @@
 
 #include "apps/live/statistics.hpp"
 #include "io/number.hpp"
-#include "io/raw_options.hpp"
+#include "palpate/io/raw_options.hpp"
 #include "palpate/renderer.hpp"
-#include "scenes/beating.hpp"
-#include "scenes/volumes.hpp"
+#include "palpate/scenes/beating.hpp"
+#include "palpate/scenes/volumes.hpp"
 
 namespace palpate::app {
 namespace {

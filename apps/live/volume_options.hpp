@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "io/live_frames.hpp"
-#include "io/sequence.hpp"
 #include "palpate/field.hpp"
+#include "palpate/io/live_frames.hpp"
+#include "palpate/io/sequence.hpp"
 
 namespace palpate::app {
 

@@ -17,11 +17,11 @@
 #include "apps/palpate/progress.hpp"
 #include "apps/palpate/result_folder.hpp"
 #include "evaluation/html.hpp"
-#include "io/error.hpp"
+#include "palpate/io/error.hpp"
+#include "palpate/scenes/motions.hpp"
 #include "pictures/levels.hpp"
 #include "pictures/picture.hpp"
 #include "pictures/view.hpp"
-#include "scenes/motions.hpp"
 
 namespace palpate::app {
 namespace {

@@ -18,12 +18,12 @@
 #include "apps/palpate/progress.hpp"
 #include "apps/palpate/result_folder.hpp"
 #include "evaluation/html.hpp"
+#include "palpate/scenes/motions.hpp"
 #include "pictures/animation.hpp"
 #include "pictures/contact.hpp"
 #include "pictures/levels.hpp"
 #include "pictures/picture.hpp"
 #include "pictures/view.hpp"
-#include "scenes/motions.hpp"
 
 namespace palpate::app {
 namespace {

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "io/output.hpp"
 #include "io/plot.hpp"
+#include "palpate/io/output.hpp"
 
 namespace palpate::app {
 

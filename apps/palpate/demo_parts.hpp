@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "apps/live/render_options.hpp"
-#include "io/trajectory.hpp"
-#include "scenes/motions.hpp"
+#include "palpate/io/trajectory.hpp"
+#include "palpate/scenes/motions.hpp"
 
 namespace palpate::app {
 

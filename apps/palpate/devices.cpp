@@ -1,5 +1,5 @@
 // palpate devices: what was found, and why something was not.
-#include "devices/devices.hpp"
+#include "palpate/devices/devices.hpp"
 
 #include <fmt/format.h>
 

@@ -10,10 +10,10 @@
 #include "apps/palpate/commands.hpp"
 #include "apps/palpate/progress.hpp"
 #include "apps/palpate/result_folder.hpp"
-#include "baselines/methods.hpp"
 #include "evaluation/machine.hpp"
 #include "evaluation/report.hpp"
-#include "io/error.hpp"
+#include "palpate/baselines/methods.hpp"
+#include "palpate/io/error.hpp"
 
 namespace palpate::app {
 namespace {

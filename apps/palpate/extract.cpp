@@ -8,7 +8,7 @@
 #include "apps/palpate/commands.hpp"
 #include "apps/palpate/outputs.hpp"
 #include "apps/palpate/progress.hpp"
-#include "io/mesh_file.hpp"
+#include "palpate/io/mesh_file.hpp"
 #include "palpate/surface.hpp"
 
 namespace palpate::app {

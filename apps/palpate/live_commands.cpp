@@ -7,8 +7,8 @@
 #include <stdexcept>
 
 #include "apps/live/render_options.hpp"
-#include "io/csv.hpp"
 #include "io/number.hpp"
+#include "palpate/io/csv.hpp"
 
 namespace palpate::app {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "io/trace.hpp"
-#include "io/trajectory.hpp"
+#include "palpate/io/trace.hpp"
+#include "palpate/io/trajectory.hpp"
 #include "palpate/renderer.hpp"
 
 namespace palpate::app {

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "io/error.hpp"
+#include "palpate/io/error.hpp"
 
 namespace palpate::app {
 

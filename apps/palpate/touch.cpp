@@ -18,7 +18,7 @@
 #include "apps/palpate/progress.hpp"
 #include "apps/palpate/terminal.hpp"
 #include "apps/palpate/window.hpp"
-#include "devices/last_resort.hpp"
+#include "palpate/devices/last_resort.hpp"
 
 namespace palpate::app {
 namespace {

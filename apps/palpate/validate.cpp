@@ -11,7 +11,7 @@
 #include "apps/live/recorded_samples.hpp"
 #include "apps/live/recorded_scene.hpp"
 #include "apps/palpate/progress.hpp"
-#include "io/recording.hpp"
+#include "palpate/io/recording.hpp"
 
 namespace palpate::app {
 namespace {

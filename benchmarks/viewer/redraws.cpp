@@ -19,7 +19,7 @@
 
 #include "apps/viewer/scene/scene.hpp"
 #include "palpate/edit.hpp"
-#include "scenes/volumes.hpp"
+#include "palpate/scenes/volumes.hpp"
 #include "tests/viewer/scene/timing.hpp"
 
 namespace {

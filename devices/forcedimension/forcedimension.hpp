@@ -2,7 +2,7 @@
 // See docs/devices/forcedimension.md.
 #pragma once
 
-#include "devices/backend.hpp"
+#include "palpate/devices/backend.hpp"
 
 namespace palpate::devices {
 

@@ -1,7 +1,7 @@
 // Haply Inverse3, through Haply's Inverse Service (WebSocket and JSON on the loopback).
 #pragma once
 
-#include "devices/backend.hpp"
+#include "palpate/devices/backend.hpp"
 
 namespace palpate::devices {
 

@@ -1,5 +1,5 @@
 // A hand after a pointer: critically damped, of limited speed.
-#include "devices/mouse/mouse.hpp"
+#include "palpate/devices/mouse.hpp"
 
 #include <algorithm>
 

@@ -2,7 +2,7 @@
 // docs/devices/openhaptics.md.
 #pragma once
 
-#include "devices/backend.hpp"
+#include "palpate/devices/backend.hpp"
 
 namespace palpate::devices {
 

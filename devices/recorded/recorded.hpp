@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "devices/backend.hpp"
+#include "palpate/devices/backend.hpp"
 
 namespace palpate::devices {
 

@@ -6,10 +6,10 @@
 #include <optional>
 #include <utility>
 
-#include "io/csv.hpp"
 #include "io/number.hpp"
-#include "io/recording.hpp"
-#include "io/trajectory.hpp"
+#include "palpate/io/csv.hpp"
+#include "palpate/io/recording.hpp"
+#include "palpate/io/trajectory.hpp"
 
 namespace palpate::devices {
 namespace {

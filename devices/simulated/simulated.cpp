@@ -9,8 +9,8 @@
 
 #include "devices/recorded/timed_path.hpp"
 #include "devices/simulated/dynamics.hpp"
-#include "io/trajectory.hpp"
-#include "scenes/motions.hpp"
+#include "palpate/io/trajectory.hpp"
+#include "palpate/scenes/motions.hpp"
 
 namespace palpate::devices {
 namespace {

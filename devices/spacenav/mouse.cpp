@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "devices/error.hpp"
+#include "palpate/devices/error.hpp"
 
 namespace palpate::devices::spacenav {
 namespace {

@@ -2,7 +2,7 @@
 // only, no force. See docs/devices/spacenav.md.
 #pragma once
 
-#include "devices/backend.hpp"
+#include "palpate/devices/backend.hpp"
 
 namespace palpate::devices {
 

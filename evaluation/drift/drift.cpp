@@ -8,9 +8,9 @@
 #include <functional>
 #include <limits>
 
-#include "baselines/methods.hpp"
 #include "evaluation/experiment.hpp"
 #include "evaluation/ring.hpp"
+#include "palpate/baselines/methods.hpp"
 
 namespace palpate::evaluation {
 namespace {

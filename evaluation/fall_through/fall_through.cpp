@@ -6,11 +6,11 @@
 #include <iterator>
 #include <thread>
 
-#include "baselines/methods.hpp"
 #include "evaluation/experiment.hpp"
 #include "evaluation/fall_through/crossing.hpp"
 #include "evaluation/fall_through/figure.hpp"
 #include "evaluation/fall_through/shell.hpp"
+#include "palpate/baselines/methods.hpp"
 #include "scenes/random.hpp"
 
 namespace palpate::evaluation {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "baselines/methods.hpp"
+#include "palpate/baselines/methods.hpp"
 
 namespace palpate::evaluation {
 namespace {

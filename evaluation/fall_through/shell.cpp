@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "scenes/volumes.hpp"
+#include "palpate/scenes/volumes.hpp"
 
 namespace palpate::evaluation {
 namespace {

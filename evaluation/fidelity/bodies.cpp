@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include "evaluation/ring.hpp"
-#include "scenes/volumes.hpp"
+#include "palpate/scenes/volumes.hpp"
 
 namespace palpate::evaluation {
 namespace {

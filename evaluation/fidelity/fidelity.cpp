@@ -6,11 +6,11 @@
 #include <array>
 #include <cmath>
 
-#include "baselines/methods.hpp"
 #include "evaluation/experiment.hpp"
 #include "evaluation/fidelity/bodies.hpp"
 #include "evaluation/fidelity/course.hpp"
 #include "evaluation/fidelity/figure.hpp"
+#include "palpate/baselines/methods.hpp"
 
 namespace palpate::evaluation {
 namespace {

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "baselines/methods.hpp"
 #include "evaluation/fidelity/course.hpp"
+#include "palpate/baselines/methods.hpp"
 
 namespace palpate::evaluation {
 namespace {

@@ -9,7 +9,7 @@
 #include "evaluation/experiment.hpp"
 #include "evaluation/penetration/course.hpp"
 #include "evaluation/penetration/figure.hpp"
-#include "io/error.hpp"
+#include "palpate/io/error.hpp"
 
 namespace palpate::evaluation {
 namespace {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "palpate/scenes/volumes.hpp"
 #include "scenes/random.hpp"
-#include "scenes/volumes.hpp"
 
 namespace palpate::evaluation {
 namespace {

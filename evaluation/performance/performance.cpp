@@ -7,12 +7,12 @@
 #include <cmath>
 #include <limits>
 
-#include "baselines/methods.hpp"
 #include "evaluation/experiment.hpp"
 #include "evaluation/hand_at_work.hpp"
 #include "evaluation/performance/figure.hpp"
 #include "evaluation/performance/neuron.hpp"
 #include "evaluation/timing.hpp"
+#include "palpate/baselines/methods.hpp"
 #include "palpate/renderer.hpp"
 
 namespace palpate::evaluation {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <string>
 
+#include "palpate/scenes/volumes.hpp"
 #include "scenes/random.hpp"
-#include "scenes/volumes.hpp"
 
 namespace palpate::evaluation {
 namespace {

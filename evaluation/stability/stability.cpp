@@ -7,9 +7,9 @@
 #include <cmath>
 #include <limits>
 
-#include "devices/devices.hpp"
 #include "devices/simulated/profiles.hpp"
 #include "evaluation/experiment.hpp"
+#include "palpate/devices/devices.hpp"
 #include "palpate/renderer.hpp"
 
 namespace palpate::evaluation {

@@ -8,8 +8,8 @@
 #include <array>
 #include <cmath>
 
-#include "baselines/methods.hpp"
 #include "evaluation/experiment.hpp"
+#include "palpate/baselines/methods.hpp"
 
 namespace palpate::evaluation {
 namespace {

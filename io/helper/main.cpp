@@ -14,7 +14,7 @@
 #include "io/helper/protocol.hpp"
 #include "io/helper/readers.hpp"
 #include "io/helper/report.hpp"
-#include "io/written_formats.hpp"
+#include "palpate/io/written_formats.hpp"
 
 namespace palpate::io {
 namespace {

@@ -1,7 +1,7 @@
 // palpate demo: the files it promises, and none that it does not.
 #include "apps/program.hpp"
-#include "io/trace.hpp"
-#include "io/trajectory.hpp"
+#include "palpate/io/trace.hpp"
+#include "palpate/io/trajectory.hpp"
 #include "support/png.hpp"
 
 namespace palpate::app::test {

@@ -1,6 +1,6 @@
 // Bad input, streams that cannot be written, and signals: one line, the right status, nothing left.
 #include "apps/program.hpp"
-#include "io/trace.hpp"
+#include "palpate/io/trace.hpp"
 
 namespace palpate::app::test {
 namespace {

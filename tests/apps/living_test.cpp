@@ -3,10 +3,10 @@
 #include <numeric>
 
 #include "apps/program.hpp"
-#include "io/live_file.hpp"
-#include "io/recording.hpp"
-#include "io/trace.hpp"
-#include "io/volume_file.hpp"
+#include "palpate/io/live_file.hpp"
+#include "palpate/io/recording.hpp"
+#include "palpate/io/trace.hpp"
+#include "palpate/io/volume_file.hpp"
 #include "support/png.hpp"
 
 namespace palpate::app::test {

@@ -1,12 +1,12 @@
 // The path file of palpate replay, checked from the outside: continuous, free all along (G1), and
 // on the surface where the trace says so (G2), by values of the field that the test reads itself.
 #include "apps/program.hpp"
-#include "io/csv.hpp"
-#include "io/trace.hpp"
-#include "io/volume_file.hpp"
+#include "palpate/io/csv.hpp"
+#include "palpate/io/trace.hpp"
+#include "palpate/io/volume_file.hpp"
 #include "palpate/proxy.hpp"
-#include "scenes/motions.hpp"
-#include "scenes/volumes.hpp"
+#include "palpate/scenes/motions.hpp"
+#include "palpate/scenes/volumes.hpp"
 
 namespace palpate::app::test {
 namespace {

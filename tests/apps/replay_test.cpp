@@ -2,8 +2,8 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/program.hpp"
-#include "io/trace.hpp"
-#include "io/trajectory.hpp"
+#include "palpate/io/trace.hpp"
+#include "palpate/io/trajectory.hpp"
 
 namespace palpate::app::test {
 namespace {

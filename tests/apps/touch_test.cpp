@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/program.hpp"
-#include "io/recording.hpp"
+#include "palpate/io/recording.hpp"
 
 namespace palpate::app::test {
 namespace {

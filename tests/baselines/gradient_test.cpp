@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "scenes/volumes.hpp"
+#include "palpate/scenes/volumes.hpp"
 
 using namespace palpate;
 

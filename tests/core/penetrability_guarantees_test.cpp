@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "scenes/volumes.hpp"
+#include "palpate/scenes/volumes.hpp"
 #include "support/constants.hpp"
 #include "support/hand.hpp"
 #include "support/stroke.hpp"

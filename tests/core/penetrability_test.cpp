@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "scenes/volumes.hpp"
+#include "palpate/scenes/volumes.hpp"
 #include "support/constants.hpp"
 #include "support/stroke.hpp"
 

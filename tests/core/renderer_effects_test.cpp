@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "palpate/renderer.hpp"
-#include "scenes/volumes.hpp"
+#include "palpate/scenes/volumes.hpp"
 #include "support/allocation_counter.hpp"
 #include "support/constants.hpp"
 #include "support/hand.hpp"

@@ -1,6 +1,6 @@
 // What a crash leaves behind: zero force, sent before the program ends. Each crash is a child
 // process's; a file that it shares stands for the motors.
-#include "devices/last_resort.hpp"
+#include "palpate/devices/last_resort.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/mman.h>

@@ -1,5 +1,5 @@
 // --device NAME:OPTIONS.
-#include "devices/options.hpp"
+#include "palpate/devices/options.hpp"
 
 #include <gtest/gtest.h>
 

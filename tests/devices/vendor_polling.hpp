@@ -6,8 +6,8 @@
 #include <functional>
 #include <thread>
 
-#include "devices/backend.hpp"
 #include "palpate/device.hpp"
+#include "palpate/devices/backend.hpp"
 #include "support/fields.hpp"
 
 namespace palpate::support {

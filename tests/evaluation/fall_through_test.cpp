@@ -2,12 +2,12 @@
 // what can be reached from outside.
 #include <gtest/gtest.h>
 
-#include "baselines/methods.hpp"
 #include "evaluation/claims.hpp"
 #include "evaluation/fall_through/crossing.hpp"
 #include "evaluation/fall_through/shell.hpp"
+#include "palpate/baselines/methods.hpp"
+#include "palpate/scenes/volumes.hpp"
 #include "palpate/surface.hpp"
-#include "scenes/volumes.hpp"
 #include "support/mesh_checks.hpp"
 #include "support/random.hpp"
 

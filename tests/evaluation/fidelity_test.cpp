@@ -8,7 +8,7 @@
 #include "evaluation/claims.hpp"
 #include "evaluation/fidelity/course.hpp"
 #include "evaluation/fidelity/nearest_point.hpp"
-#include "scenes/volumes.hpp"
+#include "palpate/scenes/volumes.hpp"
 #include "support/random.hpp"
 
 namespace palpate::evaluation {

@@ -7,8 +7,8 @@
 #include "evaluation/scaling/bodies.hpp"
 #include "evaluation/scaling/explicit.hpp"
 #include "evaluation/scaling/explicit_helper/aabb_tree.hpp"
+#include "palpate/scenes/volumes.hpp"
 #include "scenes/random.hpp"
-#include "scenes/volumes.hpp"
 
 namespace palpate::evaluation {
 namespace {

@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "evaluation/ring.hpp"
-#include "io/error.hpp"
+#include "palpate/io/error.hpp"
 
 namespace palpate::evaluation {
 namespace {

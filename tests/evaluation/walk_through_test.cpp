@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "baselines/methods.hpp"
 #include "evaluation/claims.hpp"
 #include "evaluation/walk_through/walk.hpp"
+#include "palpate/baselines/methods.hpp"
 #include "support/random.hpp"
 
 namespace palpate::evaluation {

@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "io/live_file.hpp"
+#include "palpate/io/live_file.hpp"
 
 namespace {
 

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "io/raw_options.hpp"
+#include "palpate/io/raw_options.hpp"
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "io/recording.hpp"
+#include "palpate/io/recording.hpp"
 
 namespace {
 

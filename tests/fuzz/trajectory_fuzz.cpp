@@ -5,8 +5,8 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "io/trace.hpp"
-#include "io/trajectory.hpp"
+#include "palpate/io/trace.hpp"
+#include "palpate/io/trajectory.hpp"
 
 namespace {
 

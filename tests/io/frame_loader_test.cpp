@@ -1,6 +1,6 @@
 // The frame loader: what it holds, how much, and what it hands out, with a player that lets old
 // versions go as late as the servo does.
-#include "io/frame_loader.hpp"
+#include "palpate/io/frame_loader.hpp"
 
 #include <atomic>
 #include <chrono>

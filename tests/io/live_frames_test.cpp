@@ -1,5 +1,5 @@
 // Live sources: the file's layout, two processes, torn frames, damage, and writers that go.
-#include "io/live_frames.hpp"
+#include "palpate/io/live_frames.hpp"
 
 #include <fcntl.h>
 #include <signal.h>

@@ -1,5 +1,5 @@
 // Mesh files hold the mesh, byte for byte, and fail loudly.
-#include "io/mesh_file.hpp"
+#include "palpate/io/mesh_file.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <limits>
 #include <sstream>
 
-#include "io/error.hpp"
+#include "palpate/io/error.hpp"
 #include "support/scratch_folder.hpp"
 
 using namespace palpate;

@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "io/volume_file.hpp"
+#include "palpate/io/volume_file.hpp"
 #include "support/moving.hpp"
 
 using namespace palpate;

@@ -1,5 +1,5 @@
 // Output is whole or not there.
-#include "io/output.hpp"
+#include "palpate/io/output.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>

@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "io/volume_file.hpp"
+#include "palpate/io/volume_file.hpp"
 #include "support/fields.hpp"
 #include "support/guarantees.hpp"
 #include "support/hand.hpp"

@@ -1,5 +1,5 @@
 // Recordings: what goes in comes out bit for bit, whatever ends the writing.
-#include "io/recording.hpp"
+#include "palpate/io/recording.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>

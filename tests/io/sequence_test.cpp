@@ -1,5 +1,5 @@
 // Sequences: which frames there are, when they were taken, and that each is what was promised.
-#include "io/sequence.hpp"
+#include "palpate/io/sequence.hpp"
 
 #include <functional>
 

@@ -7,7 +7,7 @@
 #include <random>
 #include <string>
 
-#include "io/volume_file.hpp"
+#include "palpate/io/volume_file.hpp"
 #include "palpate/lattice.hpp"
 #include "palpate/surface.hpp"
 #include "support/mesh_checks.hpp"

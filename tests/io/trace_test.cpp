@@ -1,5 +1,5 @@
 // Traces and paths: the contract's columns, and the same doubles when read back.
-#include "io/trace.hpp"
+#include "palpate/io/trace.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <limits>
 #include <random>
 
-#include "io/trajectory.hpp"
+#include "palpate/io/trajectory.hpp"
 #include "support/scratch_folder.hpp"
 
 using namespace palpate;

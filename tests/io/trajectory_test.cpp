@@ -1,5 +1,5 @@
 // Trajectories: what people and programs write is read, anything else is refused with its line.
-#include "io/trajectory.hpp"
+#include "palpate/io/trajectory.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "io/raw_options.hpp"
+#include "palpate/io/raw_options.hpp"
 #include "volume_support.hpp"
 
 namespace palpate::io::test {

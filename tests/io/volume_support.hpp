@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "io/volume_file.hpp"
+#include "palpate/io/volume_file.hpp"
 #include "support/scratch_folder.hpp"
 
 namespace palpate::io::test {

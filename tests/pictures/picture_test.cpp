@@ -4,10 +4,10 @@
 #include <chrono>
 #include <cstdlib>
 
+#include "palpate/scenes/volumes.hpp"
 #include "pictures/contact.hpp"
 #include "pictures/levels.hpp"
 #include "pictures/view.hpp"
-#include "scenes/volumes.hpp"
 #include "support/png.hpp"
 #include "support/scratch_folder.hpp"
 

@@ -7,9 +7,9 @@
 #include <numbers>
 
 #include "palpate/lattice.hpp"
+#include "palpate/scenes/volumes.hpp"
 #include "pictures/levels.hpp"
 #include "pictures/view.hpp"
-#include "scenes/volumes.hpp"
 
 namespace palpate::pictures {
 namespace {

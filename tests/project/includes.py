@@ -12,7 +12,8 @@ STAGES = ("volume samples field edit editor lattice proxy penetrability force re
 OBSERVERS = {"surface": "lattice"}  # name -> last stage that it may include
 UMBRELLA = "palpate"                # include/palpate/palpate.hpp, for users of the library
 
-# Which of our folders each folder may include from. `tests` sees everything.
+# Which of our folders each folder may include from; include/palpate/X/ holds the public headers of
+# X and belongs to it, the rest of include/ to the core. `tests` sees everything.
 MAY_SEE = {
     "include": ("include",),
     "src": ("include", "src"),
@@ -21,11 +22,13 @@ MAY_SEE = {
     "devices": ("include", "io", "scenes", "devices"),
     "io": ("include", "io", "scenes"),
     "pictures": ("include", "io", "pictures"),
-    "apps": ("include", "io", "baselines", "scenes", "devices", "pictures", "evaluation", "apps"),
+    "run": ("include", "io", "baselines", "scenes", "devices", "run"),
+    "apps": ("include", "io", "baselines", "scenes", "devices", "run", "pictures", "evaluation",
+             "apps"),
     "evaluation": ("include", "io", "baselines", "scenes", "devices", "pictures", "evaluation"),
-    "benchmarks": ("include", "io", "baselines", "scenes", "devices", "pictures", "apps",
+    "benchmarks": ("include", "io", "baselines", "scenes", "devices", "run", "pictures", "apps",
                    "benchmarks", "tests"),
-    "examples": ("include", "io", "baselines", "scenes", "examples"),
+    "examples": ("include", "io", "baselines", "scenes", "devices", "run", "examples"),
 }
 # Folders that build from the standard library and Eigen alone.
 PURE = ("include", "src", "baselines", "scenes")
@@ -51,6 +54,13 @@ def resolve(root, path, name):
         if target.is_file() and root in target.parents:
             return target.relative_to(root)
     return None
+
+
+def zone_of(relative):
+    """The folder whose rules hold for a file of ours."""
+    if relative.parts[:2] == ("include", "palpate") and len(relative.parts) > 3:
+        return relative.parts[2]
+    return relative.parts[0]
 
 
 def stage_of(relative):
@@ -84,7 +94,7 @@ def check_stage(relative):
 def check_include(root, path, name):
     """What is wrong with one include, or None."""
     relative = path.relative_to(root)
-    zone = relative.parts[0]
+    zone = zone_of(relative)
     if ".." in name.split("/"):
         return "includes name a path from the top, never .."
     target = resolve(root, path, name)
@@ -96,9 +106,11 @@ def check_include(root, path, name):
         return None
     if zone == "tests":
         return None
-    other = target.parts[0]
+    other = zone_of(target)
     if other not in MAY_SEE[zone]:
         return f"{zone}/ may not see {other}/"
+    if relative.parts[0] == "include" and target.parts[0] != "include":
+        return "a public header includes public headers only"
     if zone in ("include", "src"):
         return against_the_flow(stage_of(relative), stage_of(target))
     return None
@@ -125,7 +137,7 @@ def check(root):
     problems = check_umbrella(root)
     for path in repository.files(root, repository.CPP, (*MAY_SEE, "tests")):
         relative = path.relative_to(root)
-        if relative.parts[0] in ("include", "src"):
+        if zone_of(relative) in ("include", "src"):
             wrong = check_stage(relative)
             if wrong:
                 problems.append(f"{relative}: {wrong}")

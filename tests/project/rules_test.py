@@ -90,6 +90,12 @@ class Includes(unittest.TestCase):
         self.assert_found("apps/palpate/main.cpp", '"proxy/site.hpp"', "may not see src/")
         self.assert_found("io/read.hpp", '"apps/palpate/main.cpp"', "may not see apps/")
 
+    def test_a_public_header_that_includes_a_private_one_is_found(self):
+        for name, include in (("include/palpate/io/read.hpp", '"io/read.hpp"'),
+                              ("include/palpate/scenes/named.hpp", '"scenes/volumes.hpp"')):
+            self.assert_found(name, include, "public headers only")
+        self.assert_found("include/palpate/scenes/named.hpp", '"io/read.hpp"', "may not see io/")
+
     def test_a_way_around_through_the_parent_folder_is_found(self):
         self.assert_found("apps/palpate/main.cpp", '"../../src/proxy/site.hpp"', "never ..")
 

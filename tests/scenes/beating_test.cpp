@@ -1,5 +1,5 @@
 // The beating shell: smooth in space and time, two hollow chambers, a beat that comes round.
-#include "scenes/beating.hpp"
+#include "palpate/scenes/beating.hpp"
 
 #include <gtest/gtest.h>
 

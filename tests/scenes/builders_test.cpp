@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "palpate/lattice.hpp"
+#include "palpate/scenes/volumes.hpp"
 #include "scenes/hash.hpp"
 #include "scenes/random.hpp"
-#include "scenes/volumes.hpp"
 
 using namespace palpate;
 using namespace palpate::scenes;

@@ -1,5 +1,5 @@
 // The motions: smooth, no faster than asked, as deep as asked, on any field, always the same.
-#include "scenes/motions.hpp"
+#include "palpate/scenes/motions.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,10 +9,10 @@
 #include <map>
 
 #include "palpate/lattice.hpp"
+#include "palpate/scenes/volumes.hpp"
 #include "scenes/contact.hpp"
 #include "scenes/hash.hpp"
 #include "scenes/track.hpp"
-#include "scenes/volumes.hpp"
 
 using namespace palpate;
 using namespace palpate::scenes;

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "palpate/lattice.hpp"
+#include "palpate/scenes/volumes.hpp"
 #include "palpate/surface.hpp"
 #include "scenes/random.hpp"
-#include "scenes/volumes.hpp"
 #include "support/mesh_checks.hpp"
 
 using namespace palpate;

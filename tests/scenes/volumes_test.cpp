@@ -1,5 +1,5 @@
 // The named scenes: what they promise about their samples, sizes, types and texts.
-#include "scenes/volumes.hpp"
+#include "palpate/scenes/volumes.hpp"
 
 #include <gtest/gtest.h>
 

@@ -10,9 +10,9 @@
 
 #include "apps/live/data_in_hand.hpp"
 #include "apps/live/touch_options.hpp"
-#include "devices/last_resort.hpp"
-#include "devices/mouse/mouse.hpp"
-#include "io/recording.hpp"
+#include "palpate/devices/last_resort.hpp"
+#include "palpate/devices/mouse.hpp"
+#include "palpate/io/recording.hpp"
 #include "palpate/servo.hpp"
 
 namespace palpate::viewer {

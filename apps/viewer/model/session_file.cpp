@@ -7,10 +7,10 @@
 #include <stdexcept>
 #include <utility>
 
-#include "baselines/methods.hpp"
-#include "io/csv.hpp"
-#include "io/output.hpp"
 #include "io/settings_json.hpp"
+#include "palpate/baselines/methods.hpp"
+#include "palpate/io/csv.hpp"
+#include "palpate/io/output.hpp"
 
 namespace palpate::viewer {
 namespace {

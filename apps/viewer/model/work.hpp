@@ -6,7 +6,7 @@
 #include <functional>
 #include <thread>
 
-#include "io/volume_file.hpp"
+#include "palpate/io/volume_file.hpp"
 
 namespace palpate::viewer {
 

@@ -12,7 +12,7 @@
 #include <stdexcept>
 
 #include "apps/viewer/panel/level_axis.hpp"
-#include "devices/options.hpp"
+#include "palpate/devices/options.hpp"
 
 namespace palpate::viewer {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "apps/viewer/panel/number_box.hpp"
 #include "apps/viewer/panel/section.hpp"
-#include "devices/backend.hpp"
+#include "palpate/devices/backend.hpp"
 
 namespace palpate::viewer {
 

@@ -10,7 +10,7 @@
 #include "apps/live/statistics.hpp"
 #include "apps/viewer/model/look.hpp"
 #include "apps/viewer/panel/brush_choice.hpp"
-#include "devices/backend.hpp"
+#include "palpate/devices/backend.hpp"
 #include "palpate/servo.hpp"
 
 namespace palpate::viewer {

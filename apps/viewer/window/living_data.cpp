@@ -14,8 +14,8 @@
 #include "apps/viewer/scene/scene.hpp"
 #include "apps/viewer/window/main_window.hpp"
 #include "apps/viewer/window/views.hpp"
-#include "io/raw_options.hpp"
-#include "io/written_formats.hpp"
+#include "palpate/io/raw_options.hpp"
+#include "palpate/io/written_formats.hpp"
 
 namespace palpate::viewer {
 namespace {

@@ -16,7 +16,7 @@
 #include "apps/viewer/window/main_window.hpp"
 #include "apps/viewer/window/progress_strip.hpp"
 #include "apps/viewer/window/views.hpp"
-#include "io/output.hpp"
+#include "palpate/io/output.hpp"
 
 namespace palpate::viewer {
 namespace {

@@ -12,9 +12,9 @@
 
 #include "core/quiet/system_watch.hpp"
 #include "palpate/editor.hpp"
+#include "palpate/scenes/motions.hpp"
+#include "palpate/scenes/volumes.hpp"
 #include "palpate/servo.hpp"
-#include "scenes/motions.hpp"
-#include "scenes/volumes.hpp"
 #include "support/allocation_counter.hpp"
 #include "support/scripted_device.hpp"
 

@@ -1,12 +1,12 @@
 // The hand that follows a window's pointer.
-#include "devices/mouse/mouse.hpp"
+#include "palpate/devices/mouse.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <limits>
 
-#include "devices/options.hpp"
+#include "palpate/devices/options.hpp"
 #include "support/allocation_counter.hpp"
 
 namespace palpate::devices {

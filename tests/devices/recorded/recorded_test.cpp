@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "devices/recorded/timed_path.hpp"
-#include "io/recording.hpp"
-#include "scenes/volumes.hpp"
+#include "palpate/io/recording.hpp"
+#include "palpate/scenes/volumes.hpp"
 #include "support/allocation_counter.hpp"
 #include "support/random.hpp"
 #include "support/scratch_folder.hpp"

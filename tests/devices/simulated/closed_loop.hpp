@@ -9,7 +9,7 @@
 
 #include "devices/simulated/simulated.hpp"
 #include "palpate/renderer.hpp"
-#include "scenes/volumes.hpp"
+#include "palpate/scenes/volumes.hpp"
 
 namespace palpate::devices {
 

@@ -10,8 +10,8 @@
 
 #include "devices/simulated/closed_loop.hpp"
 #include "devices/simulated/profiles.hpp"
-#include "io/error.hpp"
-#include "scenes/motions.hpp"
+#include "palpate/io/error.hpp"
+#include "palpate/scenes/motions.hpp"
 #include "support/allocation_counter.hpp"
 #include "support/random.hpp"
 #include "support/scratch_folder.hpp"

@@ -5,7 +5,7 @@
 
 #include <numeric>
 
-#include "io/error.hpp"
+#include "palpate/io/error.hpp"
 #include "support/scratch_folder.hpp"
 
 namespace palpate::viewer {

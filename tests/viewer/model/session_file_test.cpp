@@ -7,7 +7,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "io/error.hpp"
+#include "palpate/io/error.hpp"
 #include "support/fields.hpp"
 #include "support/random.hpp"
 #include "support/scratch_folder.hpp"

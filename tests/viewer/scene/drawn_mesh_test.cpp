@@ -6,8 +6,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "palpate/scenes/volumes.hpp"
 #include "pictures/surface.hpp"
-#include "scenes/volumes.hpp"
 #include "support/fields.hpp"
 
 namespace palpate::viewer {

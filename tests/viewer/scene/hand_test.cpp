@@ -5,7 +5,7 @@
 
 #include <Eigen/Geometry>
 
-#include "scenes/volumes.hpp"
+#include "palpate/scenes/volumes.hpp"
 #include "support/fields.hpp"
 #include "viewer/scene/shown_scene.hpp"
 

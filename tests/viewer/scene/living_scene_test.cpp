@@ -4,7 +4,7 @@
 
 #include "apps/viewer/scene/scene.hpp"
 #include "palpate/edit.hpp"
-#include "scenes/volumes.hpp"
+#include "palpate/scenes/volumes.hpp"
 #include "support/fields.hpp"
 #include "viewer/scene/shown_scene.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <cstdlib>
 
-#include "scenes/volumes.hpp"
+#include "palpate/scenes/volumes.hpp"
 #include "support/fields.hpp"
 #include "viewer/scene/shown_scene.hpp"
 

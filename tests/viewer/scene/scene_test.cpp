@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "apps/viewer/scene/painter.hpp"
-#include "scenes/volumes.hpp"
+#include "palpate/scenes/volumes.hpp"
 #include "support/fields.hpp"
 #include "viewer/scene/shown_scene.hpp"
 

@@ -10,8 +10,8 @@
 
 #include "apps/viewer/scene/sample_block.hpp"
 #include "palpate/edit.hpp"
+#include "palpate/scenes/volumes.hpp"
 #include "pictures/surface.hpp"
-#include "scenes/volumes.hpp"
 #include "support/fields.hpp"
 
 namespace palpate::viewer {

@@ -6,7 +6,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "scenes/volumes.hpp"
+#include "palpate/scenes/volumes.hpp"
 #include "support/fields.hpp"
 
 namespace palpate::viewer {

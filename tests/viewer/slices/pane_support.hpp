@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "apps/viewer/slices/slice_pane.hpp"
-#include "scenes/volumes.hpp"
+#include "palpate/scenes/volumes.hpp"
 
 namespace palpate::viewer {
 

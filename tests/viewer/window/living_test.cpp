@@ -8,7 +8,7 @@
 #include <QToolButton>
 
 #include "apps/viewer/panel/sequence_bar.hpp"
-#include "io/volume_file.hpp"
+#include "palpate/io/volume_file.hpp"
 #include "viewer/window/window_fixture.hpp"
 
 namespace palpate::viewer::test {

@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "io/error.hpp"
-#include "io/output.hpp"
+#include "palpate/io/error.hpp"
+#include "palpate/io/output.hpp"
 #include "palpate/renderer.hpp"
 
 namespace palpate::io {

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "io/error.hpp"
+#include "palpate/io/error.hpp"
 
 namespace palpate::io {
 

@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-#include "io/volume_file.hpp"
+#include "palpate/io/volume_file.hpp"
 
 namespace palpate::io {
 

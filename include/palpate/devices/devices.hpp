@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "devices/backend.hpp"
+#include "palpate/devices/backend.hpp"
 
 namespace palpate::devices {
 

@@ -11,7 +11,7 @@
 #include <string>
 #include <thread>
 
-#include "io/live_file.hpp"
+#include "palpate/io/live_file.hpp"
 #include "palpate/samples.hpp"
 
 namespace palpate::io {

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/error.hpp"
+#include "palpate/io/error.hpp"
 
 namespace palpate::io {
 

@@ -2,7 +2,7 @@
 // phase. Analytic and smooth in space and time; the core only. See docs/scenes.md.
 #pragma once
 
-#include "scenes/volumes.hpp"
+#include "palpate/scenes/volumes.hpp"
 
 namespace palpate::scenes {
 

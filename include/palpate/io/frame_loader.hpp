@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-#include "io/sequence.hpp"
+#include "palpate/io/sequence.hpp"
 #include "palpate/samples.hpp"
 
 namespace palpate::io {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "io/volume_file.hpp"
+#include "palpate/io/volume_file.hpp"
 
 namespace palpate::io {
 

@@ -8,9 +8,9 @@
 #include <memory>
 #include <string>
 
-#include "devices/error.hpp"
-#include "devices/options.hpp"
 #include "palpate/device.hpp"
+#include "palpate/devices/error.hpp"
+#include "palpate/devices/options.hpp"
 #include "palpate/field.hpp"
 
 namespace palpate::devices {

@@ -15,7 +15,7 @@
 #include <string_view>
 #include <thread>
 
-#include "io/error.hpp"
+#include "palpate/io/error.hpp"
 #include "palpate/servo.hpp"
 
 namespace palpate::io {

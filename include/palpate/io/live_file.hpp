@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "io/error.hpp"
+#include "palpate/io/error.hpp"
 #include "palpate/samples.hpp"
 
 namespace palpate::io {

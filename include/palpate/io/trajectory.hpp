@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/error.hpp"
+#include "palpate/io/error.hpp"
 #include "palpate/volume.hpp"
 
 namespace palpate::io {
