@@ -16,6 +16,7 @@
 #include <system_error>
 
 #include "io/helper/protocol.hpp"
+#include "io/helper_folders.hpp"
 
 namespace palpate::io {
 namespace {
@@ -57,20 +58,22 @@ std::string variable_of(const HelperProgram& program) {
     return name;
 }
 
-/// The program's file, or an empty path.
-fs::path find_program(const HelperJob& job) {
+/// The program's file; an empty path if it is in none of `folders`.
+fs::path find_program(const HelperJob& job, const std::vector<fs::path>& folders) {
     if (!job.path.empty()) return job.path;
     if (const char* set = std::getenv(variable_of(job.program).c_str())) return set;
-    std::error_code error;
-    const fs::path here = fs::read_symlink("/proc/self/exe", error).parent_path();
-    for (const fs::path& folder : {here, here / "../libexec/palpate",
-                                   here / "../.." / job.program.build_folder,  // in a build tree
-                                   fs::path(PALPATE_LIBEXEC)}) {
+    for (const fs::path& folder : folders) {
         if (access((folder / job.program.name).c_str(), X_OK) == 0) {
             return folder / job.program.name;
         }
     }
     return {};
+}
+
+std::string list_of(const std::vector<fs::path>& folders) {
+    std::string text;
+    for (const fs::path& folder : folders) text += (text.empty() ? "" : ", ") + folder.string();
+    return text;
 }
 
 /// A child process that is dead and reaped when this object is gone.
@@ -279,9 +282,12 @@ std::shared_ptr<void> map_shared(const Descriptor& memory, std::size_t bytes) {
 
 HelperResult run_helper(const HelperJob& job) {
     const HelperProgram& helper = job.program;
-    const fs::path path = find_program(job);
+    const std::vector<fs::path> folders = helper_folders();
+    const fs::path path = find_program(job, folders);
     const std::string remedy = "; reinstall Palpate, or set " + variable_of(helper);
-    if (path.empty()) return {{}, helper.name + (" was not found" + remedy)};
+    if (path.empty()) {
+        return {{}, helper.name + (" was not found in " + list_of(folders) + remedy)};
+    }
     Pipe errors = open_pipe();
     Pipe report = open_pipe();
     const pid_t pid = spawn(path, job, report.write_end, errors.write_end);

@@ -40,7 +40,6 @@ std::shared_ptr<void> map_shared(const Descriptor& memory, std::size_t bytes);
 /// ends a message, so it begins in lower case and has no full stop.
 struct HelperProgram {
     const char* name;           ///< "palpate-io-helper"; its variable is then PALPATE_IO_HELPER
-    const char* build_folder;   ///< where it lies in a build tree: "io/helper"
     const char* who_crashes;    ///< "the format's library"
     const char* after_crash;    ///< "the file is damaged or not what its name says; ..."
     const char* out_of_memory;  ///< "close other programs or use a smaller volume"
@@ -49,8 +48,7 @@ struct HelperProgram {
 
 struct HelperJob {
     const HelperProgram& program;
-    /// Instead of the one that is looked for: the variable's, else beside the running program, in
-    /// its build tree or in the installed libexec folder.
+    /// Empty: the environment variable's, else the first one in helper_folders().
     std::filesystem::path path;
     std::vector<std::string> arguments;
     /// What both share, its descriptor 3 (helper/protocol.hpp); it reports on 4. May be null.

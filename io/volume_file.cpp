@@ -22,9 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr HelperProgram io_helper{
-    "palpate-io-helper",
-    "io/helper",
-    "the format's library",
+    "palpate-io-helper", "the format's library",
     "the file is damaged or not what its name says; export it again",
     "close other programs or use a smaller volume",
     "the file is damaged or very large; raise the time limit or check it"};

@@ -21,9 +21,7 @@ namespace palpate::pictures {
 namespace {
 
 constexpr io::HelperProgram picture_helper{
-    "palpate-picture-helper",
-    "pictures/helper",
-    "OpenGL or VTK",
+    "palpate-picture-helper", "OpenGL or VTK",
     "install libegl1 and libgl1-mesa-dri, or draw a smaller picture",
     "close other programs, or draw a smaller picture of a smaller volume",
     "draw a smaller picture of a smaller volume"};

@@ -18,12 +18,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr io::HelperProgram explicit_helper{"palpate-explicit-helper",
-                                            "evaluation/scaling/explicit_helper",
-                                            "VTK",
-                                            "use a smaller volume",
-                                            "close other programs, or use a smaller volume",
-                                            "use a smaller volume"};
+constexpr io::HelperProgram explicit_helper{
+    "palpate-explicit-helper", "VTK", "use a smaller volume",
+    "close other programs, or use a smaller volume", "use a smaller volume"};
 
 double nanoseconds_since(Clock::time_point begin) {
     return std::chrono::duration<double, std::nano>(Clock::now() - begin).count();

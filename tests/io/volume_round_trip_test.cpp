@@ -193,7 +193,7 @@ TEST(write_volume, full_disk_is_an_error_and_leaves_nothing) {
     const std::string real = helper != nullptr
                                  ? helper
                                  : (std::filesystem::read_symlink("/proc/self/exe").parent_path() /
-                                    "../../io/helper/palpate-io-helper")
+                                    "../../libexec/palpate/palpate-io-helper")
                                        .string();
     put_bytes(small, "#!/bin/bash\nulimit -f 64\ntrap '' XFSZ\nexec '" + real + "' \"$@\"\n");
     std::filesystem::permissions(small, std::filesystem::perms::owner_all);

@@ -38,8 +38,8 @@ struct ReadOptions {
     /// Which volume of a 4-D file, counted from 0.
     int time_step = 0;
     Progress progress;
-    /// The program palpate-io-helper. Empty: the environment's PALPATE_IO_HELPER, else beside the
-    /// running program, in its build tree or in the installed libexec folder.
+    /// The program palpate-io-helper. Empty: the environment's PALPATE_IO_HELPER, else it is looked
+    /// for as docs/package.md says.
     std::filesystem::path helper;
     /// Most memory the samples may take [bytes]; 0: what this machine has.
     std::uint64_t memory_limit_bytes = 0;
