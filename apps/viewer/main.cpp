@@ -32,11 +32,11 @@ int fail(const std::string& text, int status) {
 
 void open(viewer::MainWindow& window, const app::ViewOptions& options) {
     if (!options.session.empty()) {
-        window.open_session(QString::fromStdString(options.session));
+        window.files().open_session(QString::fromStdString(options.session));
     } else if (!options.play.empty()) {
-        window.open_recording(QString::fromStdString(options.play));
+        window.files().open_recording(QString::fromStdString(options.play));
     } else if (!options.touch.volume.volume.empty()) {
-        window.open_volume(options.touch.volume);
+        window.files().open_volume(options.touch.volume);
     }
 }
 
@@ -60,7 +60,7 @@ int show(QApplication& application, const app::ViewOptions& options) {
     const int status = application.exec();
     if (stop_signal != 0) return fail("interrupted", app::stopped);
     if (screenshot && screenshot->status() != 0) return screenshot->status();
-    return status != 0 ? status : window.exit_status();
+    return status != 0 ? status : window.recordings().exit_status();
 }
 
 }  // namespace

@@ -93,7 +93,7 @@ ServoReport drawing(const Options& options, double& frame) {
     MainWindow window(touch);
     window.resize(1280, 800);
     window.show();
-    window.open_volume(touch.volume);
+    window.files().open_volume(touch.volume);
     run_until([&] { return window.live() && window.settled(); });
     Look look = window.panel().look();
     look.volume = options.volume_rendering;
@@ -101,7 +101,7 @@ ServoReport drawing(const Options& options, double& frame) {
     window.views().set_look(look);
     run_until([&] { return window.settled(); });
     // The same stretch of the session is compared: from its beginning.
-    window.open_volume(touch.volume);
+    window.files().open_volume(touch.volume);
     run_until([&] { return window.live() && window.settled(); });
     window.views().set_look(look);
     double azimuth = 0;
@@ -126,8 +126,8 @@ void start_and_open(const Options& options) {
     QCoreApplication::processEvents();
     fmt::print("window shown after {:.2f} s\n", seconds_since(begin));
     const Stall stall;
-    window.open_volume(touch.volume);
-    run_until([&] { return window.live() != nullptr || !window.problem().isEmpty(); });
+    window.files().open_volume(touch.volume);
+    run_until([&] { return window.live() != nullptr || !window.messages().problem().isEmpty(); });
     fmt::print("felt after {:.2f} s\n", seconds_since(begin));
     run_until([&] { return window.settled(); });
     fmt::print("all drawn after {:.2f} s; the window never waited for more than {:.0f} ms\n",

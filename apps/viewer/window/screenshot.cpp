@@ -25,7 +25,7 @@ Screenshot::Screenshot(MainWindow& window, const QString& path, double after)
 /// Whether the hand is where the picture wants it; it is shown there from then on.
 bool Screenshot::reached() {
     if (const Playback* playback = window_.playback()) {
-        if (!held_) window_.show_time(playback->begin() + after_);
+        if (!held_) window_.recordings().show_time(playback->begin() + after_);
         held_ = true;
         return true;
     }
@@ -33,15 +33,15 @@ bool Screenshot::reached() {
     const auto now = live ? live->snapshot() : std::nullopt;
     if (!now) return false;
     if (!held_ && now->session.tick.time >= after_) {
-        window_.hold_picture();
+        window_.display().hold();
         held_ = true;
     }
     return held_;
 }
 
 void Screenshot::look() {
-    if (!window_.problem().isEmpty()) {
-        status_ = window_.problem_status();  // what, the window has said
+    if (!window_.messages().problem().isEmpty()) {
+        status_ = window_.messages().problem_status();  // what, the window has said
         window_.close();
         return;
     }

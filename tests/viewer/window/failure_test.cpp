@@ -16,17 +16,17 @@ constexpr const char* sphere = "synthetic:sphere:40x40x40";
 
 TEST_F(Failures, a_device_that_cannot_be_had_is_told_wherever_it_is_asked_for) {
     feel(sphere);
-    window_->start_recording(scratch("a.csv"));
+    window_->recordings().start(scratch("a.csv"));
     ASSERT_TRUE(wait_until([&] { return window_->live()->recording()->ticks() > 50; }));
-    window_->stop_recording();
+    window_->recordings().stop();
     window_.reset();
     open_window("recorded:file=missing.csv");
-    window_->open_path(scratch("a.csv"));
+    window_->files().open_path(scratch("a.csv"));
     ASSERT_TRUE(wait_until([&] { return window_->playback() != nullptr; }));
     // The volume that is open already: nothing is loaded in between.
-    window_->open_path(sphere);
-    ASSERT_TRUE(wait_until([&] { return !window_->problem().isEmpty(); }));
-    EXPECT_TRUE(window_->problem().contains("missing.csv"));
+    window_->files().open_path(sphere);
+    ASSERT_TRUE(wait_until([&] { return !window_->messages().problem().isEmpty(); }));
+    EXPECT_TRUE(window_->messages().problem().contains("missing.csv"));
     EXPECT_EQ(window_->live(), nullptr);
 }
 
@@ -34,10 +34,10 @@ TEST_F(Failures, leaving_a_recording_keeps_level_and_view) {
     feel(sphere);
     Q_EMIT window_->panel().asked(command::Isovalue{110});
     ASSERT_TRUE(wait_until([&] { return now().session.tick.proxy.isovalue == 110; }));
-    window_->start_recording(scratch("a.csv"));
+    window_->recordings().start(scratch("a.csv"));
     ASSERT_TRUE(wait_until([&] { return window_->live()->recording()->ticks() > 50; }));
-    window_->stop_recording();
-    window_->open_path(scratch("a.csv"));
+    window_->recordings().stop();
+    window_->files().open_path(scratch("a.csv"));
     ASSERT_TRUE(wait_until([&] { return window_->playback() != nullptr; }));
     QTest::qWait(100);
     window_->views().scene().look_from(pictures::view_named("top"));
@@ -52,20 +52,21 @@ TEST_F(Failures, a_session_of_another_persons_device_is_felt_with_the_one_at_han
     std::ofstream(scratch_.path() / "s.json")
         << R"({"format": "palpate-session", "version": 1, "isovalue": 90,
                "volume": {"volume": "synthetic:sphere:40x40x40"}, "device": "recorded:none.csv"})";
-    window_->open_path(scratch("s.json"));
+    window_->files().open_path(scratch("s.json"));
     ASSERT_TRUE(wait_until([&] { return window_->live() != nullptr; }));
     EXPECT_EQ(window_->live()->isovalue(), 90);
     EXPECT_NE(window_->live()->mouse(), nullptr);
-    EXPECT_TRUE(window_->problem().isEmpty()) << window_->problem().toStdString();
+    EXPECT_TRUE(window_->messages().problem().isEmpty())
+        << window_->messages().problem().toStdString();
 }
 
 TEST_F(Failures, a_recording_that_cannot_be_begun_leaves_the_session_as_it_was) {
     feel(sphere);
     std::ofstream(scratch_.path() / "there.csv") << "mine";
     const std::int64_t before = now().number;
-    window_->start_recording(scratch("there.csv"));
-    EXPECT_TRUE(window_->problem().contains("there.csv"));
-    EXPECT_EQ(window_->problem_status(), 5);
+    window_->recordings().start(scratch("there.csv"));
+    EXPECT_TRUE(window_->messages().problem().contains("there.csv"));
+    EXPECT_EQ(window_->messages().problem_status(), 5);
     EXPECT_EQ(window_->live()->recording(), nullptr);
     EXPECT_GE(now().number, before);
     std::ifstream file(scratch_.path() / "there.csv");
@@ -76,13 +77,13 @@ TEST_F(Failures, a_recording_that_cannot_be_begun_leaves_the_session_as_it_was) 
 
 TEST_F(Failures, opening_what_is_open_gives_up_what_is_being_loaded) {
     feel(sphere);
-    window_->start_recording(scratch("a.csv"));
+    window_->recordings().start(scratch("a.csv"));
     ASSERT_TRUE(wait_until([&] { return window_->live()->recording()->ticks() > 50; }));
-    window_->stop_recording();
+    window_->recordings().stop();
     app::VolumeOptions other;
     other.volume = "synthetic:noise:200x200x200";
-    window_->open_volume(other);
-    window_->open_path(scratch("a.csv"));
+    window_->files().open_volume(other);
+    window_->files().open_path(scratch("a.csv"));
     ASSERT_TRUE(wait_until([&] { return window_->playback() != nullptr; }));
     QTest::qWait(500);
     ASSERT_NE(window_->playback(), nullptr) << "the other volume came after all";
@@ -130,7 +131,7 @@ TEST_F(Failures, the_servo_ends_before_what_takes_long_when_the_window_goes) {
     feel(sphere);
     app::VolumeOptions slow;
     slow.volume = "synthetic:marschner-lobb:260x260x260";
-    window_->open_volume(slow);
+    window_->files().open_volume(slow);
     QTest::qWait(50);
     window_.reset();  // neither hangs nor crashes
 }

@@ -112,21 +112,21 @@ TEST_F(Window, a_session_is_recorded_and_played_back_with_its_time_line) {
     ASSERT_TRUE(QFile::exists(file));
     type_in_dialog(Qt::Key_O, file);
     ASSERT_TRUE(wait_until([&] { return window_->playback() != nullptr; }))
-        << window_->problem().toStdString();
+        << window_->messages().problem().toStdString();
     EXPECT_EQ(window_->live(), nullptr);
     EXPECT_EQ(window_->playback()->different(), 0U);
     EXPECT_TRUE(window_->time_line().isVisible());
     // At the end the hand presses, at the beginning it does not.
-    window_->show_time(window_->playback()->end());
-    EXPECT_GT(window_->playback()->at(window_->shown_time()).session.tick.force.norm(), 0.2);
+    window_->recordings().show_time(window_->playback()->end());
+    EXPECT_GT(window_->playback()->at(window_->content().time()).session.tick.force.norm(), 0.2);
     QTest::qWait(100);
     save("played");
-    window_->show_time(window_->playback()->begin());
-    EXPECT_EQ(window_->playback()->at(window_->shown_time()).session.tick.force.norm(), 0);
+    window_->recordings().show_time(window_->playback()->begin());
+    EXPECT_EQ(window_->playback()->at(window_->content().time()).session.tick.force.norm(), 0);
     QTest::mouseClick(&part<QToolButton>("play"), Qt::LeftButton);
     EXPECT_TRUE(window_->time_line().playing());
     ASSERT_TRUE(
-        wait_until([&] { return window_->shown_time() > window_->playback()->begin() + 0.1; }));
+        wait_until([&] { return window_->content().time() > window_->playback()->begin() + 0.1; }));
     // And back to feeling.
     QTest::keyClick(window_.get(), Qt::Key_Escape);
     ASSERT_TRUE(wait_until([&] { return window_->live() != nullptr; }));
@@ -136,9 +136,9 @@ TEST_F(Window, a_session_is_recorded_and_played_back_with_its_time_line) {
 TEST_F(Window, what_cannot_be_opened_is_told_and_the_session_goes_on) {
     feel(sphere);
     const Live* live = window_->live();
-    window_->open_path(scratch("missing.nrrd"));
-    ASSERT_TRUE(wait_until([&] { return !window_->problem().isEmpty(); }));
-    EXPECT_TRUE(window_->problem().contains("missing.nrrd"));
+    window_->files().open_path(scratch("missing.nrrd"));
+    ASSERT_TRUE(wait_until([&] { return !window_->messages().problem().isEmpty(); }));
+    EXPECT_TRUE(window_->messages().problem().contains("missing.nrrd"));
     auto* box = window_->findChild<QMessageBox*>("problem");
     ASSERT_NE(box, nullptr);
     EXPECT_TRUE(box->isVisible());
@@ -160,12 +160,12 @@ TEST_F(Window, a_session_file_brings_back_what_was_set) {
     look.surface_opacity = 0.5;
     window_->panel().set_look(look);
     const pictures::Camera camera = window_->views().scene().camera();
-    window_->save_session(scratch("day.json"));
+    window_->files().save_session(scratch("day.json"));
     feel("synthetic:torus:32x32x16");
-    window_->open_path(scratch("day.json"));
+    window_->files().open_path(scratch("day.json"));
     ASSERT_TRUE(wait_until([&] {
         return window_->live() && window_->live()->field().geometry().size[0] == 48;
-    })) << window_->problem().toStdString();
+    })) << window_->messages().problem().toStdString();
     EXPECT_EQ(window_->live()->settings().force.stiffness, 0.31);
     EXPECT_EQ(window_->live()->isovalue(), 100);
     EXPECT_EQ(window_->panel().look().surface_opacity, 0.5);
@@ -182,7 +182,7 @@ TEST_F(Window, another_device_takes_over_with_what_was_set) {
     EXPECT_EQ(window_->live()->isovalue(), 90);
     ASSERT_TRUE(wait_until([&] { return force() > 0.2; }));
     Q_EMIT window_->panel().device_chosen("nonsense");
-    EXPECT_TRUE(window_->problem().contains("nonsense"));
+    EXPECT_TRUE(window_->messages().problem().contains("nonsense"));
     EXPECT_EQ(window_->live()->options().device, "simulated:hand=press");
 }
 

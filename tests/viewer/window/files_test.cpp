@@ -64,7 +64,7 @@ TEST_F(Files, loading_can_be_cancelled_and_what_was_felt_goes_on) {
     app::VolumeOptions slow;
     slow.volume = file_of(128, "slow.nrrd").toStdString();
     slow.smooth = 24;
-    window_->open_volume(slow);
+    window_->files().open_volume(slow);
     auto& cancel = part<QPushButton>("cancel");
     ASSERT_TRUE(cancel.isVisible());
     QTest::mouseClick(&cancel, Qt::LeftButton);
@@ -72,7 +72,7 @@ TEST_F(Files, loading_can_be_cancelled_and_what_was_felt_goes_on) {
     EXPECT_FALSE(cancel.isVisible());
     EXPECT_EQ(window_->live(), before);
     EXPECT_EQ(window_->live()->field().geometry().size[0], 32);
-    EXPECT_TRUE(window_->problem().isEmpty());
+    EXPECT_TRUE(window_->messages().problem().isEmpty());
 }
 
 TEST_F(Files, a_raw_file_is_opened_once_the_dialog_knows_its_size) {
@@ -121,7 +121,7 @@ TEST_F(Files, pictures_of_scene_and_window_are_what_is_seen) {
 }
 
 TEST_F(Files, screenshot_waits_for_the_hand_writes_and_closes) {
-    window_->open_path("synthetic:sphere:32x32x32");
+    window_->files().open_path("synthetic:sphere:32x32x32");
     const Screenshot screenshot(*window_, scratch("shot.png"), 0.3);
     ASSERT_TRUE(wait_until([&] { return !window_->isVisible(); }));
     EXPECT_EQ(screenshot.status(), 0);
@@ -129,7 +129,7 @@ TEST_F(Files, screenshot_waits_for_the_hand_writes_and_closes) {
 }
 
 TEST_F(Files, screenshot_of_what_cannot_be_opened_ends_with_its_status) {
-    window_->open_path(scratch("missing.nrrd"));
+    window_->files().open_path(scratch("missing.nrrd"));
     const Screenshot screenshot(*window_, scratch("shot.png"), 0);
     ASSERT_TRUE(wait_until([&] { return !window_->isVisible(); }));
     EXPECT_EQ(screenshot.status(), 3);

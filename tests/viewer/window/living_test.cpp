@@ -93,15 +93,15 @@ TEST_F(Living, a_signal_ends_it_without_a_question_and_the_edits_are_kept) {
 
 TEST_F(Living, a_recording_of_edits_is_played_with_them) {
     feel("synthetic:sphere:48x48x48");
-    window_->start_recording(scratch("carving.csv"));
+    window_->recordings().start(scratch("carving.csv"));
     carve();
     const auto carved = work().samples;
-    window_->stop_recording();
-    window_->open_path(scratch("carving.csv"));
+    window_->recordings().stop();
+    window_->files().open_path(scratch("carving.csv"));
     ASSERT_TRUE(wait_until([&] { return window_->playback() != nullptr; }))
-        << window_->problem().toStdString();
+        << window_->messages().problem().toStdString();
     EXPECT_EQ(window_->playback()->different(), 0U);
-    window_->show_time(window_->playback()->end());
+    window_->recordings().show_time(window_->playback()->end());
     Playback& playback = *window_->playback();
     const Volume seen = flattened(playback.field_at(playback.at(playback.end())).samples());
     const Volume felt = flattened(*carved);
@@ -112,7 +112,7 @@ TEST_F(Living, a_recording_of_edits_is_played_with_them) {
 
 TEST_F(Living, a_sequence_plays_steps_and_is_sought_with_its_bar) {
     // Not feel(): what plays does not settle.
-    window_->open_path("synthetic:beating:32x32x32");
+    window_->files().open_path("synthetic:beating:32x32x32");
     ASSERT_TRUE(wait_until([&] { return window_->live() && window_->live()->snapshot(); }));
     EXPECT_TRUE(window_->sequence_bar().isVisible());
     const double before = now().session.moment;

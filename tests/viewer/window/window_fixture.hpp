@@ -65,9 +65,9 @@ class InWindow : public testing::Test {
 
     /// Opens a volume and waits until it is felt.
     void feel(const std::string& name) {
-        window_->open_path(QString::fromStdString(name));
+        window_->files().open_path(QString::fromStdString(name));
         ASSERT_TRUE(wait_until([&] { return window_->live() && window_->live()->snapshot(); }))
-            << window_->problem().toStdString();
+            << window_->messages().problem().toStdString();
         ASSERT_TRUE(wait_until([&] { return window_->settled(); }));
     }
 

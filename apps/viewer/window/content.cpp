@@ -1,0 +1,63 @@
+// Replaces what is open, and tells the window's controllers.
+#include "apps/viewer/window/content.hpp"
+
+#include <utility>
+
+namespace palpate::viewer {
+
+void Content::start_run(std::shared_ptr<Opened> volume, const app::TouchOptions& options) {
+    close();
+    live_ = std::make_unique<Live>(volume->loaded, options);
+    volume_ = std::move(volume);
+    Q_EMIT run_started();
+    Q_EMIT run_changed();
+}
+
+void Content::start_playback(std::shared_ptr<Opened> volume, Playback playback) {
+    close();
+    volume_ = std::move(volume);
+    playback_ = std::move(playback);
+    time_ = playback_->begin();
+    Q_EMIT playback_started();
+}
+
+void Content::close() {
+    Q_EMIT closing();
+    live_.reset();
+    playback_.reset();
+    volume_.reset();
+    Q_EMIT closed();
+}
+
+void Content::use_device(const std::string& option) {
+    live_->use_device(option);
+    Q_EMIT run_changed();
+}
+
+void Content::use_solid(Solid solid) {
+    live_->use_field(solid);
+    Q_EMIT field_replaced();
+    Q_EMIT run_changed();
+}
+
+app::Sculptor* Content::editor() const {
+    return live_ && !live_->data().is_sequence() ? &live_->data().sculptor() : nullptr;
+}
+
+app::Player* Content::player() const {
+    return live_ && live_->data().is_sequence() ? &live_->data().player() : nullptr;
+}
+
+std::optional<Snapshot> Content::snapshot() const {
+    if (live_) return live_->snapshot();
+    if (playback_) return playback_->at(time_);
+    return std::nullopt;
+}
+
+Field Content::field_at(const Snapshot& snapshot) {
+    Field field = live_ ? live_->data().field() : playback_->field_at(snapshot);
+    field.set_time(snapshot.session.moment);
+    return field;
+}
+
+}  // namespace palpate::viewer

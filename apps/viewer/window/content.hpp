@@ -1,0 +1,66 @@
+// What is open in the window: a volume, and with it either a live run, in which it is felt, or the
+// playback of a recording.
+#pragma once
+
+#include <QObject>
+#include <memory>
+#include <optional>
+
+#include "apps/viewer/model/live.hpp"
+#include "apps/viewer/model/opening.hpp"
+#include "apps/viewer/model/playback.hpp"
+
+namespace palpate::viewer {
+
+class Content : public QObject {
+    Q_OBJECT
+
+  public:
+    /// Closes what was open, first: a device serves one run. Throws as Live; then nothing is open.
+    void start_run(std::shared_ptr<Opened> volume, const app::TouchOptions& options);
+    void start_playback(std::shared_ptr<Opened> volume, Playback playback);
+    void close();
+    /// As Live's; what they throw leaves the run as it was.
+    void use_device(const std::string& option);
+    void use_solid(Solid solid);
+    /// Ends the run, forces are zero; emits nothing.
+    void end_run() { live_.reset(); }
+
+    /// Null if nothing is open.
+    const std::shared_ptr<Opened>& volume() const { return volume_; }
+    /// Null unless there is a live run.
+    Live* live() const { return live_.get(); }
+    /// Null unless the run's data can be edited.
+    app::Sculptor* editor() const;
+    /// Null unless the run's data are a sequence.
+    app::Player* player() const;
+    /// Null unless a recording is open.
+    Playback* playback() { return playback_ ? &*playback_ : nullptr; }
+    const Playback* playback() const { return playback_ ? &*playback_ : nullptr; }
+    /// [s] The time of the recording that is shown.
+    double time() const { return time_; }
+    void set_time(double time) { time_ = time; }
+
+    /// What is felt now, or was at the time shown. Nothing before the first tick.
+    std::optional<Snapshot> snapshot() const;
+    /// The data of such a snapshot.
+    Field field_at(const Snapshot& snapshot);
+
+  Q_SIGNALS:
+    void closing();
+    void closed();
+    void run_started();
+    /// The other side is solid: another field.
+    void field_replaced();
+    /// The run has started, or has another device, field or settings.
+    void run_changed();
+    void playback_started();
+
+  private:
+    std::shared_ptr<Opened> volume_;
+    std::unique_ptr<Live> live_;
+    std::optional<Playback> playback_;
+    double time_ = 0;
+};
+
+}  // namespace palpate::viewer

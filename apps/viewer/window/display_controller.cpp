@@ -1,0 +1,122 @@
+// Keeps scene and slices at the snapshot, the data and the level that are felt or played.
+#include "apps/viewer/window/display_controller.hpp"
+
+#include <cmath>
+
+#include "apps/viewer/model/transfer.hpp"
+#include "apps/viewer/panel/panel.hpp"
+#include "apps/viewer/scene/scene.hpp"
+#include "apps/viewer/window/content.hpp"
+#include "apps/viewer/window/views.hpp"
+
+namespace palpate::viewer {
+
+DisplayController::DisplayController(Content& content, Views& views, Panel& panel)
+    : content_(content), views_(views), panel_(panel) {
+    connect(&content, &Content::closed, this, &DisplayController::clear);
+    connect(&content, &Content::run_started, this, [this] {
+        const Live& live = *content_.live();
+        show_volume(live.field(), live.isovalue(), live.settings().transform);
+    });
+    connect(&content, &Content::field_replaced, this,
+            [this] { show_field(content_.live()->field(), content_.live()->isovalue()); });
+    connect(&content, &Content::playback_started, this, [this] {
+        const io::RecordingHead& head = content_.playback()->head();
+        show_volume(content_.playback()->field(), head.isovalue, head.settings.transform);
+    });
+    connect(&panel, &Panel::look_changed, this, [this](const Look& look) {
+        views_.set_look(look);
+    });
+}
+
+void DisplayController::clear() {
+    held_.reset();
+    isovalue_.reset();
+    shown_ = {};
+    views_.clear();
+    panel_.clear();
+}
+
+void DisplayController::show_field(const Field& field, double isovalue) {
+    isovalue_ = isovalue;
+    shown_ = {};
+    views_.set_field(field, isovalue);
+}
+
+void DisplayController::show_volume(const Field& field, double isovalue,
+                                    const DeviceTransform& transform) {
+    show_field(field, isovalue);
+    views_.scene().reset_camera();
+    look_from_hand(transform);
+    views_.set_window(content_.volume()->dark(), content_.volume()->bright());
+}
+
+std::optional<Snapshot> DisplayController::observe() {
+    const std::optional<Snapshot> now = held_ ? held_ : content_.snapshot();
+    views_.show_snapshot(now);
+    if (!now) return now;
+    observe_data(*now);
+    const double felt = now->session.tick.proxy.isovalue;
+    if (std::isfinite(felt) && isovalue_ != felt) {
+        isovalue_ = felt;
+        views_.set_isovalue(felt);
+    }
+    return now;
+}
+
+void DisplayController::observe_data(const Snapshot& now) {
+    const Field field = content_.field_at(now);
+    const Moment& moment = field.moment();
+    if (field.shared_samples() == shown_.samples && moment.from == shown_.moment.from &&
+        moment.to == shown_.moment.to && moment.weight == shown_.moment.weight) {
+        return;
+    }
+    shown_ = {field.shared_samples(), moment};
+    views_.update_field(field);
+}
+
+void DisplayController::hold() {
+    if (content_.live()) held_ = content_.snapshot();
+}
+
+void DisplayController::set_look(const Look& look) {
+    panel_.set_look(look);
+    views_.set_look(look);
+}
+
+void DisplayController::use_usual_look() {
+    const Opened& opened = *content_.volume();
+    const Volume& volume = opened.loaded.volume;
+    Look look = panel_.look();
+    look.transfer = preset(suggested_preset(opened.histogram, volume), opened.histogram, volume);
+    set_look(look);
+}
+
+void DisplayController::look_from_hand(const DeviceTransform& transform) {
+    views_.scene().look_from({transform.rotation.col(2), transform.rotation.col(1)});
+}
+
+void DisplayController::save_view(SessionFile& session) const {
+    session.look = panel_.look();
+    session.camera = views_.scene().camera();
+    session.crosshair = views_.crosshair();
+    session.follow = views_.follows();
+    session.window_low = views_.window_low();
+    session.window_high = views_.window_high();
+    session.slices_shown = views_.slices_shown();
+}
+
+void DisplayController::restore_view(const SessionFile& session) {
+    Look look = session.look;
+    if (look.transfer.points.empty()) look.transfer = panel_.look().transfer;
+    set_look(look);
+    if (session.window_low < session.window_high) {
+        views_.set_window(session.window_low, session.window_high);
+    }
+    if (session.crosshair) views_.set_crosshair(*session.crosshair);
+    views_.set_follow(session.follow);
+    views_.show_slices(session.slices_shown);
+    if (session.camera) views_.scene().set_camera(*session.camera);
+}
+
+}  // namespace palpate::viewer

@@ -1,0 +1,57 @@
+// Brings what is felt or played to the scene, the slices and the look section of the panel.
+#pragma once
+
+#include <QObject>
+#include <optional>
+
+#include "apps/viewer/model/session_file.hpp"
+#include "palpate/servo.hpp"
+
+namespace palpate::viewer {
+
+class Content;
+class Panel;
+class Views;
+
+class DisplayController : public QObject {
+    Q_OBJECT
+
+  public:
+    DisplayController(Content& content, Views& views, Panel& panel);
+
+    /// Shows the newest snapshot, and its data where they have changed. Returns it.
+    std::optional<Snapshot> observe();
+    /// The snapshot shown stays as it is now, for a picture; the live run goes on.
+    void hold();
+    /// The level of the surface in the scene; nothing if no volume is open.
+    const std::optional<double>& isovalue() const { return isovalue_; }
+    void set_look(const Look& look);
+    /// The transfer function that the volume suggests.
+    void use_usual_look();
+    /// The whole volume as the person sees it who holds the device.
+    void look_from_hand(const DeviceTransform& transform);
+
+    /// Writes to `session` how the volume is shown; shows it as `session` says.
+    void save_view(SessionFile& session) const;
+    void restore_view(const SessionFile& session);
+
+  private:
+    void show_field(const Field& field, double isovalue);
+    void show_volume(const Field& field, double isovalue, const DeviceTransform& transform);
+    void observe_data(const Snapshot& now);
+    void clear();
+
+    struct ShownData {
+        std::shared_ptr<const Samples> samples;
+        Moment moment;
+    };
+
+    Content& content_;
+    Views& views_;
+    Panel& panel_;
+    std::optional<Snapshot> held_;
+    std::optional<double> isovalue_;
+    ShownData shown_;
+};
+
+}  // namespace palpate::viewer

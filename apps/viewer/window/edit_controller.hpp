@@ -1,0 +1,56 @@
+// Edits of the volume that is felt: the brush, undo and redo, saving, and the question whether
+// unsaved edits may be lost.
+#pragma once
+
+#include <QObject>
+#include <memory>
+
+#include "apps/viewer/window/background_task.hpp"
+#include "palpate/samples.hpp"
+
+namespace palpate::viewer {
+
+class Content;
+class Panel;
+struct BrushChoice;
+
+class EditController : public QObject {
+    Q_OBJECT
+
+  public:
+    /// Dialogs belong to `window`.
+    EditController(Content& content, Panel& panel, Messages& messages, QWidget* window);
+
+    void use_brush(const BrushChoice& brush);
+    void undo();
+    void redo();
+
+    /// Asks for a name; offers the format of the volume, if it can be written.
+    void ask_save();
+    /// Saves the volume as it is now, edits included, in the background. Errors are shown.
+    void save(const QString& path);
+    bool saving() const { return saving_.busy(); }
+
+    /// False while the volume is being saved, and if the user wants to keep unsaved edits.
+    bool may_lose_edits();
+    /// The samples, if they have edits that were not saved; else null.
+    std::shared_ptr<const Samples> unsaved() const;
+
+    /// Shows in the panel what can be undone, and why the brush does nothing.
+    void observe();
+
+  private:
+    void show();
+
+    Content& content_;
+    Panel& panel_;
+    Messages& messages_;
+    QWidget* window_;
+    BackgroundTask saving_;
+    QString problem_;
+};
+
+/// Writes edits to a file in the folder for temporary files, and tells on standard error where.
+void rescue_edits(const Samples& samples);
+
+}  // namespace palpate::viewer

@@ -1,0 +1,192 @@
+// Reads files, then starts the live run or the playback that they describe.
+#include "apps/viewer/window/file_controller.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <utility>
+
+#include "apps/live/recorded_scene.hpp"
+#include "apps/viewer/window/content.hpp"
+#include "apps/viewer/window/display_controller.hpp"
+#include "apps/viewer/window/file_dialogs.hpp"
+#include "apps/viewer/window/messages.hpp"
+#include "apps/viewer/window/recording_controller.hpp"
+#include "apps/viewer/window/run_controller.hpp"
+
+namespace palpate::viewer {
+namespace {
+
+std::filesystem::path path_of(const QString& name) {
+    return std::filesystem::path(name.toStdString());
+}
+
+}  // namespace
+
+FileController::FileController(Content& content, RunController& run,
+                               RecordingController& recordings, DisplayController& display,
+                               Messages& messages)
+    : content_(content),
+      run_(run),
+      recordings_(recordings),
+      display_(display),
+      messages_(messages),
+      loader_(messages) {}
+
+void FileController::load(const app::VolumeOptions& volume, Then then) {
+    auto result = std::make_shared<std::shared_ptr<Opened>>();
+    loader_.start(
+        tr("Reading %1").arg(short_name(QString::fromStdString(volume.volume))),
+        [result, volume](const io::Progress& progress) {
+            *result = std::make_shared<Opened>(open(volume, progress));
+        },
+        [result, then = std::move(then)] { then(*result); });
+}
+
+/// As load(), but does not read again what is open already.
+void FileController::load_or_reuse(const app::VolumeOptions& volume, Then then) {
+    const std::shared_ptr<Opened> opened = content_.volume();
+    if (!opened || app::to_names(opened->options) != app::to_names(volume)) {
+        return load(volume, std::move(then));
+    }
+    loader_.abandon();
+    messages_.guarded([&] { then(opened); });
+}
+
+void FileController::open_path(const QString& path) {
+    remember_folder(path);
+    if (path.endsWith(".json", Qt::CaseInsensitive)) return open_session(path);
+    if (path.endsWith(".csv", Qt::CaseInsensitive)) return open_recording(path);
+    app::VolumeOptions volume;
+    volume.volume = path.toStdString();
+    open_volume(volume);
+}
+
+void FileController::open_volume(const app::VolumeOptions& volume) {
+    messages_.forget();
+    load(volume, [this, options = run_.take_options()](std::shared_ptr<Opened> opened) mutable {
+        options.volume = opened->options;
+        options.device = run_.device();
+        if (options.field.isovalue.empty()) {
+            options.field.isovalue = fmt::format("{}", first_isovalue(*opened));
+        }
+        feel(std::move(opened), options);
+        display_.use_usual_look();
+    });
+}
+
+void FileController::feel(std::shared_ptr<Opened> opened, const app::TouchOptions& options) {
+    run_.start(opened, options);
+    if (!options.record.empty()) recordings_.start(QString::fromStdString(options.record));
+    remember_file(QString::fromStdString(opened->options.volume));
+    for (const std::string& note : opened->loaded.notes) {
+        messages_.show_done(QString::fromStdString(note));
+    }
+}
+
+void FileController::open_recording(const QString& path) {
+    messages_.forget();
+    messages_.guarded([&] {
+        const io::RecordingReader reader(path_of(path));
+        const auto volume = app::recorded_volume(reader.head(), path_of(path));
+        (void)run_.take_options();  // they were for a volume to feel
+        load_or_reuse(volume, [this, path](std::shared_ptr<Opened> opened) {
+            play(std::move(opened), path);
+        });
+    });
+}
+
+void FileController::play(std::shared_ptr<Opened> opened, const QString& path) {
+    auto result = std::make_shared<std::optional<Playback>>();
+    loader_.start(
+        tr("Reading %1").arg(short_name(path)),
+        [result, opened, path](const io::Progress& progress) {
+            *result = Playback::read(path_of(path), opened->loaded, progress);
+        },
+        [this, result, opened, path] {
+            const bool same = content_.volume() == opened;
+            content_.start_playback(opened, std::move(**result));
+            if (!same) display_.use_usual_look();
+            remember_file(path);
+        });
+}
+
+void FileController::leave_playback() {
+    if (!content_.playback()) return;
+    SessionFile session = session_now();
+    session.isovalue = display_.isovalue().value_or(session.isovalue);
+    session.settings.reset();  // the recorded device's
+    feel_session(content_.volume(), session, run_.take_options());
+}
+
+SessionFile FileController::session_now() const {
+    SessionFile session;
+    session.volume = content_.volume()->options;
+    if (const Live* live = content_.live()) {
+        const auto now = live->snapshot();
+        session.solid = live->field().solid();
+        session.background = live->field().background();
+        session.isovalue = live->isovalue();
+        session.device = live->options().device;
+        session.method = live->options().render.method;
+        session.settings = live->settings();
+        if (now) session.settings->transform = now->session.transform;
+    } else {
+        const io::RecordingHead& head = content_.playback()->head();
+        session.solid = head.solid;
+        session.background = head.background;
+        session.isovalue = head.isovalue;
+        session.device = run_.device();
+        session.method = head.method;
+        session.settings = head.settings;
+    }
+    display_.save_view(session);
+    return session;
+}
+
+void FileController::save_session(const QString& path) {
+    if (!content_.volume()) return;
+    write_session(path.toStdString(), session_now());
+    remember_file(path);
+    messages_.show_done(tr("Saved %1").arg(path));
+}
+
+void FileController::open_session(const QString& path) {
+    messages_.forget();
+    messages_.guarded([&] {
+        const SessionFile session = read_session(path.toStdString());
+        load_or_reuse(session.volume, [this, session, path, options = run_.take_options()](
+                                          std::shared_ptr<Opened> opened) {
+            feel_session(std::move(opened), session, options);
+            remember_file(path);
+        });
+    });
+}
+
+/// The device is the one of the command line, else the session's; where that cannot be had, the one
+/// chosen in this window.
+void FileController::feel_session(std::shared_ptr<Opened> opened, const SessionFile& session,
+                                  app::TouchOptions options) {
+    options.volume = session.volume;
+    options.field.solid = session.solid == Solid::above ? "above" : "below";
+    options.field.background = session.background ? fmt::format("{}", *session.background) : "";
+    options.field.isovalue = fmt::format("{}", session.isovalue);
+    if (!options.device_given) options.device = session.device;
+    options.render.method = session.method;
+    try {
+        feel(opened, options);
+        run_.set_device(options.device);
+    } catch (const std::exception& e) {
+        if (options.device == run_.device()) throw;
+        const QString why = QString::fromStdString(app::failure_of(e).text);
+        options.device = run_.device();
+        feel(opened, options);
+        messages_.show_done(
+            tr("%1; felt through the device %2").arg(why, QString::fromStdString(options.device)));
+    }
+    display_.use_usual_look();
+    if (session.settings) run_.restore(*session.settings);
+    display_.restore_view(session);
+}
+
+}  // namespace palpate::viewer

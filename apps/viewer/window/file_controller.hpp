@@ -1,0 +1,61 @@
+// Opens volumes, sessions and recordings in the background; saves sessions.
+#pragma once
+
+#include <QObject>
+#include <functional>
+#include <memory>
+
+#include "apps/live/touch_options.hpp"
+#include "apps/viewer/model/session_file.hpp"
+#include "apps/viewer/window/background_task.hpp"
+
+namespace palpate::viewer {
+
+class Content;
+class DisplayController;
+class RecordingController;
+class RunController;
+struct Opened;
+
+/// Errors are shown; what was open then stays open, as long as the new file cannot be read.
+class FileController : public QObject {
+    Q_OBJECT
+
+  public:
+    FileController(Content& content, RunController& run, RecordingController& recordings,
+                   DisplayController& display, Messages& messages);
+
+    /// A volume, a folder, a session or a recording: its name tells which.
+    void open_path(const QString& path);
+    /// Feels it, with the settings of the command line.
+    void open_volume(const app::VolumeOptions& volume);
+    void open_session(const QString& path);
+    void open_recording(const QString& path);
+    /// Ends the playback: feels the recording's volume, at the level and in the view shown.
+    void leave_playback();
+    /// Throws io::OutputError.
+    void save_session(const QString& path);
+
+    /// What is being read.
+    BackgroundTask& loader() { return loader_; }
+    bool loading() const { return loader_.busy(); }
+
+  private:
+    using Then = std::function<void(std::shared_ptr<Opened>)>;
+    void load(const app::VolumeOptions& volume, Then then);
+    void load_or_reuse(const app::VolumeOptions& volume, Then then);
+    void feel(std::shared_ptr<Opened> opened, const app::TouchOptions& options);
+    void feel_session(std::shared_ptr<Opened> opened, const SessionFile& session,
+                      app::TouchOptions options);
+    void play(std::shared_ptr<Opened> opened, const QString& path);
+    SessionFile session_now() const;
+
+    Content& content_;
+    RunController& run_;
+    RecordingController& recordings_;
+    DisplayController& display_;
+    Messages& messages_;
+    BackgroundTask loader_;
+};
+
+}  // namespace palpate::viewer

@@ -1,0 +1,85 @@
+// File dialogs, with what they remember from one run to the next.
+#include "apps/viewer/window/file_dialogs.hpp"
+
+#include <QDateTime>
+#include <QDir>
+#include <QFileDialog>
+#include <QFileInfo>
+#include <QSettings>
+
+#include "apps/viewer/window/raw_dialog.hpp"
+
+namespace palpate::viewer {
+namespace {
+
+constexpr int most_recent = 10;
+
+QString last_folder() {
+    return QSettings().value("folder", QDir::currentPath()).toString();
+}
+
+bool is_synthetic(const QString& path) {
+    return path.startsWith("synthetic:");
+}
+
+}  // namespace
+
+QString ask_open_name(QWidget* window) {
+    return QFileDialog::getOpenFileName(
+        window, QFileDialog::tr("Open a volume, a session or a recording"), last_folder(),
+        QFileDialog::tr(
+            "All that can be opened (*.nrrd *.nhdr *.mha *.mhd *.nii *.nii.gz *.dcm *.tif *.tiff "
+            "*.vti *.json *.csv);;All files (*)"));
+}
+
+QString ask_open_folder(QWidget* window) {
+    return QFileDialog::getExistingDirectory(window, QFileDialog::tr("Open a folder of slices"),
+                                             last_folder());
+}
+
+QString ask_save_name(QWidget* window, const QString& title, const QString& name,
+                      const QString& suffix, bool replaces) {
+    QFileDialog dialog(window, title, last_folder(), QString("*.%1 (*.%1)").arg(suffix));
+    dialog.setAcceptMode(QFileDialog::AcceptSave);
+    dialog.setDefaultSuffix(suffix);
+    dialog.setOption(QFileDialog::DontConfirmOverwrite, !replaces);
+    dialog.selectFile(name);
+    if (dialog.exec() != QDialog::Accepted) return {};
+    QSettings().setValue("folder", dialog.directory().absolutePath());
+    return dialog.selectedFiles().value(0);
+}
+
+std::optional<app::VolumeOptions> ask_open_raw(QWidget* window) {
+    const QString path = QFileDialog::getOpenFileName(
+        window, QFileDialog::tr("Open raw data"), last_folder(), QFileDialog::tr("All files (*)"));
+    if (path.isEmpty()) return std::nullopt;
+    RawDialog dialog(path, window);
+    if (dialog.exec() != QDialog::Accepted) return std::nullopt;
+    return dialog.options();
+}
+
+void remember_folder(const QString& path) {
+    if (!is_synthetic(path)) QSettings().setValue("folder", QFileInfo(path).absolutePath());
+}
+
+void remember_file(const QString& path) {
+    const QString name = is_synthetic(path) ? path : QFileInfo(path).absoluteFilePath();
+    QStringList recent = recent_files();
+    recent.removeAll(name);
+    recent.prepend(name);
+    QSettings().setValue("recent", QStringList(recent.mid(0, most_recent)));
+}
+
+QStringList recent_files() {
+    return QSettings().value("recent").toStringList();
+}
+
+QString time_stamp() {
+    return QDateTime::currentDateTime().toString("yyyyMMdd-hhmmss");
+}
+
+QString short_name(const QString& path) {
+    return is_synthetic(path) ? path : QFileInfo(QDir::cleanPath(path)).fileName();
+}
+
+}  // namespace palpate::viewer

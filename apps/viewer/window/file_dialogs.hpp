@@ -1,0 +1,36 @@
+// Dialogs that ask for files to open and to save, and the list of recent files. The folder used
+// last and the recent files are kept in QSettings.
+#pragma once
+
+#include <QString>
+#include <QStringList>
+#include <optional>
+
+#include "apps/live/volume_options.hpp"
+
+class QWidget;
+
+namespace palpate::viewer {
+
+/// These return an empty name if the user cancels.
+QString ask_open_name(QWidget* window);
+QString ask_open_folder(QWidget* window);
+/// A name without an extension gets `suffix`. `replaces`: the dialog asks before an existing file
+/// is replaced; false for files that are never replaced.
+QString ask_save_name(QWidget* window, const QString& title, const QString& name,
+                      const QString& suffix, bool replaces = true);
+/// A raw file and what it holds.
+std::optional<app::VolumeOptions> ask_open_raw(QWidget* window);
+
+/// The dialogs begin in the folder of this file.
+void remember_folder(const QString& path);
+/// Puts a file first in the list of recent ones.
+void remember_file(const QString& path);
+QStringList recent_files();
+
+/// For names of new files: "20260130-174501".
+QString time_stamp();
+/// The name without its folder, for titles and messages.
+QString short_name(const QString& path);
+
+}  // namespace palpate::viewer

@@ -1,0 +1,32 @@
+// Shows problems in a dialog that does not block the window.
+#include "apps/viewer/window/messages.hpp"
+
+#include <QMessageBox>
+#include <cstdio>
+
+namespace palpate::viewer {
+
+bool Messages::guarded(const std::function<void()>& action) {
+    try {
+        action();
+        return true;
+    } catch (const std::exception& e) {
+        const app::Failure failure = app::failure_of(e);
+        show_problem(QString::fromStdString(failure.text), failure.status);
+        return false;
+    }
+}
+
+void Messages::show_problem(const QString& what, int status) {
+    problem_ = what;
+    problem_status_ = status;
+    std::fprintf(stderr, "palpate: %s\n", what.toLocal8Bit().constData());
+    auto* box =
+        new QMessageBox(QMessageBox::Warning, tr("Palpate"), what, QMessageBox::Ok, window_);
+    box->setObjectName("problem");
+    box->setTextInteractionFlags(Qt::TextSelectableByMouse);
+    box->setAttribute(Qt::WA_DeleteOnClose);
+    box->open();  // the live run goes on behind it
+}
+
+}  // namespace palpate::viewer

@@ -1,0 +1,90 @@
+// Turns drags, clicks and arrow keys into positions of the mouse device.
+#include "apps/viewer/window/probe_controller.hpp"
+
+#include <Eigen/Geometry>
+
+#include <QAction>
+
+#include "apps/viewer/scene/scene.hpp"
+#include "apps/viewer/window/content.hpp"
+#include "apps/viewer/window/messages.hpp"
+#include "apps/viewer/window/run_controller.hpp"
+#include "apps/viewer/window/views.hpp"
+
+namespace palpate::viewer {
+
+ProbeController::ProbeController(Content& content, RunController& run, Views& views,
+                                 Messages& messages)
+    : content_(content), views_(views), messages_(messages) {
+    connect(&views, &Views::probe_dragged, this, &ProbeController::move_by);
+    connect(&views, &Views::probe_aimed, this, &ProbeController::move_to);
+    connect(&run, &RunController::device_changed, this, [this] { set_pointing(possible()); });
+    connect(&content, &Content::playback_started, this, [this] { set_pointing(false); });
+    add_keys();
+}
+
+bool ProbeController::possible() const {
+    return content_.live() && content_.live()->mouse();
+}
+
+void ProbeController::set_pointing(bool probe) {
+    pointing_ = probe && possible();
+    views_.set_hand(pointing_);
+    if (!pointing_) return;
+    views_.scene().setFocus();
+    messages_.show_done(
+        tr("Drag to move the probe, turn the wheel to push it in; the right button turns the "
+           "view"));
+}
+
+void ProbeController::move_by(const Vec3& by) {
+    const auto now = possible() ? content_.snapshot() : std::nullopt;
+    if (!now) return;
+    const DeviceTransform& transform = now->session.transform;
+    devices::Mouse& mouse = *content_.live()->mouse();
+    mouse.aim(mouse.aimed() + transform.rotation.transpose() * by / transform.scale);
+}
+
+void ProbeController::move_to(const Vec3& to) {
+    const auto now = possible() ? content_.snapshot() : std::nullopt;
+    if (now) content_.live()->mouse()->aim(device_from_physical(now->session.transform, to));
+}
+
+void ProbeController::nudge(const Vec3& screen) {
+    if (!content_.live()) return;
+    const pictures::Camera camera = views_.scene().camera();
+    const Vec3 back = camera.towards_viewer.normalized();
+    const Vec3 right = Vec3(camera.up).cross(back).normalized();
+    const double step = content_.live()->field().geometry().spacing.minCoeff();
+    move_by(step * (screen[0] * right + screen[1] * back.cross(right) + screen[2] * back));
+}
+
+void ProbeController::add_keys() {
+    struct Key {
+        QString text;
+        int key;
+        Vec3 step;
+    };
+    const Key keys[] = {
+        {tr("Nudge the probe to the left"), Qt::Key_Left, {-1, 0, 0}},
+        {tr("Nudge the probe to the right"), Qt::Key_Right, {1, 0, 0}},
+        {tr("Nudge the probe up"), Qt::Key_Up, {0, 1, 0}},
+        {tr("Nudge the probe down"), Qt::Key_Down, {0, -1, 0}},
+        {tr("Nudge the probe into the depth"), Qt::Key_PageUp, {0, 0, -1}},
+        {tr("Nudge the probe towards you"), Qt::Key_PageDown, {0, 0, 1}},
+    };
+    // Only where the scene has the focus: elsewhere arrows belong to sliders, numbers and slices.
+    for (const Key& key : keys) {
+        for (const bool far : {false, true}) {
+            auto* action = new QAction(far ? key.text + tr(" by ten voxels") : key.text, &views_);
+            action->setShortcut(QKeySequence(key.key + (far ? int(Qt::ShiftModifier) : 0)));
+            action->setShortcutContext(Qt::WidgetShortcut);
+            const Vec3 step = (far ? 10 : 1) * key.step;
+            connect(action, &QAction::triggered, this, [this, step] { nudge(step); });
+            views_.scene().addAction(action);
+        }
+    }
+    views_.scene().setFocusPolicy(Qt::StrongFocus);
+}
+
+}  // namespace palpate::viewer

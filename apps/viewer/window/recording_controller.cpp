@@ -1,0 +1,77 @@
+// Starts and ends recordings; sets up the time line for one that is played.
+#include "apps/viewer/window/recording_controller.hpp"
+
+#include <utility>
+
+#include "apps/viewer/panel/panel.hpp"
+#include "apps/viewer/slices/time_line.hpp"
+#include "apps/viewer/window/content.hpp"
+#include "apps/viewer/window/messages.hpp"
+
+namespace palpate::viewer {
+
+RecordingController::RecordingController(Content& content, Panel& panel, TimeLine& time_line,
+                                         Messages& messages)
+    : content_(content), panel_(panel), time_line_(time_line), messages_(messages) {
+    connect(&content, &Content::closing, this, &RecordingController::stop);
+    connect(&content, &Content::closed, &time_line, &QWidget::hide);
+    connect(&content, &Content::playback_started, this, &RecordingController::show_playback);
+    connect(&time_line, &TimeLine::time_chosen, &content, &Content::set_time);
+    time_line.hide();
+}
+
+void RecordingController::start(const QString& path) {
+    if (!content_.live()) return;
+    messages_.guarded([&] {
+        content_.live()->record(path.toStdString());
+        messages_.show_done(tr("Recording to %1").arg(path));
+    });
+    Q_EMIT changed();
+}
+
+void RecordingController::stop() {
+    if (!recording()) return;
+    messages_.guarded([&] {
+        const int before = std::exchange(exit_status_, app::bad_output);  // unless it is whole
+        messages_.show_done(tr("%1 ticks recorded").arg(content_.live()->stop_recording()));
+        exit_status_ = before;
+    });
+    Q_EMIT changed();
+}
+
+bool RecordingController::recording() const {
+    return content_.live() && content_.live()->recording();
+}
+
+void RecordingController::check() {
+    if (recording() && !content_.live()->recording()->problem().empty()) stop();
+}
+
+void RecordingController::show_time(double time) {
+    if (!content_.playback()) return;
+    content_.set_time(time);
+    time_line_.set_time(time);
+}
+
+void RecordingController::show_playback() {
+    const Playback& playback = *content_.playback();
+    const io::RecordingHead& head = playback.head();
+    DeviceInfo device;
+    device.name = device.model = head.device;
+    device.limits = head.settings.device;
+    panel_.set_session(playback.field(), content_.volume()->histogram, head.isovalue,
+                       head.settings, device);
+    panel_.set_observing(true);
+    time_line_.set_playback(playback);
+    time_line_.show();
+    show_time(playback.begin());
+    QString words = tr("%1 ticks").arg(playback.ticks());
+    if (!playback.complete()) words += tr("; the recording was cut off before its end");
+    if (playback.different() > 0) {
+        words += tr("; %1 of them come out otherwise than they were recorded")
+                     .arg(playback.different());
+    }
+    messages_.show_done(words);
+}
+
+}  // namespace palpate::viewer

@@ -1,0 +1,46 @@
+// Records the live run, and plays recordings on the time line.
+#pragma once
+
+#include <QObject>
+
+class QString;
+
+namespace palpate::viewer {
+
+class Content;
+class Messages;
+class Panel;
+class TimeLine;
+
+class RecordingController : public QObject {
+    Q_OBJECT
+
+  public:
+    RecordingController(Content& content, Panel& panel, TimeLine& time_line, Messages& messages);
+
+    /// Errors are shown.
+    void start(const QString& path);
+    void stop();
+    bool recording() const;
+    /// Ends a recording that cannot be written any more, which shows why.
+    void check();
+    /// 0, or the status for a program in which a recording was lost.
+    int exit_status() const { return exit_status_; }
+
+    /// [s] Of the recording that is open; nothing without one.
+    void show_time(double time);
+
+  Q_SIGNALS:
+    void changed();
+
+  private:
+    void show_playback();
+
+    Content& content_;
+    Panel& panel_;
+    TimeLine& time_line_;
+    Messages& messages_;
+    int exit_status_ = 0;
+};
+
+}  // namespace palpate::viewer

@@ -1,0 +1,144 @@
+// Commands and devices: from the panel and the menus to the live run, and back to the panel.
+#include "apps/viewer/window/run_controller.hpp"
+
+#include <utility>
+
+#include "apps/viewer/panel/panel.hpp"
+#include "apps/viewer/window/content.hpp"
+#include "apps/viewer/window/messages.hpp"
+
+namespace palpate::viewer {
+
+RunController::RunController(const app::TouchOptions& options, Content& content, Panel& panel,
+                             Messages& messages)
+    : options_(options), content_(content), panel_(panel), messages_(messages), search_(messages) {
+    connect(&content, &Content::run_changed, this, &RunController::show_settings);
+    connect(&panel, &Panel::asked, this, &RunController::send);
+    connect(&panel, &Panel::device_chosen, this, &RunController::use_device);
+    connect(&panel, &Panel::devices_wanted, this, &RunController::find_devices);
+    connect(&panel, &Panel::solid_chosen, this, &RunController::use_solid);
+    since_report_.start();
+}
+
+app::TouchOptions RunController::take_options() {
+    app::TouchOptions options = options_;
+    options_.field.isovalue.clear();
+    options_.record.clear();
+    return options;
+}
+
+void RunController::start(std::shared_ptr<Opened> volume, const app::TouchOptions& options) {
+    content_.start_run(std::move(volume), options);
+    QString words = tr("Felt through the device %1").arg(QString::fromStdString(options.device));
+    for (const std::string& sentence : content_.live()->privileges()) {
+        words += "; " + QString::fromStdString(sentence);
+    }
+    messages_.show_done(words);
+    show_devices();
+    Q_EMIT device_changed();
+}
+
+void RunController::send(const Command& command) {
+    Live* live = content_.live();
+    if (!live) {
+        panel_.show_refused(content_.playback()
+                                ? tr("A recording is played: nothing here changes it.")
+                                : tr("There is no volume to feel."));
+        return;
+    }
+    try {
+        live->send(command);
+    } catch (const std::invalid_argument& e) {
+        panel_.show_refused(QString::fromStdString(e.what()));
+    }
+}
+
+void RunController::restore(const RendererSettings& settings) {
+    send(settings.force);
+    send(settings.proxy.friction);
+    send(settings.penetrability);
+    send(settings.transform);
+    send(command::Forces{settings.forces_on});
+    Q_EMIT content_.run_changed();
+}
+
+void RunController::raise_isovalue(double percent) {
+    const Live* live = content_.live();
+    if (!live) return;
+    const double step = 0.01 * percent * live->field().volume().range();
+    send(command::Isovalue{live->isovalue() + step});
+}
+
+void RunController::scale_hand(double factor) {
+    if (const Live* live = content_.live()) {
+        send(command::Scale{live->settings().transform.scale * factor});
+    }
+}
+
+void RunController::find_devices() {
+    if (search_.busy()) return;
+    auto found = std::make_shared<std::vector<devices::DeviceFinding>>();
+    search_.start(
+        tr("Looking for devices"),
+        [found](const io::Progress&) { *found = devices::find_devices(); },
+        [this, found] {
+            findings_ = *found;
+            show_devices();
+        });
+}
+
+void RunController::show_devices() {
+    const std::string& current =
+        content_.live() ? content_.live()->options().device : options_.device;
+    panel_.set_devices(findings_, QString::fromStdString(current));
+    status_.reset();
+}
+
+void RunController::show_settings() {
+    const Live& live = *content_.live();
+    panel_.set_session(live.field(), content_.volume()->histogram, live.isovalue(),
+                       live.settings(), live.device());
+}
+
+void RunController::use_device(const QString& option) {
+    messages_.guarded([&] {
+        (void)devices::parse_device(option.toStdString());
+        if (Live* live = content_.live()) {
+            const std::int64_t ticks = live->recording() ? live->recording()->ticks() : 0;
+            content_.use_device(option.toStdString());
+            if (ticks > 0) {
+                messages_.show_done(tr("%1 ticks recorded, up to the other device").arg(ticks));
+            }
+            Q_EMIT device_changed();
+        }
+        options_.device = option.toStdString();
+    });
+    show_devices();
+}
+
+void RunController::use_solid(Solid solid) {
+    if (!content_.live() || content_.live()->field().solid() == solid) return;
+    messages_.guarded([&] { content_.use_solid(solid); });
+}
+
+void RunController::observe(const Snapshot& now) {
+    const Live* live = content_.live();
+    if (!live) return;
+    const DeviceStatus status = now.session.device.status;
+    const QString problem = QString::fromStdString(live->device_problem());
+    if (status == status_ && problem == problem_) return;
+    status_ = status;
+    problem_ = problem;
+    panel_.show_device(live->device(), status, problem);
+}
+
+void RunController::show_report() {
+    if (!content_.live()) return;
+    const ServoReport report = content_.live()->report();
+    const double seconds = 1e-3 * static_cast<double>(since_report_.restart());
+    const std::int64_t ticks = report.ticks - std::exchange(reported_ticks_, report.ticks);
+    // Fewer than before: another servo.
+    if (ticks >= 0 && seconds > 0) panel_.show_report(report, static_cast<double>(ticks) / seconds);
+}
+
+}  // namespace palpate::viewer

@@ -1,0 +1,73 @@
+// The live run and its device: carries out what the panel and the keys ask of the run, lists
+// devices, changes to another one.
+#pragma once
+
+#include <QElapsedTimer>
+#include <QObject>
+#include <optional>
+#include <vector>
+
+#include "apps/live/touch_options.hpp"
+#include "apps/viewer/window/background_task.hpp"
+#include "palpate/servo.hpp"
+
+namespace palpate::viewer {
+
+class Content;
+class Messages;
+class Panel;
+
+class RunController : public QObject {
+    Q_OBJECT
+
+  public:
+    /// `options` are those of the command line, for the runs to come.
+    RunController(const app::TouchOptions& options, Content& content, Panel& panel,
+                  Messages& messages);
+
+    /// The options for another run. The level and the recording of the command line are for the
+    /// first one only.
+    app::TouchOptions take_options();
+    /// The device chosen last, by its option.
+    const std::string& device() const { return options_.device; }
+    void set_device(const std::string& option) { options_.device = option; }
+    /// Feels the volume. Throws as Content::start_run.
+    void start(std::shared_ptr<Opened> volume, const app::TouchOptions& options);
+
+    /// What cannot be carried out is said in the panel.
+    void send(const Command& command);
+    /// Sends what can be sent of these; the panel shows what has become of them.
+    void restore(const RendererSettings& settings);
+    /// By so many percent of the data's range.
+    void raise_isovalue(double percent);
+    void scale_hand(double factor);
+
+    void find_devices();
+    void use_device(const QString& option);
+    void use_solid(Solid solid);
+
+    /// Shows the device in the panel where it has changed; a few times a second.
+    void observe(const Snapshot& now);
+    /// Shows how the servo loop has done since the last time; twice a second.
+    void show_report();
+
+  Q_SIGNALS:
+    void device_changed();
+
+  private:
+    void show_devices();
+    void show_settings();
+
+    app::TouchOptions options_;
+    Content& content_;
+    Panel& panel_;
+    Messages& messages_;
+    BackgroundTask search_;
+    std::vector<devices::DeviceFinding> findings_;
+    std::optional<DeviceStatus> status_;
+    QString problem_;
+    QElapsedTimer since_report_;
+    std::int64_t reported_ticks_ = 0;
+};
+
+}  // namespace palpate::viewer
