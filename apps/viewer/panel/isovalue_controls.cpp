@@ -27,7 +27,7 @@ IsovalueControls::IsovalueControls(QWidget* parent)
       felt_(new QLabel),
       warning_(new Note("isovalue_warning", Note::Kind::warning)),
       overruled_(new Note("isovalue_overruled", Note::Kind::plain)),
-      pacer_(this) {
+      limiter_(this) {
     slider_->setObjectName("isovalue_slider");
     slider_->setRange(0, places);
     slider_->setSingleStep(places / 500);
@@ -67,8 +67,8 @@ IsovalueControls::IsovalueControls(QWidget* parent)
 
 void IsovalueControls::connect_inputs() {
     connect(chart_, &LevelChart::level_moved, this, &IsovalueControls::ask);
-    connect(chart_, &LevelChart::level_settled, &pacer_, &Pacer::flush);
-    connect(slider_, &QSlider::sliderReleased, &pacer_, &Pacer::flush);
+    connect(chart_, &LevelChart::level_settled, &limiter_, &RateLimiter::flush);
+    connect(slider_, &QSlider::sliderReleased, &limiter_, &RateLimiter::flush);
     connect(slider_, &QSlider::valueChanged, this, [this](int at) {
         LevelAxis axis = chart_->whole_axis();
         const double fine = std::min(chart_->fine_step(), axis.step());
@@ -79,7 +79,7 @@ void IsovalueControls::connect_inputs() {
     });
     connect(box_, QOverload<double>::of(&QDoubleSpinBox::valueChanged), this, [this](double level) {
         place(level);
-        pacer_.drop();
+        limiter_.drop();
         Q_EMIT wanted(level);
     });
     connect(solid_, QOverload<int>::of(&QComboBox::activated), this,
@@ -94,7 +94,7 @@ void IsovalueControls::set_data(const Field& field, const app::Histogram& histog
 }
 
 void IsovalueControls::clear() {
-    pacer_.drop();
+    limiter_.drop();
     field_.reset();
     chart_->clear();
     felt_->clear();
@@ -125,7 +125,7 @@ void IsovalueControls::show_felt(double isovalue, bool penetrability_on) {
 
 void IsovalueControls::ask(double isovalue) {
     place(isovalue);
-    pacer_.put([this, isovalue] { Q_EMIT wanted(isovalue); });
+    limiter_.put([this, isovalue] { Q_EMIT wanted(isovalue); });
 }
 
 void IsovalueControls::place(double isovalue) {

@@ -9,7 +9,7 @@
 
 #include "apps/viewer/panel/level_chart.hpp"
 #include "apps/viewer/panel/number_box.hpp"
-#include "apps/viewer/panel/pacer.hpp"
+#include "apps/viewer/panel/rate_limiter.hpp"
 #include "apps/viewer/panel/section.hpp"
 
 namespace palpate::viewer {
@@ -30,7 +30,7 @@ class IsovalueControls : public QWidget {
     /// What is felt now, shown apart where it is not what was asked for.
     void show_felt(double isovalue, bool penetrability_on);
     LevelChart& chart() { return *chart_; }
-    void drop() { pacer_.drop(); }
+    void drop() { limiter_.drop(); }
 
   Q_SIGNALS:
     void wanted(double isovalue);  ///< at most 60 a second while something is dragged
@@ -48,7 +48,7 @@ class IsovalueControls : public QWidget {
     QComboBox* solid_;
     QLabel* felt_;
     Note *warning_, *overruled_;
-    Pacer pacer_;
+    RateLimiter limiter_;
     double isovalue_ = 0;
     int differing_ = 0;  // snapshots that tell of another level, in a row
 };

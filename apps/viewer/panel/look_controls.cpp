@@ -20,7 +20,7 @@ LookControls::LookControls(QWidget* parent)
       editor_(new TransferEditor),
       point_level_(new NumberBox),
       point_opacity_(new NumberBox),
-      pacer_(this) {
+      limiter_(this) {
     auto* column = new QVBoxLayout(this);
     column->setContentsMargins(0, 0, 0, 0);
     column->addWidget(make_surface());
@@ -135,7 +135,7 @@ void LookControls::connect_transfer() {
         show_preset();
         changed();
     });
-    connect(editor_, &TransferEditor::settled, &pacer_, &Pacer::flush);
+    connect(editor_, &TransferEditor::settled, &limiter_, &RateLimiter::flush);
     connect(editor_, &TransferEditor::point_chosen, this, &LookControls::show_point);
     connect(editor_, &TransferEditor::colour_wanted, point_colour_, &ColourButton::choose);
     // What is typed for the chosen point; the editor keeps it within its neighbours.
@@ -166,14 +166,14 @@ void LookControls::set_data(const Volume& volume, const app::Histogram& histogra
 }
 
 void LookControls::clear() {
-    pacer_.drop();
+    limiter_.drop();
     volume_.reset();
     histogram_ = {};
     editor_->set_data({});
 }
 
 void LookControls::set_look(const Look& look) {
-    pacer_.drop();
+    limiter_.drop();
     look_ = look;
     for (const Switch& one : switches_) one.box->setChecked(look.*one.shown);
     surface_colour_->set_colour(look.surface_colour);
@@ -203,7 +203,7 @@ void LookControls::show_point(int point) {
 }
 
 void LookControls::changed() {
-    pacer_.put([this] { Q_EMIT look_changed(look_); });
+    limiter_.put([this] { Q_EMIT look_changed(look_); });
 }
 
 }  // namespace palpate::viewer

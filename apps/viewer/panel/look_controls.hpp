@@ -55,7 +55,7 @@ class LookControls : public QWidget {
     QComboBox* preset_;
     TransferEditor* editor_;
     NumberBox *point_level_, *point_opacity_;
-    Pacer pacer_;
+    RateLimiter limiter_;
 };
 
 }  // namespace palpate::viewer

@@ -37,7 +37,7 @@ PenetrabilityControls::PenetrabilityControls(LevelChart& chart, QWidget* parent)
       minimum_(new NumberBox),
       ranges_row_(new QWidget),
       table_(new RangeTable),
-      pacer_(this) {
+      limiter_(this) {
     auto* row = new QHBoxLayout;
     for (int i = 0; i < 3; ++i) {
         auto* button = new QRadioButton(mode_texts[i].text);
@@ -120,10 +120,10 @@ void PenetrabilityControls::connect_chart() {
         dragging_ = true;
         const PressThrough wish = with_bands(shown_, bands, solid_);
         show_wish(wish);
-        pacer_.put([this, wish] { Q_EMIT wanted(wish); });
+        limiter_.put([this, wish] { Q_EMIT wanted(wish); });
     });
     connect(chart_, &LevelChart::bands_settled, this, [this] {
-        pacer_.flush();
+        limiter_.flush();
         if (!std::exchange(dragging_, false)) return;
         ask(shown_);  // bands that were drawn over each other become one
     });
@@ -146,13 +146,13 @@ void PenetrabilityControls::set_in_use(const Penetrability& in_use) {
 }
 
 void PenetrabilityControls::drop() {
-    pacer_.drop();
+    limiter_.drop();
     threshold_->drop();
     dragging_ = false;
 }
 
 void PenetrabilityControls::ask(const PressThrough& wish) {
-    pacer_.drop();
+    limiter_.drop();
     show_wish(wish);
     Q_EMIT wanted(wish);
 }

@@ -50,7 +50,7 @@ class PenetrabilityControls : public QWidget {
     NumberBox* minimum_;
     QWidget* ranges_row_;
     RangeTable* table_;
-    Pacer pacer_;
+    RateLimiter limiter_;
     PressThrough shown_;
     Solid solid_ = Solid::above;
     double low_ = 0, high_ = 1;

@@ -22,7 +22,7 @@ Quantity::Quantity(const QString& name, const QString& unit, double low, double 
       scale_(scale),
       slider_(new QSlider(Qt::Horizontal)),
       box_(new NumberBox),
-      pacer_(this) {
+      limiter_(this) {
     setObjectName(name);
     slider_->setObjectName(name + "_slider");
     slider_->setRange(0, places);
@@ -47,11 +47,11 @@ Quantity::Quantity(const QString& name, const QString& unit, double low, double 
     row->addWidget(box_);
     setFocusProxy(box_);
     connect(slider_, &QSlider::valueChanged, this, [this](int place) { ask(value_at(place)); });
-    connect(slider_, &QSlider::sliderReleased, &pacer_, &Pacer::flush);
+    connect(slider_, &QSlider::sliderReleased, &limiter_, &RateLimiter::flush);
     connect(box_, QOverload<double>::of(&QDoubleSpinBox::valueChanged), this, [this](double value) {
         value_ = value;
         place_slider();
-        pacer_.drop();
+        limiter_.drop();
         Q_EMIT wanted(value);
     });
     set_value(low);
@@ -103,7 +103,7 @@ void Quantity::place_slider() {
 void Quantity::ask(double value) {
     value_ = value;
     box_->show_value(value);
-    pacer_.put([this, value] { Q_EMIT wanted(value); });
+    limiter_.put([this, value] { Q_EMIT wanted(value); });
 }
 
 }  // namespace palpate::viewer

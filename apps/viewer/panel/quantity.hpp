@@ -5,7 +5,7 @@
 #include <QWidget>
 
 #include "apps/viewer/panel/number_box.hpp"
-#include "apps/viewer/panel/pacer.hpp"
+#include "apps/viewer/panel/rate_limiter.hpp"
 
 namespace palpate::viewer {
 
@@ -32,7 +32,7 @@ class Quantity : public QWidget {
     double low() const { return low_; }
     double high() const { return high_; }
     /// Forgets a wish that waits.
-    void drop() { pacer_.drop(); }
+    void drop() { limiter_.drop(); }
     NumberBox& box() { return *box_; }
     void set_accessible_name(const QString& name);
 
@@ -49,7 +49,7 @@ class Quantity : public QWidget {
     Scale scale_;
     QSlider* slider_;
     NumberBox* box_;
-    Pacer pacer_;
+    RateLimiter limiter_;
 };
 
 }  // namespace palpate::viewer

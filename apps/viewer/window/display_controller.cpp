@@ -24,9 +24,8 @@ DisplayController::DisplayController(Content& content, Views& views, Panel& pane
         const io::RecordingHead& head = content_.playback()->head();
         show_volume(content_.playback()->field(), head.isovalue, head.settings.transform);
     });
-    connect(&panel, &Panel::look_changed, this, [this](const Look& look) {
-        views_.set_look(look);
-    });
+    connect(&panel, &Panel::look_changed, this,
+            [this](const Look& look) { views_.set_look(look); });
 }
 
 void DisplayController::clear() {

@@ -15,9 +15,8 @@
 #include <QVBoxLayout>
 
 #include "apps/viewer/panel/panel.hpp"
-#include "apps/viewer/panel/sequence_bar.hpp"
+#include "apps/viewer/panel/timeline.hpp"
 #include "apps/viewer/scene/scene.hpp"
-#include "apps/viewer/slices/time_line.hpp"
 #include "apps/viewer/window/file_dialogs.hpp"
 #include "apps/viewer/window/menus.hpp"
 #include "apps/viewer/window/progress_strip.hpp"
@@ -37,16 +36,15 @@ constexpr int message_ms = 10'000;
 MainWindow::MainWindow(const app::TouchOptions& options)
     : views_(new Views(this)),
       panel_(new Panel(this)),
-      time_line_(new TimeLine(this)),
-      sequence_bar_(new SequenceBar(this)),
+      timeline_(new Timeline(this)),
       frame_time_(new QLabel),
       messages_(this),
       display_(content_, *views_, *panel_),
       run_(options, content_, *panel_, messages_),
-      recordings_(content_, *panel_, *time_line_, messages_),
+      recordings_(content_, *panel_, messages_),
       probe_(content_, run_, *views_, messages_),
       editing_(content_, *panel_, messages_, this),
-      sequences_(content_, *sequence_bar_, messages_),
+      playing_(content_, *timeline_, messages_),
       files_(content_, run_, recordings_, display_, messages_),
       actions_(this, messages_) {
     setObjectName("palpate");
@@ -71,8 +69,7 @@ void MainWindow::build() {
     layout->setContentsMargins(0, 0, 0, 0);
     layout->setSpacing(0);
     layout->addWidget(views_, 1);
-    layout->addWidget(time_line_);
-    layout->addWidget(sequence_bar_);
+    layout->addWidget(timeline_);
     auto* progress = new ProgressStrip;
     layout->addWidget(progress);
     setCentralWidget(centre);
@@ -128,11 +125,12 @@ void MainWindow::restore_layout() {
 
 void MainWindow::tick() {
     ++rounds_;
+    playing_.advance();
     const auto now = display_.observe();
     if (now && rounds_ % panel_rounds == 0) {
         panel_->show_snapshot(*now);
         editing_.observe();
-        sequences_.observe();
+        playing_.observe();
     }
     if (now && rounds_ % device_rounds == 0) run_.observe(*now);
     if (rounds_ % device_rounds == 0) actions_.refresh();

@@ -14,15 +14,14 @@
 #include "apps/viewer/window/probe_controller.hpp"
 #include "apps/viewer/window/recording_controller.hpp"
 #include "apps/viewer/window/run_controller.hpp"
-#include "apps/viewer/window/sequence_controller.hpp"
+#include "apps/viewer/window/timeline_controller.hpp"
 
 class QLabel;
 
 namespace palpate::viewer {
 
 class Panel;
-class SequenceBar;
-class TimeLine;
+class Timeline;
 class Views;
 
 class MainWindow : public QMainWindow {
@@ -50,8 +49,8 @@ class MainWindow : public QMainWindow {
     Playback* playback() { return content_.playback(); }
     Views& views() { return *views_; }
     Panel& panel() { return *panel_; }
-    TimeLine& time_line() { return *time_line_; }
-    SequenceBar& sequence_bar() { return *sequence_bar_; }
+    Timeline& timeline() { return *timeline_; }
+    TimelineController& playing() { return playing_; }
 
     /// Throws io::OutputError.
     void save_picture(const QString& path, bool whole_window);
@@ -71,8 +70,7 @@ class MainWindow : public QMainWindow {
 
     Views* views_;
     Panel* panel_;
-    TimeLine* time_line_;
-    SequenceBar* sequence_bar_;
+    Timeline* timeline_;
     QLabel* frame_time_;
     Messages messages_;
     Content content_;
@@ -81,7 +79,7 @@ class MainWindow : public QMainWindow {
     RecordingController recordings_;
     ProbeController probe_;
     EditController editing_;
-    SequenceController sequences_;
+    TimelineController playing_;
     FileController files_;
     Actions actions_;
     QTimer timer_;

@@ -8,7 +8,7 @@
 #include <QToolBar>
 
 #include "apps/viewer/panel/panel.hpp"
-#include "apps/viewer/panel/sequence_bar.hpp"
+#include "apps/viewer/panel/timeline.hpp"
 #include "apps/viewer/scene/scene.hpp"
 #include "apps/viewer/window/actions.hpp"
 #include "apps/viewer/window/appearance.hpp"
@@ -20,7 +20,7 @@
 namespace palpate::viewer {
 namespace {
 
-QString tr(const char* text) {
+QString menu_text(const char* text) {
     return MainWindow::tr(text);
 }
 
@@ -31,7 +31,7 @@ void fill_recent(QMenu& menu, MainWindow& window) {
             if (window.editing().may_lose_edits()) window.files().open_path(path);
         });
     }
-    if (menu.isEmpty()) menu.addAction(tr("nothing yet"))->setEnabled(false);
+    if (menu.isEmpty()) menu.addAction(menu_text("nothing yet"))->setEnabled(false);
 }
 
 void add_open_actions(MainWindow& window, Actions& actions, QMenu* menu) {
@@ -42,14 +42,14 @@ void add_open_actions(MainWindow& window, Actions& actions, QMenu* menu) {
             if (!path.isEmpty()) window.files().open_path(path);
         };
     };
-    actions.add(menu, "open", tr("&Open…"), QKeySequence::Open, open(ask_open_name));
-    actions.add(menu, "open_folder", tr("Open a &folder (DICOM, TIFF)…"),
+    actions.add(menu, "open", menu_text("&Open…"), QKeySequence::Open, open(ask_open_name));
+    actions.add(menu, "open_folder", menu_text("Open a &folder (DICOM, TIFF)…"),
                 QKeySequence("Ctrl+Shift+O"), open(ask_open_folder));
-    actions.add(menu, "open_raw", tr("Open ra&w data…"), {}, [&window] {
+    actions.add(menu, "open_raw", menu_text("Open ra&w data…"), {}, [&window] {
         if (!window.editing().may_lose_edits()) return;
         if (const auto options = ask_open_raw(&window)) window.files().open_volume(*options);
     });
-    QMenu* recent = menu->addMenu(tr("Open &recent"));
+    QMenu* recent = menu->addMenu(menu_text("Open &recent"));
     recent->setObjectName("recent");
     QObject::connect(recent, &QMenu::aboutToShow, &window,
                      [&window, recent] { fill_recent(*recent, window); });
@@ -58,66 +58,67 @@ void add_open_actions(MainWindow& window, Actions& actions, QMenu* menu) {
 void add_save_actions(MainWindow& window, Actions& actions, QMenu* menu) {
     const auto opened = [&window] { return window.content().volume() != nullptr; };
     actions.add(
-        menu, "save_session", tr("&Save the session…"), QKeySequence::Save,
+        menu, "save_session", menu_text("&Save the session…"), QKeySequence::Save,
         [&window] {
             const QString path =
-                ask_save_name(&window, tr("Save the session"), "session.json", "json");
+                ask_save_name(&window, menu_text("Save the session"), "session.json", "json");
             if (!path.isEmpty()) window.files().save_session(path);
         },
         opened);
     const auto picture = [&window](bool whole_window) {
-        const QString path =
-            ask_save_name(&window, tr("Save a picture"), "palpate-" + time_stamp() + ".png", "png");
+        const QString path = ask_save_name(&window, menu_text("Save a picture"),
+                                           "palpate-" + time_stamp() + ".png", "png");
         if (!path.isEmpty()) window.save_picture(path, whole_window);
     };
     actions.add(
-        menu, "picture", tr("&Picture of the scene…"), QKeySequence("Ctrl+P"),
+        menu, "picture", menu_text("&Picture of the scene…"), QKeySequence("Ctrl+P"),
         [picture] { picture(false); }, opened);
-    actions.add(menu, "window_picture", tr("Picture of the &window…"), QKeySequence("Ctrl+Shift+P"),
-                [picture] { picture(true); });
+    actions.add(menu, "window_picture", menu_text("Picture of the &window…"),
+                QKeySequence("Ctrl+Shift+P"), [picture] { picture(true); });
 }
 
 void make_file_menu(MainWindow& window, Actions& actions) {
-    QMenu* file = window.menuBar()->addMenu(tr("&File"));
+    QMenu* file = window.menuBar()->addMenu(menu_text("&File"));
     add_open_actions(window, actions, file);
     file->addSeparator();
     add_save_actions(window, actions, file);
     file->addSeparator();
-    actions.add(file, "quit", tr("&Quit"), QKeySequence("Ctrl+Q"), [&window] { window.close(); });
+    actions.add(file, "quit", menu_text("&Quit"), QKeySequence("Ctrl+Q"),
+                [&window] { window.close(); });
 }
 
 void add_recording_actions(MainWindow& window, Actions& actions, QMenu* menu) {
     const auto record = [&window, &actions](bool on) {
         actions.refresh();  // the switch shows what is, not what was asked for
         if (!on) return window.recordings().stop();
-        const QString path = ask_save_name(&window, tr("Record the session"),
+        const QString path = ask_save_name(&window, menu_text("Record the session"),
                                            "session-" + time_stamp() + ".csv", "csv", false);
         if (!path.isEmpty()) window.recordings().start(path);
     };
     actions.add_switch(
-        menu, "record", tr("&Record…"), QKeySequence("Ctrl+R"), record,
+        menu, "record", menu_text("&Record…"), QKeySequence("Ctrl+R"), record,
         [&window] { return window.recordings().recording(); },
         [&window] { return window.live() != nullptr; });
     actions.add(
-        menu, "leave_playback", tr("Leave the recording, &feel again"), QKeySequence("Esc"),
+        menu, "leave_playback", menu_text("Leave the recording, &feel again"), QKeySequence("Esc"),
         [&window] { window.files().leave_playback(); },
         [&window] { return window.playback() != nullptr; });
 }
 
 void make_session_menu(MainWindow& window, Actions& actions) {
-    QMenu* menu = window.menuBar()->addMenu(tr("&Session"));
+    QMenu* menu = window.menuBar()->addMenu(menu_text("&Session"));
     const auto live = [&window] { return window.live() != nullptr; };
     const auto send = [&window](const Command& command) { window.run().send(command); };
     actions.add_switch(
-        menu, "forces", tr("&Forces on"), QKeySequence(Qt::Key_Space),
+        menu, "forces", menu_text("&Forces on"), QKeySequence(Qt::Key_Space),
         [send](bool on) { send(command::Forces{on}); },
         [&window] { return window.live() && window.live()->settings().forces_on; }, live);
     actions.add_switch(
-        menu, "freeze", tr("Free&ze"), QKeySequence("F"),
+        menu, "freeze", menu_text("Free&ze"), QKeySequence("F"),
         [send](bool on) { send(command::Freeze{on}); },
         [&window] { return window.live() && window.live()->frozen(); }, live);
     actions.add_switch(
-        menu, "clutch", tr("&Clutch: the volume follows the hand"), QKeySequence("C"),
+        menu, "clutch", menu_text("&Clutch: the volume follows the hand"), QKeySequence("C"),
         [send](bool on) { send(command::Clutch{on}); },
         [&window] {
             const auto now = window.live() ? window.live()->snapshot() : std::nullopt;
@@ -125,7 +126,7 @@ void make_session_menu(MainWindow& window, Actions& actions) {
         },
         live);
     actions.add_switch(
-        menu, "pointer", tr("&Mouse moves the probe"), QKeySequence("H"),
+        menu, "pointer", menu_text("&Mouse moves the probe"), QKeySequence("H"),
         [&window](bool on) { window.probe().set_pointing(on); },
         [&window] { return window.probe().pointing(); },
         [&window] { return window.probe().possible(); });
@@ -136,93 +137,94 @@ void make_session_menu(MainWindow& window, Actions& actions) {
     const auto scale = [&window](double factor) {
         return [&window, factor] { window.run().scale_hand(factor); };
     };
-    actions.add_repeating(menu, "level_up", tr("Isovalue &up by 1 %"), QKeySequence("+"), raise(1),
-                          live);
-    actions.add_repeating(menu, "level_down", tr("Isovalue &down by 1 %"), QKeySequence("-"),
+    actions.add_repeating(menu, "level_up", menu_text("Isovalue &up by 1 %"), QKeySequence("+"),
+                          raise(1), live);
+    actions.add_repeating(menu, "level_down", menu_text("Isovalue &down by 1 %"), QKeySequence("-"),
                           raise(-1), live);
-    actions.add(menu, "coarser", tr("Hand &larger in the volume"), QKeySequence("]"), scale(1.1),
-                live);
-    actions.add(menu, "finer", tr("Hand &smaller in the volume"), QKeySequence("["), scale(1 / 1.1),
-                live);
+    actions.add(menu, "coarser", menu_text("Hand &larger in the volume"), QKeySequence("]"),
+                scale(1.1), live);
+    actions.add(menu, "finer", menu_text("Hand &smaller in the volume"), QKeySequence("["),
+                scale(1 / 1.1), live);
     menu->addSeparator();
     add_recording_actions(window, actions, menu);
 }
 
 void make_data_menu(MainWindow& window, Actions& actions) {
-    QMenu* menu = window.menuBar()->addMenu(tr("&Data"));
+    QMenu* menu = window.menuBar()->addMenu(menu_text("&Data"));
     const auto editable = [&window] { return window.content().editor() != nullptr; };
-    const auto sequence = [&window] { return window.content().player() != nullptr; };
+    const auto playable = [&window] { return window.content().player() || window.playback(); };
     actions.add(
-        menu, "brush_action", tr("&Brush at the probe"), QKeySequence("B"),
+        menu, "brush_action", menu_text("&Brush at the probe"), QKeySequence("B"),
         [&window] { window.panel().toggle_brush(); }, editable);
     actions.add_repeating(
-        menu, "undo_action", tr("&Undo"), QKeySequence::Undo,
+        menu, "undo_action", menu_text("&Undo"), QKeySequence::Undo,
         [&window] { window.editing().undo(); }, editable);
     actions.add_repeating(
-        menu, "redo_action", tr("&Redo"), QKeySequence("Ctrl+Shift+Z"),
+        menu, "redo_action", menu_text("&Redo"), QKeySequence("Ctrl+Shift+Z"),
         [&window] { window.editing().redo(); }, editable);
     actions.add(
-        menu, "save_volume", tr("&Save the volume…"), QKeySequence("Ctrl+Shift+S"),
+        menu, "save_volume", menu_text("&Save the volume…"), QKeySequence("Ctrl+Shift+S"),
         [&window] { window.editing().ask_save(); }, [&window] { return window.live() != nullptr; });
     menu->addSeparator();
     actions.add(
-        menu, "play_sequence", tr("&Play the sequence, or pause it"), QKeySequence("K"),
-        [&window] { window.sequence_bar().toggle_playing(); }, sequence);
+        menu, "play_sequence", menu_text("&Play the sequence, or pause it"), QKeySequence("K"),
+        [&window] { window.timeline().toggle_playing(); }, playable);
     const auto step = [&window](int frames) {
-        return [&window, frames] { window.sequence_bar().step(frames); };
+        return [&window, frames] { window.timeline().step(frames); };
     };
-    actions.add_repeating(menu, "frame_back", tr("A frame &back"), QKeySequence(","), step(-1),
-                          sequence);
-    actions.add_repeating(menu, "frame_on", tr("A frame &on"), QKeySequence("."), step(1),
-                          sequence);
+    actions.add_repeating(menu, "frame_back", menu_text("A frame &back"), QKeySequence(","),
+                          step(-1), playable);
+    actions.add_repeating(menu, "frame_on", menu_text("A frame &on"), QKeySequence("."), step(1),
+                          playable);
 }
 
 void add_camera_actions(MainWindow& window, Actions& actions, QMenu* menu) {
     actions.add(
-        menu, "whole", tr("&Whole volume"), QKeySequence("R"),
+        menu, "whole", menu_text("&Whole volume"), QKeySequence("R"),
         [&window] { window.views().scene().reset_camera(); },
         [&window] { return window.content().volume() != nullptr; });
     const auto from_hand = [&window] {
         const auto now = window.live() ? window.live()->snapshot() : std::nullopt;
         if (now) window.display().look_from_hand(now->session.transform);
     };
-    actions.add(menu, "from_hand", tr("From the &hand"), QKeySequence("0"), from_hand,
+    actions.add(menu, "from_hand", menu_text("From the &hand"), QKeySequence("0"), from_hand,
                 [&window] { return window.live() != nullptr; });
     int number = 0;
     for (const std::string& name : pictures::view_names()) {
-        actions.add(
-            menu, ("view_" + name).c_str(), tr("From the %1").arg(QString::fromStdString(name)),
-            QKeySequence(QString::number(++number)),
-            [&window, name] { window.views().scene().look_from(pictures::view_named(name)); });
+        actions.add(menu, ("view_" + name).c_str(),
+                    menu_text("From the %1").arg(QString::fromStdString(name)),
+                    QKeySequence(QString::number(++number)), [&window, name] {
+                        window.views().scene().look_from(pictures::view_named(name));
+                    });
     }
 }
 
 void make_view_menu(MainWindow& window, Actions& actions) {
-    QMenu* view = window.menuBar()->addMenu(tr("&View"));
+    QMenu* view = window.menuBar()->addMenu(menu_text("&View"));
     add_camera_actions(window, actions, view);
     view->addSeparator();
     Views& views = window.views();
     actions.add_switch(
-        view, "slices", tr("&Slices beside the scene"), QKeySequence("X"),
+        view, "slices", menu_text("&Slices beside the scene"), QKeySequence("X"),
         [&views](bool on) { views.show_slices(on); }, [&views] { return views.slices_shown(); });
     QAction* follow = actions.add_switch(
-        view, "follow", tr("&Crosshair follows the probe"), QKeySequence("G"),
+        view, "follow", menu_text("&Crosshair follows the probe"), QKeySequence("G"),
         [&views](bool on) { views.set_follow(on); }, [&views] { return views.follows(); });
     QObject::connect(&views, &Views::follow_changed, follow, &QAction::setChecked);
     auto* dock = window.findChild<QDockWidget*>("dock");
     dock->toggleViewAction()->setShortcut(QKeySequence("F9"));
     view->addAction(dock->toggleViewAction());
     actions.add_switch(
-        view, "full", tr("&Full screen"), QKeySequence("F11"),
+        view, "full", menu_text("&Full screen"), QKeySequence("F11"),
         [&window](bool on) { on ? window.showFullScreen() : window.showNormal(); },
         [&window] { return window.isFullScreen(); });
-    QMenu* menu = view->addMenu(tr("&Appearance"));
+    QMenu* menu = view->addMenu(menu_text("&Appearance"));
     const auto use = [](Appearance appearance) {
         return [appearance] { set_appearance(appearance); };
     };
-    actions.add(menu, "system", tr("As the &system"), {}, use(Appearance::system));
-    actions.add(menu, "light", tr("&Light"), {}, use(Appearance::light));
-    actions.add(menu, "dark", tr("&Dark"), {}, use(Appearance::dark));
+    actions.add(menu, "system", menu_text("As the &system"), {}, use(Appearance::system));
+    actions.add(menu, "light", menu_text("&Light"), {}, use(Appearance::light));
+    actions.add(menu, "dark", menu_text("&Dark"), {}, use(Appearance::dark));
 }
 
 }  // namespace
@@ -232,12 +234,12 @@ void make_menus(MainWindow& window, Actions& actions) {
     make_session_menu(window, actions);
     make_data_menu(window, actions);
     make_view_menu(window, actions);
-    QMenu* help = window.menuBar()->addMenu(tr("&Help"));
+    QMenu* help = window.menuBar()->addMenu(menu_text("&Help"));
     actions
-        .add(help, "shortcuts_action", tr("&Shortcuts"), QKeySequence("?"),
+        .add(help, "shortcuts_action", menu_text("&Shortcuts"), QKeySequence("?"),
              [&window] { make_shortcuts_dialog(&window)->show(); })
         ->setShortcuts({QKeySequence("?"), QKeySequence("Shift+?"), QKeySequence::HelpContents});
-    QToolBar* bar = window.addToolBar(tr("Tools"));
+    QToolBar* bar = window.addToolBar(menu_text("Tools"));
     bar->setObjectName("tools");
     for (const char* name :
          {"open", "forces", "freeze", "record", "pointer", "whole", "from_hand"}) {

@@ -5,7 +5,6 @@
 
 #include "palpate/volume.hpp"
 
-
 namespace palpate::viewer {
 
 class Content;

@@ -1,23 +1,18 @@
-// Starts and ends recordings; sets up the time line for one that is played.
+// Starts and ends recordings; describes one that is played.
 #include "apps/viewer/window/recording_controller.hpp"
 
 #include <utility>
 
 #include "apps/viewer/panel/panel.hpp"
-#include "apps/viewer/slices/time_line.hpp"
 #include "apps/viewer/window/content.hpp"
 #include "apps/viewer/window/messages.hpp"
 
 namespace palpate::viewer {
 
-RecordingController::RecordingController(Content& content, Panel& panel, TimeLine& time_line,
-                                         Messages& messages)
-    : content_(content), panel_(panel), time_line_(time_line), messages_(messages) {
+RecordingController::RecordingController(Content& content, Panel& panel, Messages& messages)
+    : content_(content), panel_(panel), messages_(messages) {
     connect(&content, &Content::closing, this, &RecordingController::stop);
-    connect(&content, &Content::closed, &time_line, &QWidget::hide);
     connect(&content, &Content::playback_started, this, &RecordingController::show_playback);
-    connect(&time_line, &TimeLine::time_chosen, &content, &Content::set_time);
-    time_line.hide();
 }
 
 void RecordingController::start(const QString& path) {
@@ -47,29 +42,20 @@ void RecordingController::check() {
     if (recording() && !content_.live()->recording()->problem().empty()) stop();
 }
 
-void RecordingController::show_time(double time) {
-    if (!content_.playback()) return;
-    content_.set_time(time);
-    time_line_.set_time(time);
-}
-
 void RecordingController::show_playback() {
     const Playback& playback = *content_.playback();
     const io::RecordingHead& head = playback.head();
     DeviceInfo device;
     device.name = device.model = head.device;
     device.limits = head.settings.device;
-    panel_.set_session(playback.field(), content_.volume()->histogram, head.isovalue,
-                       head.settings, device);
+    panel_.set_session(playback.field(), content_.volume()->histogram, head.isovalue, head.settings,
+                       device);
     panel_.set_observing(true);
-    time_line_.set_playback(playback);
-    time_line_.show();
-    show_time(playback.begin());
     QString words = tr("%1 ticks").arg(playback.ticks());
     if (!playback.complete()) words += tr("; the recording was cut off before its end");
     if (playback.different() > 0) {
-        words += tr("; %1 of them come out otherwise than they were recorded")
-                     .arg(playback.different());
+        words +=
+            tr("; %1 of them come out otherwise than they were recorded").arg(playback.different());
     }
     messages_.show_done(words);
 }

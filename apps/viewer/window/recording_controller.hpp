@@ -1,4 +1,4 @@
-// Records the live run, and plays recordings on the time line.
+// Records the live run; shows in the panel what a recording was made with.
 #pragma once
 
 #include <QObject>
@@ -10,13 +10,12 @@ namespace palpate::viewer {
 class Content;
 class Messages;
 class Panel;
-class TimeLine;
 
 class RecordingController : public QObject {
     Q_OBJECT
 
   public:
-    RecordingController(Content& content, Panel& panel, TimeLine& time_line, Messages& messages);
+    RecordingController(Content& content, Panel& panel, Messages& messages);
 
     /// Errors are shown.
     void start(const QString& path);
@@ -27,9 +26,6 @@ class RecordingController : public QObject {
     /// 0, or the status for a program in which a recording was lost.
     int exit_status() const { return exit_status_; }
 
-    /// [s] Of the recording that is open; nothing without one.
-    void show_time(double time);
-
   Q_SIGNALS:
     void changed();
 
@@ -38,7 +34,6 @@ class RecordingController : public QObject {
 
     Content& content_;
     Panel& panel_;
-    TimeLine& time_line_;
     Messages& messages_;
     int exit_status_ = 0;
 };

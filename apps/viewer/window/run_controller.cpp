@@ -96,8 +96,8 @@ void RunController::show_devices() {
 
 void RunController::show_settings() {
     const Live& live = *content_.live();
-    panel_.set_session(live.field(), content_.volume()->histogram, live.isovalue(),
-                       live.settings(), live.device());
+    panel_.set_session(live.field(), content_.volume()->histogram, live.isovalue(), live.settings(),
+                       live.device());
 }
 
 void RunController::use_device(const QString& option) {

@@ -25,7 +25,7 @@ Screenshot::Screenshot(MainWindow& window, const QString& path, double after)
 /// Whether the hand is where the picture wants it; it is shown there from then on.
 bool Screenshot::reached() {
     if (const Playback* playback = window_.playback()) {
-        if (!held_) window_.recordings().show_time(playback->begin() + after_);
+        if (!held_) window_.playing().show_time(playback->begin() + after_);
         held_ = true;
         return true;
     }

@@ -9,7 +9,7 @@
 
 #include "apps/viewer/panel/level_chart.hpp"
 #include "apps/viewer/panel/number_box.hpp"
-#include "apps/viewer/panel/pacer.hpp"
+#include "apps/viewer/panel/rate_limiter.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -83,25 +83,25 @@ TEST_F(Isovalue, the_first_of_a_drag_goes_out_at_once_and_the_last_always) {
     EXPECT_NEAR(std::get<command::Isovalue>(commands.back()).isovalue, 600, pixel());
 }
 
-TEST(Pacer, passes_the_first_at_once_then_the_newest_and_forgets_what_is_dropped) {
-    Pacer pacer(nullptr, 1000 * 1000);  // the time never comes in this test
+TEST(RateLimiter, passes_the_first_at_once_then_the_newest_and_forgets_what_is_dropped) {
+    RateLimiter limiter(nullptr, 1000 * 1000);  // the time never comes in this test
     std::vector<int> passed;
-    const auto wish = [&](int i) { pacer.put([&passed, i] { passed.push_back(i); }); };
+    const auto wish = [&](int i) { limiter.put([&passed, i] { passed.push_back(i); }); };
     for (int i = 0; i < 100; ++i) wish(i);
     EXPECT_EQ(passed, (std::vector{0}));
-    pacer.flush();
+    limiter.flush();
     EXPECT_EQ(passed, (std::vector{0, 99}));
-    pacer.flush();
+    limiter.flush();
     wish(100);
-    pacer.drop();
-    pacer.flush();
+    limiter.drop();
+    limiter.flush();
     EXPECT_EQ(passed, (std::vector{0, 99}));
 }
 
-TEST(Pacer, what_is_held_back_comes_by_itself) {
-    Pacer pacer(nullptr, 5);
+TEST(RateLimiter, what_is_held_back_comes_by_itself) {
+    RateLimiter limiter(nullptr, 5);
     int passed = -1;
-    for (int i = 0; i < 10; ++i) pacer.put([&passed, i] { passed = i; });
+    for (int i = 0; i < 10; ++i) limiter.put([&passed, i] { passed = i; });
     for (int i = 0; i < 2000 && passed != 9; ++i) QTest::qWait(1);
     EXPECT_EQ(passed, 9);
 }

@@ -115,22 +115,22 @@ TEST_F(Window, a_session_is_recorded_and_played_back_with_its_time_line) {
         << window_->messages().problem().toStdString();
     EXPECT_EQ(window_->live(), nullptr);
     EXPECT_EQ(window_->playback()->different(), 0U);
-    EXPECT_TRUE(window_->time_line().isVisible());
+    EXPECT_TRUE(window_->timeline().isVisible());
     // At the end the hand presses, at the beginning it does not.
-    window_->recordings().show_time(window_->playback()->end());
+    window_->playing().show_time(window_->playback()->end());
     EXPECT_GT(window_->playback()->at(window_->content().time()).session.tick.force.norm(), 0.2);
     QTest::qWait(100);
     save("played");
-    window_->recordings().show_time(window_->playback()->begin());
+    window_->playing().show_time(window_->playback()->begin());
     EXPECT_EQ(window_->playback()->at(window_->content().time()).session.tick.force.norm(), 0);
-    QTest::mouseClick(&part<QToolButton>("play"), Qt::LeftButton);
-    EXPECT_TRUE(window_->time_line().playing());
+    QTest::mouseClick(&part<QToolButton>("timeline_play"), Qt::LeftButton);
+    EXPECT_TRUE(window_->timeline().playing());
     ASSERT_TRUE(
         wait_until([&] { return window_->content().time() > window_->playback()->begin() + 0.1; }));
     // And back to feeling.
     QTest::keyClick(window_.get(), Qt::Key_Escape);
     ASSERT_TRUE(wait_until([&] { return window_->live() != nullptr; }));
-    EXPECT_FALSE(window_->time_line().isVisible());
+    EXPECT_FALSE(window_->timeline().isVisible());
 }
 
 TEST_F(Window, what_cannot_be_opened_is_told_and_the_session_goes_on) {

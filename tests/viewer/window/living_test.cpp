@@ -7,7 +7,7 @@
 #include <QTimer>
 #include <QToolButton>
 
-#include "apps/viewer/panel/sequence_bar.hpp"
+#include "apps/viewer/panel/timeline.hpp"
 #include "palpate/io/volume_file.hpp"
 #include "viewer/window/window_fixture.hpp"
 
@@ -101,7 +101,7 @@ TEST_F(Living, a_recording_of_edits_is_played_with_them) {
     ASSERT_TRUE(wait_until([&] { return window_->playback() != nullptr; }))
         << window_->messages().problem().toStdString();
     EXPECT_EQ(window_->playback()->different(), 0U);
-    window_->recordings().show_time(window_->playback()->end());
+    window_->playing().show_time(window_->playback()->end());
     Playback& playback = *window_->playback();
     const Volume seen = flattened(playback.field_at(playback.at(playback.end())).samples());
     const Volume felt = flattened(*carved);
@@ -114,12 +114,12 @@ TEST_F(Living, a_sequence_plays_steps_and_is_sought_with_its_bar) {
     // Not feel(): what plays does not settle.
     window_->files().open_path("synthetic:beating:32x32x32");
     ASSERT_TRUE(wait_until([&] { return window_->live() && window_->live()->snapshot(); }));
-    EXPECT_TRUE(window_->sequence_bar().isVisible());
+    EXPECT_TRUE(window_->timeline().isVisible());
     const double before = now().session.moment;
     ASSERT_TRUE(wait_until([&] { return now().session.moment > before + 0.1; })) << "it plays";
-    QTest::mouseClick(&part<QToolButton>("sequence_play"), Qt::LeftButton);
+    QTest::mouseClick(&part<QToolButton>("timeline_play"), Qt::LeftButton);
     ASSERT_TRUE(wait_until([&] { return now().speed == 0; }));
-    QTest::mouseClick(&part<QToolButton>("sequence_forward"), Qt::LeftButton);
+    QTest::mouseClick(&part<QToolButton>("timeline_forward"), Qt::LeftButton);
     ASSERT_TRUE(wait_until([&] {
         const double frames = now().session.moment / 0.04;
         return std::abs(frames - std::round(frames)) < 1e-6;
@@ -131,7 +131,7 @@ TEST_F(Living, a_sequence_plays_steps_and_is_sought_with_its_bar) {
     QTest::keyClick(window_.get(), Qt::Key_K);
     EXPECT_TRUE(wait_until([&] { return now().speed == 1; }));
     feel("synthetic:sphere:32x32x32");
-    EXPECT_FALSE(window_->sequence_bar().isVisible());
+    EXPECT_FALSE(window_->timeline().isVisible());
     EXPECT_TRUE(part<QAction>("brush_action").isEnabled());
 }
 

@@ -16,9 +16,9 @@
 #include <memory>
 
 #include "apps/viewer/panel/panel.hpp"
+#include "apps/viewer/panel/timeline.hpp"
 #include "apps/viewer/scene/scene.hpp"
 #include "apps/viewer/slices/slice_pane.hpp"
-#include "apps/viewer/slices/time_line.hpp"
 #include "apps/viewer/window/main_window.hpp"
 #include "apps/viewer/window/views.hpp"
 #include "support/scratch_folder.hpp"

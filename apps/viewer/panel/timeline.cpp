@@ -1,5 +1,5 @@
-// Views to controls, and controls to wishes.
-#include "apps/viewer/panel/sequence_bar.hpp"
+// Controls of the timeline: shows views in them, and emits what the user does with them.
+#include "apps/viewer/panel/timeline.hpp"
 
 #include <QCheckBox>
 #include <QEvent>
@@ -14,7 +14,7 @@
 #include <cmath>
 
 #include "apps/viewer/panel/number_box.hpp"
-#include "apps/viewer/panel/sequence_track.hpp"
+#include "apps/viewer/panel/timeline_track.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -22,20 +22,20 @@ namespace {
 /// Views come thirty times a second, a command is obeyed within a tick.
 constexpr int views_of_grace = 3;
 
-constexpr std::array steps{0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0};  // of the speed
+constexpr std::array speed_steps{0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0};  // of the speed
 
-/// Any speed; steps are those that people use.
+/// Any speed; steps go to the usual ones.
 class SpeedBox : public NumberBox {
   public:
     void stepBy(int count) override {
         double to = value();
         for (int i = 0; i < std::abs(count); ++i) {
             if (count > 0) {
-                const auto above = std::ranges::upper_bound(steps, to);
-                to = above == steps.end() ? steps.back() : *above;
+                const auto above = std::ranges::upper_bound(speed_steps, to);
+                to = above == speed_steps.end() ? speed_steps.back() : *above;
             } else {
-                const auto from = std::ranges::lower_bound(steps, to);
-                to = from == steps.begin() ? steps.front() : *(from - 1);
+                const auto from = std::ranges::lower_bound(speed_steps, to);
+                to = from == speed_steps.begin() ? speed_steps.front() : *(from - 1);
             }
         }
         setValue(to);
@@ -54,17 +54,17 @@ QToolButton* make_button(const QString& name, const QString& accessible, const Q
 
 }  // namespace
 
-SequenceBar::SequenceBar(QWidget* parent)
+Timeline::Timeline(QWidget* parent)
     : QWidget(parent),
-      back_(make_button("sequence_back", tr("Step back"), tr("To the frame before"))),
-      play_(make_button("sequence_play", tr("Play"), tr("Play the sequence"))),
-      forward_(make_button("sequence_forward", tr("Step forward"), tr("To the next frame"))),
-      track_(new SequenceTrack),
+      back_(make_button("timeline_back", tr("Step back"), tr("To the frame before"))),
+      play_(make_button("timeline_play", tr("Play"), tr("Play"))),
+      forward_(make_button("timeline_forward", tr("Step forward"), tr("To the next frame"))),
+      track_(new TimelineTrack),
       text_(new QLabel),
       speed_(new SpeedBox),
       loop_(new QCheckBox(tr("&Loop"))),
-      pacer_(this) {
-    setObjectName("sequence_bar");
+      limiter_(this) {
+    setObjectName("timeline");
     build();
     connect_inputs();
     show_playing(false);
@@ -72,7 +72,7 @@ SequenceBar::SequenceBar(QWidget* parent)
     show_possible();
 }
 
-void SequenceBar::build() {
+void Timeline::build() {
     auto* row = new QHBoxLayout(this);
     row->setContentsMargins(6, 2, 6, 2);
     for (QToolButton* button : {back_, play_, forward_}) row->addWidget(button);
@@ -82,20 +82,21 @@ void SequenceBar::build() {
     row->addWidget(loop_);
     back_->setAutoRepeat(true);
     forward_->setAutoRepeat(true);
-    text_->setObjectName("sequence_time");
-    text_->setToolTip(tr("Time in the sequence, and the frame there [s]"));
-    speed_->setObjectName("sequence_speed");
+    text_->setObjectName("timeline_time");
+    text_->setToolTip(
+        tr("The time shown [s] or [minutes:seconds], and the frame there or the length"));
+    speed_->setObjectName("timeline_speed");
     speed_->setAccessibleName(tr("Speed"));
-    speed_->setToolTip(tr("Seconds of the sequence in a second, 0.1 to 10"));
+    speed_->setToolTip(tr("Seconds played in a second, 0.1 to 10"));
     speed_->setSuffix(QString::fromUtf8("×"));
     speed_->show_value(play_speed_);
     speed_->setFixedWidth(fontMetrics().horizontalAdvance(QString::fromUtf8("0.0000×")) +
                           2 * fontMetrics().height());
-    loop_->setObjectName("sequence_loop");
-    loop_->setToolTip(tr("After its end the sequence begins again"));
+    loop_->setObjectName("timeline_loop");
+    loop_->setToolTip(tr("After the end it begins again"));
 }
 
-void SequenceBar::connect_inputs() {
+void Timeline::connect_inputs() {
     connect(back_, &QToolButton::clicked, this, [this] { step(-1); });
     connect(forward_, &QToolButton::clicked, this, [this] { step(1); });
     connect(play_, &QToolButton::clicked, this, [this] {
@@ -105,29 +106,33 @@ void SequenceBar::connect_inputs() {
     });
     connect(speed_, QOverload<double>::of(&QDoubleSpinBox::valueChanged), this,
             [this](double speed) {
-                const double bounded = std::clamp(speed, steps.front(), steps.back());
+                const double bounded = std::clamp(speed, speed_steps.front(), speed_steps.back());
                 speed_->show_value(bounded);
-                const double wish = std::copysign(bounded, play_speed_);
-                if (wish == play_speed_) return;
-                play_speed_ = wish;
-                if (playing_) ask_speed(wish);
+                const double asked = std::copysign(bounded, play_speed_);
+                if (asked == play_speed_) return;
+                play_speed_ = asked;
+                if (playing_) ask_speed(asked);
             });
     connect(loop_, &QCheckBox::clicked, this, [this](bool loop) {
         loop_grace_ = views_of_grace;
         Q_EMIT loop_asked(loop);
     });
-    connect(track_, &SequenceTrack::chosen, this, &SequenceBar::ask_moment);
-    connect(track_, &SequenceTrack::stepped, this, &SequenceBar::step);
-    connect(track_, &SequenceTrack::sliderReleased, &pacer_, &Pacer::flush);
+    connect(track_, &TimelineTrack::chosen, this, &Timeline::ask_moment);
+    connect(track_, &TimelineTrack::stepped, this, &Timeline::step);
+    connect(track_, &TimelineTrack::sliderReleased, &limiter_, &RateLimiter::flush);
 }
 
-void SequenceBar::toggle_playing() {
+bool Timeline::dragging() const {
+    return track_->isSliderDown();
+}
+
+void Timeline::toggle_playing() {
     play_->click();
 }
 
-void SequenceBar::step(int way) {
+void Timeline::step(int direction) {
     if (!track_->isEnabled()) return;
-    const auto time = frame_beside(track_->view(), track_->time(), way);
+    const auto time = frame_beside(track_->view(), track_->time(), direction);
     if (!time) return;
     if (playing_) {
         show_playing(false);
@@ -135,24 +140,24 @@ void SequenceBar::step(int way) {
     }
     track_->set_time(*time);
     ask_moment(track_->time());
-    pacer_.flush();
+    limiter_.flush();
 }
 
-void SequenceBar::ask_speed(double speed) {
+void Timeline::ask_speed(double speed) {
     speed_grace_ = views_of_grace;
     Q_EMIT speed_asked(speed);
 }
 
-void SequenceBar::ask_moment(double time) {
+void Timeline::ask_moment(double time) {
     asked_time_ = time;
     time_grace_ = views_of_grace;
     show_text();
-    pacer_.put([this, time] { Q_EMIT moment_asked(time); });
+    limiter_.put([this, time] { Q_EMIT moment_asked(time); });
 }
 
-void SequenceBar::set_view(const SequenceView& view) {
+void Timeline::set_view(const TimelineView& view) {
     if (track_->set_view(view)) {
-        pacer_.drop();  // a moment of what was there before
+        limiter_.drop();  // a moment of the former sequence
         time_grace_ = 0;
         show_possible();
     }
@@ -161,7 +166,7 @@ void SequenceBar::set_view(const SequenceView& view) {
     show_time(view.time);
 }
 
-void SequenceBar::show_speed(double speed) {
+void Timeline::show_speed(double speed) {
     const bool playing = speed != 0;
     if (playing == playing_ && (!playing || speed == play_speed_)) {
         speed_grace_ = 0;
@@ -176,7 +181,7 @@ void SequenceBar::show_speed(double speed) {
     }
 }
 
-void SequenceBar::show_loop(bool loop) {
+void Timeline::show_loop(bool loop) {
     if (loop == loop_->isChecked()) {
         loop_grace_ = 0;
     } else if (loop_grace_ > 0) {
@@ -186,8 +191,8 @@ void SequenceBar::show_loop(bool loop) {
     }
 }
 
-void SequenceBar::show_time(double time) {
-    if (track_->isSliderDown()) return;  // the hand has it
+void Timeline::show_time(double time) {
+    if (dragging()) return;
     if (time_grace_ > 0 && time != asked_time_) {
         --time_grace_;
         return;
@@ -197,15 +202,15 @@ void SequenceBar::show_time(double time) {
     show_text();
 }
 
-void SequenceBar::show_text() {
-    const QString words = track_->text_at(track_->time());
+void Timeline::show_text() {
+    const QString words = text_at(track_->view(), track_->time());
     if (text_->text() != words) text_->setText(words);
 }
 
-/// What can be done with the sequence there is; the text as wide as it will ever be, so that
-/// nothing moves while it plays.
-void SequenceBar::show_possible() {
-    const SequenceView& view = track_->view();
+/// Enables what is possible; makes the text as wide as it will ever be, so that nothing moves while
+/// it plays.
+void Timeline::show_possible() {
+    const TimelineView& view = track_->view();
     setEnabled(!empty(view));
     const bool seeks = track_->isEnabled();
     back_->setEnabled(seeks);
@@ -214,7 +219,7 @@ void SequenceBar::show_possible() {
     speed_->setEnabled(seeks);
     int width = 0;
     for (const double time : {view.begin, view.end}) {
-        QString words = track_->text_at(time);
+        QString words = text_at(view, time);
         for (QChar& c : words) c = c.isDigit() ? QChar('0') : c;
         width = std::max(width, fontMetrics().horizontalAdvance(words));
     }
@@ -222,22 +227,22 @@ void SequenceBar::show_possible() {
     show_text();
 }
 
-void SequenceBar::show_playing(bool playing) {
+void Timeline::show_playing(bool playing) {
     if (playing == playing_ && !play_->icon().isNull()) return;
     playing_ = playing;
     play_->setIcon(icon(playing ? Shape::pause : Shape::play));
     play_->setAccessibleName(playing ? tr("Pause") : tr("Play"));
-    play_->setToolTip(playing ? tr("Pause") : tr("Play the sequence"));
+    play_->setToolTip(playing ? tr("Pause") : tr("Play"));
 }
 
-void SequenceBar::show_icons() {
+void Timeline::show_icons() {
     back_->setIcon(icon(Shape::back));
     forward_->setIcon(icon(Shape::forward));
     play_->setIcon(icon(playing_ ? Shape::pause : Shape::play));
 }
 
-/// In the colour of words, which a style's own icons are not.
-QIcon SequenceBar::icon(Shape shape) const {
+/// In the colour of text, which a style's own icons are not.
+QIcon Timeline::icon(Shape shape) const {
     const QSize size = play_->iconSize();
     QIcon icon;
     for (const auto mode : {QIcon::Normal, QIcon::Disabled}) {
@@ -269,13 +274,13 @@ QIcon SequenceBar::icon(Shape shape) const {
     return icon;
 }
 
-void SequenceBar::changeEvent(QEvent* event) {
+void Timeline::changeEvent(QEvent* event) {
     if (event->type() == QEvent::PaletteChange) show_icons();
     QWidget::changeEvent(event);
 }
 
 /// Return presses buttons: the space bar is the window's, for the forces.
-void SequenceBar::keyPressEvent(QKeyEvent* event) {
+void Timeline::keyPressEvent(QKeyEvent* event) {
     auto* button = qobject_cast<QAbstractButton*>(focusWidget());
     const bool presses = event->key() == Qt::Key_Return || event->key() == Qt::Key_Enter;
     if (presses && button && button->hasFocus()) {

@@ -1,5 +1,5 @@
-// The bar of a sequence, and a person at it.
-#include "apps/viewer/panel/sequence_bar.hpp"
+// The timeline, with a sequence and with a recording, used by mouse and keys.
+#include "apps/viewer/panel/timeline.hpp"
 
 #include <QApplication>
 #include <QCheckBox>
@@ -18,14 +18,14 @@
 #include <limits>
 
 #include "apps/viewer/panel/number_box.hpp"
-#include "apps/viewer/panel/sequence_track.hpp"
+#include "apps/viewer/panel/timeline_track.hpp"
 
 namespace palpate::viewer {
 namespace {
 
 /// Six frames, 0.8 s apart from 0 to 4 s; round in 4.8 s where it loops.
-SequenceView six() {
-    SequenceView view;
+TimelineView six() {
+    TimelineView view;
     view.end = 4.8;
     for (int i = 0; i < 6; ++i) view.frames.push_back(0.8 * i);
     view.time = 1.7;
@@ -34,19 +34,17 @@ SequenceView six() {
     return view;
 }
 
-class Sequence : public testing::Test {
+class ATimeline : public testing::Test {
   protected:
-    Sequence() {
+    ATimeline() {
         bar.resize(900, bar.sizeHint().height());
         bar.set_view(six());
         bar.show();
         QApplication::setActiveWindow(&bar);
         (void)QTest::qWaitForWindowExposed(&bar);
-        QObject::connect(&bar, &SequenceBar::speed_asked,
-                         [this](double s) { speeds.push_back(s); });
-        QObject::connect(&bar, &SequenceBar::moment_asked,
-                         [this](double t) { times.push_back(t); });
-        QObject::connect(&bar, &SequenceBar::loop_asked, [this](bool l) { loops.push_back(l); });
+        QObject::connect(&bar, &Timeline::speed_asked, [this](double s) { speeds.push_back(s); });
+        QObject::connect(&bar, &Timeline::moment_asked, [this](double t) { times.push_back(t); });
+        QObject::connect(&bar, &Timeline::loop_asked, [this](bool l) { loops.push_back(l); });
     }
     template <class T>
     T* find(const char* name) {
@@ -54,8 +52,8 @@ class Sequence : public testing::Test {
         if (!found) throw std::runtime_error(std::string("no widget ") + name);
         return found;
     }
-    SequenceTrack* track() { return find<SequenceTrack>("sequence_track"); }
-    QString text() { return find<QLabel>("sequence_time")->text(); }
+    TimelineTrack* track() { return find<TimelineTrack>("timeline_track"); }
+    QString text() { return find<QLabel>("timeline_time")->text(); }
     void press(const char* name) { QTest::mouseClick(find<QWidget>(name), Qt::LeftButton); }
     static void settle() {
         QTest::qWait(40);  // longer than anything is held back
@@ -76,20 +74,20 @@ class Sequence : public testing::Test {
 
     std::vector<double> speeds, times;
     std::vector<bool> loops;
-    SequenceBar bar;
+    Timeline bar;
 };
 
-TEST_F(Sequence, views_are_shown_and_tell_nobody) {
+TEST_F(ATimeline, views_are_shown_and_tell_nobody) {
     EXPECT_EQ(text(), "1.70 s, frame 3 of 6");
-    SequenceView view = six();
+    TimelineView view = six();
     view.time = 1.6;
     view.speed = 2;
     view.loop = true;
     bar.set_view(view);
     EXPECT_EQ(text(), "1.60 s, frame 3 of 6");
-    EXPECT_EQ(find<NumberBox>("sequence_speed")->value(), 2);
-    EXPECT_TRUE(find<QCheckBox>("sequence_loop")->isChecked());
-    EXPECT_EQ(find<QToolButton>("sequence_play")->accessibleName(), "Pause");
+    EXPECT_EQ(find<NumberBox>("timeline_speed")->value(), 2);
+    EXPECT_TRUE(find<QCheckBox>("timeline_loop")->isChecked());
+    EXPECT_EQ(find<QToolButton>("timeline_play")->accessibleName(), "Pause");
     view.time = 10.4;  // the session's clock goes on: twice round and 0.8 s
     bar.set_view(view);
     EXPECT_EQ(text(), "0.80 s, frame 2 of 6");
@@ -102,19 +100,19 @@ TEST_F(Sequence, views_are_shown_and_tell_nobody) {
     EXPECT_TRUE(loops.empty());
 }
 
-TEST_F(Sequence, play_asks_for_the_speed_in_the_box_and_pause_for_none) {
-    press("sequence_play");
+TEST_F(ATimeline, play_asks_for_the_speed_in_the_box_and_pause_for_none) {
+    press("timeline_play");
     EXPECT_EQ(speeds, (std::vector<double>{1}));
-    SequenceView view = six();
+    TimelineView view = six();
     view.speed = 1;
     bar.set_view(view);
-    press("sequence_play");
+    press("timeline_play");
     EXPECT_EQ(speeds, (std::vector<double>{1, 0}));
     EXPECT_TRUE(times.empty());
 }
 
-TEST_F(Sequence, the_speed_of_the_box_is_asked_for_at_once_while_it_plays_else_with_play) {
-    auto* box = find<NumberBox>("sequence_speed");
+TEST_F(ATimeline, the_speed_of_the_box_is_asked_for_at_once_while_it_plays_else_with_play) {
+    auto* box = find<NumberBox>("timeline_speed");
     const auto type = [&](const QString& number) {
         box->setFocus();
         QTest::keyClick(box, Qt::Key_A, Qt::ControlModifier);
@@ -123,7 +121,7 @@ TEST_F(Sequence, the_speed_of_the_box_is_asked_for_at_once_while_it_plays_else_w
     };
     type("0.25");
     EXPECT_TRUE(speeds.empty());
-    press("sequence_play");
+    press("timeline_play");
     EXPECT_EQ(speeds, (std::vector<double>{0.25}));
     type("4");
     EXPECT_EQ(speeds, (std::vector<double>{0.25, 4}));
@@ -132,17 +130,17 @@ TEST_F(Sequence, the_speed_of_the_box_is_asked_for_at_once_while_it_plays_else_w
     EXPECT_EQ(box->value(), 10);
     QTest::keyClick(box, Qt::Key_Down);
     EXPECT_EQ(speeds, (std::vector<double>{0.25, 4, 10, 5}));
-    press("sequence_play");
-    press("sequence_play");
+    press("timeline_play");
+    press("timeline_play");
     EXPECT_EQ(speeds, (std::vector<double>{0.25, 4, 10, 5, 0, 5})) << "it remembers";
 }
 
-TEST_F(Sequence, a_view_taken_before_a_wish_was_obeyed_does_not_flicker_but_a_refusal_shows) {
-    press("sequence_play");
+TEST_F(ATimeline, a_view_taken_before_a_wish_was_obeyed_does_not_flicker_but_a_refusal_shows) {
+    press("timeline_play");
     bar.set_view(six());
-    EXPECT_EQ(find<QToolButton>("sequence_play")->accessibleName(), "Pause");
+    EXPECT_EQ(find<QToolButton>("timeline_play")->accessibleName(), "Pause");
     for (int i = 0; i < 10; ++i) bar.set_view(six());
-    EXPECT_EQ(find<QToolButton>("sequence_play")->accessibleName(), "Play");
+    EXPECT_EQ(find<QToolButton>("timeline_play")->accessibleName(), "Play");
     QTest::mouseClick(track(), Qt::LeftButton, Qt::NoModifier, track()->rect().center());
     const double asked = track()->time();
     bar.set_view(six());
@@ -151,44 +149,44 @@ TEST_F(Sequence, a_view_taken_before_a_wish_was_obeyed_does_not_flicker_but_a_re
     EXPECT_EQ(track()->time(), 1.7);
 }
 
-TEST_F(Sequence, steps_go_to_the_frame_before_and_after) {
-    press("sequence_forward");
+TEST_F(ATimeline, steps_go_to_the_frame_before_and_after) {
+    press("timeline_forward");
     EXPECT_EQ(times, (std::vector<double>{0.8 * 3}));
-    press("sequence_forward");
+    press("timeline_forward");
     EXPECT_EQ(times.back(), 0.8 * 4);
-    press("sequence_back");
-    press("sequence_back");
+    press("timeline_back");
+    press("timeline_back");
     EXPECT_EQ(times.back(), 0.8 * 2);
     EXPECT_EQ(times.size(), 4U);
     EXPECT_EQ(text(), "1.60 s, frame 3 of 6");
     EXPECT_TRUE(speeds.empty()) << "it stood still already";
 }
 
-TEST_F(Sequence, a_step_past_the_last_frame_goes_round_only_where_it_loops) {
-    SequenceView view = six();
+TEST_F(ATimeline, a_step_past_the_last_frame_goes_round_only_where_it_loops) {
+    TimelineView view = six();
     view.time = 4.5;
     bar.set_view(view);
-    press("sequence_forward");
+    press("timeline_forward");
     EXPECT_TRUE(times.empty());
     view.loop = true;
     bar.set_view(view);
-    press("sequence_forward");
+    press("timeline_forward");
     EXPECT_EQ(times, (std::vector<double>{0}));
-    press("sequence_back");
+    press("timeline_back");
     EXPECT_EQ(times.back(), 0.8 * 5);
 }
 
-TEST_F(Sequence, a_step_ends_playing) {
-    SequenceView view = six();
+TEST_F(ATimeline, a_step_ends_playing) {
+    TimelineView view = six();
     view.speed = 1;
     bar.set_view(view);
-    press("sequence_back");
+    press("timeline_back");
     EXPECT_EQ(speeds, (std::vector<double>{0}));
     EXPECT_EQ(times, (std::vector<double>{0.8 * 2}));
-    EXPECT_EQ(find<QToolButton>("sequence_play")->accessibleName(), "Play");
+    EXPECT_EQ(find<QToolButton>("timeline_play")->accessibleName(), "Play");
 }
 
-TEST_F(Sequence, a_click_on_the_track_seeks_once) {
+TEST_F(ATimeline, a_click_on_the_track_seeks_once) {
     QTest::mouseClick(track(), Qt::LeftButton, Qt::NoModifier, track()->rect().center());
     settle();
     ASSERT_EQ(times.size(), 1U);
@@ -196,9 +194,9 @@ TEST_F(Sequence, a_click_on_the_track_seeks_once) {
     EXPECT_TRUE(speeds.empty());
 }
 
-TEST_F(Sequence, views_do_not_fight_a_drag_and_its_last_moment_comes) {
+TEST_F(ATimeline, views_do_not_fight_a_drag_and_its_last_moment_comes) {
     QTest::mousePress(track(), Qt::LeftButton, Qt::NoModifier, track()->rect().center());
-    SequenceView view = six();
+    TimelineView view = six();
     view.speed = 1;
     for (int i = 1; i <= 20; ++i) {
         move_to(0.5 + 0.02 * i);
@@ -222,7 +220,7 @@ TEST_F(Sequence, views_do_not_fight_a_drag_and_its_last_moment_comes) {
     EXPECT_EQ(track()->time(), 4.79);
 }
 
-TEST_F(Sequence, keys_go_by_frames_by_tenths_and_to_the_ends) {
+TEST_F(ATimeline, keys_go_by_frames_by_tenths_and_to_the_ends) {
     track()->setFocus();
     QTest::keyClick(track(), Qt::Key_Right);
     EXPECT_EQ(times.back(), 0.8 * 3);
@@ -240,44 +238,44 @@ TEST_F(Sequence, keys_go_by_frames_by_tenths_and_to_the_ends) {
     EXPECT_EQ(times.size(), 5U);
 }
 
-TEST_F(Sequence, loop_and_return_on_a_button_are_told_once) {
-    auto* loop = find<QCheckBox>("sequence_loop");
+TEST_F(ATimeline, loop_and_return_on_a_button_are_told_once) {
+    auto* loop = find<QCheckBox>("timeline_loop");
     loop->setFocus();
     QTest::keyClick(loop, Qt::Key_Space);
     EXPECT_EQ(loops, (std::vector<bool>{true}));
     bar.set_view(six());
     EXPECT_TRUE(loop->isChecked()) << "a view from before";
-    auto* play = find<QToolButton>("sequence_play");
+    auto* play = find<QToolButton>("timeline_play");
     play->setFocus();
     QTest::keyClick(play, Qt::Key_Return);
     bar.toggle_playing();
     EXPECT_EQ(speeds, (std::vector<double>{1, 0}));
 }
 
-TEST_F(Sequence, a_live_source_can_be_held_but_not_sought) {
-    SequenceView view = six();
+TEST_F(ATimeline, a_live_source_can_be_held_but_not_sought) {
+    TimelineView view = six();
     view.live = true;
     view.speed = 1;
     bar.set_view(view);
     EXPECT_EQ(text(), "1.70 s, live");
-    for (const char* name : {"sequence_back", "sequence_forward", "sequence_track",
-                             "sequence_speed", "sequence_loop"}) {
+    for (const char* name : {"timeline_back", "timeline_forward", "timeline_track",
+                             "timeline_speed", "timeline_loop"}) {
         EXPECT_FALSE(find<QWidget>(name)->isEnabled()) << name;
     }
     QTest::mouseClick(track(), Qt::LeftButton, Qt::NoModifier, track()->rect().center());
     bar.step(1);
     settle();
     EXPECT_TRUE(times.empty());
-    press("sequence_play");
+    press("timeline_play");
     EXPECT_EQ(speeds, (std::vector<double>{0}));
 }
 
-TEST_F(Sequence, a_drag_ends_when_another_sequence_or_a_live_source_comes) {
+TEST_F(ATimeline, a_drag_ends_when_another_sequence_or_a_live_source_comes) {
     QTest::mousePress(track(), Qt::LeftButton, Qt::NoModifier, track()->rect().center());
     move_to(0.6);
     move_to(0.7);
     const std::size_t count = times.size();
-    SequenceView view = six();
+    TimelineView view = six();
     view.live = true;
     bar.set_view(view);
     settle();
@@ -294,21 +292,21 @@ struct Paints : QObject {
     }
 };
 
-TEST_F(Sequence, a_view_like_the_last_draws_nothing) {
+TEST_F(ATimeline, a_view_like_the_last_draws_nothing) {
     settle();
     Paints paints;
     for (auto* one : bar.findChildren<QWidget*>()) one->installEventFilter(&paints);
     for (int i = 0; i < 30; ++i) bar.set_view(six());
     settle();
     EXPECT_EQ(paints.count, 0);
-    SequenceView view = six();
+    TimelineView view = six();
     view.time = 1.9;
     bar.set_view(view);
     ASSERT_TRUE(QTest::qWaitFor([&] { return paints.count > 0; }, 20'000));
 }
 
-TEST(SequenceValues, what_is_in_memory_may_go_round_the_end) {
-    SequenceView view = six();
+TEST(TimelineValues, what_is_in_memory_may_go_round_the_end) {
+    TimelineView view = six();
     view.loop = true;
     view.loaded_from = 4;
     view.loaded_to = 5.6;
@@ -328,8 +326,100 @@ TEST(SequenceValues, what_is_in_memory_may_go_round_the_end) {
     EXPECT_TRUE(loaded_stretches(view).empty());
 }
 
-TEST(SequenceValues, times_outside_go_round_or_to_the_ends) {
-    SequenceView view = six();
+/// A recording of `seconds` that began at 5 s: one press each second, the level rises once.
+Overview some_overview(double seconds) {
+    Overview overview;
+    overview.begin = 5;
+    overview.end = 5 + seconds;
+    overview.width = seconds / 1000;
+    for (int i = 0; i < 1000; ++i) {
+        const double t = i * overview.width;
+        Overview::Piece piece;
+        piece.empty = i > 600 && i < 620;  // the machine was late
+        piece.contact = std::fmod(t, 1) > 0.5;
+        piece.least_force = piece.contact ? 2 * std::sin(3.1416 * 2 * (std::fmod(t, 1) - 0.5)) : 0;
+        piece.most_force = 1.2 * piece.least_force;
+        piece.least_isovalue = piece.most_isovalue = i < 300 ? 500 : std::min(900, 500 + i);
+        overview.pieces.push_back(piece);
+    }
+    for (double t = 0.5; t < seconds; t += 1) {
+        overview.contacts.push_back({5 + t, 5 + std::min(t + 0.5, seconds)});
+    }
+    return overview;
+}
+
+TimelineView recording(double seconds) {
+    TimelineView view;
+    view.begin = view.time = 5;
+    view.end = 5 + seconds;
+    view.overview = std::make_shared<Overview>(some_overview(seconds));
+    return view;
+}
+
+TEST_F(ATimeline, a_recording_shows_its_time_from_the_begin_and_its_length) {
+    bar.set_view(recording(20));
+    EXPECT_EQ(text(), "0:00.000 / 0:20.000");
+    TimelineView hours = recording(7200);
+    hours.time = 5 + 3661.5;
+    bar.set_view(hours);
+    EXPECT_EQ(text(), "1:01:01.500 / 2:00:00.000");
+    EXPECT_TRUE(times.empty());
+    EXPECT_TRUE(find<QWidget>("timeline_loop")->isEnabled());
+}
+
+TEST_F(ATimeline, a_click_on_the_track_of_a_recording_asks_for_that_time) {
+    bar.set_view(recording(20));
+    QTest::mousePress(track(), Qt::LeftButton, Qt::NoModifier, track()->rect().center());
+    ASSERT_EQ(times.size(), 1U);
+    EXPECT_NEAR(times[0], 15, 0.1);
+    move_to(-1);
+    QTest::mouseRelease(track(), Qt::LeftButton, Qt::NoModifier, {-50, 5});
+    EXPECT_EQ(times.back(), 5);
+}
+
+TEST_F(ATimeline, keys_go_through_a_recording_by_ten_milliseconds_and_by_tenths) {
+    TimelineView view = recording(20);
+    view.time = 7;
+    bar.set_view(view);
+    QTest::keyClick(track(), Qt::Key_Right);
+    EXPECT_NEAR(times.back(), 7.01, 1e-9);
+    QTest::keyClick(track(), Qt::Key_PageUp);
+    settle();
+    EXPECT_NEAR(times.back(), 9.01, 1e-9);
+    QTest::keyClick(track(), Qt::Key_End);
+    settle();
+    EXPECT_EQ(times.back(), 25);
+    QTest::keyClick(track(), Qt::Key_Right);
+    EXPECT_EQ(times.back(), 25);
+    QTest::keyClick(track(), Qt::Key_Home);
+    settle();
+    EXPECT_EQ(times.back(), 5);
+}
+
+TEST_F(ATimeline, a_recording_of_one_tick_has_no_length_and_can_be_shown) {
+    TimelineView single;
+    single.begin = single.end = single.time = 3;
+    auto overview = std::make_shared<Overview>();
+    overview->begin = overview->end = 3;
+    overview->pieces.resize(1);
+    single.overview = overview;
+    bar.set_view(single);
+    EXPECT_TRUE(bar.isEnabled());
+    bar.grab();
+    EXPECT_EQ(text(), "0:00.000 / 0:00.000");
+}
+
+TEST(TimelineValues, the_track_of_a_recording_tells_force_level_and_contact) {
+    const QString words = overview_text_at(recording(20), 5.75);
+    EXPECT_TRUE(words.startsWith("0.750 s")) << words.toStdString();
+    EXPECT_TRUE(words.contains("force up to 2."));
+    EXPECT_TRUE(words.contains("isovalue 500"));
+    EXPECT_TRUE(words.contains("in contact"));
+    EXPECT_EQ(overview_text_at(recording(20), 5 + 12.2), "12.200 s") << "nothing was recorded";
+}
+
+TEST(TimelineValues, times_outside_go_round_or_to_the_ends) {
+    TimelineView view = six();
     EXPECT_EQ(within(view, -1), 0);
     EXPECT_EQ(within(view, 7), 4.8);
     EXPECT_EQ(within(view, std::nan("")), 0);
@@ -340,7 +430,7 @@ TEST(SequenceValues, times_outside_go_round_or_to_the_ends) {
     EXPECT_EQ(within({}, 3), 0);
 }
 
-TEST_F(Sequence, tab_goes_from_left_to_right_and_every_control_has_a_name_and_a_tip) {
+TEST_F(ATimeline, tab_goes_from_left_to_right_and_every_control_has_a_name_and_a_tip) {
     int x = -1, visited = 0;
     for (QWidget* one = bar.nextInFocusChain(); one != &bar; one = one->nextInFocusChain()) {
         if (!bar.isAncestorOf(one) || !(one->focusPolicy() & Qt::TabFocus) || one->focusProxy()) {
@@ -359,13 +449,13 @@ TEST_F(Sequence, tab_goes_from_left_to_right_and_every_control_has_a_name_and_a_
     EXPECT_EQ(visited, 6);
 }
 
-TEST_F(Sequence, pictures_light_dark_and_live) {
-    SequenceView view = six();
+TEST_F(ATimeline, pictures_light_dark_and_live) {
+    TimelineView view = six();
     view.loop = true;
     view.loaded_from = 3.2;
     view.loaded_to = 0.8;
     bar.set_view(view);
-    picture("sequence_light");
+    picture("timeline_light");
     const QPalette usual = QApplication::palette();
     QPalette dark(QColor(58, 58, 62), QColor(45, 45, 48));
     dark.setColor(QPalette::Base, QColor(28, 28, 30));
@@ -373,12 +463,13 @@ TEST_F(Sequence, pictures_light_dark_and_live) {
     QApplication::setPalette(dark);
     view.speed = 0.5;
     bar.set_view(view);
-    picture("sequence_dark");
+    picture("timeline_dark");
     view.live = true;
     bar.set_view(view);
-    picture("sequence_live_dark");
+    picture("timeline_live_dark");
     QApplication::setPalette(usual);
-    SequenceView many;
+    picture("timeline_recording_light");
+    TimelineView many;
     for (int i = 0; i < 3000; ++i) many.frames.push_back(1e-3 * i);
     many.end = 3;
     many.time = 1.2345;
@@ -387,7 +478,7 @@ TEST_F(Sequence, pictures_light_dark_and_live) {
     bar.set_view(many);
     bar.resize(bar.minimumSizeHint().width(), bar.height());
     EXPECT_EQ(text(), "1.2345 s, frame 1235 of 3000");
-    picture("sequence_many_narrow");
+    picture("timeline_many_narrow");
 }
 
 }  // namespace

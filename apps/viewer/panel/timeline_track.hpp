@@ -1,39 +1,38 @@
-// The slider of a sequence: its time, with frames and what is in memory drawn on it.
+// The slider of a timeline: of a sequence it shows the frames and what is in memory, of a recording
+// force (green), isovalue (grey) where it changes, and contact (vermilion bar below).
 #pragma once
 
 #include <QAbstractSlider>
 
-#include "apps/viewer/panel/sequence_view.hpp"
+#include "apps/viewer/panel/timeline_view.hpp"
 
 namespace palpate::viewer {
 
 /// A click or drag chooses a time; arrows step to the frames beside it, Page Up and Down go by a
 /// tenth of the whole, Home and End to the ends. As a slider its value counts milliseconds from the
 /// begin.
-class SequenceTrack : public QAbstractSlider {
+class TimelineTrack : public QAbstractSlider {
     Q_OBJECT
 
   public:
-    explicit SequenceTrack(QWidget* parent = nullptr);
+    explicit TimelineTrack(QWidget* parent = nullptr);
 
-    /// All but the time. Tells nobody. True if times or frames are others than before.
-    bool set_view(const SequenceView& view);
-    const SequenceView& view() const { return view_; }
+    /// All but the time; emits nothing. True if times or frames are others than before.
+    bool set_view(const TimelineView& view);
+    const TimelineView& view() const { return view_; }
     /// [s], between begin and end.
     double time() const { return time_; }
-    /// [s]; what is outside goes round or to the ends. Tells nobody.
+    /// [s]; brought within begin and end. Emits nothing.
     void set_time(double time);
-    /// "1.60 s, frame 3 of 6".
-    QString text_at(double time) const;
 
     QSize sizeHint() const override;
     QSize minimumSizeHint() const override;
 
   Q_SIGNALS:
-    /// By the person [s].
+    /// By the user [s].
     void chosen(double time);
-    /// A frame on (1) or back (-1).
-    void stepped(int way);
+    /// A frame forward (1) or back (-1).
+    void stepped(int direction);
 
   protected:
     bool event(QEvent* event) override;
@@ -50,12 +49,13 @@ class SequenceTrack : public QAbstractSlider {
     double x_of(double time) const;
     double time_at(double x) const;
     void choose_at(double x);
-    void paint_frames(QPainter& painter, const QRectF& box) const;
     void place();
+    void paint_loaded(QPainter& painter, const QRectF& box) const;
+    void paint_frames(QPainter& painter, const QRectF& box) const;
+    void paint_overview(QPainter& painter, const QRectF& box) const;
 
-    SequenceView view_;
+    TimelineView view_;
     double time_ = 0;
-    int digits_ = 2;  // of a time, behind the point
     bool telling_ = true;
 };
 

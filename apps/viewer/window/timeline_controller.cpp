@@ -1,0 +1,107 @@
+// What the user asks of the timeline goes to the player or the clock; where they are, to the
+// timeline.
+#include "apps/viewer/window/timeline_controller.hpp"
+
+#include <utility>
+
+#include "apps/viewer/panel/timeline.hpp"
+#include "apps/viewer/window/content.hpp"
+#include "apps/viewer/window/messages.hpp"
+
+namespace palpate::viewer {
+namespace {
+
+TimelineView view_of(const app::PlayView& play) {
+    TimelineView view;
+    view.begin = play.begin;
+    view.end = play.end;
+    view.frames = play.frames;
+    view.time = play.time;
+    view.speed = play.speed;
+    view.loop = play.loop;
+    view.loaded_from = play.loaded_from;
+    view.loaded_to = play.loaded_to;
+    view.live = play.live;
+    return view;
+}
+
+}  // namespace
+
+TimelineController::TimelineController(Content& content, Timeline& timeline, Messages& messages)
+    : content_(content), timeline_(timeline), messages_(messages) {
+    connect_timeline();
+    connect(&content, &Content::closed, &timeline, &QWidget::hide);
+    connect(&content, &Content::run_changed, this, &TimelineController::show);
+    connect(&content, &Content::playback_started, this, [this] {
+        const Playback& playback = *content_.playback();
+        clock_ = PlaybackClock(playback.begin(), playback.end());
+        overview_ = std::make_shared<Overview>(playback.overview());
+        show();
+    });
+    timeline.hide();
+    since_.start();
+}
+
+void TimelineController::connect_timeline() {
+    // Both can play, seek and loop.
+    const auto ask = [this](auto&& action) {
+        if (app::Player* player = content_.player()) {
+            messages_.guarded([&] { action(*player); });
+        } else if (content_.playback()) {
+            action(clock_);
+            content_.set_time(clock_.time());
+        }
+    };
+    connect(&timeline_, &Timeline::speed_asked, this,
+            [ask](double speed) { ask([speed](auto& player) { player.play(speed); }); });
+    connect(&timeline_, &Timeline::moment_asked, this,
+            [ask](double time) { ask([time](auto& player) { player.seek(time); }); });
+    connect(&timeline_, &Timeline::loop_asked, this,
+            [ask](bool loop) { ask([loop](auto& player) { player.set_loop(loop); }); });
+}
+
+TimelineView TimelineController::view() const {
+    if (const app::Player* player = content_.player()) return view_of(player->view());
+    TimelineView view;
+    if (const Playback* playback = content_.playback()) {
+        view.begin = playback->begin();
+        view.end = playback->end();
+        view.time = clock_.time();
+        view.speed = clock_.speed();
+        view.loop = clock_.loop();
+        view.overview = overview_;
+    }
+    return view;
+}
+
+void TimelineController::show() {
+    timeline_.setVisible(content_.player() || content_.playback());
+    if (!timeline_.isHidden()) timeline_.set_view(view());
+}
+
+void TimelineController::show_time(double time) {
+    if (!content_.playback()) return;
+    clock_.seek(time);
+    content_.set_time(clock_.time());
+    timeline_.set_view(view());
+}
+
+void TimelineController::advance() {
+    const double passed = 1e-9 * static_cast<double>(since_.nsecsElapsed());
+    since_.restart();
+    if (!content_.playback() || timeline_.dragging()) return;
+    clock_.advance(passed);
+    content_.set_time(clock_.time());
+}
+
+void TimelineController::observe() {
+    if (timeline_.isHidden()) return;
+    timeline_.set_view(view());
+    if (!content_.player()) return;
+    const QString problem = QString::fromStdString(content_.player()->view().problem);
+    if (problem != std::exchange(problem_, problem) && !problem.isEmpty()) {
+        messages_.show_problem(problem);
+    }
+}
+
+}  // namespace palpate::viewer
