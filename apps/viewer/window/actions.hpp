@@ -3,6 +3,7 @@
 
 #include <QKeySequence>
 #include <QObject>
+#include <QString>
 #include <functional>
 #include <vector>
 

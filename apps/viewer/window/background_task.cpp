@@ -1,6 +1,7 @@
 // Watches a task: its thread wakes the window's thread, which looks how far it is.
 #include "apps/viewer/window/background_task.hpp"
 
+#include <QString>
 #include <utility>
 
 #include "apps/viewer/window/messages.hpp"

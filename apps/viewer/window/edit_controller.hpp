@@ -3,14 +3,18 @@
 #pragma once
 
 #include <QObject>
+#include <QString>
 #include <memory>
 
 #include "apps/viewer/window/background_task.hpp"
 #include "palpate/samples.hpp"
 
+class QWidget;
+
 namespace palpate::viewer {
 
 class Content;
+class Messages;
 class Panel;
 struct BrushChoice;
 

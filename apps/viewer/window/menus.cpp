@@ -2,6 +2,7 @@
 #include "apps/viewer/window/menus.hpp"
 
 #include <QAction>
+#include <QDialog>
 #include <QDockWidget>
 #include <QMenu>
 #include <QMenuBar>

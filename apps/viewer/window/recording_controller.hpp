@@ -2,8 +2,7 @@
 #pragma once
 
 #include <QObject>
-
-class QString;
+#include <QString>
 
 namespace palpate::viewer {
 

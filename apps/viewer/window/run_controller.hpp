@@ -4,6 +4,7 @@
 
 #include <QElapsedTimer>
 #include <QObject>
+#include <QString>
 #include <optional>
 #include <vector>
 
@@ -16,6 +17,7 @@ namespace palpate::viewer {
 class Content;
 class Messages;
 class Panel;
+struct Opened;
 
 class RunController : public QObject {
     Q_OBJECT
