@@ -68,17 +68,9 @@ std::vector<std::size_t> solid_samples(const Field& field, double isovalue, std:
 }
 
 std::vector<std::size_t> solid_samples(const Subject& subject, std::size_t count, Random& random) {
-    switch (subject.field.volume().type()) {
-        case SampleType::uint8:
-            return solid_samples<std::uint8_t>(subject.field, subject.isovalue, count, random);
-        case SampleType::int16:
-            return solid_samples<std::int16_t>(subject.field, subject.isovalue, count, random);
-        case SampleType::uint16:
-            return solid_samples<std::uint16_t>(subject.field, subject.isovalue, count, random);
-        case SampleType::float32:
-            break;
-    }
-    return solid_samples<float>(subject.field, subject.isovalue, count, random);
+    return with_type(subject.field.volume().type(), [&](auto zero) {
+        return solid_samples<decltype(zero)>(subject.field, subject.isovalue, count, random);
+    });
 }
 
 /// Where a hand from outside first meets the body on its straight way to a solid sample.

@@ -4,6 +4,7 @@
 #include <array>
 #include <stdexcept>
 
+#include "palpate/io/level.hpp"
 #include "palpate/io/volume_file.hpp"
 #include "palpate/scenes/volumes.hpp"
 
@@ -65,7 +66,7 @@ Subject subject_from(const std::string& text) {
                                              0,
                                              {},
                                              ""};
-    if (!level.empty()) subject.isovalue = level_from_text(level, subject.field.volume());
+    if (!level.empty()) subject.isovalue = io::level_from_text(level, subject.field.volume());
     return subject;
 }
 

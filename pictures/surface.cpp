@@ -53,20 +53,9 @@ Eigen::Vector3f smooth_normal(const Field& field, const Vec3& at, const Eigen::V
 
 Field coarser(const Field& field, int every) {
     const Volume& v = field.volume();
-    const auto with = [&](Volume coarse) {
-        return Field(std::move(coarse), field.solid(), field.background());
-    };
-    switch (v.type()) {
-        case SampleType::uint8:
-            return with(thinned<std::uint8_t>(v, every));
-        case SampleType::int16:
-            return with(thinned<std::int16_t>(v, every));
-        case SampleType::uint16:
-            return with(thinned<std::uint16_t>(v, every));
-        case SampleType::float32:
-            break;
-    }
-    return with(thinned<float>(v, every));
+    Volume coarse =
+        with_type(v.type(), [&](auto zero) { return thinned<decltype(zero)>(v, every); });
+    return Field(std::move(coarse), field.solid(), field.background());
 }
 
 std::vector<Eigen::Vector3f> mesh_normals(const SurfaceMesh& mesh) {

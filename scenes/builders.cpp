@@ -10,17 +10,10 @@
 namespace palpate::scenes {
 
 Scale unit_scale(SampleType type) {
-    switch (type) {
-        case SampleType::uint8:
-            return {0, 255};
-        case SampleType::int16:
-            return {0, 32767};
-        case SampleType::uint16:
-            return {0, 65535};
-        case SampleType::float32:
-            break;
-    }
-    return {0, 1};
+    return with_type(type, [](auto zero) -> Scale {
+        using T = decltype(zero);
+        return {0, std::is_integral_v<T> ? static_cast<double>(std::numeric_limits<T>::max()) : 1};
+    });
 }
 
 void check_size(const Geometry& geometry, SampleType type) {

@@ -60,17 +60,7 @@ Volume filled_as(const Geometry& geometry, Value&& value) {
 template <class Value>
 Volume filled(const Geometry& geometry, SampleType type, Value&& value) {
     check_size(geometry, type);
-    switch (type) {
-        case SampleType::uint8:
-            return filled_as<std::uint8_t>(geometry, value);
-        case SampleType::int16:
-            return filled_as<std::int16_t>(geometry, value);
-        case SampleType::uint16:
-            return filled_as<std::uint16_t>(geometry, value);
-        case SampleType::float32:
-            break;
-    }
-    return filled_as<float>(geometry, value);
+    return with_type(type, [&](auto zero) { return filled_as<decltype(zero)>(geometry, value); });
 }
 
 /// The shortest axis [mm], sample to sample distance counted once per sample. Axes of one sample do

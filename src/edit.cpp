@@ -277,17 +277,8 @@ void check(const Edit& edit, const Samples& samples) {
 
 Edited edited(const std::shared_ptr<const Samples>& samples, const Edit& edit) {
     check(edit, *samples);
-    switch (samples->type()) {
-        case SampleType::uint8:
-            return edited_as<std::uint8_t>(samples, edit);
-        case SampleType::int16:
-            return edited_as<std::int16_t>(samples, edit);
-        case SampleType::uint16:
-            return edited_as<std::uint16_t>(samples, edit);
-        case SampleType::float32:
-            break;
-    }
-    return edited_as<float>(samples, edit);
+    return with_type(samples->type(),
+                     [&](auto zero) { return edited_as<decltype(zero)>(samples, edit); });
 }
 
 Brush brush_for(BrushKind kind, const Field& field, double isovalue, double radius) {

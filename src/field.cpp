@@ -21,17 +21,8 @@ CellSamples corners(const void* data, std::ptrdiff_t at, std::ptrdiff_t row, std
 
 CellSamples corners(SampleType type, const void* data, std::ptrdiff_t at, std::ptrdiff_t row,
                     std::ptrdiff_t slice) {
-    switch (type) {
-        case SampleType::uint8:
-            return corners<std::uint8_t>(data, at, row, slice);
-        case SampleType::int16:
-            return corners<std::int16_t>(data, at, row, slice);
-        case SampleType::uint16:
-            return corners<std::uint16_t>(data, at, row, slice);
-        case SampleType::float32:
-            break;
-    }
-    return corners<float>(data, at, row, slice);
+    return with_type(type,
+                     [&](auto zero) { return corners<decltype(zero)>(data, at, row, slice); });
 }
 
 }  // namespace

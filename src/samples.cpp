@@ -10,17 +10,9 @@ namespace palpate {
 namespace {
 
 double sample_of(SampleType type, const void* data, std::size_t at) {
-    switch (type) {
-        case SampleType::uint8:
-            return static_cast<const std::uint8_t*>(data)[at];
-        case SampleType::int16:
-            return static_cast<const std::int16_t*>(data)[at];
-        case SampleType::uint16:
-            return static_cast<const std::uint16_t*>(data)[at];
-        case SampleType::float32:
-            break;
-    }
-    return static_cast<const float*>(data)[at];
+    return with_type(type, [&](auto zero) {
+        return static_cast<double>(static_cast<const decltype(zero)*>(data)[at]);
+    });
 }
 
 void check_frames(const std::vector<Frame>& frames, double period) {
@@ -167,20 +159,8 @@ Volume flattened(const Samples& samples, const Moment& moment) {
     const std::shared_ptr<std::byte[]> whole(new std::byte[from.bytes()]);
     if (between) {
         const Volume& to = samples.frames()[moment.to].volume;
-        switch (samples.type()) {
-            case SampleType::uint8:
-                blend<std::uint8_t>(from, to, moment.weight, whole.get());
-                break;
-            case SampleType::int16:
-                blend<std::int16_t>(from, to, moment.weight, whole.get());
-                break;
-            case SampleType::uint16:
-                blend<std::uint16_t>(from, to, moment.weight, whole.get());
-                break;
-            case SampleType::float32:
-                blend<float>(from, to, moment.weight, whole.get());
-                break;
-        }
+        with_type(samples.type(),
+                  [&](auto zero) { blend<decltype(zero)>(from, to, moment.weight, whole.get()); });
     } else {
         std::memcpy(whole.get(), from.data(), from.bytes());
     }

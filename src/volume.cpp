@@ -3,7 +3,6 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -37,22 +36,6 @@ Range range_of(std::span<const T> samples) {
 template <class T>
 std::span<const T> span_of(const void* data, const Geometry& geometry) {
     return {static_cast<const T*>(data), static_cast<std::size_t>(sample_count(geometry))};
-}
-
-/// Calls f with a value of the C++ type that `type` names.
-template <class F>
-auto with_type(SampleType type, F&& f) {
-    switch (type) {
-        case SampleType::uint8:
-            return f(std::uint8_t{});
-        case SampleType::int16:
-            return f(std::int16_t{});
-        case SampleType::uint16:
-            return f(std::uint16_t{});
-        case SampleType::float32:
-            break;
-    }
-    return f(float{});
 }
 
 }  // namespace
@@ -219,21 +202,6 @@ Volume smoothed(const Volume& volume, int passes) {
         smooth_along(samples, size[0] * size[1], size[2]);
     }
     return {geometry, std::move(samples)};
-}
-
-double level_from_text(std::string_view text, const Volume& volume) {
-    const bool percent = !text.empty() && text.back() == '%';
-    const std::string_view digits = text.substr(0, text.size() - (percent ? 1 : 0));
-    const char* const last = digits.data() + digits.size();
-    double number = 0;
-    const auto [end, error] = std::from_chars(digits.data(), last, number);
-    const bool good = error == std::errc{} && end == last;
-    const double range = volume.maximum() - volume.minimum();
-    const double level = percent ? volume.minimum() + number / 100 * range : number;
-    if (good && std::isfinite(level)) return level;
-    throw std::invalid_argument("'" + std::string(text) +
-                                "' is not a level: give a number in the data's units (300) or "
-                                "percent of its range (53%)");
 }
 
 }  // namespace palpate

@@ -9,6 +9,7 @@
 
 #include "io/number.hpp"
 #include "palpate/baselines/methods.hpp"
+#include "palpate/io/level.hpp"
 
 namespace palpate::app {
 namespace {
@@ -44,8 +45,9 @@ Penetrability penetrability_of(const RenderOptions& options, const Field& field,
     if (options.penetrability == "off") return no_penetrability();
     const double threshold = options.threshold.value_or(1);
     if (options.penetrability == "threshold") {
-        const double minimum =
-            options.minimum.empty() ? isovalue : level_from_text(options.minimum, field.volume());
+        const double minimum = options.minimum.empty()
+                                   ? isovalue
+                                   : io::level_from_text(options.minimum, field.volume());
         return penetrability_threshold(threshold, minimum, field.solid());
     }
     if (options.ranges.empty()) {
@@ -69,8 +71,8 @@ DensityRange range_from(const std::string& text, const Volume& volume) {
     if (colon == std::string::npos) {
         throw std::invalid_argument("range " + text + ": LOW:HIGH is needed, as in 300:700");
     }
-    return {level_from_text(text.substr(0, colon), volume),
-            level_from_text(text.substr(colon + 1), volume)};
+    return {io::level_from_text(text.substr(0, colon), volume),
+            io::level_from_text(text.substr(colon + 1), volume)};
 }
 
 void RenderOptions::add_to(CLI::App& command) {

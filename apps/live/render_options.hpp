@@ -30,7 +30,7 @@ struct RenderOptions {
 /// "0.5,0.3" as static and dynamic coefficient; "0.5": both. Throws std::invalid_argument, naming
 /// `what` (the option or command).
 Friction friction_from(const std::string& what, const std::string& text);
-/// "LOW:HIGH", each a level (level_from_text). Throws std::invalid_argument.
+/// "LOW:HIGH", each a level (io::level_from_text). Throws std::invalid_argument.
 DensityRange range_from(const std::string& text, const Volume& volume);
 
 /// The settings asked for; `isovalue` is the least level felt where no --minimum is given.

@@ -43,20 +43,7 @@ Histogram histogram_of(const Volume& volume, int bins) {
         h.whole_numbers = true;
     }
     h.counts.assign(static_cast<std::size_t>(bins), 0);
-    switch (volume.type()) {
-        case SampleType::uint8:
-            count<std::uint8_t>(volume, h);
-            break;
-        case SampleType::int16:
-            count<std::int16_t>(volume, h);
-            break;
-        case SampleType::uint16:
-            count<std::uint16_t>(volume, h);
-            break;
-        case SampleType::float32:
-            count<float>(volume, h);
-            break;
-    }
+    with_type(volume.type(), [&](auto zero) { count<decltype(zero)>(volume, h); });
     return h;
 }
 

@@ -7,6 +7,7 @@
 
 #include "apps/live/statistics.hpp"
 #include "io/number.hpp"
+#include "palpate/io/level.hpp"
 #include "palpate/io/raw_options.hpp"
 #include "palpate/renderer.hpp"
 #include "palpate/scenes/beating.hpp"
@@ -239,7 +240,7 @@ void FieldOptions::add_side_to(CLI::App& command) {
 Field make_field(const LoadedVolume& loaded, const FieldOptions& options) {
     std::optional<double> background;
     if (!options.background.empty()) {
-        background = level_from_text(options.background, loaded.volume);
+        background = io::level_from_text(options.background, loaded.volume);
     }
     return Field(loaded.volume, options.solid == "below" ? Solid::below : Solid::above, background);
 }
@@ -253,7 +254,7 @@ double isovalue_of(const LoadedVolume& loaded, const Field& field, const FieldOp
     }
     const double isovalue = options.isovalue.empty()
                                 ? *loaded.isovalue
-                                : level_from_text(options.isovalue, loaded.volume);
+                                : io::level_from_text(options.isovalue, loaded.volume);
     const std::string warning = isovalue_warning(field, isovalue);
     if (!warning.empty()) {
         fmt::print(stderr, "palpate: warning: isovalue {} (data {} to {}): {}\n", isovalue,

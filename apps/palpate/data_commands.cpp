@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "io/number.hpp"
+#include "palpate/io/level.hpp"
 
 namespace palpate::app {
 namespace {
@@ -47,7 +48,7 @@ DataRequest brush_request(const std::vector<std::string>& words, const Volume& v
     brush.kind = brush_kind_from(words[1]);
     brush.radius = number(words[2], meant);
     if (words.size() > 3) brush.rate = number(words[3], meant);
-    if (words.size() > 4) brush.value = level_from_text(words[4], volume);
+    if (words.size() > 4) brush.value = io::level_from_text(words[4], volume);
     check(brush);
     return ask::SetBrush{brush};
 }
@@ -58,7 +59,7 @@ DataRequest touch_request(const std::vector<std::string>& words, const Volume& v
     ask::Touch touch;
     touch.brush.kind = brush_kind_from(words[0]);
     touch.brush.radius = number(words[2], meant);
-    if (words.size() > 3) touch.brush.value = level_from_text(words[3], volume);
+    if (words.size() > 3) touch.brush.value = io::level_from_text(words[3], volume);
     check(touch.brush);
     const auto [from, to] = two_points(words[1], meant);
     touch.from = from;
@@ -73,7 +74,7 @@ DataRequest fill_request(const std::vector<std::string>& words, const Volume& vo
     const double most = std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff());
     if (!(most <= 1 << 20)) wrong_words(meant);
     const SampleBox box{low.cwiseMin(high).cast<int>(), low.cwiseMax(high).cast<int>()};
-    return ask::Fill{{box, level_from_text(words[2], volume)}};
+    return ask::Fill{{box, io::level_from_text(words[2], volume)}};
 }
 
 DataRequest play_request(const std::vector<std::string>& words) {

@@ -9,6 +9,7 @@
 #include "apps/live/render_options.hpp"
 #include "io/number.hpp"
 #include "palpate/io/csv.hpp"
+#include "palpate/io/level.hpp"
 
 namespace palpate::app {
 namespace {
@@ -44,7 +45,7 @@ Penetrability LiveCommands::penetrability_from(const std::vector<std::string>& w
         number(words, 2, "penetrability off, threshold PT or ranges PT LOW:HIGH");
     if (mode == "threshold" && words.size() <= 4) {
         const double minimum =
-            words.size() == 4 ? level_from_text(words[3], field_.volume()) : isovalue_;
+            words.size() == 4 ? io::level_from_text(words[3], field_.volume()) : isovalue_;
         return penetrability_threshold(threshold, minimum, field_.solid());
     }
     if (mode != "ranges")
@@ -82,7 +83,7 @@ Request LiveCommands::from_words(std::string_view line) {
     Command command;
     if (name == "isovalue") {
         expect_words(words, 2);
-        isovalue_ = level_from_text(words[1], field_.volume());
+        isovalue_ = io::level_from_text(words[1], field_.volume());
         return command::Isovalue{isovalue_};
     }
     if (name == "friction") {

@@ -59,17 +59,7 @@ class Field {
 
     /// The samples of the cell whose lowest corner is `cell` (index space); any cell in space.
     CellSamples cell(const Index3& cell) const {
-        switch (type_) {
-            case SampleType::uint8:
-                return cell_of<std::uint8_t>(cell);
-            case SampleType::int16:
-                return cell_of<std::int16_t>(cell);
-            case SampleType::uint16:
-                return cell_of<std::uint16_t>(cell);
-            case SampleType::float32:
-                break;
-        }
-        return cell_of<float>(cell);
+        return with_type(type_, [&](auto zero) { return cell_of<decltype(zero)>(cell); });
     }
     /// True where all eight samples of `cell` are background.
     bool is_background(const Index3& cell) const {

@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace palpate {
@@ -44,6 +45,23 @@ constexpr SampleType sample_type_of<std::uint16_t>() {
 template <>
 constexpr SampleType sample_type_of<float>() {
     return SampleType::float32;
+}
+
+/// Calls `work` with a zero of the C++ type that `type` names, and returns what it returns, which
+/// has to be of one type for all: with_type(t, [&](auto zero) { return sizeof zero; }).
+template <class Work>
+constexpr decltype(auto) with_type(SampleType type, Work&& work) {
+    switch (type) {
+        case SampleType::uint8:
+            return std::forward<Work>(work)(std::uint8_t{});
+        case SampleType::int16:
+            return std::forward<Work>(work)(std::int16_t{});
+        case SampleType::uint16:
+            return std::forward<Work>(work)(std::uint16_t{});
+        case SampleType::float32:
+            break;
+    }
+    return std::forward<Work>(work)(float{});
 }
 
 /// The grid in physical space (LPS, millimetres).
@@ -115,9 +133,5 @@ class Volume {
 /// (docs/results/fidelity.md), and blurs what is thinner than about two voxels. No passes: the same
 /// volume. Throws std::invalid_argument for fewer than 0 or more than 64.
 Volume smoothed(const Volume& volume, int passes = 1);
-
-/// Reads an isovalue or density as people write it: "300" in the data's units, "53%" of the data's
-/// range. Throws std::invalid_argument for anything else, NaN and infinity included.
-double level_from_text(std::string_view text, const Volume& volume);
 
 }  // namespace palpate

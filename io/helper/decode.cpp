@@ -46,20 +46,6 @@ auto with_stored(Stored stored, F&& f) {
     return f(double{});
 }
 
-template <class F>
-void with_kept(SampleType type, F&& f) {
-    switch (type) {
-        case SampleType::uint8:
-            return f(std::uint8_t{});
-        case SampleType::int16:
-            return f(std::int16_t{});
-        case SampleType::uint16:
-            return f(std::uint16_t{});
-        case SampleType::float32:
-            return f(float{});
-    }
-}
-
 std::string gigabytes(double bytes) {
     return text_of(bytes / 1e9) + " GB";
 }
@@ -100,7 +86,7 @@ void note_conversion(Stored stored, std::vector<std::string>& notes) {
 void convert(Stored stored, const std::byte* from, std::size_t stride, SampleType type,
              std::byte* to, std::size_t count) {
     with_stored(stored, [&](auto source) {
-        with_kept(type, [&](auto target) {
+        with_type(type, [&](auto target) {
             using From = decltype(source);
             using To = decltype(target);
             for (std::size_t i = 0; i < count; ++i) {

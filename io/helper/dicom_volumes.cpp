@@ -296,20 +296,9 @@ Result read_series(const DicomSeries& series, const Request& request) {
     const auto samples =
         shared_samples(checked_bytes(sizes, size_of(result.type), UINT64_MAX, request));
     void* const to = samples.data();
-    switch (result.type) {
-        case SampleType::uint8:
-            fill(stack, slices, one, outside, static_cast<std::uint8_t*>(to));
-            break;
-        case SampleType::int16:
-            fill(stack, slices, one, outside, static_cast<std::int16_t*>(to));
-            break;
-        case SampleType::uint16:
-            fill(stack, slices, one, outside, static_cast<std::uint16_t*>(to));
-            break;
-        case SampleType::float32:
-            fill(stack, slices, one, outside, static_cast<float*>(to));
-            break;
-    }
+    with_type(result.type, [&](auto zero) {
+        fill(stack, slices, one, outside, static_cast<decltype(zero)*>(to));
+    });
     finish(result, request, samples);
     return result;
 }

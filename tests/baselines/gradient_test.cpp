@@ -22,7 +22,7 @@ Drift round_the_cylinder(ProxyMethod method, int turns) {
     const scenes::Scene scene = scenes::make_volume("cylinder");
     const Field field(scene.volume);
     Proxy proxy;
-    proxy.isovalue = level_from_text("53%", scene.volume);
+    proxy.isovalue = scene.volume.minimum() + 0.53 * scene.volume.range();
     const Vec3 centre = physical_centre(field.geometry());
     method(proxy, field, centre + Vec3(60, 0, 0), {}, {});
     Drift drift;

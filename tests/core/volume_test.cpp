@@ -238,6 +238,14 @@ TYPED_TEST(VolumeOf, smoothed_once_is_the_binomial_mean_of_the_neighbours) {
     }
 }
 
+TEST(Volume, work_is_called_with_the_type_that_the_samples_have) {
+    for (const SampleType type :
+         {SampleType::uint8, SampleType::int16, SampleType::uint16, SampleType::float32}) {
+        EXPECT_EQ(with_type(type, [](auto zero) { return sample_type_of<decltype(zero)>(); }),
+                  type);
+    }
+}
+
 TEST(Volume, smoothed_twice_is_smoothed_and_smoothed_and_not_at_all_is_the_same) {
     Geometry geometry;
     geometry.size = {4, 3, 2};
@@ -249,30 +257,4 @@ TEST(Volume, smoothed_twice_is_smoothed_and_smoothed_and_not_at_all_is_the_same)
     EXPECT_EQ(smoothed(volume, 0).data(), volume.data());
     EXPECT_THROW(smoothed(volume, -1), std::invalid_argument);
     EXPECT_THROW(smoothed(volume, 65), std::invalid_argument);
-}
-
-TEST(Level, is_read_as_people_write_it) {
-    const Volume volume(grid({2, 1, 1}), std::vector<std::int16_t>{-1000, 3000});
-    EXPECT_EQ(level_from_text("300", volume), 300);
-    EXPECT_EQ(level_from_text("-12.5", volume), -12.5);
-    EXPECT_EQ(level_from_text("-1e3", volume), -1000);
-    EXPECT_EQ(level_from_text("1E+2", volume), 100);
-    EXPECT_EQ(level_from_text("50%", volume), 1000);
-    EXPECT_DOUBLE_EQ(level_from_text("53%", volume), 1120);
-    EXPECT_EQ(level_from_text("0%", volume), -1000);
-    EXPECT_EQ(level_from_text("100%", volume), 3000);
-    // Out of the range is a level too: there is just nothing to feel at it.
-    EXPECT_EQ(level_from_text("1e6", volume), 1e6);
-}
-
-TEST(Level, that_is_not_a_number_is_refused_with_the_text_in_the_message) {
-    const Volume volume(grid({2, 1, 1}), std::vector<std::int16_t>{-1000, 3000});
-    for (const char* bad : {"",    "%",   "abc",   "nan",    "NaN",  "inf",  "-inf", "infinity",
-                            "5%%", "%5",  "1e999", "1e999%", "3 00", " 300", "300 ", "0x10",
-                            "1,5", "--3", "3e",    "300HU",  "5 %",  "nan%"}) {
-        std::string quoted(1, '\'');
-        quoted.append(bad).push_back('\'');
-        const std::string what = refusal([&] { level_from_text(bad, volume); });
-        EXPECT_NE(what.find(quoted), std::string::npos) << bad;
-    }
 }

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "palpate/io/level.hpp"
 #include "palpate/io/raw_options.hpp"
 
 namespace {
@@ -43,7 +44,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
     static const Volume volume(Geometry{.size = {2, 1, 1}}, std::vector<float>{-100, 300});
     try {
-        require(std::isfinite(level_from_text(level, volume)));
+        require(std::isfinite(io::level_from_text(level, volume)));
     } catch (const std::invalid_argument&) {
     }
     return 0;

@@ -53,17 +53,8 @@ Volume random_volume(std::mt19937& random, const Geometry& geometry) {
 }
 
 inline Volume random_volume(std::mt19937& random, SampleType type, const Geometry& geometry) {
-    switch (type) {
-        case SampleType::uint8:
-            return random_volume<std::uint8_t>(random, geometry);
-        case SampleType::int16:
-            return random_volume<std::int16_t>(random, geometry);
-        case SampleType::uint16:
-            return random_volume<std::uint16_t>(random, geometry);
-        case SampleType::float32:
-            break;
-    }
-    return random_volume<float>(random, geometry);
+    return with_type(type,
+                     [&](auto zero) { return random_volume<decltype(zero)>(random, geometry); });
 }
 
 inline bool same_samples(const Volume& a, const Volume& b) {

@@ -44,17 +44,9 @@ inline Values values_of(SampleType type) {
 
 inline Volume noise_of(SampleType type, const Geometry& geometry, std::uint64_t seed) {
     const auto [low, high] = values_of(type);
-    switch (type) {
-        case SampleType::uint8:
-            return noise_volume<std::uint8_t>(geometry, seed, low, high);
-        case SampleType::int16:
-            return noise_volume<std::int16_t>(geometry, seed, low, high);
-        case SampleType::uint16:
-            return noise_volume<std::uint16_t>(geometry, seed, low, high);
-        case SampleType::float32:
-            break;
-    }
-    return noise_volume<float>(geometry, seed, low, high);
+    return with_type(type, [&, low = low, high = high](auto zero) {
+        return noise_volume<decltype(zero)>(geometry, seed, low, high);
+    });
 }
 
 inline bool same_bits(const Volume& a, const Volume& b) {

@@ -121,20 +121,8 @@ std::vector<float> sample_block(const Field& field, const Index3& low, const Ind
     const Box box{low, size, every};
     std::vector<float> values(static_cast<std::size_t>(size.cast<std::int64_t>().prod()),
                               static_cast<float>(field.background()));
-    switch (field.samples().type()) {
-        case SampleType::uint8:
-            copy<std::uint8_t>(field, box, values.data());
-            break;
-        case SampleType::int16:
-            copy<std::int16_t>(field, box, values.data());
-            break;
-        case SampleType::uint16:
-            copy<std::uint16_t>(field, box, values.data());
-            break;
-        case SampleType::float32:
-            copy<float>(field, box, values.data());
-            break;
-    }
+    with_type(field.samples().type(),
+              [&](auto zero) { copy<decltype(zero)>(field, box, values.data()); });
     return values;
 }
 
@@ -142,17 +130,8 @@ Volume thinned(const Field& field, int every) {
     Geometry geometry = field.geometry();
     geometry.size = thinned_size(geometry.size, every);
     geometry.spacing *= every;
-    switch (field.samples().type()) {
-        case SampleType::uint8:
-            return thinned_in<std::uint8_t>(field, geometry, every);
-        case SampleType::int16:
-            return thinned_in<std::int16_t>(field, geometry, every);
-        case SampleType::uint16:
-            return thinned_in<std::uint16_t>(field, geometry, every);
-        case SampleType::float32:
-            break;
-    }
-    return thinned_in<float>(field, geometry, every);
+    return with_type(field.samples().type(),
+                     [&](auto zero) { return thinned_in<decltype(zero)>(field, geometry, every); });
 }
 
 bool same_samples(const Field& a, const Field& b) {

@@ -95,16 +95,8 @@ void SliceSamples::load(Layer& layer, int number) const {
     }
     const void* const data = field_.samples().frames()[moment.from].volume.data();
     float* const to = layer.values.data();
-    switch (field_.samples().type()) {
-        case SampleType::uint8:
-            return copy_layer<std::uint8_t>(data, s, size_[0], size_[1], to);
-        case SampleType::int16:
-            return copy_layer<std::int16_t>(data, s, size_[0], size_[1], to);
-        case SampleType::uint16:
-            return copy_layer<std::uint16_t>(data, s, size_[0], size_[1], to);
-        case SampleType::float32:
-            return copy_layer<float>(data, s, size_[0], size_[1], to);
-    }
+    with_type(field_.samples().type(),
+              [&](auto zero) { copy_layer<decltype(zero)>(data, s, size_[0], size_[1], to); });
 }
 
 /// Of edited samples, or between two frames: one by one.
@@ -146,21 +138,8 @@ bool SliceSamples::in_data() const {
 }
 
 GreyWindow usual_window(const Volume& volume) {
-    std::vector<double> values;
-    switch (volume.type()) {
-        case SampleType::uint8:
-            values = spread_samples<std::uint8_t>(volume);
-            break;
-        case SampleType::int16:
-            values = spread_samples<std::int16_t>(volume);
-            break;
-        case SampleType::uint16:
-            values = spread_samples<std::uint16_t>(volume);
-            break;
-        case SampleType::float32:
-            values = spread_samples<float>(volume);
-            break;
-    }
+    std::vector<double> values =
+        with_type(volume.type(), [&](auto zero) { return spread_samples<decltype(zero)>(volume); });
     const auto percentile = [&](double part) {
         const auto at = static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
         std::nth_element(values.begin(), values.begin() + at, values.end());

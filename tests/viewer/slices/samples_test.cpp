@@ -14,16 +14,9 @@ Field ramp(SampleType type) {
     direction << 0, 0, -1, -1, 0, 0, 0, 1, 0;
     const Geometry geometry = support::grid({7, 6, 5}, {1, 2, 3}, {10, 20, 30}, direction);
     const auto value = [](const Index3& i) { return i[0] + 10 * i[1] + 40 * i[2]; };
-    switch (type) {
-        case SampleType::uint8:
-            return Field(support::volume_of<std::uint8_t>(geometry, value));
-        case SampleType::int16:
-            return Field(support::volume_of<std::int16_t>(geometry, value));
-        case SampleType::uint16:
-            return Field(support::volume_of<std::uint16_t>(geometry, value));
-        default:
-            return Field(support::volume_of<float>(geometry, value));
-    }
+    return with_type(type, [&](auto zero) {
+        return Field(support::volume_of<decltype(zero)>(geometry, value));
+    });
 }
 
 TEST(SliceSamples, are_those_of_the_volume_whatever_its_type_axis_and_direction) {
