@@ -94,32 +94,17 @@ constexpr void add_tetrahedra(Partition& p) {
     }
 }
 
-/// For a right-handed tetrahedron, with the orientation that SurfaceMesh promises.
+/// The cut of a tetrahedron of the cell, as triangles. All tetrahedra are right-handed.
 constexpr Piece piece_of(const Partition& p, const std::array<Node, 4>& node, unsigned solid) {
-    // Even permutations of the four nodes: with the first alone solid, its three edges in this
-    // order turn counter-clockwise seen from the other three.
-    constexpr int even[4][4] = {{0, 1, 2, 3}, {1, 0, 3, 2}, {2, 0, 1, 3}, {3, 0, 2, 1}};
-    const auto edge = [&](int i, int j) { return p.between[node[i]][node[j]]; };
-    for (int i = 0; i < 4; ++i) {
-        const auto& n = even[i];
-        const Edge a = edge(n[0], n[1]);
-        const Edge b = edge(n[0], n[2]);
-        const Edge c = edge(n[0], n[3]);
-        if (solid == 1U << i) return {1, {a, b, c}};
-        if (solid == (15U ^ 1U << i)) return {1, {a, c, b}};
+    const TetrahedronCut cut = cut_of(solid);
+    if (cut.count == 0) return {};
+    std::array<Edge, 4> edges{};
+    for (int i = 0; i < cut.count; ++i) {
+        edges[i] = p.between[node[cut.edges[i].solid]][node[cut.edges[i].free]];
     }
-    // Two and two: a quadrilateral, round the edges that join a solid to a free node.
-    constexpr int pairs[6][4] = {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2},
-                                 {1, 2, 0, 3}, {1, 3, 2, 0}, {2, 3, 0, 1}};
-    for (const auto& n : pairs) {
-        if (solid != (1U << n[0] | 1U << n[1])) continue;
-        const Edge a = edge(n[0], n[2]);
-        const Edge b = edge(n[0], n[3]);
-        const Edge c = edge(n[1], n[3]);
-        const Edge d = edge(n[1], n[2]);
-        return {2, {a, b, c, a, c, d}};
-    }
-    return {};
+    const auto [a, b, c, d] = edges;
+    if (cut.count == 3) return {1, {a, b, c}};
+    return {2, {a, b, c, a, c, d}};
 }
 
 constexpr Partition cut_cell() {

@@ -58,6 +58,11 @@ struct LinearPiece {
     }
 };
 
+/// Corners of every tetrahedron in folded coordinates: the cell's centre, the face's centre, and
+/// the edge's end at the minus and at the plus side.
+inline constexpr std::array<std::array<double, 3>, 4> folded_corners{
+    {{0, 0, 0}, {0.5, 0, 0}, {0.5, 0.5, -0.5}, {0.5, 0.5, 0.5}}};
+
 /// Largest |index coordinate| that the lattice accepts; farther points are refused by its users.
 inline constexpr double farthest_index = 1e9;
 

@@ -13,6 +13,40 @@
 
 namespace palpate {
 
+/// Where an isosurface cuts a tetrahedron: nowhere, or in a triangle or a plane quadrilateral,
+/// whose corners lie on edges from a solid to a free corner of the tetrahedron (0 to 3).
+struct TetrahedronCut {
+    struct Edge {
+        std::uint8_t solid = 0, free = 0;
+    };
+    int count = 0;                ///< corners of the polygon: 0, 3 or 4
+    std::array<Edge, 4> edges{};  ///< on which they lie, in turn round the polygon
+};
+/// The cut if corner i is solid where bit i of `solid` (0 to 15) is set. The polygon runs
+/// counter-clockwise seen from the free side if the corners c are right-handed:
+/// det(c1 - c0, c2 - c0, c3 - c0) > 0.
+constexpr TetrahedronCut cut_of(unsigned solid) {
+    using Edge = TetrahedronCut::Edge;
+    // Even permutations of the corners: the edges of the first one, in this order, turn
+    // counter-clockwise seen from the other three.
+    constexpr std::uint8_t even[4][4] = {{0, 1, 2, 3}, {1, 0, 3, 2}, {2, 0, 1, 3}, {3, 0, 2, 1}};
+    for (const auto& n : even) {
+        if (solid == 1U << n[0]) {
+            return {3, {Edge{n[0], n[1]}, Edge{n[0], n[2]}, Edge{n[0], n[3]}}};
+        }
+        if (solid == (15U ^ 1U << n[0])) {
+            return {3, {Edge{n[1], n[0]}, Edge{n[3], n[0]}, Edge{n[2], n[0]}}};
+        }
+    }
+    constexpr std::uint8_t pairs[6][4] = {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2},
+                                          {1, 2, 0, 3}, {1, 3, 2, 0}, {2, 3, 0, 1}};
+    for (const auto& n : pairs) {
+        if (solid != (1U << n[0] | 1U << n[1])) continue;
+        return {4, {Edge{n[0], n[2]}, Edge{n[0], n[3]}, Edge{n[1], n[3]}, Edge{n[1], n[2]}}};
+    }
+    return {};
+}
+
 /// An oriented triangle mesh, closed unless it is that of a part: every edge has exactly two
 /// triangles, which run along it in opposite directions.
 struct SurfaceMesh {

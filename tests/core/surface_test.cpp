@@ -7,8 +7,11 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
+#include <bit>
 #include <numbers>
 #include <random>
+#include <set>
+#include <utility>
 
 #include "palpate/lattice.hpp"
 #include "support/mesh_checks.hpp"
@@ -136,6 +139,32 @@ TEST(Surface, is_closed_and_faces_outward_on_anisotropic_oblique_and_mirrored_gr
         const auto volume = random_volume<std::int16_t>(geometry, 3, sample);
         expect_closed(Field(volume), 300);
         expect_closed(Field(volume, Solid::below), -500);
+    }
+}
+
+TEST(Surface, cuts_a_tetrahedron_between_solid_and_free_corners_and_faces_the_free_ones) {
+    const std::array<Vec3, 4> corners{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)};
+    for (unsigned solid = 0; solid < 16; ++solid) {
+        const TetrahedronCut cut = cut_of(solid);
+        const int ends = std::popcount(solid) * (4 - std::popcount(solid));
+        ASSERT_EQ(cut.count, ends) << solid;  // one corner an edge that is cut
+        if (cut.count == 0) continue;
+        std::set<std::pair<int, int>> seen;
+        std::vector<Vec3> polygon;
+        for (int i = 0; i < cut.count; ++i) {
+            const auto [in, out] = cut.edges[i];
+            const auto next = cut.edges[(i + 1) % cut.count];
+            EXPECT_TRUE(solid >> in & 1U);
+            EXPECT_FALSE(solid >> out & 1U);
+            EXPECT_TRUE(seen.emplace(in, out).second);
+            EXPECT_TRUE(next.solid == in || next.free == out) << "not in turn";
+            polygon.push_back(0.5 * (corners[in] + corners[out]));
+        }
+        const Vec3 normal = (polygon[1] - polygon[0]).cross(polygon[2] - polygon[0]);
+        for (int i = 0; i < 4; ++i) {
+            const double side = normal.dot(corners[i] - polygon[0]);
+            EXPECT_EQ(side < 0, (solid >> i & 1U) != 0) << solid << " " << i;
+        }
     }
 }
 

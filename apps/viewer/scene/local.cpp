@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "palpate/surface.hpp"
+
 namespace palpate::viewer {
 namespace {
 
@@ -10,32 +12,18 @@ namespace {
 /// to the data's range: a good deal more than the proxy's promise (G2).
 constexpr double on_surface = 1e-6;
 
-const std::array<Vec3, 4>& folded_corners() {
-    static const std::array<Vec3, 4> corners{Vec3(0, 0, 0), Vec3(0.5, 0, 0), Vec3(0.5, 0.5, -0.5),
-                                             Vec3(0.5, 0.5, 0.5)};
-    return corners;
-}
-
 /// Where a linear field meets the isovalue, in the tetrahedron: on up to four edges, in turn.
 std::vector<Vec3> patch_of(const std::array<Vec3, 4>& corners, const std::array<double, 4>& above) {
-    std::vector<std::size_t> in, out;
-    for (std::size_t i = 0; i < 4; ++i) (above[i] > 0 ? in : out).push_back(i);
-    const auto between = [&](std::size_t a, std::size_t b) {
+    unsigned solid = 0;
+    for (std::size_t i = 0; i < 4; ++i) solid |= unsigned{above[i] > 0} << i;
+    const TetrahedronCut cut = cut_of(solid);
+    std::vector<Vec3> patch;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(cut.count); ++i) {
+        const auto [a, b] = cut.edges[i];
         const double t = above[a] / (above[a] - above[b]);
-        return Vec3(corners[a] + t * (corners[b] - corners[a]));
-    };
-    if (in.empty() || out.empty()) return {};
-    if (in.size() == 2) {
-        return {between(in[0], out[0]), between(in[0], out[1]), between(in[1], out[1]),
-                between(in[1], out[0])};
+        patch.emplace_back(corners[a] + t * (corners[b] - corners[a]));
     }
-    const bool one = in.size() == 1;
-    const std::size_t tip = one ? in[0] : out[0];
-    std::vector<Vec3> triangle;
-    for (const std::size_t other : one ? out : in) {
-        triangle.push_back(one ? between(tip, other) : between(other, tip));
-    }
-    return triangle;
+    return patch;
 }
 
 }  // namespace
@@ -53,7 +41,8 @@ std::vector<LocalTetrahedron> local_tetrahedra(const Field& field, const Lattice
         LocalTetrahedron local;
         std::array<double, 4> above{};
         for (std::size_t c = 0; c < 4; ++c) {
-            const Vec3& folded = folded_corners()[c];
+            const auto [d, s, e] = folded_corners[c];
+            const Vec3 folded(d, s, e);
             local.corners[c] = physical_from_index(g, index_of({tetrahedron, folded}));
             above[c] = piece(folded) - isovalue;
         }
