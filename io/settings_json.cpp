@@ -221,9 +221,9 @@ Json written(const command::Samples& samples) {
 }
 
 /// The name of each alternative of Command, in its order.
-constexpr std::array command_names{"isovalue", "freeze",   "clutch",        "forces",
-                                   "scale",    "samples",  "moment",        "speed",
-                                   "force",    "friction", "penetrability", "transform"};
+constexpr std::array command_names{"isovalue",      "freeze",    "clutch", "forces", "scale",
+                                   "samples",       "moment",    "speed",  "force",  "friction",
+                                   "penetrability", "transform", "limits"};
 static_assert(command_names.size() == std::variant_size_v<Command>);
 
 template <std::size_t i = 0>

@@ -107,10 +107,37 @@ double greatest_stiffness(const DeviceLimits& limits, double damping) {
     return std::max(0.0, 2 * limits.rate * (limits.physical_damping - damping));
 }
 
-void check(const ForceSettings& s, const DeviceLimits& limits) {
+DeviceLimits smaller(const DeviceLimits& one, const DeviceLimits& other) noexcept {
+    const auto least = [](double a, double b) { return a >= 0 && b >= 0 ? std::min(a, b) : 0.0; };
+    return {least(one.maximum_force, other.maximum_force), least(one.rate, other.rate),
+            least(one.physical_damping, other.physical_damping)};
+}
+
+ForceSettings stable(ForceSettings s, const DeviceLimits& limits) noexcept {
+    const double damping = s.damping + s.viscosity;
+    if (!(damping < limits.physical_damping) ||
+        !(s.stiffness <= greatest_stiffness(limits, damping))) {
+        // k / (2 rate) + damping <= physical damping, and below it by more than rounding.
+        const double used = s.stiffness / (2 * limits.rate) + damping;
+        const double part = limits.physical_damping / used * (1 - 1e-9);
+        const double factor = part > 0 && part < 1 ? part : 0;
+        s.stiffness *= factor;
+        s.damping *= factor;
+        s.viscosity *= factor;
+    }
+    const double peak = greatest_stiffness(limits, s.damping + s.viscosity) * s.magnet.distance / 4;
+    if (s.magnet.distance > 0 && !(s.magnet.peak <= peak)) s.magnet.peak = peak;
+    return s;
+}
+
+void check(const DeviceLimits& limits) {
     require(limits.rate >= 1 && limits.rate <= 1e5, "rate [Hz]", limits.rate, "1 to 100000");
     require_positive("maximum force [N]", limits.maximum_force);
     require_positive("physical damping [N s/mm]", limits.physical_damping);
+}
+
+void check(const ForceSettings& s, const DeviceLimits& limits) {
+    check(limits);
     require_not_negative("stiffness [N/mm]", s.stiffness);
     require_not_negative("damping [N s/mm]", s.damping);
     require_not_negative("viscosity [N s/mm]", s.viscosity);

@@ -1,7 +1,6 @@
 // Renderer: device state -> HIP -> proxy -> penetrability -> force, once a tick.
 #include "palpate/renderer.hpp"
 
-#include <chrono>
 #include <cmath>
 #include <stdexcept>
 
@@ -109,18 +108,17 @@ std::string isovalue_warning(const Field& field, double isovalue) {
     return {};
 }
 
-Tick render(Renderer& renderer, const DeviceState& device, StepObserver observer) {
+Tick render(Renderer& renderer, const DeviceState& device, StepObserver observer, Clock clock) {
     const RendererSettings& settings = renderer.settings;
     const Vec3 hip = physical_from_device(settings.transform, device.position);
     Tick tick;
     tick.time = device.time;
-    const auto begin = std::chrono::steady_clock::now();
+    const std::int64_t begin = clock ? clock() : 0;
     tick.proxy = device.valid ? settings.method(renderer.proxy, renderer.field, hip, settings.proxy,
                                                 observer)
                               // No position to trust: nothing moves.
                               : refuse_update(renderer.proxy, renderer.field, hip);
-    const auto end = std::chrono::steady_clock::now();
-    tick.update_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(end - begin).count();
+    tick.update_ns = clock ? clock() - begin : 0;
     apply_penetrability(settings.penetrability, renderer.field, 1 / settings.transform.scale,
                         renderer.proxy, tick.proxy, observer);
     const ForceResult force = render_force(renderer.force, settings.force, settings.device,

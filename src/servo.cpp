@@ -27,6 +27,10 @@ std::int64_t now_ns(clockid_t clock) {
     return t.tv_sec * second_ns + t.tv_nsec;
 }
 
+std::int64_t monotonic_ns() noexcept {
+    return now_ns(CLOCK_MONOTONIC);
+}
+
 void sleep_until(std::int64_t ns) {
     const timespec t{ns / second_ns, ns % second_ns};
     while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr) == EINTR) {
@@ -104,12 +108,15 @@ Servo::Servo(Session session, Device& device, const ServoSettings& settings)
     : session_(std::move(session)),
       device_(device),
       settings_(settings),
-      start_(session_.renderer.settings),
       solid_(session_.renderer.field.solid()),
       geometry_(session_.renderer.field.geometry()),
       held_{session_.renderer.field.shared_samples()},
       commands_(settings.command_room) {
+    // What no device can render is refused, not lowered.
     check(session_.renderer.settings);
+    keep_device_limits(device.info().limits);
+    start_ = session_.renderer.settings;
+    check(start_);
     check(session_.settings);
     if (!(settings.rate >= 250 && settings.rate <= 8000)) {
         throw std::invalid_argument("the servo's rate must be 250 to 8000 Hz");
@@ -142,7 +149,7 @@ void Servo::stop() noexcept {
 
 bool Servo::send(const Command& command) {
     check(command, start_, solid_);
-    if (const auto* samples = std::get_if<command::Samples>(&command)) {
+    if (const auto* samples = std::get_if<command::Samples>(&command)) {  // all others own nothing
         check(*samples, geometry_);
         hold(samples->samples);
         hold(samples->recipe);
@@ -186,32 +193,33 @@ void Servo::run() noexcept {
     }
     ready_.store(true, std::memory_order_release);
     Clock clock{static_cast<std::int64_t>(static_cast<double>(second_ns) / settings_.rate), 0, 0};
-    clock.zero = clock.due = now_ns(CLOCK_MONOTONIC) + settle_ns;
+    clock.zero = clock.due = monotonic_ns() + settle_ns;
     while (!stopping_.load(std::memory_order_acquire)) {
         sleep_until(clock.due);
         tick(clock);
     }
-    device_.write(Vec3::Zero(), 1e-9 * static_cast<double>(now_ns(CLOCK_MONOTONIC) - clock.zero));
+    device_.write(Vec3::Zero(), 1e-9 * static_cast<double>(monotonic_ns() - clock.zero));
 }
 
 void Servo::tick(Clock& clock) noexcept {
-    const std::int64_t start = now_ns(CLOCK_MONOTONIC);
+    const std::int64_t start = monotonic_ns();
     const std::int64_t compute_start = now_ns(CLOCK_THREAD_CPUTIME_ID);
     const std::int64_t number = ticks_.load(std::memory_order_relaxed);
     const double time = 1e-9 * static_cast<double>(start - clock.zero);
 
     obey();
-    const std::int64_t before_read = now_ns(CLOCK_MONOTONIC);
+    const std::int64_t before_read = monotonic_ns();
     const DeviceReading reading = device_.read(time);
-    const std::int64_t after_read = now_ns(CLOCK_MONOTONIC);
-    SessionTick result = advance(session_, time, reading);
-    const std::int64_t before_write = now_ns(CLOCK_MONOTONIC);
+    const std::int64_t after_read = monotonic_ns();
+    if (reading.limits) keep_device_limits(*reading.limits);
+    SessionTick result = advance(session_, time, reading, &monotonic_ns);
+    const std::int64_t before_write = monotonic_ns();
     if (1e-9 * static_cast<double>(before_write - start) > session_.settings.overrun) {
         let_go(session_, result);
         add(overruns_, 1);
     }
     device_.write(result.tick.force, time);
-    const std::int64_t after_write = now_ns(CLOCK_MONOTONIC);
+    const std::int64_t after_write = monotonic_ns();
     publish(number, result);
     record(result);
 
@@ -223,7 +231,7 @@ void Servo::tick(Clock& clock) noexcept {
 }
 
 void Servo::count(Clock& clock, std::int64_t number, const Stamps& stamps) noexcept {
-    const std::int64_t end = now_ns(CLOCK_MONOTONIC);
+    const std::int64_t end = monotonic_ns();
     const WorstTick tick{number, stamps.start - clock.due, end - stamps.start, stamps.compute,
                          stamps.cause(stamps.start - clock.due, end - stamps.start)};
     lateness_.add(tick.lateness_ns);
@@ -249,6 +257,11 @@ void Servo::obey() noexcept {
         apply(session_, *command);
         record(*command);
     }
+}
+
+/// Limits that change the session go into the recording as the command that does the same.
+void Servo::keep_device_limits(const DeviceLimits& limits) noexcept {
+    if (keep_within(session_, limits)) record(Command(limits));
 }
 
 void Servo::record(const SessionEvent& event) noexcept {

@@ -90,70 +90,89 @@ void check(const SessionSettings& s) {
 
 void check(const Command& command, const RendererSettings& settings, Solid solid) {
     RendererSettings changed = settings;
-    if (const auto* to = std::get_if<command::Isovalue>(&command)) {
-        if (std::isnan(to->isovalue)) throw std::invalid_argument("the isovalue is not a number");
-    } else if (const auto* samples = std::get_if<command::Samples>(&command)) {
-        if (!samples->samples) throw std::invalid_argument("no samples are given");
-    } else if (const auto* moment = std::get_if<command::Moment>(&command)) {
-        if (!std::isfinite(moment->time)) throw std::invalid_argument("the time is not finite");
-    } else if (const auto* speed = std::get_if<command::Speed>(&command)) {
-        if (!(std::abs(speed->speed) <= 1000)) {
-            throw std::invalid_argument("a sequence is played at most 1000 times as fast");
-        }
-    } else if (const auto* force = std::get_if<ForceSettings>(&command)) {
-        changed.force = *force;
-    } else if (const auto* friction = std::get_if<Friction>(&command)) {
-        changed.proxy.friction = *friction;
-    } else if (const auto* penetrability = std::get_if<Penetrability>(&command)) {
-        check(*penetrability, solid);
-    } else if (const auto* transform = std::get_if<DeviceTransform>(&command)) {
-        changed.transform = *transform;
-    } else if (const auto* scale = std::get_if<command::Scale>(&command)) {
-        changed.transform.scale = scale->scale;
-    }
+    const Overloaded check_one{
+        [](const command::Isovalue& to) {
+            if (std::isnan(to.isovalue)) {
+                throw std::invalid_argument("the isovalue is not a number");
+            }
+        },
+        [](const command::Freeze&) {},
+        [](const command::Clutch&) {},
+        [](const command::Forces&) {},
+        [&](const command::Scale& to) { changed.transform.scale = to.scale; },
+        [](const command::Samples& to) {
+            if (!to.samples) throw std::invalid_argument("no samples are given");
+        },
+        [](const command::Moment& to) {
+            if (!std::isfinite(to.time)) throw std::invalid_argument("the time is not finite");
+        },
+        [](const command::Speed& to) {
+            if (!(std::abs(to.speed) <= 1000)) {
+                throw std::invalid_argument("a sequence is played at most 1000 times as fast");
+            }
+        },
+        [&](const ForceSettings& to) { changed.force = to; },
+        [&](const Friction& to) { changed.proxy.friction = to; },
+        [&](const Penetrability& to) { check(to, solid); },
+        [&](const DeviceTransform& to) { changed.transform = to; },
+        [](const DeviceLimits& to) { check(to); },
+    };
+    std::visit(check_one, command);
     check(changed);
 }
 
 void apply(Session& session, const Command& command) noexcept {
-    RendererSettings& settings = session.renderer.settings;
-    if (const auto* to = std::get_if<command::Isovalue>(&command)) {
-        session.renderer.proxy.isovalue = to->isovalue;
-    } else if (const auto* freeze = std::get_if<command::Freeze>(&command)) {
-        if (freeze->on && !session.frozen) session.frozen_hand = session.hand;
-        session.frozen = freeze->on;
-    } else if (const auto* clutch = std::get_if<command::Clutch>(&command)) {
-        session.clutched = clutch->on;
-    } else if (const auto* forces = std::get_if<command::Forces>(&command)) {
-        settings.forces_on = forces->on;
-    } else if (const auto* scale = std::get_if<command::Scale>(&command)) {
-        scale_about_scp(session.renderer, scale->scale);
-        session.holding = false;  // what was held was held at the other scale
-    } else if (const auto* samples = std::get_if<command::Samples>(&command)) {
-        Field& field = session.renderer.field;
-        field_will_change(session.renderer.proxy, field);
-        field.use(samples->samples);
-        field.set_time(samples->samples->within(field.time()));
-        session.version = samples->version;
-    } else if (const auto* moment = std::get_if<command::Moment>(&command)) {
-        Field& field = session.renderer.field;
-        field_will_change(session.renderer.proxy, field);
-        field.set_time(field.samples().within(moment->time));
-    } else if (const auto* speed = std::get_if<command::Speed>(&command)) {
-        session.speed = speed->speed;
-    } else if (const auto* force = std::get_if<ForceSettings>(&command)) {
-        settings.force = *force;
-    } else if (const auto* friction = std::get_if<Friction>(&command)) {
-        settings.proxy.friction = *friction;
-    } else if (const auto* penetrability = std::get_if<Penetrability>(&command)) {
-        settings.penetrability = *penetrability;
-    } else if (const auto* transform = std::get_if<DeviceTransform>(&command)) {
-        settings.transform = *transform;
-        session.holding = false;
-        session.renderer.force.waiting = true;
-    }
+    Renderer& renderer = session.renderer;
+    RendererSettings& settings = renderer.settings;
+    Field& field = renderer.field;
+    const Overloaded apply_one{
+        [&](const command::Isovalue& to) { renderer.proxy.isovalue = to.isovalue; },
+        [&](const command::Freeze& to) {
+            if (to.on && !session.frozen) session.frozen_hand = session.hand;
+            session.frozen = to.on;
+        },
+        [&](const command::Clutch& to) { session.clutched = to.on; },
+        [&](const command::Forces& to) { settings.forces_on = to.on; },
+        [&](const command::Scale& to) {
+            scale_about_scp(renderer, to.scale);
+            session.holding = false;  // what was held was held at the other scale
+        },
+        [&](const command::Samples& to) {
+            field_will_change(renderer.proxy, field);
+            field.use(to.samples);
+            field.set_time(to.samples->within(field.time()));
+            session.version = to.version;
+        },
+        [&](const command::Moment& to) {
+            field_will_change(renderer.proxy, field);
+            field.set_time(field.samples().within(to.time));
+        },
+        [&](const command::Speed& to) { session.speed = to.speed; },
+        [&](const ForceSettings& to) { settings.force = stable(to, settings.device); },
+        [&](const Friction& to) { settings.proxy.friction = to; },
+        [&](const Penetrability& to) { settings.penetrability = to; },
+        [&](const DeviceTransform& to) {
+            settings.transform = to;
+            session.holding = false;
+            renderer.force.waiting = true;
+        },
+        [&](const DeviceLimits& to) { keep_within(session, to); },
+    };
+    std::visit(apply_one, command);
 }
 
-SessionTick advance(Session& session, double time, const DeviceReading& reading) noexcept {
+bool keep_within(Session& session, const DeviceLimits& limits) noexcept {
+    RendererSettings& settings = session.renderer.settings;
+    const DeviceLimits device = smaller(settings.device, limits);
+    const ForceSettings force = stable(settings.force, device);
+    const bool changed = !(device == settings.device && force == settings.force);
+    settings.device = device;
+    settings.force = force;
+    return changed;
+}
+
+SessionTick advance(Session& session, double time, const DeviceReading& reading,
+                    Clock clock) noexcept {
     const SessionSettings& settings = session.settings;
     const bool fresh = reading.age <= session.renderer.settings.force.stale_after;
     DeviceState state;
@@ -180,7 +199,7 @@ SessionTick advance(Session& session, double time, const DeviceReading& reading)
     state.position = session.frozen ? session.frozen_hand : reading.position;
     play(session, time);
     SessionTick result;
-    result.tick = render(session.renderer, state);
+    result.tick = render(session.renderer, state, {}, clock);
     result.device = reading;
     result.transform = session.renderer.settings.transform;
     result.frozen = session.frozen;

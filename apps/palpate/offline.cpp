@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -13,6 +14,10 @@ namespace palpate::app {
 namespace {
 
 constexpr std::int64_t ticks_between_progress = 1024;
+
+std::int64_t steady_ns() noexcept {
+    return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 /// Passes the corners of the SCP's polyline on. A crossed wall is no corner, nor is a goal. The
 /// last corner of a tick is held back for its SCP, from which it differs by rounding: that is
@@ -97,7 +102,7 @@ OfflineSummary render_offline(Renderer& renderer, const io::Trajectory& trajecto
             Renderer watched = renderer;
             render(watched, device, observer);
         }
-        const Tick tick = render(renderer, device);
+        const Tick tick = render(renderer, device, {}, &steady_ns);
         tap.end_tick(tick.proxy.scp);
         if (sinks.row) sinks.row(io::trace_row(tick));
         times.push_back(tick.update_ns);

@@ -2,6 +2,7 @@
 // reached is its own affair (folder devices/).
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "palpate/renderer.hpp"
@@ -23,10 +24,10 @@ const char* name_of(DeviceStatus status);
 /// What a device is and can take. Lengths in device mm, in the axes of every device here: x to the
 /// right, y up, z towards the person who holds it.
 struct DeviceInfo {
-    std::string name;   ///< of the backend: simulated, haply, ...
-    std::string model;  ///< as the device tells it, serial number included where there is one
-    DeviceLimits limits;
-    double stiffness = 0.5;  ///< [N/mm] it is rated for
+    std::string name;        ///< of the backend: simulated, haply, ...
+    std::string model;       ///< as the device tells it, serial number included where there is one
+    DeviceLimits limits;     ///< never exceeded by a servo, whatever the settings
+    double stiffness = 0.5;  ///< [N/mm] it is rated for; a hint for applications, not a limit
     Vec3 workspace_low = Vec3::Constant(-80);
     Vec3 workspace_high = Vec3::Constant(80);  ///< corners of the usable box [device mm]
     bool renders_force = true;                 ///< false: position only
@@ -41,6 +42,9 @@ struct DeviceReading {
     std::uint32_t buttons = 0;            ///< bit b is set while button b is held
     double age = 0;                       ///< [s] since it was measured
     DeviceStatus status = DeviceStatus::starting;
+    /// Limits of a device that learns them only when it connects, in every reading from then on;
+    /// none: those that info() gave when the servo was made still hold.
+    std::optional<DeviceLimits> limits = std::nullopt;
 };
 
 /// Which side of the body faces the person at the device. Physical space is LPS (x to the left, y
@@ -62,7 +66,8 @@ class Device {
     Device& operator=(const Device&) = delete;
     virtual ~Device() = default;
 
-    /// May be called from any thread but the servo thread; may change when a device connects.
+    /// Any thread but the servo thread. May change when a device connects; a running servo learns
+    /// of changed limits by DeviceReading::limits.
     virtual DeviceInfo info() const = 0;
     /// What is wrong and what to do about it, in words; empty where all is well. Not for the servo
     /// thread.

@@ -13,6 +13,8 @@ namespace palpate {
 struct Magnet {
     double distance = 0;  ///< [device mm] 0: off
     double peak = 0;      ///< [N]
+
+    bool operator==(const Magnet&) const = default;
 };
 
 /// A bumpy surface by turning the contact force (bump mapping): a height field
@@ -20,6 +22,8 @@ struct Magnet {
 struct Texture {
     double amplitude = 0;   ///< a [mm of physical space] 0: off
     double wavelength = 2;  ///< w [mm of physical space]
+
+    bool operator==(const Texture&) const = default;
 };
 
 struct ForceSettings {
@@ -37,9 +41,11 @@ struct ForceSettings {
     /// [N] After a start, a pause or a release, no force until the wanted one is at most this: a
     /// hand that starts inside a solid is not thrown out. Infinity: do not wait.
     double start_below = std::numeric_limits<double>::infinity();
+
+    bool operator==(const ForceSettings&) const = default;
 };
 
-/// What the device at hand can take.
+/// What a device can take.
 struct DeviceLimits {
     double maximum_force = 3.3;  ///< [N] never exceeded, whatever is asked (Omni, Touch)
     double rate = 1000;          ///< [Hz] of the servo loop
@@ -47,10 +53,23 @@ struct DeviceLimits {
     /// k / (2 rate) + damping <= this (Colgate and Schenkel 1994). 2.5 N s/m is a desktop device in
     /// a light grip.
     double physical_damping = 2.5e-3;
+
+    bool operator==(const DeviceLimits&) const = default;
 };
 
 /// Largest stiffness [N/mm] these limits can render with this damping [N s/mm].
 double greatest_stiffness(const DeviceLimits& limits, double damping);
+/// The smaller of both, number by number. A number that is negative or NaN counts as 0: no force.
+DeviceLimits smaller(const DeviceLimits& one, const DeviceLimits& other) noexcept;
+/// The settings as these limits can render them stably. Settings that pass check() come back as
+/// they are. Of others, stiffness, damping and viscosity are lowered by one factor, which keeps
+/// their proportions, and the magnet's peak as far as needed. `limit` stays: render_force() takes
+/// the smaller of it and the device's.
+ForceSettings stable(ForceSettings settings, const DeviceLimits& limits) noexcept;
+
+/// Throws std::invalid_argument, naming the limit, its value and the accepted range, for limits
+/// that no device has.
+void check(const DeviceLimits& limits);
 /// Throws std::invalid_argument, naming the setting, its value and the accepted range, for numbers
 /// that are NaN, negative or cannot be rendered stably.
 void check(const ForceSettings& settings, const DeviceLimits& limits);

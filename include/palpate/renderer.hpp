@@ -47,13 +47,16 @@ struct Renderer {
     ForceState force;
 };
 
+/// A monotonic clock of the caller's [ns]. The core reads none of its own.
+using Clock = std::int64_t (*)() noexcept;
+
 /// What one tick gave.
 struct Tick {
     double time = 0;               ///< [s]
     ProxyUpdate proxy;             ///< HIP, SCP, mode, density, isovalue, ... in physical space
     Vec3 force = Vec3::Zero();     ///< [N], device axes
     std::uint8_t force_flags = 0;  ///< ForceFlag bits
-    std::int64_t update_ns = 0;    ///< [ns] the proxy update alone, monotonic clock
+    std::int64_t update_ns = 0;    ///< [ns] the proxy update alone, by the caller's clock; 0: none
 };
 
 /// Throws std::invalid_argument, saying what is wrong, for settings that cannot be rendered.
@@ -70,7 +73,9 @@ std::string isovalue_warning(const Field& field, double isovalue);
 
 /// Renders one tick. Input that is not valid or not finite, or absurdly far, leaves the proxy as it
 /// is (UpdateStatus::refused) and gives no force; so does a time that is not finite or did not
-/// advance, but then the proxy has followed.
-Tick render(Renderer& renderer, const DeviceState& device, StepObserver observer = {});
+/// advance, but then the proxy has followed. The same renderer and input give the same tick, bit
+/// for bit, but for `update_ns`, which is measured where a clock is given.
+Tick render(Renderer& renderer, const DeviceState& device, StepObserver observer = {},
+            Clock clock = nullptr);
 
 }  // namespace palpate

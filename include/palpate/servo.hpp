@@ -80,7 +80,9 @@ Snapshot snapshot_of(const Session& session, const SessionTick& tick, std::int64
 /// A session running on its own thread. Neither copied nor moved: threads hold on to it.
 class Servo {
   public:
-    /// Takes the session over; the device must outlive the servo. Nothing runs yet. Throws
+    /// Takes the session over; the device must outlive the servo. Nothing runs yet. The session
+    /// keeps the smaller of its settings and the limits that the device declares (keep_within());
+    /// where that changes it, a recording begins with the command that does. Throws
     /// std::invalid_argument for settings that cannot be run.
     Servo(Session session, Device& device, const ServoSettings& settings = {});
     /// stop().
@@ -107,7 +109,7 @@ class Servo {
 
     /// What the system granted and what not, a sentence each, with what to set. After start().
     const std::vector<std::string>& privileges() const { return privileges_; }
-    /// The settings of the session at the start.
+    /// The settings of the session at the start, within the device's limits.
     const RendererSettings& settings() const { return start_; }
 
   private:
@@ -117,6 +119,7 @@ class Servo {
     void run() noexcept;
     void tick(Clock& clock) noexcept;
     void obey() noexcept;
+    void keep_device_limits(const DeviceLimits& limits) noexcept;
     void count(Clock& clock, std::int64_t number, const Stamps& stamps) noexcept;
     void record(const SessionEvent& event) noexcept;
     void publish(std::int64_t number, const SessionTick& tick) noexcept;
@@ -125,7 +128,7 @@ class Servo {
     Session session_;
     Device& device_;
     const ServoSettings settings_;
-    const RendererSettings start_;
+    RendererSettings start_;
     const Solid solid_;
     const Geometry geometry_;
     std::vector<std::string> privileges_;

@@ -73,10 +73,21 @@ struct Scale {
     double scale;  ///< physical mm per device mm, > 0
 };
 }  // namespace command
-/// A new DeviceTransform may move the HIP: forces are let go and start anew.
+/// ForceSettings are lowered to what is stable within the session's device limits (stable()). A new
+/// DeviceTransform may move the HIP: forces are let go and start anew. DeviceLimits are those of
+/// the device: the session keeps the smaller of them and its own, for good.
 using Command = std::variant<command::Isovalue, command::Freeze, command::Clutch, command::Forces,
                              command::Scale, command::Samples, command::Moment, command::Speed,
-                             ForceSettings, Friction, Penetrability, DeviceTransform>;
+                             ForceSettings, Friction, Penetrability, DeviceTransform, DeviceLimits>;
+
+/// One callable of several, for std::visit over a Command: an alternative that is left out does not
+/// compile.
+template <class... Each>
+struct Overloaded : Each... {
+    using Each::operator()...;
+};
+template <class... Each>
+Overloaded(Each...) -> Overloaded<Each...>;
 
 /// Everything between two ticks. A value: copied, and given the same readings and commands, both
 /// go on alike, bit for bit.
@@ -124,9 +135,16 @@ void check(const command::Samples& samples, const Geometry& geometry);
 /// are freed here unless somebody else holds them (Servo::send() sees to that).
 void apply(Session& session, const Command& command) noexcept;
 
+/// Keeps the smaller of the session's device limits and these, and lowers the force settings as far
+/// as needed (stable()). True if that changed anything.
+bool keep_within(Session& session, const DeviceLimits& limits) noexcept;
+
 /// One tick at a time [s] after the last. Never throws or allocates. No force for input that is not
 /// ready, older than the force settings' `stale_after`, not finite or not plausible.
-SessionTick advance(Session& session, double time, const DeviceReading& reading) noexcept;
+/// DeviceReading::limits are the caller's to apply, as a command. The proxy update is timed where a
+/// clock is given (Tick::update_ns).
+SessionTick advance(Session& session, double time, const DeviceReading& reading,
+                    Clock clock = nullptr) noexcept;
 
 /// Takes the force of a tick back because it came too late, and starts anew.
 void let_go(Session& session, SessionTick& tick) noexcept;

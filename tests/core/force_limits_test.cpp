@@ -114,6 +114,61 @@ std::string refusal(const ForceSettings& settings, const DeviceLimits& limits = 
 
 }  // namespace
 
+/// Limits and settings within and beyond what can be rendered stably.
+struct Asked {
+    DeviceLimits limits;
+    ForceSettings settings;
+
+    explicit Asked(Random& random) {
+        limits.maximum_force = random.uniform(0.5, 20);
+        limits.rate = random.uniform(250, 8000);
+        limits.physical_damping = random.uniform(1e-3, 1e-2);
+        settings.stiffness = random.uniform(0, 10);
+        settings.damping = random.below(2) ? random.uniform(0, 5e-3) : 0;
+        settings.viscosity = random.below(2) ? random.uniform(0, 5e-3) : 0;
+        if (random.below(2)) settings.magnet = {random.uniform(0, 2), random.uniform(0, 3)};
+    }
+};
+
+TEST(Force, settings_are_lowered_to_what_is_stable_and_no_others_are_touched) {
+    Random random(3);
+    int touched = 0, left = 0;
+    for (int i = 0; i < 20'000; ++i) {
+        const Asked asked(random);
+        const ForceSettings lowered = stable(asked.settings, asked.limits);
+        ASSERT_EQ(refusal(lowered, asked.limits), "accepted");
+        if (refusal(asked.settings, asked.limits) == "accepted") {
+            ASSERT_EQ(lowered, asked.settings);
+            ++left;
+            continue;
+        }
+        ++touched;
+        ASSERT_LE(lowered.stiffness, asked.settings.stiffness);
+        ASSERT_LE(lowered.magnet.peak, asked.settings.magnet.peak);
+        // The spring and its damping keep their proportion.
+        ASSERT_NEAR(lowered.damping * asked.settings.stiffness,
+                    asked.settings.damping * lowered.stiffness, 1e-12);
+        ASSERT_EQ(stable(lowered, asked.limits), lowered);
+    }
+    EXPECT_GT(touched, 1000);
+    EXPECT_GT(left, 1000);
+}
+
+TEST(Force, of_two_limits_the_smaller_number_counts_and_one_that_is_none_allows_nothing) {
+    const DeviceLimits some{3, 1000, 2e-3};
+    EXPECT_EQ(smaller(some, {5, 500, 1e-3}), (DeviceLimits{3, 500, 1e-3}));
+    EXPECT_EQ(smaller({5, 500, 1e-3}, some), (DeviceLimits{3, 500, 1e-3}));
+    EXPECT_EQ(smaller(some, some), some);
+    const DeviceLimits none{0, 0, 0};
+    EXPECT_EQ(smaller(some, {not_a_number, not_a_number, not_a_number}), none);
+    EXPECT_EQ(smaller({not_a_number, -1, not_a_number}, some), none);
+    ForceSettings damped;
+    damped.damping = 1e-3;
+    const ForceSettings nothing = stable(damped, none);
+    EXPECT_EQ(nothing.stiffness, 0);
+    EXPECT_EQ(nothing.damping, 0);
+}
+
 TEST(Force, never_exceeds_its_limits_whatever_is_asked) {
     Random random(11);
     int limited = 0, rate_limited = 0, stopped = 0, ramping = 0;

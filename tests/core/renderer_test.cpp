@@ -94,7 +94,23 @@ TEST(Renderer, force_is_equation_4_in_device_millimetres_and_device_axes) {
         EXPECT_NEAR((pressed.force - 0.7 * 1.5 / voxels * outward).norm(), 0, 1e-9);
         EXPECT_EQ(pressed.force_flags, 0);
         EXPECT_EQ(pressed.time, period);
-        EXPECT_GE(pressed.update_ns, 0);
+        EXPECT_EQ(pressed.update_ns, 0);  // no clock was given
+    }
+}
+
+TEST(Renderer, a_clock_times_the_proxy_update_and_changes_nothing_else) {
+    static int reads = 0;
+    const Clock seven_a_read = []() noexcept -> std::int64_t { return 7 * ++reads; };
+    Renderer plain = make_renderer(ramp_field(), 30), timed = plain;
+    for (int i = 0; i < 100; ++i) {
+        const DeviceState device{i * period, at_depth(28 + 0.05 * i)};
+        const Tick one = render(plain, device), other = render(timed, device, {}, seven_a_read);
+        ASSERT_EQ(one.update_ns, 0);
+        ASSERT_EQ(other.update_ns, 7);
+        ASSERT_EQ(reads, 2 * (i + 1));
+        ASSERT_EQ(one.proxy.scp, other.proxy.scp);
+        ASSERT_EQ(one.force, other.force);
+        ASSERT_EQ(one.force_flags, other.force_flags);
     }
 }
 

@@ -74,7 +74,7 @@ SessionTick random_tick(Random& random, double time) {
 }
 
 Command random_command(Random& random) {
-    switch (random.below(9)) {
+    switch (random.below(10)) {
         case 0:
             return command::Isovalue{random.uniform(-1, 1)};
         case 1:
@@ -95,6 +95,8 @@ Command random_command(Random& random) {
             return Friction{random.uniform(0.5, 1), random.uniform(0, 0.5)};
         case 7:
             return penetrability_threshold(random.uniform(0, 3), random.uniform(0, 1));
+        case 8:
+            return DeviceLimits{random.uniform(1, 20), 250, random.uniform(1e-3, 1e-2)};
         default:
             return DeviceTransform{oblique_direction(), random.point(-1, 1), 2};
     }

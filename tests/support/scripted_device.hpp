@@ -12,10 +12,13 @@ namespace palpate::support {
 
 class ScriptedDevice : public Device {
   public:
-    explicit ScriptedDevice(std::function<DeviceReading(double)> script)
-        : script_(std::move(script)) {}
+    explicit ScriptedDevice(std::function<DeviceReading(double)> script,
+                            const DeviceLimits& limits = {})
+        : script_(std::move(script)) {
+        info_.limits = limits;
+    }
 
-    DeviceInfo info() const override { return {}; }
+    DeviceInfo info() const override { return info_; }
     DeviceReading read(double time) noexcept override {
         reads_.fetch_add(1);
         return script_(time);
@@ -36,6 +39,7 @@ class ScriptedDevice : public Device {
 
   private:
     std::function<DeviceReading(double)> script_;
+    DeviceInfo info_;
     std::array<std::atomic<double>, 3> force_{};
     std::atomic<double> most_{0};
     std::atomic<std::int64_t> reads_{0}, writes_{0};

@@ -1,0 +1,169 @@
+// Servo: it keeps the smaller of the settings and of what the device declares, from the start, by
+// command, and for a device that learns its limits when it connects.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "palpate/servo.hpp"
+#include "support/eventually.hpp"
+#include "support/scripted_device.hpp"
+#include "support/stroke.hpp"
+
+using namespace palpate;
+using namespace palpate::support;
+
+namespace {
+
+constexpr double rounding = 1 + 1e-12;
+
+/// An application that counts on a device of 20 N and forgets to ask what it has.
+RendererSettings careless() {
+    RendererSettings settings;
+    settings.device.maximum_force = 20;
+    settings.force.limit = 20;
+    settings.force.stiffness = 4.9;
+    settings.force.ramp = 0.02;
+    return settings;
+}
+
+Session session_of(const RendererSettings& settings) {
+    return {make_renderer(ramp_field(), 30, settings), {}};
+}
+
+/// Presses 5 mm into the ramp's level 30 and rests there.
+DeviceReading press(double time) {
+    return ready_at(at_depth(28 + std::min(7.0, 100 * time)));
+}
+
+/// Everything that a servo did, from the queue it recorded into.
+struct Recorded {
+    std::vector<SessionTick> ticks;
+    std::vector<DeviceLimits> limits;
+    std::size_t ticks_before_limits = 0;
+
+    /// Renders it again from `begin`, which has to give the same bits.
+    Recorded(Queue<SessionEvent>& queue, Session begin) {
+        while (const auto event = queue.pop()) {
+            if (const auto* command = std::get_if<Command>(&*event)) {
+                apply(begin, *command);
+                if (const auto* to = std::get_if<DeviceLimits>(command)) {
+                    if (limits.empty()) ticks_before_limits = ticks.size();
+                    limits.push_back(*to);
+                }
+                continue;
+            }
+            ticks.push_back(std::get<SessionTick>(*event));
+            const SessionTick again = repeat(begin, ticks.back());
+            EXPECT_EQ(again.tick.force, ticks.back().tick.force) << "tick " << ticks.size() - 1;
+            EXPECT_EQ(again.tick.force_flags, ticks.back().tick.force_flags);
+        }
+    }
+    double largest_force(std::size_t from = 0) const {
+        double largest = 0;
+        for (std::size_t i = from; i < ticks.size(); ++i) {
+            largest = std::max(largest, ticks[i].tick.force.norm());
+        }
+        return largest;
+    }
+};
+
+TEST(ServoLimits, a_device_for_1_newton_gets_no_more_whatever_is_asked) {
+    ScriptedDevice device(&press, {.maximum_force = 1});
+    Queue<SessionEvent> queue(1 << 14);
+    Servo servo(session_of(careless()), device, {.recorder = &queue});
+    EXPECT_EQ(servo.settings().device.maximum_force, 1);
+    servo.start();
+    ASSERT_TRUE(comes_true([&] { return device.force().norm() > 0.99; }));
+    ForceSettings more = careless().force;
+    more.limit = 1000;
+    EXPECT_TRUE(servo.send(more));
+    EXPECT_TRUE(servo.send(DeviceLimits{.maximum_force = 20}));  // never wider
+    const std::int64_t then = servo.report().ticks;
+    ASSERT_TRUE(comes_true([&] { return servo.report().ticks > then + 200; }));
+    servo.stop();
+    EXPECT_LE(device.largest_force(), rounding);
+    // The recording has the limits, so that it comes out the same from the session as it was given.
+    const Recorded recorded(queue, session_of(careless()));
+    EXPECT_EQ(recorded.ticks_before_limits, 0U);
+    EXPECT_EQ(recorded.limits.size(), 2U);
+    EXPECT_GT(recorded.largest_force(), 0.99);
+}
+
+TEST(ServoLimits, a_session_that_the_device_can_take_is_left_as_it_is) {
+    ScriptedDevice device(&press, {.maximum_force = 20});
+    Queue<SessionEvent> queue(1 << 14);
+    const Servo servo(session_of(careless()), device, {.recorder = &queue});
+    EXPECT_EQ(servo.settings().force, careless().force);
+    EXPECT_EQ(servo.settings().device, careless().device);
+    EXPECT_FALSE(queue.pop());
+}
+
+TEST(ServoLimits, a_stiffness_that_the_device_cannot_render_is_lowered_and_as_a_command_refused) {
+    ScriptedDevice device(&press, {.maximum_force = 20, .rate = 250});
+    Servo servo(session_of(careless()), device);
+    const RendererSettings& settings = servo.settings();
+    EXPECT_EQ(settings.device.rate, 250);
+    EXPECT_NEAR(settings.force.stiffness, 1.25, 1e-6);
+    EXPECT_NO_THROW(check(settings.force, device.info().limits));
+    EXPECT_THROW(servo.send(careless().force), std::invalid_argument);
+    servo.start();
+    ASSERT_TRUE(comes_true([&] { return device.force().norm() > 6; }));  // 5 mm of it
+    servo.stop();
+    EXPECT_LT(device.largest_force(), 6.26);
+}
+
+TEST(ServoLimits, a_device_that_declares_nonsense_is_refused) {
+    constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+    for (const DeviceLimits& limits : {DeviceLimits{.maximum_force = not_a_number},
+                                       DeviceLimits{.maximum_force = -1}, DeviceLimits{.rate = 0},
+                                       DeviceLimits{.physical_damping = not_a_number}}) {
+        ScriptedDevice device(&press, limits);
+        EXPECT_THROW(Servo(session_of(careless()), device), std::invalid_argument);
+    }
+}
+
+TEST(ServoLimits, limits_that_a_device_learns_when_it_connects_hold_from_that_tick_on) {
+    const DeviceLimits learned{.maximum_force = 1, .rate = 250};
+    ScriptedDevice device(
+        [&](double time) {
+            DeviceReading reading = press(time);
+            if (time > 0.1) reading.limits = learned;
+            return reading;
+        },
+        {.maximum_force = 20});
+    Queue<SessionEvent> queue(1 << 14);
+    Servo servo(session_of(careless()), device, {.recorder = &queue});
+    servo.start();
+    ASSERT_TRUE(comes_true([&] { return servo.snapshot() && servo.snapshot()->stiffness < 2; }));
+    // It passes the check of the session as it began, and is lowered where it is carried out.
+    EXPECT_TRUE(servo.send(careless().force));
+    const std::int64_t then = servo.report().ticks;
+    ASSERT_TRUE(comes_true([&] { return servo.report().ticks > then + 100; }));
+    servo.stop();
+    EXPECT_NEAR(servo.session().renderer.settings.force.stiffness, 1.25, 1e-6);
+    const Recorded recorded(queue, session_of(careless()));
+    ASSERT_EQ(recorded.limits.size(), 1U);  // not with every reading
+    EXPECT_EQ(recorded.limits[0], learned);
+    EXPECT_GT(recorded.ticks_before_limits, 10U);
+    EXPECT_LE(recorded.largest_force(recorded.ticks_before_limits), rounding);
+}
+
+TEST(ServoLimits, limits_in_a_reading_that_are_no_numbers_mean_no_force) {
+    ScriptedDevice device([](double time) {
+        DeviceReading reading = press(time);
+        if (time > 0.1) reading.limits = DeviceLimits{std::nan(""), std::nan(""), std::nan("")};
+        return reading;
+    });
+    Queue<SessionEvent> queue(1 << 14);
+    Servo servo(session_of({}), device, {.recorder = &queue});
+    servo.start();
+    ASSERT_TRUE(comes_true([&] { return servo.report().ticks > 300; }));
+    servo.stop();
+    const Recorded recorded(queue, session_of({}));
+    ASSERT_EQ(recorded.limits.size(), 1U);
+    EXPECT_EQ(recorded.largest_force(recorded.ticks_before_limits), 0);
+}
+
+}  // namespace
