@@ -1,5 +1,5 @@
-// Stage 13, device: what the hand holds. A device gives positions and takes forces; how it is
-// reached is its own affair (folder devices/).
+// Stage 13, device: the interface of a haptic device, which gives positions and takes forces.
+// Backends for real and simulated devices are in the folder devices/.
 #pragma once
 
 #include <optional>
@@ -9,7 +9,7 @@
 
 namespace palpate {
 
-/// How a device is doing. Anything but `ready` means: no force.
+/// State of a device. There is force only while it is `ready`.
 enum class DeviceStatus : std::uint8_t {
     starting,      ///< not connected yet, or no position yet
     ready,         ///< positions come in
@@ -21,11 +21,11 @@ enum class DeviceStatus : std::uint8_t {
 };
 const char* name_of(DeviceStatus status);
 
-/// What a device is and can take. Lengths in device mm, in the axes of every device here: x to the
+/// Properties of a device. Lengths in device mm. The axes are the same for all devices: x to the
 /// right, y up, z towards the person who holds it.
 struct DeviceInfo {
     std::string name;        ///< of the backend: simulated, haply, ...
-    std::string model;       ///< as the device tells it, serial number included where there is one
+    std::string model;       ///< as the device reports it, with the serial number if it has one
     DeviceLimits limits;     ///< never exceeded by a servo, whatever the settings
     double stiffness = 0.5;  ///< [N/mm] it is rated for; a hint for applications, not a limit
     Vec3 workspace_low = Vec3::Constant(-80);
@@ -35,10 +35,10 @@ struct DeviceInfo {
     int buttons = 0;
 };
 
-/// What a device told last.
+/// The newest measurement of a device.
 struct DeviceReading {
     Vec3 position = Vec3::Zero();         ///< [device mm]
-    Mat3 orientation = Mat3::Identity();  ///< tool axes to device axes; identity if unknown
+    Mat3 orientation = Mat3::Identity();  ///< tool axes to device axes; identity if not known
     std::uint32_t buttons = 0;            ///< bit b is set while button b is held
     double age = 0;                       ///< [s] since it was measured
     DeviceStatus status = DeviceStatus::starting;
@@ -47,18 +47,18 @@ struct DeviceReading {
     std::optional<DeviceLimits> limits = std::nullopt;
 };
 
-/// Which side of the body faces the person at the device. Physical space is LPS (x to the left, y
-/// to the back, z up), so that an anterior view has the patient's left on the right hand.
+/// The side of the body that faces the person at the device. Physical space is LPS (x to the left,
+/// y to the back, z up), so in an anterior view the patient's left is at the right.
 enum class Facing : std::uint8_t { anterior, posterior, left, right, superior, inferior };
 
-/// The transform with which the whole grid fits into the device's workspace, centre on centre,
-/// with this side facing the person.
+/// The transform that fits the whole grid into the device's workspace, centre on centre, with this
+/// side facing the person.
 DeviceTransform fit_workspace(const Geometry& geometry, const DeviceInfo& device,
                               Facing facing = Facing::anterior);
 
-/// A haptic device. Constructing one (devices/) connects to it or starts trying to; throws
-/// std::runtime_error, saying what was looked for and what to do, where that is hopeless.
-/// Destroying it sets its force to zero and closes it.
+/// A haptic device. The constructors of backends (devices/) connect to it or start trying to. Where
+/// that cannot succeed they throw std::runtime_error, saying what was looked for and what to do.
+/// Destroying a device sets its force to zero and closes it.
 class Device {
   public:
     Device() = default;
@@ -69,20 +69,19 @@ class Device {
     /// Any thread but the servo thread. May change when a device connects; a running servo learns
     /// of changed limits by DeviceReading::limits.
     virtual DeviceInfo info() const = 0;
-    /// What is wrong and what to do about it, in words; empty where all is well. Not for the servo
-    /// thread.
+    /// What is wrong and what to do about it; empty if nothing is. Not for the servo thread.
     virtual std::string problem() const { return {}; }
 
-    /// Servo thread: neither waits, allocates nor throws. `time` [s] is that of the session, which
-    /// a simulated device follows; one of hardware measures ages by the machine's clock.
+    /// Servo thread: neither waits, allocates nor throws. `time` [s] is the session's. Simulated
+    /// devices follow it; hardware devices measure ages by the machine's clock.
     virtual DeviceReading read(double time) noexcept = 0;
-    /// Servo thread, as above. A force [N, device axes] holds until the next one, but for no longer
-    /// than `longest_force`: after that the device's own thread sets it to zero.
+    /// Servo thread, as above. A force [N, device axes] holds until the next one, but no longer
+    /// than `longest_force`; then the device's own thread sets it to zero.
     virtual void write(const Vec3& force, double time) noexcept = 0;
     static constexpr double longest_force = 0.02;  ///< [s]
 
-    /// Zero force from now on, for good. May be called from any thread and from a signal handler:
-    /// the last resort of a program that crashes.
+    /// Zero force from now on, for good. Any thread, and signal handlers: a program that crashes
+    /// calls it as a last resort.
     virtual void stop() noexcept = 0;
 };
 

@@ -1,6 +1,6 @@
-// Stage 4, edit: changes to samples as values, and what the samples are after one. Copy on write:
-// only the bricks that an edit touches are made anew, whoever looks at the version before goes on
-// doing so. Not for the servo thread. See docs/living_data.md.
+// Stage 4, edit: changes to samples as values, and the samples that result. Copy on write: an edit
+// copies only the bricks it touches, and the previous version stays valid for its readers. Not for
+// the servo thread. See docs/living_data.md.
 #pragma once
 
 #include <variant>
@@ -10,73 +10,73 @@
 namespace palpate {
 
 enum class BrushKind : std::uint8_t {
-    carve,   ///< takes solid away: no sample becomes more solid
-    add,     ///< puts solid on: no sample becomes less solid
+    carve,   ///< removes solid: no sample becomes more solid
+    add,     ///< adds solid: no sample becomes less solid
     smooth,  ///< blurs (3 x 3 x 3 binomial)
-    paint,   ///< brings samples to a value, up or down
+    paint,   ///< moves samples to a value, up or down
 };
 /// "carve", "add", "smooth" or "paint".
 std::string_view name_of(BrushKind kind);
-/// The inverse; throws std::invalid_argument with the accepted names.
+/// The inverse of name_of(); throws std::invalid_argument with the accepted names.
 BrushKind brush_kind_from(std::string_view name);
 
-/// A round brush. Its effect falls from whole to none over an edge about `radius`, where half of it
-/// is left.
+/// A round brush. Its effect falls from full to none across an edge, and is half at `radius`.
 struct Brush {
     BrushKind kind = BrushKind::carve;
     double radius = 3;  ///< [mm, physical] > 0
-    /// 1: the edge is as narrow as the grid can show without steps, two voxels; 0: as wide as the
-    /// brush.
+    /// 1: the edge is two voxels wide, the narrowest that the grid shows without steps; 0: as wide
+    /// as the brush.
     double hardness = 1;
-    /// How much of the way to its aim one touch brings a sample, above 0 to 1. A tool that works at
-    /// a rate r [1/s] has 1 - exp(-r dt) for a touch of dt. Integer samples go at least one unit
-    /// where it would be a sixteenth (but for smooth), so faint touches do not stand still.
+    /// The fraction of the difference to its target by which one touch changes a sample, above 0 to
+    /// 1. A tool with a rate r [1/s] uses 1 - exp(-r dt) for a touch of dt. Except with smooth, an
+    /// integer sample that should change by a sixteenth of a unit or more changes by at least one
+    /// unit, so that weak touches have an effect.
     double strength = 1;
-    /// carve, add: the level whose surface the brush shapes [data units]: it comes to lie at
+    /// carve, add: the level whose surface the brush shapes [data units]. That surface is left at
     /// `radius`, as smooth as the grid can show.
     double level = 0;
     Solid solid = Solid::above;  ///< carve, add: which side of `level` is solid
-    /// What a whole touch leaves [data units]. carve: on the free side of `level`, the background
-    /// say; add: on its solid side; paint: any; smooth: no matter.
+    /// The value that a full touch leaves [data units]. carve: on the free side of `level`, for
+    /// example the background; add: on its solid side; paint: any; smooth: not used.
     double value = 0;
 };
 
 namespace edit {
-/// A brush swept along a straight line, without gaps however fast: a spherical burr.
+/// A brush swept along a straight line without gaps, like a spherical burr.
 struct Stroke {
     Brush brush;
     Vec3 from = Vec3::Zero(), to = Vec3::Zero();  ///< [mm, physical]
 };
-/// One value for all samples of a box.
+/// Sets all samples of a box to one value.
 struct Fill {
     SampleBox box;
     double value = 0;  ///< [data units]
 };
-/// Samples from elsewhere, of any type, put in place with their first one at `at`; their geometry
-/// is not looked at but for its size. What an application simulates comes in by this.
+/// Puts samples of another volume, of any type, into the grid, the first one at `at`; of that
+/// volume's geometry only the size counts. Applications pass in what they simulate with this.
 struct Replace {
     Index3 at = Index3::Zero();
     Volume samples;
 };
 }  // namespace edit
-/// All are cut at the border of the grid.
+/// All are clipped at the border of the grid.
 using Edit = std::variant<edit::Stroke, edit::Fill, edit::Replace>;
 
-/// Samples after an edit, and the box of those that it changed.
+/// The samples after an edit, and the box of samples that it changed.
 struct Edited {
     std::shared_ptr<const Samples> samples;  ///< the same as before if nothing changed
     SampleBox changed;
 };
 
 /// Throws std::invalid_argument, saying what is wrong, for an edit that cannot be made: numbers out
-/// of range or not finite, or samples that are a sequence (take one frame of it).
+/// of range or not finite, or samples that are a sequence (edit one frame of it instead).
 void check(const Edit& edit, const Samples& samples);
-/// The samples after an edit; values beyond the sample type's are cut to it. The same input gives
-/// the same bits. Throws as check().
+/// The samples after an edit; values outside the sample type's range are clamped. The same input
+/// gives the same bits. Throws as check() does.
 Edited edited(const std::shared_ptr<const Samples>& samples, const Edit& edit);
 
-/// A brush that carves at the level felt down to the field's background, or adds as much above the
-/// level as the background lies below it.
+/// A brush for the level that is felt: carving goes down to the field's background, adding goes as
+/// far above the level as the background lies below it.
 Brush brush_for(BrushKind kind, const Field& field, double isovalue, double radius);
 
 }  // namespace palpate

@@ -1,5 +1,6 @@
-// Stage 11, exchange: how threads hand values to each other without waiting. Everything between the
-// servo thread and the rest (snapshots, commands, recordings, devices) goes through these two.
+// Stage 11, exchange: two containers by which threads pass values to each other without waiting.
+// Everything between the servo thread and others (snapshots, commands, recordings, devices) goes
+// through them.
 #pragma once
 
 #include <array>
@@ -16,12 +17,12 @@
 namespace palpate {
 
 /// The newest of a stream of values: one thread puts, any number of threads get. Neither waits,
-/// locks or allocates. T is plain data that owns nothing, for it is copied byte by byte.
+/// locks or allocates. T is plain data that owns nothing, because it is copied byte by byte.
 ///
-/// A ring of slots, each with a sequence number that tells a reader whether what it has copied was
-/// written over meanwhile. The bytes are atomic words: no race in the sense of the language, and no
-/// fence that a thread sanitizer could not see. A word is stored with release after the slot was
-/// marked, so a reader that meets a newer word (acquire) also meets the newer mark.
+/// A ring of slots, each with a sequence number that tells a reader whether its copy was
+/// overwritten meanwhile. The bytes are atomic words, so there is no data race, and no fence, which
+/// a thread sanitizer could not follow. A word is stored with release after the slot was marked, so
+/// a reader that meets a newer word (acquire) also meets the newer mark.
 template <class T>
 requires std::is_trivially_destructible_v<T>
 class Newest {
@@ -40,8 +41,8 @@ class Newest {
         count_.store(number, std::memory_order_release);
     }
 
-    /// The newest value; nothing if none was put yet. Takes a bounded number of attempts: nothing,
-    /// too, for a reader that was overtaken by a whole ring of values each time.
+    /// The newest value; nothing if none was put yet. The number of attempts is bounded, so a
+    /// reader that is overtaken by a whole ring of values each time gets nothing, too.
     std::optional<T> get() const noexcept {
         for (int attempt = 0; attempt < attempts; ++attempt) {
             const std::uint64_t number = count_.load(std::memory_order_acquire);
@@ -78,9 +79,9 @@ class Newest {
 };
 
 /// A bounded queue: any number of threads push, one thread pops. Neither waits, locks or, after
-/// construction, allocates. In the order in which the pushes took their places (Vyukov's bounded
-/// queue).
-// The padding keeps the two sides off each other's cache lines.
+/// construction, allocates. Values come out in the order in which the pushes took their places
+/// (Vyukov's bounded queue).
+// The padding keeps the two ends on different cache lines.
 template <class T>
 class Queue {  // NOLINT(clang-analyzer-optin.performance.Padding)
   public:
@@ -117,7 +118,7 @@ class Queue {  // NOLINT(clang-analyzer-optin.performance.Padding)
     std::optional<T> pop() noexcept(std::is_nothrow_move_constructible_v<T>) {
         Cell& cell = cells_[head_ & mask_];
         if (cell.turn.load(std::memory_order_acquire) != head_ + 1) return std::nullopt;
-        // Moved: a cell that waits to be filled again holds on to nothing.
+        // Moved out, so that an empty cell owns nothing.
         std::optional<T> value(std::move(cell.value));
         cell.turn.store(head_ + mask_ + 1, std::memory_order_release);
         ++head_;

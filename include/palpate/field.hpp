@@ -1,6 +1,6 @@
 // Stage 3, field: samples continued over all of space, and which side of a level is solid.
-// The one narrow door to the samples: the eight of a cell. Nothing above knows how they are stored,
-// nor whether they were edited or lie between two frames.
+// All later stages read samples through Field::cell(), eight at a time. They do not know how
+// samples are stored, nor whether they were edited or interpolated between two frames.
 #pragma once
 
 #include <array>
@@ -18,30 +18,30 @@ enum class Solid : std::uint8_t { above, below };
 /// Corner c has x offset (c & 1), y offset (c >> 1 & 1), z offset (c >> 2 & 1).
 using CellSamples = std::array<double, 8>;
 
-/// What to feel in a volume, at one moment. A small value: copies share the samples.
+/// What is felt: samples at one moment and their solid side. A small value; copies share samples.
 class Field {
   public:
-    /// `background` is the density outside the grid; without it the data's minimum, or its maximum
-    /// when `solid` is below, so that bodies cut off by the border are closed there.
+    /// `background` is the density outside the grid. Its default is the data's minimum, or the
+    /// maximum where `solid` is below, so that bodies cut off by the border are closed there.
     /// Throws std::invalid_argument for a background that is not finite.
     explicit Field(Volume volume, Solid solid = Solid::above,
                    std::optional<double> background = std::nullopt);
-    /// The same for samples that change; of a sequence its first moment. They must not be null.
+    /// The same for changing data; a sequence begins at its first moment. Not null.
     explicit Field(std::shared_ptr<const Samples> samples, Solid solid = Solid::above,
                    std::optional<double> background = std::nullopt);
 
-    /// Goes on with another version of the samples, on the same grid, not null; background, side
-    /// and time stay. Neither allocates, locks nor throws, and frees the version before only if
-    /// nobody else holds it.
+    /// Changes to another version of the samples, on the same grid, not null; background, side and
+    /// time stay. Neither allocates, locks nor throws; frees the previous version only if nobody
+    /// else holds it.
     void use(const std::shared_ptr<const Samples>& samples) noexcept;
-    /// Which moment of a sequence [s]; Samples::moment_at().
+    /// Goes to a time of a sequence [s], see Samples::moment_at().
     void set_time(double time) noexcept;
 
     const Samples& samples() const { return *samples_; }
     const std::shared_ptr<const Samples>& shared_samples() const { return samples_; }
     double time() const { return time_; }
     const Moment& moment() const { return moment_; }
-    /// As it was before edits; of a sequence its first frame.
+    /// The volume before all edits; of a sequence its first frame.
     const Volume& volume() const { return samples_->volume(); }
     const Geometry& geometry() const { return volume().geometry(); }
     Solid solid() const { return solid_; }
@@ -51,8 +51,8 @@ class Field {
     /// max - min of samples and background [data units], never 0: what tolerances are relative to.
     double range() const { return range_; }
 
-    /// By how much sign * (f - isovalue) may exceed 0 before a point counts as solid [data units]:
-    /// rounding, not geometry. A thousandth of what G1 and G2 (proxy.hpp) grant.
+    /// How far sign * (f - isovalue) may exceed 0 by rounding before a point counts as solid [data
+    /// units]: a thousandth of the tolerance of G1 and G2 (proxy.hpp).
     double tolerance() const { return tolerance_; }
     /// 1 / spacing [voxel/mm].
     const Vec3& voxels_per_mm() const { return voxels_per_mm_; }

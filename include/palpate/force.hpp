@@ -1,5 +1,6 @@
-// Stage 9, force: from hand and proxy to newtons (Corenthy et al. 2012, Eq. 4, and what a device
-// needs on top). Lengths in device mm, forces in N, time in s, all vectors in device axes.
+// Stage 9, force: computes the force on the hand from hand and proxy (Corenthy et al. 2012, Eq. 4),
+// with further effects and with limits. Lengths in device mm, forces in N, time in s, vectors in
+// device axes.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +10,7 @@
 
 namespace palpate {
 
-/// Pulls a free hand onto a near surface: 0 at the surface, `peak` halfway, 0 at `distance`.
+/// Pulls a free hand to a near surface: 0 at the surface, `peak` halfway, 0 at `distance`.
 struct Magnet {
     double distance = 0;  ///< [device mm] 0: off
     double peak = 0;      ///< [N]
@@ -28,18 +29,18 @@ struct Texture {
 
 struct ForceSettings {
     double stiffness = 0.5;  ///< k [N/mm], Eq. 4: f = k (SCP - HIP)
-    /// [N s/mm] against the hand's motion along the contact normal; takes back at most what pushes
-    /// out, so it never pulls the hand in
+    /// [N s/mm] against the hand's motion along the contact normal; at most cancels the force
+    /// outwards, so it never pulls the hand in
     double damping = 0;
     double viscosity = 0;  ///< [N s/mm] of the medium, against all motion, in contact or not
     Magnet magnet;
     Texture texture;
-    double limit = 3.3;         ///< [N] most force asked for; a device's own limit holds besides
-    double rate_limit = 2000;   ///< [N/s] most change of force; dropping to zero on error is exempt
-    double ramp = 0.25;         ///< [s] from zero to full force at start and after every pause
-    double stale_after = 0.02;  ///< [s] between two device states: longer is a pause
-    /// [N] After a start, a pause or a release, no force until the wanted one is at most this: a
-    /// hand that starts inside a solid is not thrown out. Infinity: do not wait.
+    double limit = 3.3;         ///< [N] largest force; the device's own limit holds as well
+    double rate_limit = 2000;   ///< [N/s] largest change of force; a stop may drop to zero at once
+    double ramp = 0.25;         ///< [s] from zero to full force, at the start and after a pause
+    double stale_after = 0.02;  ///< [s] a longer time between two device states is a pause
+    /// [N] After a start, a pause or a release there is no force until the computed one is at most
+    /// this, so that a hand that starts inside a solid is not thrown out. Infinity: do not wait.
     double start_below = std::numeric_limits<double>::infinity();
 
     bool operator==(const ForceSettings&) const = default;
@@ -47,7 +48,7 @@ struct ForceSettings {
 
 /// What a device can take.
 struct DeviceLimits {
-    double maximum_force = 3.3;  ///< [N] never exceeded, whatever is asked (Omni, Touch)
+    double maximum_force = 3.3;  ///< [N] never exceeded (3.3: Omni, Touch)
     double rate = 1000;          ///< [Hz] of the servo loop
     /// [N s/mm] of device and hand, physical. A sampled spring k is passive for
     /// k / (2 rate) + damping <= this (Colgate and Schenkel 1994). 2.5 N s/m is a desktop device in
@@ -74,12 +75,13 @@ void check(const DeviceLimits& limits);
 /// that are NaN, negative or cannot be rendered stably.
 void check(const ForceSettings& settings, const DeviceLimits& limits);
 
-/// What one tick brings to the force stage.
+/// Input of the force stage in one tick.
 struct ForceInput {
     double time = 0;      ///< [s], strictly increasing
     bool valid = true;    ///< false: device input stale or broken
     bool enabled = true;  ///< false: forces off by the user
-    /// True: let go within the rate limit, and start anew (start_below, ramp) once this ends.
+    /// True: the force falls to zero within the rate limit, and starts again (start_below, ramp)
+    /// once this is false.
     bool released = false;
     bool constrained = false;
     Vec3 hand = Vec3::Zero();    ///< device position [device mm]
@@ -90,7 +92,7 @@ struct ForceInput {
     Vec3 texture_slope = Vec3::Zero();  ///< gradient of the texture's height at the SCP
 };
 
-/// Why a force is not simply what the settings ask for. Bits.
+/// Why a force differs from what the settings alone would give. Bits.
 enum ForceFlag : std::uint8_t {
     force_limited = 1,       ///< cut to the maximum
     force_rate_limited = 2,  ///< change of force cut
@@ -118,9 +120,9 @@ struct ForceResult {
     std::uint8_t flags = 0;     ///< ForceFlag bits
 };
 
-/// The force of one tick. Never throws; any doubt about the input gives zero at once, and the ramp
-/// starts anew. Settings that check() would refuse give no force beyond `limits` either.
-/// The limit holds at once where it is lowered: that fall, and every stop, is exempt from the rate.
+/// The force of one tick. Never throws. Input that is not valid gives zero at once, and the ramp
+/// starts again. Settings that check() would refuse give no force beyond `limits` either.
+/// A lowered limit holds at once: that fall, and every stop, is exempt from the rate limit.
 ForceResult render_force(ForceState& state, const ForceSettings& settings,
                          const DeviceLimits& limits, const ForceInput& input);
 

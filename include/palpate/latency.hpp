@@ -1,5 +1,5 @@
-// Stage 12, latency: how long things took, counted without locks while they happen. A mean says
-// nothing about a servo loop; percentiles and the worst do.
+// Stage 12, latency: histograms of durations, counted without locks. They give percentiles and the
+// maximum, because a mean says nothing about a servo loop.
 #pragma once
 
 #include <algorithm>
@@ -10,13 +10,13 @@
 
 namespace palpate {
 
-/// p50, p99, p99.9 and the largest of what was counted [ns]; percentiles are exact to 1/16.
+/// Percentiles p50, p99 and p99.9, exact to 1/16, and the maximum of the durations counted [ns].
 struct LatencySummary {
     std::uint64_t count = 0;
     std::int64_t p50 = 0, p99 = 0, p999 = 0, max = 0;
 };
 
-/// A histogram with 16 buckets to each doubling. One thread adds; any thread may read meanwhile.
+/// A histogram with 16 buckets per doubling. One thread adds; any thread may read meanwhile.
 class LatencyHistogram {
   public:
     /// Wait-free; negative durations count as 0.
@@ -38,7 +38,7 @@ class LatencyHistogram {
     }
 
   private:
-    static constexpr unsigned steps = 16;  // buckets to a doubling
+    static constexpr unsigned steps = 16;  // buckets per doubling
     static constexpr unsigned bucket_count = (64 - 3) * steps;
 
     static unsigned bucket_of(std::uint64_t ns) {

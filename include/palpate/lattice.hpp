@@ -1,13 +1,14 @@
-// Stage 6, lattice: every cell cut into 24 tetrahedra with a linear field in each (Corenthy et al.
-// 2012, section 3). Nothing is stored per tetrahedron: where one is, is a cell and a frame.
+// Stage 6, lattice: every cell is cut into 24 tetrahedra with a linear field in each (Corenthy et
+// al. 2012, section 3). Nothing is stored per tetrahedron; a cell and a frame identify it.
 //
-// A tetrahedron is: cell centre, centre of one face, the two ends of one edge of that face. Its
-// walls are mirrors (planes x=k, y=k, z=k, x+-y=k, x+-z=k, y+-z=k in index space: the affine
-// Coxeter group of type B3), so the neighbour across a wall is a reflection and needs no table.
+// The corners of a tetrahedron are the cell's centre, the centre of one face, and the two ends of
+// one edge of that face. Its walls are mirrors (planes x=k, y=k, z=k, x+-y=k, x+-z=k, y+-z=k in
+// index space: the affine Coxeter group of type B3), so the neighbour across a wall is a reflection
+// and needs no table.
 //
-// Folded coordinates: measured from the cell's centre in voxels, with the axes in the order and
+// Folded coordinates are measured from the cell's centre in voxels, with the axes in the order and
 // sign of the frame: (ud, us, ue), ud towards the face, us towards the edge, ue along the edge. In
-// them every tetrahedron is the same one: 1/2 >= ud >= us >= |ue|.
+// these coordinates all tetrahedra are the same: 1/2 >= ud >= us >= |ue|.
 #pragma once
 
 #include <algorithm>
@@ -19,8 +20,8 @@
 
 namespace palpate {
 
-/// A cell and a signed order of the axes. Two frames that differ in the sign of the last axis only
-/// are the same tetrahedron seen in a mirror.
+/// A cell and a frame, which is a signed order of the axes. Two frames that differ only in the sign
+/// of the last axis name the same tetrahedron, mirrored.
 struct Tetrahedron {
     Index3 cell = Index3::Zero();
     std::array<std::int8_t, 3> axis{0, 1, 2};  ///< towards the face, towards the edge, along it
@@ -39,8 +40,8 @@ enum Wall : unsigned {
 };
 inline constexpr unsigned wall_count = 4;
 
-/// A point together with a tetrahedron that contains it. Walls are met exactly, not within a
-/// tolerance: a point is on a wall if its folded coordinates say so bit for bit.
+/// A point and a tetrahedron that contains it. There is no tolerance: a point is on a wall if its
+/// folded coordinates meet the wall's equation bit for bit.
 struct LatticePoint {
     Tetrahedron tetrahedron;
     Vec3 folded = Vec3::Zero();  ///< (ud, us, ue) [voxel], 1/2 >= ud >= us >= |ue|
@@ -70,7 +71,7 @@ inline constexpr double farthest_index = 1e9;
 LatticePoint locate(const Vec3& index);
 /// The point in index space.
 Vec3 index_of(const LatticePoint& point);
-/// to - from in voxels, without the loss of digits that large coordinates bring.
+/// to - from in voxels, without the loss of digits that large coordinates cause.
 Vec3 difference(const LatticePoint& to, const LatticePoint& from);
 
 /// A vector from index axes into the frame's order and signs, and back.
@@ -99,7 +100,7 @@ inline double slack(const Vec3& folded, unsigned wall) {
             return folded[1] + folded[2];
     }
 }
-/// Rate at which a folded direction uses up that slack (> 0: towards the wall).
+/// Rate at which a folded direction reduces that slack (> 0: towards the wall).
 inline double approach(const Vec3& folded_direction, unsigned wall) {
     switch (wall) {
         case wall_face:
@@ -117,12 +118,12 @@ Vec3 wall_normal(unsigned wall);
 
 /// Bit w is set if the point is on wall w.
 unsigned walls_at(const Vec3& folded);
-/// Puts a point exactly on the walls of the mask and pulls it back inside the others where rounding
-/// had left it outside by a hair.
+/// Puts a point exactly on the walls of the mask, and back inside the other walls where rounding
+/// has left it slightly outside.
 Vec3 snap(const Vec3& folded, unsigned walls);
 /// The tetrahedron across a wall. A point on that wall keeps its folded coordinates.
 Tetrahedron across(const Tetrahedron& tetrahedron, unsigned wall);
-/// A folded vector seen from across the wall.
+/// A folded vector in the folded coordinates of the tetrahedron across the wall.
 Vec3 reflect(const Vec3& folded, unsigned wall);
 
 /// All tetrahedra that contain a point: 1 inside, 2 on a wall, up to 48 at a sample.
@@ -136,11 +137,11 @@ Incident incident_tetrahedra(const LatticePoint& point);
 double value_at(const Field& field, const LatticePoint& point);
 /// Density at a physical point [mm]; the background outside the grid. The point must be finite.
 double value_at(const Field& field, const Vec3& physical);
-/// Gradient at a physical point, in physical axes [data units / mm]. On a wall that of one of the
-/// tetrahedra that meet there.
+/// Gradient at a physical point, in physical axes [data units / mm]. On a wall it is that of one of
+/// the tetrahedra that meet there.
 Vec3 gradient_at(const Field& field, const Vec3& physical);
 
-// Defined here because the servo thread spends its time in them.
+// Defined here, to be inlined: the servo thread spends most of its time in them.
 
 inline bool same_tetrahedron(const Tetrahedron& a, const Tetrahedron& b) {
     return a.cell == b.cell && a.axis == b.axis && a.sign[0] == b.sign[0] && a.sign[1] == b.sign[1];

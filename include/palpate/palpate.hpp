@@ -1,4 +1,4 @@
-// Everything, in the order of the flow of data. One tick:
+// Includes the whole core, in the order of the flow of data. One tick:
 //
 //   volume -> samples -> field -> lattice --+
 //      edit, editor --^     penetrability --+--> proxy -> force -> device

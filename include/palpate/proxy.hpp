@@ -1,6 +1,6 @@
 // Stage 7, proxy: the point that stays on the free side of the isosurface while the hand presses
-// into it (Corenthy et al. 2012, section 4). A proxy is a small value: copy it and there are two.
-// Nothing here allocates, locks or throws.
+// into it (Corenthy et al. 2012, section 4). A proxy is a small value that can be copied. Nothing
+// here allocates, locks or throws.
 #pragma once
 
 #include <limits>
@@ -12,10 +12,10 @@ namespace palpate {
 /// Whether the proxy follows the hand or rests on the surface.
 enum class Mode : std::uint8_t { free, constrained };
 
-/// How an update ended. Anything but `done` and `refused` is finished by later updates.
+/// How an update ended. Later updates finish what is neither `done` nor `refused`.
 enum class UpdateStatus : std::uint8_t {
     done,           ///< the SCP is where the method puts it
-    out_of_budget,  ///< step budget used up: the SCP is valid, the next update goes on from it
+    out_of_budget,  ///< step budget used up: the SCP is valid, the next update continues from it
     recovering,     ///< the SCP is still inside the solid: render no force
     refused,        ///< HIP not finite or absurdly far (1e9 voxels): nothing was changed
 };
@@ -28,7 +28,7 @@ struct Proxy {
     Mode mode = Mode::free;
     bool placed = false;        ///< false: the next update starts at its HIP
     bool sliding = false;       ///< dynamic friction applies
-    double recovery_reach = 0;  ///< [voxel] how far the way out was searched so far
+    double recovery_reach = 0;  ///< [voxel] how far recovery has searched for free space so far
     /// Unit normal of the surface felt before the field changed, physical axes; zero: none
     Vec3 ahead = Vec3::Zero();
 };
@@ -43,12 +43,12 @@ struct Friction {
 struct ProxySettings {
     Friction friction;
     /// Most straight pieces (tetrahedra entered) an update may use. 4096 are 500 voxels of travel,
-    /// far above what a hand does in a tick, and at worst (all of it along a surface) some 0.45 ms:
-    /// half a tick at 1 kHz. Faster loops take less.
+    /// far more than a hand moves in a tick. At worst (all of it along a surface) they take some
+    /// 0.45 ms, half a tick at 1 kHz; faster loops need a smaller budget.
     int step_budget = 4096;
 };
 
-/// What the steps of an update were, for figures, path files and tests.
+/// Kinds of steps of an update, for figures, path files and tests.
 enum class StepKind : std::uint8_t {
     place,      ///< first position, before anything moved
     free_move,  ///< straight motion through free space
@@ -61,10 +61,10 @@ enum class StepKind : std::uint8_t {
 struct Step {
     StepKind kind;
     Vec3 point;  ///< SCP after the step [mm, physical]
-    Vec3 goal;   ///< what it headed for [mm, physical]
+    Vec3 goal;   ///< towards which it moved [mm, physical]
     Tetrahedron tetrahedron;
 };
-/// Called for each step where `on_step` is set; costs nothing where it is not.
+/// `on_step`, where it is set, is called for each step. Without it there is no cost.
 struct StepObserver {
     void (*on_step)(const Step& step, void* context) = nullptr;
     void* context = nullptr;
@@ -77,11 +77,11 @@ struct ProxyUpdate {
     Vec3 scp = Vec3::Zero();  ///< [mm, physical]; equal to hip bit for bit when it was reached
     double density = 0;       ///< f(SCP) [data units]
     double isovalue = 0;      ///< [data units]
-    int tetrahedra = 0;       ///< through how many the SCP moved
+    int tetrahedra = 0;       ///< number of them that the SCP moved through
 };
 
-/// A proxy method: moves the proxy for one HIP [mm, physical]. All methods have this form, so a
-/// renderer takes any of them.
+/// A proxy method moves the proxy for one HIP [mm, physical]. All methods have this form, so a
+/// renderer can use any of them.
 using ProxyMethod = ProxyUpdate (*)(Proxy& proxy, const Field& field, const Vec3& hip,
                                     const ProxySettings& settings, StepObserver observer);
 
@@ -100,18 +100,18 @@ ProxyUpdate update_exact(Proxy& proxy, const Field& field, const Vec3& hip,
 ProxyUpdate update_paper(Proxy& proxy, const Field& field, const Vec3& hip,
                          const ProxySettings& settings = {}, StepObserver observer = {});
 
-/// Puts the proxy at `hip` if that is free, else at the point recovery finds, however long that
-/// takes (so not for the servo thread). False if no free point was found: all of space is solid.
+/// Puts the proxy at `hip` if that point is free, else at the free point that recovery finds. Takes
+/// as long as that needs, so it is not for the servo thread. False if all of space is solid.
 bool place(Proxy& proxy, const Field& field, const Vec3& hip, double isovalue,
            StepObserver observer = {});
 
-/// To be called before the field is exchanged or goes on in time: keeps on which side of the
-/// surface the proxy is, so that a wall that comes over it pushes it ahead, however thin
-/// (recovery).
+/// Call it before the field is exchanged or its time changes. It stores the normal of the surface
+/// that the proxy touches, so that recovery moves the proxy to the same side of a wall that moves
+/// over it, however thin the wall is.
 void field_will_change(Proxy& proxy, const Field& field);
 
 /// Unit normal of the level set at the SCP, out of the solid, physical axes; zero where the field
-/// is constant. On a wall that of one of the tetrahedra that meet there.
+/// is constant. On a wall it is that of one of the tetrahedra that meet there.
 Vec3 normal_at(const Proxy& proxy, const Field& field);
 
 /// Where a straight segment first meets the isosurface, walking the lattice exactly.

@@ -1,5 +1,6 @@
-// Stage 10, renderer: one call renders a tick, device state in, force and proxy out. A value: copy
-// it and there are two. Nothing in render() allocates, locks, does I/O or throws.
+// Stage 10, renderer: one call renders a tick, from the device's state to proxy and force. A
+// renderer is a value that can be copied. render() does not allocate, lock, do I/O, read clocks or
+// throw.
 #pragma once
 
 #include "palpate/force.hpp"
@@ -7,7 +8,7 @@
 
 namespace palpate {
 
-/// Where the device's workspace lies in the volume's physical space:
+/// The place of the device's workspace in the volume's physical space:
 /// physical = translation + scale * rotation * device.
 struct DeviceTransform {
     Mat3 rotation = Mat3::Identity();  ///< orthonormal, device axes to physical axes
@@ -19,13 +20,13 @@ Vec3 device_from_physical(const DeviceTransform& transform, const Vec3& physical
 /// Scale at which 1 mm of hand is `voxels` voxels (of the smallest spacing).
 double scale_for_voxels_per_mm(const Geometry& geometry, double voxels);
 
-/// What a device tells in a tick.
+/// The device's input to a tick.
 struct DeviceState {
     double time = 0;               ///< [s], strictly increasing
     Vec3 position = Vec3::Zero();  ///< [device mm], device axes
-    bool valid = true;             ///< false: stale or broken input; no force, and the proxy stays
+    bool valid = true;             ///< false: stale or broken input; no force, proxy stays
     bool armed = true;             ///< false: a dead-man switch is open; no force at once
-    bool released = false;         ///< true: let go of the force, see ForceInput::released
+    bool released = false;         ///< true: no force, see ForceInput::released
 };
 
 struct RendererSettings {
@@ -50,7 +51,7 @@ struct Renderer {
 /// A monotonic clock of the caller's [ns]. The core reads none of its own.
 using Clock = std::int64_t (*)() noexcept;
 
-/// What one tick gave.
+/// The result of one tick.
 struct Tick {
     double time = 0;               ///< [s]
     ProxyUpdate proxy;             ///< HIP, SCP, mode, density, isovalue, ... in physical space
@@ -66,15 +67,14 @@ void check(const RendererSettings& settings);
 /// A renderer ready for its first tick. Throws std::invalid_argument for an isovalue that is NaN or
 /// settings that do not pass check().
 Renderer make_renderer(Field field, double isovalue, const RendererSettings& settings = {});
-/// What is odd about feeling this level, in words, or empty: outside the data's range there is
-/// nothing to feel; where the background lies on its solid side, so does all of space outside the
-/// data.
+/// A warning if nothing can be felt at this level (it lies outside the data's range), or if the
+/// background is solid at it, and with that all of space outside the data; else empty.
 std::string isovalue_warning(const Field& field, double isovalue);
 
-/// Renders one tick. Input that is not valid or not finite, or absurdly far, leaves the proxy as it
-/// is (UpdateStatus::refused) and gives no force; so does a time that is not finite or did not
-/// advance, but then the proxy has followed. The same renderer and input give the same tick, bit
-/// for bit, but for `update_ns`, which is measured where a clock is given.
+/// Renders one tick. A position that is not valid, not finite or absurdly far leaves the proxy as
+/// it is (UpdateStatus::refused) and gives no force. A time that is not finite or did not advance
+/// gives no force either, but the proxy follows. The same renderer and input give the same tick,
+/// bit for bit, but for `update_ns`, which is measured where a clock is given.
 Tick render(Renderer& renderer, const DeviceState& device, StepObserver observer = {},
             Clock clock = nullptr);
 

@@ -1,7 +1,6 @@
-// Stage 2, samples: what the numbers on a grid are at one moment, where they may change: a volume
-// with the bricks of it that were edited, or frames of a sequence. A value of this type never
-// changes; change is another value, and whoever looks is handed it between two looks (copy on
-// write, published by pointer). See docs/living_data.md.
+// Stage 2, samples: one version of the numbers on a grid, which is a volume with its edited bricks
+// or the frames of a sequence. A version never changes. A change makes a new version, published by
+// pointer, and readers pick it up between two reads (copy on write). See docs/living_data.md.
 #pragma once
 
 #include <memory>
@@ -16,7 +15,7 @@ namespace palpate {
 struct Frame {
     double time;  ///< [s]
     Volume volume;
-    int number = -1;  ///< which frame of its file or series, from 0; -1: of none
+    int number = -1;  ///< of the frame in its file or series, from 0; -1: in neither
 };
 
 /// A box of samples, both corners in it; empty if `high` is below `low` on some axis.
@@ -27,15 +26,15 @@ struct SampleBox {
     bool empty() const { return (high.array() < low.array()).any(); }
     bool operator==(const SampleBox&) const = default;
 };
-/// The smallest box round both; the other one if one is empty.
+/// The smallest box around both; if one is empty, the other one.
 SampleBox united(const SampleBox& a, const SampleBox& b);
 /// All samples of a grid.
 SampleBox whole_box(const Geometry& geometry);
 
-/// Edited samples: cells in bricks of 16 x 16 x 16, each with the 17 x 17 x 17 samples at their
-/// corners, so that a cell lies in one brick. Neighbours hold the samples between them twice, and
-/// alike. A brick that nobody edited is null: there the volume's own samples count. Samples of a
-/// brick beyond the grid are 0.
+/// Edited samples: bricks of 16 x 16 x 16 cells, each with the 17 x 17 x 17 samples at their
+/// corners, so that every cell lies in one brick. Two neighbours both hold the samples on their
+/// common face, with equal values. A brick that was not edited is null: there the volume's own
+/// samples count. Samples of a brick outside the grid are 0.
 struct Bricks {
     static constexpr int cells = 16;
     static constexpr int samples = cells + 1;
@@ -54,30 +53,30 @@ struct Bricks {
         return (static_cast<std::size_t>(brick[2]) * count[1] + brick[1]) * count[0] + brick[0];
     }
 };
-/// As many as the grid needs, none of them edited.
+/// As many bricks as the grid needs, none of them edited.
 Bricks no_bricks(const Geometry& geometry);
 
-/// Where a moment lies in a sequence: between two frames, that many parts of the way.
+/// A moment of a sequence, as a place between two frames.
 struct Moment {
-    std::size_t from = 0, to = 0;  ///< frames
-    double weight = 0;             ///< 0: `from`; below 1
+    std::size_t from = 0, to = 0;  ///< indices of the frames before and after
+    double weight = 0;             ///< of `to`, 0 to below 1; `from` has the rest
 };
 
-/// Immutable. Held by shared pointers; versions share what did not change.
+/// One version. Immutable, held by shared pointers; versions share what did not change.
 class Samples {
   public:
-    /// A volume that nobody edited.
+    /// A volume without edits.
     explicit Samples(Volume volume);
-    /// A volume with edits; `minimum` and `maximum` [data units] bound what the bricks hold. Throws
+    /// A volume with edits; `minimum` and `maximum` [data units] bound the bricks' samples. Throws
     /// std::invalid_argument if the bricks do not fit the grid.
     Samples(Volume volume, Bricks bricks, double minimum, double maximum);
-    /// A sequence, or the part of one that is in memory. With a `period` [s] it goes round: from
-    /// the last frame it goes on to the first, which comes again a period after its own time.
+    /// A sequence, or the part of one that is in memory. With a `period` [s] it repeats: the last
+    /// frame is followed by the first, a period after the first frame's own time.
     /// Throws std::invalid_argument unless there is a frame, all have the same geometry and sample
     /// type, times are finite and rising, and the period is 0 or ends after the last frame.
     explicit Samples(std::vector<Frame> frames, double period = 0);
 
-    /// The volume as it was before edits; of a sequence the first frame.
+    /// The volume before all edits; of a sequence the first frame.
     const Volume& volume() const { return frames_.front().volume; }
     const Geometry& geometry() const { return volume().geometry(); }
     SampleType type() const { return volume().type(); }
@@ -90,10 +89,10 @@ class Samples {
     double minimum() const { return minimum_; }
     double maximum() const { return maximum_; }
 
-    /// Where a time [s] lies. Before the first frame it is the first, after the last the last,
-    /// unless there is a period. NaN counts as the first. Does not allocate.
+    /// The moment at a time [s]. Without a period, times before the first frame give the first
+    /// frame and times after the last one the last. NaN gives the first. Does not allocate.
     Moment moment_at(double time) const noexcept;
-    /// The time [s] kept within the frames there are; any time where they go round.
+    /// The time [s] clamped to that of the frames; unchanged where the sequence repeats.
     double within(double time) const noexcept;
     /// One sample at a moment, in the data's units; the index must be inside the grid.
     double sample(const Index3& index, const Moment& moment = {}) const;
@@ -106,11 +105,11 @@ class Samples {
     double maximum_ = 0;
 };
 
-/// The samples at a moment as a volume of their own, in the same type (between two frames rounded
-/// to it): for files and for whoever needs them in one piece. The volume itself, not a copy, where
-/// that is the same.
+/// The samples at a moment as one volume of the same type (rounded to it between two frames), for
+/// files and for code that needs them in one piece. No copy is made where an existing volume is the
+/// same.
 Volume flattened(const Samples& samples, const Moment& moment = {});
-/// Bytes of the bricks that `samples` holds and `other` does not share.
+/// Bytes of the bricks of `samples` that `other` does not share.
 std::size_t bytes_apart(const Samples& samples, const Samples& other);
 
 }  // namespace palpate

@@ -1,5 +1,5 @@
-// Surface: the whole isosurface of a field as one watertight triangle mesh, by marching the same
-// tetrahedra that the lattice walks. For looking at and for files; the proxy never needs it.
+// Surface: the whole isosurface of a field as one watertight triangle mesh, made from the same
+// tetrahedra that the lattice walks. For display and for files; the proxy does not use it.
 #pragma once
 
 #include <array>
@@ -47,40 +47,41 @@ constexpr TetrahedronCut cut_of(unsigned solid) {
     return {};
 }
 
-/// An oriented triangle mesh, closed unless it is that of a part: every edge has exactly two
+/// An oriented triangle mesh. Unless it shows a part only, it is closed: every edge has exactly two
 /// triangles, which run along it in opposite directions.
 struct SurfaceMesh {
     std::vector<Vec3> vertices;  ///< [mm, physical]
     /// Indices into `vertices`, counter-clockwise seen from the free side: normals point out of the
     /// solid.
     std::vector<std::array<std::uint32_t, 3>> triangles;
-    bool complete = true;  ///< false if `progress` cancelled the work: then the mesh is empty
+    bool complete = true;  ///< false if `progress` cancelled: then the mesh is empty
 };
 
 struct SurfaceOptions {
-    /// Called about once a slice with the fraction done, in [0, 1]; returning false cancels.
+    /// Called about once per slice with the fraction done, in [0, 1]; returning false cancels.
     std::function<bool(double fraction)> progress;
-    /// More vertices than this are an error. The default is what a 32-bit index can name; a vertex
-    /// with its two triangles takes 48 bytes.
+    /// More vertices than this are an error. The default is the most that a 32-bit index can name;
+    /// a vertex with its two triangles takes 48 bytes.
     std::uint64_t max_vertices = std::numeric_limits<std::uint32_t>::max();
-    /// Only the part in these cells (by their lowest corner; -1 is the ring before the grid), cut
-    /// at the border of the grid and its ring. It is open where the surface leaves the box, and
-    /// fits the parts in the boxes beside it: there both have the same vertices, bit for bit.
+    /// Only the part in these cells (by their lowest corner; -1 is the layer of cells before the
+    /// grid), clipped to the grid and that layer. The mesh is open where the surface leaves the
+    /// box. It fits the meshes of neighbouring boxes: at the border both have the same vertices,
+    /// bit for bit.
     std::optional<SampleBox> cells = std::nullopt;
 };
 
-/// How close to the end of a tetrahedron's edge a vertex may lie, as a fraction of the edge. Data
-/// equal to the isovalue would put many vertices in one place; they are held apart by this much, so
-/// that the mesh stays a manifold even in a file of 32-bit floats without indices (STL). All other
-/// vertices lie on the isosurface to rounding.
+/// Least distance of a vertex from the ends of its tetrahedron's edge, as a fraction of the edge.
+/// Samples equal to the isovalue would put many vertices in one place; this distance keeps them
+/// apart, so that the mesh is a manifold even in a file of 32-bit floats without indices (STL). All
+/// other vertices lie on the isosurface to rounding.
 inline constexpr double surface_margin = 1.0 / 1024;
 
-/// The boundary of the solid: sign * (density - isovalue) > 0 is solid, equal is free. The field
-/// goes on outside the grid with its background, so bodies that the border cuts are closed there.
-/// Where the background itself is solid the mesh bounds the free space instead, still with normals
-/// out of the solid; it is closed all the same. The same input gives the same mesh, bit for bit.
-/// Throws std::invalid_argument for an isovalue that is not finite and std::length_error past
-/// max_vertices. (Corenthy et al. 2012, section 3; docs/surface.md)
+/// The boundary of the solid: sign * (density - isovalue) > 0 is solid, equal is free. Outside the
+/// grid the field has the background's value, so bodies cut by the border are closed there. Where
+/// the background is solid the mesh bounds the free space instead; it is closed, too, with normals
+/// out of the solid. The same input gives the same mesh, bit for bit. Throws std::invalid_argument
+/// for an isovalue that is not finite and std::length_error past max_vertices. (Corenthy et al.
+/// 2012, section 3; docs/surface.md)
 SurfaceMesh extract_surface(const Field& field, double isovalue,
                             const SurfaceOptions& options = {});
 

@@ -1,5 +1,5 @@
 // Stage 1, volume: samples on a regular grid and where that grid lies in space.
-// Needs the standard library and Eigen only. Files are read by io/, never here.
+// Uses the standard library and Eigen only. Reading files is the task of io/.
 #pragma once
 
 #include <Eigen/Core>
@@ -99,8 +99,8 @@ class Volume {
     /// geometry's, or a float sample is not finite.
     template <class T>
     Volume(const Geometry& geometry, std::vector<T> samples);
-    /// Adopts samples that somebody else allocated (a mapped file, shared memory); the deleter of
-    /// `samples` gives them back. `bytes` is checked against the geometry. Throws as above.
+    /// Adopts samples allocated elsewhere (a mapped file, shared memory); the deleter of `samples`
+    /// releases them. `bytes` is checked against the geometry. Throws as above.
     Volume(const Geometry& geometry, SampleType type, std::shared_ptr<const void> samples,
            std::size_t bytes);
 
@@ -128,10 +128,10 @@ class Volume {
 };
 
 /// The volume smoothed with the binomial kernel (1 2 1)/4 along each axis, `passes` times, as
-/// float32; samples beyond the border count as those on it. Samples of few bits make terraces of
-/// slow ramps, in whose dents a proxy sticks; one pass takes most of them away
-/// (docs/results/fidelity.md), and blurs what is thinner than about two voxels. No passes: the same
-/// volume. Throws std::invalid_argument for fewer than 0 or more than 64.
+/// float32; samples beyond the border count as those on it. Slow ramps stored in few bits are
+/// stepped, and a proxy is caught in the steps; one pass removes most of them
+/// (docs/results/fidelity.md), but blurs structures thinner than about two voxels. 0 passes return
+/// the volume itself. Throws std::invalid_argument for fewer than 0 or more than 64.
 Volume smoothed(const Volume& volume, int passes = 1);
 
 }  // namespace palpate
