@@ -116,9 +116,9 @@ TEST(ServoLimits, a_stiffness_that_the_device_cannot_render_is_lowered_and_as_a_
 
 TEST(ServoLimits, a_device_that_declares_nonsense_is_refused) {
     constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-    for (const DeviceLimits& limits : {DeviceLimits{.maximum_force = not_a_number},
-                                       DeviceLimits{.maximum_force = -1}, DeviceLimits{.rate = 0},
-                                       DeviceLimits{.physical_damping = not_a_number}}) {
+    for (const DeviceLimits& limits :
+         {DeviceLimits{.maximum_force = not_a_number}, DeviceLimits{.maximum_force = -1},
+          DeviceLimits{.rate = 0}, DeviceLimits{.physical_damping = not_a_number}}) {
         ScriptedDevice device(&press, limits);
         EXPECT_THROW(Servo(session_of(careless()), device), std::invalid_argument);
     }

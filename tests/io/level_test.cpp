@@ -36,8 +36,8 @@ TEST(Level, that_is_not_a_number_is_refused_with_the_text_in_the_message) {
                             "1,5", "--3", "3e",    "300HU",  "5 %",  "nan%"}) {
         std::string quoted(1, '\'');
         quoted.append(bad).push_back('\'');
-        const std::string what = message_of<std::invalid_argument>(
-            [&] { (void)level_from_text(bad, volume); });
+        const std::string what =
+            message_of<std::invalid_argument>([&] { (void)level_from_text(bad, volume); });
         EXPECT_NE(what.find(quoted), std::string::npos) << bad;
     }
 }
