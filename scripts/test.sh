@@ -10,6 +10,7 @@ Installs the packages that are missing, builds a preset in build/PRESET and runs
 
 presets (default: dev)
   dev      optimised, assertions on, warnings are errors
+  unity    dev, with the sources of a folder compiled together: quickest from nothing
   release  what is installed
   clang    release with clang
   core     the core alone: standard library and Eigen, no ITK, no VTK
@@ -31,7 +32,7 @@ while [ $# -gt 0 ]; do
         -h | --help) usage; exit 0 ;;
         --no-packages) packages=no; shift ;;
         --target) target=$2; shift 2 ;;
-        dev | release | clang | core | asan | tsan) preset=$1; shift; break ;;
+        dev | unity | release | clang | core | asan | tsan) preset=$1; shift; break ;;
         -*) break ;;
         *) echo "test.sh: no preset '$1'" >&2; usage >&2; exit 2 ;;
     esac

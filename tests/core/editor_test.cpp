@@ -1,4 +1,4 @@
-// Editor: undo and redo against a list of whole copies.
+// Editor: undo and redo against a list of copies in one piece.
 #include "palpate/editor.hpp"
 
 #include <gtest/gtest.h>

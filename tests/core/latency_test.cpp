@@ -1,4 +1,4 @@
-// Percentiles of histograms of durations, compared with those of sorted durations.
+// Histograms of durations against sorting.
 #include "palpate/latency.hpp"
 
 #include <gtest/gtest.h>

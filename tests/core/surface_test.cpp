@@ -1,4 +1,5 @@
-// Surface: closed and oriented for any data, on the isosurface, around the solid only.
+// The isosurface as a mesh: closed and oriented whatever the data, on the isosurface, round the
+// solid and nothing else.
 #include "palpate/surface.hpp"
 
 #include <gtest/gtest.h>

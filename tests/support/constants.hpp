@@ -1,4 +1,4 @@
-// Constants that many tests use.
+// Numbers that many tests write down.
 #pragma once
 
 #include <limits>

@@ -1,4 +1,4 @@
-// Waits until a condition that other threads or programs cause becomes true.
+// Waiting for what other threads and programs do.
 #pragma once
 
 #include <chrono>

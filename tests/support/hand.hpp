@@ -1,4 +1,4 @@
-// A seeded hand: HIP sequences that mix slow sliding, 3 m/s sweeps, jumps across the volume, rest,
+// A seeded hand: HIP sequences that mix slow sliding, 3 m/s strokes, jumps across the volume, rest,
 // and motions along axes and diagonals on half-integer coordinates, where every case is degenerate.
 #pragma once
 
@@ -7,10 +7,10 @@
 
 namespace palpate::support {
 
-/// How the hand moves: weights of the motions that it chooses from.
+/// How the hand moves: weights of the ways it may choose for its next stroke.
 struct HandStyle {
     int slide = 4;      ///< 0.02 .. 0.2 voxel a tick, slowly turning
-    int sweep = 2;      ///< 3 mm a tick: 3 m/s
+    int stroke = 2;     ///< 3 mm a tick: 3 m/s
     int jump = 2;       ///< anywhere in the volume and 3 voxels around, every tick
     int rest = 1;       ///< the same HIP again
     int lattice = 1;    ///< half-integer coordinates, steps of 1/2 along axes and diagonals
@@ -27,21 +27,21 @@ class Hand {
     /// The next HIP [mm, physical].
     Vec3 next() {
         if (--left_ <= 0) choose();
-        switch (motion_) {
-            case Motion::slide:
+        switch (way_) {
+            case Way::slide:
                 velocity_ += 0.1 * velocity_.norm() * random_.direction();
                 velocity_ *= speed_ / velocity_.norm();
                 index_ += velocity_;
                 break;
-            case Motion::sweep:
+            case Way::stroke:
                 index_ += velocity_.cwiseQuotient(geometry_.spacing);
                 break;
-            case Motion::jump:
+            case Way::jump:
                 index_ = anywhere();
                 break;
-            case Motion::rest:
+            case Way::rest:
                 break;
-            case Motion::lattice:
+            case Way::lattice:
                 index_ += velocity_;
                 break;
         }
@@ -50,7 +50,7 @@ class Hand {
     }
 
   private:
-    enum class Motion { slide, sweep, jump, rest, lattice };
+    enum class Way { slide, stroke, jump, rest, lattice };
 
     Vec3 anywhere() {
         Vec3 p;
@@ -62,23 +62,23 @@ class Hand {
 
     void choose() {
         left_ = 1 + random_.below(60);
-        const int sum = style_.slide + style_.sweep + style_.jump + style_.rest + style_.lattice;
+        const int sum = style_.slide + style_.stroke + style_.jump + style_.rest + style_.lattice;
         int pick = random_.below(sum);
         if ((pick -= style_.slide) < 0) {
-            motion_ = Motion::slide;
+            way_ = Way::slide;
             speed_ = random_.uniform(0.02, 0.2);
             velocity_ = speed_ * random_.direction();
-        } else if ((pick -= style_.sweep) < 0) {
-            motion_ = Motion::sweep;
+        } else if ((pick -= style_.stroke) < 0) {
+            way_ = Way::stroke;
             velocity_ = 3 * random_.direction();
         } else if ((pick -= style_.jump) < 0) {
-            motion_ = Motion::jump;
+            way_ = Way::jump;
             left_ = 1 + random_.below(6);
         } else if ((pick -= style_.rest) < 0) {
-            motion_ = Motion::rest;
+            way_ = Way::rest;
             left_ = 1 + random_.below(4);
         } else {
-            motion_ = Motion::lattice;
+            way_ = Way::lattice;
             index_ = (2 * index_).array().round() / 2;
             do {
                 for (double& v : velocity_) v = 0.5 * (random_.below(3) - 1);
@@ -101,7 +101,7 @@ class Hand {
     Vec3 index_;
     Vec3 velocity_ = Vec3::UnitX();
     double speed_ = 0.1;
-    Motion motion_ = Motion::rest;
+    Way way_ = Way::rest;
     int left_ = 0;
 };
 

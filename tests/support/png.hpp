@@ -1,4 +1,4 @@
-// Reads a PNG with libpng, which shares no code with the writer under test.
+// A PNG read with libpng, which shares no code with what writes ours.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Compares proxies and results bit for bit, and hashes them.
+// Bits of proxies and results: what "nothing changed" and "the same bit for bit" mean, and a hash.
 #pragma once
 
 #include <bit>

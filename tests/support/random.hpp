@@ -1,5 +1,5 @@
 // Seeded random input for tests: the raw output of mt19937_64 (the same with every library) mapped
-// without std distributions, so that golden results are the same everywhere.
+// by hand, never through a std distribution, so that golden results stay what they are.
 #pragma once
 
 #include <cmath>

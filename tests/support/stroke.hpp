@@ -1,4 +1,5 @@
-// A hand that presses with penetrability: proxy update and penetrability stage, as in a tick.
+// A hand that presses with penetrability: proxy update and penetrability stage, as a tick runs
+// them.
 #pragma once
 
 #include <limits>
@@ -30,7 +31,7 @@ inline RendererSettings at_once() {
     return settings;
 }
 
-struct Press {
+struct Stroke {
     Field field;
     Penetrability penetrability;
     Proxy proxy{};
@@ -39,7 +40,7 @@ struct Press {
     ProxySettings settings{};
     std::vector<Step> path{};  ///< of the last tick
 
-    Press(Field f, double isovalue, const Penetrability& p)
+    Stroke(Field f, double isovalue, const Penetrability& p)
         : field(std::move(f)), penetrability(p) {
         proxy.isovalue = isovalue;
     }
