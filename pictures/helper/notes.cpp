@@ -16,7 +16,7 @@
 #include <cmath>
 #include <string>
 
-#include "pictures/vtk/furnishing.hpp"
+#include "pictures/vtk/props.hpp"
 
 namespace palpate::pictures {
 namespace {

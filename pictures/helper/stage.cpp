@@ -17,7 +17,7 @@
 #include "pictures/helper/layers.hpp"
 #include "pictures/helper/notes.hpp"
 #include "pictures/helper/window.hpp"
-#include "pictures/vtk/furnishing.hpp"
+#include "pictures/vtk/props.hpp"
 
 namespace palpate::pictures {
 namespace {

@@ -1,4 +1,4 @@
-// The brush that a person has chosen: a plain value between the panel and whoever edits.
+// The brush that the user has chosen in the panel, as a plain value.
 #pragma once
 
 #include <optional>

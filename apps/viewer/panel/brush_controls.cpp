@@ -1,4 +1,4 @@
-// Controls to a choice and back.
+// Connects the brush controls with the brush that is chosen.
 #include "apps/viewer/panel/brush_controls.hpp"
 
 #include <QButtonGroup>
@@ -100,7 +100,7 @@ void BrushControls::build() {
     add_row(*form, "Hardness", hardness_,
             "1: an edge of two voxels; 0: an edge as wide as the brush");
     add_row(*form, "Rate", make_rate(),
-            "How fast the samples go to their aim [1/s]: after 1/rate s, 63 % of the way is done");
+            "How fast the samples approach their final value [1/s]: 63 % of it after 1/rate s");
     add_row(*form, "Value", make_value(),
             "What a whole touch leaves [data units]. Automatic: what fits the level that is felt");
     auto* column = new QVBoxLayout(body_);
@@ -230,10 +230,10 @@ void BrushControls::connect_numbers() {
 }
 
 void BrushControls::change(const std::function<void(BrushChoice&)>& how) {
-    BrushChoice wish = choice_;
-    how(wish);
-    const bool same = wish == choice_;
-    set_choice(wish);
+    BrushChoice next = choice_;
+    how(next);
+    const bool same = next == choice_;
+    set_choice(next);
     if (!same) Q_EMIT changed(choice_);
 }
 

@@ -1,4 +1,4 @@
-// The brush at the probe, and what was done with it: undo, redo, save.
+// Controls of the brush at the probe, with undo, redo and save.
 #pragma once
 
 #include <QCheckBox>
@@ -26,8 +26,9 @@ class BrushControls : public QWidget {
   public:
     explicit BrushControls(QWidget* parent = nullptr);
 
-    /// The radius goes from a voxel, the coarsest way, to a quarter of the shortest side of the
-    /// grid; one that lies outside goes to the nearer end. See choice() for what has come of it.
+    /// The radius goes from the largest spacing of the grid to a quarter of the shortest side of
+    /// the grid; one that lies outside goes to the nearer end. See choice() for what has come of
+    /// it.
     void set_grid(const Geometry& geometry);
     /// What "automatic" stands for now [data units]: for carving, and for adding and painting.
     void set_fitting(double carve, double add);
@@ -41,7 +42,7 @@ class BrushControls : public QWidget {
     void set_reason(const QString& why);
     /// As if the switch was pressed.
     void toggle() { on_->click(); }
-    /// Forgets wishes that wait.
+    /// Forgets requests that wait.
     void drop();
 
   Q_SIGNALS:

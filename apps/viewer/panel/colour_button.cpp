@@ -1,4 +1,4 @@
-// Swatch and dialog.
+// Draws the swatch and opens the colour dialog.
 #include "apps/viewer/panel/colour_button.hpp"
 
 #include <QColorDialog>

@@ -1,4 +1,4 @@
-// A button that shows a colour and lets people choose another.
+// A button that shows a colour and opens a dialog to choose another.
 #pragma once
 
 #include <QPushButton>

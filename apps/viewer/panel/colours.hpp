@@ -1,4 +1,4 @@
-// Colours between the model and Qt.
+// Converts colours between the model and Qt.
 #pragma once
 
 #include <QColor>

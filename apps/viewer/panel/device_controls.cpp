@@ -1,4 +1,4 @@
-// Picking and watching devices.
+// Lists devices and shows the state of the one in use.
 #include "apps/viewer/panel/device_controls.hpp"
 
 #include <QFormLayout>

@@ -1,4 +1,4 @@
-// The device: which one, how it does, what to do about it, the scale of the hand.
+// Controls of the device: which one, its state and problems, the scale of the hand.
 #pragma once
 
 #include <QComboBox>

@@ -1,4 +1,4 @@
-// Sliders for the force settings.
+// Makes sliders for the force settings.
 #include "apps/viewer/panel/force_controls.hpp"
 
 #include <QFormLayout>
@@ -55,39 +55,23 @@ ForceControls::ForceControls(QWidget* parent) : QWidget(parent) {
     connect_force();
 }
 
-void ForceControls::ask_force(double ForceSettings::*setting, double value) {
-    ForceSettings wish = force_;
-    wish.*setting = value;
-    Q_EMIT force_wanted(wish);
-}
-
 void ForceControls::connect_force() {
-    const auto simple = [this](Quantity* quantity, double ForceSettings::*setting) {
-        connect(quantity, &Quantity::wanted, this,
-                [this, setting](double value) { ask_force(setting, value); });
-    };
-    simple(stiffness_, &ForceSettings::stiffness);
-    simple(damping_, &ForceSettings::damping);
-    simple(viscosity_, &ForceSettings::viscosity);
-    simple(limit_, &ForceSettings::limit);
-    const auto of_texture = [this](Quantity* quantity, double Texture::*setting) {
+    // `setting` gives the number that the slider sets.
+    const auto bind = [this](Quantity* quantity, auto setting) {
         connect(quantity, &Quantity::wanted, this, [this, setting](double value) {
-            ForceSettings wish = force_;
-            wish.texture.*setting = value;
-            Q_EMIT force_wanted(wish);
+            ForceSettings force = force_;
+            setting(force) = value;
+            Q_EMIT force_wanted(force);
         });
     };
-    of_texture(amplitude_, &Texture::amplitude);
-    of_texture(wavelength_, &Texture::wavelength);
-    const auto of_magnet = [this](Quantity* quantity, double Magnet::*setting) {
-        connect(quantity, &Quantity::wanted, this, [this, setting](double value) {
-            ForceSettings wish = force_;
-            wish.magnet.*setting = value;
-            Q_EMIT force_wanted(wish);
-        });
-    };
-    of_magnet(distance_, &Magnet::distance);
-    of_magnet(peak_, &Magnet::peak);
+    bind(stiffness_, [](ForceSettings& f) -> double& { return f.stiffness; });
+    bind(damping_, [](ForceSettings& f) -> double& { return f.damping; });
+    bind(viscosity_, [](ForceSettings& f) -> double& { return f.viscosity; });
+    bind(limit_, [](ForceSettings& f) -> double& { return f.limit; });
+    bind(amplitude_, [](ForceSettings& f) -> double& { return f.texture.amplitude; });
+    bind(wavelength_, [](ForceSettings& f) -> double& { return f.texture.wavelength; });
+    bind(distance_, [](ForceSettings& f) -> double& { return f.magnet.distance; });
+    bind(peak_, [](ForceSettings& f) -> double& { return f.magnet.peak; });
     connect(static_friction_, &Quantity::wanted, this, [this](double value) {
         // The dynamic one may not be above it, and goes down with it.
         Q_EMIT friction_wanted({value, std::min(friction_.dynamic_coefficient, value)});

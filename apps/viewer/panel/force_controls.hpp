@@ -1,4 +1,4 @@
-// How contact feels: spring, damping, friction, texture, magnet, limit.
+// Controls of how contact feels: spring, damping, friction, texture, magnet, limit.
 #pragma once
 
 #include <QWidget>
@@ -30,7 +30,6 @@ class ForceControls : public QWidget {
   private:
     Quantity* row(QFormLayout& form, const QString& label, const QString& name, const QString& unit,
                   double high, double step, const QString& tip);
-    void ask_force(double ForceSettings::*setting, double value);
     void connect_force();
     void set_ends();
 

@@ -1,4 +1,4 @@
-// Drawing the gauge.
+// Draws the force gauge.
 #include "apps/viewer/panel/force_gauge.hpp"
 
 #include <QPainter>

@@ -1,4 +1,4 @@
-// The force against its limit: a bar, a number, and in words why it is not simply what was wanted.
+// A gauge of the force against its limit: a bar, a number, and a text where the force is held back.
 #pragma once
 
 #include <QString>

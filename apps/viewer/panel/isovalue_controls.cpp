@@ -1,4 +1,4 @@
-// Chart, slider and number kept in step.
+// Keeps chart, slider and number box of the isovalue in step.
 #include "apps/viewer/panel/isovalue_controls.hpp"
 
 #include <QHBoxLayout>

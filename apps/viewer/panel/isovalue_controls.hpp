@@ -1,4 +1,4 @@
-// The level: chart, slider and number, which side is solid, what is felt now.
+// Controls of the isovalue: chart, slider, number, which side is solid, the level felt now.
 #pragma once
 
 #include <QComboBox>

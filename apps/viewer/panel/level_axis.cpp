@@ -1,4 +1,4 @@
-// From levels to pixels, and the histogram's bars.
+// Converts between levels and pixels, and draws the bars of the histogram.
 #include "apps/viewer/panel/level_axis.hpp"
 
 #include <QPainter>

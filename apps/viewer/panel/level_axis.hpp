@@ -1,5 +1,5 @@
-// Levels along a widget's width, and the histogram drawn over them. Shared by the level chart and
-// the transfer function editor.
+// An axis of levels along a widget's width, with the histogram over it. Shared by the level chart
+// and the transfer function editor.
 #pragma once
 
 #include <QColor>

@@ -1,4 +1,4 @@
-// The level chart: layout and input. It is drawn in level_chart_paint.cpp.
+// Layout and input of the level chart. It is drawn in level_chart_paint.cpp.
 #include "apps/viewer/panel/level_chart.hpp"
 
 #include <QContextMenuEvent>
@@ -110,7 +110,7 @@ QSize LevelChart::minimumSizeHint() const {
     return {static_cast<int>(8 * text_height()), static_cast<int>(8 * text_height())};
 }
 
-/// The pointer's wish: shown at once, whoever obeys.
+/// Shows what the pointer asks for at once; the owner may set another level.
 void LevelChart::ask_level(double level) {
     if (level == level_) return;
     level_ = level;

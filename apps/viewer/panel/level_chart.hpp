@@ -1,5 +1,5 @@
-// The histogram on which a level is chosen: the level as a line to drag, what is felt as a second
-// one, suggested levels as ticks, ranges of interest as bands.
+// The histogram with the isovalue as a line to drag, the level felt as a second line, suggested
+// levels as ticks and ranges of interest as bands.
 #pragma once
 
 #include <QWidget>

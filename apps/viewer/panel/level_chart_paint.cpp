@@ -1,4 +1,4 @@
-// How the level chart is drawn.
+// Draws the level chart.
 #include "apps/viewer/panel/level_chart.hpp"
 
 #include <QPainter>

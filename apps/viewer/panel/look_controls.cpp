@@ -1,4 +1,4 @@
-// Switches, colours and the transfer function.
+// Connects the controls of the look with the look that is chosen.
 #include "apps/viewer/panel/look_controls.hpp"
 
 #include <QGridLayout>

@@ -1,4 +1,4 @@
-// What is in the scene and how it looks.
+// Controls of the look: what the scene shows, its colours, the transfer function.
 #pragma once
 
 #include <QCheckBox>

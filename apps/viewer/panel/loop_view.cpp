@@ -1,4 +1,4 @@
-// A small table of the loop's figures.
+// Shows the loop's figures in a small table.
 #include "apps/viewer/panel/loop_view.hpp"
 
 #include <QGridLayout>

@@ -1,4 +1,4 @@
-// How the servo loop does: rate, lateness, compute time, missed deadlines, the worst tick.
+// Shows how the servo loop performs: rate, lateness, compute time, missed deadlines, worst tick.
 #pragma once
 
 #include <QLabel>

@@ -1,4 +1,4 @@
-// Text and value of a number box.
+// Converts between text and value of a number box.
 #include "apps/viewer/panel/number_box.hpp"
 
 #include <QEvent>

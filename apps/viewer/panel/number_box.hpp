@@ -1,4 +1,4 @@
-// A number that is typed or stepped: as many digits as it has, and no accidents by the wheel.
+// A number box that shows as many digits as the number has and ignores the wheel without focus.
 #pragma once
 
 #include <QDoubleSpinBox>

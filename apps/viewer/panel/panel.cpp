@@ -1,4 +1,4 @@
-// Sections to commands, and what is in effect back to sections.
+// Turns what the user changes into commands, and shows what is in effect.
 #include "apps/viewer/panel/panel.hpp"
 
 #include <QEvent>
@@ -286,10 +286,10 @@ void Panel::ask(Section* by, const Command& command) {
     if (!refused_ && live_) show_effect();
 }
 
-void Panel::ask_penetrability(const PressThrough& wish) {
+void Panel::ask_penetrability(const PressThrough& next) {
     Penetrability penetrability;
     try {
-        penetrability = penetrability_of(wish, solid_);
+        penetrability = penetrability_of(next, solid_);
     } catch (const std::invalid_argument& error) {
         refuse(penetrability_part_, QString::fromStdString(error.what()));
         return;

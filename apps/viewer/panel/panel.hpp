@@ -1,5 +1,5 @@
-// The panel: all that can be set and read of a session, in sections that fold. It holds no session:
-// what people want goes out as signals, what is so comes in by calls, which emit nothing.
+// The panel: all settings and readings of a live run, in sections that fold. It does not hold the
+// run: signals say what the user asks for, setters show what is in effect and emit nothing.
 #pragma once
 
 #include <QWidget>
@@ -101,7 +101,7 @@ class Panel : public QWidget {
     void connect_sections();
     void connect_edits();
     void ask(Section* by, const Command& command);
-    void ask_penetrability(const PressThrough& wish);
+    void ask_penetrability(const PressThrough& next);
     void refuse(Section* by, const QString& why);
     void show_effect();
     void show_fitting();

@@ -1,4 +1,4 @@
-// Modes, PT, minimum, table and bands kept in step.
+// Keeps modes, thresholds, table and bands of penetrability in step.
 #include "apps/viewer/panel/penetrability_controls.hpp"
 
 #include <QFormLayout>
@@ -85,30 +85,30 @@ PenetrabilityControls::PenetrabilityControls(LevelChart& chart, QWidget* parent)
     connect(add, &QPushButton::clicked, this, [this] { add_range(room_for_a_range()); });
     connect(remove, &QPushButton::clicked, this, [this] { remove_range(table_->chosen()); });
     connect_chart();
-    show_wish(shown_);
+    show(shown_);
 }
 
 void PenetrabilityControls::connect_chart() {
     connect(modes_, &QButtonGroup::idClicked, this, [this](int id) {
-        PressThrough wish = shown_;
-        wish.mode = static_cast<Mode>(id);
-        if (wish.mode != shown_.mode) ask(wish);
+        PressThrough next = shown_;
+        next.mode = static_cast<Mode>(id);
+        if (next.mode != shown_.mode) ask(next);
     });
     connect(threshold_, &Quantity::wanted, this, [this](double threshold) {
-        PressThrough wish = shown_;
-        wish.threshold = threshold;
-        ask(wish);
+        PressThrough next = shown_;
+        next.threshold = threshold;
+        ask(next);
     });
     connect(minimum_, QOverload<double>::of(&QDoubleSpinBox::valueChanged), this,
             [this](double level) {
-                PressThrough wish = shown_;
-                wish.minimum = level;
-                ask(wish);
+                PressThrough next = shown_;
+                next.minimum = level;
+                ask(next);
             });
     connect(table_, &RangeTable::edited, this, [this](int at, const DensityRange& range) {
-        PressThrough wish = shown_;
-        wish.ranges[static_cast<std::size_t>(at)] = range;
-        ask(wish);
+        PressThrough next = shown_;
+        next.ranges[static_cast<std::size_t>(at)] = range;
+        ask(next);
     });
     connect(table_, &RangeTable::nonsense, this, &PenetrabilityControls::nonsense);
     connect(table_, &RangeTable::delete_wanted, this, &PenetrabilityControls::remove_range);
@@ -118,9 +118,9 @@ void PenetrabilityControls::connect_chart() {
     connect(chart_, &LevelChart::band_deleted, this, &PenetrabilityControls::remove_range);
     connect(chart_, &LevelChart::bands_moved, this, [this](const Ranges& bands) {
         dragging_ = true;
-        const PressThrough wish = with_bands(shown_, bands, solid_);
-        show_wish(wish);
-        limiter_.put([this, wish] { Q_EMIT wanted(wish); });
+        const PressThrough next = with_bands(shown_, bands, solid_);
+        show(next);
+        limiter_.put([this, next] { Q_EMIT wanted(next); });
     });
     connect(chart_, &LevelChart::bands_settled, this, [this] {
         limiter_.flush();
@@ -142,7 +142,7 @@ void PenetrabilityControls::set_session(const Penetrability& in_use, Solid solid
 
 void PenetrabilityControls::set_in_use(const Penetrability& in_use) {
     if (dragging_) return;  // overlapping bands stay apart until they are let go of
-    show_wish(shown_from(in_use, solid_, shown_));
+    show(shown_from(in_use, solid_, shown_));
 }
 
 void PenetrabilityControls::drop() {
@@ -151,33 +151,33 @@ void PenetrabilityControls::drop() {
     dragging_ = false;
 }
 
-void PenetrabilityControls::ask(const PressThrough& wish) {
+void PenetrabilityControls::ask(const PressThrough& next) {
     limiter_.drop();
-    show_wish(wish);
-    Q_EMIT wanted(wish);
+    show(next);
+    Q_EMIT wanted(next);
 }
 
-void PenetrabilityControls::show_wish(const PressThrough& wish) {
-    shown_ = wish;
-    modes_->button(static_cast<int>(wish.mode))->setChecked(true);
-    threshold_->set_value(wish.threshold);
-    threshold_->setEnabled(wish.mode != Mode::off);
-    minimum_->show_value(wish.minimum);
-    minimum_row_->setVisible(wish.mode == Mode::threshold);
-    table_->set_ranges(wish.ranges);
-    ranges_row_->setVisible(wish.mode == Mode::ranges);
-    chart_->set_editable(wish.mode == Mode::ranges);
-    chart_->set_bands(bands_of(wish, solid_));
+void PenetrabilityControls::show(const PressThrough& next) {
+    shown_ = next;
+    modes_->button(static_cast<int>(next.mode))->setChecked(true);
+    threshold_->set_value(next.threshold);
+    threshold_->setEnabled(next.mode != Mode::off);
+    minimum_->show_value(next.minimum);
+    minimum_row_->setVisible(next.mode == Mode::threshold);
+    table_->set_ranges(next.ranges);
+    ranges_row_->setVisible(next.mode == Mode::ranges);
+    chart_->set_editable(next.mode == Mode::ranges);
+    chart_->set_bands(bands_of(next, solid_));
 }
 
 /// The first range asks for the mode, too.
 void PenetrabilityControls::add_range(const DensityRange& range) {
-    PressThrough wish = shown_;
-    if (wish.mode != Mode::ranges) wish.ranges.clear();
-    wish.mode = Mode::ranges;
-    wish.ranges.push_back(range);
-    std::ranges::sort(wish.ranges, {}, &DensityRange::low);
-    ask(wish);
+    PressThrough next = shown_;
+    if (next.mode != Mode::ranges) next.ranges.clear();
+    next.mode = Mode::ranges;
+    next.ranges.push_back(range);
+    std::ranges::sort(next.ranges, {}, &DensityRange::low);
+    ask(next);
 }
 
 void PenetrabilityControls::remove_range(int which) {
@@ -189,9 +189,9 @@ void PenetrabilityControls::remove_range(int which) {
         Q_EMIT nonsense("the last range stays: switch penetrability off to have none");
         return;
     }
-    PressThrough wish = shown_;
-    wish.ranges.erase(wish.ranges.begin() + which);
-    ask(wish);
+    PressThrough next = shown_;
+    next.ranges.erase(next.ranges.begin() + which);
+    ask(next);
 }
 
 /// In the middle of the widest gap, a third of it wide at most.

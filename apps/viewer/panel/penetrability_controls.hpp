@@ -1,5 +1,5 @@
-// Pressing through: off, past a threshold, or by ranges of interest; with the level chart, on which
-// the ranges are bands.
+// Controls of pressing through: off, past a threshold, or by ranges of interest, which are bands on
+// the level chart.
 #pragma once
 
 #include <QButtonGroup>
@@ -32,12 +32,12 @@ class PenetrabilityControls : public QWidget {
 
   Q_SIGNALS:
     /// What somebody asks for, valid or not.
-    void wanted(const palpate::viewer::PressThrough& wish);
+    void wanted(const palpate::viewer::PressThrough& next);
     void nonsense(const QString& why);
 
   private:
-    void ask(const PressThrough& wish);
-    void show_wish(const PressThrough& wish);
+    void ask(const PressThrough& next);
+    void show(const PressThrough& next);
     void connect_chart();
     void add_range(const DensityRange& range);
     void remove_range(int which);

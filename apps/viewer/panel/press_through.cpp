@@ -1,4 +1,4 @@
-// Between the panel's modes and the core's ranges.
+// Converts between the panel's modes and the core's penetrability ranges.
 #include "apps/viewer/panel/press_through.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Penetrability as people set it, and the core's value for it. No Qt.
+// Penetrability as it is set in the panel, and the core's value for it. No Qt.
 #pragma once
 
 #include "apps/viewer/panel/range_bands.hpp"

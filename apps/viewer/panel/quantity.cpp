@@ -1,4 +1,4 @@
-// Slider and box kept in step.
+// Keeps slider and number box in step.
 #include "apps/viewer/panel/quantity.hpp"
 
 #include <QHBoxLayout>
@@ -10,7 +10,7 @@
 namespace palpate::viewer {
 namespace {
 
-constexpr int places = 1000;  // of the slider
+constexpr int slider_places = 1000;  // of the slider
 
 }  // namespace
 
@@ -25,9 +25,9 @@ Quantity::Quantity(const QString& name, const QString& unit, double low, double 
       limiter_(this) {
     setObjectName(name);
     slider_->setObjectName(name + "_slider");
-    slider_->setRange(0, places);
-    slider_->setSingleStep(places / 100);
-    slider_->setPageStep(places / 10);
+    slider_->setRange(0, slider_places);
+    slider_->setSingleStep(slider_places / 100);
+    slider_->setPageStep(slider_places / 10);
     slider_->setMinimumWidth(3 * fontMetrics().height());
     let_wheel_pass(*slider_);
     box_->setObjectName(name + "_box");
@@ -77,13 +77,13 @@ void Quantity::set_ends(double low, double high) {
 /// Short numbers between the ends (of factors three digits), the ends themselves exactly.
 double Quantity::value_at(int place) const {
     if (place <= 0) return low_;
-    if (place >= places) return high_;
-    const double part = static_cast<double>(place) / places;
+    if (place >= slider_places) return high_;
+    const double part = static_cast<double>(place) / slider_places;
     const bool factors = scale_ == Scale::factors;
     const double value =
         factors ? low_ * std::pow(high_ / low_, part) : low_ + (high_ - low_) * part;
     const double digits = factors ? 2 - std::floor(std::log10(value))
-                                  : std::ceil(std::log10(places / (high_ - low_)));
+                                  : std::ceil(std::log10(slider_places / (high_ - low_)));
     const double scale = std::pow(10.0, digits);
     const double rounded = std::round(value * scale) / scale;
     return std::isfinite(rounded) ? std::clamp(rounded, low_, high_) : value;
@@ -97,7 +97,7 @@ void Quantity::place_slider() {
         part = scale_ == Scale::factors ? std::log(bounded / low_) / std::log(high_ / low_)
                                         : (bounded - low_) / (high_ - low_);
     }
-    slider_->setValue(static_cast<int>(std::lround(places * part)));
+    slider_->setValue(static_cast<int>(std::lround(slider_places * part)));
 }
 
 void Quantity::ask(double value) {

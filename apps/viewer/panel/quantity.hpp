@@ -1,4 +1,4 @@
-// A number with a slider and a box: two ways to say the same.
+// A number with a slider and a number box.
 #pragma once
 
 #include <QSlider>
@@ -31,7 +31,7 @@ class Quantity : public QWidget {
     void set_ends(double low, double high);
     double low() const { return low_; }
     double high() const { return high_; }
-    /// Forgets a wish that waits.
+    /// Forgets a request that waits.
     void drop() { limiter_.drop(); }
     NumberBox& box() { return *box_; }
     void set_accessible_name(const QString& name);

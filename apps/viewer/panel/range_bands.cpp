@@ -1,4 +1,4 @@
-// Bands: holding, dragging, drawing.
+// Finds, drags and draws bands.
 #include "apps/viewer/panel/range_bands.hpp"
 
 #include <QPainter>

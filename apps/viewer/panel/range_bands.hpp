@@ -1,5 +1,5 @@
-// Ranges of interest as bands on a level axis: which one a pointer holds, where a drag leads, how
-// they are drawn.
+// Ranges of interest as bands on a level axis: which one the pointer is on, what a drag makes of
+// it, how they are drawn.
 #pragma once
 
 #include <QRectF>

@@ -1,4 +1,4 @@
-// Cells to ranges and back.
+// Converts between table cells and ranges.
 #include "apps/viewer/panel/range_table.hpp"
 
 #include <QHeaderView>

@@ -1,4 +1,4 @@
-// Ranges of interest as numbers.
+// A table of the ranges of interest, as numbers.
 #pragma once
 
 #include <QTableWidget>

@@ -1,4 +1,4 @@
-// Headings and notes.
+// Builds headings and notes of sections.
 #include "apps/viewer/panel/section.hpp"
 
 #include <QEvent>

@@ -1,5 +1,4 @@
-// A part of the panel under a heading that folds it away, with room for a word about what was
-// refused.
+// A section of the panel under a heading that folds it, with a note on what was refused.
 #pragma once
 
 #include <QLabel>

@@ -1,4 +1,4 @@
-// Switches and gauge.
+// Connects the switches, and shows force and contact.
 #include "apps/viewer/panel/session_bar.hpp"
 
 #include <QEvent>
@@ -12,7 +12,7 @@ namespace palpate::viewer {
 namespace {
 
 /// Snapshots come thirty times a second, a command is obeyed within a tick.
-constexpr int snapshots_of_grace = 3;
+constexpr int switch_grace = 3;
 
 }  // namespace
 
@@ -22,7 +22,7 @@ SessionSwitch::SessionSwitch(const QString& name, const QString& on, const QStri
     setCheckable(true);
     setText(off_);
     connect(this, &QPushButton::clicked, this, [this](bool now) {
-        grace_ = snapshots_of_grace;
+        grace_ = switch_grace;
         setText(now ? on_ : off_);
         Q_EMIT wanted(now);
     });
@@ -122,7 +122,7 @@ void SessionBar::show_snapshot(const Snapshot& now, double limit) {
     const Tick& tick = now.session.tick;
     gauge_->set_force(tick.force.norm(), limit, QString::fromStdString(app::force_words(tick)));
     const double apart = (tick.proxy.scp - tick.proxy.hip).norm();
-    const bool touching = tick.proxy.mode == Mode::constrained;
+    const bool touching = tick.proxy.mode == palpate::Mode::constrained;
     const QString words = QString("%1, pull %2 mm (%3 mm in the volume)")
                               .arg(touching ? "In contact" : "Free")
                               .arg(apart / now.session.transform.scale, 0, 'f', 2)

@@ -1,4 +1,4 @@
-// What must be at hand at all times: forces on or off, freeze, clutch, the force itself, contact.
+// The top of the panel: switches for forces, freeze and clutch, the force gauge, and the contact.
 #pragma once
 
 #include <QLabel>

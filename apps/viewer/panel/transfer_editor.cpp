@@ -1,4 +1,4 @@
-// Editing and drawing a transfer function.
+// Edits and draws a transfer function.
 #include "apps/viewer/panel/transfer_editor.hpp"
 
 #include <QKeyEvent>
@@ -17,8 +17,8 @@
 namespace palpate::viewer {
 namespace {
 
-constexpr double reach = 8;   // [logical pixels] how near a pointer must come to hold a point
-constexpr double radius = 5;  // [logical pixels] of a point
+constexpr double point_reach = 8;  // [logical pixels] how near a pointer must come to hold a point
+constexpr double radius = 5;       // [logical pixels] of a point
 
 }  // namespace
 
@@ -82,7 +82,7 @@ QSize TransferEditor::minimumSizeHint() const {
 
 int TransferEditor::point_at(const QPointF& at) const {
     int best = -1;
-    double nearest = reach;
+    double nearest = point_reach;
     for (std::size_t i = 0; i < transfer_.points.size(); ++i) {
         const QPointF off = place_of(transfer_.points[i]) - at;
         const double distance = std::hypot(off.x(), off.y());
@@ -206,7 +206,7 @@ void TransferEditor::keyPressEvent(QKeyEvent* event) {
         case Qt::Key_Backspace:
             return remove(chosen_);
         case Qt::Key_Insert: {
-            // In the middle of the way to the next one.
+            // Half-way to the next one.
             const auto at = static_cast<std::size_t>(std::clamp(chosen_, 0, count - 2));
             const auto& points = transfer_.points;
             return add(sampled(transfer_, 0.5 * (points[at].level + points[at + 1].level)));

@@ -1,4 +1,5 @@
-// A transfer function over the histogram: its control points to drag, add, colour and delete.
+// An editor of a transfer function over the histogram: its points are dragged, added, coloured and
+// deleted.
 #pragma once
 
 #include <QWidget>

@@ -1,5 +1,5 @@
-// A block is extracted from a copy of its samples, in index space, with one more cell all round it:
-// normals of the facets at its border take those of the neighbours in.
+// Extracts a block from a copy of its samples, in index space, with one more cell on every side, so
+// that normals at its border include the neighbouring facets.
 #include "apps/viewer/scene/block_mesh.hpp"
 
 #include <Eigen/Geometry>
@@ -121,8 +121,8 @@ std::vector<Vector3f> facet_normals(SurfaceMesh mesh, const Placing& place) {
 
 }  // namespace
 
-std::shared_ptr<const DrawnMesh> block_mesh(const Field& field, double isovalue, const Index3& cell,
-                                            int edge, int every) {
+std::shared_ptr<const RenderMesh> block_mesh(const Field& field, double isovalue,
+                                             const Index3& cell, int edge, int every) {
     const Index3 around = cell - Index3::Ones(), size = Index3::Constant(edge + 3);
     const Corners corners{around, size, sample_block(field, around, size, every)};
     if (one_sided(corners.values, field, isovalue)) return nullptr;
@@ -141,7 +141,7 @@ std::shared_ptr<const DrawnMesh> block_mesh(const Field& field, double isovalue,
     drop_neighbours(mesh, cell, edge);
     if (mesh.triangles.empty()) return nullptr;
 
-    auto block = std::make_shared<DrawnMesh>();
+    auto block = std::make_shared<RenderMesh>();
     block->triangles.reserve(3 * mesh.triangles.size());
     const Index3 last = cell + Index3::Constant(edge - 1);
     const auto add_vertex = [&](std::uint32_t v) {

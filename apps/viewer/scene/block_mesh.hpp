@@ -1,16 +1,16 @@
-// The mesh of one block of cells, with normals.
+// Makes the mesh of one block of cells, with normals.
 #pragma once
 
-#include "apps/viewer/scene/drawn_mesh.hpp"
+#include "apps/viewer/scene/render_mesh.hpp"
 #include "palpate/field.hpp"
 
 namespace palpate::viewer {
 
-/// The isosurface in the `edge`^3 cells from `cell` on, of the field of which every so manieth
-/// sample is taken and in whose cells `cell` counts; positions from the middle of the full grid.
+/// The isosurface in the `edge`^3 cells from `cell` on, of the field thinned to each `every`-th
+/// sample, in whose cells `cell` counts; positions from the middle of the full grid.
 /// Normals as pictures::shaded_surface has them. Looks at samples from one before the cells to one
 /// behind their last. Null where nothing of the surface lies.
-std::shared_ptr<const DrawnMesh> block_mesh(const Field& field, double isovalue, const Index3& cell,
-                                            int edge, int every);
+std::shared_ptr<const RenderMesh> block_mesh(const Field& field, double isovalue,
+                                             const Index3& cell, int edge, int every);
 
 }  // namespace palpate::viewer

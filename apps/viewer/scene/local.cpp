@@ -1,4 +1,4 @@
-// Tetrahedra at a point, cut by the isosurface.
+// Finds the tetrahedra at a point and cuts them with the isosurface.
 #include "apps/viewer/scene/local.hpp"
 
 #include <cmath>

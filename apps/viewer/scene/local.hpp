@@ -1,4 +1,5 @@
-// The lattice round the SCP: what the paper's figures show, as points in space.
+// The tetrahedra of the lattice at the SCP, the isosurface in them and the constraint planes, as in
+// the paper's figures.
 #pragma once
 
 #include <array>

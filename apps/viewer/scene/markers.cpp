@@ -1,4 +1,4 @@
-// Markers' shapes.
+// Draws the markers, once with the scene and once faintly over it.
 #include "apps/viewer/scene/markers.hpp"
 
 #include <vtkCellArray.h>
@@ -23,7 +23,7 @@
 namespace palpate::viewer {
 namespace {
 
-constexpr double ghost_opacity = 0.4;
+constexpr double faint_opacity = 0.4;
 constexpr Colour plane_colour{0.8, 0.475, 0.655};  // reddish purple (Okabe and Ito)
 
 /// Switches the writing of colours, among the opaque props in its turn.
@@ -77,7 +77,7 @@ std::optional<Contact> contact_of(const std::optional<Snapshot>& snapshot, const
     return contact;
 }
 
-Markers::Markers(vtkRenderer& solid, vtkRenderer& ghost) : solid_(solid), ghost_(ghost) {
+Markers::Markers(vtkRenderer& solid, vtkRenderer& overlay) : solid_(solid), overlay_(overlay) {
     const auto nothing = [] { return vtkSmartPointer<vtkPolyData>::New(); };
     edges_ = twin_of(pictures::spring_colour, nothing());
     spring_ = twin_of(pictures::spring_colour, nothing());
@@ -93,32 +93,32 @@ Markers::Markers(vtkRenderer& solid, vtkRenderer& ghost) : solid_(solid), ghost_
     }
     for (const Twin* twin : {&edges_, &normals_}) {
         flat(*twin->solid, 1);
-        flat(*twin->ghost, ghost_opacity);
+        flat(*twin->faint, faint_opacity);
     }
     flat(*discs_.solid, 0.35);
     flat(*patches_.solid, 0.6);
-    add_ghosts();
+    add_faint_actors();
 }
 
-/// Over itself a ghost changes nothing; over a surface that hides its twin it is a hint. Depths
-/// come first, so that of all ghosts the nearest part alone is drawn.
-void Markers::add_ghosts() {
+/// A faint actor over its visible twin changes nothing; over a surface that hides the twin it shows
+/// where that is. Depths are drawn first, so that only the nearest part of all of them is seen.
+void Markers::add_faint_actors() {
     const auto all = {&edges_, &spring_, &arrow_, &scp_, &hip_, &normals_};
     const auto writing = [this](bool on) {
         vtkNew<ColourWriting> prop;
         prop->on = on;
-        ghost_.AddViewProp(prop);
+        overlay_.AddViewProp(prop);
     };
     writing(false);
-    for (const Twin* twin : all) ghost_.AddActor(twin->depth);
+    for (const Twin* twin : all) overlay_.AddActor(twin->depth);
     writing(true);
-    for (const Twin* twin : all) ghost_.AddActor(twin->ghost);
+    for (const Twin* twin : all) overlay_.AddActor(twin->faint);
 }
 
 Markers::Twin Markers::twin_of(const Colour& colour, vtkSmartPointer<vtkPolyData> data) {
     const auto make = [] { return vtkSmartPointer<vtkActor>::New(); };
     Twin twin{make(), make(), make(), std::move(data)};
-    for (vtkActor* actor : {twin.solid.Get(), twin.depth.Get(), twin.ghost.Get()}) {
+    for (vtkActor* actor : {twin.solid.Get(), twin.depth.Get(), twin.faint.Get()}) {
         vtkNew<vtkPolyDataMapper> mapper;
         mapper->SetInputData(twin.data);
         mapper->ScalarVisibilityOff();
@@ -128,23 +128,23 @@ Markers::Twin Markers::twin_of(const Colour& colour, vtkSmartPointer<vtkPolyData
         actor->GetProperty()->SetSpecular(0.35);
         actor->SetVisibility(false);
     }
-    twin.ghost->GetProperty()->SetOpacity(ghost_opacity);
-    twin.ghost->ForceOpaqueOn();
+    twin.faint->GetProperty()->SetOpacity(faint_opacity);
+    twin.faint->ForceOpaqueOn();
     return twin;
 }
 
 void Markers::set_visible(const Twin& twin, bool visible) {
     twin.solid->SetVisibility(visible);
     twin.depth->SetVisibility(visible);
-    twin.ghost->SetVisibility(visible);
+    twin.faint->SetVisibility(visible);
 }
 
 void Markers::show_probe(const Contact& contact, const Vec3& origin, double pixel) {
     const double radius = ball_radius_px * pixel;
     const Vec3 hip = contact.hip - origin, scp = contact.scp - origin;
     const bool apart = contact.hip != contact.scp;
-    for (const auto& actor : {hip_.solid, hip_.depth, hip_.ghost}) place(*actor, hip, radius);
-    for (const auto& actor : {scp_.solid, scp_.depth, scp_.ghost}) place(*actor, scp, radius);
+    for (const auto& actor : {hip_.solid, hip_.depth, hip_.faint}) place(*actor, hip, radius);
+    for (const auto& actor : {scp_.solid, scp_.depth, scp_.faint}) place(*actor, scp, radius);
     set_visible(hip_, true);
     set_visible(scp_, apart);
     const bool sprung = apart && (scp - hip).norm() > 2 * radius;
@@ -180,11 +180,11 @@ void Markers::show(const std::optional<Contact>& contact, const Look& look, cons
     patches_.solid->SetVisibility(false);
     discs_.solid->SetVisibility(false);
     if (!contact) return;
-    for (const auto& actor : {edges_.solid, edges_.depth, edges_.ghost}) {
+    for (const auto& actor : {edges_.solid, edges_.depth, edges_.faint}) {
         actor->GetProperty()->SetColor(ink.red, ink.green, ink.blue);
         actor->GetProperty()->SetLineWidth(static_cast<float>(1.5 * pixel_ratio));
     }
-    for (const auto& actor : {normals_.solid, normals_.depth, normals_.ghost}) {
+    for (const auto& actor : {normals_.solid, normals_.depth, normals_.faint}) {
         actor->GetProperty()->SetLineWidth(static_cast<float>(2 * pixel_ratio));
     }
     if (look.contact) show_probe(*contact, origin, pixel);

@@ -1,5 +1,5 @@
-// Hand, proxy, spring and force, of the same size on the screen however near one looks; and the
-// lattice round the proxy.
+// Markers for hand, proxy, spring and force, which keep their size on the screen at any zoom; and
+// the tetrahedra at the proxy.
 #pragma once
 
 #include <vtkActor.h>
@@ -33,9 +33,9 @@ inline constexpr double shortest_arrow_px = 56, longest_arrow_px = 240;
 
 class Markers {
   public:
-    /// Draws into `solid`, and faintly into `ghost`, which is laid over it: what lies behind a
-    /// surface shines through.
-    Markers(vtkRenderer& solid, vtkRenderer& ghost);
+    /// Draws into `solid`, and faintly into `overlay`, which is drawn over it, so that markers
+    /// behind a surface can be seen.
+    Markers(vtkRenderer& solid, vtkRenderer& overlay);
 
     /// `origin` [mm, physical] of what is drawn; `pixel` [mm] is a logical pixel.
     void show(const std::optional<Contact>& contact, const Look& look, const Vec3& origin,
@@ -43,16 +43,16 @@ class Markers {
 
   private:
     struct Twin {
-        vtkSmartPointer<vtkActor> solid, depth, ghost;
+        vtkSmartPointer<vtkActor> solid, depth, faint;
         vtkSmartPointer<vtkPolyData> data;
     };
     static Twin twin_of(const Colour& colour, vtkSmartPointer<vtkPolyData> data);
-    void add_ghosts();
+    void add_faint_actors();
     static void set_visible(const Twin& twin, bool visible);
     void show_probe(const Contact& contact, const Vec3& origin, double pixel);
     void show_lattice(const Contact& contact, const Look& look, const Vec3& origin, double voxel);
 
-    vtkRenderer &solid_, &ghost_;
+    vtkRenderer &solid_, &overlay_;
     Twin hip_, scp_, spring_, arrow_, edges_, patches_, discs_, normals_;
 };
 

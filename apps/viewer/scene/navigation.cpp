@@ -1,4 +1,4 @@
-// A camera's arithmetic.
+// Turns, pans and zooms a camera.
 #include "apps/viewer/scene/navigation.hpp"
 
 #include <Eigen/Geometry>
@@ -35,12 +35,13 @@ Vec3 point_at(const Camera& camera, const ViewSize& size, const Pixel& pixel) {
 }
 
 Camera turned(const Camera& camera, const ViewSize& size, double right, double down) {
-    const double way = std::hypot(right, down);
-    if (way == 0) return camera;
+    const double distance = std::hypot(right, down);
+    if (distance == 0) return camera;
     const ViewAxes axes = axes_of(camera);
-    // The body follows the pointer, so the camera goes the other way.
-    const Vec3 axis = (down * axes.right + right * axes.up) / way;
-    const double angle = way * std::numbers::pi / std::max(1.0, std::min(size.width, size.height));
+    // The body follows the pointer, so the camera turns the opposite way.
+    const Vec3 axis = (down * axes.right + right * axes.up) / distance;
+    const double angle =
+        distance * std::numbers::pi / std::max(1.0, std::min(size.width, size.height));
     const Eigen::AngleAxisd rotation(-angle, axis);
     Camera moved = camera;
     moved.towards_viewer = (rotation * axes.towards_viewer).normalized();

@@ -1,5 +1,5 @@
-// How a camera turns, pans and zooms under a hand, in plain arithmetic. Pixels are the widget's
-// (logical), x to the right and y down from its upper left corner, as Qt has them.
+// Camera navigation by mouse, in plain arithmetic. Pixels are the widget's (logical), x to the
+// right and y down from its upper left corner, as in Qt.
 #pragma once
 
 #include "palpate/volume.hpp"
@@ -25,11 +25,11 @@ ViewAxes axes_of(const Camera& camera);
 
 /// How many mm a pixel is.
 double mm_per_pixel(const Camera& camera, const ViewSize& size);
-/// Where a physical point is seen.
+/// The pixel at which a physical point is seen.
 Pixel pixel_of(const Camera& camera, const ViewSize& size, const Vec3& physical);
 /// The point seen at a pixel, in the plane through the focus.
 Vec3 point_at(const Camera& camera, const ViewSize& size, const Pixel& pixel);
-/// A way on the screen as a way in the view plane [mm, physical].
+/// A drag on the screen as a displacement in the view plane [mm, physical].
 Vec3 in_view_plane(const Camera& camera, const ViewSize& size, double right, double down);
 
 /// A trackball about the focus: dragged once over the smaller side it turns by 180 degrees.

@@ -1,4 +1,4 @@
-// Rows of the frames, then the bricks over them.
+// Copies rows of the frames, then the edited bricks over them.
 #include "apps/viewer/scene/sample_block.hpp"
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 namespace palpate::viewer {
 namespace {
 
-/// A box of a grid that has every so manieth sample of another.
+/// A box of a grid that has each `every`-th sample of another.
 struct Box {
     Index3 low, size;
     int every;

@@ -1,5 +1,5 @@
-// A box of a field's samples in one piece, whatever they are stored as: what painters and the
-// surface are made from. Costs the box, never the volume.
+// Copies a box of a field's samples into one array, edits and moment included; for the surface and
+// volume rendering. The cost depends on the box, not on the volume.
 #pragma once
 
 #include <vector>
@@ -9,18 +9,18 @@
 namespace palpate::viewer {
 
 /// Samples [data units] at `low` + (0, 0, 0) to `size` - 1, x fastest, at the field's moment and
-/// with its edits. `every`: of the grid that has only every so manieth sample along each axis (at
-/// least 1), in whose indices the box is. Outside the grid they are background.
+/// with its edits. `every`: only each `every`-th sample of the grid along each axis (1: all); the
+/// box is in the indices of that thinned grid. Outside the grid they are background.
 std::vector<float> sample_block(const Field& field, const Index3& low, const Index3& size,
                                 int every = 1);
 
-/// How many samples along each axis are left of `size` if every so manieth is taken.
+/// How many samples along each axis are left of `size` if each `every`-th is taken.
 inline Index3 thinned_size(const Index3& size, int every) {
     return (size.array() - 1) / every + 1;
 }
 
-/// The field as it is at its moment, of every so manieth sample, as a volume in the same type
-/// (between two frames rounded to it).
+/// The field as it is at its moment, thinned to each `every`-th sample, as a volume in the same
+/// type (between two frames rounded to it).
 Volume thinned(const Field& field, int every);
 
 /// True if both are the same samples at the same moment.

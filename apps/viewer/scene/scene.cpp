@@ -1,4 +1,4 @@
-// The widget: hands on the camera and on the probe, and the layers that are laid over each other.
+// The widget: moves camera and probe by mouse, and composes the layers of the scene.
 #include "apps/viewer/scene/scene.hpp"
 
 #include <QApplication>
@@ -18,17 +18,17 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "apps/viewer/scene/backstage.hpp"
+#include "apps/viewer/scene/annotations.hpp"
+#include "apps/viewer/scene/background_renderer.hpp"
+#include "apps/viewer/scene/layer_prop.hpp"
 #include "apps/viewer/scene/markers.hpp"
-#include "apps/viewer/scene/notes.hpp"
-#include "apps/viewer/scene/pane.hpp"
 #include "apps/viewer/scene/view_space.hpp"
-#include "pictures/vtk/furnishing.hpp"
+#include "pictures/vtk/props.hpp"
 
 namespace palpate::viewer {
 namespace {
 
-constexpr double finer = 0.2;        // the part of its way that a hand moves with Shift held
+constexpr double finer = 0.2;        // of the distance dragged, with Shift held
 constexpr double notch_px = 15;      // a notch of the wheel in depth, as if dragged so far
 constexpr double notch_zoom = 1.15;  // a notch of the wheel
 constexpr double zoom_px = 150;      // dragged so far the scale doubles or halves
@@ -47,29 +47,29 @@ Colour ink_of(const QPalette& palette) {
 }  // namespace
 
 struct Scene::Parts {
-    Backstage backstage;
-    Shot wanted;  // look, crosshair; the rest is filled in when it is staged
+    BackgroundRenderer background;
+    RenderRequest wanted;  // look, crosshair; changed() fills in the rest
     std::optional<Snapshot> snapshot;
     bool outdated = true;  // the layers are not those of what was set last
 
     vtkNew<vtkGenericOpenGLRenderWindow> window;
-    vtkNew<vtkRenderer> front, ghosts;
-    vtkNew<Pane> solid, glass;
-    Notes notes{2};
+    vtkNew<vtkRenderer> front, overlay;
+    vtkNew<LayerProp> solid, glass;
+    Annotations annotations{2};
     std::unique_ptr<Markers> markers;
 
     Parts() {
         vtkTimerLog::LoggingOff();  // one log for all threads, unprotected; windows write into it
         window->SetMultiSamples(0);
         window->SetNumberOfLayers(3);
-        for (vtkRenderer* renderer : {front.Get(), ghosts.Get()}) pictures::light(*renderer);
-        ghosts->SetLayer(1);
-        ghosts->SetActiveCamera(front->GetActiveCamera());
+        for (vtkRenderer* renderer : {front.Get(), overlay.Get()}) pictures::light(*renderer);
+        overlay->SetLayer(1);
+        overlay->SetActiveCamera(front->GetActiveCamera());
         front->AddViewProp(solid);
-        markers = std::make_unique<Markers>(*front, *ghosts);
+        markers = std::make_unique<Markers>(*front, *overlay);
         front->AddViewProp(glass);  // after all that it may cover
         for (vtkRenderer* renderer :
-             {front.Get(), ghosts.Get(), &notes.writing(), &notes.orientation()}) {
+             {front.Get(), overlay.Get(), &annotations.writing(), &annotations.orientation()}) {
             window->AddRenderer(renderer);
         }
     }
@@ -90,9 +90,9 @@ Scene::Scene(QWidget* parent) : QVTKOpenGLNativeWidget(parent), parts_(std::make
         lay_out();
         parts_->window->Render();  // calls update() in the end
     });
-    connect(&parts_->backstage, &Backstage::painted, this, &Scene::refresh);
-    connect(&parts_->backstage, &Backstage::surface_ready, this, &Scene::surface_ready);
-    connect(&parts_->backstage, &Backstage::problem, this, &Scene::problem);
+    connect(&parts_->background, &BackgroundRenderer::painted, this, &Scene::refresh);
+    connect(&parts_->background, &BackgroundRenderer::surface_ready, this, &Scene::surface_ready);
+    connect(&parts_->background, &BackgroundRenderer::problem, this, &Scene::problem);
 }
 
 Scene::~Scene() {
@@ -109,25 +109,25 @@ ViewSize Scene::view_size() const {
 void Scene::set_field(const Field& field, double isovalue) {
     parts_->snapshot.reset();
     parts_->wanted.crosshair = physical_centre(field.geometry());
-    parts_->backstage.set_field(field, isovalue);
+    parts_->background.set_field(field, isovalue);
     reset_camera();
     changed();
 }
 
 void Scene::update_field(const Field& field, const std::optional<SampleBox>& changed) {
-    parts_->backstage.update_field(field, changed);
+    parts_->background.update_field(field, changed);
     if (parts_->snapshot) refresh();  // the lattice round the proxy is that of the new version
 }
 
 void Scene::clear() {
     parts_->snapshot.reset();
-    parts_->backstage.clear();
+    parts_->background.clear();
     refresh();
     changed();
 }
 
 void Scene::set_isovalue(double isovalue) {
-    parts_->backstage.set_isovalue(isovalue);
+    parts_->background.set_isovalue(isovalue);
 }
 
 void Scene::set_look(const Look& look) {
@@ -179,37 +179,37 @@ void Scene::look_from(const pictures::View& view) {
 }
 
 void Scene::reset_camera() {
-    if (!parts_->backstage.field()) return;
-    const Geometry& geometry = parts_->backstage.field()->geometry();
+    if (!parts_->background.field()) return;
+    const Geometry& geometry = parts_->background.field()->geometry();
     move_camera(whole(geometry, pictures::natural_view(geometry, Vec3::Zero()), view_size()));
     fitted_ = true;
 }
 
 void Scene::changed() {
-    Shot shot = parts_->wanted;
-    shot.background = background_of(palette());
-    shot.ink = ink_of(palette());
-    shot.camera = camera_;
-    shot.pixel_ratio = devicePixelRatioF();
+    RenderRequest request = parts_->wanted;
+    request.background = background_of(palette());
+    request.ink = ink_of(palette());
+    request.camera = camera_;
+    request.pixel_ratio = devicePixelRatioF();
     if (isVisible()) {
-        shot.width = static_cast<int>(std::lround(width() * shot.pixel_ratio));
-        shot.height = static_cast<int>(std::lround(height() * shot.pixel_ratio));
+        request.width = static_cast<int>(std::lround(width() * request.pixel_ratio));
+        request.height = static_cast<int>(std::lround(height() * request.pixel_ratio));
     } else {
-        shot.width = shot.height = 0;
+        request.width = request.height = 0;
     }
-    parts_->backstage.stage(shot);  // shown once it is painted
+    parts_->background.request(request);  // shown once it is painted
 }
 
 bool Scene::settled() const {
-    return parts_->backstage.settled() && !parts_->outdated;
+    return parts_->background.settled() && !parts_->outdated;
 }
 
 double Scene::frame_seconds() const {
-    return parts_->backstage.frame_seconds();
+    return parts_->background.frame_seconds();
 }
 
 bool Scene::on_hardware() const {
-    return parts_->backstage.shown() && parts_->backstage.shown()->hardware;
+    return parts_->background.shown() && parts_->background.shown()->hardware;
 }
 
 QImage Scene::picture() {
@@ -223,10 +223,10 @@ void Scene::refresh() {
 }
 
 void Scene::lay_out() {
-    const auto& shown = parts_->backstage.shown();
+    const auto& shown = parts_->background.shown();
     // The camera of what is shown: the probe stays where it is on the surface while that lags.
     const pictures::Camera& camera = shown ? shown->camera : camera_;
-    const auto& field = parts_->backstage.field();
+    const auto& field = parts_->background.field();
     const double ratio = devicePixelRatioF();
     const Colour background = background_of(palette()), ink = ink_of(palette());
     parts_->front->SetBackground(background.red, background.green, background.blue);
@@ -242,21 +242,21 @@ void Scene::lay_out() {
     } else {
         parts_->markers->show({}, look, Vec3::Zero(), 1, 1, ink, ratio);
     }
-    Notes::What notes;
-    notes.orientation = look.orientation && field;
-    notes.scale_bar = look.scale_bar && field;
-    notes.camera = camera;
-    notes.width = static_cast<int>(std::lround(width() * ratio));
-    notes.height = static_cast<int>(std::lround(height() * ratio));
-    notes.em = ratio * QFontMetricsF(font()).ascent();
-    notes.ink = ink;
-    parts_->notes.show(notes);
+    Annotations::Content annotations;
+    annotations.orientation = look.orientation && field;
+    annotations.scale_bar = look.scale_bar && field;
+    annotations.camera = camera;
+    annotations.width = static_cast<int>(std::lround(width() * ratio));
+    annotations.height = static_cast<int>(std::lround(height() * ratio));
+    annotations.em = ratio * QFontMetricsF(font()).ascent();
+    annotations.ink = ink;
+    parts_->annotations.show(annotations);
     parts_->outdated = false;
 }
 
 void Scene::resizeEvent(QResizeEvent* event) {
     QVTKOpenGLNativeWidget::resizeEvent(event);
-    if (fitted_ && parts_->backstage.field()) {
+    if (fitted_ && parts_->background.field()) {
         reset_camera();
     } else {
         changed();
@@ -299,7 +299,7 @@ void Scene::mousePressEvent(QMouseEvent* event) {
 void Scene::mouseMoveEvent(QMouseEvent* event) {
     const QPointF by = event->localPos() - drag_from_;
     drag_from_ = event->localPos();
-    if (by.isNull() || !parts_->backstage.field()) return;
+    if (by.isNull() || !parts_->background.field()) return;
     const ViewSize size = view_size();
     switch (drag_) {
         case Drag::turn:
@@ -327,8 +327,8 @@ void Scene::mouseReleaseEvent(QMouseEvent* event) {
 }
 
 void Scene::mouseDoubleClickEvent(QMouseEvent* event) {
-    const auto& shown = parts_->backstage.shown();
-    const auto& field = parts_->backstage.field();
+    const auto& shown = parts_->background.shown();
+    const auto& field = parts_->background.field();
     if (hand_ != Hand::camera || event->button() != Qt::LeftButton || !shown || !field) {
         mousePressEvent(event);
         return;
@@ -355,7 +355,7 @@ void Scene::mouseDoubleClickEvent(QMouseEvent* event) {
 void Scene::wheelEvent(QWheelEvent* event) {
     const double notches = event->angleDelta().y() / 120.0;
     event->accept();
-    if (notches == 0 || !parts_->backstage.field()) return;
+    if (notches == 0 || !parts_->background.field()) return;
     const ViewSize size = view_size();
     if (hand_ == Hand::probe && !(event->modifiers() & Qt::ControlModifier)) {
         const double part = event->modifiers() & Qt::ShiftModifier ? finer : 1;

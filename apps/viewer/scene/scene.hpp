@@ -1,5 +1,5 @@
-// The 3-D view of a volume and of the hand that feels it. It only observes: what it shows is given
-// to it, what it is asked for with the mouse it tells.
+// The 3-D view of a volume and of the hand that feels it. It only observes: setters say what it
+// shows, signals say what the user asks for with the mouse.
 #pragma once
 
 #include <QVTKOpenGLNativeWidget.h>

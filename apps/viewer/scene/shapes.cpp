@@ -1,4 +1,4 @@
-// Shapes: tubes, cones, polygons.
+// Builds tubes, cones and polygons.
 #include "apps/viewer/scene/shapes.hpp"
 
 #include <vtkCellArray.h>
@@ -76,16 +76,16 @@ class Shape {
     vtkNew<vtkCellArray> polygons_, lines_;
 };
 
-void add_tube(Shape& shape, const std::vector<Vec3>& way, double radius) {
+void add_tube(Shape& shape, const std::vector<Vec3>& path, double radius) {
     vtkIdType last = -1;
     Vec3 u = Vec3::Zero();
-    for (std::size_t i = 0; i < way.size(); ++i) {
+    for (std::size_t i = 0; i < path.size(); ++i) {
         const Vec3 along =
-            (way[std::min(i + 1, way.size() - 1)] - way[i > 0 ? i - 1 : 0]).normalized();
+            (path[std::min(i + 1, path.size() - 1)] - path[i > 0 ? i - 1 : 0]).normalized();
         // The ring before, carried on without a twist.
         u = i == 0 ? along.unitOrthogonal() : Vec3(u - along.dot(u) * along);
         u = u.norm() > 1e-6 ? u.normalized() : along.unitOrthogonal();
-        const vtkIdType ring = shape.ring(way[i], u, along.cross(u), radius, 0, along);
+        const vtkIdType ring = shape.ring(path[i], u, along.cross(u), radius, 0, along);
         if (last >= 0) shape.sleeve(last, ring);
         last = ring;
     }
@@ -95,13 +95,13 @@ void add_tube(Shape& shape, const std::vector<Vec3>& way, double radius) {
 
 void put_spring(vtkPolyData& data, const Vec3& from, const Vec3& to, double radius) {
     constexpr int turns = 7, steps = 20;
-    const Vec3 way = to - from;
-    const Vec3 u = way.unitOrthogonal(), v = way.normalized().cross(u);
+    const Vec3 path = to - from;
+    const Vec3 u = path.unitOrthogonal(), v = path.normalized().cross(u);
     std::vector<Vec3> points{from};
     for (int i = 0; i <= turns * steps; ++i) {
         const double t = double(i) / (turns * steps);
         const double angle = full_turn * turns * t;
-        points.push_back(from + (0.12 + 0.76 * t) * way +
+        points.push_back(from + (0.12 + 0.76 * t) * path +
                          radius * (std::cos(angle) * u + std::sin(angle) * v));
     }
     points.push_back(to);
@@ -111,9 +111,9 @@ void put_spring(vtkPolyData& data, const Vec3& from, const Vec3& to, double radi
 }
 
 void put_arrow(vtkPolyData& data, const Vec3& from, const Vec3& to, double radius) {
-    const Vec3 way = to - from;
-    const Vec3 along = way.normalized();
-    const double head = std::min(0.6 * way.norm(), 6 * radius), broad = 2.4 * radius;
+    const Vec3 path = to - from;
+    const Vec3 along = path.normalized();
+    const double head = std::min(0.6 * path.norm(), 6 * radius), broad = 2.4 * radius;
     const Vec3 neck = to - head * along;
     const Vec3 u = along.unitOrthogonal(), v = along.cross(u);
     Shape shape;

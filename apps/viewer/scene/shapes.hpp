@@ -1,5 +1,5 @@
-// Shapes that change with every picture, written into meshes that VTK draws. All in mm, from the
-// origin of what is drawn.
+// Shapes of the markers, written into VTK meshes for every frame. All in mm, from the origin of
+// what is drawn.
 #pragma once
 
 #include <vtkPolyData.h>

@@ -1,4 +1,4 @@
-// Blocks, renewed by several threads.
+// Renews outdated blocks on several threads.
 #include "apps/viewer/scene/surface_blocks.hpp"
 
 #include <algorithm>
@@ -125,7 +125,7 @@ bool SurfaceBlocks::simplify(std::size_t most_triangles, double slack) {
     for_each_at_once(zeros_of(fresh_simple_), [&](std::size_t b) {
         simple_[b] = nullptr;
         if (meshes_[b]) {
-            simple_[b] = std::make_shared<const DrawnMesh>(
+            simple_[b] = std::make_shared<const RenderMesh>(
                 clustered(*meshes_[b], static_cast<float>(grain_)));
         }
         fresh_simple_[b] = 1;
@@ -134,7 +134,7 @@ bool SurfaceBlocks::simplify(std::size_t most_triangles, double slack) {
     return double(triangle_count(simple_)) <= slack * double(most_triangles);
 }
 
-std::shared_ptr<const DrawnMesh> SurfaceBlocks::simplified(std::size_t most_triangles) {
+std::shared_ptr<const RenderMesh> SurfaceBlocks::simplified(std::size_t most_triangles) {
     const auto refresh_all = [&] { std::ranges::fill(fresh_simple_, std::uint8_t{0}); };
     if (triangle_count(meshes_) <= most_triangles) {
         simple_.assign(simple_.size(), nullptr);
@@ -161,7 +161,7 @@ std::shared_ptr<const DrawnMesh> SurfaceBlocks::simplified(std::size_t most_tria
     }
     // Of noise even the coarsest blocks are too many: the seams between them go, too.
     const auto coarse = joined(simple_);
-    return std::make_shared<const DrawnMesh>(viewer::simplified(*coarse, most_triangles));
+    return std::make_shared<const RenderMesh>(viewer::simplified(*coarse, most_triangles));
 }
 
 }  // namespace palpate::viewer

@@ -1,4 +1,4 @@
-// The isosurface in blocks of cells, so that a change costs the blocks that it touches.
+// The isosurface in blocks of cells: a change costs only the blocks that it touches.
 #pragma once
 
 #include <atomic>
@@ -6,12 +6,12 @@
 #include <memory>
 #include <vector>
 
-#include "apps/viewer/scene/drawn_mesh.hpp"
+#include "apps/viewer/scene/render_mesh.hpp"
 #include "palpate/field.hpp"
 
 namespace palpate::viewer {
 
-/// The surface of a field of which every so manieth sample along each axis is taken; made piece by
+/// The surface of a field thinned to each `every`-th sample along each axis; made piece by
 /// piece, by as many threads as there are processors. Blocks meet without cracks, simplified ones
 /// too, and do not depend on what was there before: the same field has the same blocks.
 class SurfaceBlocks {
@@ -39,7 +39,7 @@ class SurfaceBlocks {
     const MeshBlocks& meshes() const { return meshes_; }
     /// One mesh of at most about `most_triangles`; blocks that did not change are not simplified
     /// again.
-    std::shared_ptr<const DrawnMesh> simplified(std::size_t most_triangles);
+    std::shared_ptr<const RenderMesh> simplified(std::size_t most_triangles);
 
   private:
     Index3 first_cell(std::size_t block) const;

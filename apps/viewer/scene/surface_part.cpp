@@ -1,4 +1,4 @@
-// Actors of a surface.
+// Groups blocks of the surface into VTK actors.
 #include "apps/viewer/scene/surface_part.hpp"
 
 #include <vtkCellArray.h>
@@ -27,11 +27,11 @@ constexpr std::size_t part_triangles = 50'000, most_part_triangles = 100'000;
 /// Not drawn any more once it was asked to give up. On software OpenGL it waits until it is drawn:
 /// what is given up is then no more than this part, and the window's own pictures, which the same
 /// software draws, come between two parts and not after them all.
-class PatientActor : public vtkOpenGLActor {
+class InterruptibleActor : public vtkOpenGLActor {
   public:
     // As vtkStandardNewMacro has it, whose semicolons a pedantic compiler refuses.
-    static PatientActor* New() {
-        auto* const made = new PatientActor;
+    static InterruptibleActor* New() {
+        auto* const made = new InterruptibleActor;
         made->InitializeObjectBase();
         return made;
     }
@@ -45,7 +45,7 @@ class PatientActor : public vtkOpenGLActor {
     }
     const std::atomic<bool>* give_up = nullptr;
     bool waits = false;
-    std::shared_ptr<const DrawnMesh> mesh;  // whose memory the mapper reads
+    std::shared_ptr<const RenderMesh> mesh;  // whose memory the mapper reads
 };
 
 vtkSmartPointer<vtkFloatArray> vectors(const std::vector<float>& values) {
@@ -56,7 +56,7 @@ vtkSmartPointer<vtkFloatArray> vectors(const std::vector<float>& values) {
     return array;
 }
 
-vtkSmartPointer<vtkPolyData> polydata_of(const DrawnMesh& mesh) {
+vtkSmartPointer<vtkPolyData> polydata_of(const RenderMesh& mesh) {
     vtkNew<vtkPoints> points;
     points->SetData(vectors(mesh.positions));
     const auto normals = vectors(mesh.normals);
@@ -74,9 +74,9 @@ vtkSmartPointer<vtkPolyData> polydata_of(const DrawnMesh& mesh) {
     return data;
 }
 
-vtkSmartPointer<vtkActor> actor_of(std::shared_ptr<const DrawnMesh> mesh,
+vtkSmartPointer<vtkActor> actor_of(std::shared_ptr<const RenderMesh> mesh,
                                    const std::atomic<bool>& give_up, bool waits) {
-    auto actor = vtkSmartPointer<PatientActor>::New();
+    auto actor = vtkSmartPointer<InterruptibleActor>::New();
     vtkNew<vtkPolyDataMapper> mapper;
     mapper->SetInputData(polydata_of(*mesh));
     mapper->ScalarVisibilityOff();

@@ -1,4 +1,4 @@
-// The isosurface as VTK's actors, each of several blocks: none so large that drawing it is long.
+// The isosurface as VTK actors, each of several blocks and small enough to be drawn quickly.
 #pragma once
 
 #include <vtkActor.h>
@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "apps/viewer/scene/drawn_mesh.hpp"
+#include "apps/viewer/scene/render_mesh.hpp"
 
 namespace palpate::viewer {
 

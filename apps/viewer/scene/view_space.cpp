@@ -1,4 +1,4 @@
-// The camera for VTK.
+// Sets up the VTK camera.
 #include "apps/viewer/scene/view_space.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// The one space in which painters and the widget draw, so that depths of both compare: physical
+// The space in which render threads and the widget draw, so that their depths compare: physical
 // axes, millimetres, from the middle of the grid.
 #pragma once
 

@@ -1,4 +1,4 @@
-// The mapper for the renderer at hand.
+// Sets up the volume mapper for graphics hardware or for the processor.
 #include "apps/viewer/scene/volume_part.hpp"
 
 #include <vtkColorTransferFunction.h>

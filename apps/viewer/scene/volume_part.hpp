@@ -23,7 +23,7 @@ class VolumePart {
     bool shows(const Volume& volume) const { return volume.data() == volume_.data(); }
     /// Opacities are for a layer as thick as `layer` [mm].
     void set_look(const TransferFunction& transfer, bool shading, double layer);
-    /// Every how manieth pixel of the picture is cast (1: all), and how far apart the samples along
+    /// The distance of the pixels that are cast (1: all), and how far apart the samples along
     /// a ray are [mm].
     void set_fineness(double pixels, double step);
 

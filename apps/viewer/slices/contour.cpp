@@ -1,4 +1,4 @@
-// Marching triangles through a plane cut of the lattice.
+// Cuts the lattice's tetrahedra with the slice, and the triangles with the isovalue.
 #include "apps/viewer/slices/contour.hpp"
 
 #include <algorithm>
@@ -54,8 +54,8 @@ double mean(const Face& f) {
     return 0.25 * ((f[0] + f[1]) + (f[2] + f[3]));
 }
 
-/// Cuts the tetrahedra of a cell `part` (0 to 1/2) of its way from the face `near` to `far`. Each
-/// corner of the cut lies on an edge of a tetrahedron, along which the field is linear.
+/// Cuts the tetrahedra of a cell `part` (0 to 1/2) of the distance from the face `near` to `far`.
+/// Each corner of the cut lies on an edge of a tetrahedron, along which the field is linear.
 void cut_cell(Marching& march, const Face& near, const Face& far, double part) {
     const double in = 2 * part;  // towards the cell's centre, which is half a cell away
     const Corner centre{0.5, 0.5, 0.5 * (mean(near) + mean(far))};

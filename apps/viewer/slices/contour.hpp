@@ -1,4 +1,4 @@
-// Where a slice cuts the isosurface: the felt one, by cutting the lattice's tetrahedra. No Qt.
+// The contour of the felt isosurface in a slice, by cutting the tetrahedra of the lattice. No Qt.
 #pragma once
 
 #include <vector>

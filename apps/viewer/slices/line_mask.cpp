@@ -1,4 +1,4 @@
-// Distance of each near pixel to the line.
+// Computes the distance of each pixel near a line to the line.
 #include "apps/viewer/slices/line_mask.hpp"
 
 #include <algorithm>
@@ -22,12 +22,12 @@ void LineMask::draw(double x0, double y0, double x1, double y1, double radius) {
     const double margin = radius + 1;
     // The part inside the picture, for a line may be far longer than it (Liang and Barsky 1984).
     double from = 0, to = 1;
-    const auto clip = [&](double start, double way, double low, double high) {
-        if (way == 0) {
+    const auto clip = [&](double start, double length, double low, double high) {
+        if (length == 0) {
             if (start < low || start > high) to = -1;
             return;
         }
-        const double a = (low - start) / way, b = (high - start) / way;
+        const double a = (low - start) / length, b = (high - start) / length;
         from = std::max(from, std::min(a, b));
         to = std::min(to, std::max(a, b));
     };

@@ -1,4 +1,4 @@
-// Many short lines drawn smoothly and fast: how much of each pixel they cover. No Qt.
+// Draws many short lines smoothly and fast: how much of each pixel they cover. No Qt.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Which way round a slice is shown.
+// Chooses the orientation in which a slice is shown.
 #include "apps/viewer/slices/plane.hpp"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// How a slice across a grid axis lies on the screen: by the body's axes, the way radiologists look
-// at it, whatever the grid's direction. No Qt.
+// How a slice across a grid axis is shown: by the body's axes in the radiological convention,
+// whatever the grid's direction. No Qt.
 #pragma once
 
 #include <array>

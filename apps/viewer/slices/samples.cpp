@@ -1,4 +1,4 @@
-// Layers out of a volume.
+// Reads layers of samples out of a field.
 #include "apps/viewer/slices/samples.hpp"
 
 #include <algorithm>

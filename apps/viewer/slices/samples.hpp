@@ -1,4 +1,5 @@
-// The samples of a slice between two layers of a grid. No Qt. Costs a slice, never a volume.
+// The samples of a slice between two layers of a grid. No Qt. The cost depends on the slice, not on
+// the volume.
 #pragma once
 
 #include <array>

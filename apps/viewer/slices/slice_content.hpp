@@ -1,4 +1,4 @@
-// What a pane holds of a volume. Private to the pane.
+// The data that a slice pane holds of a volume. Private to the pane.
 #pragma once
 
 #include <QElapsedTimer>

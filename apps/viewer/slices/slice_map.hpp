@@ -1,4 +1,4 @@
-// Where the samples of a slice lie in a widget.
+// Maps samples of a slice to positions in a widget, and back.
 #pragma once
 
 #include <QPointF>

@@ -1,4 +1,4 @@
-// Marks over a slice.
+// Draws crosshair, hand, proxy and texts over a slice.
 #include "apps/viewer/slices/slice_marks.hpp"
 
 #include <QFontMetricsF>
@@ -48,13 +48,13 @@ void dot(QPainter& painter, const QPointF& at, const QColor& colour, double radi
 /// A zigzag from one point to another, straight where there is no room for one.
 QPainterPath spring(const QPointF& from, const QPointF& to, double width) {
     QPainterPath path(from);
-    const QLineF way(from, to);
+    const QLineF line(from, to);
     constexpr int turns = 6;
-    if (way.length() > 4 * width) {
-        const QPointF along = (to - from) / way.length(), across(-along.y(), along.x());
+    if (line.length() > 4 * width) {
+        const QPointF along = (to - from) / line.length(), across(-along.y(), along.x());
         for (int i = 1; i < 2 * turns; ++i) {
             const double part = 0.15 + 0.7 * i / (2 * turns);
-            path.lineTo(way.pointAt(part) + (i % 2 ? width : -width) * across);
+            path.lineTo(line.pointAt(part) + (i % 2 ? width : -width) * across);
         }
     }
     path.lineTo(to);

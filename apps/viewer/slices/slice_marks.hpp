@@ -1,4 +1,4 @@
-// What is drawn over a slice: crosshair, hand and proxy, letters at the edges, words in corners.
+// Marks over a slice: crosshair, hand and proxy, letters at the edges, texts in the corners.
 #pragma once
 
 #include <QPainter>

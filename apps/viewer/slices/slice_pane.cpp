@@ -1,4 +1,4 @@
-// The pane: what it holds, and how it is painted. What hands do to it: slice_pane_events.cpp.
+// The slice pane: its data and how it is painted. Input is in slice_pane_events.cpp.
 #include "apps/viewer/slices/slice_pane.hpp"
 
 #include <QFontMetrics>

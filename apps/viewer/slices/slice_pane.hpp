@@ -1,5 +1,5 @@
-// A pane with a slice of the volume: grey levels, the isosurface's contour, crosshair, hand and
-// proxy. What users of ITK-SNAP and 3D Slicer expect of one.
+// A pane that shows a slice of the volume: grey levels, contour of the isosurface, crosshair, hand
+// and proxy. Mouse and keys work as in ITK-SNAP and 3D Slicer.
 #pragma once
 
 #include <QTimer>
@@ -95,7 +95,7 @@ class SlicePane : public QWidget {
     double next_layer(double from, int steps) const;
     void zoom_at(const QPointF& pixel, double factor);
     void use_window(double low, double high);
-    void change_window(const QPointF& way);
+    void change_window(const QPointF& drag);
     void reset();
     void paint_words(QPainter& painter) const;
 

@@ -1,4 +1,4 @@
-// What mouse, wheel and keys do to a slice pane.
+// Mouse, wheel and key input of a slice pane.
 #include <QHelpEvent>
 #include <QKeyEvent>
 #include <QMouseEvent>
@@ -82,11 +82,11 @@ void SlicePane::zoom_at(const QPointF& pixel, double factor) {
 }
 
 /// The pane's width is the data's range.
-void SlicePane::change_window(const QPointF& way) {
+void SlicePane::change_window(const QPointF& drag) {
     const double range = content_->samples.field().volume().range();
     const double per_pixel = range / std::max(width(), 100);
-    const double wide = std::max(high_ - low_ + way.x() * per_pixel, narrowest * range);
-    const double level = std::clamp(0.5 * (low_ + high_) - way.y() * per_pixel,
+    const double wide = std::max(high_ - low_ + drag.x() * per_pixel, narrowest * range);
+    const double level = std::clamp(0.5 * (low_ + high_) - drag.y() * per_pixel,
                                     content_->samples.field().volume().minimum() - range,
                                     content_->samples.field().volume().maximum() + range);
     use_window(level - 0.5 * wide, level + 0.5 * wide);
@@ -124,7 +124,7 @@ void SlicePane::mousePressEvent(QMouseEvent* event) {
 void SlicePane::mouseMoveEvent(QMouseEvent* event) {
     if (!content_) return;
     pointer_ = event->localPos();
-    const QPointF way = event->localPos() - drag_from_;
+    const QPointF drag = event->localPos() - drag_from_;
     drag_from_ = event->localPos();
     switch (drag_) {
         case Drag::crosshair:
@@ -134,10 +134,10 @@ void SlicePane::mouseMoveEvent(QMouseEvent* event) {
             aim_at(event->localPos());
             break;
         case Drag::window:
-            change_window(way);
+            change_window(drag);
             break;
         case Drag::move:
-            view_.moved += way / map().per_mm;
+            view_.moved += drag / map().per_mm;
             picture_changed();
             break;
         case Drag::none:

@@ -1,4 +1,4 @@
-// Windowing, enlarging, and the contour on top.
+// Windows and enlarges the samples, and draws the contour on top.
 #include "apps/viewer/slices/slice_picture.hpp"
 
 #include <QPainter>

@@ -1,4 +1,4 @@
-// The picture of a slice: grey levels and the isosurface's contour.
+// The image of a slice: grey levels and the isosurface's contour.
 #pragma once
 
 #include <QColor>

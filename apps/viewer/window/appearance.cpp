@@ -1,4 +1,4 @@
-// Palettes of the Fusion style.
+// Sets light and dark palettes of the Fusion style.
 #include "apps/viewer/window/appearance.hpp"
 
 #include <QApplication>

@@ -1,4 +1,4 @@
-// Light and dark.
+// Light and dark appearance of the application.
 #pragma once
 
 namespace palpate::viewer {

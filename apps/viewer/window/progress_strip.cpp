@@ -1,4 +1,4 @@
-// A label, a bar and a button.
+// Builds the strip: a label, a bar and a button.
 #include "apps/viewer/window/progress_strip.hpp"
 
 #include <QHBoxLayout>

@@ -1,4 +1,4 @@
-// What is being worked on, how far it is, and a button to give it up.
+// Shows the progress of loading, with a button to cancel it.
 #pragma once
 
 #include <QWidget>

@@ -1,4 +1,4 @@
-// The way to a picture.
+// Waits until everything is drawn, then saves the picture.
 #include "apps/viewer/window/screenshot.hpp"
 
 #include <cstdio>

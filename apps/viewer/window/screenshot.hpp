@@ -1,4 +1,4 @@
-// A picture of the window for scripts: once all that is asked for is loaded and drawn.
+// Saves a picture of the window for scripts, once everything is loaded and drawn.
 #pragma once
 
 #include <QObject>

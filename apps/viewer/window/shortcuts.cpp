@@ -1,4 +1,4 @@
-// The list is made from the actions themselves, so that it cannot age.
+// Makes the list of shortcuts from the actions themselves, so that it is always up to date.
 #include "apps/viewer/window/shortcuts.hpp"
 
 #include <QAction>

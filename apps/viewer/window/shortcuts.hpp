@@ -1,4 +1,4 @@
-// What keys and mouse do, for people to look up.
+// A dialog that lists what keys and mouse do.
 #pragma once
 
 class QDialog;

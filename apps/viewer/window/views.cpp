@@ -1,4 +1,4 @@
-// Scene and slices, side by side.
+// Lays out the scene and the slices side by side, and keeps them in step.
 #include "apps/viewer/window/views.hpp"
 
 #include <QHBoxLayout>

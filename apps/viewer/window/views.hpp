@@ -1,5 +1,4 @@
-// What is seen of a volume: the scene, three slices beside it, and the crosshair that ties them
-// together.
+// The views of a volume: the scene, three slices beside it, and the crosshair that they share.
 #pragma once
 
 #include <QWidget>

@@ -1,4 +1,4 @@
-// The brush by mouse and keys, alone and in the panel.
+// The brush controls, alone and in the panel, used by mouse and keys.
 #include "apps/viewer/panel/brush_controls.hpp"
 
 #include <QDir>

@@ -1,4 +1,4 @@
-// The device picker, its state, the scale of the hand; the servo loop's figures.
+// The device controls and the servo loop's figures.
 #include "tests/viewer/panel/panel_stage.hpp"
 
 #include <QComboBox>

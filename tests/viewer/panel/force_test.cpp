@@ -1,4 +1,4 @@
-// Force settings by slider and number, and the switches and the gauge of the session.
+// Force settings, the switches and the force gauge.
 #include "tests/viewer/panel/panel_stage.hpp"
 
 #include <QPushButton>

@@ -1,4 +1,4 @@
-// The isovalue by mouse, wheel, keys and number.
+// The isovalue, set by mouse, wheel, keys and number.
 #include "tests/viewer/panel/panel_stage.hpp"
 
 #include <QComboBox>

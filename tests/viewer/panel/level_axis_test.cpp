@@ -1,4 +1,4 @@
-// Levels and pixels, and what the histogram on them looks like.
+// Levels and pixels, and the histogram over them.
 #include "apps/viewer/panel/level_axis.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The panel in front of a session that runs: what it asks for is carried out, and both agree.
+// The panel with a live run: what it asks for is carried out, and both agree.
 #include "apps/viewer/model/live.hpp"
 
 #include <QPushButton>

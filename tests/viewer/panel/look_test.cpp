@@ -1,4 +1,4 @@
-// The look: switches, colours and the transfer function by mouse and keys.
+// The look controls and the transfer function, used by mouse and keys.
 #include "tests/viewer/panel/panel_stage.hpp"
 
 #include <QCheckBox>

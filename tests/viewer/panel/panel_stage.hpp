@@ -1,4 +1,4 @@
-// A panel with a session to show, and what it has asked for.
+// A fixture: a panel that shows a live run, and the commands that it emits.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Pressing through, by bands on the histogram, by the table and by its modes.
+// Pressing through, set by bands on the histogram, by the table and by modes.
 #include "tests/viewer/panel/panel_stage.hpp"
 
 #include <QContextMenuEvent>

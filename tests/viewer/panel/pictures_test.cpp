@@ -1,4 +1,4 @@
-// Pictures of the panel for people to look at, and what must be true of them on any screen.
+// Pictures of the panel for people to look at, and what must hold on any screen.
 #include <QDir>
 #include <QPalette>
 

@@ -1,4 +1,4 @@
-// The mouse on the 3-D view: real events, as a person makes them.
+// Mouse input of the 3-D view, by real events.
 #include <gtest/gtest.h>
 
 #include <QWheelEvent>

@@ -1,5 +1,5 @@
-// The 3-D view of data that change: what is shown in the end is what a scene shows that was given
-// the data as they are.
+// The 3-D view of changing data: in the end it shows what a scene shows that was given the final
+// data.
 #include <gtest/gtest.h>
 
 #include "apps/viewer/scene/scene.hpp"

@@ -1,4 +1,4 @@
-// The lattice round the SCP.
+// The tetrahedra at the SCP.
 #include "apps/viewer/scene/local.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// Pictures of the 3-D view beside those that were looked at and committed. After a wanted change:
-// run with PALPATE_WRITE_REFERENCES=1, look at what is in references/, commit it.
+// Compares pictures of the 3-D view with committed references. After an intended change: run with
+// PALPATE_WRITE_REFERENCES=1, look at the pictures in references/, commit them.
 #include <gtest/gtest.h>
 
 #include <cstdlib>

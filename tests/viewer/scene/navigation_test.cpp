@@ -1,4 +1,4 @@
-// A camera's arithmetic.
+// Camera navigation.
 #include "apps/viewer/scene/navigation.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What the 3-D view shows.
+// The 3-D view: what is drawn, and when.
 #include "apps/viewer/scene/scene.hpp"
 
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 #include <Eigen/Geometry>
 #include <limits>
 
-#include "apps/viewer/scene/painter.hpp"
+#include "apps/viewer/scene/render_thread.hpp"
 #include "palpate/scenes/volumes.hpp"
 #include "support/fields.hpp"
 #include "viewer/scene/shown_scene.hpp"
@@ -167,7 +167,7 @@ TEST(Scene, what_lies_behind_the_surface_shines_through_faintly) {
     const Vec3 middle = physical_centre(field.geometry());
     const auto blueness = [](QRgb p) { return qBlue(p) - qRed(p); };
     shown.scene.show_snapshot(snapshot_at(middle, middle));
-    const int inside = blueness(shown.settled("ghost").pixel(200, 160));
+    const int inside = blueness(shown.settled("faint").pixel(200, 160));
     const Vec3 before = middle + Vec3(0, -30, 0);
     shown.scene.show_snapshot(snapshot_at(before, before));
     const int in_front = blueness(shown.settled().pixel(200, 160));

@@ -1,4 +1,4 @@
-// The surface in blocks: the same as in one piece, and after a change the same as made anew.
+// The surface in blocks: equal to the surface in one piece, and after a change equal to a new one.
 #include "apps/viewer/scene/surface_blocks.hpp"
 
 #include <gtest/gtest.h>
@@ -34,7 +34,7 @@ SurfaceBlocks blocks_of(const Field& field, double isovalue, int every = 1) {
 }
 
 /// Edges, by where their ends lie, that do not have as many triangles along them as against them.
-int open_edges(const DrawnMesh& mesh) {
+int open_edges(const RenderMesh& mesh) {
     std::map<std::pair<Point, Point>, int> turns;
     for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
         for (std::size_t c = 0; c < 3; ++c) {
@@ -51,7 +51,7 @@ int open_edges(const DrawnMesh& mesh) {
 
 /// Edges, by where their ends lie, along which there is one triangle alone: the rim of a crack. (Of
 /// a simplified mesh some triangles lie on each other, and equal ones are drawn once.)
-int rims(const DrawnMesh& mesh) {
+int rims(const RenderMesh& mesh) {
     std::map<std::pair<Point, Point>, int> triangles;
     for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
         for (std::size_t c = 0; c < 3; ++c) {

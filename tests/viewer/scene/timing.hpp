@@ -1,4 +1,4 @@
-// What the programs that time the scene share: waiting with the event loop, and quantiles.
+// Shared by the programs that time the scene: waiting with the event loop, and quantiles.
 #pragma once
 
 #include <QElapsedTimer>

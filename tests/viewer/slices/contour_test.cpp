@@ -1,4 +1,4 @@
-// The contour of a slice against the field that is felt.
+// The contour of a slice, compared with the field that is felt.
 #include "apps/viewer/slices/contour.hpp"
 
 #include <gtest/gtest.h>

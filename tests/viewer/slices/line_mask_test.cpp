@@ -1,4 +1,4 @@
-// Smooth lines.
+// Smooth lines in a mask.
 #include "apps/viewer/slices/line_mask.hpp"
 
 #include <gtest/gtest.h>

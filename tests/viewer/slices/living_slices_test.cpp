@@ -1,4 +1,4 @@
-// Slices of data that change: edited, or between two frames.
+// Slices of changing data: edited, or between two frames.
 #include <gtest/gtest.h>
 
 #include "apps/viewer/slices/samples.hpp"

@@ -1,4 +1,4 @@
-// A slice pane in a window, what a person does to it, and pictures of it.
+// A slice pane in a window, with mouse input and pictures of it.
 #pragma once
 
 #include <QApplication>

@@ -1,4 +1,4 @@
-// Which way round slices are shown.
+// The orientation in which slices are shown.
 #include "apps/viewer/slices/plane.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Slices between layers; grey levels.
+// Samples of slices between layers, and grey levels.
 #include "apps/viewer/slices/samples.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Slice panes under a person's hands.
+// Slice panes, used by mouse and keys.
 #include "apps/viewer/slices/slice_pane.hpp"
 
 #include "apps/viewer/slices/slice_picture.hpp"

@@ -1,4 +1,4 @@
-// Real data in panes, for people to look at.
+// Pictures of slice panes on real data, for people to look at.
 #include <QGridLayout>
 #include <QPalette>
 

@@ -1,5 +1,5 @@
-// How long slices take to be drawn, of a volume that is named or a large noisy one that is made up:
-// run by hand, never by ctest. The contour is that of 500.
+// Times how long slices of a volume take to be drawn (a named one, or large noise): run by hand,
+// not by ctest. The contour is that of 500.
 #include <QApplication>
 #include <QImage>
 

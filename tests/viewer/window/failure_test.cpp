@@ -1,4 +1,4 @@
-// When things go wrong, and what stays as it was.
+// Failures: what is told, and what stays as it was.
 #include <QAction>
 #include <QMessageBox>
 #include <QPalette>

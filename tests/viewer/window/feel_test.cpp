@@ -1,4 +1,4 @@
-// Opening, feeling, recording, playing: what a person does on the first day.
+// The whole window: opening, feeling, recording, playing.
 #include <Eigen/Geometry>
 
 #include <QAction>

@@ -1,4 +1,4 @@
-// Files: dropped, recent, raw, given up, pictures.
+// The whole window: files dropped, recent, raw, cancelled; pictures.
 #include <QAction>
 #include <QComboBox>
 #include <QDialog>

@@ -1,4 +1,4 @@
-// Data that change, in the window: the brush, undo, saving, sequences.
+// The whole window with changing data: the brush, undo, saving, sequences.
 #include <QAction>
 #include <QDir>
 #include <QFile>

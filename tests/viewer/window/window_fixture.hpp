@@ -1,4 +1,4 @@
-// A window that a test drives as a person does: keys, mouse, time.
+// A fixture: the window, used by keys and mouse.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What stands still, as VTK's actors: slices and the grid's outline.
+// VTK actors of the slices in the scene and of the grid's outline.
 #pragma once
 
 #include <vtkActor.h>

@@ -1,5 +1,5 @@
 // Light, cube and scale.
-#include "pictures/vtk/furnishing.hpp"
+#include "pictures/vtk/props.hpp"
 
 #include <vtkLight.h>
 #include <vtkNew.h>

@@ -1,5 +1,5 @@
-// Two textures and a rectangle that takes colours and depths from them.
-#include "apps/viewer/scene/pane.hpp"
+// Draws two textures, colours and depths, on a rectangle that fills the viewport.
+#include "apps/viewer/scene/layer_prop.hpp"
 
 #include <vtkOpenGLRenderWindow.h>
 #include <vtkOpenGLShaderCache.h>
@@ -34,27 +34,28 @@ vtkSmartPointer<vtkTextureObject> texture(vtkOpenGLRenderWindow& window) {
 
 }  // namespace
 
-Pane* Pane::New() {
-    auto* const made = new Pane;
+LayerProp* LayerProp::New() {
+    auto* const made = new LayerProp;
     made->InitializeObjectBase();
     return made;
 }
 
-void Pane::set_layer(std::shared_ptr<const Backdrop> owner, const Layer& layer, bool seen_through) {
+void LayerProp::set_layer(std::shared_ptr<const RenderedImage> owner, const Layer& layer,
+                          bool translucent) {
     owner_ = std::move(owner);
     layer_ = &layer;
-    seen_through_ = seen_through;
+    translucent_ = translucent;
     uploaded_ = false;
     this->Modified();
 }
 
-void Pane::clear() {
+void LayerProp::clear() {
     owner_.reset();
     layer_ = nullptr;
     this->Modified();
 }
 
-void Pane::upload(vtkOpenGLRenderWindow& window) {
+void LayerProp::upload(vtkOpenGLRenderWindow& window) {
     if (!colour_) colour_ = texture(window);
     if (!depth_) depth_ = texture(window);
     const auto width = static_cast<unsigned>(owner_->width);
@@ -66,7 +67,7 @@ void Pane::upload(vtkOpenGLRenderWindow& window) {
     uploaded_ = true;
 }
 
-int Pane::RenderOpaqueGeometry(vtkViewport* viewport) {
+int LayerProp::RenderOpaqueGeometry(vtkViewport* viewport) {
     if (!layer_ || layer_->rgba.empty()) return 0;
     auto* const renderer = vtkRenderer::SafeDownCast(viewport);
     auto* const window = vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow());
@@ -85,9 +86,9 @@ int Pane::RenderOpaqueGeometry(vtkViewport* viewport) {
     const vtkOpenGLState::ScopedglDepthMask mask(state);
     const vtkOpenGLState::ScopedglDepthFunc function(state);
     state->vtkglEnable(GL_DEPTH_TEST);
-    state->vtkglDepthFunc(seen_through_ ? GL_LESS : GL_ALWAYS);
-    state->vtkglDepthMask(seen_through_ ? GL_FALSE : GL_TRUE);
-    seen_through_ ? state->vtkglEnable(GL_BLEND) : state->vtkglDisable(GL_BLEND);
+    state->vtkglDepthFunc(translucent_ ? GL_LESS : GL_ALWAYS);
+    state->vtkglDepthMask(translucent_ ? GL_FALSE : GL_TRUE);
+    translucent_ ? state->vtkglEnable(GL_BLEND) : state->vtkglDisable(GL_BLEND);
     colour_->Activate();
     depth_->Activate();
     quad_->Program->SetUniformi("colours", colour_->GetTextureUnit());
@@ -98,7 +99,7 @@ int Pane::RenderOpaqueGeometry(vtkViewport* viewport) {
     return 1;
 }
 
-void Pane::ReleaseGraphicsResources(vtkWindow* window) {
+void LayerProp::ReleaseGraphicsResources(vtkWindow* window) {
     quad_.reset();
     if (colour_) colour_->ReleaseGraphicsResources(window);
     if (depth_) depth_->ReleaseGraphicsResources(window);

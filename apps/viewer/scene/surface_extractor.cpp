@@ -1,5 +1,5 @@
-// Extraction in steps and in blocks.
-#include "apps/viewer/scene/surface_work.hpp"
+// Extracts the surface step by step, from coarse to fine, block by block.
+#include "apps/viewer/scene/surface_extractor.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include <new>
 #include <stdexcept>
 
-#include "apps/viewer/scene/patience.hpp"
+#include "apps/viewer/scene/thread_priority.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -22,7 +22,7 @@ constexpr std::size_t few_blocks = 64;
 // Without a large change for so long, finer surfaces are worth it.
 constexpr auto still = 150ms;
 // What a surface may take while large changes come one after the other [s].
-constexpr double flowing_seconds = 0.04;
+constexpr double streaming_seconds = 0.04;
 constexpr std::size_t no_limit = std::numeric_limits<std::size_t>::max();
 
 double seconds_since(Clock::time_point start) {
@@ -46,147 +46,148 @@ std::vector<int> steps_for(const Index3& size) {
     return steps;
 }
 
-SurfaceWork::SurfaceWork(Results results, const SurfaceLimits& limits)
+SurfaceExtractor::SurfaceExtractor(Results results, const SurfaceLimits& limits)
     : results_(std::move(results)), limits_(limits) {
     thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
 
-SurfaceWork::~SurfaceWork() {
+SurfaceExtractor::~SurfaceExtractor() {
     thread_.request_stop();
     thread_.join();
 }
 
-void SurfaceWork::ask(std::uint64_t wish, const Field& field, double isovalue) {
+void SurfaceExtractor::ask(std::uint64_t request, const Field& field, double isovalue) {
     {
         const std::lock_guard lock(mutex_);
-        next_.emplace(Wish{wish, field, isovalue, true, {}});
+        next_.emplace(Request{request, field, isovalue, true, {}});
         waiting_ = true;
     }
     changed_.notify_all();
 }
 
-void SurfaceWork::update(std::uint64_t wish, const Field& field, double isovalue,
-                         const SampleBox& changed) {
+void SurfaceExtractor::update(std::uint64_t request, const Field& field, double isovalue,
+                              const SampleBox& changed) {
     {
         const std::lock_guard lock(mutex_);
         const bool anew = next_ && next_->anew;
         const SampleBox all = next_ ? united(next_->changed, changed) : changed;
-        next_.emplace(Wish{wish, field, isovalue, anew, all});
+        next_.emplace(Request{request, field, isovalue, anew, all});
         waiting_ = true;
     }
     changed_.notify_all();
 }
 
-void SurfaceWork::forget() {
+void SurfaceExtractor::forget() {
     const std::lock_guard lock(mutex_);
     next_.reset();
     waiting_ = false;
     forgotten_ = true;
 }
 
-void SurfaceWork::run(const std::stop_token& stop) {
-    stand_back();
+void SurfaceExtractor::run(const std::stop_token& stop) {
+    lower_thread_priority();
     while (!stop.stop_requested()) {
         {
             std::unique_lock lock(mutex_);
             if (!changed_.wait(lock, stop, [this] { return next_.has_value(); })) return;
             // What was forgotten has left nothing to go on with.
             if (forgotten_) shown_.reset();
-            Wish wish = *std::move(next_);
+            Request request = *std::move(next_);
             next_.reset();
             waiting_ = false;
             forgotten_ = false;
             lock.unlock();
-            take_up(std::move(wish));
+            take_up(std::move(request));
         }
         try {
             carry_out(stop);
             continue;
         } catch (const std::bad_alloc&) {
-            results_.failed(wish_->number, "there is not enough memory for the surface");
+            results_.failed(request_->number, "there is not enough memory for the surface");
         } catch (const std::exception& error) {
-            results_.failed(wish_->number, error.what());
+            results_.failed(request_->number, error.what());
         }
         shown_.reset();
         finer_.reset();
     }
 }
 
-/// What is there already of the surface that the wish wants, and the steps that lead to it.
-void SurfaceWork::take_up(Wish wish) {
+/// What is there already of the surface that the request wants, and the steps that lead to it.
+void SurfaceExtractor::take_up(Request request) {
     begun_ = Clock::now();
-    const bool anew = wish.anew || !shown_ || wish.isovalue != wish_->isovalue;
-    wish_.emplace(std::move(wish));
-    const std::vector<int> steps = steps_for(wish_->field.geometry().size);
+    const bool anew = request.anew || !shown_ || request.isovalue != request_->isovalue;
+    request_.emplace(std::move(request));
+    const std::vector<int> steps = steps_for(request_->field.geometry().size);
     if (anew) {
         finer_.reset();
-        flowing_ = false;
-        pace_ = 0;
-        shown_.emplace(wish_->field.geometry(), steps.front());
+        streaming_ = false;
+        moving_step_ = 0;
+        shown_.emplace(request_->field.geometry(), steps.front());
         steps_.assign(steps.begin() + 1, steps.end());
         return;
     }
-    shown_->mark(wish_->changed);
-    if (finer_) finer_->mark(wish_->changed);
-    if (is_small(*shown_) && !(wish_->changed == whole_box(wish_->field.geometry()))) {
-        flowing_ = false;
+    shown_->mark(request_->changed);
+    if (finer_) finer_->mark(request_->changed);
+    if (is_small(*shown_) && !(request_->changed == whole_box(request_->field.geometry()))) {
+        streaming_ = false;
         return;
     }
-    flow(steps);
+    stream(steps);
 }
 
 /// A large change: its first picture is as coarse as can be had at once. What is finer is kept, to
 /// be brought up to date when there is time.
-void SurfaceWork::flow(const std::vector<int>& steps) {
-    flowing_ = true;
-    if (pace_ == 0) pace_ = steps.front();
-    if (shown_->every() == pace_) return;
-    if (shown_->every() > pace_) {
+void SurfaceExtractor::stream(const std::vector<int>& steps) {
+    streaming_ = true;
+    if (moving_step_ == 0) moving_step_ = steps.front();
+    if (shown_->every() == moving_step_) return;
+    if (shown_->every() > moving_step_) {
         finer_.reset();
         steps_.clear();
         std::ranges::copy_if(steps, std::back_inserter(steps_),
-                             [&](int step) { return step < pace_; });
+                             [&](int step) { return step < moving_step_; });
     } else if (!finer_) {
         steps_.insert(steps_.begin(), shown_->every());
         finer_ = std::move(shown_);
     }
-    shown_.emplace(wish_->field.geometry(), pace_);
+    shown_.emplace(request_->field.geometry(), moving_step_);
 }
 
-void SurfaceWork::carry_out(const std::stop_token& stop) {
-    if (!std::isfinite(wish_->isovalue)) throw std::invalid_argument("the isovalue is not finite");
+void SurfaceExtractor::carry_out(const std::stop_token& stop) {
+    if (!std::isfinite(request_->isovalue))
+        throw std::invalid_argument("the isovalue is not finite");
     const auto wanted = [&] { return !stop.stop_requested() && !forgotten_; };
     if (!make_first(wanted)) {
         shown_.reset();
         return;
     }
-    if (flowing_) rest(stop);
+    if (streaming_) rest(stop);
     while (!steps_.empty()) {
         if (!make_finer([&] { return wanted() && !waiting_; })) return;
     }
 }
 
-/// The first picture that has the change in it; the newest wish waits for it.
-bool SurfaceWork::make_first(const std::function<bool()>& go_on) {
+/// The first picture that has the change in it; the newest request waits for it.
+bool SurfaceExtractor::make_first(const std::function<bool()>& go_on) {
     for (;;) {
         const bool coarse = shown_->triangles() == 0;
-        const auto outcome = shown_->renew(wish_->field, wish_->isovalue, go_on,
+        const auto outcome = shown_->renew(request_->field, request_->isovalue, go_on,
                                            coarse ? limits_.most_triangles : no_limit);
         if (outcome == SurfaceBlocks::Outcome::done) break;
         if (outcome == SurfaceBlocks::Outcome::interrupted) return false;
-        shown_.emplace(wish_->field.geometry(), shown_->every() + 1);
+        shown_.emplace(request_->field.geometry(), shown_->every() + 1);
         steps_.clear();
     }
     publish(steps_.empty());
-    if (flowing_) pace(seconds_since(begun_));
+    if (streaming_) adapt_step(seconds_since(begun_));
     return true;
 }
 
 /// False if something newer is there; what was made of the step is kept.
-bool SurfaceWork::make_finer(const std::function<bool()>& go_on) {
+bool SurfaceExtractor::make_finer(const std::function<bool()>& go_on) {
     const int step = finer_ ? finer_->every() : steps_.front();
-    if (!finer_) finer_.emplace(wish_->field.geometry(), step);
-    switch (finer_->renew(wish_->field, wish_->isovalue, go_on, limits_.most_triangles)) {
+    if (!finer_) finer_.emplace(request_->field.geometry(), step);
+    switch (finer_->renew(request_->field, request_->isovalue, go_on, limits_.most_triangles)) {
         case SurfaceBlocks::Outcome::interrupted:
             return false;
         case SurfaceBlocks::Outcome::too_many:
@@ -209,10 +210,10 @@ bool SurfaceWork::make_finer(const std::function<bool()>& go_on) {
     return true;
 }
 
-void SurfaceWork::publish(bool finished) {
-    DrawnSurface result;
-    result.wish = wish_->number;
-    result.isovalue = wish_->isovalue;
+void SurfaceExtractor::publish(bool finished) {
+    ExtractedSurface result;
+    result.request = request_->number;
+    result.isovalue = request_->isovalue;
     result.blocks = shown_->meshes();
     result.moving = shown_->simplified(limits_.moving_triangles);
     result.every = shown_->every();
@@ -222,18 +223,18 @@ void SurfaceWork::publish(bool finished) {
 }
 
 /// Until something is asked for, or nothing was for a while.
-void SurfaceWork::rest(const std::stop_token& stop) {
+void SurfaceExtractor::rest(const std::stop_token& stop) {
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, stop, still, [this] { return waiting_ || forgotten_; });
 }
 
 /// As fine as it can be had in the time that there is.
-void SurfaceWork::pace(double seconds) {
+void SurfaceExtractor::adapt_step(double seconds) {
     const double p = shown_->every();
-    if (seconds > 1.25 * flowing_seconds) {
-        pace_ = shown_->every() + 1;
-    } else if (p > 1 && seconds * std::pow(p / (p - 1), 3) < flowing_seconds) {
-        pace_ = shown_->every() - 1;
+    if (seconds > 1.25 * streaming_seconds) {
+        moving_step_ = shown_->every() + 1;
+    } else if (p > 1 && seconds * std::pow(p / (p - 1), 3) < streaming_seconds) {
+        moving_step_ = shown_->every() - 1;
     }
 }
 

@@ -1,5 +1,5 @@
-// What a painter draws with: VTK in a window that nobody sees, in whatever OpenGL context is
-// current. Lives and dies in one thread, with that context.
+// Draws a render request with VTK, in an invisible window in the current OpenGL context. Belongs to
+// one thread, as that context does.
 #pragma once
 
 #include <vtkActor.h>
@@ -13,30 +13,30 @@
 #include <optional>
 #include <vector>
 
-#include "apps/viewer/scene/shot.hpp"
+#include "apps/viewer/scene/render_request.hpp"
 #include "apps/viewer/scene/surface_part.hpp"
 #include "apps/viewer/scene/volume_part.hpp"
 
 namespace palpate::viewer {
 
-class Stage {
+class OffscreenRenderer {
   public:
-    /// While `give_up` is true, drawing ends as soon as it can; must outlive the stage.
+    /// While `give_up` is true, drawing ends as soon as it can; must outlive the renderer.
     /// `hardware`: OpenGL here is the machine's graphics hardware.
-    Stage(const std::atomic<bool>& give_up, bool hardware);
-    ~Stage();
-    Stage(const Stage&) = delete;
-    Stage& operator=(const Stage&) = delete;
+    OffscreenRenderer(const std::atomic<bool>& give_up, bool hardware);
+    ~OffscreenRenderer();
+    OffscreenRenderer(const OffscreenRenderer&) = delete;
+    OffscreenRenderer& operator=(const OffscreenRenderer&) = delete;
 
-    /// Nothing if it was given up. Throws std::runtime_error if OpenGL does not do it.
-    std::optional<Backdrop> draw(const Shot& shot);
+    /// Nothing if it was cancelled. Throws std::runtime_error if OpenGL fails.
+    std::optional<RenderedImage> draw(const RenderRequest& request);
 
   private:
-    void show(const Shot& shot);
-    void show_surface(const Shot& shot);
-    void show_slices(const Shot& shot);
-    void show_box(const Shot& shot);
-    void show_volume(const Shot& shot);
+    void show(const RenderRequest& request);
+    void show_surface(const RenderRequest& request);
+    void show_slices(const RenderRequest& request);
+    void show_box(const RenderRequest& request);
+    void show_volume(const RenderRequest& request);
     const Volume& volume_of(const Field& field, bool coarse);
     Layer layer_of(vtkRenderer& renderer, int width, int height);
 
@@ -60,7 +60,7 @@ class Stage {
     };
     std::optional<Cast> cast_;
     bool cast_coarse_ = false;  // another one is to come, even where pictures are not quick ones
-    int pixel_ = 1;  // of a moving picture, in pixels of the shot: 1, or 2 where that is slow
+    int pixel_ = 1;  // of a moving picture, in pixels of the request: 1, or 2 where that is slow
     double coarseness_ = 3;  // pixels a ray while moving, as quick as it turned out
 };
 

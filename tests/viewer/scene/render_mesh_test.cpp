@@ -1,5 +1,5 @@
-// Meshes for drawing.
-#include "apps/viewer/scene/drawn_mesh.hpp"
+// Meshes for rendering and their simplification.
+#include "apps/viewer/scene/render_mesh.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,20 +13,20 @@
 namespace palpate::viewer {
 namespace {
 
-Vec3 vertex(const DrawnMesh& mesh, std::int32_t i) {
+Vec3 vertex(const RenderMesh& mesh, std::int32_t i) {
     return Eigen::Map<const Eigen::Vector3f>(mesh.positions.data() + 3 * i).cast<double>();
 }
-Vec3 normal(const DrawnMesh& mesh, std::int32_t i) {
+Vec3 normal(const RenderMesh& mesh, std::int32_t i) {
     return Eigen::Map<const Eigen::Vector3f>(mesh.normals.data() + 3 * i).cast<double>();
 }
 
 /// A ball of radius 0.35 * 40 mm, seen from `origin`.
-DrawnMesh ball(const Vec3& origin = Vec3::Zero()) {
+RenderMesh ball(const Vec3& origin = Vec3::Zero()) {
     const Field field(scenes::ball(support::cube(40), 0.35, 1.4, SampleType::float32));
-    return drawn_mesh(pictures::shaded_surface(field, 0.5).surface, origin);
+    return render_mesh(pictures::shaded_surface(field, 0.5).surface, origin);
 }
 
-double volume_of(const DrawnMesh& mesh) {
+double volume_of(const RenderMesh& mesh) {
     double six = 0;
     for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
         six +=
@@ -37,11 +37,11 @@ double volume_of(const DrawnMesh& mesh) {
     return six / 6;
 }
 
-TEST(DrawnMesh, is_the_surface_seen_from_an_origin) {
+TEST(RenderMesh, is_the_surface_seen_from_an_origin) {
     const Field field(scenes::ball(support::cube(12)));
     const pictures::Surface surface = pictures::shaded_surface(field, 128).surface;
     const Vec3 origin(100, -20, 3);
-    const DrawnMesh mesh = drawn_mesh(surface, origin);
+    const RenderMesh mesh = render_mesh(surface, origin);
     ASSERT_EQ(mesh.vertex_count(), surface.mesh.vertices.size());
     ASSERT_EQ(mesh.triangle_count(), surface.mesh.triangles.size());
     for (std::size_t i = 0; i < mesh.vertex_count(); ++i) {
@@ -50,11 +50,11 @@ TEST(DrawnMesh, is_the_surface_seen_from_an_origin) {
     }
 }
 
-TEST(DrawnMesh, simplified_is_small_and_still_the_same_ball) {
-    const DrawnMesh mesh = ball();
+TEST(RenderMesh, simplified_is_small_and_still_the_same_ball) {
+    const RenderMesh mesh = ball();
     ASSERT_GT(mesh.triangle_count(), 20'000U);
     for (const std::size_t most : {10'000U, 3'000U, 1'000U}) {
-        const DrawnMesh simple = simplified(mesh, most);
+        const RenderMesh simple = simplified(mesh, most);
         EXPECT_LE(simple.triangle_count(), most * 5 / 4);
         EXPECT_GE(simple.triangle_count(), most / 6);
         EXPECT_NEAR(volume_of(simple) / volume_of(mesh), 1, 0.1) << most;
@@ -67,26 +67,26 @@ TEST(DrawnMesh, simplified_is_small_and_still_the_same_ball) {
     }
 }
 
-TEST(DrawnMesh, that_is_small_enough_stays_as_it_is) {
-    const DrawnMesh mesh = ball();
+TEST(RenderMesh, that_is_small_enough_stays_as_it_is) {
+    const RenderMesh mesh = ball();
     EXPECT_EQ(simplified(mesh, mesh.triangle_count()).triangles, mesh.triangles);
 }
 
-TEST(DrawnMesh, simplifying_ends_for_every_budget_and_every_mesh) {
+TEST(RenderMesh, simplifying_ends_for_every_budget_and_every_mesh) {
     // Noise has as much surface as there can be; and there may be none.
     const Field noise = support::noise_field().field;
-    const DrawnMesh mesh = drawn_mesh(pictures::shaded_surface(noise, 128).surface, Vec3::Zero());
+    const RenderMesh mesh = render_mesh(pictures::shaded_surface(noise, 128).surface, Vec3::Zero());
     for (const std::size_t most : {0U, 1U, 100U}) {
         EXPECT_LT(simplified(mesh, most).triangle_count(), 2'000U);
     }
     EXPECT_EQ(simplified({}, 0).triangle_count(), 0U);
 }
 
-TEST(DrawnMesh, two_sides_of_a_thin_sheet_stay_two) {
+TEST(RenderMesh, two_sides_of_a_thin_sheet_stay_two) {
     const support::TestField sheet = support::sheet_field();
-    const DrawnMesh mesh =
-        drawn_mesh(pictures::shaded_surface(sheet.field, sheet.isovalue).surface, Vec3::Zero());
-    const DrawnMesh simple = simplified(mesh, mesh.triangle_count() / 20);
+    const RenderMesh mesh =
+        render_mesh(pictures::shaded_surface(sheet.field, sheet.isovalue).surface, Vec3::Zero());
+    const RenderMesh simple = simplified(mesh, mesh.triangle_count() / 20);
     // Outer and inner side of the wall at x = 5, away from the edges of the box.
     int out = 0, in = 0;
     for (std::size_t i = 0; i < simple.vertex_count(); ++i) {
@@ -99,9 +99,9 @@ TEST(DrawnMesh, two_sides_of_a_thin_sheet_stay_two) {
     EXPECT_GT(in, 1);
 }
 
-TEST(DrawnMesh, blocks_that_are_joined_are_all_of_them) {
-    const auto one = std::make_shared<const DrawnMesh>(ball());
-    const auto other = std::make_shared<const DrawnMesh>(ball(Vec3(50, 0, 0)));
+TEST(RenderMesh, blocks_that_are_joined_are_all_of_them) {
+    const auto one = std::make_shared<const RenderMesh>(ball());
+    const auto other = std::make_shared<const RenderMesh>(ball(Vec3(50, 0, 0)));
     const MeshBlocks blocks{nullptr, one, nullptr, other};
     EXPECT_EQ(triangle_count(blocks), 2 * one->triangle_count());
     const auto all = joined(blocks);

@@ -1,5 +1,5 @@
-// Cube and scale bar.
-#include "apps/viewer/scene/notes.hpp"
+// Draws the orientation cube and the scale bar.
+#include "apps/viewer/scene/annotations.hpp"
 
 #include <vtkCamera.h>
 #include <vtkCellArray.h>
@@ -13,7 +13,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pictures/vtk/furnishing.hpp"
+#include "pictures/vtk/props.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -30,7 +30,7 @@ void add_box(vtkPoints& points, vtkCellArray& polygons, double x, double y, doub
 
 }  // namespace
 
-Notes::Notes(int layer)
+Annotations::Annotations(int layer)
     : writing_(vtkSmartPointer<vtkRenderer>::New()),
       orientation_(vtkSmartPointer<vtkRenderer>::New()),
       bar_(vtkSmartPointer<vtkActor2D>::New()),
@@ -53,7 +53,7 @@ Notes::Notes(int layer)
     writing_->AddActor2D(text_);
 }
 
-void Notes::show_bar(const What& what) {
+void Annotations::show_bar(const Content& what) {
     bar_->SetVisibility(what.scale_bar);
     text_->SetVisibility(what.scale_bar);
     if (!what.scale_bar) return;
@@ -80,7 +80,7 @@ void Notes::show_bar(const What& what) {
     text_->SetPosition(right - 0.5 * pixels, y + 0.5 * em);
 }
 
-void Notes::show(const What& what) {
+void Annotations::show(const Content& what) {
     show_bar(what);
     orientation_->SetDraw(what.orientation);
     const double side =

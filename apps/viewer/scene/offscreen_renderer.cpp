@@ -1,5 +1,5 @@
-// The stage: keeps its actors in step with what is asked for, and reads back what it drew.
-#include "apps/viewer/scene/stage.hpp"
+// Keeps the VTK actors in step with the request, draws them and reads the image back.
+#include "apps/viewer/scene/offscreen_renderer.hpp"
 
 #include <vtkCallbackCommand.h>
 #include <vtkCamera.h>
@@ -16,11 +16,11 @@
 #include <stdexcept>
 #include <string>
 
-#include "apps/viewer/scene/bodies.hpp"
 #include "apps/viewer/scene/sample_block.hpp"
+#include "apps/viewer/scene/static_actors.hpp"
 #include "apps/viewer/scene/view_space.hpp"
-#include "pictures/vtk/furnishing.hpp"
 #include "pictures/vtk/material.hpp"
+#include "pictures/vtk/props.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -76,7 +76,7 @@ constexpr double moving_seconds = 0.06;  // what a moving picture of a volume ma
 
 }  // namespace
 
-Stage::Stage(const std::atomic<bool>& give_up, bool hardware)
+OffscreenRenderer::OffscreenRenderer(const std::atomic<bool>& give_up, bool hardware)
     : give_up_(give_up),
       window_(vtkSmartPointer<UnseenWindow>::New()),
       solid_(vtkSmartPointer<vtkRenderer>::New()),
@@ -105,27 +105,27 @@ Stage::Stage(const std::atomic<bool>& give_up, bool hardware)
     window_->AddObserver(vtkCommand::AbortCheckEvent, abort);
 }
 
-Stage::~Stage() {
+OffscreenRenderer::~OffscreenRenderer() {
     window_->Finalize();
 }
 
-void Stage::show_surface(const Shot& shot) {
-    const bool quick = shot.moving && !hardware_;
-    surface_.show(quick ? MeshBlocks{shot.surface.moving} : shot.surface.blocks,
+void OffscreenRenderer::show_surface(const RenderRequest& request) {
+    const bool quick = request.moving && !hardware_;
+    surface_.show(quick ? MeshBlocks{request.surface.moving} : request.surface.blocks,
                   [&](vtkActor* actor) {
                       solid_->RemoveActor(actor);
                       glass_->RemoveActor(actor);
                       actor->ReleaseGraphicsResources(window_);
                   });
-    const double opacity = std::clamp(shot.look.surface_opacity, 0.0, 1.0);
+    const double opacity = std::clamp(request.look.surface_opacity, 0.0, 1.0);
     vtkRenderer& in = opacity < 1 ? *glass_ : *solid_;
     vtkRenderer& out = opacity < 1 ? *solid_ : *glass_;
     for (const auto& part : surface_.actors()) {
         vtkActor* const actor = part.actor;
         if (!actor) continue;
-        const Colour& c = shot.look.surface_colour;
+        const Colour& c = request.look.surface_colour;
         actor->GetProperty()->SetColor(c.red, c.green, c.blue);
-        actor->SetVisibility(shot.look.surface && opacity > 0);
+        actor->SetVisibility(request.look.surface && opacity > 0);
         if (actor->GetProperty()->GetOpacity() == opacity && in.HasViewProp(actor)) continue;
         pictures::set_glass(*actor, opacity);
         out.RemoveActor(actor);
@@ -133,10 +133,10 @@ void Stage::show_surface(const Shot& shot) {
     }
 }
 
-void Stage::show_slices(const Shot& shot) {
+void OffscreenRenderer::show_slices(const RenderRequest& request) {
     const bool outdated =
-        !sliced_ || !same_samples(*sliced_, *shot.field) || crosshair_ != shot.crosshair;
-    if (slices_[0] && (outdated || !shot.look.slices)) {
+        !sliced_ || !same_samples(*sliced_, *request.field) || crosshair_ != request.crosshair;
+    if (slices_[0] && (outdated || !request.look.slices)) {
         for (auto& slice : slices_) {
             solid_->RemoveActor(slice);
             slice->ReleaseGraphicsResources(window_);
@@ -144,28 +144,28 @@ void Stage::show_slices(const Shot& shot) {
         }
         sliced_.reset();
     }
-    if (!shot.look.slices || slices_[0]) return;
-    slices_ = slice_actors(*shot.field, shot.crosshair);
-    sliced_ = shot.field;
-    crosshair_ = shot.crosshair;
+    if (!request.look.slices || slices_[0]) return;
+    slices_ = slice_actors(*request.field, request.crosshair);
+    sliced_ = request.field;
+    crosshair_ = request.crosshair;
     for (const auto& slice : slices_) solid_->AddActor(slice);
 }
 
-void Stage::show_box(const Shot& shot) {
-    if (boxed_ != shot.field->geometry()) {
+void OffscreenRenderer::show_box(const RenderRequest& request) {
+    if (boxed_ != request.field->geometry()) {
         if (box_) solid_->RemoveActor(box_);
-        boxed_ = shot.field->geometry();
+        boxed_ = request.field->geometry();
         box_ = box_actor(*boxed_);
         solid_->AddActor(box_);
     }
-    box_->SetVisibility(shot.look.box);
-    box_->GetProperty()->SetColor(shot.ink.red, shot.ink.green, shot.ink.blue);
+    box_->SetVisibility(request.look.box);
+    box_->GetProperty()->SetColor(request.ink.red, request.ink.green, request.ink.blue);
     box_->GetProperty()->SetOpacity(1);
-    box_->GetProperty()->SetLineWidth(static_cast<float>(std::round(shot.pixel_ratio)));
+    box_->GetProperty()->SetLineWidth(static_cast<float>(std::round(request.pixel_ratio)));
 }
 
 /// Samples that change are put in one piece: few of them for moving pictures, all once they rest.
-const Volume& Stage::volume_of(const Field& field, bool coarse) {
+const Volume& OffscreenRenderer::volume_of(const Field& field, bool coarse) {
     const auto samples = static_cast<double>(sample_count(field.geometry()));
     const auto limit = static_cast<double>(coarse ? moving_samples : most_samples);
     const int every = samples > limit ? static_cast<int>(std::ceil(std::cbrt(samples / limit))) : 1;
@@ -178,8 +178,8 @@ const Volume& Stage::volume_of(const Field& field, bool coarse) {
     return cast_->volume;
 }
 
-void Stage::show_volume(const Shot& shot) {
-    const bool wanted = shot.look.volume && shot.look.transfer.points.size() > 1;
+void OffscreenRenderer::show_volume(const RenderRequest& request) {
+    const bool wanted = request.look.volume && request.look.transfer.points.size() > 1;
     const auto remove = [&] {
         if (!volume_) return;
         solid_->RemoveVolume(volume_->prop());
@@ -192,10 +192,10 @@ void Stage::show_volume(const Shot& shot) {
         cast_.reset();
         return;
     }
-    const Field& field = *shot.field;
+    const Field& field = *request.field;
     const bool copied = field.samples().bricks() || field.moment().weight > 0;
-    const bool coarse = shot.moving && !hardware_;
-    cast_coarse_ = shot.moving && hardware_ && copied;
+    const bool coarse = request.moving && !hardware_;
+    cast_coarse_ = request.moving && hardware_ && copied;
     const Volume& volume = volume_of(field, coarse || cast_coarse_);
     if (volume_ && !volume_->shows(volume)) remove();
     if (!volume_) {
@@ -203,16 +203,17 @@ void Stage::show_volume(const Shot& shot) {
             std::make_unique<VolumePart>(volume, physical_centre(field.geometry()), hardware_);
         solid_->AddVolume(volume_->prop());
     }
-    volume_->set_look(shot.look.transfer, shot.look.shading, field.geometry().spacing.minCoeff());
+    volume_->set_look(request.look.transfer, request.look.shading,
+                      field.geometry().spacing.minCoeff());
     const double spacing = volume.geometry().spacing.minCoeff();
-    volume_->set_fineness(coarse ? coarseness_ * shot.pixel_ratio / pixel_ : 1,
+    volume_->set_fineness(coarse ? coarseness_ * request.pixel_ratio / pixel_ : 1,
                           coarse ? spacing : 0.5 * spacing);
 }
 
-void Stage::show(const Shot& shot) {
-    const Colour& b = shot.background;
+void OffscreenRenderer::show(const RenderRequest& request) {
+    const Colour& b = request.background;
     solid_->SetBackground(b.red, b.green, b.blue);
-    if (!shot.field) {
+    if (!request.field) {
         solid_->RemoveAllViewProps();
         glass_->RemoveAllViewProps();
         surface_.show({}, [](vtkActor*) {});
@@ -224,15 +225,16 @@ void Stage::show(const Shot& shot) {
         cast_.reset();
         return;
     }
-    const Geometry& geometry = shot.field->geometry();
-    show_surface(shot);
-    show_slices(shot);
-    show_box(shot);
-    show_volume(shot);
-    direct(*solid_->GetActiveCamera(), shot.camera, physical_centre(geometry), reach_of(geometry));
+    const Geometry& geometry = request.field->geometry();
+    show_surface(request);
+    show_slices(request);
+    show_box(request);
+    show_volume(request);
+    direct(*solid_->GetActiveCamera(), request.camera, physical_centre(geometry),
+           reach_of(geometry));
 }
 
-Layer Stage::layer_of(vtkRenderer& renderer, int width, int height) {
+Layer OffscreenRenderer::layer_of(vtkRenderer& renderer, int width, int height) {
     window_->AddRenderer(&renderer);
     renew_aspect(renderer);
     window_->SetAbortRender(0);
@@ -252,39 +254,38 @@ Layer Stage::layer_of(vtkRenderer& renderer, int width, int height) {
     return layer;
 }
 
-std::optional<Backdrop> Stage::draw(const Shot& shot) {
+std::optional<RenderedImage> OffscreenRenderer::draw(const RenderRequest& request) {
     const auto start = std::chrono::steady_clock::now();
-    const bool quick = shot.moving && !hardware_;
+    const bool quick = request.moving && !hardware_;
     const int every = quick ? pixel_ : 1;
-    Backdrop backdrop;
-    backdrop.width = (shot.width + every - 1) / every;
-    backdrop.height = (shot.height + every - 1) / every;
-    window_->SetSize(backdrop.width, backdrop.height);
+    RenderedImage image;
+    image.width = (request.width + every - 1) / every;
+    image.height = (request.height + every - 1) / every;
+    window_->SetSize(image.width, image.height);
     // A volume is cast up to the depths that lie before it: those of whole pixels.
-    const bool smooth = (hardware_ || !shot.moving) && !shot.look.volume;
+    const bool smooth = (hardware_ || !request.moving) && !request.look.volume;
     window_->SetMultiSamples(smooth ? 4 : 0);
-    show(shot);
-    backdrop.number = shot.number;
-    backdrop.camera = shot.camera;
-    backdrop.reach = shot.field ? reach_of(shot.field->geometry()) : 1;
-    backdrop.moving = quick || cast_coarse_;
-    backdrop.hardware = hardware_;
-    backdrop.solid = layer_of(*solid_, backdrop.width, backdrop.height);
-    if (!give_up_ && shot.field && shot.look.surface && shot.look.surface_opacity > 0 &&
-        shot.look.surface_opacity < 1) {
+    show(request);
+    image.number = request.number;
+    image.camera = request.camera;
+    image.reach = request.field ? reach_of(request.field->geometry()) : 1;
+    image.moving = quick || cast_coarse_;
+    image.hardware = hardware_;
+    image.solid = layer_of(*solid_, image.width, image.height);
+    if (!give_up_ && request.field && request.look.surface && request.look.surface_opacity > 0 &&
+        request.look.surface_opacity < 1) {
         window_->SetMultiSamples(0);
-        backdrop.glass = layer_of(*glass_, backdrop.width, backdrop.height);
+        image.glass = layer_of(*glass_, image.width, image.height);
     }
     if (give_up_) return std::nullopt;
-    backdrop.seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    if (quick && backdrop.seconds > slow_seconds) pixel_ = 2;
-    if (quick && backdrop.seconds < fast_seconds) pixel_ = 1;
+    image.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    if (quick && image.seconds > slow_seconds) pixel_ = 2;
+    if (quick && image.seconds < fast_seconds) pixel_ = 1;
     if (volume_ && quick) {
-        const double wanted = coarseness_ * std::sqrt(backdrop.seconds / moving_seconds);
+        const double wanted = coarseness_ * std::sqrt(image.seconds / moving_seconds);
         coarseness_ = std::clamp(0.5 * (coarseness_ + wanted), 2.0, 8.0);
     }
-    return backdrop;
+    return image;
 }
 
 }  // namespace palpate::viewer

@@ -1,5 +1,5 @@
-// Vertex clustering (Rossignac and Borrel 1993): one pass, whatever the mesh is like.
-#include "apps/viewer/scene/drawn_mesh.hpp"
+// Simplifies meshes by vertex clustering (Rossignac and Borrel 1993): one pass for any mesh.
+#include "apps/viewer/scene/render_mesh.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -56,8 +56,8 @@ std::uint64_t key_of(const Vector3f& p, const Vector3f& normal, float size, std:
 }
 
 /// The triangles that are still ones, each once.
-void add_triangles(const DrawnMesh& mesh, const std::vector<std::int32_t>& cluster,
-                   DrawnMesh& result) {
+void add_triangles(const RenderMesh& mesh, const std::vector<std::int32_t>& cluster,
+                   RenderMesh& result) {
     std::vector<std::array<std::int32_t, 3>> kept;
     for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
         const auto corner = [&](std::size_t i) {
@@ -76,8 +76,8 @@ void add_triangles(const DrawnMesh& mesh, const std::vector<std::int32_t>& clust
 
 }  // namespace
 
-DrawnMesh drawn_mesh(const pictures::Surface& surface, const Vec3& origin) {
-    DrawnMesh drawn;
+RenderMesh render_mesh(const pictures::Surface& surface, const Vec3& origin) {
+    RenderMesh drawn;
     drawn.positions.reserve(3 * surface.mesh.vertices.size());
     for (const Vec3& v : surface.mesh.vertices) {
         const Vector3f p = (v - origin).cast<float>();
@@ -96,7 +96,7 @@ DrawnMesh drawn_mesh(const pictures::Surface& surface, const Vec3& origin) {
     return drawn;
 }
 
-double area_of(const DrawnMesh& mesh) {
+double area_of(const RenderMesh& mesh) {
     double twice = 0;
     for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
         const auto corner = [&](std::size_t c) {
@@ -108,8 +108,8 @@ double area_of(const DrawnMesh& mesh) {
     return 0.5 * twice;
 }
 
-DrawnMesh clustered(const DrawnMesh& mesh, float size) {
-    DrawnMesh result;
+RenderMesh clustered(const RenderMesh& mesh, float size) {
+    RenderMesh result;
     std::vector<std::int32_t> cluster(mesh.vertex_count());
     std::vector<Eigen::Vector3d> positions, normals;
     std::vector<int> members;
@@ -139,34 +139,35 @@ DrawnMesh clustered(const DrawnMesh& mesh, float size) {
     return result;
 }
 
-DrawnMesh simplified(const DrawnMesh& mesh, std::size_t most_triangles) {
+RenderMesh simplified(const RenderMesh& mesh, std::size_t most_triangles) {
     if (mesh.triangle_count() <= most_triangles) return mesh;
     constexpr int most_attempts = 12;
     // About three triangles a box that the surface goes through.
     const double most = static_cast<double>(std::max<std::size_t>(most_triangles, 1));
     double size = std::sqrt(3 * area_of(mesh) / most);
     for (int attempt = 0;; ++attempt) {
-        DrawnMesh result = clustered(mesh, static_cast<float>(size));
+        RenderMesh result = clustered(mesh, static_cast<float>(size));
         const auto count = static_cast<double>(result.triangle_count());
         if (count <= 1.25 * most || attempt == most_attempts) return result;
         size *= std::max(1.1, std::sqrt(count / most));
     }
 }
 
-std::size_t triangle_count(std::span<const std::shared_ptr<const DrawnMesh>> blocks) {
+std::size_t triangle_count(std::span<const std::shared_ptr<const RenderMesh>> blocks) {
     std::size_t count = 0;
     for (const auto& block : blocks) count += block ? block->triangle_count() : 0;
     return count;
 }
 
-std::shared_ptr<const DrawnMesh> joined(std::span<const std::shared_ptr<const DrawnMesh>> blocks) {
+std::shared_ptr<const RenderMesh> joined(
+    std::span<const std::shared_ptr<const RenderMesh>> blocks) {
     const auto there = [](const auto& block) { return block && !block->triangles.empty(); };
     const auto first = std::ranges::find_if(blocks, there);
     if (first == blocks.end()) return nullptr;
     if (std::none_of(first + 1, blocks.end(), there)) return *first;
     std::size_t vertices = 0;
     for (const auto& block : blocks) vertices += block ? block->vertex_count() : 0;
-    DrawnMesh all;
+    RenderMesh all;
     all.positions.reserve(3 * vertices);
     all.normals.reserve(3 * vertices);
     all.triangles.reserve(3 * triangle_count(blocks));
@@ -177,7 +178,7 @@ std::shared_ptr<const DrawnMesh> joined(std::span<const std::shared_ptr<const Dr
         all.normals.insert(all.normals.end(), block->normals.begin(), block->normals.end());
         for (const std::int32_t v : block->triangles) all.triangles.push_back(before + v);
     }
-    return std::make_shared<const DrawnMesh>(std::move(all));
+    return std::make_shared<const RenderMesh>(std::move(all));
 }
 
 }  // namespace palpate::viewer

@@ -1,4 +1,4 @@
-// Meshes in the form that graphics hardware takes, and simpler ones to draw while things move.
+// Meshes as arrays for graphics hardware, and simplified ones for drawing while things move.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 namespace palpate::viewer {
 
 /// Arrays of a triangle mesh: 3 floats a vertex, 3 indices a triangle.
-struct DrawnMesh {
+struct RenderMesh {
     std::vector<float> positions;  ///< [mm, physical axes] from an origin, so that floats do
     std::vector<float> normals;    ///< unit, out of the solid
     std::vector<std::int32_t> triangles;
@@ -24,22 +24,22 @@ struct DrawnMesh {
 };
 
 /// A surface with a normal a vertex, its positions measured from `origin` [mm, physical].
-DrawnMesh drawn_mesh(const pictures::Surface& surface, const Vec3& origin);
+RenderMesh render_mesh(const pictures::Surface& surface, const Vec3& origin);
 
 /// The mesh with at most about `most_triangles` (some more for very few): vertices in one box of a
 /// grid that face the same way become one. The mesh itself if it is small enough. Its outline stays
 /// where it is to within the box's size.
-DrawnMesh simplified(const DrawnMesh& mesh, std::size_t most_triangles);
+RenderMesh simplified(const RenderMesh& mesh, std::size_t most_triangles);
 
 /// Vertices in one box of a grid of `size` [mm] become one if they face the same way.
-DrawnMesh clustered(const DrawnMesh& mesh, float size);
+RenderMesh clustered(const RenderMesh& mesh, float size);
 /// [mm^2]
-double area_of(const DrawnMesh& mesh);
+double area_of(const RenderMesh& mesh);
 
 /// Blocks of a mesh; null: there is nothing of it.
-using MeshBlocks = std::vector<std::shared_ptr<const DrawnMesh>>;
-std::size_t triangle_count(std::span<const std::shared_ptr<const DrawnMesh>> blocks);
+using MeshBlocks = std::vector<std::shared_ptr<const RenderMesh>>;
+std::size_t triangle_count(std::span<const std::shared_ptr<const RenderMesh>> blocks);
 /// All in one, without seams; the only one itself. Null if there is no triangle.
-std::shared_ptr<const DrawnMesh> joined(std::span<const std::shared_ptr<const DrawnMesh>> blocks);
+std::shared_ptr<const RenderMesh> joined(std::span<const std::shared_ptr<const RenderMesh>> blocks);
 
 }  // namespace palpate::viewer

@@ -1,5 +1,5 @@
-// Extraction in the background.
-#include "apps/viewer/scene/surface_work.hpp"
+// Extraction of the surface in the background.
+#include "apps/viewer/scene/surface_extractor.hpp"
 
 #include <gtest/gtest.h>
 
@@ -18,11 +18,11 @@ using namespace std::chrono_literals;
 struct Results {
     std::mutex mutex;
     std::condition_variable changed;
-    std::vector<DrawnSurface> made;
+    std::vector<ExtractedSurface> made;
     std::vector<std::string> failed;
 
-    SurfaceWork::Results into() {
-        return {[this](DrawnSurface surface) {
+    SurfaceExtractor::Results into() {
+        return {[this](ExtractedSurface surface) {
                     const std::lock_guard lock(mutex);
                     made.push_back(std::move(surface));
                     changed.notify_all();
@@ -41,9 +41,9 @@ struct Results {
     }
 };
 
-auto finished(std::uint64_t wish) {
-    return [wish](const Results& r) {
-        return !r.made.empty() && r.made.back().wish == wish && r.made.back().finished;
+auto finished(std::uint64_t request) {
+    return [request](const Results& r) {
+        return !r.made.empty() && r.made.back().request == request && r.made.back().finished;
     };
 }
 
@@ -51,15 +51,15 @@ Field ball(int edge) {
     return Field(scenes::ball(support::cube(edge)));
 }
 
-TEST(SurfaceWork, comes_coarse_first_and_then_as_the_proxy_meets_it) {
+TEST(SurfaceExtractor, comes_coarse_first_and_then_as_the_proxy_meets_it) {
     Results results;
-    SurfaceWork work(results.into());
+    SurfaceExtractor work(results.into());
     const Field field = ball(100);
     work.ask(7, field, 128);
     ASSERT_TRUE(results.wait_for(finished(7)));
     ASSERT_EQ(results.made.size(), 2U);  // every 2nd sample: fewer than 350,000
     for (std::size_t i = 0; i < 2; ++i) {
-        EXPECT_EQ(results.made[i].wish, 7U);
+        EXPECT_EQ(results.made[i].request, 7U);
         EXPECT_EQ(results.made[i].isovalue, 128);
         EXPECT_EQ(results.made[i].every, 2 >> i);
         EXPECT_EQ(results.made[i].finished, i == 1);
@@ -70,7 +70,7 @@ TEST(SurfaceWork, comes_coarse_first_and_then_as_the_proxy_meets_it) {
               SurfaceLimits().moving_triangles * 5 / 4);
 }
 
-TEST(SurfaceWork, steps_start_small_and_end_with_every_sample) {
+TEST(SurfaceExtractor, steps_start_small_and_end_with_every_sample) {
     for (const Index3& size :
          {Index3(1, 1, 1), Index3(64, 64, 64), Index3(512, 512, 640), Index3(3000, 20, 1)}) {
         const std::vector<int> steps = steps_for(size);
@@ -80,9 +80,9 @@ TEST(SurfaceWork, steps_start_small_and_end_with_every_sample) {
     }
 }
 
-TEST(SurfaceWork, the_newest_of_fifty_wishes_is_the_last_that_comes) {
+TEST(SurfaceExtractor, the_newest_of_fifty_wishes_is_the_last_that_comes) {
     Results results;
-    SurfaceWork work(results.into());
+    SurfaceExtractor work(results.into());
     const Field field = ball(80);
     for (int i = 1; i <= 50; ++i) work.ask(std::uint64_t(i), field, 60 + 3 * i);
     ASSERT_TRUE(results.wait_for(finished(50)));
@@ -90,16 +90,16 @@ TEST(SurfaceWork, the_newest_of_fifty_wishes_is_the_last_that_comes) {
     // Not all were carried out, and none out of its turn.
     EXPECT_LT(results.made.size(), 50U);
     for (std::size_t i = 1; i < results.made.size(); ++i) {
-        EXPECT_LE(results.made[i - 1].wish, results.made[i].wish);
+        EXPECT_LE(results.made[i - 1].request, results.made[i].request);
     }
 }
 
-TEST(SurfaceWork, keeps_within_its_triangles) {
+TEST(SurfaceExtractor, keeps_within_its_triangles) {
     Results results;
     SurfaceLimits limits;
     limits.most_triangles = 20'000;
     limits.moving_triangles = 2'000;
-    SurfaceWork work(results.into(), limits);
+    SurfaceExtractor work(results.into(), limits);
     work.ask(1, ball(64), 128);
     ASSERT_TRUE(results.wait_for(finished(1)));
     EXPECT_GT(results.made.back().every, 1);
@@ -108,9 +108,9 @@ TEST(SurfaceWork, keeps_within_its_triangles) {
     EXPECT_GT(results.made.back().moving->triangle_count(), 100U);
 }
 
-TEST(SurfaceWork, says_what_is_wrong_with_an_isovalue_and_goes_on) {
+TEST(SurfaceExtractor, says_what_is_wrong_with_an_isovalue_and_goes_on) {
     Results results;
-    SurfaceWork work(results.into());
+    SurfaceExtractor work(results.into());
     const Field field = ball(16);
     work.ask(1, field, std::nan(""));
     ASSERT_TRUE(results.wait_for([](const Results& r) { return !r.failed.empty(); }));
@@ -119,10 +119,10 @@ TEST(SurfaceWork, says_what_is_wrong_with_an_isovalue_and_goes_on) {
     ASSERT_TRUE(results.wait_for(finished(2)));
 }
 
-TEST(SurfaceWork, ends_in_the_middle_of_its_work) {
+TEST(SurfaceExtractor, ends_in_the_middle_of_its_work) {
     Results results;
     {
-        SurfaceWork work(results.into());
+        SurfaceExtractor work(results.into());
         work.ask(1,
                  Field(support::noise_volume<std::uint8_t>(support::grid(support::cube(160)), 3, 0,
                                                            256)),
@@ -132,17 +132,17 @@ TEST(SurfaceWork, ends_in_the_middle_of_its_work) {
     EXPECT_FALSE(results.made.back().finished);
 }
 
-TEST(SurfaceWork, what_was_forgotten_does_not_come) {
+TEST(SurfaceExtractor, what_was_forgotten_does_not_come) {
     Results results;
-    SurfaceWork work(results.into());
+    SurfaceExtractor work(results.into());
     work.ask(
         1, Field(support::noise_volume<std::uint8_t>(support::grid(support::cube(160)), 3, 0, 256)),
         128);
     work.forget();
     work.ask(2, ball(16), 128);
     ASSERT_TRUE(results.wait_for(finished(2)));
-    for (const DrawnSurface& made : results.made) {
-        EXPECT_FALSE(made.wish == 1 && made.finished);
+    for (const ExtractedSurface& made : results.made) {
+        EXPECT_FALSE(made.request == 1 && made.finished);
     }
 }
 

@@ -1,5 +1,6 @@
-// Painting thread. Its context is made with the window's thread and moved, as Qt wants it.
-#include "apps/viewer/scene/painter.hpp"
+// Runs an offscreen renderer on a thread. Qt wants the context made in the window's thread and
+// moved.
+#include "apps/viewer/scene/render_thread.hpp"
 
 #include <QVTKOpenGLNativeWidget.h>
 #include <QOffscreenSurface>
@@ -8,8 +9,8 @@
 
 #include <exception>
 
-#include "apps/viewer/scene/patience.hpp"
-#include "apps/viewer/scene/stage.hpp"
+#include "apps/viewer/scene/offscreen_renderer.hpp"
+#include "apps/viewer/scene/thread_priority.hpp"
 
 namespace palpate::viewer {
 
@@ -20,8 +21,8 @@ bool is_hardware(const std::string& name) {
     return !name.empty();
 }
 
-Painter::Painter(Pace pace, Results results)
-    : pace_(pace),
+RenderThread::RenderThread(Priority priority, Results results)
+    : priority_(priority),
       results_(std::move(results)),
       surface_(std::make_unique<QOffscreenSurface>()),
       context_(std::make_unique<QOpenGLContext>()) {
@@ -36,7 +37,7 @@ Painter::Painter(Pace pace, Results results)
     thread_->start();
 }
 
-Painter::~Painter() {
+RenderThread::~RenderThread() {
     give_up();
     {
         const std::lock_guard lock(mutex_);
@@ -46,22 +47,22 @@ Painter::~Painter() {
     thread_->wait();
 }
 
-void Painter::paint(Shot shot) {
+void RenderThread::draw(RenderRequest request) {
     {
         const std::lock_guard lock(mutex_);
-        next_ = std::move(shot);
+        next_ = std::move(request);
     }
     changed_.notify_all();
 }
 
-void Painter::give_up() {
+void RenderThread::give_up() {
     const std::lock_guard lock(mutex_);
     next_.reset();
     give_up_ = true;
 }
 
-void Painter::run() {
-    if (pace_ == Pace::patient) stand_back();
+void RenderThread::run() {
+    if (priority_ == Priority::low) lower_thread_priority();
     if (!context_->makeCurrent(surface_.get())) {
         results_.failed("the 3-D view gets no OpenGL context");
         context_.reset();
@@ -69,19 +70,20 @@ void Painter::run() {
     }
     try {
         const GLubyte* const name = context_->functions()->glGetString(GL_RENDERER);
-        Stage stage(give_up_, name && is_hardware(reinterpret_cast<const char*>(name)));
+        OffscreenRenderer renderer(give_up_,
+                                   name && is_hardware(reinterpret_cast<const char*>(name)));
         for (;;) {
-            Shot shot;
+            RenderRequest request;
             {
                 std::unique_lock lock(mutex_);
                 changed_.wait(lock, [this] { return stopping_ || next_; });
                 if (stopping_) break;
-                shot = std::move(*next_);
+                request = std::move(*next_);
                 next_.reset();
                 give_up_ = false;
             }
-            std::optional<Backdrop> backdrop = stage.draw(shot);
-            if (backdrop) results_.painted(std::move(*backdrop));
+            std::optional<RenderedImage> image = renderer.draw(request);
+            if (image) results_.drawn(std::move(*image));
         }
     } catch (const std::exception& error) {
         results_.failed(error.what());

@@ -1,4 +1,5 @@
-// A layer with depths as a thing in a VTK scene: what is nearer covers it, what is farther not.
+// A rendered image with depths as a prop in a VTK scene: nearer props cover it, farther ones do
+// not.
 #pragma once
 
 #include <vtkOpenGLQuadHelper.h>
@@ -8,18 +9,19 @@
 
 #include <memory>
 
-#include "apps/viewer/scene/shot.hpp"
+#include "apps/viewer/scene/render_request.hpp"
 
 namespace palpate::viewer {
 
 /// Fills the viewport, wherever the camera is. Drawn in its turn among the opaque props.
-class Pane : public vtkProp {
+class LayerProp : public vtkProp {
   public:
-    static Pane* New();
+    static LayerProp* New();
 
     /// Copies the layer at the next drawing; nothing is drawn of one without pixels.
-    /// `seen_through`: its alpha is how dense it is, and it leaves depths as they are.
-    void set_layer(std::shared_ptr<const Backdrop> owner, const Layer& layer, bool seen_through);
+    /// `translucent`: its alpha is its opacity, and it does not write depths.
+    void set_layer(std::shared_ptr<const RenderedImage> owner, const Layer& layer,
+                   bool translucent);
     void clear();
 
     double* GetBounds() override { return nullptr; }
@@ -27,15 +29,15 @@ class Pane : public vtkProp {
     void ReleaseGraphicsResources(vtkWindow* window) override;
 
   protected:
-    Pane() = default;
-    ~Pane() override = default;
+    LayerProp() = default;
+    ~LayerProp() override = default;
 
   private:
     void upload(vtkOpenGLRenderWindow& window);
 
-    std::shared_ptr<const Backdrop> owner_;
+    std::shared_ptr<const RenderedImage> owner_;
     const Layer* layer_ = nullptr;
-    bool seen_through_ = false, uploaded_ = false;
+    bool translucent_ = false, uploaded_ = false;
     vtkSmartPointer<vtkTextureObject> colour_, depth_;
     std::unique_ptr<vtkOpenGLQuadHelper> quad_;
 };

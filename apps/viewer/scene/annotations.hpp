@@ -1,4 +1,4 @@
-// What is written over the scene: the cube that says where left and right are, and a scale bar.
+// Annotations over the scene: a cube that shows where left and right are, and a scale bar.
 #pragma once
 
 #include <vtkActor2D.h>
@@ -12,24 +12,24 @@
 
 namespace palpate::viewer {
 
-class Notes {
+class Annotations {
   public:
     /// Two renderers of its own, both in this layer.
-    explicit Notes(int layer);
+    explicit Annotations(int layer);
     vtkRenderer& writing() const { return *writing_; }
     vtkRenderer& orientation() const { return *orientation_; }
 
-    struct What {
+    struct Content {
         bool orientation = true, scale_bar = true;
         pictures::Camera camera;
         int width = 1, height = 1;  ///< [device pixels]
         double em = 12;             ///< [device pixels] height of the widget's font
         pictures::Colour ink;
     };
-    void show(const What& what);
+    void show(const Content& what);
 
   private:
-    void show_bar(const What& what);
+    void show_bar(const Content& what);
 
     vtkSmartPointer<vtkRenderer> writing_, orientation_;
     vtkSmartPointer<vtkActor2D> bar_;

@@ -1,4 +1,5 @@
-// What a painter is asked for and what it gives: values and shared data that nobody changes.
+// What a render thread is asked to draw, and the image that it returns: values and immutable shared
+// data.
 #pragma once
 
 #include <memory>
@@ -6,17 +7,17 @@
 #include <vector>
 
 #include "apps/viewer/model/look.hpp"
-#include "apps/viewer/scene/surface_work.hpp"
+#include "apps/viewer/scene/surface_extractor.hpp"
 #include "palpate/field.hpp"
 #include "pictures/scene.hpp"
 
 namespace palpate::viewer {
 
-/// All that stands still while the hand moves, from one camera.
-struct Shot {
+/// All that stands still while the hand moves, seen by one camera.
+struct RenderRequest {
     std::uint64_t number = 0;    ///< rising with every change
     std::optional<Field> field;  ///< nothing: an empty scene
-    DrawnSurface surface;
+    ExtractedSurface surface;
     Look look;
     Vec3 crosshair = Vec3::Zero();  ///< [mm, physical]
     Colour background;
@@ -27,20 +28,20 @@ struct Shot {
     bool moving = false;        ///< quick rather than fine
 };
 
-/// A picture with depths, row by row from the bottom; depths from 0, near, to 1.
+/// An image with depths, row by row from the bottom; depths from 0, near, to 1.
 struct Layer {
     std::vector<unsigned char> rgba;
     std::vector<float> depth;
 };
 
-/// What a painter has drawn.
-struct Backdrop {
+/// What a render thread has drawn.
+struct RenderedImage {
     std::uint64_t number = 0;
     int width = 0, height = 0;  ///< as asked for, or half of it while things move slowly
     pictures::Camera camera;
     double reach = 1;  ///< [mm] see reach_of(), of the volume that is shown
     Layer solid;
-    /// A surface that is seen through: alpha is how dense it is. Empty where there is none.
+    /// A translucent surface, with its opacity as alpha. Empty without one.
     Layer glass;
     bool moving = false;
     double seconds = 0;     ///< that it took

@@ -1,5 +1,5 @@
-// Actors of what stands still.
-#include "apps/viewer/scene/bodies.hpp"
+// Makes the actors of slices and grid outline.
+#include "apps/viewer/scene/static_actors.hpp"
 
 #include <vtkCellArray.h>
 #include <vtkFloatArray.h>
