@@ -13,8 +13,8 @@ struct BrushChoice {
     double hardness = 1;  ///< 0 to 1, Brush::hardness
     /// [1/s], Brush::strength says what it means for a touch; infinity: all of it at once.
     double rate = 10;
-    /// What a whole touch leaves [data units], Brush::value; none: what fits the level felt, as
-    /// brush_for() has it. Smoothing has none.
+    /// The value that a whole touch leaves [data units], Brush::value; none: the one that
+    /// brush_for() chooses for the level felt. Smoothing has none.
     std::optional<double> value = std::nullopt;
     bool on = false;  ///< the probe edits where it is
 

@@ -217,7 +217,7 @@ void BrushControls::connect_numbers() {
                    .arg(most_rate)
                    .arg(rate));
     });
-    // A number of one's own is not automatic any more, also where it is the same.
+    // A typed number is not automatic any more, even if it is the same.
     const auto own = [this](double value) { change([value](BrushChoice& c) { c.value = value; }); };
     connect(value_, QOverload<double>::of(&QDoubleSpinBox::valueChanged), this, own);
     connect(value_->findChild<QLineEdit*>(), &QLineEdit::textEdited, this, [this] {

@@ -16,7 +16,7 @@ class QButtonGroup;
 
 namespace palpate::viewer {
 
-/// Values that were typed are remembered for each kind, as what carves does not fit to add. No
+/// Typed values are remembered for each kind, as a value that carves cannot add. No
 /// setter emits anything. Object names of the controls: brush, brush_carve (_add, _smooth, _paint),
 /// brush_radius, brush_hardness, brush_rate, brush_at_once, brush_value, brush_automatic, undo,
 /// redo, save_edits.
@@ -27,18 +27,17 @@ class BrushControls : public QWidget {
     explicit BrushControls(QWidget* parent = nullptr);
 
     /// The radius goes from the largest spacing of the grid to a quarter of the shortest side of
-    /// the grid; one that lies outside goes to the nearer end. See choice() for what has come of
-    /// it.
+    /// the grid; a radius outside goes to the nearer end; choice() has the result.
     void set_grid(const Geometry& geometry);
     /// What "automatic" stands for now [data units]: for carving, and for adding and painting.
     void set_fitting(double carve, double add);
-    /// Shows a choice, also one that the controls would not let through.
+    /// Shows a choice, even one that the controls would not allow.
     void set_choice(const BrushChoice& choice);
     const BrushChoice& choice() const { return choice_; }
     /// Off, and the values of all kinds automatic: another volume.
     void reset();
     void set_history(std::size_t undo_steps, std::size_t redo_steps, bool changed);
-    /// One sentence why nothing can be edited; the switch is shown off meanwhile. Empty: it can.
+    /// One sentence why nothing can be edited, which also shows the switch off. Empty: it can.
     void set_reason(const QString& why);
     /// As if the switch was pressed.
     void toggle() { on_->click(); }

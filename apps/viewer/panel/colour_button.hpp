@@ -16,12 +16,12 @@ class ColourButton : public QPushButton {
     /// Shows a colour; emits nothing.
     void set_colour(const Colour& colour);
     const Colour& colour() const { return colour_; }
-    /// Opens the dialog, as a click does; the window goes on meanwhile.
+    /// Opens the dialog, as a click does; the window keeps working.
     void choose();
 
   Q_SIGNALS:
-    /// While the dialog is open, too, so that the scene can be watched; the old colour comes back
-    /// where it is cancelled.
+    /// Also emitted while the dialog is open, so that the scene shows the colour; cancelling emits
+    /// the old one.
     void wanted(const palpate::viewer::Colour& colour);
 
   protected:

@@ -147,7 +147,7 @@ void DeviceControls::set_devices(const std::vector<devices::DeviceFinding>& find
                                  const QString& current) {
     current_ = current;
     std::vector<devices::DeviceFinding> all = findings;
-    // These two are there on any machine, also before anybody has looked.
+    // These two exist on any machine, even before a search.
     for (const char* name : {"mouse", "simulated"}) {
         const auto named = [&](const devices::DeviceFinding& f) { return f.name == name; };
         if (std::ranges::none_of(all, named)) all.insert(all.begin(), {name, true, {}, {}, {}});
@@ -166,7 +166,7 @@ void DeviceControls::set_devices(const std::vector<devices::DeviceFinding>& find
             picker_->setItemData(row, what, Qt::ToolTipRole);
             continue;
         }
-        // Grey, but to be had: it may be elsewhere than where it was looked for.
+        // Grey but selectable: it may be at another address than the one searched.
         picker_->setItemText(row, name + " (not found)");
         picker_->setItemData(row, palette().brush(QPalette::Disabled, QPalette::Text),
                              Qt::ForegroundRole);

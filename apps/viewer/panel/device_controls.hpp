@@ -15,7 +15,7 @@
 
 namespace palpate::viewer {
 
-/// How a device is doing, as people say it.
+/// A device's status as text.
 QString words_for(DeviceStatus status);
 
 class DeviceControls : public QWidget {
@@ -24,7 +24,8 @@ class DeviceControls : public QWidget {
   public:
     explicit DeviceControls(QWidget* parent = nullptr);
 
-    /// What was looked for. `current` is the option of the device in use ("haply:port=10001").
+    /// The devices that were searched. `current` is the option of the device in use
+    /// ("haply:port=10001").
     void set_devices(const std::vector<devices::DeviceFinding>& findings, const QString& current);
     void show_device(const DeviceInfo& info, DeviceStatus status, const QString& problem);
     void show_status(DeviceStatus status);

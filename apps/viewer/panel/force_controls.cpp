@@ -73,7 +73,7 @@ void ForceControls::connect_force() {
     bind(distance_, [](ForceSettings& f) -> double& { return f.magnet.distance; });
     bind(peak_, [](ForceSettings& f) -> double& { return f.magnet.peak; });
     connect(static_friction_, &Quantity::wanted, this, [this](double value) {
-        // The dynamic one may not be above it, and goes down with it.
+        // Dynamic friction must not exceed static friction, so it is lowered with it.
         Q_EMIT friction_wanted({value, std::min(friction_.dynamic_coefficient, value)});
     });
     connect(dynamic_friction_, &Quantity::wanted, this, [this](double value) {
@@ -99,7 +99,7 @@ void ForceControls::set_settings(const ForceSettings& force, const Friction& fri
     limit_->set_value(force.limit);
 }
 
-/// What check(ForceSettings, DeviceLimits) lets through.
+/// The limits of check(ForceSettings, DeviceLimits).
 void ForceControls::set_ends() {
     const double most = greatest_stiffness(limits_, force_.damping + force_.viscosity);
     stiffness_->set_ends(0, most);

@@ -25,7 +25,7 @@ ForceGauge::ForceGauge(QWidget* parent) : QWidget(parent) {
 
 void ForceGauge::set_force(double force, double limit, const QString& words) {
     if (words != words_) setToolTip(explained(words));
-    // What is not seen to change is not drawn anew, thirty times a second.
+    // Called thirty times a second: repaints only where the change can be seen.
     const bool seen = words != words_ || limit != limit_ || std::abs(force - force_) > 0.002;
     if (!seen) return;
     force_ = force;

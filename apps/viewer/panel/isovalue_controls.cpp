@@ -115,7 +115,7 @@ void IsovalueControls::set_overruled(bool overruled) {
 }
 
 void IsovalueControls::show_felt(double isovalue, bool penetrability_on) {
-    // Just after a command the snapshots still tell of the old level.
+    // Just after a command the snapshots still have the old level.
     differing_ = isovalue == isovalue_ ? 0 : differing_ + 1;
     const bool apart = penetrability_on || differing_ > snapshots_of_grace;
     chart_->set_felt(apart ? isovalue : std::nan(""));

@@ -25,9 +25,9 @@ class IsovalueControls : public QWidget {
     /// Shows the level asked for; emits nothing.
     void set_isovalue(double isovalue);
     void set_solid(Solid solid);
-    /// Whether penetrability has the say over the level felt.
+    /// Whether penetrability sets the level felt.
     void set_overruled(bool overruled);
-    /// What is felt now, shown apart where it is not what was asked for.
+    /// The level felt now; shown separately where it differs from the level asked for.
     void show_felt(double isovalue, bool penetrability_on);
     LevelChart& chart() { return *chart_; }
     void drop() { limiter_.drop(); }
@@ -50,7 +50,7 @@ class IsovalueControls : public QWidget {
     Note *warning_, *overruled_;
     RateLimiter limiter_;
     double isovalue_ = 0;
-    int differing_ = 0;  // snapshots that tell of another level, in a row
+    int differing_ = 0;  // consecutive snapshots with another level
 };
 
 }  // namespace palpate::viewer

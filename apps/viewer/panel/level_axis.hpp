@@ -52,10 +52,10 @@ LevelAxis axis_of(const app::Histogram& histogram, const QRectF& plot);
 void paint_histogram(QPainter& painter, const app::Histogram& histogram, const LevelAxis& axis,
                      const QRectF& plot, const QColor& colour);
 
-/// A level in as few digits as are needed.
+/// A level with as few digits as it needs.
 QString level_text(double level);
 
-/// Whether the palette is a dark one.
+/// Whether the palette is dark.
 bool is_dark(const QPalette& palette);
 /// The colour, lighter on a dark palette: thin lines and small text stay readable.
 QColor readable(const QColor& colour, const QPalette& palette);

@@ -13,7 +13,7 @@
 namespace palpate::viewer {
 namespace {
 
-constexpr double reach = 5;  // [logical pixels] how near a pointer must come to hold something
+constexpr double reach = 5;  // [logical pixels] distance within which the pointer takes hold
 
 }  // namespace
 
@@ -170,7 +170,7 @@ void LevelChart::mousePressEvent(QMouseEvent* event) {
         return;
     }
     drag_ = Drag::level;
-    // The line itself is taken hold of without moving it.
+    // Pressing on the line itself does not move it.
     if (std::abs(axis().x_of(level_) - at.x()) > 1.5) ask_level(axis().round_level_of(at.x()));
 }
 
@@ -206,7 +206,7 @@ void LevelChart::mouseReleaseEvent(QMouseEvent* event) {
     update();
     if (drag == Drag::level) Q_EMIT level_settled();
     if (drag == Drag::band) Q_EMIT bands_settled();
-    // A click is no range.
+    // A click makes no range.
     if (drag == Drag::fresh && fresh_.low < fresh_.high) Q_EMIT band_added(fresh_);
 }
 
@@ -234,7 +234,7 @@ void LevelChart::contextMenuEvent(QContextMenuEvent* event) {
     menu->addAction(
         QString("Delete range %1 to %2").arg(level_text(range.low), level_text(range.high)), this,
         [this, band] { Q_EMIT band_deleted(band); });
-    menu->popup(event->globalPos());  // the window goes on meanwhile
+    menu->popup(event->globalPos());  // does not block the window
 }
 
 void LevelChart::keyPressEvent(QKeyEvent* event) {

@@ -30,7 +30,7 @@ class LevelChart : public QWidget {
     /// The level felt now; NaN: none to show.
     void set_felt(double level);
     double felt() const { return felt_; }
-    /// Bands; emits nothing. While one is dragged, the pointer has the say.
+    /// Bands; emits nothing. Ignored while a band is dragged.
     void set_bands(const Ranges& bands);
     const Ranges& bands() const { return bands_; }
     /// Whether bands can be added, deleted and moved as a whole; else only their ends move.
@@ -41,7 +41,7 @@ class LevelChart : public QWidget {
     /// What is seen, and the whole of the data.
     LevelAxis axis() const;
     LevelAxis whole_axis() const;
-    /// Where bands are taken hold of [logical pixels].
+    /// The strip in which bands are dragged [logical pixels].
     QRectF strip() const;
 
     QSize sizeHint() const override;

@@ -36,7 +36,7 @@ void LevelChart::paint_ticks(QPainter& painter, const LevelAxis& axis) const {
     }
 }
 
-/// What is asked for as a line with a grip, what is felt as a broken line with a drop below it.
+/// The level asked for as a line with a grip, the level felt as a broken line with a drop below.
 void LevelChart::paint_markers(QPainter& painter, const LevelAxis& axis) const {
     const QRectF p = plot();
     if (!std::isnan(felt_)) {

@@ -138,7 +138,7 @@ void LookControls::connect_transfer() {
     connect(editor_, &TransferEditor::settled, &limiter_, &RateLimiter::flush);
     connect(editor_, &TransferEditor::point_chosen, this, &LookControls::show_point);
     connect(editor_, &TransferEditor::colour_wanted, point_colour_, &ColourButton::choose);
-    // What is typed for the chosen point; the editor keeps it within its neighbours.
+    // The level typed for the chosen point; the editor keeps it between its neighbours.
     const auto change = [this](auto set) {
         const int chosen = editor_->chosen();
         if (chosen < 0) return;

@@ -20,7 +20,7 @@ class LookControls : public QWidget {
   public:
     explicit LookControls(QWidget* parent = nullptr);
 
-    /// What the presets are made of.
+    /// The data for which presets are made.
     void set_data(const Volume& volume, const app::Histogram& histogram);
     void clear();
     /// Shows a look; emits nothing.

@@ -60,7 +60,7 @@ QString NumberBox::bare(const QString& text) const {
 
 double NumberBox::valueFromText(const QString& text) const {
     const QString number = bare(text);
-    // What is shown may have fewer digits than the value, which must not change by a look at it.
+    // The text may have fewer digits than the value, which focus alone must not change.
     if (number == textFromValue(value())) return value();
     if (number == "inf" || number == "+inf") return std::numeric_limits<double>::infinity();
     if (number == "-inf") return -std::numeric_limits<double>::infinity();
@@ -83,7 +83,7 @@ QValidator::State NumberBox::validate(QString& text, int&) const {
 }
 
 void NumberBox::fixup(QString& text) const {
-    text = textFromValue(value()) + suffix();  // half a number is none: as it was
+    text = textFromValue(value()) + suffix();  // an incomplete number restores the old one
 }
 
 void NumberBox::wheelEvent(QWheelEvent* event) {

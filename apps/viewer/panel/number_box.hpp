@@ -6,8 +6,8 @@
 namespace palpate::viewer {
 
 /// Shows up to seven significant digits but keeps the whole value. A typed value counts at Enter or
-/// when the focus leaves. The wheel scrolls the panel unless the box has the focus: a force must
-/// not change because somebody scrolls by. "inf" and "-inf" are numbers where `set_infinite(true)`.
+/// when the focus leaves. The wheel scrolls the panel unless the box has the focus, so that
+/// scrolling never changes a force. "inf" and "-inf" are numbers where `set_infinite(true)`.
 class NumberBox : public QDoubleSpinBox {
     Q_OBJECT
 

@@ -86,7 +86,8 @@ void Panel::connect_sections() {
         before_ = now_;
         isovalue_part_->say({});
         Q_EMIT solid_chosen(solid);
-        isovalue_->set_solid(solid_);  // a session with the other side has been set by now, or not
+        isovalue_->set_solid(
+            solid_);  // a session with the other side has been set by now, unless it failed
     });
     connect(penetrability_, &PenetrabilityControls::wanted, this, &Panel::ask_penetrability);
     connect(penetrability_, &PenetrabilityControls::nonsense, penetrability_part_, &Section::say);

@@ -34,13 +34,13 @@ class Panel : public QWidget {
     explicit Panel(QWidget* parent = nullptr);
     ~Panel() override;
 
-    /// A session, as it is: shows these values. The brush is off, its values are automatic, there
-    /// are no edits and no reason against them: what is otherwise is to be set after this.
+    /// Shows the values of a session. The brush is off, its values are automatic, there are no
+    /// edits and no edit reason; set anything else after this.
     void set_session(const Field& field, const app::Histogram& histogram, double isovalue,
                      const RendererSettings& settings, const DeviceInfo& device);
     /// No volume: nothing can be set.
     void clear();
-    /// True: there is no session, only something to look at; nothing can be set but the look. Until
+    /// True: a recording is played; only the look can be set. Until
     /// the next set_session().
     void set_observing(bool observing);
     void set_look(const Look& look);
@@ -50,7 +50,7 @@ class Panel : public QWidget {
     const BrushChoice& brush() const;
     /// Steps that can be undone and redone, and whether there is something to save.
     void set_history(std::size_t undo_steps, std::size_t redo_steps, bool changed);
-    /// One sentence why these samples cannot be edited (a sequence, say); empty: they can.
+    /// One sentence why these samples cannot be edited (for example a sequence); empty: they can.
     void set_edit_reason(const QString& why);
 
     /// About thirty times a second.
@@ -63,11 +63,11 @@ class Panel : public QWidget {
     /// it goes back when another is refused.
     void set_devices(const std::vector<devices::DeviceFinding>& findings,
                      const QString& current_option);
-    /// The last thing that was asked for was refused: says why beside it and shows what is in
-    /// effect. May be called while `asked` or another of the signals is being emitted, or later.
+    /// The last request was refused: says why beside it and shows what is in effect. May be called
+    /// while `asked` or another of the signals is being emitted, or later.
     void show_refused(const QString& why);
 
-    /// What is in effect as far as the panel knows: as set, with what was asked for since.
+    /// The settings in effect as far as the panel knows: as set, with what was asked for since.
     const RendererSettings& settings() const { return now_.settings; }
     double isovalue() const { return now_.isovalue; }
 
@@ -123,7 +123,7 @@ class Panel : public QWidget {
     Section* asked_by_ = nullptr;
     bool refused_ = false;
     std::optional<Snapshot> last_;
-    std::optional<Field> unedited_;  // what automatic values are reckoned from
+    std::optional<Field> unedited_;  // from which automatic values are computed
 };
 
 }  // namespace palpate::viewer

@@ -19,7 +19,7 @@ class PenetrabilityControls : public QWidget {
     Q_OBJECT
 
   public:
-    /// Takes its bands from the chart and puts them there; the chart is another's.
+    /// Shows and reads its bands on the chart, which it does not own.
     explicit PenetrabilityControls(LevelChart& chart, QWidget* parent = nullptr);
 
     /// A new session: modes that are not in use begin at this level and range [data units]. Emits
@@ -31,7 +31,7 @@ class PenetrabilityControls : public QWidget {
     void drop();
 
   Q_SIGNALS:
-    /// What somebody asks for, valid or not.
+    /// What the user asks for, valid or not.
     void wanted(const palpate::viewer::PressThrough& next);
     void nonsense(const QString& why);
 

@@ -5,7 +5,7 @@
 
 namespace palpate::viewer {
 
-/// What the panel shows; what is not in use is kept for when it is chosen again.
+/// What the panel shows; settings of modes that are not in use are kept for later.
 struct PressThrough {
     enum class Mode { off, threshold, ranges };
 
@@ -18,14 +18,14 @@ struct PressThrough {
     const void* context = nullptr;
 };
 
-/// The setting. Throws std::invalid_argument as penetrability_threshold and _ranges do.
+/// The core's setting. Throws std::invalid_argument as penetrability_threshold and _ranges do.
 Penetrability penetrability_of(const PressThrough& shown, Solid solid);
 
-/// How a setting is shown; what it does not say stays as it was `before`.
+/// How a setting is shown; what it leaves open stays as it was `before`.
 PressThrough shown_from(const Penetrability& penetrability, Solid solid, PressThrough before);
 
-/// What to begin with for data of this range [data units]: a minimum at the level, one range that
-/// begins there and takes a tenth of the data.
+/// The defaults for data of this range [data units]: a minimum at the level, and one range that
+/// begins there and spans a tenth of the data.
 PressThrough first_press_through(double isovalue, double low, double high, Solid solid);
 
 /// The bands on the chart, rising: the ranges, or all that lies past the minimum; none where it is

@@ -9,14 +9,14 @@
 
 namespace palpate::viewer {
 
-/// The slider runs from `low` to `high`; the box takes any number, and who asks for one that cannot
-/// be had is told why. Object names: NAME, NAME_slider, NAME_box.
+/// The slider runs from `low` to `high`; the box takes any number; one that cannot be
+/// used is refused with the reason. Object names: NAME, NAME_slider, NAME_box.
 class Quantity : public QWidget {
     Q_OBJECT
 
   public:
-    /// What the same way on the slider is: the same amount everywhere, or the same factor, for what
-    /// runs from small to large and stays above 0.
+    /// A step of the slider is a constant amount (linear), or a constant factor for positive values
+    /// that range from small to large.
     enum class Scale { amounts, factors };
 
     /// `unit` stands behind the number; the box steps by `step`, or by a few percent where the

@@ -15,19 +15,18 @@ namespace palpate::viewer {
 
 using Ranges = std::vector<DensityRange>;
 
-/// What of a band is held.
+/// The part of a band that is dragged.
 enum class Grip { none, low, high, whole };
 struct BandGrip {
     int band = -1;
     Grip grip = Grip::none;
 };
 
-/// What a pointer at x holds: an end within `reach` pixels (the nearest), else a band that it is
-/// on.
+/// What a pointer at x drags: the nearest end within `reach` pixels, else the band under it.
 BandGrip band_at(const Ranges& ranges, const LevelAxis& axis, double x, double reach);
 
-/// A range with what is held of it moved: an end to the level, at most as far as the other end; the
-/// whole by as much as `level` differs from `held_at`, within the axis. Ends at infinity stay.
+/// A range after its dragged part has moved: an end to the level, at most as far as the other end;
+/// the whole by as much as `level` differs from `held_at`, within the axis. Ends at infinity stay.
 DensityRange dragged(const DensityRange& start, Grip grip, double held_at, double level,
                      const LevelAxis& axis);
 

@@ -7,8 +7,8 @@
 
 namespace palpate::viewer {
 
-/// A row a range, LOW and HIGH [data units], "inf" and "-inf" included; its colour is the band's.
-/// Del deletes the row.
+/// One row for each range, LOW and HIGH [data units], "inf" and "-inf" included; its colour is the
+/// band's. Del deletes the row.
 class RangeTable : public QTableWidget {
     Q_OBJECT
 
@@ -25,7 +25,7 @@ class RangeTable : public QTableWidget {
 
   Q_SIGNALS:
     void edited(int row, const palpate::DensityRange& range);
-    void nonsense(const QString& why);  ///< what was typed is no number; the old one is back
+    void nonsense(const QString& why);  ///< the text typed is no number; the old one is restored
     void delete_wanted(int row);
     void row_chosen(int row);
 

@@ -11,7 +11,7 @@
 
 namespace palpate::viewer {
 
-/// What part of a slice is looked at.
+/// The part of a slice that is shown.
 struct SliceView {
     double zoom = 1;  ///< 1: the whole slice fits
     QPointF moved{0,

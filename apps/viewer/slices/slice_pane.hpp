@@ -30,12 +30,12 @@ class SlicePane : public QWidget {
     /// stay.
     void set_field(const Field& field, double isovalue);
     /// Another version of the data that are shown, on the same grid: edited, or at another moment.
-    /// All stays but picture and contour; drawn as often as the pane can be without being busy most
-    /// of the time, the newest last. Throws std::invalid_argument where nothing, or another grid,
+    /// Only image and contour change; redrawn as often as leaves most of the time to others, the
+    /// newest last. Throws std::invalid_argument where nothing, or another grid,
     /// is shown.
     void update_field(const Field& field);
     void clear();
-    /// [data units] Whose contour is shown.
+    /// The level of the contour [data units].
     void set_isovalue(double isovalue);
     /// The slice goes through it. Not finite: nothing happens.
     void set_crosshair(const Vec3& physical);
@@ -61,9 +61,9 @@ class SlicePane : public QWidget {
     QSize minimumSizeHint() const override;
 
   Q_SIGNALS:
-    /// By the person; the pane has gone there already.
+    /// By the user; the pane shows it already.
     void crosshair_chosen(const palpate::Vec3& physical);
-    /// Where the probe is to go.
+    /// The point to which the probe is asked to go.
     void probe_aimed(const palpate::Vec3& physical);
     void window_changed(double low, double high);
 

@@ -22,7 +22,7 @@ Screenshot::Screenshot(MainWindow& window, const QString& path, double after)
     timer_.start(look_ms);
 }
 
-/// Whether the hand is where the picture wants it; it is shown there from then on.
+/// Whether the time of the picture has come; the hand is held there from then on.
 bool Screenshot::reached() {
     if (const Playback* playback = window_.playback()) {
         if (!held_) window_.playing().show_time(playback->begin() + after_);
@@ -41,7 +41,7 @@ bool Screenshot::reached() {
 
 void Screenshot::look() {
     if (!window_.messages().problem().isEmpty()) {
-        status_ = window_.messages().problem_status();  // what, the window has said
+        status_ = window_.messages().problem_status();  // the window has told why
         window_.close();
         return;
     }

@@ -33,7 +33,7 @@ class Views : public QWidget {
     void set_hand(bool probe);
     void set_crosshair(const Vec3& physical);
     const Vec3& crosshair() const { return crosshair_; }
-    /// The crosshair goes where the probe goes.
+    /// The crosshair follows the probe.
     void set_follow(bool follow);
     bool follows() const { return follow_; }
     /// The grey levels of the slices [data units].
@@ -47,7 +47,7 @@ class Views : public QWidget {
     SlicePane& slice(int axis) { return *slices_.at(static_cast<std::size_t>(axis)); }
 
   Q_SIGNALS:
-    /// The hand is asked to move so far, or to go there [mm, physical].
+    /// The user asks the probe to move by, or to go to [mm, physical].
     void probe_dragged(const palpate::Vec3& by);
     void probe_aimed(const palpate::Vec3& to);
     void follow_changed(bool follow);

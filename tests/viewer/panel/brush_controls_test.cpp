@@ -11,14 +11,14 @@
 #include <limits>
 #include <utility>
 
-#include "tests/viewer/panel/panel_stage.hpp"
+#include "tests/viewer/panel/panel_fixture.hpp"
 
 namespace palpate::viewer {
 namespace {
 
 constexpr double at_once = std::numeric_limits<double>::infinity();
 
-class Brushes : public PanelStage {
+class Brushes : public PanelFixture {
   protected:
     Brushes() {
         QObject::connect(&panel, &Panel::brush_changed, [this](const BrushChoice& brush) {
@@ -186,7 +186,7 @@ TEST_F(Brushes, a_typed_value_is_remembered_for_its_kind) {
     EXPECT_EQ(chosen().size(), 3U);
 }
 
-TEST_F(Brushes, typing_the_number_that_is_there_makes_it_ones_own) {
+TEST_F(Brushes, typing_the_number_that_is_there_ends_automatic) {
     edit();
     const double fits = find<NumberBox>("brush_value")->value();
     type("brush_value", QString::number(fits));

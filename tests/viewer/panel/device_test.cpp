@@ -1,5 +1,5 @@
 // The device controls and the servo loop's figures.
-#include "tests/viewer/panel/panel_stage.hpp"
+#include "tests/viewer/panel/panel_fixture.hpp"
 
 #include <QComboBox>
 #include <QLineEdit>
@@ -17,7 +17,7 @@ const std::vector<devices::DeviceFinding> findings{
     {"mouse", true, "pointer and keys", "", "speed=600 [mm/s]"},
     {"haply", false, "", "no Inverse Service at localhost:10001", "host=localhost,port=10001"}};
 
-class Devices : public PanelStage {
+class Devices : public PanelFixture {
   protected:
     Devices() {
         QObject::connect(&panel, &Panel::device_chosen, [this](const QString& option) {

@@ -1,5 +1,5 @@
 // Force settings, the switches and the force gauge.
-#include "tests/viewer/panel/panel_stage.hpp"
+#include "tests/viewer/panel/panel_fixture.hpp"
 
 #include <QPushButton>
 #include <QSlider>
@@ -12,7 +12,7 @@
 namespace palpate::viewer {
 namespace {
 
-class Forces : public PanelStage {
+class Forces : public PanelFixture {
   protected:
     /// Not the defaults, so that a setting that is lost on the way shows.
     static RendererSettings unusual() {

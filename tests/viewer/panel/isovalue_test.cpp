@@ -1,5 +1,5 @@
 // The isovalue, set by mouse, wheel, keys and number.
-#include "tests/viewer/panel/panel_stage.hpp"
+#include "tests/viewer/panel/panel_fixture.hpp"
 
 #include <QComboBox>
 #include <QSlider>
@@ -14,7 +14,7 @@
 namespace palpate::viewer {
 namespace {
 
-class Isovalue : public PanelStage {
+class Isovalue : public PanelFixture {
   protected:
     LevelChart* chart() { return find<LevelChart>("level_chart"); }
     /// A place in the plot over a level.

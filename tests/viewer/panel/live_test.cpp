@@ -7,12 +7,12 @@
 #include "apps/viewer/model/transfer.hpp"
 #include "apps/viewer/panel/level_chart.hpp"
 #include "apps/viewer/panel/number_box.hpp"
-#include "tests/viewer/panel/panel_stage.hpp"
+#include "tests/viewer/panel/panel_fixture.hpp"
 
 namespace palpate::viewer {
 namespace {
 
-class WithLive : public PanelStage {
+class WithLive : public PanelFixture {
   protected:
     WithLive() {
         options_.volume.volume = "synthetic:sphere:32x32x32";

@@ -1,5 +1,5 @@
 // The look controls and the transfer function, used by mouse and keys.
-#include "tests/viewer/panel/panel_stage.hpp"
+#include "tests/viewer/panel/panel_fixture.hpp"
 
 #include <QCheckBox>
 #include <QColorDialog>
@@ -15,7 +15,7 @@
 namespace palpate::viewer {
 namespace {
 
-class Looks : public PanelStage {
+class Looks : public PanelFixture {
   protected:
     Looks() {
         QObject::connect(&panel, &Panel::look_changed,

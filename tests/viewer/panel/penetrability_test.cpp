@@ -1,5 +1,5 @@
 // Pressing through, set by bands on the histogram, by the table and by modes.
-#include "tests/viewer/panel/panel_stage.hpp"
+#include "tests/viewer/panel/panel_fixture.hpp"
 
 #include <QContextMenuEvent>
 #include <QLineEdit>
@@ -19,7 +19,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-class Pressing : public PanelStage {
+class Pressing : public PanelFixture {
   protected:
     LevelChart* chart() { return find<LevelChart>("level_chart"); }
     RangeTable* table() { return find<RangeTable>("ranges"); }

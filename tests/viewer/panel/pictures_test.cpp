@@ -6,7 +6,7 @@
 
 #include "apps/live/volume_options.hpp"
 #include "apps/viewer/model/transfer.hpp"
-#include "tests/viewer/panel/panel_stage.hpp"
+#include "tests/viewer/panel/panel_fixture.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -31,7 +31,7 @@ QPalette dark_palette() {
     return dark;
 }
 
-class Pictures : public PanelStage {
+class Pictures : public PanelFixture {
   protected:
     Pictures() { usual_ = QApplication::palette(); }
     ~Pictures() override { QApplication::setPalette(usual_); }

@@ -135,7 +135,8 @@ TEST_F(ATimeline, the_speed_of_the_box_is_asked_for_at_once_while_it_plays_else_
     EXPECT_EQ(speeds, (std::vector<double>{0.25, 4, 10, 5, 0, 5})) << "it remembers";
 }
 
-TEST_F(ATimeline, a_view_taken_before_a_wish_was_obeyed_does_not_flicker_but_a_refusal_shows) {
+TEST_F(ATimeline,
+       a_view_taken_before_a_request_was_carried_out_does_not_flicker_but_a_refusal_shows) {
     press("timeline_play");
     bar.set_view(six());
     EXPECT_EQ(find<QToolButton>("timeline_play")->accessibleName(), "Pause");

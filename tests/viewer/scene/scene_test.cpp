@@ -250,7 +250,7 @@ TEST(Scene, slices_cut_at_the_crosshair) {
     }
 }
 
-TEST(Scene, destroyed_in_the_middle_of_its_work_ends_it) {
+TEST(Scene, can_be_destroyed_while_it_renders) {
     const Field noise(
         support::noise_volume<std::uint8_t>(support::grid(support::cube(128)), 3, 0, 256));
     for (const int ms : {0, 5, 30, 120}) {

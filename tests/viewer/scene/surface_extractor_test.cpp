@@ -80,7 +80,7 @@ TEST(SurfaceExtractor, steps_start_small_and_end_with_every_sample) {
     }
 }
 
-TEST(SurfaceExtractor, the_newest_of_fifty_wishes_is_the_last_that_comes) {
+TEST(SurfaceExtractor, the_newest_of_fifty_requests_is_the_last_one_extracted) {
     Results results;
     SurfaceExtractor work(results.into());
     const Field field = ball(80);
@@ -119,7 +119,7 @@ TEST(SurfaceExtractor, says_what_is_wrong_with_an_isovalue_and_goes_on) {
     ASSERT_TRUE(results.wait_for(finished(2)));
 }
 
-TEST(SurfaceExtractor, ends_in_the_middle_of_its_work) {
+TEST(SurfaceExtractor, can_be_destroyed_while_it_extracts) {
     Results results;
     {
         SurfaceExtractor work(results.into());
@@ -132,7 +132,7 @@ TEST(SurfaceExtractor, ends_in_the_middle_of_its_work) {
     EXPECT_FALSE(results.made.back().finished);
 }
 
-TEST(SurfaceExtractor, what_was_forgotten_does_not_come) {
+TEST(SurfaceExtractor, a_dropped_request_gives_no_surface) {
     Results results;
     SurfaceExtractor work(results.into());
     work.ask(

@@ -35,7 +35,7 @@ std::vector<Mat3> signed_orders() {
     return all;
 }
 
-TEST(SlicePlane, every_grid_is_shown_the_radiological_way_round) {
+TEST(SlicePlane, every_grid_is_shown_in_the_radiological_convention) {
     for (const Mat3& direction : signed_orders()) {
         const Geometry geometry = grid({4, 5, 6}, {1, 2, 3}, {7, 8, 9}, direction);
         std::set<std::string> titles;

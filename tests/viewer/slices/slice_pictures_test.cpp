@@ -84,7 +84,7 @@ TEST(SlicePictures, lobster) {
     keep_picture(shown.window, "slices_lobster");
 }
 
-TEST(SlicePictures, mirrored_and_aslant_grids_show_the_same_head_the_same_way_round) {
+TEST(SlicePictures, mirrored_and_aslant_grids_show_the_same_head_in_the_same_orientation) {
     if (!there_is("cthead_unc.nrrd")) GTEST_SKIP() << "needs cthead_unc.nrrd";
     const Volume head = real("cthead_unc.nrrd");
     // The same bytes, told to run the other way: seen upside down and mirrored.

@@ -99,7 +99,7 @@ TEST_F(Window, freeze_holds_hand_and_proxy) {
     EXPECT_EQ(now().session.tick.proxy.hip, before);
 }
 
-TEST_F(Window, a_session_is_recorded_and_played_back_with_its_time_line) {
+TEST_F(Window, a_session_is_recorded_and_played_back_with_the_timeline) {
     feel(sphere);
     const QString file = scratch("session.csv");
     type_in_dialog(Qt::Key_R, scratch("session"));  // the dialog adds the extension

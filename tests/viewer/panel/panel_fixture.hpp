@@ -47,9 +47,9 @@ inline DeviceInfo desktop_device() {
 }
 
 /// Shown, active, with all that it emitted. `set` puts a session in.
-class PanelStage : public testing::Test {
+class PanelFixture : public testing::Test {
   protected:
-    PanelStage() {
+    PanelFixture() {
         QObject::connect(&panel, &Panel::asked, [this](const Command& command) {
             commands.push_back(command);
             if (!refuse_with.isEmpty()) panel.show_refused(refuse_with);
@@ -61,7 +61,7 @@ class PanelStage : public testing::Test {
         QApplication::setActiveWindow(&area);
         (void)QTest::qWaitForWindowExposed(&area);
     }
-    ~PanelStage() override { area.takeWidget(); }
+    ~PanelFixture() override { area.takeWidget(); }
 
     void set(const RendererSettings& settings = {}, double isovalue = 300,
              Solid solid = Solid::above) {

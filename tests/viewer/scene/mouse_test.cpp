@@ -41,7 +41,7 @@ struct Hands : ShownScene {
     }
 };
 
-TEST(SceneHand, left_drag_turns_the_camera_about_its_focus) {
+TEST(SceneMouse, left_drag_turns_the_camera_about_its_focus) {
     Hands hands;
     const Camera before = hands.scene.camera();
     hands.drag(Qt::LeftButton, {200, 160}, {280, 160});
@@ -58,7 +58,7 @@ TEST(SceneHand, left_drag_turns_the_camera_about_its_focus) {
     EXPECT_EQ(hands.scene.camera().towards_viewer, after.towards_viewer);
 }
 
-TEST(SceneHand, middle_drag_and_shift_with_left_pan) {
+TEST(SceneMouse, middle_drag_and_shift_with_left_pan) {
     for (const bool middle : {true, false}) {
         Hands hands;
         const Camera before = hands.scene.camera();
@@ -70,7 +70,7 @@ TEST(SceneHand, middle_drag_and_shift_with_left_pan) {
     }
 }
 
-TEST(SceneHand, wheel_zooms_about_the_pointer_and_right_drag_about_where_it_began) {
+TEST(SceneMouse, wheel_zooms_about_the_pointer_and_right_drag_about_where_it_began) {
     Hands hands;
     const auto seen = [&](const QPoint& at) {
         return point_at(hands.scene.camera(), {400, 320}, {double(at.x()), double(at.y())});
@@ -86,7 +86,7 @@ TEST(SceneHand, wheel_zooms_about_the_pointer_and_right_drag_about_where_it_bega
     EXPECT_LT((seen({300, 60}) - point).norm(), 1e-9);
 }
 
-TEST(SceneHand, double_click_recentres_on_the_surface_and_beside_it_does_nothing) {
+TEST(SceneMouse, double_click_recentres_on_the_surface_and_beside_it_does_nothing) {
     Hands hands;
     hands.settled();
     const Vec3 before = hands.scene.camera().focus;
@@ -99,7 +99,7 @@ TEST(SceneHand, double_click_recentres_on_the_surface_and_beside_it_does_nothing
     EXPECT_LT(focus[1], -5);
 }
 
-TEST(SceneHand, left_drag_moves_the_probe_by_what_the_pointer_went) {
+TEST(SceneMouse, left_drag_moves_the_probe_by_what_the_pointer_went) {
     Hands hands;
     hands.scene.set_hand(Scene::Hand::probe);
     const Camera before = hands.scene.camera();
@@ -112,7 +112,7 @@ TEST(SceneHand, left_drag_moves_the_probe_by_what_the_pointer_went) {
     EXPECT_EQ(hands.moves, 0);
 }
 
-TEST(SceneHand, wheel_forward_moves_the_probe_into_the_screen) {
+TEST(SceneMouse, wheel_forward_moves_the_probe_into_the_screen) {
     Hands hands;
     hands.scene.set_hand(Scene::Hand::probe);
     hands.wheel({200, 160}, 2);
@@ -123,7 +123,7 @@ TEST(SceneHand, wheel_forward_moves_the_probe_into_the_screen) {
     EXPECT_EQ(hands.moves, 0);
 }
 
-TEST(SceneHand, with_the_probe_in_hand_the_camera_still_turns_pans_and_zooms) {
+TEST(SceneMouse, with_the_probe_in_hand_the_camera_still_turns_pans_and_zooms) {
     Hands hands;
     hands.scene.set_hand(Scene::Hand::probe);
     hands.drag(Qt::RightButton, {200, 160}, {240, 160});
@@ -139,7 +139,7 @@ TEST(SceneHand, with_the_probe_in_hand_the_camera_still_turns_pans_and_zooms) {
     EXPECT_EQ(hands.dragged, Vec3::Zero());
 }
 
-TEST(SceneHand, camera_that_was_set_is_told_and_one_that_cannot_be_looked_through_is_refused) {
+TEST(SceneMouse, camera_that_was_set_is_told_and_one_that_cannot_be_looked_through_is_refused) {
     Hands hands;
     const Camera camera{Vec3(1, 2, 3), Vec3(1, 1, 0), Vec3(0, 0, 1), 12};
     hands.scene.set_camera(camera);
@@ -157,7 +157,7 @@ TEST(SceneHand, camera_that_was_set_is_told_and_one_that_cannot_be_looked_throug
     EXPECT_EQ(hands.scene.camera().towards_viewer, Vec3(0, 0, 1));
 }
 
-TEST(SceneHand, a_view_of_the_whole_stays_one_when_the_window_changes_its_shape) {
+TEST(SceneMouse, a_view_of_the_whole_stays_one_when_the_window_changes_its_shape) {
     Hands hands;
     hands.scene.reset_camera();
     const double wide = hands.scene.camera().half_height;

@@ -69,7 +69,7 @@ Field beating(int edge) {
     return Field(std::make_shared<const Samples>(std::move(frames), 2));
 }
 
-TEST(LivingScene, after_edits_surface_volume_and_slices_are_those_of_the_flattened_volume) {
+TEST(ChangingScene, after_edits_surface_volume_and_slices_are_those_of_the_flattened_volume) {
     int number = 0;
     for (const Look& look : {surface_alone(), volume_alone(), slices_alone()}) {
         Field field(scenes::ball(support::cube(80)));
@@ -93,7 +93,7 @@ TEST(LivingScene, after_edits_surface_volume_and_slices_are_those_of_the_flatten
     }
 }
 
-TEST(LivingScene, an_edit_while_the_first_surface_is_under_way_is_there_in_the_end) {
+TEST(ChangingScene, an_edit_while_the_first_surface_is_under_way_is_there_in_the_end) {
     Field field(scenes::ball(support::cube(150)));
     ShownScene shown;
     open(shown, field, surface_alone());
@@ -106,7 +106,7 @@ TEST(LivingScene, an_edit_while_the_first_surface_is_under_way_is_there_in_the_e
     EXPECT_LT(difference(picture_of(flat(field), surface_alone()), after), 0.01);
 }
 
-TEST(LivingScene, edits_and_levels_in_turns_end_with_the_last_of_both) {
+TEST(ChangingScene, edits_and_levels_in_turns_end_with_the_last_of_both) {
     Field field(scenes::ball(support::cube(90)));
     ShownScene shown;
     open(shown, field, surface_alone());
@@ -123,7 +123,7 @@ TEST(LivingScene, edits_and_levels_in_turns_end_with_the_last_of_both) {
     EXPECT_LT(difference(fresh.settled(), after), 0.01);
 }
 
-TEST(LivingScene, undone_it_is_as_before) {
+TEST(ChangingScene, undoing_an_edit_shows_the_volume_as_before) {
     const Field field(scenes::ball(support::cube(64)));
     ShownScene shown;
     open(shown, field, surface_alone());
@@ -136,7 +136,7 @@ TEST(LivingScene, undone_it_is_as_before) {
     EXPECT_EQ(difference(before, shown.settled()), 0);
 }
 
-TEST(LivingScene, a_sequence_that_has_played_stands_at_its_last_moment) {
+TEST(ChangingScene, a_sequence_that_has_played_stands_at_its_last_moment) {
     for (const Look& look : {surface_alone(), volume_alone(), slices_alone()}) {
         Field field = beating(80);
         ShownScene shown;
@@ -154,7 +154,7 @@ TEST(LivingScene, a_sequence_that_has_played_stands_at_its_last_moment) {
     }
 }
 
-TEST(LivingScene, a_new_volume_takes_the_place_of_one_that_is_edited) {
+TEST(ChangingScene, a_new_volume_takes_the_place_of_one_that_is_edited) {
     Field field(scenes::ball(support::cube(120)));
     ShownScene shown;
     open(shown, field, surface_alone());
@@ -167,7 +167,7 @@ TEST(LivingScene, a_new_volume_takes_the_place_of_one_that_is_edited) {
     EXPECT_LT(difference(picture_of(other, surface_alone()), shown.settled()), 0.01);
 }
 
-TEST(LivingScene, pictures_come_while_a_stroke_goes_on) {
+TEST(ChangingScene, pictures_come_while_a_stroke_goes_on) {
     Field field(scenes::ball(support::cube(100)));
     ShownScene shown;
     open(shown, field, surface_alone());
@@ -184,7 +184,7 @@ TEST(LivingScene, pictures_come_while_a_stroke_goes_on) {
     EXPECT_TRUE(seen) << versions;
 }
 
-TEST(LivingScene, another_grid_is_no_version) {
+TEST(ChangingScene, another_grid_is_no_version) {
     ShownScene shown;
     const Field field(scenes::ball(support::cube(20)));
     EXPECT_THROW(shown.scene.update_field(field), std::invalid_argument);

@@ -22,7 +22,7 @@ void answer(QMessageBox::StandardButton button) {
     });
 }
 
-class Living : public InWindow {
+class ChangingData : public InWindow {
   protected:
     app::Work work() { return window_->live()->data().sculptor().work(); }
     /// Presses, and carves until something is gone.
@@ -34,7 +34,7 @@ class Living : public InWindow {
     }
 };
 
-TEST_F(Living, the_brush_carves_what_is_felt_and_undo_and_redo_bring_it_back_and_forth) {
+TEST_F(ChangingData, the_brush_carves_what_is_felt_and_undo_and_redo_bring_it_back_and_forth) {
     feel("synthetic:sphere:48x48x48");
     save("before");
     const auto start = work().samples;
@@ -52,7 +52,7 @@ TEST_F(Living, the_brush_carves_what_is_felt_and_undo_and_redo_bring_it_back_and
     EXPECT_TRUE(wait_until([&] { return work().samples == start; }));
 }
 
-TEST_F(Living, the_edited_volume_is_saved_by_a_dialog_and_can_be_opened) {
+TEST_F(ChangingData, the_edited_volume_is_saved_by_a_dialog_and_can_be_opened) {
     feel("synthetic:sphere:48x48x48");
     carve();
     const auto carved = work().samples;
@@ -66,7 +66,7 @@ TEST_F(Living, the_edited_volume_is_saved_by_a_dialog_and_can_be_opened) {
     EXPECT_EQ(work().version, 0U);
 }
 
-TEST_F(Living, a_window_with_unsaved_edits_asks_before_it_closes) {
+TEST_F(ChangingData, a_window_with_unsaved_edits_asks_before_it_closes) {
     feel("synthetic:sphere:48x48x48");
     carve();
     answer(QMessageBox::Cancel);
@@ -76,7 +76,7 @@ TEST_F(Living, a_window_with_unsaved_edits_asks_before_it_closes) {
     EXPECT_TRUE(window_->close());
 }
 
-TEST_F(Living, a_signal_ends_it_without_a_question_and_the_edits_are_kept) {
+TEST_F(ChangingData, a_signal_ends_it_without_a_question_and_the_edits_are_kept) {
     feel("synthetic:sphere:48x48x48");
     carve();
     const auto carved = work().samples;
@@ -91,7 +91,7 @@ TEST_F(Living, a_signal_ends_it_without_a_question_and_the_edits_are_kept) {
     EXPECT_EQ(std::memcmp(rescued.data(), felt.data(), felt.bytes()), 0);
 }
 
-TEST_F(Living, a_recording_of_edits_is_played_with_them) {
+TEST_F(ChangingData, a_recording_of_edits_is_played_with_them) {
     feel("synthetic:sphere:48x48x48");
     window_->recordings().start(scratch("carving.csv"));
     carve();
@@ -110,7 +110,7 @@ TEST_F(Living, a_recording_of_edits_is_played_with_them) {
     save("played");
 }
 
-TEST_F(Living, a_sequence_plays_steps_and_is_sought_with_its_bar) {
+TEST_F(ChangingData, a_sequence_plays_steps_and_is_sought_with_the_timeline) {
     // Not feel(): what plays does not settle.
     window_->files().open_path("synthetic:beating:32x32x32");
     ASSERT_TRUE(wait_until([&] { return window_->live() && window_->live()->snapshot(); }));

@@ -44,7 +44,7 @@ void expect_same(const SliceSamples& a, const SliceSamples& b, double within) {
     }
 }
 
-TEST(LivingSlices, samples_are_the_edited_ones_and_those_of_the_moment) {
+TEST(ChangingSlices, samples_are_the_edited_ones_and_those_of_the_moment) {
     for (const Mat3& direction : {Mat3(Mat3::Identity()), support::oblique_direction()}) {
         const Field before = ball_on(direction);
         const Field edited_ball = carved(before, {3, -2, 16}, 6);
@@ -76,7 +76,7 @@ QImage picture_of(ShownPane& shown) {
     return shown.picture();
 }
 
-TEST(LivingSlices, a_pane_shows_the_newest_of_many_versions_as_if_it_had_been_opened) {
+TEST(ChangingSlices, a_pane_shows_the_newest_of_many_versions_as_if_it_had_been_opened) {
     Field field = ball_on(Mat3::Identity());
     ShownPane shown(2, field);
     shown.pane.set_window(0, 1);
@@ -104,7 +104,7 @@ TEST(LivingSlices, a_pane_shows_the_newest_of_many_versions_as_if_it_had_been_op
     EXPECT_EQ(picture_of(shown), before);
 }
 
-TEST(LivingSlices, a_pane_follows_the_moment) {
+TEST(ChangingSlices, a_pane_follows_the_moment) {
     Field field = moving_ball(Mat3::Identity());
     ShownPane shown(1, field);
     shown.pane.set_window(0, 1);
@@ -118,7 +118,7 @@ TEST(LivingSlices, a_pane_follows_the_moment) {
     keep_picture(shown.pane, "between_frames_slice");
 }
 
-TEST(LivingSlices, another_grid_is_no_version) {
+TEST(ChangingSlices, another_grid_is_no_version) {
     ShownPane shown(0);
     const Field field = ball_on(Mat3::Identity());
     EXPECT_THROW(shown.pane.update_field(field), std::invalid_argument);
