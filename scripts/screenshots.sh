@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Makes the pictures of viewer and demos that README and docs show, so that they never age.
+# Makes the pictures of viewer and demos in README and docs.
 set -euo pipefail
 
 usage() {
@@ -7,8 +7,8 @@ usage() {
 usage: scripts/screenshots.sh DATA_FOLDER [BUILD_FOLDER]
 
 Opens the viewer of BUILD_FOLDER (build/dev) on a virtual display, on volumes of DATA_FOLDER
-(cthead_unc.nrrd, lobster.nrrd, daisy_pollen.nrrd), and writes docs/images/viewer-*.png; and lets the
-demos of data that change make docs/images/demo-*.png.
+(cthead_unc.nrrd, lobster.nrrd, daisy_pollen.nrrd), and writes docs/images/viewer-*.png. Also runs the
+demos of changing data and writes docs/images/demo-*.png.
 TEXT
 }
 
@@ -20,11 +20,11 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 program=$(pwd)/${2:-build/dev}/apps/viewer/palpate-viewer
 sessions=$(mktemp -d)
 trap 'rm -rf "$sessions"' EXIT
-# Nobody's window sizes or recent files.
+# Window size and recent files of no user.
 export XDG_CONFIG_HOME=$sessions XDG_RUNTIME_DIR=$sessions
 
-# shot NAME AFTER REST: REST are members of a session besides the volume.
-shot() {
+# screenshot NAME AFTER REST: REST are the members of the session file.
+screenshot() {
     local name=$1 after=$2 rest=$3 session=$sessions/$1.json
     printf '{"format": "palpate-session", "version": 1, %s}\n' "${rest//DATA/$data}" >"$session"
     echo "== viewer-$name.png"
@@ -42,17 +42,17 @@ done
 rm -r "$demos"
 
 # This head was stored upside down.
-shot cthead 2.5 '"volume": {"volume": "DATA/cthead_unc.nrrd"}, "isovalue": 1150,
+screenshot cthead 2.5 '"volume": {"volume": "DATA/cthead_unc.nrrd"}, "isovalue": 1150,
     "device": "simulated:hand=press", "look": {"box": false},
     "camera": {"focus": [127.5, 127.5, 112], "up": [0, 0, -1],
         "towards_viewer": [-0.75, -0.65, -0.2], "half_height": 130}'
-shot lobster 2 '"volume": {"volume": "DATA/lobster.nrrd"}, "isovalue": 35,
+screenshot lobster 2 '"volume": {"volume": "DATA/lobster.nrrd"}, "isovalue": 35,
     "device": "simulated:hand=slide,seed=4", "look": {"box": false},
     "camera": {"focus": [150, 175, 39], "up": [0, -1, 0],
         "towards_viewer": [0.25, 0.35, 0.9], "half_height": 170}'
-shot daisy 2 '"volume": {"volume": "DATA/daisy_pollen.nrrd"}, "isovalue": 60,
+screenshot daisy 2 '"volume": {"volume": "DATA/daisy_pollen.nrrd"}, "isovalue": 60,
     "device": "simulated:hand=slide", "look": {"surface": false, "volume": true}'
-shot local 2 '"volume": {"volume": "synthetic:sphere:14x14x14"}, "isovalue": 100,
+screenshot local 2 '"volume": {"volume": "synthetic:sphere:14x14x14"}, "isovalue": 100,
     "device": "simulated:hand=press", "slices_shown": false,
     "look": {"surface_opacity": 0.4, "tetrahedra": true, "planes": true},
     "camera": {"focus": [-3.9, -0.4, -1.4], "up": [0, 0, 1],

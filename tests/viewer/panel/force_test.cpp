@@ -251,7 +251,7 @@ TEST_F(Forces, a_refused_switch_goes_back_and_says_why) {
     EXPECT_EQ(message("session_part"), "too many commands at once");
 }
 
-TEST_F(Forces, a_refusal_that_comes_later_undoes_the_last_wish) {
+TEST_F(Forces, a_refusal_that_comes_later_undoes_the_last_request) {
     set(unusual());
     type("stiffness_box", "1");
     type("stiffness_box", "1.5");

@@ -86,13 +86,13 @@ TEST_F(Isovalue, the_first_of_a_drag_goes_out_at_once_and_the_last_always) {
 TEST(RateLimiter, passes_the_first_at_once_then_the_newest_and_forgets_what_is_dropped) {
     RateLimiter limiter(nullptr, 1000 * 1000);  // the time never comes in this test
     std::vector<int> passed;
-    const auto wish = [&](int i) { limiter.put([&passed, i] { passed.push_back(i); }); };
-    for (int i = 0; i < 100; ++i) wish(i);
+    const auto request = [&](int i) { limiter.put([&passed, i] { passed.push_back(i); }); };
+    for (int i = 0; i < 100; ++i) request(i);
     EXPECT_EQ(passed, (std::vector{0}));
     limiter.flush();
     EXPECT_EQ(passed, (std::vector{0, 99}));
     limiter.flush();
-    wish(100);
+    request(100);
     limiter.drop();
     limiter.flush();
     EXPECT_EQ(passed, (std::vector{0, 99}));

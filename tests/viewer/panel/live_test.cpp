@@ -60,7 +60,7 @@ class WithLive : public PanelFixture {
     app::TouchOptions options_;
 };
 
-TEST_F(WithLive, random_wishes_by_mouse_and_keys_are_all_carried_out) {
+TEST_F(WithLive, random_requests_by_mouse_and_keys_are_all_carried_out) {
     std::mt19937 random(17);
     const std::vector<const char*> sliders{
         "stiffness_slider",       "damping_slider",          "viscosity_slider",
