@@ -1,5 +1,5 @@
-// An application that changes the data under the hand: a drill that it moves itself, a box that it
-// fills, and an undo, in a session that runs.
+// An application that edits the data while it is felt: it drills, fills a box and undoes an edit
+// while a servo runs.
 #include <chrono>
 #include <cstdio>
 #include <thread>
@@ -59,7 +59,7 @@ int main() {
         servo.send(command::Samples{editor.samples(), ++version});
         std::printf("%s: force %.2f N\n", what, force_after(servo, version));
     };
-    // A burr of 3 mm that has gone from the surface to where the hand is: nothing is left there.
+    // A burr of 3 mm drills from the surface to the hand, so that nothing is left there.
     editor.apply(
         edit::Stroke{brush_for(BrushKind::carve, field, isovalue, 3), {16, 16, 26}, {16, 16, 20}});
     feel("drilled");

@@ -1,4 +1,4 @@
-// The smallest use of the library: a volume made in memory, a hand that presses into it, the force.
+// The smallest use of the library: a hand presses into a volume made in memory; prints the force.
 #include <cmath>
 #include <cstdio>
 #include <vector>
@@ -23,7 +23,7 @@ int main() {
     const Field field(Volume(geometry, std::move(samples)));
     Renderer renderer = make_renderer(field, 0.0);  // the ball of radius 10 mm
 
-    // The hand comes down on the ball at 50 mm/s, a tick every millisecond.
+    // The hand moves down onto the ball at 50 mm/s, with a tick every millisecond.
     for (int tick = 0; tick <= 400; ++tick) {
         const double time = 0.001 * tick;
         const Vec3 hand = centre + Vec3(0, 0, 25 - 50 * time);

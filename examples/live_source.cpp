@@ -1,6 +1,6 @@
-// A live source in a process of its own: a ball that goes to and fro, a frame every 20 ms, into a
-// file that Palpate follows.
-//   example_live_source FILE [SECONDS]      /dev/shm is a good place; without SECONDS for ever
+// A live source, which is a process of its own: it writes a ball that moves to and fro, a frame
+// every 20 ms, into a file that Palpate follows.
+//   example_live_source FILE [SECONDS]      FILE for example in /dev/shm; default: until killed
 #include <chrono>
 #include <cmath>
 #include <csignal>

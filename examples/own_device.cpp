@@ -1,5 +1,5 @@
-// A device of one's own in a live session: three functions, and the servo runs it at 1 kHz. This
-// one is a mass of 100 g on a guide that falls onto the isosurface and comes to rest there.
+// Your own device: implement four functions, and a servo runs it at 1 kHz. This device is a mass of
+// 100 g on a guide that falls onto the isosurface and comes to rest there.
 #include <atomic>
 #include <chrono>
 #include <cstdio>

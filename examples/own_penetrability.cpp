@@ -1,4 +1,4 @@
-// A penetrability function of one's own: soft tissue gives way at 0.5 mm, bone not before 4 mm.
+// Your own penetrability function: soft tissue gives way at 0.5 mm, bone at 4 mm.
 #include <cstdio>
 #include <vector>
 

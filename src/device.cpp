@@ -1,4 +1,4 @@
-// Device: words for its status, and the way from its workspace into the volume.
+// Device: names of its status, and the transform from its workspace into the volume.
 #include "palpate/device.hpp"
 
 #include <Eigen/Geometry>

@@ -1,4 +1,4 @@
-// Edit: which bricks an edit touches, and what becomes of each sample.
+// Edit: finds the bricks that an edit touches and computes each of their samples.
 #include "palpate/edit.hpp"
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 namespace palpate {
 namespace {
 
-/// A sample's new value, as a number that need not fit its type yet.
+/// A value rounded and clamped to the sample type.
 template <class T>
 T fitted(double value) {
     if constexpr (std::is_integral_v<T>) value = std::nearbyint(value);
@@ -18,23 +18,24 @@ T fitted(double value) {
     return static_cast<T>(std::clamp(value, low, high));
 }
 
-/// Part of the way from `old` to `aim`. Integers that would stand still for being coarse go a unit.
+/// `old` moved by a fraction of its difference to `aim`. Integers move by at least one unit where
+/// rounding would leave them as they are.
 template <class T>
 T moved(T old, double aim, double part) {
-    const double way = part * (aim - double(old));
-    const T value = fitted<T>(double(old) + way);
-    if (std::is_floating_point_v<T> || value != old || std::abs(way) < 1.0 / 16) return value;
-    return fitted<T>(double(old) + (way > 0 ? 1 : -1));
+    const double change = part * (aim - double(old));
+    const T value = fitted<T>(double(old) + change);
+    if (std::is_floating_point_v<T> || value != old || std::abs(change) < 1.0 / 16) return value;
+    return fitted<T>(double(old) + (change > 0 ? 1 : -1));
 }
 
-/// Where a stroke touches, in millimetres along the grid's axes.
+/// The capsule of space that a stroke touches, in millimetres along the grid's axes.
 class Touch {
   public:
     Touch(const edit::Stroke& stroke, const Geometry& geometry)
         : spacing_(geometry.spacing),
           from_(index_from_physical(geometry, stroke.from).cwiseProduct(spacing_)),
-          way_(index_from_physical(geometry, stroke.to).cwiseProduct(spacing_) - from_),
-          length_squared_(way_.squaredNorm()),
+          along_(index_from_physical(geometry, stroke.to).cwiseProduct(spacing_) - from_),
+          length_squared_(along_.squaredNorm()),
           radius_(stroke.brush.radius),
           edge_(2 * std::max(spacing_.maxCoeff(), (1 - stroke.brush.hardness) * radius_)) {}
 
@@ -42,27 +43,27 @@ class Touch {
     double weight(const Index3& at) const {
         const Vec3 p = spacing_.cwiseProduct(at.cast<double>()) - from_;
         const double t =
-            length_squared_ > 0 ? std::clamp(p.dot(way_) / length_squared_, 0.0, 1.0) : 0;
-        const double distance = (p - t * way_).norm();
+            length_squared_ > 0 ? std::clamp(p.dot(along_) / length_squared_, 0.0, 1.0) : 0;
+        const double distance = (p - t * along_).norm();
         return std::clamp(0.5 + (radius_ - distance) / edge_, 0.0, 1.0);
     }
     SampleBox box() const {
         const Vec3 reach = Vec3::Constant(radius_ + 0.5 * edge_);
-        const Vec3 low = (from_.cwiseMin(from_ + way_) - reach).cwiseQuotient(spacing_);
-        const Vec3 high = (from_.cwiseMax(from_ + way_) + reach).cwiseQuotient(spacing_);
-        // Kept within what an index can hold; the grid cuts the rest.
+        const Vec3 low = (from_.cwiseMin(from_ + along_) - reach).cwiseQuotient(spacing_);
+        const Vec3 high = (from_.cwiseMax(from_ + along_) + reach).cwiseQuotient(spacing_);
+        // Kept within what an index can hold; the caller clips to the grid.
         const Vec3 most = Vec3::Constant(1 << 21);
         return {low.cwiseMax(-most).cwiseMin(most).array().ceil().cast<int>(),
                 high.cwiseMin(most).cwiseMax(-most).array().floor().cast<int>()};
     }
 
   private:
-    Vec3 spacing_, from_, way_;
+    Vec3 spacing_, from_, along_;
     double length_squared_, radius_, edge_;
 };
 
-/// The 3 x 3 x 3 binomial mean of the samples as they were; those beyond the border count as those
-/// on it.
+/// The 3 x 3 x 3 binomial mean of the samples before the edit; those beyond the border count as
+/// those on it.
 double blurred(const Samples& samples, const Index3& at) {
     const Index3 last = samples.geometry().size - Index3::Ones();
     double sum = 0;
@@ -74,25 +75,25 @@ double blurred(const Samples& samples, const Index3& at) {
     return sum / 64;
 }
 
-/// What a stroke makes of a sample.
+/// A sample after a stroke.
 template <class T>
 T touched(const edit::Stroke& stroke, const Touch& touch, const Samples& before, const Index3& at,
           T old) {
     const double w = touch.weight(at);
-    if (!(w > 0)) return old;  // nor where ends are so far apart that their distance overflows
+    if (!(w > 0)) return old;  // or NaN, where the ends are so far apart that squares overflow
     const Brush& brush = stroke.brush;
     if (brush.kind == BrushKind::paint) return moved(old, brush.value, w * brush.strength);
     if (brush.kind == BrushKind::smooth) {
         return fitted<T>(double(old) + w * brush.strength * (blurred(before, at) - double(old)));
     }
-    // A ramp that meets the level at the radius, and is as steep on both sides of it.
+    // A ramp that has the level at the radius, equally steep on both sides of it.
     const double aim = brush.level + (brush.value - brush.level) * (2 * w - 1);
     const bool downwards = (brush.kind == BrushKind::carve) == (brush.solid == Solid::above);
     const bool counts = downwards ? aim < double(old) : aim > double(old);
     return counts ? moved(old, aim, brush.strength) : old;
 }
 
-/// Makes those bricks anew that hold samples of a box and change.
+/// Copies and changes the bricks that hold samples of a box; bricks that do not change stay shared.
 class Rewriting {
   public:
     Rewriting(const Samples& before, const SampleBox& box)

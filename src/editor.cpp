@@ -1,4 +1,4 @@
-// Editor: undo and redo as other versions of the same samples.
+// Editor: undo and redo by keeping versions of the samples.
 #include "palpate/editor.hpp"
 
 #include <stdexcept>
@@ -13,7 +13,7 @@ Editor::Editor(std::shared_ptr<const Samples> samples, std::size_t history_bytes
 
 namespace {
 
-/// What a step holds that the version after it does not, and its table of bricks.
+/// Bytes that only one of two versions holds, and those of a table of bricks.
 std::size_t bytes_between(const Samples& before, const Samples& after) {
     return bytes_apart(before, after) + bytes_apart(after, before) +
            after.bricks()->at.size() * sizeof(after.bricks()->at.front());
@@ -61,7 +61,7 @@ std::size_t Editor::history_bytes() const {
     return bytes;
 }
 
-/// The oldest steps go; the last one stays, whatever it holds.
+/// Drops the oldest steps beyond the limit; the last one stays, however large.
 void Editor::forget() {
     std::size_t bytes = history_bytes();
     while (steps_.size() > 1 && bytes > most_bytes_) {

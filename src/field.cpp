@@ -1,5 +1,5 @@
-// Field: the eight samples of any cell in space; background outside the grid, edits and moments
-// between frames inside.
+// Field: reads the eight samples of any cell: background outside the grid, and inside it edited
+// samples and those between two frames.
 #include "palpate/field.hpp"
 
 #include <algorithm>
@@ -55,18 +55,18 @@ void Field::set_time(double time) noexcept {
     look();
 }
 
-/// Brings everything in line with samples and time.
+/// Updates what is derived from samples and time.
 void Field::look() noexcept {
     moment_ = samples_->moment_at(time_);
     data_ = samples_->frames()[moment_.from].volume.data();
     type_ = samples_->type();
-    // Samples that change are looked up one by one: unedited ones do not pay for them.
+    // Edited or interpolated samples take the slow path, so that plain ones have no extra cost.
     const bool changing = samples_->bricks() || moment_.weight > 0;
     plain_ = changing ? Index3(Index3::Zero()) : Index3(size_ - Index3::Ones());
     const double low = std::min(samples_->minimum(), background_);
     const double high = std::max(samples_->maximum(), background_);
     range_ = high > low ? high - low : 1.0;
-    // Samples far from zero (a float volume of 1e6 +- 1) cost digits in every sum of eight.
+    // Samples far from zero (a float volume of 1e6 +- 1) lose digits in every sum of eight.
     const double largest = std::max(std::abs(low), std::abs(high));
     tolerance_ = std::max(1e-12 * range_, 8 * std::numeric_limits<double>::epsilon() * largest);
 }

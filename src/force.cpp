@@ -1,4 +1,4 @@
-// Force: spring, damping, viscosity, magnet, texture, and always the limits. See docs/force.md.
+// Force: spring, damping, viscosity, magnet and texture, and the limits. See docs/force.md.
 #include "palpate/force.hpp"
 
 #include <algorithm>
@@ -15,8 +15,8 @@ namespace {
 /// Time constant of the velocity filter [s]: a 100 Hz low pass. Unfiltered, one encoder step of
 /// 0.05 mm at 1 kHz reads as 50 mm/s.
 constexpr double velocity_filter = 1 / (2 * std::numbers::pi * 100);
-/// No hand is faster [mm/s]. What measures faster is a glitch, and counts as this much: unbounded,
-/// one false position would hold the filtered velocity up for tens of ticks.
+/// Greatest velocity that counts [mm/s]. What measures faster is a glitch; without this bound one
+/// false position would keep the filtered velocity high for tens of ticks.
 constexpr double fastest_hand = 1e4;
 
 std::string text_of(double value) {
@@ -53,7 +53,7 @@ Vec3 contact_force(const ForceSettings& settings, const ForceInput& input, const
     const Vec3 outward = force / strength;
     const Vec3 slope = input.texture_slope - outward * outward.dot(input.texture_slope);
     if (!slope.isZero(0)) force = strength * (outward - slope).normalized();
-    // Damping takes back no more than pushes out: of a turned force that is less than its strength.
+    // Damping at most cancels the force outwards, which is less than `strength` if it was turned.
     const double into = -velocity.dot(outward);
     return force + outward * std::max(settings.damping * into, -force.dot(outward));
 }
@@ -65,8 +65,8 @@ Vec3 magnet_force(const Magnet& magnet, const ForceInput& input) {
     return -input.normal * (magnet.peak * 4 * along * (1 - along));
 }
 
-/// The ramp, the maximum and the rate. Written so that a setting that is NaN or negative, which
-/// check() would have refused, gives no force or a NaN that the caller catches, never a larger one.
+/// The ramp, the maximum and the rate. A setting that is NaN or negative, which check() refuses,
+/// gives no force or a NaN that the caller catches, never a larger force.
 Vec3 within_limits(Vec3 force, const ForceState& state, const ForceSettings& settings,
                    const DeviceLimits& limits, double since, double step, std::uint8_t& flags) {
     if (!(since >= settings.ramp)) {
@@ -86,7 +86,7 @@ Vec3 within_limits(Vec3 force, const ForceState& state, const ForceSettings& set
         force = state.force + change * (std::max(most_change, 0.0) / change.norm());
         flags |= force_rate_limited;
     }
-    // Between two forces within a limit that has just been lowered, and against rounding.
+    // Again, because the rate limit keeps a force above a limit that has just been lowered.
     if (force.norm() > most) force *= most / force.norm();
     return force;
 }
@@ -175,7 +175,7 @@ ForceResult render_force(ForceState& state, const ForceSettings& settings,
     double step = input.time - state.time;
     std::uint8_t flags = 0;
     if (!state.started || !(step <= settings.stale_after)) {
-        // A start, or the first tick after a pause: the ramp begins here, from zero.
+        // The start, or the first tick after a pause: the ramp begins here, from zero.
         if (state.started) flags |= force_stale;
         state = ForceState{};
         state.started = true;
@@ -191,7 +191,7 @@ ForceResult render_force(ForceState& state, const ForceSettings& settings,
     Vec3 force = input.constrained ? contact_force(settings, input, state.velocity)
                                    : magnet_force(settings.magnet, input);
     force -= settings.viscosity * state.velocity;
-    // Of a force whose square overflows neither length nor direction are to be had.
+    // A force whose square overflows has neither a length nor a direction.
     if (!std::isfinite(force.squaredNorm())) return stop(state, force_not_finite);
     state.waiting |= input.released;
     if (state.waiting) {

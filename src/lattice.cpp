@@ -1,4 +1,4 @@
-// Lattice: 24 tetrahedra a cell, walked by reflections. See docs/lattice.md.
+// Lattice: 24 tetrahedra per cell, walked by reflections. See docs/lattice.md.
 #include "palpate/lattice.hpp"
 
 #include <algorithm>
@@ -53,8 +53,8 @@ Incident incident_tetrahedra(const LatticePoint& point) {
     found.tetrahedra[found.count++] = point.tetrahedron;
     const unsigned walls = walls_at(point.folded);
     if (walls == 0) return found;
-    // The mirrors through the point generate the group that permutes its tetrahedra, and leave its
-    // folded coordinates alone, so the same walls serve in every one of them.
+    // The mirrors through the point generate the group that permutes its tetrahedra. They leave its
+    // folded coordinates as they are, so the point is on the same walls in each of them.
     for (int i = 0; i < found.count; ++i) {
         for (unsigned wall = 0; wall < wall_count; ++wall) {
             if (!has(walls, wall)) continue;

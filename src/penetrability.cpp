@@ -25,8 +25,8 @@ void check_range(const DensityRange& range) {
     }
 }
 
-/// The level felt at a density, walking from the free side: the density itself inside a range of
-/// interest, else the near end of the next range.
+/// The level felt at a density when the hand comes from the free side: the density itself inside a
+/// range of interest, else the near end of the next range.
 struct Level {
     double isovalue;
     bool inside;  ///< the density lies in a range: the proxy is in contact there

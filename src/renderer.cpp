@@ -1,4 +1,4 @@
-// Renderer: device state -> HIP -> proxy -> penetrability -> force, once a tick.
+// Renderer: one tick, from the device's state by HIP, proxy and penetrability to the force.
 #include "palpate/renderer.hpp"
 
 #include <cmath>
@@ -9,7 +9,7 @@
 namespace palpate {
 namespace {
 
-/// Pieces that the magnet may spend on looking for a surface.
+/// Step budget of the magnet's search for a surface.
 constexpr int magnet_budget = 512;
 
 /// Distance [physical mm] from a free SCP to the surface, against the normal of the field there;
@@ -116,7 +116,7 @@ Tick render(Renderer& renderer, const DeviceState& device, StepObserver observer
     const std::int64_t begin = clock ? clock() : 0;
     tick.proxy = device.valid ? settings.method(renderer.proxy, renderer.field, hip, settings.proxy,
                                                 observer)
-                              // No position to trust: nothing moves.
+                              // The position is not trusted: nothing moves.
                               : refuse_update(renderer.proxy, renderer.field, hip);
     tick.update_ns = clock ? clock() - begin : 0;
     apply_penetrability(settings.penetrability, renderer.field, 1 / settings.transform.scale,

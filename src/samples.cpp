@@ -1,4 +1,4 @@
-// Samples: versions of the numbers on a grid, their bricks, and where a time lies between frames.
+// Samples: versions of the numbers on a grid, their bricks, and moments between frames.
 #include "palpate/samples.hpp"
 
 #include <algorithm>
@@ -36,7 +36,7 @@ void check_frames(const std::vector<Frame>& frames, double period) {
     }
 }
 
-/// Copies the samples of a brick that lie in the grid into their places in the whole.
+/// Copies the samples of a brick that lie in the grid into a whole volume.
 void copy_brick(const std::byte* brick, const Index3& low, const Geometry& geometry,
                 std::size_t bytes, std::byte* whole) {
     const Index3 last =

@@ -1,5 +1,5 @@
-// Servo: the loop, its clock and its counters. Once running it does nothing but compute, read
-// clocks and sleep: tests/core/quiet.
+// Servo: the loop, its clock and its counters. The running thread only computes, reads clocks and
+// sleeps (tested in tests/core/quiet).
 #include "palpate/servo.hpp"
 
 #include <algorithm>
@@ -14,11 +14,11 @@ namespace palpate {
 namespace {
 
 constexpr std::int64_t second_ns = 1'000'000'000;
-/// Commands carried out between two ticks; more wait, so that a flood cannot stall the loop.
+/// Most commands carried out between two ticks; others wait, so that many cannot stall the loop.
 constexpr int commands_per_tick = 16;
 /// From the start of the thread to its first tick [ns].
 constexpr std::int64_t settle_ns = 1'000'000;
-/// Between two looks at whether the thread has started.
+/// Interval at which start() checks whether the thread runs.
 constexpr auto poll = std::chrono::microseconds(100);
 
 std::int64_t now_ns(clockid_t clock) {
@@ -75,7 +75,7 @@ Snapshot snapshot_of(const Session& session, const SessionTick& tick, std::int64
     return snapshot;
 }
 
-/// The servo thread's own: when ticks are due and how they went. Times in ns.
+/// Used by the servo thread only: when ticks are due, and the worst one. Times in ns.
 struct Servo::Clock {
     std::int64_t period;
     std::int64_t zero;  // session time 0
@@ -84,7 +84,7 @@ struct Servo::Clock {
     WorstTick worst = {};
 };
 
-/// Of one tick: when it began, and how long its parts took.
+/// Of one tick: when it began, and how long its parts took [ns].
 struct Servo::Stamps {
     std::int64_t start;
     std::int64_t compute;  // CPU time of all of it
@@ -92,9 +92,9 @@ struct Servo::Stamps {
     std::int64_t proxy;
 
     TickCause cause(std::int64_t lateness, std::int64_t work) const {
-        // A device that waits does not compute: that is not the machine's doing.
+        // A device that waits uses no CPU time; that must not count as the machine's delay.
         if (work > lateness && 2 * device >= work) return TickCause::device;
-        // What the machine took: waking late, and time in which the thread did not run.
+        // The machine's delay: waking late, and time in which the thread did not run.
         if (lateness + std::max<std::int64_t>(0, work - compute) >= compute) {
             return TickCause::machine;
         }
@@ -138,7 +138,7 @@ Servo::~Servo() {
 void Servo::start() {
     if (thread_.joinable() || ready_) throw std::logic_error("a servo is started once");
     thread_ = std::jthread([this] { run(); });
-    // Once, until memory is locked: not worth a lock of its own.
+    // Polls, as this happens once and does not take long.
     while (!ready_.load(std::memory_order_acquire)) std::this_thread::sleep_for(poll);
 }
 
@@ -157,8 +157,8 @@ bool Servo::send(const Command& command) {
     return commands_.push(command);
 }
 
-/// Lets go of what nobody else holds any more, and holds this; once, however often it is sent, for
-/// two of our own would look like somebody else.
+/// Drops objects that nobody else holds any more, and holds this one: once, however often it is
+/// sent, because with two entries it would never look unused.
 void Servo::hold(const std::shared_ptr<const void>& sent) {
     if (!sent) return;
     const std::lock_guard lock(held_mutex_);
@@ -189,7 +189,7 @@ void Servo::run() noexcept {
     try {
         privileges_ = settings_.real_time ? ask_for_real_time(settings_.priority)
                                           : std::vector<std::string>{"real time: not asked for"};
-    } catch (...) {  // no memory for the words; the loop needs none
+    } catch (...) {  // no memory for the sentences; the loop needs none
     }
     ready_.store(true, std::memory_order_release);
     Clock clock{static_cast<std::int64_t>(static_cast<double>(second_ns) / settings_.rate), 0, 0};
@@ -243,7 +243,7 @@ void Servo::count(Clock& clock, std::int64_t number, const Stamps& stamps) noexc
         clock.worst = tick;
         worst_.put(tick);
     }
-    // A tick that ends after the next was due has missed it; ticks due meanwhile are not made up.
+    // A tick that ends after the next one was due has missed it; missed ticks are not made up.
     const std::int64_t late = (end - clock.due) / clock.period;
     add(missed_, late);
     clock.due += clock.period * std::max<std::int64_t>(1, late);

@@ -1,4 +1,4 @@
-// Session: which input counts, what the clutch does, and how commands change things.
+// Session: which input counts, what clutch and freeze do, and how commands are carried out.
 #include "palpate/session.hpp"
 
 #include <Eigen/Geometry>
@@ -10,18 +10,18 @@
 namespace palpate {
 namespace {
 
-/// Farther from its origin no device reaches [device mm].
+/// No device reaches farther from its origin [device mm].
 constexpr double farthest_hand = 1e4;
 
-/// Whether a hand could have come here since the last good position.
+/// Whether a hand can have moved here since the last good position.
 bool plausible(const Session& session, double time, const Vec3& position) {
     if (!position.allFinite() || !(position.cwiseAbs().maxCoeff() <= farthest_hand)) return false;
     if (!session.seen) return true;
-    const double way = (position - session.hand).norm();
-    return way <= session.settings.fastest_hand * (time - session.seen_at);
+    const double distance = (position - session.hand).norm();
+    return distance <= session.settings.fastest_hand * (time - session.seen_at);
 }
 
-/// A rotation freed of what rounding in a device's orientation adds, clutch after clutch.
+/// The rotation without the rounding errors that orientations add each time the clutch closes.
 Mat3 orthonormal(const Mat3& m) {
     Mat3 r;
     r.col(0) = m.col(0).normalized();
@@ -56,7 +56,7 @@ void scale_about_scp(Renderer& renderer, double scale) {
     transform.scale = scale;
 }
 
-/// A sequence goes on with the time of the ticks, as far as its frames are there.
+/// Moves a playing sequence on with the time of the ticks, within its frames.
 void play(Session& session, double time) {
     Field& field = session.renderer.field;
     const double dt = session.begun ? time - session.last_tick : 0;
@@ -191,7 +191,7 @@ SessionTick advance(Session& session, double time, const DeviceReading& reading,
     }
     const bool hangs = clutched && !session.frozen;
     if (hangs && state.valid) {
-        // An orientation that is none for a moment turns nothing.
+        // An orientation that is not a rotation is ignored: the last one stays.
         if (is_rotation(reading.orientation)) session.tool = reading.orientation;
         hold(session, session.tool, reading.position);
     }

@@ -1,8 +1,8 @@
 // Surface: marching tetrahedra, one cell after the other. See docs/surface.md.
 //
 // A cell has 15 nodes (0-7 its corners, 8-13 the centres of its faces, 14 its own) and 50 edges
-// between them. 29 edges are the cell's own; the other 21 lie on its three lower faces and were
-// dealt with by the neighbours there.
+// between them. 29 edges are the cell's own; the other 21 lie on its three lower faces, and the
+// neighbouring cells there have handled them.
 #include "palpate/surface.hpp"
 
 #include <Eigen/Geometry>
@@ -32,7 +32,7 @@ constexpr int corner_of_face(int axis, int side, int q) {
     return (q & low) | side << axis | (q & ~low) << 1;
 }
 
-/// What the isosurface is in one tetrahedron, by which of its four nodes are solid.
+/// The triangles of the isosurface in one tetrahedron.
 struct Piece {
     std::uint8_t triangles = 0;  // 0, 1 or 2
     std::array<Edge, 6> edges{};
@@ -130,8 +130,8 @@ Vec3 node_position(int node) {
     return at;
 }
 
-/// Mean values as every cell that shares the node computes them, bit for bit: a sum in the order of
-/// the face's corners, whichever side it is seen from.
+/// Values of the nodes. All cells that share a node compute the same bits, because they add the
+/// face's corners in the same order from both sides.
 std::array<double, node_count> node_values(const CellSamples& f) {
     std::array<double, node_count> value;
     for (int corner = 0; corner < 8; ++corner) value[corner] = f[corner];
@@ -148,8 +148,8 @@ std::array<double, node_count> node_values(const CellSamples& f) {
 
 /// The pass over all cells, x fastest. Of the vertices made so far it keeps those that a later cell
 /// can share: the upper faces of the last cell (x), the last row (y) and the last slab (z). An
-/// entry is read only where the edge is cut, and then the neighbour has written it, so nothing is
-/// cleared.
+/// entry is read only where the edge is cut, and the neighbour has written it then, so entries are
+/// never cleared.
 class Extraction {
   public:
     Extraction(const Field& field, double isovalue, const SampleBox& box,
@@ -293,7 +293,7 @@ SurfaceMesh extract_surface(const Field& field, double isovalue, const SurfaceOp
 
 double enclosed_volume(const SurfaceMesh& mesh) {
     if (mesh.vertices.empty()) return 0;
-    // Seen from a vertex of the mesh rather than the origin: far-off bodies lose no digits.
+    // Relative to a vertex of the mesh, so that bodies far from the origin lose no digits.
     const Vec3 from = mesh.vertices.front();
     double six_times = 0;
     for (const auto& [a, b, c] : mesh.triangles) {

@@ -13,7 +13,7 @@
 namespace palpate {
 namespace {
 
-/// The thread's stack as deep as a tick may reach, touched so that no page of it is missing later.
+/// Touches the stack as deep as a tick may reach, so that no page of it faults later.
 void touch_stack() {
     std::array<volatile char, std::size_t{128} * 1024> deep;
     for (std::size_t i = 0; i < deep.size(); i += 1024) deep[i] = 0;
@@ -31,8 +31,8 @@ std::string ask_for_priority(int priority) {
 }
 
 std::string ask_for_memory() {
-    // What comes later is not locked: the servo needs none of it, and with a limit on locked memory
-    // every later allocation of the program would fail.
+    // Later allocations are not locked: the servo needs none of them, and with a limit on locked
+    // memory every later allocation of the program would fail.
     if (mlockall(MCL_CURRENT) == 0) return "memory: locked";
     const int error = errno;
     return std::string("memory: not locked (") + std::strerror(error) +

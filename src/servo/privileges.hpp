@@ -1,4 +1,4 @@
-// What an operating system can do for a real-time thread, and what it says when it will not.
+// Asks the operating system for real-time privileges and reports what it granted.
 #pragma once
 
 #include <string>

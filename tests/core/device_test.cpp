@@ -1,4 +1,4 @@
-// Device: from its workspace into the volume.
+// Device: the transform from its workspace into the volume.
 #include "palpate/device.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Editor: undo and redo against a list of copies in one piece.
+// Editor: undo and redo against a list of whole copies.
 #include "palpate/editor.hpp"
 
 #include <gtest/gtest.h>

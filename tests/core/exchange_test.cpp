@@ -1,4 +1,4 @@
-// Values handed over between threads: whole, newest, in order, none twice.
+// Values passed between threads arrive whole, in order and once; or only the newest.
 #include "palpate/exchange.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Force: starting when the wanted force is small, letting go, and coming back.
+// Force: waiting for a small force at the start, release, and start after a release.
 #include <gtest/gtest.h>
 
 #include <limits>

@@ -1,4 +1,4 @@
-// Histograms of durations against sorting.
+// Percentiles of histograms of durations, compared with those of sorted durations.
 #include "palpate/latency.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Penetrability: what holds in every tick of any hand, and which settings are refused.
+// Penetrability: properties of every tick for random hands, and settings that are refused.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -6,7 +6,7 @@
 #include "palpate/scenes/volumes.hpp"
 #include "support/constants.hpp"
 #include "support/hand.hpp"
-#include "support/stroke.hpp"
+#include "support/press.hpp"
 
 using namespace palpate;
 using namespace palpate::support;
@@ -28,21 +28,21 @@ bool allowed(const Penetrability& p, double level) {
 }
 
 /// One tick, checked: G1 on the way up to the press, G1 and G2 for the level felt at the end.
-void check_tick(Stroke& stroke, const Vec3& hip, double threshold, Met& met) {
-    const Field& field = stroke.field;
-    const double level_before = stroke.proxy.isovalue;
-    const ProxyUpdate update = stroke.to(hip);
+void check_tick(Press& press, const Vec3& hip, double threshold, Met& met) {
+    const Field& field = press.field;
+    const double level_before = press.proxy.isovalue;
+    const ProxyUpdate update = press.to(hip);
     const auto excess = [&](const Vec3& p, double level) {
         return field.sign() * (value_at(field, p) - level) / field.range();
     };
     ASSERT_EQ(update.status, UpdateStatus::done);
     ASSERT_TRUE(update.scp.allFinite() && std::isfinite(update.density));
     ASSERT_FALSE(std::isnan(update.isovalue));
-    ASSERT_EQ(update.isovalue, stroke.proxy.isovalue);
-    ASSERT_EQ(update.mode, stroke.proxy.mode);
-    ASSERT_EQ(update.scp, stroke.proxy.scp_physical);
+    ASSERT_EQ(update.isovalue, press.proxy.isovalue);
+    ASSERT_EQ(update.mode, press.proxy.mode);
+    ASSERT_EQ(update.scp, press.proxy.scp_physical);
     bool pressed = false;
-    for (const Step& step : stroke.path) {
+    for (const Step& step : press.path) {
         pressed |= step.kind == StepKind::press;
         if (step.kind == StepKind::press || step.kind == StepKind::place ||
             step.kind == StepKind::recover || step.kind == StepKind::goal) {
@@ -51,29 +51,29 @@ void check_tick(Stroke& stroke, const Vec3& hip, double threshold, Met& met) {
         ASSERT_LE(excess(step.point, level_before), 1e-9) << "G1 before the surface gave way";
     }
     ASSERT_LE(excess(update.scp, update.isovalue), 1e-9) << "G1 for the level felt";
-    ASSERT_LE(pull_of(update) * stroke.device_per_volume, threshold * (1 + 1e-12));
+    ASSERT_LE(pull_of(update) * press.device_per_volume, threshold * (1 + 1e-12));
     if (update.mode == Mode::constrained) {
         ASSERT_LE(std::abs(excess(update.scp, update.isovalue)), 1e-9) << "G2 for the level felt";
-        ASSERT_TRUE(allowed(stroke.penetrability, update.isovalue)) << update.isovalue;
+        ASSERT_TRUE(allowed(press.penetrability, update.isovalue)) << update.isovalue;
     } else if (!pressed) {
         ASSERT_EQ(update.scp, update.hip);
     }
     met.constrained += update.mode == Mode::constrained;
     met.presses += pressed;
-    met.gaps += update.mode == Mode::free && update.isovalue != stroke.penetrability.ranges[0].low;
+    met.gaps += update.mode == Mode::free && update.isovalue != press.penetrability.ranges[0].low;
     met.followed_out += update.mode == Mode::constrained && !pressed &&
                         field.sign() * update.isovalue < field.sign() * level_before;
 }
 
 Met run(const Field& field, const Penetrability& p, std::uint64_t seed, double scale = 1) {
-    Stroke stroke(field, p.ranges[0].low, p);
-    stroke.device_per_volume = 1 / scale;
+    Press press(field, p.ranges[0].low, p);
+    press.device_per_volume = 1 / scale;
     Hand hand(field.geometry(), seed);
     Met met;
-    stroke.to(hand.next());
+    press.to(hand.next());
     for (int i = 0; i < ticks; ++i) {
         SCOPED_TRACE("seed " + std::to_string(seed) + " tick " + std::to_string(i));
-        check_tick(stroke, hand.next(), p.threshold, met);
+        check_tick(press, hand.next(), p.threshold, met);
         if (testing::Test::HasFatalFailure()) break;
     }
     EXPECT_GT(met.constrained, ticks / 20);
@@ -128,8 +128,8 @@ TEST(Penetrability, dark_bodies_on_bright_feel_as_bright_ones_on_dark) {
         Solid::below);
     const std::array<DensityRange, 2> ranges{{{1000, 1500}, {1800, 2500}}};
     const std::array<DensityRange, 2> mirrored{{{-1500, -1000}, {-2500, -1800}}};
-    Stroke above(bright, 1000, penetrability_ranges(0.4, ranges));
-    Stroke below(dark, -1000, penetrability_ranges(0.4, mirrored, Solid::below));
+    Press above(bright, 1000, penetrability_ranges(0.4, ranges));
+    Press below(dark, -1000, penetrability_ranges(0.4, mirrored, Solid::below));
     Hand hand(geometry, 32);
     int constrained = 0;
     for (int i = 0; i < ticks / 4; ++i) {
@@ -145,9 +145,9 @@ TEST(Penetrability, dark_bodies_on_bright_feel_as_bright_ones_on_dark) {
 }
 
 TEST(Penetrability, a_minimum_for_dark_bodies_is_a_maximum) {
-    Stroke stroke(ramp_field(Solid::below), -30, penetrability_threshold(2, -10, Solid::below));
+    Press press(ramp_field(Solid::below), -30, penetrability_threshold(2, -10, Solid::below));
     for (double z = -5; z < 60; z += 0.05) {
-        const ProxyUpdate update = stroke.to(at_depth(z));
+        const ProxyUpdate update = press.to(at_depth(z));
         ASSERT_NEAR(update.isovalue, -std::max(10.0, z - 2), 1e-9) << z;
     }
 }

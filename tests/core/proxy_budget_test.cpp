@@ -70,7 +70,7 @@ TEST(Proxy, keeps_its_guarantees_under_small_budgets) {
 TEST(Proxy, out_of_budget_goes_on_in_later_updates_and_ends_where_a_large_budget_does) {
     const TestField test = noise_field();
     for (const int budget : {1, 3, 10}) {
-        Hand hand(test.field.geometry(), 33, {.slide = 0, .stroke = 1, .jump = 3, .lattice = 0});
+        Hand hand(test.field.geometry(), 33, {.slide = 0, .sweep = 1, .jump = 3, .lattice = 0});
         Proxy proxy;
         ASSERT_TRUE(place(proxy, test.field, hand.next(), test.isovalue));
         int split = 0;

@@ -1,4 +1,4 @@
-// Proxy: the guarantees G1-G5 of exact descent on fields that are as unkind as fields get.
+// Proxy: the guarantees G1-G5 of exact descent on difficult fields.
 #include <gtest/gtest.h>
 
 #include "support/fields.hpp"
@@ -51,11 +51,11 @@ TEST(Proxy, keeps_its_guarantees_on_salt) {
     expect_substantial(run(salt_field(), update_exact, 12, updates));
 }
 TEST(Proxy, keeps_its_guarantees_on_a_lace_thinner_than_a_voxel) {
-    const HandStyle strokes{.slide = 4, .stroke = 6, .margin = -2};
-    expect_substantial(run(shell_field(), update_exact, 13, updates, strokes), 0.05);
+    const HandStyle sweeps{.slide = 4, .sweep = 6, .margin = -2};
+    expect_substantial(run(shell_field(), update_exact, 13, updates, sweeps), 0.05);
 }
 TEST(Proxy, keeps_its_guarantees_on_a_grid_aligned_box) {
-    const HandStyle degenerate{.slide = 2, .stroke = 1, .jump = 1, .lattice = 6, .margin = -3};
+    const HandStyle degenerate{.slide = 2, .sweep = 1, .jump = 1, .lattice = 6, .margin = -3};
     const Tally t = run(box_field(), update_exact, 14, updates, degenerate);
     expect_substantial(t);
     EXPECT_GT(t.on_vertex, t.updates / 100);
@@ -84,7 +84,7 @@ TEST(Proxy, never_passes_a_sheet_an_eighth_of_a_voxel_thin_at_3_metres_a_second)
     const auto is_within = [](const Vec3& p) { return ((p.array() - 11).abs() < 6).all(); };
     for (const bool within : {true, false}) {
         Guarantees checked(test.field, update_exact);
-        Hand hand(test.field.geometry(), 21, {.slide = 1, .stroke = 8, .margin = 6});
+        Hand hand(test.field.geometry(), 21, {.slide = 1, .sweep = 8, .margin = 6});
         Proxy proxy;
         ASSERT_TRUE(place(proxy, test.field, Vec3::Constant(within ? 11 : -3), test.isovalue));
         int hip_beyond = 0;

@@ -1,4 +1,4 @@
-// Renderer: the effects as the hand meets them through render(), and what a servo loop relies on.
+// Renderer: the force effects through render(), and properties that a servo loop relies on.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,7 +8,7 @@
 #include "support/allocation_counter.hpp"
 #include "support/constants.hpp"
 #include "support/hand.hpp"
-#include "support/stroke.hpp"
+#include "support/press.hpp"
 
 using namespace palpate;
 using namespace palpate::support;

@@ -7,7 +7,7 @@
 
 #include "support/constants.hpp"
 #include "support/hand.hpp"
-#include "support/stroke.hpp"
+#include "support/press.hpp"
 
 using namespace palpate;
 using namespace palpate::support;

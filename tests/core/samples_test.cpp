@@ -1,5 +1,5 @@
-// Samples: versions with bricks are what they say to whoever looks through a field, cell by cell,
-// and share what did not change.
+// Samples: a field reads versions with bricks correctly, cell by cell; versions share what did not
+// change.
 #include "palpate/samples.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// Servo: it keeps the smaller of the settings and of what the device declares, from the start, by
-// command, and for a device that learns its limits when it connects.
+// Servo: keeps the smaller of the settings and of the device's declared limits, at the start, for
+// commands, and for a device that learns its limits when it connects.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,8 +8,8 @@
 
 #include "palpate/servo.hpp"
 #include "support/eventually.hpp"
+#include "support/press.hpp"
 #include "support/scripted_device.hpp"
-#include "support/stroke.hpp"
 
 using namespace palpate;
 using namespace palpate::support;
@@ -18,7 +18,7 @@ namespace {
 
 constexpr double rounding = 1 + 1e-12;
 
-/// An application that counts on a device of 20 N and forgets to ask what it has.
+/// Settings of an application that assumes a device of 20 N and does not copy the device's limits.
 RendererSettings careless() {
     RendererSettings settings;
     settings.device.maximum_force = 20;
@@ -37,13 +37,13 @@ DeviceReading press(double time) {
     return ready_at(at_depth(28 + std::min(7.0, 100 * time)));
 }
 
-/// Everything that a servo did, from the queue it recorded into.
+/// Ticks and limits from a recorder's queue.
 struct Recorded {
     std::vector<SessionTick> ticks;
     std::vector<DeviceLimits> limits;
     std::size_t ticks_before_limits = 0;
 
-    /// Renders it again from `begin`, which has to give the same bits.
+    /// Renders the ticks again from `begin`, which has to give the same bits.
     Recorded(Queue<SessionEvent>& queue, Session begin) {
         while (const auto event = queue.pop()) {
             if (const auto* command = std::get_if<Command>(&*event)) {
@@ -84,7 +84,7 @@ TEST(ServoLimits, a_device_for_1_newton_gets_no_more_whatever_is_asked) {
     ASSERT_TRUE(comes_true([&] { return servo.report().ticks > then + 200; }));
     servo.stop();
     EXPECT_LE(device.largest_force(), rounding);
-    // The recording has the limits, so that it comes out the same from the session as it was given.
+    // The recording has the limits, so that it replays from the session as the application gave it.
     const Recorded recorded(queue, session_of(careless()));
     EXPECT_EQ(recorded.ticks_before_limits, 0U);
     EXPECT_EQ(recorded.limits.size(), 2U);
@@ -137,14 +137,14 @@ TEST(ServoLimits, limits_that_a_device_learns_when_it_connects_hold_from_that_ti
     Servo servo(session_of(careless()), device, {.recorder = &queue});
     servo.start();
     ASSERT_TRUE(comes_true([&] { return servo.snapshot() && servo.snapshot()->stiffness < 2; }));
-    // It passes the check of the session as it began, and is lowered where it is carried out.
+    // The command passes the check, which knows the first limits only, and is lowered when applied.
     EXPECT_TRUE(servo.send(careless().force));
     const std::int64_t then = servo.report().ticks;
     ASSERT_TRUE(comes_true([&] { return servo.report().ticks > then + 100; }));
     servo.stop();
     EXPECT_NEAR(servo.session().renderer.settings.force.stiffness, 1.25, 1e-6);
     const Recorded recorded(queue, session_of(careless()));
-    ASSERT_EQ(recorded.limits.size(), 1U);  // not with every reading
+    ASSERT_EQ(recorded.limits.size(), 1U);  // once, not with every reading
     EXPECT_EQ(recorded.limits[0], learned);
     EXPECT_GT(recorded.ticks_before_limits, 10U);
     EXPECT_LE(recorded.largest_force(recorded.ticks_before_limits), rounding);

@@ -1,5 +1,5 @@
-// Servo: the loop on its own thread, commands in, snapshots and recordings out, forces zero when
-// anything is wrong. No wall-clock maximum is asserted: the machine may stall.
+// Servo: the loop on its thread, commands, snapshots, recordings, and zero force after failures.
+// Asserts no wall-clock maximum, because the machine may stall.
 #include "palpate/servo.hpp"
 
 #include <gtest/gtest.h>
@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "support/eventually.hpp"
+#include "support/press.hpp"
 #include "support/scripted_device.hpp"
-#include "support/stroke.hpp"
 
 using namespace palpate;
 using namespace palpate::support;

@@ -1,4 +1,4 @@
-// Session: which input counts, freeze, clutch, scale, dead-man, commands.
+// Session: input that counts, freeze, clutch, scale, dead-man switch, commands.
 #include "palpate/session.hpp"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 
 #include "support/allocation_counter.hpp"
 #include "support/constants.hpp"
-#include "support/stroke.hpp"
+#include "support/press.hpp"
 
 using namespace palpate;
 using namespace palpate::support;
@@ -315,8 +315,8 @@ TEST(Session, a_tick_that_came_too_late_has_no_force_and_the_next_starts_anew) {
     EXPECT_LT(live.force(), 0.01);
 }
 
-/// A random life: readings good and bad, buttons, all kinds of commands.
-struct RandomLife {
+/// Random input: readings good and bad, buttons, all kinds of commands.
+struct RandomInput {
     Random random;
     Vec3 hand = at_depth(28);
     std::int64_t good = 0, bad = 0, commands = 0;
@@ -359,13 +359,13 @@ struct RandomLife {
     }
 };
 
-TEST(Session, forces_stay_within_limit_and_rate_through_a_random_life) {
+TEST(Session, forces_stay_within_limit_and_rate_on_random_input) {
     Live live({}, {.clutch_buttons = 1, .deadman_buttons = 0});
-    RandomLife life{Random(11)};
+    RandomInput input{Random(11)};
     Vec3 last = Vec3::Zero();
     std::int64_t felt = 0;
     for (int i = 0; i < 100'000; ++i) {
-        life.step(live);
+        input.step(live);
         live.next();
         const Vec3& force = live.last.tick.force;
         ASSERT_TRUE(force.allFinite());
@@ -376,19 +376,19 @@ TEST(Session, forces_stay_within_limit_and_rate_through_a_random_life) {
         felt += !force.isZero(0);
     }
     EXPECT_GT(felt, 5'000);
-    EXPECT_GT(life.bad, 500);
-    EXPECT_GT(life.commands, 1000);
+    EXPECT_GT(input.bad, 500);
+    EXPECT_GT(input.commands, 1000);
 }
 
 TEST(Session, copies_go_on_alike_bit_for_bit) {
     Live one({}, {.clutch_buttons = 1, .deadman_buttons = 0});
-    RandomLife first{Random(5)};
+    RandomInput first{Random(5)};
     for (int i = 0; i < 2000; ++i) {
         first.step(one);
         one.next();
     }
     Live two = one;
-    RandomLife second = first;
+    RandomInput second = first;
     for (int i = 0; i < 5000; ++i) {
         first.step(one);
         second.step(two);
@@ -402,12 +402,12 @@ TEST(Session, copies_go_on_alike_bit_for_bit) {
 
 TEST(Session, neither_ticks_nor_commands_allocate) {
     Live live({}, {.clutch_buttons = 1, .deadman_buttons = 0});
-    RandomLife life{Random(7)};
-    life.step(live);
+    RandomInput input{Random(7)};
+    input.step(live);
     live.next();
     const std::int64_t before = allocation_count();
     for (int i = 0; i < 20'000; ++i) {
-        life.step(live);
+        input.step(live);
         live.next();
     }
     EXPECT_EQ(allocation_count(), before);

@@ -1,5 +1,4 @@
-// The isosurface as a mesh: closed and oriented whatever the data, on the isosurface, round the
-// solid and nothing else.
+// Surface: closed and oriented for any data, on the isosurface, around the solid only.
 #include "palpate/surface.hpp"
 
 #include <gtest/gtest.h>

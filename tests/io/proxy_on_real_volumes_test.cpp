@@ -30,7 +30,7 @@ TEST_P(ProxyOnRealVolumes, keeps_its_guarantees) {
     if (!std::filesystem::exists(path)) GTEST_SKIP() << scan.file << " is not here";
     const Field field(io::read_volume(path).volume, scan.solid);
     // Little outside, much sliding, and strokes and jumps through everything.
-    Hand hand(field.geometry(), 5, {.slide = 8, .stroke = 3, .jump = 1, .margin = -1});
+    Hand hand(field.geometry(), 5, {.slide = 8, .sweep = 3, .jump = 1, .margin = -1});
     Guarantees checked(field, &update_exact);
     Proxy proxy;
     proxy.isovalue = scan.isovalue;

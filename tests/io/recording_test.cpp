@@ -12,9 +12,9 @@
 #include <limits>
 #include <thread>
 
+#include "support/press.hpp"
 #include "support/random.hpp"
 #include "support/scratch_folder.hpp"
-#include "support/stroke.hpp"
 
 using namespace palpate;
 using namespace palpate::support;

@@ -1,5 +1,5 @@
-// Counts what the program asks of the heap. Link allocation_counter.cpp, once a program: it
-// replaces the global operators new and delete.
+// Counts heap allocations. Link allocation_counter.cpp once per program; it replaces the global
+// operators new and delete.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Numbers that many tests write down.
+// Constants that many tests use.
 #pragma once
 
 #include <limits>

@@ -1,4 +1,4 @@
-// Waiting for what other threads and programs do.
+// Waits until a condition that other threads or programs cause becomes true.
 #pragma once
 
 #include <chrono>

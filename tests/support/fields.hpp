@@ -1,4 +1,4 @@
-// The fields on which the proxy must keep its guarantees: white noise, salt, sheets thinner than a
+// Fields on which the proxy must keep its guarantees: white noise, salt, sheets thinner than a
 // voxel, grid-aligned boxes, anisotropic and oblique grids, smooth ones, and all four sample types.
 #pragma once
 

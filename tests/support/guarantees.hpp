@@ -1,6 +1,6 @@
 // The checker of the proxy's guarantees G1-G5 (palpate/proxy.hpp): runs updates and verifies each
-// one from the outside, by values of the field along the whole path. Counts what it has met, so
-// that a test can show it did not pass idly.
+// one from the outside, by values of the field along the whole path. Counts the cases met, so that
+// a test can show that it covered them.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// A seeded hand: HIP sequences that mix slow sliding, 3 m/s strokes, jumps across the volume, rest,
+// A seeded hand: HIP sequences that mix slow sliding, 3 m/s sweeps, jumps across the volume, rest,
 // and motions along axes and diagonals on half-integer coordinates, where every case is degenerate.
 #pragma once
 
@@ -7,10 +7,10 @@
 
 namespace palpate::support {
 
-/// How the hand moves: weights of the ways it may choose for its next stroke.
+/// How the hand moves: weights of the motions that it chooses from.
 struct HandStyle {
     int slide = 4;      ///< 0.02 .. 0.2 voxel a tick, slowly turning
-    int stroke = 2;     ///< 3 mm a tick: 3 m/s
+    int sweep = 2;      ///< 3 mm a tick: 3 m/s
     int jump = 2;       ///< anywhere in the volume and 3 voxels around, every tick
     int rest = 1;       ///< the same HIP again
     int lattice = 1;    ///< half-integer coordinates, steps of 1/2 along axes and diagonals
@@ -27,21 +27,21 @@ class Hand {
     /// The next HIP [mm, physical].
     Vec3 next() {
         if (--left_ <= 0) choose();
-        switch (way_) {
-            case Way::slide:
+        switch (motion_) {
+            case Motion::slide:
                 velocity_ += 0.1 * velocity_.norm() * random_.direction();
                 velocity_ *= speed_ / velocity_.norm();
                 index_ += velocity_;
                 break;
-            case Way::stroke:
+            case Motion::sweep:
                 index_ += velocity_.cwiseQuotient(geometry_.spacing);
                 break;
-            case Way::jump:
+            case Motion::jump:
                 index_ = anywhere();
                 break;
-            case Way::rest:
+            case Motion::rest:
                 break;
-            case Way::lattice:
+            case Motion::lattice:
                 index_ += velocity_;
                 break;
         }
@@ -50,7 +50,7 @@ class Hand {
     }
 
   private:
-    enum class Way { slide, stroke, jump, rest, lattice };
+    enum class Motion { slide, sweep, jump, rest, lattice };
 
     Vec3 anywhere() {
         Vec3 p;
@@ -62,23 +62,23 @@ class Hand {
 
     void choose() {
         left_ = 1 + random_.below(60);
-        const int sum = style_.slide + style_.stroke + style_.jump + style_.rest + style_.lattice;
+        const int sum = style_.slide + style_.sweep + style_.jump + style_.rest + style_.lattice;
         int pick = random_.below(sum);
         if ((pick -= style_.slide) < 0) {
-            way_ = Way::slide;
+            motion_ = Motion::slide;
             speed_ = random_.uniform(0.02, 0.2);
             velocity_ = speed_ * random_.direction();
-        } else if ((pick -= style_.stroke) < 0) {
-            way_ = Way::stroke;
+        } else if ((pick -= style_.sweep) < 0) {
+            motion_ = Motion::sweep;
             velocity_ = 3 * random_.direction();
         } else if ((pick -= style_.jump) < 0) {
-            way_ = Way::jump;
+            motion_ = Motion::jump;
             left_ = 1 + random_.below(6);
         } else if ((pick -= style_.rest) < 0) {
-            way_ = Way::rest;
+            motion_ = Motion::rest;
             left_ = 1 + random_.below(4);
         } else {
-            way_ = Way::lattice;
+            motion_ = Motion::lattice;
             index_ = (2 * index_).array().round() / 2;
             do {
                 for (double& v : velocity_) v = 0.5 * (random_.below(3) - 1);
@@ -101,7 +101,7 @@ class Hand {
     Vec3 index_;
     Vec3 velocity_ = Vec3::UnitX();
     double speed_ = 0.1;
-    Way way_ = Way::rest;
+    Motion motion_ = Motion::rest;
     int left_ = 0;
 };
 

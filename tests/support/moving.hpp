@@ -1,5 +1,5 @@
-// A hand in a field that moves, and what must hold in every tick of it: the SCP is free in the
-// field of the tick, and the force keeps its limit and its rate.
+// A hand in a moving field, and checks for every tick: the SCP is free in the field of the tick,
+// and the force keeps its limit and its rate.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// A PNG read with libpng, which shares no code with what writes ours.
+// Reads a PNG with libpng, which shares no code with the writer under test.
 #pragma once
 
 #include <gtest/gtest.h>

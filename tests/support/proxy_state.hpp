@@ -1,4 +1,4 @@
-// Bits of proxies and results: what "nothing changed" and "the same bit for bit" mean, and a hash.
+// Compares proxies and results bit for bit, and hashes them.
 #pragma once
 
 #include <bit>

@@ -1,5 +1,5 @@
 // Seeded random input for tests: the raw output of mt19937_64 (the same with every library) mapped
-// by hand, never through a std distribution, so that golden results stay what they are.
+// without std distributions, so that golden results are the same everywhere.
 #pragma once
 
 #include <cmath>

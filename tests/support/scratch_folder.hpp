@@ -1,4 +1,4 @@
-// A folder of its own for a test, gone afterwards; and what is in it.
+// A temporary folder for a test, and functions for the files in it.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// A device whose hand moves by a function of time and whose forces are remembered: for tests of
-// what drives devices. It can be told to misbehave.
+// A device for tests: its readings are a function of time, its forces are stored, and its limits
+// can be chosen.
 #pragma once
 
 #include <array>

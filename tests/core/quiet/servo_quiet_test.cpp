@@ -1,4 +1,4 @@
-// Rule 2: the servo thread, once started, does not allocate, lock, do I/O or throw.
+// Rule 2: the running servo thread does not allocate, lock, do I/O or throw.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -57,7 +57,7 @@ TEST(SystemWatch, sees_locks_exceptions_and_files) {
     EXPECT_EQ(watched([] { std::this_thread::sleep_for(1ms); }).calls, 0);
 }
 
-/// The motion `explore` over a volume, round and round, and the watch on who reads it.
+/// A hand that repeats the motion `explore` over a volume, and watches the thread that reads it.
 struct ExploringHand {
     std::vector<scenes::HandSample> samples;
     std::atomic<std::int64_t> reads{0};
@@ -81,7 +81,7 @@ struct ExploringHand {
     }
 };
 
-/// A viewer, a recorder and someone at the panel.
+/// Threads that observe, record and send commands.
 struct Company {
     std::atomic<bool> done{false};
     std::atomic<std::int64_t> seen{0}, recorded{0}, sent{0};
@@ -158,21 +158,21 @@ TEST(Servo, thread_does_not_allocate_lock_call_the_system_or_throw_in_100000_tic
     EXPECT_EQ(count.locks, before.locks);
     EXPECT_EQ(count.exceptions, before.exceptions);
     EXPECT_EQ(count.calls, before.calls) << "the last one: " << count.last_call;
-    // The life was a busy one.
+    // All of this happened.
     EXPECT_GT(device.largest_force(), 0.5);
     EXPECT_GT(company.seen, 1000);
     EXPECT_GT(company.recorded, wanted / 2);
     EXPECT_GT(company.sent, 100);
 }
 
-/// Someone who edits, and an application that pushes frames: 100 and 50 times a second of a loop at
-/// 1 kHz, so 8 times as often here. Nothing of what they send is kept by them.
-struct LivingCompany {
+/// Threads that edit and that push frames: for a loop at 1 kHz 100 and 50 times a second, so 8
+/// times as often here. They keep nothing of what they send.
+struct DataCompany {
     std::atomic<bool> done{false};
     std::atomic<std::int64_t> edits{0}, pushes{0}, refused{0};
     std::vector<std::jthread> threads;
 
-    LivingCompany(Servo& servo, const Field& field, double isovalue) {
+    DataCompany(Servo& servo, const Field& field, double isovalue) {
         threads.emplace_back([&, field, isovalue] {
             Editor editor(field.shared_samples(), 1 << 20);
             for (std::uint64_t i = 0; !done; ++i) {
@@ -191,7 +191,7 @@ struct LivingCompany {
         });
         threads.emplace_back([&, field] {
             for (std::uint64_t i = 0; !done; ++i) {
-                // Memory of its own each time: the last one who holds it must not be the servo.
+                // New memory each time: the servo must not be the last to hold it.
                 Volume next = smoothed(field.volume());
                 Volume first = flattened(Samples(std::move(next)));
                 send(servo, {std::make_shared<const Samples>(
@@ -224,10 +224,10 @@ TEST(Servo, thread_neither_allocates_nor_frees_nor_locks_while_samples_are_edite
     RendererSettings settings;
     settings.device.rate = 8000;
     settings.force.ramp = 0;
-    Queue<SessionEvent> recorder(1024);  // soon full: what finds no room is freed by nobody here
+    Queue<SessionEvent> recorder(1024);  // soon full: events that are lost must free nothing
     Servo servo(Session{make_renderer(field, scene.isovalue, settings), {}}, device,
                 {.rate = 8000, .recorder = &recorder});
-    LivingCompany company(servo, field, scene.isovalue);
+    DataCompany company(servo, field, scene.isovalue);
     const SystemCount before = system_count();
     servo.start();
     const auto begin = std::chrono::steady_clock::now();

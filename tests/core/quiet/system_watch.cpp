@@ -1,5 +1,5 @@
-// Takes the place of pthread_mutex_lock, pthread_cond_wait and __cxa_throw in this program; the
-// kernel's filter catches the rest.
+// Replaces pthread_mutex_lock, pthread_cond_wait and __cxa_throw in this program; a kernel filter
+// catches system calls.
 #include "core/quiet/system_watch.hpp"
 
 #include <dlfcn.h>

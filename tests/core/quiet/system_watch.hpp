@@ -1,13 +1,13 @@
-// Watches what one thread asks of the system: locks, exceptions, and system calls of any kind.
+// Watches one thread for locks, exceptions and system calls.
 #pragma once
 
 #include <cstdint>
 
 namespace palpate::support {
 
-/// From here on the calling thread is watched. System calls other than sleeping and reading clocks
-/// are caught (seccomp), counted, and fail; where the kernel does not allow that, returns false and
-/// only locks and exceptions are counted. Not for sanitizers, which have system calls of their own.
+/// Watches the calling thread from now on. System calls other than sleeping and reading clocks are
+/// caught (seccomp), counted, and fail. If the kernel does not allow that, returns false and counts
+/// only locks and exceptions. Not for sanitizers, which make system calls of their own.
 bool watch_this_thread();
 /// Ends the count of locks and exceptions; system calls stay watched.
 void end_watch();

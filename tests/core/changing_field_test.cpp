@@ -1,4 +1,4 @@
-// Time: where a moment lies between frames, and the field there.
+// Field: moments between the frames of a sequence, and the field at them.
 #include <gtest/gtest.h>
 
 #include "palpate/field.hpp"
@@ -94,7 +94,7 @@ TEST(Moment, of_one_frame_is_that_frame) {
     for (const double t : {0.0, 3.0, 1e9, not_a_number}) expect_moment(*s, t, 0, 0, 0);
 }
 
-TEST(LivingField, between_two_frames_each_sample_of_a_cell_lies_between_theirs) {
+TEST(ChangingField, between_two_frames_each_sample_of_a_cell_lies_between_theirs) {
     std::int64_t between = 0;
     for (const SampleType type :
          {SampleType::uint8, SampleType::int16, SampleType::uint16, SampleType::float32}) {
@@ -137,7 +137,7 @@ TEST(LivingField, between_two_frames_each_sample_of_a_cell_lies_between_theirs) 
     EXPECT_EQ(between, 4 * 5);
 }
 
-TEST(LivingField, takes_another_version_and_keeps_background_side_and_time) {
+TEST(ChangingField, takes_another_version_and_keeps_background_side_and_time) {
     const auto first = noise_sequence(SampleType::int16, {0, 1, 2});
     const auto second = noise_sequence(SampleType::int16, {0.5, 1.5});
     Field field(first, Solid::below);
@@ -154,7 +154,7 @@ TEST(LivingField, takes_another_version_and_keeps_background_side_and_time) {
     EXPECT_NE(field.cell({2, 2, 2}), copy.cell({2, 2, 2}));
 }
 
-TEST(LivingField, range_and_tolerance_cover_edits_and_frames) {
+TEST(ChangingField, range_and_tolerance_cover_edits_and_frames) {
     const auto plain =
         samples_of(volume_of<float>(grid(cube(5)), [](const Index3& i) { return i[0]; }));
     Field field(plain, Solid::above, 0);

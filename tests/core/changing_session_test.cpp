@@ -1,4 +1,4 @@
-// Session: samples that are exchanged and sequences that play, by the times of the ticks.
+// Session: exchanged samples, and sequences that play by the times of the ticks.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -26,19 +26,19 @@ std::shared_ptr<const Samples> swinging(double period = 0) {
         period);
 }
 
-struct LivingSession {
+struct ChangingSession {
     Session session;
     double time = 0;
     DeviceReading reading = ready_at({4.2, 3.9, 40});
 
-    explicit LivingSession(std::shared_ptr<const Samples> samples)
+    explicit ChangingSession(std::shared_ptr<const Samples> samples)
         : session{make_renderer(Field(std::move(samples)), 30), {}} {}
     SessionTick next(double dt = 1e-3) { return advance(session, time += dt, reading); }
     double moment() const { return session.renderer.field.time(); }
 };
 
-TEST(LivingSession, plays_a_sequence_by_the_times_of_the_ticks) {
-    LivingSession live(swinging());
+TEST(ChangingSession, plays_a_sequence_by_the_times_of_the_ticks) {
+    ChangingSession live(swinging());
     Random random(1);
     live.next();
     EXPECT_EQ(live.next().moment, 0);  // stands still until it is played
@@ -55,8 +55,8 @@ TEST(LivingSession, plays_a_sequence_by_the_times_of_the_ticks) {
     }
 }
 
-TEST(LivingSession, a_sequence_stops_at_its_ends_and_goes_on_backwards) {
-    LivingSession live(swinging());
+TEST(ChangingSession, a_sequence_stops_at_its_ends_and_goes_on_backwards) {
+    ChangingSession live(swinging());
     live.next();
     apply(live.session, command::Speed{100});
     for (int i = 0; i < 50; ++i) live.next();
@@ -69,9 +69,9 @@ TEST(LivingSession, a_sequence_stops_at_its_ends_and_goes_on_backwards) {
     EXPECT_EQ(live.moment(), 0);
 }
 
-TEST(LivingSession, a_sequence_with_a_period_goes_round_both_ways) {
+TEST(ChangingSession, a_sequence_with_a_period_goes_round_both_ways) {
     for (const double speed : {1.0, -1.0}) {
-        LivingSession live(swinging(3));
+        ChangingSession live(swinging(3));
         live.next();
         apply(live.session, command::Speed{speed});
         double highest = -1e9, lowest = 1e9;
@@ -89,8 +89,8 @@ TEST(LivingSession, a_sequence_with_a_period_goes_round_both_ways) {
     }
 }
 
-TEST(LivingSession, goes_to_a_moment_and_stays_or_plays_on) {
-    LivingSession live(swinging());
+TEST(ChangingSession, goes_to_a_moment_and_stays_or_plays_on) {
+    ChangingSession live(swinging());
     live.next();
     apply(live.session, command::Moment{1.5});
     EXPECT_EQ(live.next().moment, 1.5);
@@ -102,8 +102,8 @@ TEST(LivingSession, goes_to_a_moment_and_stays_or_plays_on) {
     EXPECT_NEAR(live.next().moment, 0.251, 1e-12);
 }
 
-TEST(LivingSession, other_samples_take_effect_in_the_next_tick_and_keep_the_time) {
-    LivingSession live(swinging());
+TEST(ChangingSession, other_samples_take_effect_in_the_next_tick_and_keep_the_time) {
+    ChangingSession live(swinging());
     live.next();
     apply(live.session, command::Moment{1.5});
     live.next();
@@ -118,8 +118,8 @@ TEST(LivingSession, other_samples_take_effect_in_the_next_tick_and_keep_the_time
     EXPECT_NEAR(tick.tick.proxy.scp[2], 25, 1e-4);
 }
 
-TEST(LivingSession, ticks_whose_time_is_broken_play_nothing) {
-    LivingSession live(swinging());
+TEST(ChangingSession, ticks_whose_time_is_broken_play_nothing) {
+    ChangingSession live(swinging());
     live.next();
     apply(live.session, command::Speed{1});
     live.next();
@@ -132,7 +132,7 @@ TEST(LivingSession, ticks_whose_time_is_broken_play_nothing) {
     EXPECT_GE(live.moment(), before);
 }
 
-TEST(LivingSession, samples_and_moments_that_are_none_are_refused) {
+TEST(ChangingSession, samples_and_moments_that_are_none_are_refused) {
     const RendererSettings settings;
     const auto refused = [&](const Command& command) {
         EXPECT_THROW(check(command, settings, Solid::above), std::invalid_argument);
@@ -151,11 +151,11 @@ TEST(LivingSession, samples_and_moments_that_are_none_are_refused) {
 }
 
 /// Everything that makes samples change, at random.
-struct LivingHand {
+struct ChangingHand {
     Random random{5};
     std::vector<std::shared_ptr<const Samples>> versions;
 
-    LivingHand() {
+    ChangingHand() {
         auto edits = samples_of(shifted_ramp(0));
         for (int i = 0; i < 20; ++i) {
             versions.push_back(edits);
@@ -167,7 +167,7 @@ struct LivingHand {
         versions.push_back(swinging());
         versions.push_back(swinging(2.5));
     }
-    void step(LivingSession& live) {
+    void step(ChangingSession& live) {
         live.reading.position = {random.uniform(3, 5), random.uniform(3, 5),
                                  31 + 3 * std::sin(30 * live.time)};
         if (random.chance(0.1)) {
@@ -179,15 +179,15 @@ struct LivingHand {
     }
 };
 
-TEST(LivingSession, copies_go_on_alike_bit_for_bit) {
-    LivingHand hand;
-    LivingSession one(hand.versions.front());
+TEST(ChangingSession, copies_go_on_alike_bit_for_bit) {
+    ChangingHand hand;
+    ChangingSession one(hand.versions.front());
     for (int i = 0; i < 1000; ++i) {
         hand.step(one);
         one.next();
     }
-    LivingHand other = hand;
-    LivingSession two = one;
+    ChangingHand other = hand;
+    ChangingSession two = one;
     int felt = 0, played = 0;
     for (int i = 0; i < scaled(20'000); ++i) {
         hand.step(one);
@@ -204,9 +204,9 @@ TEST(LivingSession, copies_go_on_alike_bit_for_bit) {
     EXPECT_GT(played, scaled(100));
 }
 
-TEST(LivingSession, neither_ticks_nor_new_samples_allocate_or_free) {
-    LivingHand hand;
-    LivingSession live(hand.versions.front());
+TEST(ChangingSession, neither_ticks_nor_new_samples_allocate_or_free) {
+    ChangingHand hand;
+    ChangingSession live(hand.versions.front());
     const std::int64_t allocations = allocation_count(), frees = thread_free_count();
     for (int i = 0; i < scaled(20'000); ++i) {
         hand.step(live);

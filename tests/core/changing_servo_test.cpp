@@ -1,5 +1,5 @@
-// Servo: samples that are sent while it runs are felt at once, one version a tick, and are freed
-// away from its thread. No wall-clock maximum is asserted.
+// Servo: samples that are sent while it runs are felt at once, one version per tick, and are freed
+// by other threads. No wall-clock maximum is asserted.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -41,7 +41,7 @@ Session session_of(const std::shared_ptr<const Samples>& samples) {
     return {make_renderer(Field(samples, Solid::above, 0.0), 30), {}};
 }
 
-TEST(LivingServo, an_edit_that_was_sent_is_felt_within_two_ticks) {
+TEST(ChangingServo, an_edit_that_was_sent_is_felt_within_two_ticks) {
     ScriptedDevice device(&slide);
     Queue<SessionEvent> recorder(1 << 16);
     const auto begin = plain_ramp();
@@ -78,7 +78,7 @@ TEST(LivingServo, an_edit_that_was_sent_is_felt_within_two_ticks) {
     EXPECT_EQ(seen, latest.size());
 }
 
-TEST(LivingServo, a_tick_sees_one_version_and_lies_on_its_surface) {
+TEST(ChangingServo, a_tick_sees_one_version_and_lies_on_its_surface) {
     ScriptedDevice device(&slide);
     Queue<SessionEvent> recorder(1 << 17);
     const auto begin = plain_ramp();
@@ -126,7 +126,7 @@ TEST(LivingServo, a_tick_sees_one_version_and_lies_on_its_surface) {
     EXPECT_GT(changes, scaled(100));
 }
 
-TEST(LivingServo, versions_are_freed_once_it_has_gone_on) {
+TEST(ChangingServo, versions_are_freed_once_it_has_gone_on) {
     ScriptedDevice device(&slide);
     Servo servo(session_of(plain_ramp()), device);
     servo.start();
@@ -152,7 +152,7 @@ TEST(LivingServo, versions_are_freed_once_it_has_gone_on) {
     EXPECT_FALSE(sent.back().expired());
 }
 
-TEST(LivingServo, versions_that_were_sent_many_times_are_freed_too) {
+TEST(ChangingServo, versions_that_were_sent_many_times_are_freed_too) {
     ScriptedDevice device(&slide);
     Servo servo(session_of(plain_ramp()), device, {.rate = 4000});
     servo.start();
@@ -179,7 +179,7 @@ TEST(LivingServo, versions_that_were_sent_many_times_are_freed_too) {
     EXPECT_TRUE(gone[1].expired());
 }
 
-TEST(LivingServo, samples_on_another_grid_are_refused) {
+TEST(ChangingServo, samples_on_another_grid_are_refused) {
     ScriptedDevice device(&slide);
     Servo servo(session_of(plain_ramp()), device);
     EXPECT_THROW(servo.send(command::Samples{}), std::invalid_argument);
@@ -188,7 +188,7 @@ TEST(LivingServo, samples_on_another_grid_are_refused) {
         std::invalid_argument);
 }
 
-TEST(LivingServo, what_was_recorded_of_living_samples_gives_the_same_ticks_again) {
+TEST(ChangingServo, what_was_recorded_of_changing_samples_gives_the_same_ticks_again) {
     ScriptedDevice device(&slide);
     Queue<SessionEvent> recorder(1 << 17);
     const Session begin = session_of(plain_ramp());

@@ -1,5 +1,4 @@
-// A hand that presses with penetrability: proxy update and penetrability stage, as a tick runs
-// them.
+// A hand that presses with penetrability: proxy update and penetrability stage, as in a tick.
 #pragma once
 
 #include <limits>
@@ -31,7 +30,7 @@ inline RendererSettings at_once() {
     return settings;
 }
 
-struct Stroke {
+struct Press {
     Field field;
     Penetrability penetrability;
     Proxy proxy{};
@@ -40,7 +39,7 @@ struct Stroke {
     ProxySettings settings{};
     std::vector<Step> path{};  ///< of the last tick
 
-    Stroke(Field f, double isovalue, const Penetrability& p)
+    Press(Field f, double isovalue, const Penetrability& p)
         : field(std::move(f)), penetrability(p) {
         proxy.isovalue = isovalue;
     }
