@@ -13,7 +13,8 @@ using namespace palpate::support;
 
 namespace {
 
-/// Whether a stored sample is this value, rounded and cut to its type; a half may go either way.
+/// Whether a stored sample is this value, rounded and cut to its type; a half may be rounded up or
+/// down.
 bool is_rounded(SampleType type, double sample, double value) {
     if (type == SampleType::float32)
         return std::abs(sample - value) <= 1e-6 * (1 + std::abs(value));

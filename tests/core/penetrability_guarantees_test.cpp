@@ -27,7 +27,8 @@ bool allowed(const Penetrability& p, double level) {
     return false;
 }
 
-/// One tick, checked: G1 on the way up to the press, G1 and G2 for the level felt at the end.
+/// Renders one tick and checks it: G1 on the path before the press, G1 and G2 for the level felt at
+/// the end.
 void check_tick(Press& press, const Vec3& hip, double threshold, Met& met) {
     const Field& field = press.field;
     const double level_before = press.proxy.isovalue;

@@ -88,7 +88,7 @@ TEST(Proxy, out_of_budget_goes_on_in_later_updates_and_ends_where_a_large_budget
             split += updates > 2;
             ASSERT_EQ(part.status, UpdateStatus::done);
             // Cut at other points, a path is rounded otherwise: where it meets a vertex it may then
-            // take the other one of two ways that are both right.
+            // take the other one of two paths that are both right.
             other_way += (part.scp - expected.scp).norm() > 1e-9 || part.mode != expected.mode;
             proxy = whole;
         }

@@ -103,7 +103,7 @@ TEST(Friction, holds_the_proxy_below_the_static_angle_and_lets_go_above_it) {
         const ProxyUpdate r = update_exact(proxy, field, hip, settings);
         EXPECT_TRUE(proxy.sliding);
         ASSERT_LE((r.scp - (touch + (1.001 - 0.25 * 2) * across)).norm(), 1e-9);
-        // Sliding, the dynamic angle holds on any way the hand takes.
+        // While it slides, the dynamic angle holds for any motion of the hand.
         const Vec3 onwards =
             hip +
             Vec3(random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2), random.uniform(-0.5, 0.5)) +

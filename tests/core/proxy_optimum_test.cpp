@@ -1,4 +1,4 @@
-// Proxy: where an update ends, against the true field sampled densely around it.
+// Proxy: the SCP after an update, compared with the true field sampled densely around it.
 #include <gtest/gtest.h>
 
 #include "support/fields.hpp"
@@ -21,7 +21,7 @@ double slow_excess(const TestField& test, const Vec3& index) {
 }  // namespace
 
 TEST(Proxy, ends_at_a_local_optimum_of_the_true_field) {
-    // No point around the SCP that a straight free way leads to is closer to the HIP: thousands of
+    // No point that a straight free path from the SCP reaches is closer to the HIP: thousands of
     // random points each, at all distances up to half a voxel, by the slow reference alone.
     for (const TestField& test : {noise_field(), salt_field(), anisotropic_field(), oblique_field(),
                                   terraces_field(), marschner_lobb_field()}) {

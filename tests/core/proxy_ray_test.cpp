@@ -44,7 +44,7 @@ TEST(Ray, meets_a_plane_exactly) {
         const double t = (above[2] - 8.3) / (above[2] - below[2]);
         ASSERT_LE((ray.point - (from + t * (to - from))).norm(), 1e-10);
         ASSERT_LE((ray.normal - geometry.direction.col(2)).norm(), 1e-10);
-        // The other way it starts in the solid.
+        // In the other direction it starts in the solid.
         const RayHit inside = cast_ray(field, 8.3, to, from);
         ASSERT_TRUE(inside.hit);
         ASSERT_LE((inside.point - to).norm(), 1e-10);

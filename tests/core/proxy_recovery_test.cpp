@@ -129,7 +129,7 @@ TEST(Recovery, starts_in_the_direction_in_which_the_field_falls_steepest_per_mil
         Random random(59);
         int compared = 0;
         for (int i = 0; i < scaled(2000); ++i) {
-            // Samples, edges and walls, where up to 48 tetrahedra offer a way.
+            // Samples, edges and walls, where up to 48 tetrahedra offer a direction.
             const Vec3 index = (2 * random.point(2, 13)).array().round() / 2;
             const Vec3 hip = physical_from_index(geometry, index);
             Proxy proxy;
@@ -138,7 +138,7 @@ TEST(Recovery, starts_in_the_direction_in_which_the_field_falls_steepest_per_mil
             RecoverPath path;
             update_exact(proxy, test.field, hip, {}, path.observer());
             const double first = path.points.empty() ? 0 : (path.points[0] - hip).norm();
-            // Longer than a tetrahedron is the search after descent found no way down.
+            // Steps longer than a tetrahedron come from the search that follows where descent ends.
             if (first == 0 || first > geometry.spacing.minCoeff()) continue;
             const double from = excess_at(test.field, hip, test.isovalue);
             const double slope =
@@ -195,7 +195,7 @@ TEST(Recovery, ends_under_small_budgets_too) {
 }
 
 TEST(Recovery, leaves_a_local_minimum) {
-    // A pit that is still solid, in a hill: descent ends in it, the way out leads over its rim.
+    // A pit in a hill that is still solid: descent ends in it, the path out leads over its rim.
     const Field field(volume_of<float>(grid(cube(24)), [](const Index3& i) {
         const double r = (i.cast<double>() - Vec3::Constant(11.5)).norm();
         return r < 4 ? 50 + 10 * r : 130 - 10 * r;
@@ -224,7 +224,7 @@ TEST(Recovery, in_space_that_is_all_solid_says_so_and_ends_every_update) {
     }
     Proxy placed;
     EXPECT_FALSE(place(placed, field, Vec3(4, 4, 4), 100));
-    // And comes out once there is a way.
+    // It comes out once there is free space.
     proxy.isovalue = 190;
     EXPECT_GT(updates_until_out(proxy, field, Vec3(4, 4, 4), 20), 0);
 }

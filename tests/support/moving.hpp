@@ -67,7 +67,7 @@ struct MovingContact {
             ASSERT_EQ(force, Vec3(0, 0, 0)) << "force while the way out is sought";
         }
         ASSERT_LE(force.norm(), 3.3 + 1e-12);
-        // What stops because there is no way out drops at once.
+        // A force that stops because recovery finds no free space drops at once.
         if (!recovers) {
             ASSERT_LE((force - last_force).norm(), rate * 1e-3 + 1e-9) << "tick " << ticks;
         }
