@@ -10,7 +10,7 @@ Installs the packages that are missing, builds the command line in build/release
 and runs `palpate demo` in the folder that you call it from. After that, when the first pictures are
 there, it builds the rest: the viewer, and what `cmake --install build/release` installs.
 
-  --no-packages   do not look for packages; use what is there
+  --no-packages   do not install packages
   --no-viewer     leave out the viewer and its packages (VTK's and Qt's windows)
 TEXT
 }

@@ -6,8 +6,8 @@ usage() {
     cat <<'TEXT'
 usage: scripts/install_packages.sh [GROUP...]
 
-Installs the Debian 12 packages that Palpate is built with, as root or with sudo. What is there
-already is left alone; when nothing is missing, apt is not run at all.
+Installs the Debian 12 packages that Palpate is built with, as root or with sudo. Installed packages
+are left as they are; when nothing is missing, apt is not run.
 
 groups (default: all)
   core     compiler, CMake, Eigen, GoogleTest, Google Benchmark, Python for the rule checks
@@ -40,7 +40,7 @@ for group in "${@:-all}"; do
 done
 
 if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
-    echo "install_packages.sh: this system has no apt; install what these Debian packages hold:" >&2
+    echo "install_packages.sh: this system has no apt; install the contents of these Debian packages:" >&2
     printf '%s\n' "${wanted[@]}" | sort -u >&2
     exit 1
 fi
@@ -53,7 +53,7 @@ while read -r package; do
 done < <(printf '%s\n' "${wanted[@]}" | sort -u)
 
 if [ ${#missing[@]} -eq 0 ]; then
-    echo "packages: everything is there (${*:-all})"
+    echo "packages: all installed (${*:-all})"
     exit 0
 fi
 

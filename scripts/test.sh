@@ -17,7 +17,7 @@ presets (default: dev)
   asan     address and undefined-behaviour sanitizers (clang), and the fuzz targets
   tsan     thread sanitizer
 
-  --no-packages     do not look for packages; use what is there
+  --no-packages     do not install packages
   --target TARGET   build that only; threaded_tests are those with the label `threads`
 
 example: scripts/test.sh asan -R Surface
