@@ -16,7 +16,7 @@ using namespace palpate::support;
 
 namespace {
 
-constexpr double rounding = 1 + 1e-12;
+constexpr double limit_rounding = 1 + 1e-12;
 
 /// Settings of an application that assumes a device of 20 N and does not copy the device's limits.
 RendererSettings careless() {
@@ -33,7 +33,7 @@ Session session_of(const RendererSettings& settings) {
 }
 
 /// Presses 5 mm into the ramp's level 30 and rests there.
-DeviceReading press(double time) {
+DeviceReading press_deep(double time) {
     return ready_at(at_depth(28 + std::min(7.0, 100 * time)));
 }
 
@@ -83,7 +83,7 @@ TEST(ServoLimits, a_device_for_1_newton_gets_no_more_whatever_is_asked) {
     const std::int64_t then = servo.report().ticks;
     ASSERT_TRUE(comes_true([&] { return servo.report().ticks > then + 200; }));
     servo.stop();
-    EXPECT_LE(device.largest_force(), rounding);
+    EXPECT_LE(device.largest_force(), limit_rounding);
     // The recording has the limits, so that it replays from the session as the application gave it.
     const Recorded recorded(queue, session_of(careless()));
     EXPECT_EQ(recorded.ticks_before_limits, 0U);
@@ -128,7 +128,7 @@ TEST(ServoLimits, limits_that_a_device_learns_when_it_connects_hold_from_that_ti
     const DeviceLimits learned{.maximum_force = 1, .rate = 250};
     ScriptedDevice device(
         [&](double time) {
-            DeviceReading reading = press(time);
+            DeviceReading reading = press_deep(time);
             if (time > 0.1) reading.limits = learned;
             return reading;
         },
@@ -147,12 +147,12 @@ TEST(ServoLimits, limits_that_a_device_learns_when_it_connects_hold_from_that_ti
     ASSERT_EQ(recorded.limits.size(), 1U);  // once, not with every reading
     EXPECT_EQ(recorded.limits[0], learned);
     EXPECT_GT(recorded.ticks_before_limits, 10U);
-    EXPECT_LE(recorded.largest_force(recorded.ticks_before_limits), rounding);
+    EXPECT_LE(recorded.largest_force(recorded.ticks_before_limits), limit_rounding);
 }
 
 TEST(ServoLimits, limits_in_a_reading_that_are_no_numbers_mean_no_force) {
     ScriptedDevice device([](double time) {
-        DeviceReading reading = press(time);
+        DeviceReading reading = press_deep(time);
         if (time > 0.1) reading.limits = DeviceLimits{std::nan(""), std::nan(""), std::nan("")};
         return reading;
     });
