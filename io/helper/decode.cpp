@@ -19,33 +19,6 @@
 namespace palpate::io {
 namespace {
 
-template <class F>
-auto with_stored(Stored stored, F&& f) {
-    switch (stored) {
-        case Stored::int8:
-            return f(std::int8_t{});
-        case Stored::uint8:
-            return f(std::uint8_t{});
-        case Stored::int16:
-            return f(std::int16_t{});
-        case Stored::uint16:
-            return f(std::uint16_t{});
-        case Stored::int32:
-            return f(std::int32_t{});
-        case Stored::uint32:
-            return f(std::uint32_t{});
-        case Stored::int64:
-            return f(std::int64_t{});
-        case Stored::uint64:
-            return f(std::uint64_t{});
-        case Stored::float32:
-            return f(float{});
-        case Stored::float64:
-            break;
-    }
-    return f(double{});
-}
-
 std::string gigabytes(double bytes) {
     return text_of(bytes / 1e9) + " GB";
 }
@@ -83,15 +56,19 @@ void note_conversion(Stored stored, std::vector<std::string>& notes) {
                     (stored == Stored::int8 ? "" : " (exact to about 7 digits)"));
 }
 
-void convert(Stored stored, const std::byte* from, std::size_t stride, SampleType type,
-             std::byte* to, std::size_t count) {
+void convert(Stored stored, const std::byte* from, SampleType type, std::byte* to,
+             std::size_t count) {
+    if (name_of(stored) == name_of(type)) {
+        std::memcpy(to, from, count * size_of(stored));
+        return;
+    }
     with_stored(stored, [&](auto source) {
         with_type(type, [&](auto target) {
             using From = decltype(source);
             using To = decltype(target);
             for (std::size_t i = 0; i < count; ++i) {
                 From value;
-                std::memcpy(&value, from + i * stride * sizeof(From), sizeof value);
+                std::memcpy(&value, from + i * sizeof(From), sizeof value);
                 const To kept = static_cast<To>(value);
                 std::memcpy(to + i * sizeof(To), &kept, sizeof kept);
             }
@@ -159,6 +136,16 @@ int checked_time_step(const Request& request, std::int64_t steps) {
                       (steps == 1 ? ", number 0" : ", numbered from 0; choose one of them"));
     }
     return request.time_step;
+}
+
+void take_step(const Request& request, std::int64_t steps, const FrameTimes& times,
+               Result& result) {
+    const int step = checked_time_step(request, steps);
+    result.time_steps = static_cast<int>(steps);
+    if (steps == 1) return;
+    result.times = times;
+    result.notes.push_back("time step " + std::to_string(step) + " of " + std::to_string(steps) +
+                           " (0 to " + std::to_string(steps - 1) + ") was taken");
 }
 
 void finish(Result& result, const Request& request, std::span<std::byte> samples) {

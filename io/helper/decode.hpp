@@ -60,9 +60,37 @@ SampleType kept_as(Stored stored);
 /// Appends a note if that is another type.
 void note_conversion(Stored stored, std::vector<std::string>& notes);
 
-/// Converts `count` samples, `stride` samples apart at `from`; `to` has room for them.
-void convert(Stored stored, const std::byte* from, std::size_t stride, SampleType type,
-             std::byte* to, std::size_t count);
+/// f(T{}) with the C++ type T of a stored sample.
+template <class F>
+auto with_stored(Stored stored, F&& f) {
+    switch (stored) {
+        case Stored::int8:
+            return f(std::int8_t{});
+        case Stored::uint8:
+            return f(std::uint8_t{});
+        case Stored::int16:
+            return f(std::int16_t{});
+        case Stored::uint16:
+            return f(std::uint16_t{});
+        case Stored::int32:
+            return f(std::int32_t{});
+        case Stored::uint32:
+            return f(std::uint32_t{});
+        case Stored::int64:
+            return f(std::int64_t{});
+        case Stored::uint64:
+            return f(std::uint64_t{});
+        case Stored::float32:
+            return f(float{});
+        case Stored::float64:
+            break;
+    }
+    return f(double{});
+}
+
+/// Converts `count` samples; `to` has room for them.
+void convert(Stored stored, const std::byte* from, SampleType type, std::byte* to,
+             std::size_t count);
 
 /// Least and greatest of some samples (NaN left out; +inf, -inf if there are none).
 std::pair<double, double> range_of(Stored stored, std::span<const std::byte> samples);
@@ -78,6 +106,8 @@ std::uint64_t checked_bytes(std::span<const std::int64_t> sizes, std::size_t byt
 
 /// Which volume of a 4-D file; throws Failure that says how many there are.
 int checked_time_step(const Request& request, std::int64_t steps);
+/// The same for a format with times: enters the step, the times and a note into the result.
+void take_step(const Request& request, std::int64_t steps, const FrameTimes& times, Result& result);
 
 /// Geometry and finite samples; the requested spacing is put in. Throws Failure.
 void finish(Result& result, const Request& request, std::span<std::byte> samples);

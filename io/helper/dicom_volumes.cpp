@@ -258,7 +258,7 @@ Result read_frames(const DicomSlice& slice, const Request& request) {
     result.notes.emplace_back("the positions of its frames were not checked for gaps or tilt");
     const auto count = static_cast<std::size_t>(sample_count(result.geometry));
     const auto samples = shared_samples(count * size_of(result.type));
-    convert(all[0].stored, all[0].samples.data(), 1, result.type, samples.data(), count);
+    convert(all[0].stored, all[0].samples.data(), result.type, samples.data(), count);
     finish(result, request, samples);
     return result;
 }
@@ -288,7 +288,7 @@ Result read_series(const DicomSeries& series, const Request& request) {
     for (Decoded& d : decoded) {
         outside = std::min(outside, range_of(d.stored, d.samples).first);
         slices.emplace_back(pixels * size_of(result.type));
-        convert(d.stored, d.samples.data(), 1, result.type, slices.back().data(), pixels);
+        convert(d.stored, d.samples.data(), result.type, slices.back().data(), pixels);
         d.samples = {};
     }
     const std::int64_t sizes[] = {stack.geometry.size[0], stack.geometry.size[1],

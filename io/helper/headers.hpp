@@ -1,44 +1,73 @@
-// Our own look at NRRD, MetaImage and NIfTI headers before ITK gets the file: ITK loads cut-off and
-// damaged files without a word. Each function checks header against file, the checksums of
-// compressed data included, and throws Failure.
+// Headers of NRRD, MetaImage and NIfTI files as Palpate reads them. Of NRRD and MetaImage this is
+// the only reading; of NIfTI it is a check before ITK reads the file, because ITK loads cut-off and
+// damaged files without an error. Every function throws Failure.
 #pragma once
 
+#include <map>
+
 #include "io/helper/decode.hpp"
+#include "io/inflate.hpp"
 
 namespace palpate::io {
 
-/// What a header says, as far as ITK's answer is compared with it.
-struct HeaderFacts {
-    std::vector<std::int64_t> sizes;  ///< every axis, the file's order
-    Stored stored = Stored::uint8;
-    /// The axis that counts volumes if it is not the last one (NRRD's "list" and "time" kinds).
-    std::optional<std::size_t> list_axis;
-    std::vector<std::string> notes;
-    FrameTimes times;  ///< of a file with such an axis
+/// A text header's fields, names in lower case.
+struct HeaderFields {
+    std::map<std::string, std::string> values;
+    std::uint64_t data_offset = 0;  ///< of the first byte after the header
+
+    bool has(const std::string& name) const { return values.count(name) > 0; }
+    /// Empty if there is no such field.
+    std::string value(const std::string& name) const;
+    /// Throws Failure that names the field if it is missing or empty.
+    std::string needed(const std::string& name) const;
 };
 
-HeaderFacts check_nrrd(const Request& request);
-HeaderFacts check_meta_image(const Request& request);
-HeaderFacts check_nifti(const Request& request);
-
-/// How the samples lie in the file that holds them.
+/// Where and how the samples are stored.
 struct DataPlace {
     std::filesystem::path file;
     std::uint64_t offset = 0;           ///< of the first byte of data (or of the stream)
     std::uint64_t length = UINT64_MAX;  ///< bytes of a compressed stream, if the header says
     std::uint64_t skip = 0;             ///< bytes before the samples, after unpacking
     enum class Encoding { raw, compressed, text } encoding = Encoding::raw;
+    bool swapped = false;  ///< the bytes of a sample are in the other order than the machine's
 };
 
-/// Checks that the data hold `bytes` (or, as text, `count` numbers), no less and, but for padding
-/// up to 4096 bytes, no more; unpacks compressed data for it.
-void check_data(const DataPlace& place, std::uint64_t bytes, std::uint64_t count,
-                std::vector<std::string>& notes);
+struct HeaderFacts {
+    std::vector<std::int64_t> sizes;  ///< every axis, the file's order
+    Stored stored = Stored::uint8;
+    std::vector<std::string> notes;
+    FrameTimes times;  ///< of a file with several volumes
+};
+
+/// All that reading the samples of one volume takes.
+struct VolumeHeader : HeaderFacts {
+    Geometry geometry;
+    DataPlace place;
+    std::int64_t steps = 1;  ///< volumes in the file
+    /// Samples of one volume that lie together, before those of the next volume: the whole volume
+    /// where the volumes follow each other, 1 where the axis that counts them is the first.
+    std::int64_t together = 1;
+
+    std::uint64_t samples() const;  ///< of all volumes
+    std::uint64_t bytes() const { return samples() * size_of(stored); }
+};
+
+VolumeHeader nrrd_header(const Request& request);
+VolumeHeader meta_image_header(const Request& request);
+/// Also checks the length and the checksum of the data.
+HeaderFacts check_nifti(const Request& request);
+
+/// Hands the bytes of all samples to `sink` in order, in the machine's byte order and in pieces of
+/// whole samples. Throws Failure if the data are damaged, fewer than the header says or more than
+/// 4096 bytes longer; up to that, a note is added. With an empty sink it only checks.
+void stream_samples(VolumeHeader& header, const ByteSink& sink);
 
 /// Numbers separated by blanks; throws Failure that names the `field`.
 std::vector<double> numbers_in(const std::string& text, const std::string& field);
 /// The same for sizes.
 std::vector<std::int64_t> sizes_in(const std::string& text, const std::string& field);
+/// The same for a field of one whole number of at least `least`.
+std::int64_t whole_number_in(const std::string& text, const std::string& field, double least);
 /// Refuses a spacing that is not a finite number above 0.
 void check_spacing(double spacing, const std::string& field);
 

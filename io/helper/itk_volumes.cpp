@@ -1,5 +1,6 @@
-// NRRD, MetaImage and NIfTI with ITK's ImageIO classes, straight into the shared samples: no
-// itk::Image, no pixel conversion, no factories. The file has passed our own check before.
+// Reads NIfTI, and writes NRRD, MetaImage and NIfTI, with ITK's ImageIO classes, straight from and
+// into the shared samples: no itk::Image, no pixel conversion, no factories. A NIfTI file has
+// passed check_nifti() before.
 #include <itkMetaImageIO.h>
 #include <itkNiftiImageIO.h>
 #include <itkNrrdImageIO.h>
@@ -78,47 +79,22 @@ Geometry geometry_of(const itk::ImageIOBase& io) {
     return g;
 }
 
-/// How one volume lies among the samples as ITK gives them.
-struct Layout {
-    std::int64_t steps = 1;
-    std::size_t step_offset = 0;  ///< samples from one time step to the next
-    std::size_t stride = 1;       ///< samples from one to the next within a volume
-};
-
-Layout layout_of(const itk::ImageIOBase& io, const HeaderFacts& facts, std::int64_t volume) {
-    Layout layout;
-    const auto components = static_cast<std::int64_t>(io.GetNumberOfComponents());
-    std::int64_t total = components;
+/// How many volumes of `volume` samples each ITK finds.
+std::int64_t steps_of(const itk::ImageIOBase& io, const HeaderFacts& facts, std::int64_t volume) {
+    std::int64_t total = 1, expected = 1;
     for (unsigned a = 0; a < io.GetNumberOfDimensions(); ++a) {
         total *= static_cast<std::int64_t>(io.GetDimensions(a));
     }
-    std::int64_t expected = 1;
     for (const auto s : facts.sizes) expected *= s;
     if (total != expected) {
         throw Failure("ITK reads " + std::to_string(total) + " samples, its header says " +
                       text_of(facts.sizes) + "; save it as plain NRRD");
     }
-    if (components > 1) {
-        if (!facts.list_axis) {
-            throw Failure("it has " + std::to_string(components) +
-                          " values a sample (colours or vectors); give a volume with one");
-        }
-        layout.stride = static_cast<std::size_t>(components);
-        layout.step_offset = 1;
-    } else {
-        if (facts.list_axis && *facts.list_axis + 1 != facts.sizes.size()) {
-            throw Failure(
-                "its time axis is not the last one; put it last (unu permute) or mark "
-                "it as a list");
-        }
-        layout.step_offset = static_cast<std::size_t>(volume);
+    if (io.GetNumberOfComponents() > 1) {
+        throw Failure("it has " + std::to_string(io.GetNumberOfComponents()) +
+                      " values a sample (colours or vectors); give a volume with one");
     }
-    layout.steps = total / volume;
-    if (components > 1 && layout.steps != components) {
-        throw Failure("it has more than 4 axes (" + text_of(facts.sizes) +
-                      "); save one volume of it");
-    }
-    return layout;
+    return total / volume;
 }
 
 void read_whole(itk::ImageIOBase& io, void* to) {
@@ -132,15 +108,20 @@ void read_whole(itk::ImageIOBase& io, void* to) {
     io.Read(to);
 }
 
-Result read_checked(itk::ImageIOBase& io, const HeaderFacts& facts, const Request& request) {
-    say_progress(0.3);  // what our own check took of the time, roughly
+}  // namespace
+
+Result read_nifti(const Request& request) {
+    const HeaderFacts facts = check_nifti(request);
+    say_progress(0.3);  // what the check took of the time, roughly
     say_doing(request.path.filename().string());
-    io.SetFileName(request.path.string());
-    io.ReadImageInformation();
+    const auto io = itk::NiftiImageIO::New();
+    io->SetFileName(request.path.string());
+    io->ReadImageInformation();
     Result result;
+    result.format = "NIfTI";
     result.notes = facts.notes;
-    result.geometry = geometry_of(io);
-    const Stored stored = stored_from(io.GetComponentType());
+    result.geometry = geometry_of(*io);
+    const Stored stored = stored_from(io->GetComponentType());
     result.type = kept_as(stored);
     if (stored != facts.stored) {
         result.notes.push_back(
@@ -150,54 +131,19 @@ Result read_checked(itk::ImageIOBase& io, const HeaderFacts& facts, const Reques
         note_conversion(stored, result.notes);
     }
     const std::int64_t volume = sample_count(result.geometry);
-    const Layout layout = layout_of(io, facts, volume);
-    const int step = checked_time_step(request, layout.steps);
-    result.time_steps = static_cast<int>(layout.steps);
-    if (layout.steps > 1) {
-        result.times = facts.times;
-        result.notes.push_back("time step " + std::to_string(step) + " of " +
-                               std::to_string(layout.steps) + " (0 to " +
-                               std::to_string(layout.steps - 1) + ") was taken");
-    }
+    const std::int64_t steps = steps_of(*io, facts, volume);
+    take_step(request, steps, facts.times, result);
     const auto count = static_cast<std::size_t>(volume);
     const auto samples = shared_samples(count * size_of(result.type));
-    if (layout.steps == 1 && size_of(stored) == size_of(result.type) &&
-        name_of(stored) == name_of(result.type)) {
-        read_whole(io, samples.data());
+    if (steps == 1 && name_of(stored) == name_of(result.type)) {
+        read_whole(*io, samples.data());
     } else {
-        std::vector<std::byte> all(static_cast<std::size_t>(io.GetImageSizeInBytes()));
-        read_whole(io, all.data());
-        const std::size_t first = static_cast<std::size_t>(step) * layout.step_offset;
-        convert(stored, all.data() + first * size_of(stored), layout.stride, result.type,
-                samples.data(), count);
+        std::vector<std::byte> all(static_cast<std::size_t>(io->GetImageSizeInBytes()));
+        read_whole(*io, all.data());
+        const std::size_t first = static_cast<std::size_t>(request.time_step) * count;
+        convert(stored, all.data() + first * size_of(stored), result.type, samples.data(), count);
     }
     finish(result, request, samples);
-    return result;
-}
-
-}  // namespace
-
-Result read_nrrd(const Request& request) {
-    const HeaderFacts facts = check_nrrd(request);
-    const auto io = itk::NrrdImageIO::New();
-    Result result = read_checked(*io, facts, request);
-    result.format = "NRRD";
-    return result;
-}
-
-Result read_meta_image(const Request& request) {
-    const HeaderFacts facts = check_meta_image(request);
-    const auto io = itk::MetaImageIO::New();
-    Result result = read_checked(*io, facts, request);
-    result.format = "MetaImage";
-    return result;
-}
-
-Result read_nifti(const Request& request) {
-    const HeaderFacts facts = check_nifti(request);
-    const auto io = itk::NiftiImageIO::New();
-    Result result = read_checked(*io, facts, request);
-    result.format = "NIfTI";
     return result;
 }
 
@@ -208,20 +154,21 @@ void check_written(const std::filesystem::path& path, const std::string& extensi
                    std::int64_t samples) {
     Request request;
     request.path = path;
-    HeaderFacts facts;
+    std::vector<std::int64_t> sizes;
     try {
-        if (extension == ".nrrd" || extension == ".nhdr") {
-            facts = check_nrrd(request);
-        } else if (extension == ".mha" || extension == ".mhd") {
-            facts = check_meta_image(request);
+        if (extension == ".nii" || extension == ".nii.gz") {
+            sizes = check_nifti(request).sizes;
         } else {
-            facts = check_nifti(request);
+            const bool nrrd = extension == ".nrrd" || extension == ".nhdr";
+            VolumeHeader header = nrrd ? nrrd_header(request) : meta_image_header(request);
+            stream_samples(header, {});
+            sizes = header.sizes;
         }
     } catch (const Failure&) {
         throw Failure("was not written whole; is the disk full?");
     }
     std::int64_t written = 1;
-    for (const auto s : facts.sizes) written *= s;
+    for (const auto s : sizes) written *= s;
     if (written != samples) throw Failure("is too large for this format; write .nrrd instead");
 }
 

@@ -193,7 +193,7 @@ Result read_slices(const std::vector<Slice>& slices, const Request& request) {
         }
         if (!first_tiff_error().empty()) fail_damaged(slice.file);
         const std::size_t count = std::size_t{page.width} * page.height;
-        convert(page.stored, page_samples.data(), 1, result.type,
+        convert(page.stored, page_samples.data(), result.type,
                 samples.data() + i * count * size_of(result.type), count);
         say_progress(static_cast<double>(i + 1) / static_cast<double>(slices.size()));
     }

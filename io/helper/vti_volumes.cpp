@@ -193,7 +193,7 @@ Result read_vti(const Request& request) {
     result.type = kept_as(stored);
     note_conversion(stored, result.notes);
     const auto samples = shared_samples(count * size_of(result.type));
-    convert(stored, static_cast<const std::byte*>(array->GetVoidPointer(0)), 1, result.type,
+    convert(stored, static_cast<const std::byte*>(array->GetVoidPointer(0)), result.type,
             samples.data(), count);
     finish(result, request, samples);
     return result;

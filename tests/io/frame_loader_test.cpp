@@ -8,6 +8,7 @@
 #include <random>
 #include <set>
 
+#include "io/real_volumes.hpp"
 #include "io/volume_support.hpp"
 #include "support/eventually.hpp"
 
@@ -292,7 +293,7 @@ TEST(FrameLoader, looking_never_waits_for_a_read_and_the_end_gives_a_read_up) {
 }
 
 TEST(FrameLoader, the_turning_head_plays_round_in_half_of_its_memory) {
-    const auto path = std::filesystem::path(PALPATE_DATA_FOLDER) / "fmri_headturn_4d.nrrd";
+    const auto path = real_volume("fmri_headturn_4d.nrrd");
     if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
     const SequenceFile file = open_sequence(path);
     const std::uint64_t bound = 3 * file.sequence.frame_bytes();

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "io/real_volumes.hpp"
 #include "palpate/io/volume_file.hpp"
 #include "support/moving.hpp"
 
@@ -59,7 +60,7 @@ void feel(const std::shared_ptr<const Samples>& head, double isovalue, const Vec
 }  // namespace
 
 TEST(MovingHead, a_head_that_turns_between_frames_keeps_the_guarantees) {
-    const auto path = std::filesystem::path(PALPATE_DATA_FOLDER) / "fmri_headturn_4d.nrrd";
+    const auto path = io::test::real_volume("fmri_headturn_4d.nrrd");
     if (!std::filesystem::exists(path)) GTEST_SKIP() << path.filename() << " is not here";
     // The scanner took 3.2 s a frame; here the head turns as fast as one can, and much faster.
     for (const double interval : {0.5, 0.1, 0.02}) {

@@ -1,9 +1,11 @@
 // The proxy's guarantees G1-G5 on scanned data: noise, plateaus, values equal to the isovalue, thin
-// slices. Needs the data folder beside the project; skipped without it.
+// slices. The head comes with the project; tests of other volumes are skipped where those are
+// missing.
 #include <gtest/gtest.h>
 
 #include <filesystem>
 
+#include "io/real_volumes.hpp"
 #include "palpate/io/volume_file.hpp"
 #include "support/fields.hpp"
 #include "support/guarantees.hpp"
@@ -26,8 +28,8 @@ class ProxyOnRealVolumes : public testing::TestWithParam<ProxyScan> {};
 
 TEST_P(ProxyOnRealVolumes, keeps_its_guarantees) {
     const ProxyScan scan = GetParam();
-    const auto path = std::filesystem::path(PALPATE_DATA_FOLDER) / scan.file;
-    if (!std::filesystem::exists(path)) GTEST_SKIP() << scan.file << " is not here";
+    const auto path = io::test::real_volume(scan.file);
+    if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
     const Field field(io::read_volume(path).volume, scan.solid);
     // Little outside, much sliding, and strokes and jumps through everything.
     Hand hand(field.geometry(), 5, {.slide = 8, .sweep = 3, .jump = 1, .margin = -1});
@@ -48,12 +50,13 @@ TEST_P(ProxyOnRealVolumes, keeps_its_guarantees) {
 
 INSTANTIATE_TEST_SUITE_P(
     Scans, ProxyOnRealVolumes,
-    testing::Values(ProxyScan{"lobster.nrrd", 35}, ProxyScan{"lobster.nrrd", 110},
-                    ProxyScan{"orange.nrrd", 15}, ProxyScan{"orange.nrrd", 60},
-                    ProxyScan{"daisy_pollen.nrrd", 40}, ProxyScan{"daisy_pollen.nrrd", 100},
-                    ProxyScan{"cthead_unc.nrrd", 500}, ProxyScan{"cthead_unc.nrrd", 1200},
-                    ProxyScan{"cthead_unc.nrrd", 500, Solid::below},
-                    ProxyScan{"iguana.nii.gz", 120}),
+    testing::Values(
+        ProxyScan{"head", io::sample_volume_skin}, ProxyScan{"head", io::sample_volume_bone},
+        ProxyScan{"head", io::sample_volume_skin, Solid::below}, ProxyScan{"lobster.nrrd", 35},
+        ProxyScan{"lobster.nrrd", 110}, ProxyScan{"orange.nrrd", 15}, ProxyScan{"orange.nrrd", 60},
+        ProxyScan{"daisy_pollen.nrrd", 40}, ProxyScan{"daisy_pollen.nrrd", 100},
+        ProxyScan{"cthead_unc.nrrd", 500}, ProxyScan{"cthead_unc.nrrd", 1200},
+        ProxyScan{"cthead_unc.nrrd", 500, Solid::below}, ProxyScan{"iguana.nii.gz", 120}),
     [](const auto& scan) {
         std::string name = scan.param.file;
         for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';

@@ -3,6 +3,7 @@
 
 #include <functional>
 
+#include "io/real_volumes.hpp"
 #include "io/volume_support.hpp"
 
 namespace palpate::io::test {
@@ -76,7 +77,7 @@ std::filesystem::path nifti_4d(const ScratchFolder& folder, float step, float fi
 }  // namespace
 
 TEST(Sequence, the_turning_head_has_six_frames_3_2_seconds_apart) {
-    const auto path = std::filesystem::path(PALPATE_DATA_FOLDER) / "fmri_headturn_4d.nrrd";
+    const auto path = real_volume("fmri_headturn_4d.nrrd");
     if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
     const SequenceFile file = open_sequence(path);
     const Sequence& sequence = file.sequence;

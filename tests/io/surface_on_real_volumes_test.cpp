@@ -1,5 +1,5 @@
 // The isosurface of scanned data: noise, borders that cut bodies, values equal to the isovalue.
-// Needs the data folder beside the project; skipped without it.
+// The head comes with the project; tests of other volumes are skipped where those are missing.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,6 +7,7 @@
 #include <random>
 #include <string>
 
+#include "io/real_volumes.hpp"
 #include "palpate/io/volume_file.hpp"
 #include "palpate/lattice.hpp"
 #include "palpate/surface.hpp"
@@ -51,8 +52,8 @@ Count counted_volume(const Field& field, double isovalue) {
 }  // namespace
 
 TEST_P(SurfaceOnRealVolumes, is_closed_and_encloses_the_solid) {
-    const auto path = std::filesystem::path(PALPATE_DATA_FOLDER) / GetParam().file;
-    if (!std::filesystem::exists(path)) GTEST_SKIP() << "no " << path;
+    const auto path = io::test::real_volume(GetParam().file);
+    if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
     const Field field(io::read_volume(path).volume, GetParam().solid);
     const SurfaceMesh mesh = extract_surface(field, GetParam().isovalue);
     EXPECT_GT(mesh.triangles.size(), 1000U);
@@ -70,7 +71,9 @@ TEST_P(SurfaceOnRealVolumes, is_closed_and_encloses_the_solid) {
 // Isovalues from the list that comes with the data; the iguana from the inside out.
 INSTANTIATE_TEST_SUITE_P(
     Scans, SurfaceOnRealVolumes,
-    testing::Values(SurfaceScan{"fuel_small.nrrd", 30}, SurfaceScan{"lobster.nrrd", 35},
+    testing::Values(SurfaceScan{"head", io::sample_volume_skin},
+                    SurfaceScan{"head", io::sample_volume_bone, Solid::below},
+                    SurfaceScan{"fuel_small.nrrd", 30}, SurfaceScan{"lobster.nrrd", 35},
                     SurfaceScan{"orange.nrrd", 15}, SurfaceScan{"daisy_pollen.nrrd", 40},
                     SurfaceScan{"engine.nrrd", 60}, SurfaceScan{"cthead_unc.nrrd", 1200},
                     SurfaceScan{"neuron_confocal.nrrd", 30}, SurfaceScan{"HeadMRVolume.mhd", 60},
@@ -79,5 +82,5 @@ INSTANTIATE_TEST_SUITE_P(
                     SurfaceScan{"visible_human_head.nrrd", 110}),
     [](const auto& scan) {
         const std::string name = scan.param.file;
-        return name.substr(0, name.find('.'));
+        return name.substr(0, name.find('.')) + (scan.param.solid == Solid::below ? "_below" : "");
     });

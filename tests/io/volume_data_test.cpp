@@ -1,16 +1,10 @@
-// Real volumes: size, type, spacing and range as others' programs gave them. They are no part of
-// the repository: environment PALPATE_DATA, or shared/data beside it; skipped where they are not.
-#include <cstdlib>
-
+// Real volumes: size, type, spacing and range as other programs give them. The head comes with the
+// project; tests of other volumes are skipped where those are missing.
+#include "real_volumes.hpp"
 #include "volume_support.hpp"
 
 namespace palpate::io::test {
 namespace {
-
-std::filesystem::path data_folder() {
-    const char* const set = std::getenv("PALPATE_DATA");
-    return set != nullptr ? set : PALPATE_DATA_FOLDER;
-}
 
 struct Known {
     const char* name;
@@ -29,7 +23,7 @@ class RealVolume : public testing::TestWithParam<Known> {};
 
 TEST_P(RealVolume, is_read_as_others_read_it) {
     const Known& known = GetParam();
-    const auto path = data_folder() / known.name;
+    const auto path = real_volume(known.name);
     if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
     ReadOptions options;
     options.time_step = known.time_step;
@@ -45,6 +39,7 @@ constexpr auto u8 = SampleType::uint8;
 INSTANTIATE_TEST_SUITE_P(
     data, RealVolume,
     testing::Values(
+        Known{"head", {96, 108, 110}, u8, {2, 2, 2}, 0, 220},
         Known{"lobster.nrrd", {301, 324, 56}, u8, {1, 1, 1.4}, 0, 255},
         Known{"orange.nrrd", {256, 256, 64}, u8, {0.390625, 0.390625, 1}, 0, 228},
         Known{"daisy_pollen.nrrd", {192, 180, 168}, u8, {1, 1, 1}, 0, 254},
@@ -71,7 +66,7 @@ INSTANTIATE_TEST_SUITE_P(
     });
 
 TEST(real_volume, the_time_steps_of_the_turning_head_differ_and_cover_its_range) {
-    const auto path = data_folder() / "fmri_headturn_4d.nrrd";
+    const auto path = real_volume("fmri_headturn_4d.nrrd");
     if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
     double maximum = 0;
     std::vector<Volume> steps;
@@ -93,19 +88,19 @@ TEST(real_volume, the_time_steps_of_the_turning_head_differ_and_cover_its_range)
 }
 
 TEST(real_volume, the_lobster_without_a_header_is_the_lobster) {
-    const auto path = data_folder() / "lobster_301x324x56_uint8.raw.gz";
+    const auto path = real_volume("lobster_301x324x56_uint8.raw.gz");
     if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
     ReadOptions options;
     options.raw = RawLayout{{301, 324, 56}, SampleType::uint8, {1, 1, 1.4}, 0};
     const VolumeFile file = read_volume(path, options);
-    EXPECT_TRUE(same_samples(file.volume, read_volume(data_folder() / "lobster.nrrd").volume));
+    EXPECT_TRUE(same_samples(file.volume, read_volume(real_volume("lobster.nrrd")).volume));
     options.raw->size[2] = 57;
     const std::string message = refusal(path, options);
     EXPECT_TRUE(contains(message, "5461344") && contains(message, "5558868")) << message;
 }
 
 TEST(real_volume, a_dicom_series_lies_where_its_slices_say) {
-    const auto path = data_folder() / "dicom_sphere";
+    const auto path = real_volume("dicom_sphere");
     if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
     const VolumeFile file = read_volume(path);
     const Geometry& g = file.volume.geometry();

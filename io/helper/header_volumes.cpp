@@ -1,0 +1,75 @@
+// Reads NRRD and MetaImage: their headers say all that it takes, so no library is needed.
+#include "io/helper/headers.hpp"
+#include "io/helper/readers.hpp"
+
+namespace palpate::io {
+namespace {
+
+/// Picks the samples of one volume out of those of all, converts them and puts them into `to`.
+class StepTaker {
+  public:
+    StepTaker(const VolumeHeader& header, int step, SampleType type, std::span<std::byte> to)
+        : stored_(header.stored),
+          type_(type),
+          together_(header.together),
+          steps_(header.steps),
+          step_(step),
+          to_(to) {}
+
+    void operator()(std::span<const std::byte> bytes) {
+        const std::size_t sample = size_of(stored_);
+        const std::int64_t first = seen_;
+        seen_ += static_cast<std::int64_t>(bytes.size() / sample);
+        for (std::int64_t at = first; at < seen_;) {
+            const std::int64_t run = at / together_;
+            const std::int64_t end = std::min(seen_, (run + 1) * together_);
+            if (run % steps_ == step_) {
+                const auto count = static_cast<std::size_t>(end - at);
+                const auto offset = static_cast<std::size_t>(at - first) * sample;
+                convert(stored_, bytes.data() + offset, type_, to_.data() + taken_, count);
+                taken_ += count * size_of(type_);
+            }
+            at = end;
+        }
+    }
+
+  private:
+    Stored stored_;
+    SampleType type_;
+    std::int64_t together_, steps_, step_;
+    std::span<std::byte> to_;
+    std::size_t taken_ = 0;  ///< bytes put into `to`
+    std::int64_t seen_ = 0;  ///< samples of all volumes
+};
+
+Result read_with(VolumeHeader header, const Request& request) {
+    say_doing(request.path.filename().string());
+    Result result;
+    result.geometry = header.geometry;
+    result.type = kept_as(header.stored);
+    note_conversion(header.stored, header.notes);
+    take_step(request, header.steps, header.times, result);
+    const auto samples = shared_samples(static_cast<std::size_t>(sample_count(result.geometry)) *
+                                        size_of(result.type));
+    StepTaker take(header, request.time_step, result.type, samples);
+    stream_samples(header, std::ref(take));
+    result.notes.insert(result.notes.begin(), header.notes.begin(), header.notes.end());
+    finish(result, request, samples);
+    return result;
+}
+
+}  // namespace
+
+Result read_nrrd(const Request& request) {
+    Result result = read_with(nrrd_header(request), request);
+    result.format = "NRRD";
+    return result;
+}
+
+Result read_meta_image(const Request& request) {
+    Result result = read_with(meta_image_header(request), request);
+    result.format = "MetaImage";
+    return result;
+}
+
+}  // namespace palpate::io

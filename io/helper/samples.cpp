@@ -1,0 +1,169 @@
+// Reads the samples that a NRRD or MetaImage header describes: raw, compressed or as text.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <limits>
+
+#include "io/helper/headers.hpp"
+
+namespace palpate::io {
+namespace {
+
+constexpr std::uint64_t padding_allowed = 4096;
+constexpr std::size_t chunk_bytes = 1 << 20;
+
+/// Cuts the samples out of a stream of bytes of any piece sizes, puts every sample's bytes in the
+/// machine's order and says how far it is.
+class SampleBytes {
+  public:
+    SampleBytes(const VolumeHeader& header, const ByteSink& sink)
+        : sample_bytes_(size_of(header.stored)),
+          begin_(header.place.skip),
+          end_(header.place.skip + header.bytes()),
+          swapped_(header.place.swapped),
+          sink_(sink) {}
+
+    void operator()(std::span<const std::byte> bytes) {
+        const std::uint64_t begin = std::clamp(begin_, seen_, seen_ + bytes.size());
+        const std::uint64_t end = std::clamp(end_, seen_, seen_ + bytes.size());
+        held_.insert(held_.end(), bytes.data() + (begin - seen_), bytes.data() + (end - seen_));
+        seen_ += bytes.size();
+        const std::size_t whole = held_.size() / sample_bytes_ * sample_bytes_;
+        for (std::size_t at = 0; swapped_ && at < whole; at += sample_bytes_) {
+            std::reverse(held_.data() + at, held_.data() + at + sample_bytes_);
+        }
+        if (sink_ && whole > 0) sink_({held_.data(), whole});
+        held_.erase(held_.begin(), held_.begin() + static_cast<std::ptrdiff_t>(whole));
+        tell();
+    }
+
+  private:
+    void tell() {
+        const double part = std::min(1.0, static_cast<double>(seen_) / static_cast<double>(end_));
+        if (part < told_ + 0.02) return;
+        told_ = part;
+        say_progress(part);
+    }
+
+    std::size_t sample_bytes_;
+    std::uint64_t begin_, end_;
+    bool swapped_;
+    const ByteSink& sink_;
+    std::vector<std::byte> held_;
+    std::uint64_t seen_ = 0;
+    double told_ = 0;
+};
+
+void compare(std::uint64_t have, std::uint64_t need, const std::string& what,
+             std::vector<std::string>& notes) {
+    const std::string numbers = "its header asks for " + std::to_string(need) + " " + what +
+                                ", there are " + std::to_string(have);
+    if (have < need) throw Failure(numbers + "; it is cut off: copy or download it again");
+    if (have - need > padding_allowed) {
+        throw Failure(numbers + "; correct the sizes or the type in its header");
+    }
+    if (have > need) notes.push_back(numbers + "; the rest was ignored");
+}
+
+template <class T>
+void append_number(double number, std::vector<std::byte>& bytes) {
+    if constexpr (std::is_integral_v<T>) {
+        const double above =
+            std::ldexp(1.0, std::numeric_limits<T>::digits);  // exact, unlike max()
+        if (!(number >= static_cast<double>(std::numeric_limits<T>::min()) && number < above) ||
+            number != std::floor(number)) {
+            throw Failure("its data have the number " + text_of(number) +
+                          ", which its sample type cannot hold; correct the type in its header");
+        }
+    }
+    const T value = static_cast<T>(number);
+    const auto at = bytes.size();
+    bytes.resize(at + sizeof value);
+    std::memcpy(bytes.data() + at, &value, sizeof value);
+}
+
+/// Numbers of a text, all of them counted, as many as the header says converted.
+void read_text(VolumeHeader& header, const ByteSink& sink) {
+    std::ifstream in(header.place.file, std::ios::binary);
+    in.seekg(static_cast<std::streamoff>(header.place.offset + header.place.skip));
+    header.place.skip = 0;
+    header.place.swapped = false;
+    SampleBytes samples(header, sink);
+    std::vector<std::byte> bytes;
+    std::uint64_t count = 0;
+    const std::uint64_t wanted = header.samples();
+    for (double number = 0; in >> number; ++count) {
+        if (count >= wanted) continue;
+        with_stored(header.stored,
+                    [&](auto type) { append_number<decltype(type)>(number, bytes); });
+        if (bytes.size() < chunk_bytes) continue;
+        samples(bytes);
+        bytes.clear();
+    }
+    if (!in.eof()) {
+        throw Failure("its data are not all numbers (after " + std::to_string(count) +
+                      "); the file is damaged: export it again");
+    }
+    compare(count, wanted, "numbers", header.notes);
+    samples(bytes);
+}
+
+void read_raw_bytes(VolumeHeader& header, std::uint64_t available, const ByteSink& sink) {
+    const DataPlace& place = header.place;
+    compare(available - std::min(place.skip, available), header.bytes(), "bytes of samples",
+            header.notes);
+    SampleBytes samples(header, sink);
+    std::ifstream in(place.file, std::ios::binary);
+    in.seekg(static_cast<std::streamoff>(place.offset));
+    std::vector<std::byte> chunk(chunk_bytes);
+    for (std::uint64_t left = place.skip + header.bytes(); left > 0;) {
+        in.read(reinterpret_cast<char*>(chunk.data()),
+                static_cast<std::streamsize>(std::min<std::uint64_t>(left, chunk.size())));
+        const auto got = static_cast<std::size_t>(in.gcount());
+        if (got == 0) throw Failure("its data cannot be read to the end; check the disk");
+        samples({chunk.data(), got});
+        left -= got;
+    }
+}
+
+void read_compressed(VolumeHeader& header, std::uint64_t available, const ByteSink& sink) {
+    const DataPlace& place = header.place;
+    if (place.length != UINT64_MAX) {
+        compare(available, place.length, "compressed bytes", header.notes);
+    }
+    SampleBytes samples(header, sink);
+    std::uint64_t unpacked = 0;
+    try {
+        const std::uint64_t at_most = place.skip + header.bytes() + padding_allowed;
+        unpacked =
+            inflate_checked(place.file, {place.offset, place.length, at_most}, std::ref(samples));
+    } catch (const DamagedStream& e) {
+        throw Failure(std::string(e.what()) + "; copy or download it again");
+    }
+    compare(unpacked - std::min(place.skip, unpacked), header.bytes(), "bytes of samples",
+            header.notes);
+}
+
+}  // namespace
+
+void stream_samples(VolumeHeader& header, const ByteSink& sink) {
+    const DataPlace& place = header.place;
+    std::error_code error;
+    const std::uint64_t file_bytes = std::filesystem::file_size(place.file, error);
+    if (error) {
+        throw Failure("its data file '" + place.file.filename().string() + "' cannot be read (" +
+                      error.message() + "); put it beside the header");
+    }
+    const std::uint64_t available = file_bytes - std::min(place.offset, file_bytes);
+    switch (place.encoding) {
+        case DataPlace::Encoding::raw:
+            return read_raw_bytes(header, available, sink);
+        case DataPlace::Encoding::compressed:
+            return read_compressed(header, available, sink);
+        case DataPlace::Encoding::text:
+            return read_text(header, sink);
+    }
+}
+
+}  // namespace palpate::io
