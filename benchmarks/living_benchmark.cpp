@@ -1,5 +1,5 @@
 // What living data cost: updates in edited samples and between two frames, beside the same in one
-// piece; and edits themselves, on whichever thread makes them. docs/living_data.md.
+// piece; and edits themselves, on whichever thread makes them. docs/changing_data.md.
 #include <string>
 
 #include "benchmarks/hand.hpp"

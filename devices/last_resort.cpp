@@ -1,4 +1,5 @@
-// A handler of signals needs something that it can find: the one writable global of the devices.
+// Signal handlers that stop the device. A handler can reach a global only: this is the one writable
+// global of the devices.
 #include "palpate/devices/last_resort.hpp"
 
 #include <array>
@@ -26,7 +27,7 @@ void on_crash(int number) {
         while (::nanosleep(&wait, &wait) != 0 && errno == EINTR) {
         }
     }
-    // The default action is back in force (SA_RESETHAND): the crash goes on.
+    // The default action is restored (SA_RESETHAND): the crash continues.
     ::raise(number);
 }
 

@@ -1,4 +1,4 @@
-// The two newest values and their ages.
+// Stores the newest reading and the newest force with their ages.
 #include "devices/link.hpp"
 
 #include <pthread.h>

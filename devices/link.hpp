@@ -1,5 +1,6 @@
-// Between a backend's own thread and the servo thread: newest reading in, newest force out. Neither
-// side ever waits for the other. Every backend that does I/O is a thread and one of these.
+// Exchanges the newest reading and the newest force between a backend's thread and the servo
+// thread. Neither side waits for the other. Every backend that does I/O consists of a thread and a
+// Link.
 #pragma once
 
 #include <atomic>
@@ -16,27 +17,27 @@ class Link {
     // The servo's side.
 
     /// The newest reading with its age. A reading older than `Device::longest_force` is stale,
-    /// whatever its status was.
+    /// whatever its status.
     DeviceReading read() const noexcept;
     /// Sets the force [N, device axes].
     void write(const Vec3& force) noexcept;
 
     // The backend's side, one thread.
 
-    /// A reading that was measured just now (`reading.age` before).
+    /// Reports a reading, measured `reading.age` ago.
     void report(const DeviceReading& reading) noexcept;
-    /// The device is not ready and there is no position: starting, lost, ... The last position
-    /// stays.
+    /// Reports that the device is not ready and has no position: starting, lost, ... The last
+    /// position stays.
     void report(DeviceStatus status) noexcept;
     /// The force to send now: zero if none was set, if the last one is older than
     /// `Device::longest_force` (the servo has stalled or stopped), if it is not finite, or after
-    /// stop(). A backend sends it at least every 5 ms, whether it has changed or not, and is not
-    /// held up by locks or memory while doing so.
+    /// stop(). A backend sends it at least every 5 ms, changed or not, and takes no locks and
+    /// allocates nothing in doing so.
     Vec3 force() const noexcept;
 
     // Either side.
 
-    /// Zero for good: force() never gives anything else again. Safe in a signal handler.
+    /// From now on force() returns zero. Safe in a signal handler.
     void stop() noexcept;
     bool stopped() const noexcept;
 
@@ -56,8 +57,8 @@ class Link {
 };
 
 /// Asks the system to wake the calling thread in time: exact timers, and SCHED_FIFO just above the
-/// servo's priority, where that is granted (what was not, the servo's privileges tell). For threads
-/// that talk to a device and wait most of the time.
+/// servo's priority, where that is granted (the servo's privileges report what was not). For
+/// threads that talk to a device and wait most of the time.
 void ask_for_real_time_thread() noexcept;
 
 /// The machine's monotonic clock [ns].

@@ -1,4 +1,4 @@
-// KEY=VALUE,KEY=VALUE.
+// Parses the options of a device: KEY=VALUE,KEY=VALUE.
 #include "palpate/devices/options.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// dlopen, and the gate for forces.
+// Opens vendor libraries, and implements the gate for forces.
 #include "devices/vendor_library.hpp"
 
 #include <dlfcn.h>

@@ -1,5 +1,5 @@
-// What the backends over a vendor's library share: the library, opened at run time, and the rule
-// by which a force reaches the vendor's call.
+// Shared by backends that use a vendor's library: opening the library at run time, and the gate
+// that decides which forces reach the vendor's call.
 #pragma once
 
 #include <cstdint>
@@ -12,17 +12,17 @@
 
 namespace palpate::devices {
 
-/// A vendor's shared library. It stays in the process for ever: drivers keep threads and device
-/// state in it, and OpenHaptics' must not be unloaded and loaded again. Its symbols are visible to
-/// the libraries that it brings along (RTLD_GLOBAL), as those expect.
+/// A vendor's shared library. It is never unloaded: drivers keep threads and device state in it,
+/// and OpenHaptics must not be unloaded and loaded again. Its symbols are visible to the libraries
+/// that it loads (RTLD_GLOBAL), as those expect.
 class VendorLibrary {
   public:
     /// Opens the first of `names` (file names, or paths) that the system's loader finds. Throws
-    /// DeviceError, saying what was tried, what the loader says, and `install`.
+    /// DeviceError with the names tried, the loader's message and `install`.
     VendorLibrary(const std::vector<std::string>& names, const std::string& install);
 
-    /// Sets a pointer to a function of this library or of those it brings along. Throws DeviceError
-    /// if there is none of this name.
+    /// Sets a pointer to a function of this library or of those it loads. Throws DeviceError if
+    /// there is no function of this name.
     template <class F>
     void need(F*& function, const char* name) const {
         function = reinterpret_cast<F*>(symbol(name));
@@ -45,18 +45,18 @@ class VendorLibrary {
     std::string path_;
 };
 
-/// Whether a device can be there [device mm]: finite, and not farther than 10 m from its origin.
+/// Whether this can be a device's position [device mm]: finite, at most 10 m from its origin.
 bool is_position(const Vec3& position) noexcept;
 
-/// Lets a force through only once the device has been ready without a break for as long as a link
-/// holds a force: what is let through was written by a servo that knew it to be ready. For the
-/// thread that talks to the device.
+/// Passes a force only after the device has been ready without a break for as long as a link keeps
+/// a force, so that every force that passes was written by a servo that saw the device ready. For
+/// the thread that talks to the device.
 class ForceGate {
   public:
-    /// How the device is, at this time [ns, monotonic], after the calls that told it. So long
-    /// without a word is a break: a slow call is one, too.
+    /// Notes whether the device is ready at this time [ns, monotonic], after the calls that showed
+    /// it. A longer time without a note is a break, so a slow call is one, too.
     void note(bool ready, std::int64_t now) noexcept;
-    /// `force` cut to `most` [N], or zero.
+    /// `force` limited to `most` [N], or zero.
     Vec3 pass(const Vec3& force, double most, std::int64_t now) const noexcept;
 
   private:

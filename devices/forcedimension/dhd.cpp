@@ -1,4 +1,4 @@
-// Finding the functions, and the table of models.
+// Finds the functions of Force Dimension's library; the table of models.
 #include "devices/forcedimension/dhd.hpp"
 
 #include <algorithm>
@@ -35,7 +35,7 @@ constexpr Model models[] = {
     {206, "sigma.3",  12, 4,     55, false},
 };
 // clang-format on
-/// The least that any of them can do.
+/// For unknown models: the least that any of them can do.
 constexpr Model any_model{0, "Force Dimension device", 8, 3, 40, false};
 
 }  // namespace

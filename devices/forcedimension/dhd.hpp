@@ -1,4 +1,4 @@
-// The part of Force Dimension's SDK that is used here, in our own words: its numbers, and its
+// The part of Force Dimension's SDK that is used here, declared anew: its constants, and its
 // functions as pointers into the vendor's library. Every call names its device.
 #pragma once
 
@@ -19,7 +19,7 @@ constexpr int count = 32;  // more than any version has
 /// Why the device itself has switched its force off.
 enum class ForceOff : int { none, button, velocity, watchdog, software, usb, deadman };
 
-/// What kind of device this is; figures from public drivers.
+/// A model of device; figures from public drivers.
 struct Model {
     int type;
     const char* name;
@@ -30,11 +30,11 @@ struct Model {
 };
 const Model& model_of(int system_type);
 
-/// The functions. Angles, torques and grippers are not used. Negative results are errors; positive
-/// ones tell of the time guard (1) or of a motor at its limit (2), and all is well.
+/// The functions. Angles, torques and grippers are not used. Negative results are errors. Positive
+/// ones are not: they report the time guard (1) or a motor at its limit (2).
 struct Dhd {
-    /// Opens `path`; if that is empty, libdrd.so.3, which holds or brings along all of libdhd.so.3,
-    /// or else that one alone. Never both: each could have a device table of its own. Throws
+    /// Opens `path`; if that is empty, libdrd.so.3, which contains or loads all of libdhd.so.3, or
+    /// else libdhd.so.3 alone. Never both: each could have a device table of its own. Throws
     /// DeviceError.
     explicit Dhd(const std::string& path);
 
@@ -71,7 +71,7 @@ struct Dhd {
     bool has_drd() const { return drd_open && drd_close && drd_is_initialised && drd_initialise; }
     int open(char index) const { return has_drd() ? drd_open(index) : dhd_open(index); }
     void close(char id) const { has_drd() ? drd_close(id) : dhd_close(id); }
-    /// The calling thread's last error in words.
+    /// Text of the calling thread's last error.
     std::string error_words() const;
 };
 

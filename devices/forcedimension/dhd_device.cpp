@@ -1,4 +1,5 @@
-// The loop: look after the device, read it, send the force; and what is wrong in words.
+// The thread of a Force Dimension device: maintains it, reads it and sends forces; messages about
+// what is wrong.
 #include "devices/forcedimension/dhd_device.hpp"
 
 #include <algorithm>
@@ -34,20 +35,6 @@ void sleep_until(std::int64_t time) {
     }
 }
 
-DeviceStatus status_of(Trouble::Kind kind) {
-    switch (kind) {
-        case Trouble::Kind::none:
-            return DeviceStatus::ready;
-        case Trouble::Kind::initialising:
-        case Trouble::Kind::uninitialised:
-            return DeviceStatus::uncalibrated;
-        case Trouble::Kind::lost:
-            return DeviceStatus::lost;
-        default:
-            return DeviceStatus::fault;
-    }
-}
-
 std::string words_of(ForceOff cause) {
     switch (cause) {
         case ForceOff::button:
@@ -67,6 +54,20 @@ std::string words_of(ForceOff cause) {
 }
 
 }  // namespace
+
+DeviceStatus status_of(Trouble::Kind kind) {
+    switch (kind) {
+        case Trouble::Kind::none:
+            return DeviceStatus::ready;
+        case Trouble::Kind::initialising:
+        case Trouble::Kind::uninitialised:
+            return DeviceStatus::uncalibrated;
+        case Trouble::Kind::lost:
+            return DeviceStatus::lost;
+        default:
+            return DeviceStatus::fault;
+    }
+}
 
 Opened::Opened(const Dhd& dhd, int index) : dhd_(dhd) {
     const int count = dhd.get_device_count();
@@ -147,7 +148,7 @@ void DhdDevice::initialise() {
     if (dhd_.drd_is_initialised(id_)) return;
     Trouble trouble;
     trouble.kind = Trouble::Kind::initialising;
-    report(trouble, {});
+    trouble_.report(link_, trouble, {});
     if (dhd_.drd_initialise(id_) < 0) init_words_ = clipped(dhd_.error_words());
 }
 
@@ -170,7 +171,7 @@ void DhdDevice::tick() noexcept {
         gate_.note(false, now);
     }
     reading.age = 1e-9 * static_cast<double>(monotonic_ns() - begun);
-    report(trouble, reading);
+    trouble_.report(link_, trouble, reading);
 }
 
 void DhdDevice::look_after_device() noexcept {
@@ -193,7 +194,7 @@ void DhdDevice::look_after_device() noexcept {
         if (!is_on_) state_ = failure();
         return;
     }
-    // A device that does not tell why its force is off may not tell of its force at all.
+    // A device that does not report why its force is off may not report its force at all.
     const auto cause = static_cast<ForceOff>(told[status::force_off_cause]);
     if (told[status::force] != 0 || cause == ForceOff::none) return;
     state_.kind = Trouble::Kind::force_off;
@@ -202,7 +203,7 @@ void DhdDevice::look_after_device() noexcept {
 }
 
 bool DhdDevice::switch_on() noexcept {
-    // What a model has not, it refuses; only the force itself is needed.
+    // A model refuses calls for features it lacks; only the force itself is needed.
     if (dhd_.set_max_force) dhd_.set_max_force(model_.force, id_);
     dhd_.set_brakes(0, id_);
     if (dhd_.enable_force(1, id_) < 0) return false;
@@ -254,22 +255,8 @@ Trouble DhdDevice::failure() const noexcept {
     return trouble;
 }
 
-void DhdDevice::report(const Trouble& trouble, const DeviceReading& reading) noexcept {
-    if (trouble != last_told_) {
-        last_told_ = trouble;
-        trouble_.put(trouble);
-    }
-    if (trouble.kind == Trouble::Kind::none) {
-        DeviceReading ready = reading;
-        ready.status = DeviceStatus::ready;
-        link_.report(ready);
-    } else {
-        link_.report(status_of(trouble.kind));
-    }
-}
-
 std::string DhdDevice::problem() const {
-    const Trouble trouble = trouble_.get().value_or(Trouble{});
+    const Trouble trouble = trouble_.get();
     const std::string words = trouble.words.data();
     switch (trouble.kind) {
         case Trouble::Kind::initialising:

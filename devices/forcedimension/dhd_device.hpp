@@ -1,4 +1,4 @@
-// The device: opened, and a thread of its own that talks to it.
+// An open Force Dimension device, and the thread that talks to it.
 #pragma once
 
 #include <array>
@@ -9,26 +9,26 @@
 #include <thread>
 
 #include "devices/forcedimension/dhd.hpp"
-#include "devices/link.hpp"
+#include "devices/latest_trouble.hpp"
 
 namespace palpate::devices::forcedimension {
 
 struct Settings {
     int index = 0;            ///< of the device, as the library counts them
-    bool initialise = false;  ///< let it find its reference by itself, by which it moves
+    bool initialise = false;  ///< let it find its reference by itself; it moves to do so
     double rate = 1000;       ///< [Hz] of the servo
 };
 
-/// What is wrong with the device, as its own thread found it.
+/// What is wrong with the device, found by its own thread.
 struct Trouble {
     enum class Kind : std::uint8_t {
         none,
         initialising,    ///< it is moving by itself
         uninitialised,   ///< `words`: why its own attempt failed, if there was one
-        not_a_position,  ///< what the library tells is none
+        not_a_position,  ///< the library returns an impossible position
         force_off,       ///< the device has switched its force off
         error,           ///< a call failed: `words`
-        lost,            ///< and that because there is no talking to the device
+        lost,            ///< a call failed because the device does not answer
     };
     Kind kind = Kind::none;
     ForceOff cause = ForceOff::none;
@@ -36,8 +36,9 @@ struct Trouble {
 
     bool operator==(const Trouble&) const = default;
 };
+DeviceStatus status_of(Trouble::Kind kind);
 
-/// A device of the library's, ours until this goes. Throws DeviceError.
+/// Opens a device of the library and closes it when destroyed. Throws DeviceError.
 class Opened {
   public:
     Opened(const Dhd& dhd, int index);
@@ -66,7 +67,7 @@ class DhdDevice final : public Device {
   private:
     DeviceInfo ask(const Settings& settings) const;
 
-    // All of these are the thread's.
+    // Called by the thread only.
     void run(bool initialise);
     void initialise();
     void tick() noexcept;
@@ -74,7 +75,6 @@ class DhdDevice final : public Device {
     bool switch_on() noexcept;
     Trouble read_device(DeviceReading& reading) noexcept;
     Trouble failure() const noexcept;
-    void report(const Trouble& trouble, const DeviceReading& reading) noexcept;
 
     const Dhd dhd_;
     const Opened opened_;
@@ -82,13 +82,12 @@ class DhdDevice final : public Device {
     const Model model_;
     const DeviceInfo info_;
     Link link_;
-    Newest<Trouble> trouble_;
+    LatestTrouble<Trouble> trouble_;
     std::atomic<bool> quit_{false};
 
-    // The thread's.
+    // Used by the thread only.
     ForceGate gate_;
-    Trouble last_told_;
-    Trouble state_;  // found by looking after the device
+    Trouble state_;  // found by look_after_device()
     std::array<char, 128> init_words_{};
     bool is_on_ = false;          // brakes off, force on
     std::int64_t next_look_ = 0;  // [ns]

@@ -1,4 +1,4 @@
-// Options and errors of the device `forcedimension`.
+// Finds and opens the device `forcedimension`: its options and errors.
 #include "devices/forcedimension/forcedimension.hpp"
 
 #include <cmath>

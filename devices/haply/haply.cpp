@@ -1,4 +1,4 @@
-// Options and errors of the device `haply`.
+// Finds and opens the device `haply`: its options and errors.
 #include "devices/haply/haply.hpp"
 
 #include <cmath>
@@ -84,7 +84,7 @@ std::unique_ptr<Device> open_haply(const DeviceChoice& choice, const DeviceScene
         throw DeviceError("device haply: no host '" + host +
                           "': host=NAME is where Haply's Inverse Service runs, usually localhost");
     }
-    // A service that is just being started gets its second.
+    // A service that is just starting gets a second.
     const auto deadline = haply::Clock::now() + 1s;
     haply::Talk talk;
     std::string wrong;

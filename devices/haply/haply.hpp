@@ -9,8 +9,8 @@ namespace palpate::devices {
 /// most about 0.3 s. Never throws for what it finds.
 DeviceFinding find_haply();
 
-/// Connects within about a second and takes the first state of the device; losses later on are
-/// answered by connecting again. Throws std::invalid_argument for wrong options, DeviceError where
+/// Connects within about a second and reads the first state of the device. Connects again when the
+/// connection is lost later. Throws std::invalid_argument for wrong options, DeviceError where
 /// nothing listens or the service has no such device.
 std::unique_ptr<Device> open_haply(const DeviceChoice& choice, const DeviceScene& scene);
 

@@ -1,4 +1,5 @@
-// Ask, take the answer, hand it to the servo; again when the connection breaks.
+// The thread of an Inverse3: asks the service, hands the answer to the servo, and connects again
+// when the connection breaks.
 #include "devices/haply/inverse3.hpp"
 
 #include <algorithm>
@@ -22,7 +23,7 @@ constexpr auto longest_age = std::chrono::duration_cast<Clock::duration>(
 
 constexpr double maximum_force = 10;   // [N] Inverse3
 constexpr double stiffness = 1;        // [N/mm]
-const Vec3 box_low(-300, -299, -118);  // [mm, service axes] what public drivers take as reachable
+const Vec3 box_low(-300, -299, -118);  // [mm, service axes] reachable, after public drivers
 const Vec3 box_high(286, 163, 378);
 
 std::string place_of(const Address& address) {

@@ -1,4 +1,4 @@
-// The device: a thread of its own that asks the Inverse Service, and a link to the servo.
+// An Inverse3: a thread that talks to the Inverse Service, and a link to the servo.
 #pragma once
 
 #include <atomic>
@@ -17,20 +17,20 @@ struct Settings {
     std::string device;  ///< device_id; empty: the first
     ForceKey force_key = ForceKey::values;
     Mat3 axes = axes_from("xz-y");
-    bool assume_calibrated = false;  ///< whatever the service says of it
-    double timeout = 2;              ///< [s] behind with its answers: the connection is given up
-    double rate = 1000;              ///< [Hz] of the servo
+    bool assume_calibrated = false;  ///< whatever the service reports
+    double timeout = 2;  ///< [s] by which answers may be late before the connection is dropped
+    double rate = 1000;  ///< [Hz] of the servo
 };
 
-/// A connection and what was learnt on it.
+/// A connection, and what the service has said on it.
 struct Talk {
     Socket socket{longest_message};
     ServiceState state;
 };
-/// Connects and takes the first message, which tells what is attached. Empty, or what is wrong.
+/// Connects and reads the first message, which lists the devices. Returns what is wrong, or empty.
 std::string start_talk(Talk& talk, const Address& address, const std::string& device,
                        Clock::time_point deadline);
-/// What is wrong where start_talk() worked but did not find the device.
+/// The message for a service that answers but does not have the device.
 std::string no_device(const Talk& talk, const Address& address);
 
 /// Counts questions and answers. The service answers each message with one, so an answer is no
@@ -38,11 +38,12 @@ std::string no_device(const Talk& talk, const Address& address);
 class Questions {
   public:
     void asked(Clock::time_point now);
-    /// When the question that this answers was asked; one that nobody asked answers the last.
+    /// When the question to this answer was asked; an answer without a question counts for the
+    /// last.
     Clock::time_point answered();
     std::uint64_t missing() const { return asked_ - answered_; }
     Clock::time_point last() const { return last_; }
-    /// How long there was always an answer missing.
+    /// For how long at least one answer has been missing.
     Clock::duration behind(Clock::time_point now) const;
 
   private:
@@ -64,7 +65,7 @@ class Inverse3 final : public Device {
     void stop() noexcept override { link_.stop(); }
 
   private:
-    // All of these are the thread's.
+    // Called by the thread only.
     void run(Talk talk);
     std::string converse(Talk& talk);
     bool ask(Talk& talk, Questions& questions);
@@ -92,7 +93,7 @@ class Inverse3 final : public Device {
     Newest<Identity> identity_;
     std::atomic<bool> quit_{false};
 
-    // The thread's.
+    // Used by the thread only.
     std::string told_;
     bool told_grip_ = false;
     Clock::time_point measured_at_;  // the newest position, at the earliest

@@ -1,4 +1,4 @@
-// A hand after a pointer: critically damped, of limited speed.
+// The device `mouse`: a hand that follows the pointer, critically damped and of limited speed.
 #include "palpate/devices/mouse.hpp"
 
 #include <algorithm>
@@ -6,7 +6,7 @@
 namespace palpate::devices {
 namespace {
 
-/// [s] In which the hand gets near what is aimed at: two frames of a screen.
+/// [s] Time constant of following the target: two frames of a screen.
 constexpr double lag = 0.03;
 /// A gap between two reads counts as no more [s].
 constexpr double longest_gap = 0.02;

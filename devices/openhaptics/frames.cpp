@@ -1,4 +1,4 @@
-// A frame, and what its errors mean.
+// One frame of OpenHaptics' servo loop, and what its errors mean.
 #include "devices/openhaptics/frames.hpp"
 
 #include <limits>
@@ -50,7 +50,7 @@ unsigned int Frames::callback(void* frames) {
 }
 
 Trouble Frames::trouble() const {
-    return trouble_.get().value_or(Trouble{});
+    return trouble_.get();
 }
 
 unsigned int Frames::frame() noexcept {
@@ -75,11 +75,11 @@ unsigned int Frames::frame() noexcept {
     if (error_.kind != Trouble::Kind::none) trouble = error_;
     now = monotonic_ns();
     reading.age = 1e-9 * static_cast<double>(now - begun);
-    report(trouble, reading);
+    trouble_.report(link_, trouble, reading);
     if (trouble.kind == Trouble::Kind::needs_update && now >= next_update_) {
         next_update_ = now + between_updates;
         hd_.update_calibration(setup_.styles & automatic ? automatic : inkwell);
-        hd_.take_error();  // what it refuses stays uncalibrated
+        hd_.take_error();  // a refused update leaves it uncalibrated
     }
     if (!last) return callback_again;
     ended_.store(true);
@@ -100,8 +100,8 @@ Trouble Frames::read_device(DeviceReading& reading) noexcept {
 
     const unsigned int calibration = hd_.check_calibration();
     if (calibration != calibrated) {
-        // An update moves nothing, but it shifts the positions: no force while one is due. Zeroing
-        // encoders is right in one pose only, so that is nothing to do unasked.
+        // An update moves nothing, but it shifts the positions, so there is no force while one is
+        // due. Zeroing encoders is right in one pose only and is never done unasked.
         const bool by_itself = (setup_.styles & (automatic | inkwell)) != 0;
         return {calibration == needs_update && by_itself ? Trouble::Kind::needs_update
                                                          : Trouble::Kind::needs_person,
@@ -132,20 +132,6 @@ void Frames::force_output(bool on) noexcept {
         hd_.enable(openhaptics::force_output);
     } else {
         hd_.disable(openhaptics::force_output);
-    }
-}
-
-void Frames::report(Trouble trouble, const DeviceReading& reading) noexcept {
-    if (trouble != last_told_) {
-        last_told_ = trouble;
-        trouble_.put(trouble);
-    }
-    if (trouble.kind == Trouble::Kind::none) {
-        DeviceReading ready = reading;
-        ready.status = DeviceStatus::ready;
-        link_.report(ready);
-    } else {
-        link_.report(status_of(trouble.kind));
     }
 }
 

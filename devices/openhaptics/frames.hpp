@@ -1,25 +1,25 @@
-// What runs in the driver's servo loop: a frame a call, reading in, force out.
+// The callback that runs in the driver's servo loop: each call is one frame, reading in, force out.
 #pragma once
 
 #include <atomic>
 #include <memory>
 #include <utility>
 
-#include "devices/link.hpp"
+#include "devices/latest_trouble.hpp"
 #include "devices/openhaptics/hd.hpp"
 
 namespace palpate::devices::openhaptics {
 
-/// What is wrong with the device, as its own thread found it.
+/// What is wrong with the device, found by the driver's thread.
 struct Trouble {
     enum class Kind : std::uint8_t {
         none,
         needs_update,    ///< calibration that waits for the driver
-        needs_person,    ///< calibration that waits for somebody's hand
-        not_a_position,  ///< what the driver tells is none
-        passing,         ///< an error; over once it has not come back for a while
-        lost,            ///< communication has broken off: for good
-        broken,          ///< the device reports a fault: for good
+        needs_person,    ///< calibration that waits for a person
+        not_a_position,  ///< the driver returns an impossible position
+        passing,         ///< an error; over when it has not recurred for a while
+        lost,            ///< communication has ended; permanent
+        broken,          ///< the device reports a fault; permanent
     };
     Kind kind = Kind::none;
     unsigned int code = 0;  ///< of the driver's error
@@ -48,29 +48,27 @@ class Frames {
 
     /// Any thread: the next frame sends zero force and is the last.
     void end() noexcept { end_.store(true); }
-    /// Whether that frame was sent: it is not called any more.
+    /// Whether that frame was sent. The callback is not called again after it.
     bool ended() const noexcept { return ended_.load(); }
 
   private:
-    // All of these are the driver's thread's.
+    // Called by the driver's thread only.
     unsigned int frame() noexcept;
     Trouble read_device(DeviceReading& reading) noexcept;
     bool for_good() const noexcept;
     void take_errors() noexcept;
     void force_output(bool on) noexcept;
-    void report(Trouble trouble, const DeviceReading& reading) noexcept;
 
     const std::shared_ptr<const Hd> library_;
     const Hd& hd_;
     const Setup setup_;
     Link link_;
-    Newest<Trouble> trouble_;
+    LatestTrouble<Trouble> trouble_;
     std::atomic<bool> end_{false}, ended_{false};
 
-    // The driver's thread's.
+    // Used by the driver's thread only.
     ForceGate gate_;
-    Trouble last_told_;
-    Trouble error_;                 // the worst of late
+    Trouble error_;                 // the worst recent one
     std::int64_t error_until_ = 0;  // [ns] when a passing one is over
     bool force_output_ = true;
     std::int64_t next_update_ = 0;  // [ns] of the calibration, not before

@@ -1,4 +1,4 @@
-// Finding the functions.
+// Finds the functions of OpenHaptics' library.
 #include "devices/openhaptics/hd.hpp"
 
 #include <array>

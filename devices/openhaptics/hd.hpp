@@ -1,4 +1,4 @@
-// The part of OpenHaptics' HD interface that is used here, in our own words: its numbers, and its
+// The part of OpenHaptics' HD interface that is used here, declared anew: its constants, and its
 // functions as pointers into the vendor's library.
 #pragma once
 
@@ -49,14 +49,14 @@ constexpr unsigned int device_fault = 0x300, already_initiated = 0x301, communic
 
 enum Calibration : unsigned int {
     calibrated = 0x5000,
-    needs_update = 0x5001,  ///< an update call will do
+    needs_update = 0x5001,  ///< an update call is enough
     needs_person = 0x5002,  ///< somebody has to move the device first
 };
 enum CalibrationStyle : unsigned int { encoder_reset = 1, automatic = 2, inkwell = 4 };
 
-/// The functions. Everything but error_words() wants the device to be current.
+/// The functions. All but error_words() need the device to be the current one.
 struct Hd {
-    /// Opens `path`, or libHD.so where the loader finds it if that is empty. Throws DeviceError.
+    /// Opens `path`; if that is empty, libHD.so where the loader finds it. Throws DeviceError.
     explicit Hd(const std::string& path);
 
     VendorLibrary library;
@@ -81,9 +81,9 @@ struct Hd {
     unsigned long (*schedule)(Callback, void*, unsigned short priority);
     void (*unschedule)(unsigned long);
 
-    /// The oldest error that the driver has not told yet, 0 if there is none; forgets the others.
+    /// The oldest error that the driver has not reported yet, 0 if there is none; drops the others.
     unsigned int take_error() const noexcept;
-    static constexpr int most_errors = 16;  ///< asked for at once, lest it never comes to an end
+    static constexpr int most_errors = 16;  ///< asked for in one call, so that the loop ends
     /// "Device fault (0x300)".
     std::string error_words(unsigned int code) const;
 };

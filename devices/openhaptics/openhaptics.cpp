@@ -1,4 +1,4 @@
-// Options and errors of the device `openhaptics`.
+// Finds and opens the device `openhaptics`: its options and errors.
 #include "devices/openhaptics/openhaptics.hpp"
 
 #include <utility>

@@ -1,5 +1,5 @@
-// Attaching, asking what the device can do, starting and halting the driver's servo loop, and what
-// is wrong in words.
+// Attaches to the driver, asks what the device can do, starts and stops the driver's servo loop;
+// messages about what is wrong.
 #include "devices/openhaptics/phantom.hpp"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-std::atomic<bool> attached{false};  // the driver's loop is one a process, and so is this
+std::atomic<bool> attached{false};  // the driver has one loop per process, so there is one of these
 
 constexpr auto longest_wait = 500ms;  // for the last frame
 
@@ -24,7 +24,7 @@ const char* const how_to_attach =
     "it is not the default one: name=NAME); your account must be able to open its /dev/ttyACM* or "
     "/dev/hidraw* (the driver's udev rule)";
 
-/// What the driver tells, if it is sensible. An Omni's or Touch's figures otherwise.
+/// The driver's figures where they make sense, otherwise those of an Omni or Touch.
 double number(const Hd& hd, unsigned int parameter, double low, double high, double otherwise) {
     double value = std::numeric_limits<double>::quiet_NaN();
     hd.get_double(parameter, &value);
@@ -176,7 +176,7 @@ void Phantom::halt() noexcept {
     hd.unschedule(scheduled_);
     is_scheduled_ = false;
     if (frames_->ended()) return;
-    // A driver that has not called for so long may yet do so: what it would call stays for ever.
+    // A driver that has not called for so long may still do so: what it would call is kept.
     static auto& kept = *new std::vector<std::shared_ptr<Frames>>;
     kept.push_back(frames_);
 }

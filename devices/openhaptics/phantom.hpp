@@ -1,4 +1,4 @@
-// The device: attached to the driver, and its servo loop running.
+// An open OpenHaptics device: attached to the driver, with its servo loop running.
 #pragma once
 
 #include <memory>
@@ -14,8 +14,8 @@ struct Settings {
     double rate = 1000;  ///< [Hz] of the servo
 };
 
-/// A device of the driver's, ours until this goes. The driver has one servo loop and one current
-/// device a process, so there is at most one of these. Throws DeviceError.
+/// Opens a device of the driver and closes it when destroyed. The driver has one servo loop and one
+/// current device per process, so there is at most one of these. Throws DeviceError.
 class Attachment {
   public:
     Attachment(const std::string& library, const std::string& name);
@@ -24,7 +24,7 @@ class Attachment {
     Attachment& operator=(const Attachment&) = delete;
 
     const Hd& hd() const { return *hd_; }
-    /// Shared, for calls that may still come when this has gone.
+    /// Shared, because calls may still come after this object is destroyed.
     const std::shared_ptr<const Hd>& shared_hd() const { return hd_; }
     Handle device() const { return device_; }
 

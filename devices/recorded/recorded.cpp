@@ -1,4 +1,4 @@
-// The device: the file, and where the hand is at a time.
+// The device `recorded`: opens the file and gives the hand's pose at a time.
 #include "devices/recorded/recorded.hpp"
 
 #include <algorithm>
@@ -56,8 +56,8 @@ class Recorded final : public Device {
             const double passed = std::max(0.0, (time - first_) * speed_);
             return path_.begin() + there_and_back(passed, path_.end() - path_.begin()).time;
         }
-        // A session whose clock is the recording's meets its rows bit for bit: the rounding of a
-        // difference is gone when the smaller of the two, which was taken off, is added again.
+        // A session with the clock of the recording gets its rows bit for bit: subtracting and
+        // adding the smaller of two times again undoes the rounding of the difference.
         return path_.begin() + (time - first_) * speed_;
     }
 
@@ -95,7 +95,7 @@ std::unique_ptr<Device> open_recorded(const DeviceChoice& choice, const DeviceSc
     DeviceInfo info;
     info.name = "recorded";
     info.model = "recording " + file;
-    // Whatever is asked for does no harm here, so nothing is held back: N, N s/mm.
+    // No force can do harm here, so none is limited: N, N s/mm.
     info.limits = {.maximum_force = 1000, .rate = scene.rate, .physical_damping = 1};
     return std::make_unique<Recorded>(info, read_recording(file, scene.transform(info)), speed,
                                       loop);

@@ -1,4 +1,4 @@
-// The device `recorded`: a hand that moves as a file says and feels nothing. See
+// The device `recorded`: a hand that moves along a file and ignores forces. See
 // docs/devices/recorded.md.
 #pragma once
 
@@ -11,7 +11,7 @@ namespace palpate::devices {
 /// Always found.
 DeviceFinding find_recorded();
 
-/// Reads the file. Throws std::invalid_argument for options it has not, io::InputError for a file
+/// Reads the file. Throws std::invalid_argument for unknown options, io::InputError for a file
 /// that cannot be read.
 std::unique_ptr<Device> open_recorded(const DeviceChoice& choice, const DeviceScene& scene);
 

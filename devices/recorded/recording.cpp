@@ -1,4 +1,4 @@
-// Reads the columns by name: a recording has many more, and an older or newer one others.
+// Reads the columns that a device needs by name; recordings have more, and other versions others.
 #include "devices/recorded/recording.hpp"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ std::optional<std::size_t> column_if_any(const io::CsvReader& rows, const std::s
     return rows.column(name);
 }
 
-/// The columns of a recording that a device told.
+/// The columns of a recording that came from the device.
 class DeviceColumns {
   public:
     explicit DeviceColumns(const io::CsvReader& rows)
@@ -46,7 +46,7 @@ class DeviceColumns {
         rows.fail("the time " + io::quoted(rows.cell(time_)) + " does not come after " + last +
                   ", that of the row before: sort the rows and remove doubles");
     }
-    /// As the device told it, even if that is no number: what a session made of it is to be seen.
+    /// As the device reported it, NaN included: a replay has to show what the session made of it.
     Vec3 position(const io::CsvReader& rows) const {
         return {rows.number(x_), rows.number(y_), rows.number(z_)};
     }
@@ -102,8 +102,8 @@ Recording raw_recording(const std::string& text, const std::string& name) {
     return recording;
 }
 
-/// What the device told in one place of a volume, as one that lies there otherwise would have told
-/// it: the hand goes the same way through the volume. Nothing changes where both lie alike.
+/// Converts what a device reported into what a device with another transform would have reported,
+/// so that the hand moves equally through the volume. Nothing changes for equal transforms.
 void move_from(const DeviceTransform& recorded, const DeviceTransform& now, Recording& recording) {
     if (recorded.rotation == now.rotation && recorded.translation == now.translation &&
         recorded.scale == now.scale) {

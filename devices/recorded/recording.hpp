@@ -1,4 +1,4 @@
-// What there is to play: rows of a CSV file, as far as they concern a device.
+// The rows of a CSV file that the device `recorded` plays.
 #pragma once
 
 #include <cstdint>
@@ -9,14 +9,14 @@
 
 namespace palpate::devices {
 
-/// What a device told beside its position.
+/// What a device reported besides its position.
 struct Told {
     DeviceStatus status = DeviceStatus::ready;
     std::uint32_t buttons = 0;
     double age = 0;  ///< [s]
 };
 
-/// All vectors are as long as `time` or, where the file has nothing of the kind, empty.
+/// All vectors are as long as `time`, or empty where the file has no such columns.
 struct Recording {
     std::vector<double> time;       ///< [s], strictly increasing, at least one
     std::vector<Vec3> position;     ///< [device mm]; never empty
@@ -25,9 +25,9 @@ struct Recording {
 };
 
 /// Positions of a trajectory or a trace are mapped from physical space by `transform`. Those of a
-/// recording, and its tools, go the same way through the volume as when they were recorded: the
-/// transform in its head leads there and `transform` back; where both are the same, and where there
-/// is no head, they stay as they are, bit for bit. Throws io::InputError.
+/// recording, and its tool's axes, move through the volume as they were recorded: the transform in
+/// its head leads to physical space and `transform` back. If both are equal, or there is no head,
+/// they are unchanged bit for bit. Throws io::InputError.
 Recording read_recording(const std::string& file, const DeviceTransform& transform);
 
 }  // namespace palpate::devices

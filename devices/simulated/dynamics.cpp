@@ -1,4 +1,4 @@
-// One implicit step; what motors and encoders make of numbers; forces under way.
+// The implicit step of the dynamics, quantisation by motors and encoders, and delayed forces.
 #include "devices/simulated/dynamics.hpp"
 
 #include <algorithm>

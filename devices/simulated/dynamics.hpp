@@ -38,12 +38,12 @@ HandAndDevice hand_and_device(const DeviceProfile& device, const HandGrip& hand,
 void advance(HandAndDevice& system, const Vec3& target, const Vec3& target_velocity,
              const Vec3& motor_force, double dt) noexcept;
 
-/// [s] 40 kHz. The stiffest hand that can be asked for (100 N/mm), on the lightest device here,
-/// swings once in 168 of them.
+/// [s] 40 kHz. The stiffest hand allowed (100 N/mm) on the lightest device here oscillates once in
+/// 168 of them.
 inline constexpr double longest_step = 25e-6;
 
-/// What the motors give of a commanded force: at most the maximum, in whole force steps, and
-/// nothing of a force that is not finite.
+/// The force the motors produce for a commanded one: at most the maximum, in whole force steps, and
+/// zero for a force that is not finite.
 Vec3 motor_force(const DeviceProfile& device, const Vec3& commanded) noexcept;
 
 /// Where the encoders say the device is.

@@ -1,4 +1,5 @@
-// The tables. Sources, and what is assumed, stand in docs/devices/simulated.md: keep them together.
+// Tables of simulated devices and hands. docs/devices/simulated.md gives their sources and what is
+// assumed: change both together.
 #include "devices/simulated/profiles.hpp"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// What the simulated devices and hands are like: plain numbers. Which of them are published and
-// which assumed: docs/devices/simulated.md.
+// Properties of the simulated devices and hands. Which are published and which assumed is said in
+// docs/devices/simulated.md.
 #pragma once
 
 #include <string>
@@ -31,8 +31,8 @@ const std::vector<std::string>& profile_names();
 /// Throws std::invalid_argument, listing the names, for another.
 const DeviceProfile& profile(std::string_view name);
 
-/// The hand at the grip: a mass that moves with the device, and a spring and a damper to where the
-/// hand wants to be.
+/// The hand at the grip: a mass that moves with the device, and a spring and a damper towards the
+/// hand's target.
 struct HandGrip {
     double mass = 0;       ///< [kg]
     double damping = 0;    ///< [N s/mm]

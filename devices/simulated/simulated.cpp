@@ -1,4 +1,4 @@
-// The device: options, the hand's path, and reading and writing the dynamics.
+// The device `simulated`: its options, the hand's trajectory, and a Device around the dynamics.
 #include "devices/simulated/simulated.hpp"
 
 #include <algorithm>
@@ -15,13 +15,13 @@
 namespace palpate::devices {
 namespace {
 
-/// A gap between two reads is caught up by this much [s]; the rest is skipped, so that a read after
-/// a stall takes no longer than one of the next stall.
+/// After a gap between two reads at most this much [s] is simulated; the rest is skipped, so that a
+/// read after a stall does not itself cause the next stall.
 constexpr double longest_gap = 0.05;
 
 const char* const usual_profile = "omni";
 
-/// What the hand is to do. Lengths in device mm: those of the hand.
+/// What the hand does. Lengths in device mm.
 struct HandOptions {
     std::string motion = "explore";
     std::string file;
@@ -42,7 +42,7 @@ struct Choice {
 /// The motions a hand can make, by the names used here.
 std::vector<std::string> hand_names() {
     std::vector<std::string> names = scenes::motion_names();
-    std::erase(names, "random");  // jumps about: no hand
+    std::erase(names, "random");  // jumps about, which no hand does
     std::ranges::replace(names, "approach", "hold");
     return names;
 }

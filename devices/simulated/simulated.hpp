@@ -12,7 +12,7 @@ namespace palpate::devices {
 DeviceFinding find_simulated();
 
 /// Computes in Device::read(), so the same reads and writes at the same times give the same bits.
-/// Throws std::invalid_argument for options it has not, io::InputError for a trajectory file that
+/// Throws std::invalid_argument for unknown options, io::InputError for a trajectory file that
 /// cannot be read.
 std::unique_ptr<Device> open_simulated(const DeviceChoice& choice, const DeviceScene& scene);
 

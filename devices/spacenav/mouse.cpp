@@ -1,5 +1,5 @@
-// A thousand times a second: take what the daemon says, move the hand, tell where it is. A puck at
-// rest sends nothing, so silence is no sign of trouble; only a socket that closes is.
+// The thread of the device `spacenav`, 1000 times a second: read events, move the hand, report its
+// pose. A puck at rest sends nothing, so only a closed socket is a sign of trouble.
 #include "devices/spacenav/mouse.hpp"
 
 #include <algorithm>
@@ -41,7 +41,7 @@ Mouse::Mouse(Socket socket, const std::string& path, std::vector<std::string> pa
     info_.workspace_high = Vec3::Constant(reach);
     info_.renders_force = false;
     info_.has_orientation = true;
-    info_.buttons = 32;  // the daemon does not tell how many there are
+    info_.buttons = 32;  // the protocol does not say how many there are
     report();
     thread_ = std::thread([this, first = std::move(socket)]() mutable { run(std::move(first)); });
 }

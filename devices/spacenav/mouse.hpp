@@ -1,4 +1,4 @@
-// The device: a connection to spacenavd and a thread of its own that moves the hand.
+// An open 3D mouse: a connection to spacenavd, and a thread that moves the hand.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ namespace palpate::devices::spacenav {
 
 class Mouse final : public Device {
   public:
-    /// `socket` is connected to `path`; the others are tried as well when it breaks.
+    /// `socket` is connected to `path`. All `paths` are tried when the connection breaks.
     Mouse(Socket socket, const std::string& path, std::vector<std::string> paths, const Feel& feel,
           double rate);
     ~Mouse() override;
@@ -28,7 +28,7 @@ class Mouse final : public Device {
     void stop() noexcept override { link_.stop(); }
 
   private:
-    // All of these are the thread's.
+    // Called by the thread only.
     void run(Socket socket);
     void take_events(Socket& socket, EventReader& events);
     bool reconnect(Socket& socket) const;
@@ -39,7 +39,7 @@ class Mouse final : public Device {
     DeviceInfo info_;
     Link link_;
     std::atomic<bool> connected_{true}, quit_{false};
-    Hand hand_;  // the thread's
+    Hand hand_;  // used by the thread only
     std::thread thread_;
 };
 

@@ -1,4 +1,4 @@
-// Events, and the hand that they move.
+// Turns events of spacenavd into the motion of a hand.
 #include "devices/spacenav/puck.hpp"
 
 #include <Eigen/Geometry>

@@ -1,4 +1,4 @@
-// What spacenavd says, and what becomes of it: deflections of the puck are speeds of the hand. Pure
+// Events of spacenavd, and the hand they move: deflections of the puck are speeds of the hand. Pure
 // functions and values, no socket.
 #pragma once
 
@@ -22,10 +22,10 @@ enum EventType : std::int32_t {
 };
 using Event = std::array<std::int32_t, 8>;
 
-/// Puts events together from pieces of any size.
+/// Assembles events from pieces of any size.
 class EventReader {
   public:
-    /// Takes bytes; what they complete comes out of next().
+    /// Adds bytes; next() returns the events they complete.
     void take(std::span<const unsigned char> bytes);
     std::optional<Event> next();
 
@@ -51,11 +51,11 @@ struct Hand {
     std::uint32_t buttons = 0;
 };
 
-/// What an event changes. Types that are not known are for other programs: nothing.
+/// Applies an event. Unknown types are ignored.
 void apply(Hand& hand, const Event& event, const Feel& feel);
-/// So long [s] with the deflections as they are.
+/// Moves the hand for this time [s] with the current deflections.
 void advance(Hand& hand, double time, const Feel& feel);
-/// The puck is let go: nobody tells of it any more.
+/// Releases puck and buttons, when no more events come.
 void let_go(Hand& hand);
 
 /// Where the daemon's socket may be, in the order to try: `environment` is $SPNAV_SOCKET (empty:

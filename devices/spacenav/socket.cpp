@@ -1,4 +1,4 @@
-// connect, poll, read.
+// Connects to a socket of the UNIX domain, waits for it and reads from it.
 #include "devices/spacenav/socket.hpp"
 
 #include <poll.h>

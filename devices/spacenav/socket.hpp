@@ -1,4 +1,4 @@
-// A stream socket of the UNIX domain that never waits.
+// A stream socket of the UNIX domain whose reads never block.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ class Socket {
     Socket(Socket&& other) noexcept;
     Socket& operator=(Socket&& other) noexcept;
 
-    /// Empty, or why not.
+    /// Returns why it failed; empty if it is connected.
     std::string connect(const std::string& path);
     void close() noexcept;
     bool is_open() const noexcept { return file_ >= 0; }
@@ -23,7 +23,7 @@ class Socket {
     /// Whether there is something to read, or the other side has gone, by this time [ns,
     /// monotonic].
     bool wait_until(std::int64_t time) const noexcept;
-    /// How many bytes were there; nothing if the other side has gone (then it is closed).
+    /// How many bytes were read; nothing if the other side has closed (then this is closed, too).
     std::optional<std::size_t> read(std::span<unsigned char> bytes) noexcept;
 
   private:

@@ -1,4 +1,4 @@
-// Options and errors of the device `spacenav`.
+// Finds and opens the device `spacenav`: its options and errors.
 #include "devices/spacenav/spacenav.hpp"
 
 #include <cstdlib>
@@ -11,7 +11,7 @@
 namespace palpate::devices {
 namespace {
 
-/// The one that is asked for, or where one usually is.
+/// Paths of the socket: the one asked for, or else the usual ones.
 std::vector<std::string> paths_from(const std::string& asked) {
     if (!asked.empty()) return {asked};
     const char* environment = std::getenv("SPNAV_SOCKET");

@@ -6,11 +6,11 @@
 
 namespace palpate::devices {
 
-/// Knocks at the daemon's socket. Never throws for what it finds.
+/// Tries to connect to the daemon. Never throws for what it finds.
 DeviceFinding find_spacenav();
 
-/// Connects; losses later on are answered by connecting again. Throws std::invalid_argument for
-/// wrong options, DeviceError where no daemon listens.
+/// Connects, and connects again when the connection is lost later. Throws std::invalid_argument for
+/// wrong options, DeviceError if no daemon listens.
 std::unique_ptr<Device> open_spacenav(const DeviceChoice& choice, const DeviceScene& scene);
 
 }  // namespace palpate::devices

@@ -1,6 +1,6 @@
 // Stage 2, samples: one version of the numbers on a grid, which is a volume with its edited bricks
 // or the frames of a sequence. A version never changes. A change makes a new version, published by
-// pointer, and readers pick it up between two reads (copy on write). See docs/living_data.md.
+// pointer, and readers pick it up between two reads (copy on write). See docs/changing_data.md.
 #pragma once
 
 #include <memory>

@@ -1,5 +1,5 @@
 // Random edits on all kinds of grids, and a slow reference of the samples after an edit, written
-// from the formulas in palpate/edit.hpp and docs/living_data.md, over all samples, in
+// from the formulas in palpate/edit.hpp and docs/changing_data.md, over all samples, in
 // physical space.
 #pragma once
 

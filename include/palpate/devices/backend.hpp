@@ -1,5 +1,5 @@
-// What every backend is made of: one function that looks for it, one that opens it. A backend
-// NAME is the folder devices/NAME with the header NAME.hpp, which declares
+// The interface of a backend: one function that looks for it, one that opens it. A backend NAME
+// is the folder devices/NAME with the header NAME.hpp, which declares
 //   DeviceFinding find_NAME();
 //   std::unique_ptr<Device> open_NAME(const DeviceChoice& choice, const DeviceScene& scene);
 #pragma once
@@ -15,17 +15,17 @@
 
 namespace palpate::devices {
 
-/// What a device may want to know of the session it is opened for.
+/// What a device may need to know about the run it is opened for.
 struct DeviceScene {
     const Field& field;
     double isovalue;  ///< [data units]
     double rate;      ///< [Hz] of the servo loop
-    /// Where a device with this workspace will lie in the volume: hands that move by a script or a
-    /// recording do so in physical space.
+    /// Where a device with this workspace will lie in the volume. Scripted and recorded hands move
+    /// in physical space.
     std::function<DeviceTransform(const DeviceInfo&)> transform;
 };
 
-/// What was found of one kind of device, and why it was not.
+/// Whether one kind of device was found, and if not, why.
 struct DeviceFinding {
     std::string name;     ///< for --device
     bool found = false;   ///< it could be opened now

@@ -1,4 +1,4 @@
-// Every device there is, by name.
+// All devices, by name.
 #pragma once
 
 #include <vector>
@@ -10,8 +10,8 @@ namespace palpate::devices {
 /// Looks for every kind of device; takes at most a second or so. Moves nothing.
 std::vector<DeviceFinding> find_devices();
 
-/// Opens a device. Throws std::invalid_argument for a name or option that there is not (listing
-/// those there are), DeviceError where the device cannot be had.
+/// Opens a device. Throws std::invalid_argument for an unknown name or option (listing the known
+/// ones), DeviceError if the device is not available.
 std::unique_ptr<Device> open_device(const DeviceChoice& choice, const DeviceScene& scene);
 
 }  // namespace palpate::devices

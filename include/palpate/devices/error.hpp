@@ -1,11 +1,11 @@
-// What goes wrong before a device is there.
+// The error of opening a device.
 #pragma once
 
 #include <stdexcept>
 
 namespace palpate::devices {
 
-/// No device: which file, service or device was looked for, and what to install or do. One line.
+/// The device is not available: what was looked for, and what to install or do. One line.
 class DeviceError : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;

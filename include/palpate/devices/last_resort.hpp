@@ -1,4 +1,4 @@
-// What stands between a crash and a hand: zero force before the program ends.
+// Sends zero force to a device when the program crashes.
 #pragma once
 
 #include "palpate/device.hpp"

@@ -1,5 +1,5 @@
 // Reads tables of numbers: a header that names the columns, `#` comments, any line ends. Columns
-// are found by name. Private to io/; trajectory and trace are made of it.
+// are found by name. Trajectories and traces are read with it.
 #pragma once
 
 #include <cstddef>
@@ -17,21 +17,21 @@ namespace palpate::io {
 /// The whole of a text file. Throws InputError.
 std::string read_text(const std::filesystem::path& path);
 
-/// Text without a last line that has no end: of a file that was cut off while it was written.
+/// The text without a last line that lacks its line end (a file cut off while it was written).
 std::string_view whole_lines(std::string_view text);
 
-/// Walks through the rows of a CSV text. Blank lines and lines that start with # are skipped,
+/// Reads the rows of a CSV text. Blank lines and lines that start with # are skipped,
 /// spaces around cells and a byte order mark too. Quotes have no meaning. Errors are InputErrors
 /// that name the file and the line.
 class CsvReader {
   public:
-    /// Gets each comment as it is passed, without its #.
+    /// Called with each comment, without its #.
     using CommentSink = std::function<void(std::string_view)>;
     /// Reads the header. `text` must outlive the reader; `name` is what errors call it.
     CsvReader(std::string_view text, std::string name, CommentSink comments = {});
 
     bool has_column(std::string_view column) const;
-    /// Its number; a column that is missing or there twice is an error.
+    /// The number of the column; one that is missing or there twice is an error.
     std::size_t column(std::string_view column) const;
 
     /// Goes to the next row; false at the end. A row must have as many cells as the header.
@@ -59,7 +59,7 @@ class CsvReader {
     std::vector<std::string_view> cells_;
 };
 
-/// A piece of foreign text fit for a one-line message: short, in quotes, printable.
+/// Text from a file made fit for a one-line message: short, in quotes, printable.
 std::string quoted(std::string_view text);
 
 }  // namespace palpate::io

@@ -20,7 +20,7 @@ class OutputError : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// What the system says of an errno.
+/// The system's description of an errno.
 inline std::string reason(int error) {
     return std::generic_category().message(error);
 }

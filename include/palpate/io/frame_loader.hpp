@@ -1,5 +1,5 @@
-// Keeps the frames of a sequence round the play position in memory, ahead of play and within a
-// bound, with a thread of its own. See docs/sequences.md.
+// Reads the frames of a sequence ahead of the play position, in a thread of its own, and keeps
+// those around it in memory within a limit. See docs/sequences.md.
 #pragma once
 
 #include <chrono>
@@ -22,41 +22,42 @@ struct LoaderSettings {
     /// [bytes] Most that frames may take: those in the loader, the one being read, and those that
     /// only versions it handed out still hold.
     std::uint64_t memory_bytes = std::uint64_t{1} << 30;
-    bool loop = true;  ///< after the last frame the first comes again
+    bool loop = true;  ///< the first frame follows the last
 };
 
 struct LoaderStatus {
     int frames = 0;           ///< in the loader
     std::uint64_t bytes = 0;  ///< of all frames, wherever they are held
-    /// Every frame that was wanted when look() was last called is there, or cannot be read.
+    /// Every frame that was wanted when look() was last called is loaded, or cannot be read.
     bool settled = false;
-    /// Why frames are missing: what was wrong with the last one that could not be read. Empty if
-    /// there is none.
+    /// Why frames are missing: the error of the last frame that could not be read. Empty if there
+    /// is none.
     std::string problem;
 };
 
-/// If all frames fit, what it hands out in the end is the whole sequence with its period. If not,
-/// it is the part of it round the play position, without a period and in times that do not jump at
-/// the seam: the first frame of lap 3 comes at 3 periods. Before all are read that is so, too.
+/// Once all frames are read, if they fit, it publishes the whole sequence with its period.
+/// Otherwise, and before that, it publishes the part around the play position, without a period, in
+/// times that do not jump where the sequence begins again: the first frame of lap 3 is at 3
+/// periods.
 class FrameLoader {
   public:
     /// Called from the loader's thread; must not throw.
     using OnChange = std::function<void(std::shared_ptr<const Samples>)>;
 
-    /// Throws std::invalid_argument for a sequence that is none, or if two of its frames do not fit
-    /// into the memory.
+    /// Throws std::invalid_argument for a sequence that is not valid, or if two of its frames do
+    /// not fit into the memory.
     explicit FrameLoader(Sequence sequence, const LoaderSettings& settings = {},
                          OnChange on_change = {});
-    /// Gives up a frame that is being read.
+    /// Cancels a frame that is being read.
     ~FrameLoader();
     FrameLoader(const FrameLoader&) = delete;
     FrameLoader& operator=(const FrameLoader&) = delete;
 
-    /// Where play is: the sequence's time [s] that the session tells, laps included, and its speed.
-    /// At speed 0 the way it went last counts. Any thread; never waits for a read.
+    /// Sets the play position: the session's time of the sequence [s], laps included, and its
+    /// speed. At speed 0 the last direction counts. Any thread; never waits for a read.
     void look(double time, double speed) noexcept;
-    /// The newest version; null before the first frame is read. Any thread. Whoever plays it should
-    /// take each soon, and let the last one go: frames that only old versions hold take memory.
+    /// The newest version; null before the first frame is read. Any thread. The player should take
+    /// each soon and drop the one before: frames that only old versions hold take memory.
     std::shared_ptr<const Samples> newest() const;
     LoaderStatus status() const;
     /// LoaderStatus::problem.
@@ -95,11 +96,11 @@ class FrameLoader {
     const std::int64_t room_;  ///< frames at a time
     const std::shared_ptr<Control> control_;
 
-    // The thread's own.
+    // Used by the thread only.
     std::map<int, Volume> loaded_;
     std::set<int> failed_;
-    std::vector<double> published_;  ///< period and times of the version that is out
-    Clock::time_point reminder_ = Clock::time_point::max();  ///< when it is handed out again
+    std::vector<double> published_;  ///< period and times of the published version
+    Clock::time_point reminder_ = Clock::time_point::max();  ///< when it is published again
     int reminders_ = 0;
 
     mutable std::mutex newest_mutex_;

@@ -1,6 +1,6 @@
-// The memory-mapped file through which another process gives us frames: its layout, a writer and a
-// reader. To the byte in docs/sequences.md; little-endian. A frame lies in one of several slots in
-// turn, each with a sequence number by which a reader knows a torn one (a seqlock).
+// The memory-mapped file through which another process pushes frames: its layout (described byte by
+// byte in docs/sequences.md; little-endian), a writer and a reader. Frames go to several slots in
+// turn. Each slot has a sequence number by which a reader recognises a torn frame (a seqlock).
 #pragma once
 
 #include <cstdint>
@@ -18,46 +18,46 @@ namespace palpate::io {
 inline constexpr std::size_t live_header_bytes = 256;
 inline constexpr std::size_t live_slot_header_bytes = 64;
 
-/// What the header says that does not change.
+/// The part of the header that does not change.
 struct LiveHeader {
     Geometry geometry;
     SampleType type = SampleType::uint8;
     int slots = 4;                 ///< 2 to 1024
     double interval = 0;           ///< [s] nominal, from frame to frame; 0: unknown
-    std::uint64_t first_slot = 0;  ///< [bytes] from the file's begin, a multiple of 64
+    std::uint64_t first_slot = 0;  ///< [bytes] from the file's start, a multiple of 64
     std::uint64_t slot_bytes = 0;  ///< [bytes] from slot to slot, a multiple of 64
 
     std::uint64_t frame_bytes() const;
     std::uint64_t file_bytes() const { return first_slot + slot_bytes * std::uint64_t(slots); }
-    /// [bytes] of a frame's slot from the file's begin.
+    /// Where a frame's slot lies [bytes from the file's start].
     std::uint64_t slot_at(std::uint64_t frame) const {
         return first_slot + slot_bytes * (frame % std::uint64_t(slots));
     }
 };
 
-/// Reads a header and checks it against the size of its file: what passes lies in the file. Throws
-/// InputError whose message begins with `name`.
+/// Reads a header and checks it against the size of its file, so that all slots lie in the file.
+/// Throws InputError; its message begins with `name`.
 LiveHeader live_header_from(std::span<const std::byte> bytes, std::uint64_t file_bytes,
                             const std::string& name);
-/// The `live_header_bytes` of it.
+/// The header as `live_header_bytes` bytes.
 std::vector<std::byte> bytes_of(const LiveHeader& header);
 
 /// Writes frames into such a file; one process at a time. The file appears under its name when it
-/// is complete, in place of what was there, and stays when the writer goes.
+/// is complete, replaces an older one, and stays when the writer is destroyed.
 class LiveWriter {
   public:
     /// Throws OutputError if the file cannot be made with all its bytes, std::invalid_argument for
     /// a geometry, slots or an interval out of range.
     LiveWriter(const std::filesystem::path& path, const Geometry& geometry, SampleType type,
                double interval = 0, int slots = 4);
-    /// Says in the file that nothing more comes.
+    /// Marks the file as ended: no more frames come.
     ~LiveWriter();
     LiveWriter(const LiveWriter&) = delete;
     LiveWriter& operator=(const LiveWriter&) = delete;
 
-    /// The next frame: its samples, x fastest, and when it was taken [s]. Times rise; one that does
-    /// not starts anew. Never waits for a reader. Throws std::invalid_argument for samples of
-    /// another size or a time that is not finite.
+    /// Writes the next frame: its samples, x fastest, and when it was taken [s]. A time that does
+    /// not rise begins a new sequence. Never waits for a reader. Throws std::invalid_argument for
+    /// samples of another size or a time that is not finite.
     void push(std::span<const std::byte> samples, double time);
     /// The same; the volume must be of the file's geometry and type.
     void push(const Volume& volume, double time);
@@ -69,8 +69,8 @@ class LiveWriter {
     std::uint64_t frames_ = 0;
 };
 
-/// Reads such a file with copies out of it, never by mapping it: a writer that cuts the file off
-/// cannot crash us. Trusts nothing in it.
+/// Reads such a file by copying, never by mapping it: a writer that truncates the file cannot crash
+/// the reader. Checks everything it reads.
 class LiveReader {
   public:
     /// Throws InputError if there is no such file or it is damaged, or if a frame takes more than
@@ -82,15 +82,15 @@ class LiveReader {
     LiveReader& operator=(const LiveReader&) = delete;
 
     const LiveHeader& header() const { return header_; }
-    /// The frames that came since the last call, at most the last `most`, whole and in order of
-    /// their numbers; those that the writer was faster than are missed. Frame::number counts from
-    /// the file's first. Throws InputError where the file is shorter than it was, or a frame's time
-    /// or samples are not finite; the next call goes on behind it.
+    /// The frames written since the last call, at most the last `most`, complete and in order of
+    /// their numbers; frames that were overwritten meanwhile are missed. Frame::number counts from
+    /// the file's first. Throws InputError if the file has become shorter, or a frame's time or
+    /// samples are not finite; the next call continues after that frame.
     std::vector<Frame> poll(int most = 4);
     std::uint64_t missed() const { return missed_; }
-    /// The writer said that nothing more comes.
+    /// The writer has marked the file as ended.
     bool ended() const { return ended_; }
-    /// Another file has the name now: the writer was started again.
+    /// Another file has this name now: the writer was started again.
     bool replaced() const;
 
   private:

@@ -1,5 +1,5 @@
-// Live sources: frames that come while one feels them, from this process or, through a file, from
-// another. See docs/sequences.md.
+// Live sources: frames that arrive while they are felt, from this process or, through a file, from
+// another one. See docs/sequences.md.
 #pragma once
 
 #include <chrono>
@@ -16,16 +16,17 @@
 
 namespace palpate::io {
 
-/// The last few frames of a live source as samples that a session can play: a value for whoever
-/// pushes frames, by command::Samples. Played at speed 1 the field lags behind by what the
-/// session's time does, and goes evenly from frame to frame.
+/// The last few frames of a live source as samples that a session can play. Code that pushes frames
+/// adds them here and sends the result with command::Samples. Played at speed 1 the field lags by
+/// as much as the session's time does, and moves evenly from frame to frame.
 class LiveWindow {
   public:
     /// Throws std::invalid_argument for fewer than 1.
     explicit LiveWindow(int frames = 4);
-    /// Takes the next frame, at its time [s]; the oldest is let go. A time that is not after the
-    /// last one starts anew with this frame alone. Throws std::invalid_argument, and stays as it
-    /// was, for a time that is not finite or a frame on another grid or of another type.
+    /// Adds the next frame, at its time [s], and drops the oldest. A time that is not after the
+    /// last one begins a new sequence with this frame alone. Throws std::invalid_argument, and
+    /// stays as it was, for a time that is not finite or a frame on another grid or of another
+    /// type.
     std::shared_ptr<const Samples> push(Volume volume, double time);
     std::shared_ptr<const Samples> push(Frame frame);
 
@@ -41,20 +42,20 @@ struct LiveSettings {
     std::uint64_t memory_bytes = std::uint64_t{4} << 30;  ///< most that one frame may take
 };
 
-/// How a live source does.
+/// State of a live source.
 struct LiveStatus {
-    std::uint64_t frames = 0;  ///< that came
-    std::uint64_t missed = 0;  ///< that the writer was too fast for
-    double age = 0;       ///< [s] since the last frame came; before it, since the file was opened
-    bool ended = false;   ///< the writer said that nothing more comes
-    std::string problem;  ///< what is wrong now; empty if nothing
+    std::uint64_t frames = 0;  ///< received
+    std::uint64_t missed = 0;  ///< overwritten before they were read
+    double age = 0;            ///< [s] since the last frame, or since the file was opened
+    bool ended = false;        ///< the writer has marked the file as ended
+    std::string problem;       ///< what is wrong now; empty: nothing
 };
 
-/// Follows a live file with a thread of its own. A writer that stalls or dies shows in the status;
-/// one that is started again, on the same grid, is followed on.
+/// Follows a live file with a thread of its own. The status shows a writer that stalls or dies; one
+/// that is started again on the same grid is followed further.
 class LiveFrames {
   public:
-    /// Called from the thread, and from the constructor for frames that are there already; must not
+    /// Called from the thread, and from the constructor for frames that exist already. Must not
     /// throw.
     using OnChange = std::function<void(std::shared_ptr<const Samples>)>;
 
@@ -70,7 +71,7 @@ class LiveFrames {
     double interval() const { return header_.interval; }  ///< [s] nominal; 0: unknown
     /// The last frames; null before the first. Any thread.
     std::shared_ptr<const Samples> newest() const;
-    /// The same, waiting for the first at most so long [s].
+    /// The same, but waits for the first frame for this long at most [s].
     std::shared_ptr<const Samples> wait(double seconds) const;
     LiveStatus status() const;
 
@@ -83,11 +84,11 @@ class LiveFrames {
     const std::filesystem::path path_;
     const LiveSettings settings_;
     const OnChange on_change_;
-    // The thread's own, after the constructor.
+    // Used by the thread only, after the constructor.
     std::unique_ptr<LiveReader> reader_;
     LiveWindow window_;
     int idle_polls_ = 0;
-    std::uint64_t missed_before_ = 0;  ///< by readers of files that are gone
+    std::uint64_t missed_before_ = 0;  ///< by readers of earlier files
 
     const LiveHeader header_;
     mutable std::mutex mutex_;

@@ -12,8 +12,8 @@ namespace palpate::io {
 /// in all but STL, which has 32-bit floats only.
 enum class MeshFormat : std::uint8_t { ply, stl, obj, vtp };
 
-/// By the extension, upper or lower case. Throws std::invalid_argument, naming the four, for any
-/// other: ask before the work is done.
+/// The format of an extension, upper or lower case. Throws std::invalid_argument, naming the four,
+/// for any other: call it before the mesh is computed.
 MeshFormat mesh_format_from(const std::filesystem::path& path);
 
 /// Writes the mesh in the format of the path's extension, whole or not at all (PendingFile).

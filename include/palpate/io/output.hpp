@@ -1,5 +1,5 @@
-// Output that is whole or not there: written beside its target under a temporary name and renamed
-// when complete. Every writer of ours goes through it. POSIX.
+// Output files that are complete or absent: written beside the target under a temporary name and
+// renamed when complete. Every writer of the project uses this. POSIX.
 #pragma once
 
 #include <cstdint>
@@ -11,10 +11,10 @@
 
 namespace palpate::io {
 
-/// A file being written. Unless commit() is reached, the target stays what it was and nothing is
-/// left behind. A target that exists and is no regular file (/dev/stdout, a pipe, /dev/full) and
-/// "-", the standard output, are written directly instead: such a thing cannot be replaced, and its
-/// reader is waiting. A symbolic link is followed. Everything here throws OutputError.
+/// A file being written. Without commit() the target stays unchanged and nothing is left behind.
+/// A target that exists and is not a regular file (/dev/stdout, a pipe, /dev/full) and "-", the
+/// standard output, are written directly instead: they cannot be replaced, and their reader is
+/// waiting. A symbolic link is followed. Everything here throws OutputError.
 class PendingFile {
   public:
     /// Opens the temporary file, so what cannot be written is known before the work is done.

@@ -1,4 +1,4 @@
-// What people write about a raw file, as a layout: "256x256x113", "uint16", "1,1,2".
+// Parses the options that describe a raw file: "256x256x113", "uint16", "1,1,2".
 #pragma once
 
 #include <string_view>
@@ -20,8 +20,8 @@ Vec3 spacing_from(std::string_view text);
 RawLayout raw_layout_from(std::string_view dims, std::string_view type, std::string_view spacing,
                           std::uint64_t skip);
 
-/// What to say behind the name of a volume that was saved: for .raw how to open it again,
-/// " (open it with --dims 256x256x113 --type uint16 --spacing 1,1,2)"; for others nothing.
+/// Text to print after the name of a saved volume: for .raw how to open it again,
+/// " (open it with --dims 256x256x113 --type uint16 --spacing 1,1,2)"; for others empty.
 std::string opening_words(const std::filesystem::path& saved, const Volume& volume);
 
 }  // namespace palpate::io

@@ -10,23 +10,23 @@
 
 namespace palpate::io {
 
-/// Which frames there are, when, and how to get one. A value; nothing of it is in memory yet.
+/// Which frames there are, at which times, and how to read one. Holds no frame in memory.
 struct Sequence {
     std::vector<double> times;  ///< [s] of the frames, rising
-    double period = 0;          ///< [s] from the first frame to when it comes again, if it loops
+    double period = 0;          ///< [s] after which the first frame follows again, if it loops
     Geometry geometry;          ///< of every frame
     SampleType type = SampleType::uint8;
-    /// Reads or makes a frame; what it throws goes on to who reads. Called from one thread at a
-    /// time.
+    /// Reads or makes a frame; its exceptions reach the caller of read_frame(). Called from one
+    /// thread at a time.
     std::function<Volume(int frame, const Progress& progress)> reader;
-    /// What a person calls a frame; empty: "frame 3".
+    /// The name of a frame in messages; empty: "frame 3".
     std::function<std::string(int frame)> frame_name;
 
     int count() const { return static_cast<int>(times.size()); }
     std::uint64_t frame_bytes() const;
 };
 
-/// A sequence, its first frame, and what there is to say about how both were found.
+/// A sequence, its first frame, and notes on how they were read.
 struct SequenceFile {
     Sequence sequence;
     Volume first;
@@ -35,25 +35,25 @@ struct SequenceFile {
 };
 
 struct SequenceOptions {
-    /// As for one volume. In a series they hold for each file, `time_step` too; the volumes of one
+    /// As for one volume. In a series they apply to each file, `time_step` too; the volumes of one
     /// 4-D file are its frames whatever `time_step` is. `progress` is for the first frame.
     ReadOptions read;
     /// [s] from one frame to the next, instead of what the file gives or lacks; 0: the file's.
     double interval = 0;
 };
 
-/// What is taken where neither file nor caller say how much time lies between two frames [s].
+/// Time between two frames where neither file nor caller give it [s].
 inline constexpr double assumed_frame_interval = 0.1;
 
 /// A 4-D file, a volume (a sequence of one frame), or a series: a file name with one %d or %03d in
 /// place of a number. %d is any number of digits, %03d a number as printf writes it; the files that
 /// match are the frames, by number. The least step between two numbers is one interval, so that
-/// where files are missing time goes on (and a note says so). Reads the first frame. Throws
+/// a missing file leaves a gap in time (and a note says so). Reads the first frame. Throws
 /// InputError, std::invalid_argument for an interval that is none.
 SequenceFile open_sequence(const std::filesystem::path& path, const SequenceOptions& options = {});
 
-/// Frames that `make` makes, `interval` [s] apart from time 0. Makes the first one to see its grid
-/// and type. Throws std::invalid_argument for a count below 1 or an interval that is none.
+/// Frames made by `make`, `interval` [s] apart from time 0. Makes the first one to learn its grid
+/// and type. Throws std::invalid_argument for a count below 1 or an interval that is not valid.
 Sequence made_sequence(int count, double interval,
                        std::function<Volume(int frame, const Progress& progress)> make);
 
@@ -65,8 +65,8 @@ Volume read_frame(const Sequence& sequence, int frame, const Progress& progress 
 /// are finite and rising, and the period ends after the last frame.
 void check(const Sequence& sequence);
 
-/// Whether a path stands for a series: its file name has a number's place, and no file is called
-/// just that.
+/// Whether a path names a series: its file name has a place for a number, and no file has exactly
+/// this name.
 bool names_a_series(const std::filesystem::path& path);
 
 }  // namespace palpate::io

@@ -1,5 +1,5 @@
-// What happened in a replay or a session, as CSV: the trace has one row per tick, the path the
-// corners of the way that the SCP took. Doubles read back bit for bit.
+// Traces and paths as CSV. A trace has one row per tick of a replay or a run; a path has the
+// corners of the polyline along which the SCP moved. Doubles read back bit for bit.
 #pragma once
 
 #include <cstdint>
@@ -57,17 +57,17 @@ class PathWriter {
     std::string line_;
 };
 
-/// Reads a trace back; columns are found by name, further ones ignored, and none of the contract's
-/// may be missing. NaN and infinity are read as they were written. Throws InputError.
+/// Reads a trace back; columns are found by name, further ones are ignored, and none of the
+/// format's may be missing. NaN and infinity are read as they were written. Throws InputError.
 std::vector<TraceRow> read_trace(const std::filesystem::path& path);
 /// The same from text that errors call `name`.
 std::vector<TraceRow> parse_trace(std::string_view text, const std::string& name);
 
-/// Where hand and proxy went, point by point.
+/// Positions of hand and proxy, point by point.
 struct Way {
     std::vector<Vec3> hip;  ///< [mm, physical] a tick each; empty if it came from a path file
     std::vector<Vec3> scp;  ///< [mm, physical] a tick each, or the corners of a path file
-    std::vector<bool> constrained;  ///< of each `scp`; a path file does not tell, and has true
+    std::vector<bool> constrained;  ///< of each `scp`; true throughout for a path file
 };
 /// From a trace, or from a path (columns x, y, z). Throws InputError, also for points that are not
 /// finite.

@@ -1,4 +1,4 @@
-// Motions of the hand from CSV files: what `replay` moves along.
+// Reads trajectories (hand positions over time) from CSV files, for `palpate replay` and devices.
 #pragma once
 
 #include <filesystem>

@@ -1,6 +1,6 @@
-// Volumes from files and back: NRRD, MetaImage, NIfTI, DICOM, TIFF, VTI and raw.
-// The formats' libraries run in a helper process, never in the caller's: a damaged file that
-// crashes or hangs a library is an InputError here. Needs the core, nlohmann-json and zlib only.
+// Reads and writes volume files: NRRD, MetaImage, NIfTI, DICOM, TIFF, VTI and raw.
+// The formats' libraries run in a helper process, not in the caller's, so that a damaged file which
+// crashes or hangs a library is an InputError. Needs the core, nlohmann-json and zlib only.
 #pragma once
 
 #include <cstdint>
@@ -16,11 +16,11 @@
 namespace palpate::io {
 
 /// Called from the calling thread with the part of the work that is done, 0 to 1, at least ten
-/// times a second. If it throws, the work stops, nothing is left behind, and the exception goes on
-/// to the caller: that is how to cancel.
+/// times a second. If it throws, the work stops, nothing is left behind, and the exception reaches
+/// the caller: throw to cancel.
 using Progress = std::function<void(double fraction)>;
 
-/// What a headerless file holds. Samples are little-endian, x fastest, then y, then z.
+/// Layout of a headerless file. Samples are little-endian, x fastest, then y, then z.
 struct RawLayout {
     Index3 size = Index3::Zero();
     SampleType type = SampleType::uint8;
@@ -47,7 +47,7 @@ struct ReadOptions {
     double time_limit_s = 600;
 };
 
-/// A volume and what there is to say about how it was read.
+/// A volume, and notes on how it was read.
 struct VolumeFile {
     Volume volume;
     std::string format;  ///< "NRRD", "DICOM series", ...
@@ -62,12 +62,12 @@ struct VolumeFile {
 /// int16, uint16 and float32 keep their type; int8 becomes int16, anything wider float32, with a
 /// note. Samples that are not finite become the least finite one, with a note.
 /// The volume holds the samples once; nothing else stays in memory.
-/// Throws InputError. Its message is one line, but for a folder with several DICOM series and none
-/// chosen, where lines that list them follow.
+/// Throws InputError. Its message is one line; for a folder with several DICOM series and none
+/// chosen, lines that list them follow.
 VolumeFile read_volume(const std::filesystem::path& path, const ReadOptions& options = {});
 
 struct WriteOptions {
-    /// Pack the samples with zlib (NRRD, MetaImage, VTI, TIFF). NIfTI is packed when named .nii.gz.
+    /// Compress the samples with zlib (NRRD, MetaImage, VTI, TIFF). NIfTI: if named .nii.gz.
     bool compress = false;
     Progress progress;
     std::filesystem::path helper;  ///< as in ReadOptions
@@ -77,9 +77,9 @@ struct WriteOptions {
 /// Writes one of written_extensions() (io/written_formats.hpp). The file appears under its name
 /// only when it is complete (.nhdr and .mhd: their .raw or .zraw before the header). MetaImage and
 /// VTI keep the geometry to the bit, NRRD to the last bit, NIfTI as 32-bit floats. TIFF, a page a
-/// slice, keeps the spacing as 32-bit floats, in the words of ImageJ; raw keeps none. A volume with
-/// an origin or directions is refused by these two. Throws OutputError; what was there before is
-/// then still there.
+/// slice, keeps the spacing as 32-bit floats, as ImageJ describes it; raw keeps none. These two
+/// refuse a volume with an origin or directions. Throws OutputError; the file that was there before
+/// is then unchanged.
 void write_volume(const Volume& volume, const std::filesystem::path& path,
                   const WriteOptions& options = {});
 
