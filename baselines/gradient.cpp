@@ -1,4 +1,5 @@
-// Gradient-based baselines. Deliberately as weak as published: they are the comparison.
+// Gradient-based baselines, deliberately as weak as published, since the exact method is compared
+// with them.
 #include "baselines/gradient.hpp"
 
 #include <cmath>

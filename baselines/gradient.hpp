@@ -8,14 +8,14 @@ namespace palpate::baselines {
 
 /// Gradient-based iso-surface display (GBID) as the paper describes it (section 2 and Fig. 6): in
 /// contact, the constraint plane is taken from the local gradient at the SCP alone and the SCP
-/// moves to the HIP's projection on it. No collision detection along the way: thin walls are
-/// missed, the SCP drifts off the isosurface. No friction; never recovers, for it does not know
-/// that it is inside.
+/// moves to the HIP's projection on it. No collision detection along the motion: thin walls are
+/// missed, and the SCP drifts off the isosurface. No friction; it never recovers, because it does
+/// not detect that it is inside.
 ProxyUpdate update_gradient(Proxy& proxy, const Field& field, const Vec3& hip,
                             const ProxySettings& settings = {}, StepObserver observer = {});
 
 /// The same with the SCP put back on the isosurface along the gradient after each move (Newton, at
-/// most 8 steps): drifts less, misses thin walls all the same.
+/// most 8 steps): drifts less, but misses thin walls, too.
 ProxyUpdate update_gradient_improved(Proxy& proxy, const Field& field, const Vec3& hip,
                                      const ProxySettings& settings = {},
                                      StepObserver observer = {});

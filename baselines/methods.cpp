@@ -1,4 +1,4 @@
-// The one table of methods.
+// The table of all proxy methods.
 #include "palpate/baselines/methods.hpp"
 
 #include <array>

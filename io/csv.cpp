@@ -1,4 +1,4 @@
-// CSV tables. No quoting and no escapes: the contract's tables hold numbers and bare words.
+// Reads CSV tables. No quoting and no escapes: the tables hold numbers and bare words.
 #include "palpate/io/csv.hpp"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// Samples that are not finite have no place in a field: this puts the least finite one there.
-// Shared by the raw reader and the helper program.
+// Replaces samples that are not finite, which a field cannot have, by the least finite one. Shared
+// by the raw reader and the helper program.
 #pragma once
 
 #include <cmath>
@@ -29,7 +29,7 @@ inline std::uint64_t replace_non_finite(std::span<float> samples) {
     return count;
 }
 
-/// The note that goes with it.
+/// The note about such replacements.
 inline std::string non_finite_note(std::uint64_t count) {
     return std::to_string(count) + (count == 1 ? " sample was" : " samples were") +
            " not finite (NaN or infinity) and became the least finite value";

@@ -1,5 +1,5 @@
 // The frame loader. Places count frames over all laps: frame 2 of 20 is at place 2, and in lap 3 at
-// place 62. What is wanted is a window of places round the play position.
+// place 62. The frames wanted are a window of places around the play position.
 #include "palpate/io/frame_loader.hpp"
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 namespace palpate::io {
 namespace {
 
-/// Thrown through a reader that is to give up.
+/// Thrown through a reader to cancel it.
 struct Stopped {};
 
 std::int64_t lap_of(std::int64_t place, std::int64_t count) {
@@ -26,8 +26,8 @@ std::string mebibytes(std::uint64_t bytes) {
     return std::to_string((bytes + (1 << 20) - 1) >> 20) + " MiB";
 }
 
-/// How many frames may be wanted at a time. One fewer than fit, if there are enough: while play
-/// goes on, whoever plays still holds the version before with the frame that was dropped.
+/// How many frames may be wanted at a time. One fewer than fit, if there are enough: during play
+/// the player still holds the version before, with the frame that was dropped.
 std::int64_t room_for(const Sequence& sequence, const LoaderSettings& settings) {
     check(sequence);
     const std::uint64_t bytes = sequence.frame_bytes();
@@ -46,8 +46,8 @@ std::int64_t room_for(const Sequence& sequence, const LoaderSettings& settings) 
 
 }  // namespace
 
-/// What other threads tell the loader's: where play is, and that memory is free. Outlives the
-/// loader where frames do.
+/// What other threads tell the loader's thread: the play position, and that memory is free. Frames
+/// that outlive the loader keep it alive.
 struct FrameLoader::Control {
     std::mutex mutex;
     std::condition_variable changed;
@@ -56,7 +56,7 @@ struct FrameLoader::Control {
     bool retry = false;
     bool settled = false;
     double time = 0;
-    int way = 1;  ///< -1: backwards
+    int direction = 1;  ///< of play; -1: backwards
     std::uint64_t bytes = 0;
 
     void tell(const std::lock_guard<std::mutex>&) {
@@ -65,7 +65,7 @@ struct FrameLoader::Control {
     }
 };
 
-/// A frame that counts for as long as anybody holds it.
+/// A frame that counts for as long as it is held.
 struct FrameLoader::Held {
     Held(std::shared_ptr<Control> of, std::uint64_t amount)
         : control(std::move(of)), bytes(amount) {
@@ -86,13 +86,13 @@ struct FrameLoader::Held {
     std::optional<Volume> volume;
 };
 
-/// What is wanted of the play position.
+/// The frames wanted for a play position.
 struct FrameLoader::View {
     std::int64_t at = 0;     ///< the frame that play is at or after
     std::int64_t low = 0;    ///< the window
     std::int64_t high = 0;   ///< in it
     std::int64_t first = 0;  ///< to be read first
-    int way = 1;
+    int direction = 1;
 };
 
 FrameLoader::FrameLoader(Sequence sequence, const LoaderSettings& settings, OnChange on_change)
@@ -116,13 +116,13 @@ FrameLoader::~FrameLoader() {
 }
 
 void FrameLoader::look(double time, double speed) noexcept {
-    // Beyond any play; places would not fit into 64 bit.
+    // Beyond any real play position; places would not fit into 64 bit.
     if (!(std::abs(time) < 1e12) || std::isnan(speed)) return;
     const std::lock_guard lock(control_->mutex);
-    const int way = speed > 0 ? 1 : speed < 0 ? -1 : control_->way;
-    if (time == control_->time && way == control_->way) return;
+    const int direction = speed > 0 ? 1 : speed < 0 ? -1 : control_->direction;
+    if (time == control_->time && direction == control_->direction) return;
     control_->time = time;
-    control_->way = way;
+    control_->direction = direction;
     control_->settled = false;
     control_->tell(lock);
 }
@@ -159,7 +159,7 @@ double FrameLoader::time_at(std::int64_t place) const {
            static_cast<double>(lap) * sequence_.period;
 }
 
-FrameLoader::View FrameLoader::view_of(double time, int way) const {
+FrameLoader::View FrameLoader::view_of(double time, int direction) const {
     const std::int64_t count = sequence_.count();
     const double begin = sequence_.times.front();
     double lap = 0;
@@ -168,9 +168,9 @@ FrameLoader::View FrameLoader::view_of(double time, int way) const {
     const auto after = std::upper_bound(sequence_.times.begin(), sequence_.times.end(), within);
     const auto frame = std::max<std::int64_t>(after - sequence_.times.begin() - 1, 0);
     View view;
-    view.way = way;
+    view.direction = direction;
     view.at = static_cast<std::int64_t>(lap) * count + frame;
-    // Between which two play is: frames that cannot be read are none.
+    // The two frames around the play position; frames that cannot be read do not count.
     const auto last = settings_.loop ? std::numeric_limits<std::int64_t>::max() : count - 1;
     const auto begins = settings_.loop ? std::numeric_limits<std::int64_t>::min() : 0;
     std::int64_t from = view.at;
@@ -178,17 +178,17 @@ FrameLoader::View FrameLoader::view_of(double time, int way) const {
     while (has_failed(from) && view.at - from < count && from > begins) --from;
     while (has_failed(to) && to - view.at < count && to < last) ++to;
     const std::int64_t behind = std::max<std::int64_t>(room_ - 2, 0) / 4;
-    view.low = way > 0 ? from - behind : to + 1 + behind - room_;
+    view.low = direction > 0 ? from - behind : to + 1 + behind - room_;
     if (!settings_.loop) view.low = std::clamp<std::int64_t>(view.low, 0, count - room_);
     view.high = view.low + room_ - 1;
-    // Nor do they take room: for each the window is a frame longer.
+    // They take no room either: for each, the window is a frame longer.
     std::int64_t good = 0;
     for (std::int64_t place = view.low; place <= view.high; ++place) good += !has_failed(place);
     while (good < room_ && view.high - view.low + 1 < count) {
-        const bool up = way > 0 ? view.high < last : view.low <= begins;
+        const bool up = direction > 0 ? view.high < last : view.low <= begins;
         good += !has_failed(up ? ++view.high : --view.low);
     }
-    view.first = std::clamp(way > 0 ? view.at : view.at + 1, view.low, view.high);
+    view.first = std::clamp(direction > 0 ? view.at : view.at + 1, view.low, view.high);
     return view;
 }
 
@@ -197,14 +197,14 @@ bool FrameLoader::has_failed(std::int64_t place) const {
     return failed_.contains(static_cast<int>(place - lap_of(place, count) * count));
 }
 
-/// The first place from `low` on where a frame comes.
+/// The first place of a frame from `low` on.
 std::int64_t FrameLoader::place_from(std::int64_t low, int frame) const {
     if (!settings_.loop) return frame;
     const std::int64_t count = sequence_.count();
     return frame - lap_of(frame - low, count) * count;
 }
 
-/// The place nearest to another one where a frame comes.
+/// The place of a frame that is nearest to another place.
 std::int64_t FrameLoader::nearest_place(std::int64_t to, int frame) const {
     const std::int64_t after = place_from(to, frame);
     const std::int64_t count = sequence_.count();
@@ -219,7 +219,7 @@ void FrameLoader::run() {
             const std::lock_guard lock(control_->mutex);
             if (control_->stop) return;
             seen = control_->changes;
-            view = view_of(control_->time, control_->way);
+            view = view_of(control_->time, control_->direction);
             if (std::exchange(control_->retry, false)) {
                 failed_.clear();
                 tell_problem("");
@@ -241,7 +241,7 @@ bool FrameLoader::is_wanted(const View& view, int frame) const {
     return view.low <= place && place <= view.high;
 }
 
-/// Drops what is not wanted, but for one frame to feel as long as there is no other.
+/// Drops frames that are not wanted, but keeps one to feel as long as there is no other.
 void FrameLoader::forget(const View& view) {
     const auto wanted = [&](const auto& entry) { return is_wanted(view, entry.first); };
     const auto away = [&](const auto& entry) {
@@ -257,7 +257,7 @@ void FrameLoader::forget(const View& view) {
                   [&](const auto& entry) { return entry.first != spare && !wanted(entry); });
 }
 
-/// Which frame to read; -1: none. From the play position on, then what lies behind it.
+/// The frame to read next; -1: none. From the play position on, then those behind it.
 int FrameLoader::next_frame(const View& view) const {
     const std::int64_t count = sequence_.count();
     const auto missing = [&](std::int64_t place) {
@@ -265,11 +265,11 @@ int FrameLoader::next_frame(const View& view) const {
         return loaded_.contains(frame) || failed_.contains(frame) ? -1 : frame;
     };
     for (std::int64_t place = view.first; view.low <= place && place <= view.high;
-         place += view.way) {
+         place += view.direction) {
         if (missing(place) >= 0) return missing(place);
     }
     for (std::int64_t place = view.first; view.low <= place && place <= view.high;
-         place -= view.way) {
+         place -= view.direction) {
         if (missing(place) >= 0) return missing(place);
     }
     return -1;
@@ -287,7 +287,7 @@ void FrameLoader::read(int frame) {
         held->volume = read_frame(sequence_, frame, [this](double) {
             if (control_->stop) throw Stopped{};
         });
-        // The frame that is handed out knows when nobody holds it any more.
+        // The published frame notices when its last holder drops it.
         loaded_.emplace(
             frame, Volume(sequence_.geometry, sequence_.type,
                           std::shared_ptr<const void>(held, held->volume->data()), frame_bytes_));
@@ -310,8 +310,8 @@ void FrameLoader::tell_problem(const std::string& problem) {
     problem_ = problem;
 }
 
-/// The places of the frames that are there round the play position, without a gap but for frames
-/// that cannot be read; of one that is not wanted its nearest place.
+/// The places of the loaded frames around the play position, without gaps except for frames that
+/// cannot be read; for a frame that is not wanted, its nearest place.
 std::vector<std::int64_t> FrameLoader::run_of_loaded(const View& view) const {
     std::vector<std::int64_t> places;
     for (const auto& [frame, volume] : loaded_) {
@@ -336,7 +336,7 @@ std::vector<std::int64_t> FrameLoader::run_of_loaded(const View& view) const {
     return {first, last + 1};
 }
 
-/// The version that there could be; `period` 0 if it is a part of the sequence.
+/// A version of the loaded frames; `period` is 0 if it is a part of the sequence.
 std::vector<Frame> FrameLoader::frames_for(const View& view, double& period) const {
     std::vector<Frame> frames;
     const std::int64_t count = sequence_.count();
@@ -356,7 +356,7 @@ std::vector<Frame> FrameLoader::frames_for(const View& view, double& period) con
     return frames;
 }
 
-/// Hands the version out if it is another one than the last, or if that one seems to be stuck.
+/// Publishes the version if it differs from the last, or if the player seems to wait for another.
 void FrameLoader::publish(const View& view) {
     double period = 0;
     std::vector<Frame> frames = frames_for(view, period);
@@ -377,8 +377,8 @@ void FrameLoader::publish(const View& view) {
     reminder_ = Clock::time_point::max();
 }
 
-/// Until something has changed since `seen`, or, where memory is waited for, it is time to remind
-/// whoever plays: the version before may be let go only when another one comes.
+/// Waits until something has changed since `seen`, or, while waiting for memory, until it is time
+/// to publish again: the player may drop the version before only when another one comes.
 void FrameLoader::wait(std::uint64_t seen, bool for_memory) {
     std::unique_lock lock(control_->mutex);
     const auto changed = [&] { return control_->changes != seen; };

@@ -1,4 +1,4 @@
-// Runs a helper program; see the header.
+// Runs a helper program and collects its answer; see the header.
 #include "io/helper_process.hpp"
 
 #include <fcntl.h>
@@ -153,7 +153,7 @@ pid_t spawn(const fs::path& program, const HelperJob& job, const Descriptor& rep
     return errno == 0 ? pid : 0;
 }
 
-/// Collects what the helper says until it closes both pipes.
+/// Reads the helper's messages until it closes both pipes.
 class Listener {
   public:
     Listener(const HelperJob& job, const Descriptor& report, const Descriptor& errors)
@@ -218,7 +218,7 @@ class Listener {
     double fraction_ = 0;
 };
 
-/// The last line of a library's complaint, short enough to be part of a message.
+/// The last line of a library's error output, short enough for a message.
 std::string last_words(const std::string& text) {
     const auto end = text.find_last_not_of(" \t\r\n");
     if (end == std::string::npos) return {};
@@ -295,7 +295,7 @@ HelperResult run_helper(const HelperJob& job) {
         return {{}, "cannot run '" + path.string() + "' (" + std::strerror(errno) + ")" + remedy};
     }
     Child child(pid);
-    // The only write ends must be the helper's, or the end of its output would never be seen.
+    // Only the helper may hold write ends; otherwise the end of its output would not be seen.
     report.write_end.close_now();
     errors.write_end.close_now();
     Listener listener(job, report.read_end, errors.read_end);

@@ -1,6 +1,6 @@
-// Runs a helper program (palpate-io-helper and its like: what needs libraries that crash, hang or
-// are slow to load) and turns every way it can end (an answer, an error, a crash, a hang) into one
-// result. Linux: posix_spawn, memfd. For the libraries that have such a program, not for the apps.
+// Runs a helper program such as palpate-io-helper, which isolates libraries that crash, hang or
+// load slowly, and turns every outcome (an answer, an error, a crash, a hang) into one result.
+// Linux: posix_spawn, memfd. For the libraries that have such a program, not for the apps.
 #pragma once
 
 #include <filesystem>
@@ -36,8 +36,8 @@ Descriptor shared_memory(std::size_t bytes);
 /// Throws std::system_error.
 std::shared_ptr<void> map_shared(const Descriptor& memory, std::size_t bytes);
 
-/// Which program, and what its failures most likely mean to the person who waits for it. Each text
-/// ends a message, so it begins in lower case and has no full stop.
+/// Which program, and what its failures most likely mean to the user. Each text ends a message, so
+/// it begins in lower case and has no full stop.
 struct HelperProgram {
     const char* name;           ///< "palpate-io-helper"; its variable is then PALPATE_IO_HELPER
     const char* who_crashes;    ///< "the format's library"
@@ -62,8 +62,8 @@ struct HelperResult {
     std::string failure;  ///< what went wrong, without the file's name
 };
 
-/// Blocks until the helper has ended; safe from several threads. Exceptions of `progress` end it
-/// and pass through.
+/// Blocks until the helper has ended; safe from several threads. An exception of `progress` ends
+/// the helper and passes through.
 HelperResult run_helper(const HelperJob& job);
 
 }  // namespace palpate::io

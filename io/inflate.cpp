@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t chunk_bytes = 1 << 18;
 
-/// Feeds compressed bytes in, hands unpacked bytes on.
+/// Takes compressed bytes and passes unpacked bytes on.
 class Inflater {
   public:
     Inflater(const ByteSink& sink, std::uint64_t at_most)
@@ -43,7 +43,7 @@ class Inflater {
     }
 
   private:
-    /// After the end of a member: another one, zero padding (skipped), or rubbish.
+    /// After the end of a member: another one, zero padding (skipped), or garbage (an error).
     bool begin_next_member() {
         while (state_.avail_in > 0 && *state_.next_in == 0) {
             ++state_.next_in;

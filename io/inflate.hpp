@@ -26,8 +26,8 @@ struct StreamPlace {
 
 using ByteSink = std::function<void(std::span<const std::byte>)>;
 
-/// Unpacks the gzip (any number of members) or zlib stream in `file`, hands the bytes to `sink` in
-/// order (it may be empty) and returns how many there were. Throws DamagedStream.
+/// Unpacks the gzip (any number of members) or zlib stream in `file`, passes the bytes to `sink` in
+/// order (it may be empty) and returns their number. Throws DamagedStream.
 std::uint64_t inflate_checked(const std::filesystem::path& file, const StreamPlace& place,
                               const ByteSink& sink);
 

@@ -1,8 +1,8 @@
-// The live file. Reader and writer meet in the page cache: the writer maps it, the reader copies
-// out of it with pread, and the slot's sequence number, read before and after, tells a torn frame.
+// The live file. The writer maps the file and the reader copies from it with pread, both through
+// the page cache. The slot's sequence number, read before and after, shows a torn frame.
 #if defined(__GNUC__) && !defined(__clang__)
-// The thread sanitizer does not see fences, and says so; the samples it would see them order are in
-// a file, which it does not watch either.
+// The thread sanitizer does not support fences and warns about them; the samples that they order
+// are in a file, which it does not watch either.
 #pragma GCC diagnostic ignored "-Wtsan"
 #endif
 #include "palpate/io/live_file.hpp"
@@ -31,7 +31,7 @@ constexpr char magic[] = {'P', 'A', 'L', 'P', 'L', 'I', 'V', 'E'};
 constexpr std::uint32_t version = 1;
 constexpr int fewest_slots = 2, most_slots = 1024;
 
-// Where things lie in the header and in a slot's own [bytes].
+// Offsets in the header and in a slot [bytes].
 constexpr std::size_t at_version = 8, at_header_bytes = 12, at_type = 16, at_slots = 20,
                       at_size = 24, at_spacing = 40, at_origin = 64, at_direction = 88,
                       at_interval = 160, at_first_slot = 168, at_slot_bytes = 176, at_frames = 184,
@@ -161,8 +161,8 @@ std::vector<std::byte> bytes_of(const LiveHeader& header) {
 
 namespace {
 
-/// Makes the file with all its blocks, since a page that the disk has no room for would end the
-/// writer with SIGBUS; maps it; then gives it its name.
+/// Makes the file with all its blocks, because a page for which the disk has no room would end the
+/// writer with SIGBUS; maps it; then renames it.
 std::byte* make_file(const std::filesystem::path& path, const LiveHeader& header) {
     const std::filesystem::path unfinished = path.string() + "." + std::to_string(getpid()) + "~";
     const auto fail = [&](int error) {
@@ -242,7 +242,7 @@ void LiveWriter::push(const Volume& volume, double time) {
 
 LiveReader::LiveReader(const std::filesystem::path& path, std::uint64_t memory_bytes)
     : name_(path.string()) {
-    // A pipe of that name must not make us wait for its writer.
+    // A pipe of that name must not block until it has a writer.
     descriptor_ = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (descriptor_ < 0) {
         throw InputError(name_ + ": " + std::strerror(errno) +
@@ -286,7 +286,7 @@ void LiveReader::read_at(std::uint64_t at, std::span<std::byte> to) const {
     }
 }
 
-/// Nothing if the writer was at it.
+/// Nothing if the writer changed the slot meanwhile.
 std::optional<Frame> LiveReader::frame(std::uint64_t number) const {
     const std::uint64_t slot = header_.slot_at(number);
     const std::uint64_t whole = 2 * number + 2;
@@ -318,7 +318,7 @@ std::vector<Frame> LiveReader::poll(int most) {
     read_at(at_frames, state);
     const auto count = number_at<std::uint64_t>(state, 0);
     ended_ = number_at<std::uint32_t>(state, at_ended - at_frames) != 0;
-    if (count < seen_) seen_ = 0;  // the writer began anew in the same file
+    if (count < seen_) seen_ = 0;  // the writer has begun again in the same file
     // The oldest slot is the one that is written next.
     const auto lying = static_cast<std::uint64_t>(std::min(most, header_.slots - 1));
     const std::uint64_t first = std::max(seen_, count - std::min(count, lying));

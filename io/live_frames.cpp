@@ -10,7 +10,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// So many polls without a frame, and we look whether another file has the name.
+/// After this many polls without a frame, checks whether another file has the name.
 constexpr int polls_until_suspicion = 50;
 
 LiveSettings checked(const LiveSettings& settings) {
@@ -108,7 +108,7 @@ void LiveFrames::tell(const std::string& problem) {
     status_.problem = problem;
 }
 
-/// Takes what has come, and hands out one version of it.
+/// Reads the new frames and publishes one version with them.
 void LiveFrames::follow() {
     try {
         std::vector<Frame> frames = reader_->poll(settings_.frames);

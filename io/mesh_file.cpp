@@ -1,4 +1,4 @@
-// Mesh writers. Binary formats are little-endian, as is every machine this runs on.
+// Writes meshes. Binary formats are little-endian, like every machine this runs on.
 #include "palpate/io/mesh_file.hpp"
 
 #include <Eigen/Geometry>
@@ -163,7 +163,7 @@ void write_mesh(const SurfaceMesh& mesh, const std::filesystem::path& path, Mesh
             write_obj(mesh, file);
             break;
         case MeshFormat::vtp: {
-            // 32 bits where they do: half the size, and older readers take them as well.
+            // 32 bits where they suffice: half the size, and older readers read them, too.
             const bool small =
                 mesh.triangles.size() * 3 <= std::numeric_limits<std::int32_t>::max();
             small ? write_vtp<std::int32_t>(mesh, file) : write_vtp<std::int64_t>(mesh, file);

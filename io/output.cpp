@@ -1,4 +1,4 @@
-// Atomic output over POSIX calls: streams report a full disk late or not at all.
+// Atomic output with POSIX calls, because streams report a full disk late or not at all.
 #include "palpate/io/output.hpp"
 
 #include <fcntl.h>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t buffer_bytes = std::size_t{1} << 20;
 
-/// What to do about it, for the errors that people meet.
+/// What to do about common errors.
 std::string remedy(int error) {
     switch (error) {
         case ENOSPC:
@@ -38,7 +38,7 @@ std::string because(int error) {
     return reason(error) + remedy(error);
 }
 
-/// The file that a chain of links ends in; the path itself where there is none.
+/// The file at the end of a chain of links; the path itself if it is no link.
 std::filesystem::path followed(const std::filesystem::path& path) {
     std::error_code error;
     if (!std::filesystem::is_symlink(path, error)) return path;
@@ -161,7 +161,7 @@ void PendingFile::commit() {
         fail("could not be put in place: " + because(errno));
     }
     temporary_.clear();
-    // So that the name, too, survives a power cut; the data is whole with or without.
+    // So that the name survives a power cut, too; the data is complete in any case.
     auto folder = target_.parent_path();
     if (folder.empty()) folder = ".";
     const int parent = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);

@@ -1,4 +1,4 @@
-// gnuplot as a child process, fed through a file without a name.
+// Runs gnuplot as a child process, with the script in a file without a name.
 #include "io/plot.hpp"
 
 #include <sys/wait.h>
@@ -28,7 +28,7 @@ std::string terminal(bool svg, const PlotSize& size) {
                : "set terminal pngcairo size " + pixels + " font 'Helvetica,12'\n";
 }
 
-/// The first line that says something.
+/// The first line that is not blank.
 std::string complaint_in(const std::string& said) {
     std::size_t begin = 0;
     while (begin < said.size()) {

@@ -1,4 +1,4 @@
-// Figures by gnuplot, run as a program.
+// Draws figures with gnuplot, run as a program.
 #pragma once
 
 #include <filesystem>
@@ -13,9 +13,9 @@ struct PlotSize {
 /// False if gnuplot is not installed.
 bool can_plot();
 
-/// Runs a gnuplot script and puts its figure at `figure`: an SVG by that extension, else a PNG. The
-/// script finds the terminal and output set. Empty if it worked, else what gnuplot said (one line),
-/// and then nothing is left behind.
+/// Runs a gnuplot script and writes its figure to `figure`: an SVG for that extension, else a PNG.
+/// Terminal and output are set before the script. Returns gnuplot's error (one line, and nothing is
+/// left behind), or empty.
 std::string plot(const std::string& script, const std::filesystem::path& figure,
                  const PlotSize& size = {});
 

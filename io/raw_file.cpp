@@ -1,4 +1,4 @@
-// Headerless files; see the header.
+// Reads and writes headerless files; see the header.
 #include "io/raw_file.hpp"
 
 #include <sys/mman.h>
@@ -24,14 +24,14 @@ std::string layout_text(const RawLayout& raw) {
            (raw.skip > 0 ? " after " + std::to_string(raw.skip) + " bytes" : "");
 }
 
-/// Anonymous memory: given back to the system at once when the volume goes.
+/// Anonymous memory, returned to the system as soon as the volume is destroyed.
 std::shared_ptr<std::byte> allocate(std::size_t bytes) {
     void* at = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (at == MAP_FAILED) throw std::bad_alloc();
     return {static_cast<std::byte*>(at), [bytes](std::byte* mapped) { munmap(mapped, bytes); }};
 }
 
-/// Puts a stream of bytes into the samples: skips some, fills, and counts the rest.
+/// Copies a stream of bytes into the samples: skips some, fills, and counts the rest.
 class Filler {
   public:
     Filler(std::byte* samples, std::uint64_t bytes, std::uint64_t skip, const Progress& progress)

@@ -1,4 +1,5 @@
-// Headerless files: the caller says what is in them. Private to io/; needs zlib only.
+// Reads and writes headerless files, whose layout the caller gives. Private to io/; needs zlib
+// only.
 #pragma once
 
 #include "palpate/io/volume_file.hpp"
@@ -9,7 +10,7 @@ namespace palpate::io {
 /// Throws InputError.
 VolumeFile read_raw(const std::filesystem::path& path, const ReadOptions& options);
 
-/// The samples and nothing else. Throws OutputError.
+/// Writes the samples and nothing else. Throws OutputError.
 void write_raw(const Volume& volume, const std::filesystem::path& path, const Progress& progress);
 
 }  // namespace palpate::io

@@ -1,4 +1,4 @@
-// Texts to a raw layout.
+// Parses the options that describe a raw file.
 #include "palpate/io/raw_options.hpp"
 
 #include <charconv>

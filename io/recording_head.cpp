@@ -1,4 +1,4 @@
-// Head of a recording: what the session was.
+// Converts the head of a recording, which describes the run, to JSON and back.
 #include "io/recording_head.hpp"
 
 #include <zlib.h>

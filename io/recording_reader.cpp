@@ -1,4 +1,4 @@
-// Recordings in: the head, then commands and ticks in the order in which they took effect.
+// Reads recordings: the head, then commands and ticks in the order in which they took effect.
 #include <deque>
 #include <limits>
 
@@ -40,7 +40,7 @@ RecordingHead read_head(const std::string& comments, const std::string& name) {
 struct RecordingReader::Rows {
     std::string text;
     std::string name;
-    bool in_head = true;  // its comments are those of the head
+    bool in_head = true;  // comments belong to the head
     std::deque<SessionEvent> waiting;
     bool complete = false;
     std::int64_t lost = 0;
@@ -138,7 +138,8 @@ RecordingReader::RecordingReader(const std::filesystem::path& path)
     : RecordingReader(read_text(path), path.string()) {}
 
 RecordingReader::RecordingReader(std::string text, const std::string& name) {
-    // The head is looked at first: a table of another kind is told so, not which columns it lacks.
+    // The head is checked first, so that another kind of table is refused as such and not for the
+    // columns it lacks.
     std::string head;
     try {
         const CsvReader table(whole_lines(text), name, [&](std::string_view comment) {

@@ -1,4 +1,4 @@
-// Recordings out: a thread takes events from the servo's queue and appends lines to a file.
+// Writes recordings: a thread takes events from the servo's queue and appends lines to a file.
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -45,7 +45,7 @@ std::string head_text(const RecordingHead& head) {
     text += recording_mark;
     append_number(text, std::int64_t{recording_format});
     text += "\n# ";
-    // A name that is not UTF-8 must not keep a session from being recorded.
+    // A name that is not UTF-8 must not prevent a recording.
     for (const char c : to_json(head).dump(1, ' ', true, Json::error_handler_t::replace)) {
         text += c;
         if (c == '\n') text += "# ";
@@ -56,7 +56,7 @@ std::string head_text(const RecordingHead& head) {
     return text + '\n';
 }
 
-/// Room for the ticks of eight seconds, and commands among them.
+/// Room for the ticks of eight seconds and the commands between them.
 std::size_t room_for(double rate) {
     return static_cast<std::size_t>(8 * rate);
 }

@@ -1,4 +1,4 @@
-// Recipes of samples in and out.
+// Converts recipes of samples to JSON and back.
 #include "io/samples_json.hpp"
 
 #include <cmath>

@@ -1,5 +1,5 @@
-// Samples that a session goes on with, as recordings keep them: by how they came about, never the
-// samples themselves. Private to io/.
+// How recordings store samples that a run continues with: as a recipe of how they were made, never
+// the samples themselves. Private to io/.
 #pragma once
 
 #include "io/settings_json.hpp"
@@ -8,8 +8,8 @@
 namespace palpate::io {
 
 /// "version", and "edit" with "of", or "frames" with "times" and "period"; without a recipe the
-/// version alone. What was put in place by an application is told by its box only: it cannot be
-/// made again.
+/// version alone. Samples that an application put in place are stored by their box only: they
+/// cannot be made again.
 Json to_json(const command::Samples& samples);
 /// The inverse; `samples` is null (app::RecordedSamples makes them). Throws std::invalid_argument.
 command::Samples samples_command_from_json(const Json& json);

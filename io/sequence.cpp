@@ -1,4 +1,4 @@
-// Sequences: which files or volumes of a file are the frames, and when they were taken.
+// Finds the frames of a sequence, which are files or volumes of a file, and their times.
 #include "palpate/io/sequence.hpp"
 
 #include <algorithm>
@@ -36,7 +36,7 @@ void check_interval(double interval) {
     }
 }
 
-/// A file name with a number in it: what stands before and after, and how many digits there are.
+/// A file name with a number in it: the text before and after, and the number of digits.
 struct Pattern {
     std::string before, after;
     std::size_t digits = 0;  ///< at least; 0: any, leading zeros too
@@ -157,7 +157,7 @@ std::vector<double> places_of(const std::vector<NumberedFile>& files,
     return places;
 }
 
-/// [s]; asks the caller's options, then the file, then nobody.
+/// [s]; from the caller's options, else the file, else the default.
 double interval_of(const SequenceOptions& options, const VolumeFile& file,
                    std::vector<std::string>& notes) {
     if (options.interval > 0) return options.interval;

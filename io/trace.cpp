@@ -1,4 +1,4 @@
-// Traces and paths: the columns of the contract, and nothing that a reader could round.
+// Writes and reads traces and paths, with doubles that read back to the bit.
 #include "palpate/io/trace.hpp"
 
 #include <array>

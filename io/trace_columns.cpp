@@ -1,4 +1,4 @@
-// Cells of a trace row.
+// Writes and finds the columns of a trace.
 #include "io/trace_columns.hpp"
 
 #include <limits>

@@ -35,7 +35,7 @@ struct VectorColumns {
     Vec3 read(const CsvReader& rows) const;
 };
 
-/// Where the columns of the contract are in a table. Throws InputError if one is missing.
+/// The places of a trace's columns in a table. Throws InputError if one is missing.
 struct TraceColumns {
     explicit TraceColumns(const CsvReader& rows);
     TraceRow read(const CsvReader& rows) const;

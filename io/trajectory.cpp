@@ -1,4 +1,4 @@
-// Trajectories: the rows of a CSV table with their order checked.
+// Reads trajectories: rows of a CSV table whose times must increase.
 #include "palpate/io/trajectory.hpp"
 
 #include "io/number.hpp"

@@ -1,5 +1,5 @@
-// Reading and writing volumes: what is checked before a library sees the file, and the way to the
-// helper program and back.
+// Reads and writes volumes: checks paths, hands the work to the helper program and takes its
+// answer.
 #include "palpate/io/volume_file.hpp"
 
 #include <sys/stat.h>
@@ -32,7 +32,7 @@ std::uint64_t machine_memory() {
            static_cast<std::uint64_t>(sysconf(_SC_PAGE_SIZE));
 }
 
-/// What can be said about a path without knowing its format.
+/// Checks a path without knowing the file's format.
 void check_readable(const fs::path& path) {
     const std::string name = path.empty() ? "(no name)" : path.string();
     std::error_code error;
@@ -110,8 +110,8 @@ VolumeFile read_volume(const fs::path& path, const ReadOptions& options) {
 
 namespace {
 
-/// The folder beside the output where the helper makes it. The helper creates it, empties it and
-/// removes it, signals included; this is for the helper that crashed.
+/// The folder beside the output in which the helper writes. The helper creates, empties and removes
+/// it, on signals too; this removes it after a helper that crashed.
 class Workshop {
   public:
     explicit Workshop(const fs::path& output) {

@@ -21,8 +21,8 @@ std::string_view written_extension_of(const std::filesystem::path& path) {
 
 namespace {
 
-/// A .raw is the other half of a .mhd or .nhdr: whoever writes one of them may replace samples that
-/// belong to the other.
+/// A .raw is the data file of a .mhd or .nhdr of the same name: writing one of them may replace
+/// samples of the other.
 std::string owner_of_data(const std::filesystem::path& path, std::string_view extension) {
     const auto sibling = [&](const char* other) {
         std::filesystem::path name = path;

@@ -1,4 +1,4 @@
-// The beating shell: two ellipsoids with walls, how they contract, and how they join.
+// The scene `beating`: two ellipsoids with walls, how they contract, and how they join.
 #include "palpate/scenes/beating.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Builders: the small hard volumes that tests ask for, and what they share with the scenes.
+// Builds small hard volumes for tests; also what these share with the scenes.
 #include <algorithm>
 #include <array>
 #include <stdexcept>

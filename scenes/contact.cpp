@@ -1,4 +1,4 @@
-// Straight lines marched through the field until free becomes solid, then halved to the surface.
+// Steps along straight lines through the field until free becomes solid, then bisects.
 #include "scenes/contact.hpp"
 
 #include <algorithm>
@@ -30,7 +30,7 @@ Interval inside_padded_grid(const Geometry& geometry, const Vec3& origin, const 
     return part;
 }
 
-/// One reach: the line, and what is solid on it.
+/// One search: the line, and what is solid on it.
 struct Line {
     const Field& field;
     double isovalue;
@@ -55,7 +55,7 @@ struct Crossing {
     double at, clearance;
 };
 
-/// `target` itself (s = 0) is always one of the points looked at: a speck there is not stepped
+/// `target` itself (s = 0) is always one of the points examined, so a speck there is not stepped
 /// over.
 std::optional<Crossing> first_crossing(const Line& line, const Interval& part) {
     constexpr int most_steps = 20000;

@@ -1,4 +1,4 @@
-// Finds the surface by reaching for it along straight lines. Internal to scenes/.
+// Finds contacts with the surface along straight lines. Internal to scenes/.
 #pragma once
 
 #include "palpate/lattice.hpp"
@@ -10,7 +10,7 @@ namespace palpate::scenes {
 struct Contact {
     Vec3 point = Vec3::Zero();   ///< [mm, physical]; the target if there is none
     Vec3 inward = Vec3::Zero();  ///< unit vector along which the hand came
-    double clearance = 0;        ///< [mm] of free way in front of the point, inside the padded grid
+    double clearance = 0;        ///< [mm] free in front of the point, inside the padded grid
     bool found = false;
     bool at_border = false;  ///< met where the body is cut off by the border of the data
 };
@@ -18,8 +18,8 @@ struct Contact {
 /// Follows the line through `target` along `inward`, in steps of a quarter of a voxel.
 Contact reach(const Field& field, double isovalue, const Vec3& target, const Vec3& inward);
 
-/// A contact from a random side: towards the centre if that meets data, else towards anything, at
-/// last towards a solid sample. Not found only if no sample is solid.
+/// A contact from a random side: towards the centre if that meets data, else towards random points,
+/// finally towards a solid sample. Not found only if no sample is solid.
 Contact any_contact(const Field& field, double isovalue, Random& random);
 
 /// Unit normal into the solid from differences over a voxel; contact.inward where they show none

@@ -1,4 +1,4 @@
-// The motions: each is a way to the surface and then a track along it, travelled at hand speed.
+// The hand motions: each is an approach to the surface and then a track along it, at hand speed.
 #include "palpate/scenes/motions.hpp"
 
 #include <Eigen/Geometry>
@@ -78,8 +78,8 @@ Plan tap(Hand& hand) {
             std::min(hand.settings.speed_mm_s, stroke.length() / Journey::ramp_s)};
 }
 
-/// Follows the surface sideways by parallel reaches. Where the surface ends or jumps by more than
-/// a few voxels (a hole, a cliff) the hand goes on at the height where it was.
+/// Follows the surface sideways by parallel searches. Where the surface ends or jumps by more than
+/// a few voxels (a hole, a cliff) the hand continues at the height where it was.
 class Sideways {
   public:
     Sideways(const Hand& hand, const Contact& start)
@@ -228,9 +228,9 @@ Plan circle(Hand& hand) {
             hand.settings.speed_mm_s};
 }
 
-/// Wanders over the body: sweeps along the surface at depth, then lifts off and goes over to
-/// another place nearby. Side and target turn only a little each time, so that the hand goes round
-/// the body and not through it.
+/// Wanders over the body: sweeps along the surface at depth, then lifts off and moves to another
+/// place nearby. Side and target change only a little each time, so that the hand moves around the
+/// body and not through it.
 class Wanderer {
   public:
     explicit Wanderer(Hand& hand)
@@ -281,8 +281,8 @@ class Wanderer {
         if (!points_.empty()) length_ += (point - points_.back()).norm();
         points_.push_back(point);
     }
-    /// Next to a place where the surface is far from the last one (beyond a hole, behind an edge)
-    /// the hand goes by the way it would come: out of the grid and in again.
+    /// To a place where the surface is far from the last one (beyond a hole, behind an edge) the
+    /// hand moves along its own approach: out of the grid and in again.
     void visit(const Contact& contact, const Vec3& point) {
         if (!points_.empty() && (contact.point - last_.point).norm() > 0.2 * longest_) {
             add(last_.point - last_.clearance * last_.inward);
@@ -306,7 +306,7 @@ class Wanderer {
 };
 
 Plan explore(Hand& hand) {
-    // More places than that are not more varied; the hand then goes the way back.
+    // More places than that are not more varied; the hand then moves back along the track.
     constexpr int most_places = 64;
     Wanderer wanderer(hand);
     const double needed = 1.2 * hand.settings.speed_mm_s * hand.settings.duration_s;
@@ -340,8 +340,8 @@ class Course {
     Journey in_, on_;
 };
 
-/// The course, averaged over 31 ms: that cannot make it faster, and bounds what the velocity
-/// changes in a tick, however sharp a corner the surface had (2/31 of the speed at 1 kHz).
+/// The trajectory, averaged over 31 ms. This cannot make it faster, and it bounds the change of the
+/// velocity in a tick for any corner of the surface (2/31 of the speed at 1 kHz).
 std::vector<HandSample> travelled(const Plan& plan, const MotionSettings& settings,
                                   std::vector<HandSample> samples) {
     constexpr double half_window_s = 0.015;
@@ -360,8 +360,8 @@ std::vector<HandSample> travelled(const Plan& plan, const MotionSettings& settin
     return samples;
 }
 
-/// Steps of every size from far below a voxel to the whole grid, rests, and jumps to anywhere in
-/// the grid with two voxels around it: what no hand does and no update may fall over.
+/// Steps of every size from far below a voxel to the whole grid, rests, and jumps to any place in
+/// the grid with two voxels around it. No hand does this, but every update must cope with it.
 std::vector<HandSample> jumping(const Field& field, Random random,
                                 std::vector<HandSample> samples) {
     const Geometry& geometry = field.geometry();

@@ -1,4 +1,4 @@
-// Tracks by arc length, and journeys with smooth starts and stops.
+// Tracks measured by arc length, and journeys along them with smooth starts and stops.
 #include "scenes/track.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// A path through space by its length, and how a hand travels along it. Internal to scenes/.
+// A polyline measured by arc length, and how a hand travels along it. Internal to scenes/.
 #pragma once
 
 #include <vector>
@@ -27,7 +27,8 @@ class Track {
 Track rounded(const Track& track, double radius, bool closed);
 
 /// A journey from rest to rest: the speed rises and falls smoothly over `ramp_s`, and never passes
-/// `speed`. Short ways are travelled slower, with the same acceleration (at most 1.5 speed / ramp).
+/// `speed`. Short distances are travelled slower, with the same acceleration (at most 1.5 speed /
+/// ramp).
 class Journey {
   public:
     Journey(double length_mm, double speed_mm_s);
@@ -37,9 +38,9 @@ class Journey {
     double duration() const { return duration_; }
     /// [mm] after t seconds: 0 before the start, the whole length after the end.
     double travelled(double t) const;
-    /// The same there and back again for ever.
+    /// The same, to the end and back, repeatedly.
     double there_and_back(double t) const;
-    /// The same start, but never slowing down.
+    /// The same start, but without slowing down at the end.
     double without_end(double t) const;
 
   private:

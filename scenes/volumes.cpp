@@ -1,4 +1,4 @@
-// The named scenes: their densities, and their specifications as text.
+// The named scenes: their densities, and parsing of their specifications.
 #include "palpate/scenes/volumes.hpp"
 
 #include <algorithm>

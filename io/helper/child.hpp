@@ -1,5 +1,5 @@
-// What every helper program does first: it goes with its caller and takes no more than it may.
-// Header only, so that each program can have it without the others' libraries.
+// What every helper program does first: it ties its life to its caller's and limits its memory.
+// Header only, so that each program can use it without the others' libraries.
 #pragma once
 
 #include <sys/prctl.h>
@@ -20,8 +20,8 @@
 
 namespace palpate::io {
 
-/// Ends with the caller (its process id, from the request), leaves no core file, and is the first
-/// to go where memory runs out: not the process that a person touches.
+/// Ends with the caller (its process id, from the request), writes no core file, and is the first
+/// to be killed when memory runs out, before the process that drives the device.
 inline void go_with_caller(pid_t caller) {
     prctl(PR_SET_PDEATHSIG, SIGTERM);
     if (getppid() != caller) raise(SIGTERM);  // it died before that line
@@ -30,8 +30,8 @@ inline void go_with_caller(pid_t caller) {
     std::ofstream("/proc/self/oom_score_adj") << 1000;
 }
 
-/// No more address space than `bytes` and 2 GiB for the programs' code and what libraries copy.
-/// Nothing under a sanitizer, whose shadow is address space too.
+/// Limits the address space to `bytes` and 2 GiB for the programs' code and what libraries copy.
+/// Not under a sanitizer, whose shadow memory is address space, too.
 inline void limit_memory([[maybe_unused]] std::uint64_t bytes) {
 #ifndef PALPATE_SANITIZED
     const rlim_t space = bytes + (rlim_t{2} << 30);

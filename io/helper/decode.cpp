@@ -1,4 +1,4 @@
-// What the readers inside the helper program share; see the header.
+// Shared by the readers in the helper program; see the header.
 #include "io/helper/decode.hpp"
 
 #include <sys/mman.h>

@@ -1,5 +1,5 @@
-// What the readers inside the helper program share: the request, the result, and how samples of any
-// type get into the memory that the caller will adopt. No format's library is needed here.
+// Shared by the readers in the helper program: the request, the result, and the conversion of
+// samples of any type into the memory that the caller adopts. Needs no format's library.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@
 
 namespace palpate::io {
 
-/// Ends the job. what() says what is wrong and what to do; the caller puts the file's name before.
+/// Ends the job. what() says what is wrong and what to do; the caller adds the file's name.
 class Failure : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;
@@ -36,8 +36,8 @@ struct FrameTimes {
     double first = 0;     ///< [s]
 };
 /// Times as a header gives them, in seconds: `unit` is "s", "ms", "us", "min" or one of their
-/// longer names; none counts as seconds, with a note; any other is no time. What is not finite or
-/// not above 0 is not known.
+/// longer names; an empty one means seconds, with a note; any other means that no time is given. An
+/// interval that is not finite or not above 0 counts as unknown.
 FrameTimes frame_times(double interval, double first, const std::string& unit,
                        std::vector<std::string>& notes);
 
@@ -112,7 +112,7 @@ void take_step(const Request& request, std::int64_t steps, const FrameTimes& tim
 /// Geometry and finite samples; the requested spacing is put in. Throws Failure.
 void finish(Result& result, const Request& request, std::span<std::byte> samples);
 
-/// Tells the caller how far it is, and what with (for the message, should it crash).
+/// Reports progress to the caller, and the current file (for the message in case of a crash).
 void say_progress(double fraction);
 void say_doing(const std::string& what);
 

@@ -1,5 +1,5 @@
-// Our own walk through a DICOM file before GDCM gets it: GDCM reads a cut-off file as a whole one,
-// and allocates whatever a damaged length says.
+// Checks the structure of a DICOM file before GDCM reads it: GDCM reads a cut-off file as a
+// complete one and allocates whatever a damaged length says.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-// From a pile of DICOM slices to a regular grid; see the header and docs/io.md.
+// Arranges DICOM slices in a regular grid; see the header and docs/io.md.
 #include "io/helper/dicom_stack.hpp"
 
 #include <Eigen/Geometry>
@@ -170,7 +170,7 @@ void find_shear(const DicomSeries& series, const Vec3& row, const Vec3& column, 
     stack.geometry.size[1] += high;
 }
 
-/// Slices without position or orientation: a plain pile in the order of their numbers.
+/// Slices without position or orientation, stacked in the order of their numbers.
 void pile_up(const DicomSeries& series, const Request& request, Stack& stack) {
     for (std::size_t i = 0; i < series.slices.size(); ++i) stack.slices.push_back({i, 0, 0, 0});
     std::stable_sort(stack.slices.begin(), stack.slices.end(), [&](const auto& a, const auto& b) {
@@ -232,7 +232,7 @@ Stack stack_slices(const DicomSeries& series, const Request& request) {
     stack.geometry.size = {any.columns, any.rows, 1};
     const bool placed = std::all_of(series.slices.begin(), series.slices.end(),
                                     [](const auto& s) { return s.position && s.row && s.column; });
-    DicomSeries scaled = series;  // with a pixel size, come what may
+    DicomSeries scaled = series;  // with a pixel size in any case
     if (!any.pixel) {
         stack.notes.emplace_back("it gives no pixel spacing: 1 mm was taken");
         for (auto& s : scaled.slices) s.pixel = Vec3(1, 1, 0);

@@ -1,5 +1,5 @@
-// From a pile of DICOM slices to a regular grid: which slices there are, in what order they lie,
-// what is missing, and how far they are shifted against each other. Knows no library.
+// Arranges DICOM slices in a regular grid: sorts them into series and along the normal, finds
+// missing ones and shifts between them. Uses no library.
 #pragma once
 
 #include "io/helper/decode.hpp"
@@ -31,14 +31,14 @@ std::vector<DicomSeries> series_of(std::vector<DicomSlice> slices);
 /// throws Failure whose first line says what to do and whose further lines list the series.
 const DicomSeries& choose_series(const std::vector<DicomSeries>& all, const std::string& chosen);
 
-/// One slice in its place.
+/// One slice and its position.
 struct PlacedSlice {
     std::size_t slice = 0;  ///< which of the series
     double along = 0;       ///< [mm] from the first slice, along the normal
     double u = 0, v = 0;    ///< shift within the plane against the first slice [pixels]
 };
 
-/// A grid slice: a slice as it is, or two of them mixed (the second with `weight`).
+/// A grid slice: a slice unchanged, or two of them blended (the second with `weight`).
 struct GridSlice {
     std::size_t first = 0, second = 0;  ///< which of Stack::slices
     double weight = 0;

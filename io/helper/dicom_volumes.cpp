@@ -1,5 +1,5 @@
-// DICOM with GDCM, through ITK for the samples (it applies slope and intercept): headers, then the
-// slices of one series, then the grid that dicom_stack.hpp has planned.
+// Reads DICOM with GDCM, and samples through ITK, which applies slope and intercept: headers, then
+// the slices of one series, then the grid that dicom_stack.hpp has planned.
 #include <gdcmReader.h>
 #include <gdcmStringFilter.h>
 #include <itkGDCMImageIO.h>

@@ -1,5 +1,5 @@
-// palpate-io-helper: reads or writes one volume with the formats' libraries and reports; what it
-// says is described in protocol.hpp. It exists so that a library's crash is not the caller's.
+// palpate-io-helper: reads or writes one volume with the formats' libraries and reports as
+// described in protocol.hpp. It exists so that a crash of a library does not crash the caller.
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -99,8 +99,8 @@ nlohmann::json run_read(const fs::path& path, const nlohmann::json& asked) {
             {"notes", result.notes}};
 }
 
-/// Where a file is made: under its own name, since headers name their data files, in a folder of
-/// its own, since nobody may see it unfinished.
+/// The folder in which a file is written: under its own name, because headers name their data
+/// files, in a folder of its own, so that no unfinished file is visible.
 class Workshop {
   public:
     Workshop(const fs::path& folder, const fs::path& target)
@@ -171,7 +171,7 @@ nlohmann::json run_write(const fs::path& path, const nlohmann::json& asked,
     return nlohmann::json::object();
 }
 
-/// One line of whatever a library says.
+/// A library's message as one line.
 std::string one_line(std::string text) {
     std::string line;
     for (const char c : text) {

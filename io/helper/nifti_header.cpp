@@ -1,4 +1,5 @@
-// NIfTI-1: our own reading of the 348-byte header, in either byte order, packed or not.
+// Checks NIfTI-1 files: the 348-byte header in either byte order, packed or not, and the data's
+// size.
 #include <algorithm>
 #include <array>
 #include <bit>

@@ -1,4 +1,4 @@
-// What the library and its helper program say to each other, in one place so that both agree.
+// The protocol between the library and its helper program.
 //   palpate-io-helper read PATH REQUEST       samples come back in descriptor 3
 //   palpate-io-helper write PATH REQUEST FOLDER   samples are given in descriptor 3; FOLDER, beside
 //                                             PATH, is created for the unfinished file and removed

@@ -1,4 +1,4 @@
-// The readers and the writers of the helper program, one source file a format family.
+// The readers and writers of the helper program, one source file for each family of formats.
 #pragma once
 
 #include <string>

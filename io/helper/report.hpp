@@ -1,4 +1,4 @@
-// How the helper program talks to its caller; see protocol.hpp for what it says.
+// Sends the helper program's messages to its caller; protocol.hpp describes them.
 #pragma once
 
 #include <unistd.h>

@@ -28,7 +28,7 @@ Description description_of(TIFF* tiff) {
     return description;
 }
 
-/// A unit's length [mm], as ImageJ's users write it; nothing for pixels and what is not known.
+/// A unit's length [mm], as ImageJ's users write it; nothing for pixels and unknown units.
 std::optional<double> millimetres(const std::string& unit) {
     static const std::map<std::string, double> known = {
         {"nm", 1e-6},        {"nanometer", 1e-6},  {"um", 1e-3},        {"\\u00b5m", 1e-3},

@@ -11,18 +11,19 @@
 
 namespace palpate::io {
 
-/// Of the page at hand [mm]; nothing unless ImageJ's description gives all three lengths.
+/// The spacing of the current page [mm]; nothing unless ImageJ's description gives all three
+/// lengths.
 std::optional<Vec3> image_j_spacing(TIFF* tiff);
 
-/// Refuses what ImageJ's description makes of a file's pages if they are no slices of one volume:
+/// Refuses a file whose pages are not slices of one volume by ImageJ's description:
 /// channels, times, or more of them than there are (ImageJ's own files above 4 GB have one page).
 /// Throws Failure.
 void check_image_j_stack(TIFF* tiff, std::size_t pages);
 
-/// Puts the spacing [mm] of a stack into its first page, the one at hand.
+/// Writes the spacing [mm] of a stack into its first page, which is the current one.
 void set_image_j_spacing(TIFF* tiff, const Vec3& spacing, int slices);
 
-/// Into every page: what of it lies in the page's plane.
+/// Writes the part of the spacing that lies in the page's plane; for every page.
 void set_resolution(TIFF* tiff, const Vec3& spacing);
 
 }  // namespace palpate::io

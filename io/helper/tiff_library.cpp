@@ -1,4 +1,4 @@
-// libtiff's handles and complaints; see the header.
+// Opens TIFF files and keeps libtiff's errors; see the header.
 #include "io/helper/tiff_library.hpp"
 
 #include <cstdarg>

@@ -1,4 +1,4 @@
-// libtiff, with its complaints kept instead of printed.
+// Opens TIFF files with libtiff, whose errors are kept instead of printed.
 #pragma once
 
 #include <tiffio.h>
@@ -14,7 +14,7 @@ using Tiff = std::unique_ptr<TIFF, decltype(&TIFFClose)>;
 /// TIFFOpen; null if that fails. `mode` as there: "r", "w", with letters after it.
 Tiff open_tiff(const std::filesystem::path& file, const char* mode);
 
-/// What libtiff complained of first in this process; empty if it did not.
+/// libtiff's first error in this process; empty if there was none.
 const std::string& first_tiff_error();
 
 }  // namespace palpate::io

@@ -1,5 +1,5 @@
-// TIFF stacks with libtiff itself: one file of many pages, or a folder of numbered slices. ITK's
-// reader takes a cut-off file for a whole one; libtiff says so.
+// Reads TIFF stacks with libtiff: one file of many pages, or a folder of numbered slices. ITK's
+// reader accepts a cut-off file as complete; libtiff reports it.
 #include <algorithm>
 #include <cctype>
 #include <cstring>
@@ -76,7 +76,7 @@ Page page_of(TIFF* tiff, const fs::path& file, std::vector<std::string>& notes) 
     return page;
 }
 
-/// libtiff stops when it has enough bytes, before zlib's checksum; this goes on to it.
+/// libtiff stops when it has enough bytes, before zlib's checksum; this reads on to it.
 void check_deflate(TIFF* tiff, const fs::path& file, std::uint32_t piece, bool tiled) {
     std::uint16_t compression = 0;
     TIFFGetField(tiff, TIFFTAG_COMPRESSION, &compression);

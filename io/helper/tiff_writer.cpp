@@ -1,4 +1,4 @@
-// TIFF stacks written with libtiff: a page a slice, grey, the spacing as ImageJ tells it.
+// Writes TIFF stacks with libtiff: a page a slice, grey, the spacing as ImageJ writes it.
 #include <algorithm>
 
 #include "io/helper/readers.hpp"

@@ -1,4 +1,4 @@
-// VTI with VTK's XML reader and writer.
+// Reads and writes VTI with VTK's XML reader and writer.
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
 #include <vtkImageData.h>
@@ -23,7 +23,7 @@
 namespace palpate::io {
 namespace {
 
-/// VTK reports errors to a window and goes on; this one remembers the first.
+/// VTK reports errors to a window and continues; this window keeps the first.
 class ErrorKeeper : public vtkOutputWindow {
   public:
     static ErrorKeeper* New();
@@ -51,7 +51,7 @@ vtkStandardNewMacro(ErrorKeeper)
                   "); copy it again or export it again");
 }
 
-/// The first and the last tag; VTK takes raw data that are cut off for whole ones.
+/// Checks the first and the last tag, because VTK accepts raw data that are cut off.
 void check_ends(const Request& request) {
     std::ifstream in(request.path, std::ios::binary);
     std::string text(4096, '\0');

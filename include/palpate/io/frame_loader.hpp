@@ -86,7 +86,7 @@ class FrameLoader {
     std::int64_t place_from(std::int64_t low, int frame) const;
     std::int64_t nearest_place(std::int64_t to, int frame) const;
     double time_at(std::int64_t place) const;
-    View view_of(double time, int way) const;
+    View view_of(double time, int direction) const;
     bool has_failed(std::int64_t place) const;
 
     const Sequence sequence_;
