@@ -70,7 +70,7 @@ struct Recorded {
 };
 
 TEST(ServoLimits, a_device_for_1_newton_gets_no_more_whatever_is_asked) {
-    ScriptedDevice device(&press, {.maximum_force = 1});
+    ScriptedDevice device(&press_deep, {.maximum_force = 1});
     Queue<SessionEvent> queue(1 << 14);
     Servo servo(session_of(careless()), device, {.recorder = &queue});
     EXPECT_EQ(servo.settings().device.maximum_force, 1);
@@ -92,7 +92,7 @@ TEST(ServoLimits, a_device_for_1_newton_gets_no_more_whatever_is_asked) {
 }
 
 TEST(ServoLimits, a_session_that_the_device_can_take_is_left_as_it_is) {
-    ScriptedDevice device(&press, {.maximum_force = 20});
+    ScriptedDevice device(&press_deep, {.maximum_force = 20});
     Queue<SessionEvent> queue(1 << 14);
     const Servo servo(session_of(careless()), device, {.recorder = &queue});
     EXPECT_EQ(servo.settings().force, careless().force);
@@ -101,7 +101,7 @@ TEST(ServoLimits, a_session_that_the_device_can_take_is_left_as_it_is) {
 }
 
 TEST(ServoLimits, a_stiffness_that_the_device_cannot_render_is_lowered_and_as_a_command_refused) {
-    ScriptedDevice device(&press, {.maximum_force = 20, .rate = 250});
+    ScriptedDevice device(&press_deep, {.maximum_force = 20, .rate = 250});
     Servo servo(session_of(careless()), device);
     const RendererSettings& settings = servo.settings();
     EXPECT_EQ(settings.device.rate, 250);
@@ -119,7 +119,7 @@ TEST(ServoLimits, a_device_that_declares_nonsense_is_refused) {
     for (const DeviceLimits& limits :
          {DeviceLimits{.maximum_force = not_a_number}, DeviceLimits{.maximum_force = -1},
           DeviceLimits{.rate = 0}, DeviceLimits{.physical_damping = not_a_number}}) {
-        ScriptedDevice device(&press, limits);
+        ScriptedDevice device(&press_deep, limits);
         EXPECT_THROW(Servo(session_of(careless()), device), std::invalid_argument);
     }
 }
