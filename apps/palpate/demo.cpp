@@ -18,6 +18,7 @@
 #include "apps/palpate/result_folder.hpp"
 #include "evaluation/html.hpp"
 #include "palpate/io/error.hpp"
+#include "palpate/io/sample_volume.hpp"
 #include "palpate/scenes/motions.hpp"
 #include "pictures/levels.hpp"
 #include "pictures/picture.hpp"
@@ -177,7 +178,6 @@ void run_demo(const DemoOptions& options) {
 
 void add_demo(CLI::App& app) {
     auto options = std::make_shared<DemoOptions>();
-    options->volume.volume = "synthetic:shepp-logan";
     CLI::App* command =
         app.add_subcommand("demo", "A simulated hand explores a volume; pictures and a report");
     command->footer(
@@ -203,6 +203,10 @@ void add_demo(CLI::App& app) {
     command->callback([options, command] {
         if (!command->get_subcommands().empty()) return;  // it has done its own
         options->hand.rate_hz = options->render.rate;
+        if (options->volume.volume.empty()) {
+            options->volume.volume = io::sample_volume_path().string();
+            if (command->count("--seed") == 0) options->hand.seed = 2;  // over the face
+        }
         run_demo(*options);
     });
 }

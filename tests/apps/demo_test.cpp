@@ -54,6 +54,14 @@ TEST(Demo, LeavesItsResultsInAFolderItNames) {
     EXPECT_GT(felt, 50);
 }
 
+TEST(Demo, FeelsTheSampleVolumeIfNoneIsNamed) {
+    const ScratchFolder folder;
+    const Outcome outcome = palpate(folder, "demo --duration 1 --picture 150 -o head");
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_TRUE(contains(outcome.out, "visible_human_head.nrrd at isovalue 34.5")) << outcome.out;
+    expect_results(folder / "head", 1001);
+}
+
 TEST(Demo, FeelsARealVolumeAtALevelOfItsOwnChoice) {
     SKIP_WITHOUT("fuel_small.nrrd");
     const ScratchFolder folder;
