@@ -468,6 +468,11 @@ TEST_F(ATimeline, pictures_light_dark_and_live) {
     view.live = true;
     bar.set_view(view);
     picture("timeline_live_dark");
+    TimelineView pressed = recording(12);
+    pressed.time = 9.2;
+    bar.set_view(pressed);
+    bar.resize(bar.width(), bar.sizeHint().height());
+    picture("timeline_recording_dark");
     QApplication::setPalette(usual);
     picture("timeline_recording_light");
     TimelineView many;
