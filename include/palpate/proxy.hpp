@@ -44,7 +44,7 @@ struct ProxySettings {
     Friction friction;
     /// Most straight pieces (tetrahedra entered) an update may use. 4096 are 500 voxels of travel,
     /// far more than a hand moves in a tick. At worst (all of it along a surface) they take some
-    /// 0.45 ms, half a tick at 1 kHz; faster loops need a smaller budget.
+    /// 0.3 ms, a third of a tick at 1 kHz; faster loops need a smaller budget.
     int step_budget = 4096;
 };
 

@@ -1,4 +1,4 @@
-// Projection on a convex cone of few half-spaces: candidates by dimension of the face they lie on.
+// Projection on a convex cone of few half-spaces: tries candidates by the dimension of their face.
 #include "proxy/cone.hpp"
 
 #include <cmath>
@@ -6,9 +6,9 @@
 namespace palpate {
 namespace {
 
-/// Rounding that a candidate may violate another half-space by, relative to |normal| |h|.
+/// By how much rounding may carry a candidate beyond another half-space, relative to |normal| |h|.
 constexpr double slack_of_feasible = 1e-13;
-/// Two normals with a smaller sine between them are one plane.
+/// Two normals with a smaller sine between them count as one plane.
 constexpr double least_sine = 1e-12;
 
 template <int Most>
@@ -56,7 +56,7 @@ ConeProjection project_on_cone(const Vec3& h, const HalfSpaces<Most>& cone) {
     // A face has at least the dimension of the face it borders, so what projects on a plane
     // feasibly is at least as long as anything on a line: lines only count if no plane did.
     if (best_gain > 0) return best;
-    for (int i = 0; i < cone.count; ++i) {
+    for (int i = 0; i + 1 < cone.count; ++i) {
         const Vec3 e1 = cone.normal[i] / std::sqrt(dot(cone.normal[i], cone.normal[i]));
         for (int j = i + 1; j < cone.count; ++j) {
             // Orthogonalised twice: then both half-spaces hold to rounding however close to

@@ -22,10 +22,11 @@ HalfSpaces<48> constraint_planes(const Site& site, const Incident& incident, con
     return planes;
 }
 
-/// The incident tetrahedron that a direction (index axes) points into.
-const Tetrahedron& tetrahedron_towards(const Incident& incident, unsigned on, const Vec3& way) {
+/// The incident tetrahedron that `direction` (index axes) points into.
+const Tetrahedron& tetrahedron_towards(const Incident& incident, unsigned on,
+                                       const Vec3& direction) {
     for (int i = 0; i < incident.count; ++i) {
-        const Vec3 folded = fold(incident.tetrahedra[i], way);
+        const Vec3 folded = fold(incident.tetrahedra[i], direction);
         bool inside = true;
         for (unsigned w = 0; w < wall_count; ++w) {
             if (has(on, w)) inside &= approach(folded, w) <= 0;
@@ -37,15 +38,15 @@ const Tetrahedron& tetrahedron_towards(const Incident& incident, unsigned on, co
 
 /// One step of the constrained mode: goal, then at most one tetrahedron towards it. False at the
 /// goal.
-bool step_constrained(Site& site, Course& course) {
-    const Vec3& spacing = course.geometry.spacing;
+bool step_constrained(Site& site, Progress& progress) {
+    const Vec3& spacing = progress.geometry.spacing;
     const Incident incident = incident_tetrahedra(site.point);
     const HalfSpaces<48> planes = constraint_planes(site, incident, spacing);
-    const Vec3 h_mm = course.to_target(site).cwiseProduct(spacing);
+    const Vec3 h_mm = progress.to_target(site).cwiseProduct(spacing);
     const Vec3 to_goal_mm = project_on_cone(h_mm, planes).point;
     const Vec3 to_goal = to_goal_mm.cwiseQuotient(spacing);
     const Vec3 goal = index_of(site.point) + to_goal;
-    course.report(StepKind::goal, site, goal);
+    progress.report(StepKind::goal, site, goal);
     if (dot(to_goal_mm, to_goal_mm) <= 1e-18 * dot(spacing, spacing)) return false;
     const unsigned on = walls_at(site.point.folded);
     const Tetrahedron& towards = tetrahedron_towards(incident, on, to_goal);
@@ -55,8 +56,8 @@ bool step_constrained(Site& site, Course& course) {
         if (has(on, w) && approach(folded, w) == 0) kept |= 1U << w;
     }
     site.enter(towards);
-    slide(site, folded, on, kept, course);
-    course.report(StepKind::slide, site, goal);
+    slide(site, folded, on, kept, progress);
+    progress.report(StepKind::slide, site, goal);
     return true;
 }
 
@@ -68,20 +69,20 @@ ProxyUpdate update_paper(Proxy& proxy, const Field& field, const Vec3& hip,
     if (!accepts(proxy, target)) return refuse_update(proxy, field, hip);
     Update update(proxy, field, target, settings, observer);
     Site& site = update.site;
-    Course& course = update.course;
+    Progress& progress = update.progress;
     if (update.recovering) return finish_update(proxy, update, hip, Rest::recovering);
     const double tolerance = field.tolerance();
     bool constrained = proxy.mode == Mode::constrained && site.excess() >= -tolerance;
-    while (course.budget > 0) {
+    while (progress.budget > 0) {
         if (!constrained) {
-            // The tetrahedron that the way leads into; the walk crosses walls by itself.
-            const WalkEnd end = walk(site, course.folded_to_target(site), course);
-            course.report(StepKind::free_move, site);
+            // The walk crosses into the right tetrahedron by itself.
+            const WalkEnd end = walk(site, progress.folded_to_target(site), progress);
+            progress.report(StepKind::free_move, site);
             if (end == WalkEnd::target) return finish_update(proxy, update, hip, Rest::at_target);
             constrained = true;
             continue;
         }
-        if (!step_constrained(site, course)) {
+        if (!step_constrained(site, progress)) {
             return finish_update(proxy, update, hip, Rest::on_surface);
         }
         if (site.excess() < -tolerance) constrained = false;

@@ -61,9 +61,9 @@ RayHit cast_ray(const Field& field, double isovalue, const Vec3& from, const Vec
         return ray;
     }
     Site site(field, isovalue, field.sign(), locate(start));
-    Course course{geometry, {}, target, step_budget};
-    ray.hit =
-        site.excess() > 0 || walk(site, course.folded_to_target(site), course) == WalkEnd::surface;
+    Progress progress{geometry, {}, target, step_budget};
+    ray.hit = site.excess() > 0 ||
+              walk(site, progress.folded_to_target(site), progress) == WalkEnd::surface;
     if (!ray.hit) return ray;
     ray.point = physical_from_index(geometry, index_of(site.point));
     ray.normal = normal_of(field, site.point.tetrahedron);

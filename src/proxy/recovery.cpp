@@ -1,5 +1,5 @@
-// Recovery: out of the solid after the isovalue or the field changed, or when a session starts
-// inside. See docs/proxy.md, "Recovery".
+// Recovery: brings the proxy out of the solid after the isovalue or the field changed, or when a
+// session starts inside. See docs/proxy.md, "Recovery".
 #include <algorithm>
 #include <cmath>
 
@@ -36,20 +36,20 @@ Descent steepest_descent(const Site& site) {
 }
 
 /// Descends until out (true), stuck on a plateau or in a local minimum, or out of budget.
-bool descend_out(Site& site, Course& course) {
+bool descend_out(Site& site, Progress& progress) {
     const double tolerance = site.field.tolerance();
-    const double flat = tolerance / course.geometry.spacing.maxCoeff();
-    while (course.budget > 0) {
+    const double flat = tolerance / progress.geometry.spacing.maxCoeff();
+    while (progress.budget > 0) {
         const double excess = site.excess();
         if (!(excess > tolerance)) return true;
         const Descent descent = steepest_descent(site);
         if (!(descent.slope_squared > flat * flat)) return false;
         site.enter(descent.tetrahedron);
         const Vec3 per_mm = fold_lengths(descent.tetrahedron, site.field.voxels_per_mm());
-        // Along the step the excess falls by slope^2 per unit: it is gone at excess / slope^2.
+        // Along the step the excess falls by slope^2 per unit: it is zero at excess / slope^2.
         const Vec3 step = descent.step_mm.cwiseProduct(per_mm) * (excess / descent.slope_squared);
-        slide(site, step, walls_at(site.point.folded), descent.walls, course);
-        course.report(StepKind::recover, site);
+        slide(site, step, walls_at(site.point.folded), descent.walls, progress);
+        progress.report(StepKind::recover, site);
     }
     return false;
 }
@@ -57,21 +57,22 @@ bool descend_out(Site& site, Course& course) {
 constexpr double thickest_shell = 16;    // [voxel] searched along each direction at a time
 constexpr double thinnest_shell = 0.25;  // needs a budget of some 100 pieces
 
-/// A shell that the budget lasts for along all 26 directions (fewer than 8 walls a voxel, and two
-/// pieces a probe): one that is given up half way would be begun again by every later update.
+/// How thick a shell the budget can search along all 26 directions (fewer than 8 walls a voxel, and
+/// two pieces a probe). Without this, every later update would start the same shell and abandon it.
 double shell_within(int budget) {
     return std::min(thickest_shell, (budget / 26 - 2) / 8.0);
 }
 
-/// Looks for free space along 26 directions, a shell at a time. True when found and moved to.
-bool search_out(Site& site, Course& course, double& reach) {
+/// Searches 26 directions for free space, one shell at a time. If it finds some, it moves there and
+/// returns true.
+bool search_out(Site& site, Progress& progress, double& reach) {
     const Index3& size = site.field.geometry().size;
     const double farthest = 2 * size.cast<double>().norm() + 4 * thickest_shell;
     const Vec3 from = index_of(site.point);
-    const Vec3& spacing = course.geometry.spacing;
+    const Vec3& spacing = progress.geometry.spacing;
     const double unit = spacing.minCoeff();
     while (reach * unit <= farthest * spacing.maxCoeff()) {
-        const double shell_thickness = shell_within(course.budget);
+        const double shell_thickness = shell_within(progress.budget);
         if (shell_thickness < thinnest_shell) return false;
         LatticePoint nearest;
         double least = std::numeric_limits<double>::infinity();
@@ -82,23 +83,23 @@ bool search_out(Site& site, Course& course, double& reach) {
             const Vec3 start = from + reach * per_unit;
             // The solid is the free side of the field with its sign turned.
             Site probe(site.field, site.isovalue, -site.sign, locate(start));
-            Course silent{course.geometry, {}, start, course.budget};
+            Progress silent{progress.geometry, {}, start, progress.budget};
             const bool free_already = probe.excess() >= 0;
             const WalkEnd end =
                 free_already
                     ? WalkEnd::surface
                     : walk(probe, fold(probe.point.tetrahedron, per_unit * shell_thickness),
                            silent);
-            course.budget = silent.budget;
+            progress.budget = silent.budget;
             if (end != WalkEnd::surface) continue;
-            const Vec3 way = (index_of(probe.point) - from).cwiseProduct(spacing);
-            if (dot(way, way) >= least) continue;
-            least = dot(way, way);
+            const Vec3 found = (index_of(probe.point) - from).cwiseProduct(spacing);
+            if (dot(found, found) >= least) continue;
+            least = dot(found, found);
             nearest = probe.point;
         }
         if (std::isfinite(least)) {
             site.move_to(nearest);
-            course.report(StepKind::recover, site);
+            progress.report(StepKind::recover, site);
             return true;
         }
         reach += shell_thickness;
@@ -109,10 +110,10 @@ bool search_out(Site& site, Course& course, double& reach) {
 
 }  // namespace
 
-bool recover(Site& site, Course& course, double& reach) {
-    if (reach == 0 && descend_out(site, course)) return true;
-    if (course.budget <= 0) return false;
-    if (!search_out(site, course, reach)) return false;
+bool recover(Site& site, Progress& progress, double& reach) {
+    if (reach == 0 && descend_out(site, progress)) return true;
+    if (progress.budget <= 0) return false;
+    if (!search_out(site, progress, reach)) return false;
     reach = 0;
     return true;
 }

@@ -1,4 +1,5 @@
-// The walk from tetrahedron to tetrahedron. See docs/lattice.md for why it cannot lose its way.
+// Straight motion from tetrahedron to tetrahedron. docs/lattice.md says why rounding cannot make it
+// leave the lattice.
 #include "proxy/site.hpp"
 
 #include <algorithm>
@@ -27,9 +28,10 @@ Exit first_exit(const Vec3& folded, const Vec3& direction, double farthest, unsi
     return exit;
 }
 
-/// From deep in the background, the part of the way [0, left] that surely stays in it: up to half a
-/// voxel before the border of the padded grid. Spares the walk through empty space cell by cell.
-double way_through_background(const Site& site, const Vec3& displacement, double left) {
+/// From deep in the background: how much of the motion [0, left] certainly stays in it, up to half
+/// a voxel before the border of the padded grid. This avoids walking through empty space cell by
+/// cell.
+double stretch_in_background(const Site& site, const Vec3& displacement, double left) {
     const Vec3 from = index_of(site.point);
     const Index3& size = site.field.geometry().size;
     double enter = 0;
@@ -51,24 +53,24 @@ double way_through_background(const Site& site, const Vec3& displacement, double
 
 }  // namespace
 
-void Course::report_to_observer(StepKind kind, const Site& site, const Vec3& goal_index) const {
+void Progress::report_to_observer(StepKind kind, const Site& site, const Vec3& goal_index) const {
     const Vec3 point = physical_from_index(geometry, index_of(site.point));
     const Vec3 goal = physical_from_index(geometry, goal_index);
     observer.on_step(Step{kind, point, goal, site.point.tetrahedron}, observer.context);
 }
 
-WalkEnd walk(Site& site, const Vec3& displacement, Course& course) {
+WalkEnd walk(Site& site, const Vec3& displacement, Progress& progress) {
     Vec3 direction = displacement;
     double left = 1;
-    while (course.budget-- > 0) {
+    while (progress.budget-- > 0) {
         if (site.field.is_background(site.point.tetrahedron.cell)) {
-            const Vec3 way = unfold(site.point.tetrahedron, direction);
-            const double t = way_through_background(site, way, left);
+            const Vec3 along = unfold(site.point.tetrahedron, direction);
+            const double t = stretch_in_background(site, along, left);
             if (t > 0) {
-                site.move_to(locate(index_of(site.point) + t * way));
-                direction = fold(site.point.tetrahedron, way);
+                site.move_to(locate(index_of(site.point) + t * along));
+                direction = fold(site.point.tetrahedron, along);
                 left -= t;
-                ++course.tetrahedra;
+                ++progress.tetrahedra;
                 if (left <= 0) return WalkEnd::target;
                 continue;
             }
@@ -79,16 +81,16 @@ WalkEnd walk(Site& site, const Vec3& displacement, Course& course) {
         if (slope > 0 && slope * exit.t > room) {
             const double hit = std::max(0.0, room / slope);
             site.point.folded = snap(site.point.folded + hit * direction, 0);
-            course.tetrahedra += hit > 0;
+            progress.tetrahedra += hit > 0;
             return WalkEnd::surface;
         }
-        course.tetrahedra += exit.t > 0;
+        progress.tetrahedra += exit.t > 0;
         if (exit.wall == no_wall) {
             site.point.folded = snap(site.point.folded + exit.t * direction, 0);
             return WalkEnd::target;
         }
         site.point.folded = snap(site.point.folded + exit.t * direction, 1U << exit.wall);
-        course.report(StepKind::cross, site);
+        progress.report(StepKind::cross, site);
         site.cross(exit.wall);
         direction = reflect(direction, exit.wall);
         left -= exit.t;
@@ -96,13 +98,13 @@ WalkEnd walk(Site& site, const Vec3& displacement, Course& course) {
     return WalkEnd::out_of_budget;
 }
 
-bool slide(Site& site, const Vec3& step, unsigned on, unsigned walls, Course& course) {
-    --course.budget;
+bool slide(Site& site, const Vec3& step, unsigned on, unsigned walls, Progress& progress) {
+    --progress.budget;
     const Vec3 from = site.point.folded;
     const Exit exit = first_exit(from, step, 1.0, on);
     const unsigned met = exit.wall == no_wall ? 0U : 1U << exit.wall;
     site.point.folded = snap(from + exit.t * step, walls | met);
-    course.tetrahedra += exit.t > 0;
+    progress.tetrahedra += exit.t > 0;
     return met == 0;
 }
 

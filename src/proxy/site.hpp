@@ -1,4 +1,4 @@
-// Where the proxy is while an update runs: a lattice point with its tetrahedron's field at hand,
+// Where the proxy is while an update runs (a lattice point with its tetrahedron's linear field),
 // and the straight walk from tetrahedron to tetrahedron that every method uses.
 #pragma once
 
@@ -36,7 +36,7 @@ struct Site {
         if (t.cell == point.tetrahedron.cell) return sign * piece_of(t, samples).gradient;
         return sign * piece_of(t, field.cell(t.cell)).gradient;
     }
-    /// Continues from another point.
+    /// Moves to another point.
     void move_to(const LatticePoint& at) {
         point = at;
         samples = field.cell(at.tetrahedron.cell);
@@ -56,15 +56,15 @@ struct Site {
     }
 };
 
-/// Where an update goes and what it may still spend.
-struct Course {
+/// What an update heads for, what it may still spend, and what it has done.
+struct Progress {
     const Geometry& geometry;
     StepObserver observer;
     Vec3 target;         ///< index space
     int budget;          ///< straight pieces left
-    int tetrahedra = 0;  ///< pieces with a length
+    int tetrahedra = 0;  ///< pieces of non-zero length so far
 
-    /// The way from the site to the target, index axes [voxel].
+    /// The vector from the site to the target, index axes [voxel].
     Vec3 to_target(const Site& site) const {
         return unfold(site.point.tetrahedron, folded_to_target(site));
     }
@@ -137,11 +137,11 @@ enum class WalkEnd { target, surface, out_of_budget };
 
 /// Walks straight along `displacement` (folded, voxel) through as many tetrahedra as needed,
 /// until its end or until the excess field would rise above zero.
-WalkEnd walk(Site& site, const Vec3& displacement, Course& course);
+WalkEnd walk(Site& site, const Vec3& displacement, Progress& progress);
 
 /// Moves inside the site's tetrahedron along `step` (folded, voxel), at most to its end or to a
 /// wall other than those that the point is `on`. `walls` are held exactly. True if the end was
 /// reached.
-bool slide(Site& site, const Vec3& step, unsigned on, unsigned walls, Course& course);
+bool slide(Site& site, const Vec3& step, unsigned on, unsigned walls, Progress& progress);
 
 }  // namespace palpate

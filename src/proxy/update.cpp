@@ -1,4 +1,4 @@
-// Begin and end of an update, shared by the methods.
+// Start and end of an update, shared by all methods.
 #include "proxy/update.hpp"
 
 #include <algorithm>
@@ -9,39 +9,39 @@
 namespace palpate {
 namespace {
 
-/// Where the HIP is free and the way out was longer than the way to it, the HIP is the better place
-/// (algorithm note, recovery). Lengths in mm.
-void prefer_free_hip(Site& site, Course& course, const Vec3& start_index) {
-    const Vec3& spacing = course.geometry.spacing;
-    const Vec3 way_out = (index_of(site.point) - start_index).cwiseProduct(spacing);
-    const Vec3 way_to_hip = (course.target - start_index).cwiseProduct(spacing);
-    if (!(dot(way_out, way_out) > dot(way_to_hip, way_to_hip))) return;
-    const Site at_hip(site.field, site.isovalue, site.sign, locate(course.target));
+/// If the HIP is free and nearer to the start than the point that recovery found, the proxy goes to
+/// the HIP. Distances in mm.
+void prefer_free_hip(Site& site, Progress& progress, const Vec3& start_index) {
+    const Vec3& spacing = progress.geometry.spacing;
+    const Vec3 out = (index_of(site.point) - start_index).cwiseProduct(spacing);
+    const Vec3 to_hip = (progress.target - start_index).cwiseProduct(spacing);
+    if (!(dot(out, out) > dot(to_hip, to_hip))) return;
+    const Site at_hip(site.field, site.isovalue, site.sign, locate(progress.target));
     if (at_hip.excess() > 0) return;
     site.move_to(at_hip.point);
-    course.report(StepKind::recover, site);
+    progress.report(StepKind::recover, site);
 }
 
-/// Farther than this [voxel] a change of the field is not taken for a surface that moved.
+/// A surface is taken to have moved by at most this much [voxel] when the field changed.
 constexpr double farthest_push = 8;
 
-/// A wall that came over the proxy pushes it ahead, to the side on which it was, though the other
-/// side may be nearer. True if the way out lies, or was found, ahead.
-bool push_ahead(Site& site, Course& course, const Vec3& start_index, const Vec3& ahead) {
-    const Vec3& spacing = course.geometry.spacing;
-    const Vec3 out = grid_axes_from_physical(course.geometry, ahead);
-    const Vec3 way = (index_of(site.point) - start_index).cwiseProduct(spacing);
+/// A wall that moved over the proxy pushes it `ahead`, to the side on which it was, even where the
+/// other side is nearer. True if the point that recovery found, or the one found here, lies ahead.
+bool push_ahead(Site& site, Progress& progress, const Vec3& start_index, const Vec3& ahead) {
+    const Vec3& spacing = progress.geometry.spacing;
+    const Vec3 normal = grid_axes_from_physical(progress.geometry, ahead);
+    const Vec3 out = (index_of(site.point) - start_index).cwiseProduct(spacing);
     const double farthest = farthest_push * spacing.maxCoeff();
-    if (dot(way, out) >= 0) return dot(way, way) <= farthest * farthest;
+    if (dot(out, normal) >= 0) return dot(out, out) <= farthest * farthest;
     // The solid is the free side of the field with its sign turned.
     Site probe(site.field, site.isovalue, -site.sign, locate(start_index));
-    Course silent{course.geometry, {}, start_index, course.budget};
-    const Vec3 push = (farthest * out).cwiseQuotient(spacing);
+    Progress silent{progress.geometry, {}, start_index, progress.budget};
+    const Vec3 push = (farthest * normal).cwiseQuotient(spacing);
     const WalkEnd end = walk(probe, fold(probe.point.tetrahedron, push), silent);
-    course.budget = silent.budget;
+    progress.budget = silent.budget;
     if (end != WalkEnd::surface) return false;
     site.move_to(probe.point);
-    course.report(StepKind::recover, site);
+    progress.report(StepKind::recover, site);
     return true;
 }
 
@@ -64,7 +64,7 @@ bool accepts(const Proxy& proxy, const Vec3& hip_index) {
 
 namespace {
 
-/// Where the update starts; the first one of a proxy places it at its HIP.
+/// Where the update starts. The first update of a proxy places it at the HIP.
 const LatticePoint& start_of(Proxy& proxy, const Vec3& hip_index) {
     if (!proxy.placed) proxy.scp = locate(hip_index);
     return proxy.scp;
@@ -75,18 +75,18 @@ const LatticePoint& start_of(Proxy& proxy, const Vec3& hip_index) {
 Update::Update(Proxy& proxy, const Field& field, const Vec3& hip_index,
                const ProxySettings& settings, StepObserver observer)
     : site(field, proxy.isovalue, field.sign(), start_of(proxy, hip_index)),
-      course{field.geometry(), observer, hip_index, settings.step_budget} {
-    if (!proxy.placed) course.report(StepKind::place, site);
+      progress{field.geometry(), observer, hip_index, settings.step_budget} {
+    if (!proxy.placed) progress.report(StepKind::place, site);
     proxy.placed = true;
     if (!(site.excess() > field.tolerance())) {
         proxy.recovery_reach = 0;
         return;
     }
     const Vec3 start = index_of(site.point);
-    recovering = !recover(site, course, proxy.recovery_reach);
+    recovering = !recover(site, progress, proxy.recovery_reach);
     if (recovering) return;
-    if (!proxy.ahead.isZero(0) && push_ahead(site, course, start, proxy.ahead)) return;
-    prefer_free_hip(site, course, start);
+    if (!proxy.ahead.isZero(0) && push_ahead(site, progress, start, proxy.ahead)) return;
+    prefer_free_hip(site, progress, start);
 }
 
 ProxyUpdate finish_update(Proxy& proxy, const Update& update, const Vec3& hip, Rest rest) {
@@ -95,7 +95,7 @@ ProxyUpdate finish_update(Proxy& proxy, const Update& update, const Vec3& hip, R
     if (rest != Rest::recovering) proxy.ahead.setZero();
     proxy.scp_physical = rest == Rest::at_target
                              ? hip
-                             : physical_from_index(update.course.geometry, index_of(site.point));
+                             : physical_from_index(update.progress.geometry, index_of(site.point));
     proxy.mode = rest == Rest::on_surface || rest == Rest::recovering ||
                          (rest == Rest::out_of_budget && site.excess() >= -site.field.tolerance())
                      ? Mode::constrained
@@ -108,7 +108,7 @@ ProxyUpdate finish_update(Proxy& proxy, const Update& update, const Vec3& hip, R
             .scp = proxy.scp_physical,
             .density = site.density(),
             .isovalue = proxy.isovalue,
-            .tetrahedra = update.course.tetrahedra};
+            .tetrahedra = update.progress.tetrahedra};
 }
 
 }  // namespace palpate

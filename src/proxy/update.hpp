@@ -1,5 +1,5 @@
-// What every proxy method does before and after its own part: refuse bad input, place, recover,
-// and say how it ended.
+// What every proxy method does before and after its own part: refuse bad input, place the proxy,
+// recover, describe the result.
 #pragma once
 
 #include "proxy/site.hpp"
@@ -11,14 +11,14 @@ bool accepts(const Proxy& proxy, const Vec3& hip_index);
 /// The result for such a HIP: nothing changed.
 ProxyUpdate refuse_update(const Proxy& proxy, const Field& field, const Vec3& hip);
 
-/// An update under way: where the proxy is and what it may spend. It begins with a proxy that is
-/// placed, and out of the solid unless `recovering`.
+/// The state of a running update. The constructor places the proxy if necessary and brings it out
+/// of the solid, unless `recovering` says that it is still inside.
 struct Update {
     Update(Proxy& proxy, const Field& field, const Vec3& hip_index, const ProxySettings& settings,
            StepObserver observer);
 
     Site site;
-    Course course;
+    Progress progress;
     bool recovering = false;
 };
 
@@ -29,8 +29,9 @@ enum class Rest { at_target, on_surface, out_of_budget, recovering };
 ProxyUpdate finish_update(Proxy& proxy, const Update& update, const Vec3& hip, Rest rest);
 
 /// Brings the site out of the solid: steepest descent of the excess field from tetrahedron to
-/// tetrahedron until it is zero; where that gets stuck, the nearest way out along 26 directions.
-/// True when out. `reach` is how far the search along the directions came (kept between updates).
-bool recover(Site& site, Course& course, double& reach);
+/// tetrahedron until it is zero; where that gets stuck, to the nearest free point along 26
+/// directions. True when out. `reach` [voxel] is how far the directions were searched so far; it is
+/// kept between updates.
+bool recover(Site& site, Progress& progress, double& reach);
 
 }  // namespace palpate
