@@ -1,18 +1,18 @@
 // A live session with nothing but the installed package: reads a volume, opens the simulated device
 // by name, feels the volume for a second, and renders the recording again, bit for bit.
+#include <algorithm>
 #include <bit>
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <stdexcept>
 #include <string>
 #include <thread>
 #include <variant>
-#include <vector>
 
+#include "ball.hpp"
 #include "palpate/devices/devices.hpp"
 #include "palpate/io/recording.hpp"
 #include "palpate/io/volume_file.hpp"
@@ -23,22 +23,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double isovalue = 0;
-
-/// A NRRD file with a ball of radius 10 mm: the samples are ten times the depth below its surface.
-void write_ball(const fs::path& path) {
-    std::ofstream file(path, std::ios::binary);
-    file << "NRRD0004\ntype: short\ndimension: 3\nsizes: 32 32 32\nendian: little\n"
-            "space: left-posterior-superior\nspace directions: (1,0,0) (0,1,0) (0,0,1)\n"
-            "space origin: (0,0,0)\nencoding: raw\n\n";
-    for (int i = 0; i < 32 * 32 * 32; ++i) {
-        const Vec3 at(i % 32, i / 32 % 32, i / 1024);
-        const auto sample = static_cast<std::int16_t>(10 * (10 - (at - Vec3(16, 16, 16)).norm()));
-        const auto bits = std::bit_cast<std::uint16_t>(sample);
-        file.put(static_cast<char>(bits & 255)).put(static_cast<char>(bits >> 8));
-    }
-    if (!file.flush()) throw std::runtime_error("cannot write " + path.string());
-}
+constexpr double isovalue = 0;  // the surface of the ball
 
 /// Feels the field with the simulated device until its hand has finished, and records that. How
 /// many ticks there were.
