@@ -41,7 +41,8 @@ std::vector<fs::path> helper_folders() {
     if (palpate_helper_folder) folders.emplace_back(palpate_helper_folder());
     if (library.empty()) {
         folders.push_back(program / PALPATE_LIBEXEC_FROM_BIN);
-        folders.push_back(program / "../../libexec/palpate");  // a program in a build tree
+        folders.push_back(program / "../../libexec/palpate");  // programs in a build tree
+        folders.push_back(program / "../../../libexec/palpate");
     } else {
         folders.push_back(library / PALPATE_LIBEXEC_FROM_LIB);
         folders.push_back(library / "../libexec/palpate");  // a library in a build tree

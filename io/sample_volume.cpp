@@ -16,8 +16,6 @@ std::filesystem::path sample_volume_path() {
         const auto file = (folder / PALPATE_DATA_FROM_LIBEXEC / name).lexically_normal();
         if (std::filesystem::is_regular_file(file, error)) return file;
     }
-    const auto in_sources = std::filesystem::path(PALPATE_SOURCE_DATA) / name;
-    if (std::filesystem::is_regular_file(in_sources, error)) return in_sources;
     throw InputError(std::string(name) +
                      ": the sample volume was not found; reinstall Palpate, or name a volume");
 }
