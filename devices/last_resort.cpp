@@ -2,6 +2,7 @@
 // global of the devices.
 #include "palpate/devices/last_resort.hpp"
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cerrno>
@@ -14,15 +15,21 @@ namespace {
 
 constexpr std::array crashes{SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT};
 
-std::atomic<Device*> guarded{nullptr};
+std::array<std::atomic<Device*>, LastResort::most> guarded{};
 
 /// On a stack of its own, for the crash may be that of a stack that has run out (of the thread that
 /// made the LastResort; other threads have their guard page and no second stack).
 alignas(16) std::array<char, 64 * 1024> handler_stack;
 
 void on_crash(int number) {
-    if (Device* device = guarded.exchange(nullptr)) {
+    bool stopped = false;
+    for (std::atomic<Device*>& place : guarded) {
+        Device* const device = place.exchange(nullptr);
+        if (!device) continue;
         device->stop();
+        stopped = true;
+    }
+    if (stopped) {
         timespec wait{0, 25'000'000};
         while (::nanosleep(&wait, &wait) != 0 && errno == EINTR) {
         }
@@ -34,10 +41,17 @@ void on_crash(int number) {
 }  // namespace
 
 LastResort::LastResort(Device& device) {
-    Device* nobody = nullptr;
-    if (!guarded.compare_exchange_strong(nobody, &device)) {
-        throw std::logic_error("there is a last resort already");
+    if (std::ranges::any_of(guarded, [&](const auto& place) { return place.load() == &device; })) {
+        throw std::logic_error("this device has a last resort already");
     }
+    const auto free_place = std::ranges::find_if(guarded, [&](std::atomic<Device*>& place) {
+        Device* nobody = nullptr;
+        return place.compare_exchange_strong(nobody, &device);
+    });
+    if (free_place == guarded.end()) {
+        throw std::logic_error("too many devices are guarded against crashes at once");
+    }
+    place_ = static_cast<std::size_t>(free_place - guarded.begin());
     stack_t stack{};
     stack.ss_sp = handler_stack.data();
     stack.ss_size = handler_stack.size();
@@ -49,8 +63,10 @@ LastResort::LastResort(Device& device) {
 }
 
 LastResort::~LastResort() {
+    guarded[place_].store(nullptr);
+    const bool last = std::ranges::none_of(guarded, [](const auto& place) { return place.load(); });
+    if (!last) return;
     for (const int number : crashes) std::signal(number, SIG_DFL);
-    guarded.store(nullptr);
 }
 
 }  // namespace palpate::devices

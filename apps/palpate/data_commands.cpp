@@ -1,4 +1,4 @@
-// Words for edits and sequences, and what they do.
+// Reads and carries out commands for edits and sequences.
 #include "apps/palpate/data_commands.hpp"
 
 #include <fmt/format.h>
@@ -44,12 +44,12 @@ DataRequest brush_request(const std::vector<std::string>& words, const Volume& v
     const std::string meant = "brush KIND RADIUS [RATE [VALUE]], or brush off,";
     if (words.size() == 2 && words[1] == "off") return ask::SetBrush{};
     if (words.size() < 3 || words.size() > 5) wrong_words(meant);
-    HandBrush brush;
+    run::HandBrush brush;
     brush.kind = brush_kind_from(words[1]);
     brush.radius = number(words[2], meant);
     if (words.size() > 3) brush.rate = number(words[3], meant);
     if (words.size() > 4) brush.value = io::level_from_text(words[4], volume);
-    check(brush);
+    run::check(brush);
     return ask::SetBrush{brush};
 }
 
@@ -60,7 +60,7 @@ DataRequest touch_request(const std::vector<std::string>& words, const Volume& v
     touch.brush.kind = brush_kind_from(words[0]);
     touch.brush.radius = number(words[2], meant);
     if (words.size() > 3) touch.brush.value = io::level_from_text(words[3], volume);
-    check(touch.brush);
+    run::check(touch.brush);
     const auto [from, to] = two_points(words[1], meant);
     touch.from = from;
     touch.to = to;
@@ -84,38 +84,33 @@ DataRequest play_request(const std::vector<std::string>& words) {
     return ask::Play{speed};
 }
 
-std::string carry_out(const ask::Touch& touch, Sculptor& sculptor, const Snapshot& now,
-                      const Field& field) {
-    const double level = now.session.tick.proxy.isovalue;
-    if (!std::isfinite(level)) throw std::invalid_argument("no level is felt to shape");
-    Brush brush = brush_for(touch.brush.kind, field, level, touch.brush.radius);
-    if (touch.brush.value) brush.value = *touch.brush.value;
-    sculptor.apply(edit::Stroke{brush, touch.from, touch.to});
-    return {};
-}
-
 struct CarryOut {
-    DataInHand& data;
-    const Snapshot& now;
+    run::Data& data;
+    const Field& field;
+    double isovalue;
 
     std::string operator()(const ask::SetBrush& asked) const {
-        data.sculptor().set_brush(asked.brush);
+        data.editor().set_brush(asked.brush);
         return asked.brush ? fmt::format("brush: {}, {:g} mm", name_of(asked.brush->kind),
                                          asked.brush->radius)
                            : "brush: off";
     }
     std::string operator()(const ask::Touch& asked) const {
-        return carry_out(asked, data.sculptor(), now, data.field());
+        if (!std::isfinite(isovalue)) throw std::invalid_argument("no level is felt to shape");
+        Brush brush = brush_for(asked.brush.kind, field, isovalue, asked.brush.radius);
+        if (asked.brush.value) brush.value = *asked.brush.value;
+        data.editor().apply(edit::Stroke{brush, asked.from, asked.to});
+        return {};
     }
     std::string operator()(const ask::Fill& asked) const {
-        data.sculptor().apply(asked.fill);
+        data.editor().apply(asked.fill);
         return {};
     }
     std::string operator()(const ask::Undo&) const {
-        return data.sculptor().undo() ? "" : "there is nothing to undo";
+        return data.editor().undo() ? "" : "there is nothing to undo";
     }
     std::string operator()(const ask::Redo&) const {
-        return data.sculptor().redo() ? "" : "there is nothing to redo";
+        return data.editor().redo() ? "" : "there is nothing to redo";
     }
     std::string operator()(const ask::Save& asked) const { return data.save(asked.path, {}); }
     std::string operator()(const ask::Play& asked) const {
@@ -155,7 +150,7 @@ std::optional<DataRequest> data_request(const std::vector<std::string>& words,
     if (name == "redo" && alone) return ask::Redo{};
     if (name == "save") {
         if (words.size() != 2) wrong_words("save FILE");
-        check_volume_name(words[1], volume.geometry());
+        run::check_volume_name(words[1], volume.geometry());
         return ask::Save{words[1]};
     }
     if (name == "play") return play_request(words);
@@ -179,8 +174,9 @@ std::optional<DataRequest> data_request(const std::vector<std::string>& words,
     return std::nullopt;
 }
 
-std::string carry_out(const DataRequest& request, DataInHand& data, const Snapshot& now) {
-    return std::visit(CarryOut{data, now}, request);
+std::string carry_out(const DataRequest& request, run::Data& data, const Field& field,
+                      double isovalue) {
+    return std::visit(CarryOut{data, field, isovalue}, request);
 }
 
 }  // namespace palpate::app

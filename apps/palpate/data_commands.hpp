@@ -1,5 +1,5 @@
-// What people and scripts ask of the data in a live session: edits of a volume, and how a sequence
-// is played.
+// Commands of people and scripts for the data of a live run: edits of a volume, playback of a
+// sequence.
 #pragma once
 
 #include <optional>
@@ -7,20 +7,20 @@
 #include <variant>
 #include <vector>
 
-#include "apps/live/data_in_hand.hpp"
+#include "palpate/run/run.hpp"
 
 namespace palpate::app {
 
-/// Throws std::invalid_argument: words are not what they are meant to be.
+/// Throws std::invalid_argument, saying which words were expected.
 [[noreturn]] void wrong_words(const std::string& meant);
 
 namespace ask {
 struct SetBrush {
-    std::optional<HandBrush> brush;  ///< none: off
+    std::optional<run::HandBrush> brush;  ///< nothing: off
 };
-/// One stroke of a brush, at the level that is felt when it is carried out.
+/// One stroke of a brush, at the level felt when it is carried out.
 struct Touch {
-    HandBrush brush;  ///< its rate does not matter: all of it at once
+    run::HandBrush brush;  ///< its rate does not matter: the stroke is done at once
     Vec3 from, to;    ///< [mm, physical]
 };
 struct Fill {
@@ -32,7 +32,7 @@ struct Save {
     std::string path;
 };
 struct Play {
-    double speed;  ///< 0: stand still
+    double speed;  ///< 0: pause
 };
 struct Step {
     int frames;  ///< on, or back if negative
@@ -50,12 +50,14 @@ using DataRequest = std::variant<ask::SetBrush, ask::Touch, ask::Fill, ask::Undo
 /// `brush KIND RADIUS [RATE [VALUE]]`, `brush off`, `carve|add|smooth|paint X,Y,Z[:X,Y,Z] RADIUS
 /// [VALUE]`, `fill I,J,K[:I,J,K] VALUE`, `undo`, `redo`, `save FILE`, `play [SPEED]`, `pause`,
 /// `step [FRAMES]`, `seek SECONDS`, `loop on|off`. Nothing for other words; throws
-/// std::invalid_argument, saying what was meant to be there.
+/// std::invalid_argument, saying what was expected.
 std::optional<DataRequest> data_request(const std::vector<std::string>& words,
                                         const Volume& volume);
 
-/// Carries out a request; gives a sentence for the person who asked, or nothing. Throws
-/// std::invalid_argument for what the data cannot do, io::OutputError and io::InputError.
-std::string carry_out(const DataRequest& request, DataInHand& data, const Snapshot& now);
+/// Carries out a request at the level `isovalue`, on the field felt; returns a sentence for the
+/// person who asked, or nothing. Throws std::invalid_argument for a request that the data cannot
+/// fulfil, io::OutputError and io::InputError. Any thread.
+std::string carry_out(const DataRequest& request, run::Data& data, const Field& field,
+                      double isovalue);
 
 }  // namespace palpate::app

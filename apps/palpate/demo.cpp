@@ -1,5 +1,5 @@
-// palpate demo: the main job with nothing given. A simulated hand explores a volume; a picture, a
-// figure, the trace and a report stay in a folder.
+// palpate demo: a simulated hand explores a volume, without any argument; leaves a picture, a
+// figure, the trace and a report in a folder.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,12 +8,12 @@
 #include <limits>
 #include <memory>
 
-#include "apps/live/render_options.hpp"
-#include "apps/live/volume_options.hpp"
+#include "apps/options/render_options.hpp"
+#include "apps/options/source_options.hpp"
 #include "apps/palpate/commands.hpp"
-#include "apps/palpate/demo_living.hpp"
+#include "apps/palpate/demo_changing.hpp"
 #include "apps/palpate/demo_parts.hpp"
-#include "apps/palpate/offline.hpp"
+#include "apps/palpate/offline_summary.hpp"
 #include "apps/palpate/progress.hpp"
 #include "apps/palpate/result_folder.hpp"
 #include "evaluation/html.hpp"
@@ -30,8 +30,8 @@ namespace {
 namespace fs = std::filesystem;
 
 struct DemoOptions {
-    VolumeOptions volume;
-    FieldOptions field;
+    SourceOptions source;
+    run::FieldSetup field;
     RenderOptions render;
     std::string motion = "explore";
     scenes::MotionSettings hand;
@@ -40,30 +40,32 @@ struct DemoOptions {
 };
 
 struct Demo {
-    LoadedVolume loaded;
+    run::LoadedVolume loaded;
     Field field;
     double isovalue;
     io::Trajectory trajectory;
     std::vector<io::TraceRow> rows;
-    OfflineSummary summary;
+    run::OfflineSummary summary;
 };
 
-/// Renders the motion; trajectory, trace and path go to files on the way.
+/// Renders the motion; writes trajectory, trace and path to files.
 void feel(Demo& demo, const DemoOptions& options, const fs::path& folder) {
-    Renderer renderer = demo_renderer(options.render, demo.field, demo.isovalue);
+    Renderer renderer = make_renderer(
+        demo.field, demo.isovalue,
+        run::offline_settings(options.render.setup(), demo.field, demo.isovalue));
     write_trajectory(demo.trajectory, folder / "trajectory.csv");
     io::TraceWriter trace(folder / "trace.csv");
     io::PathWriter path(folder / "path.csv");
-    ProgressBar bar("feeling", options.volume.quiet);
+    ProgressBar bar("feeling", options.source.quiet);
     demo.rows.reserve(demo.trajectory.time.size());
-    OfflineSinks sinks;
+    run::OfflineSinks sinks;
     sinks.row = [&](const io::TraceRow& row) {
         trace.add(row);
         demo.rows.push_back(row);
     };
     sinks.corner = [&](std::int64_t tick, const Vec3& p) { path.add(tick, p); };
     sinks.progress = [&](double fraction) { bar.at(fraction); };
-    demo.summary = render_offline(renderer, demo.trajectory, sinks);
+    demo.summary = run::render_offline(renderer, demo.trajectory, sinks);
     trace.commit();
     path.commit();
 }
@@ -79,8 +81,8 @@ Vec3 mean_contact(const std::vector<io::TraceRow>& rows) {
     return sum / count;
 }
 
-/// The isosurface with the ways of hand and proxy. Empty if it worked, else why there is none: a
-/// demo without a picture is still one.
+/// The isosurface with the trajectories of hand and proxy. Returns why there is no picture; the demo
+/// goes on without it. Empty if it worked.
 std::string draw(const Demo& demo, int width, bool quiet, const fs::path& path) {
     pictures::PictureScene scene;
     scene.width = width;
@@ -130,7 +132,7 @@ void write_report(const Demo& demo, const DemoOptions& options, bool drawn, bool
     html += fmt::format("<pre>{}</pre>\n", summary_text(demo.summary));
     if (drawn) {
         html +=
-            "<p><img src=\"surface.png\" alt=\"The isosurface with the way of the hand\"><br>"
+            "<p><img src=\"surface.png\" alt=\"The isosurface with the trajectory of the hand\"><br>"
             "Blue: the hand (HIP). Vermilion: the proxy (SCP) in contact. Fainter where it is "
             "behind "
             "the surface.</p>\n";
@@ -141,16 +143,16 @@ void write_report(const Demo& demo, const DemoOptions& options, bool drawn, bool
     html +=
         "<p>Data: <a href=\"trajectory.csv\">trajectory.csv</a> (the hand), <a "
         "href=\"trace.csv\">trace.csv</a> (a row a tick), <a href=\"path.csv\">path.csv</a> (the "
-        "way of the SCP).</p>\n</html>\n";
+        "path of the SCP).</p>\n</html>\n";
     io::PendingFile file(path);
     file.write(html);
     file.commit();
 }
 
 void run_demo(const DemoOptions& options) {
-    LoadedVolume loaded = load_for_terminal(options.volume);
-    const Field field = make_field(loaded, options.field);
-    const double isovalue = suggested_isovalue_of(loaded, field, options.field);
+    run::LoadedVolume loaded = load_for_terminal(options.source);
+    const Field field = run::make_field(loaded.volume, options.field);
+    const double isovalue = suggested_isovalue(loaded, field, options.field);
     Demo demo{std::move(loaded), field, isovalue, {}, {}, {}};
     demo.trajectory =
         trajectory_of(scenes::make_motion(options.motion, field, isovalue, options.hand));
@@ -158,8 +160,8 @@ void run_demo(const DemoOptions& options) {
     const fs::path& folder = results.part();
     feel(demo, options, folder);
     const std::string no_picture =
-        draw(demo, options.picture_width, options.volume.quiet, folder / "surface.png");
-    if (!no_picture.empty() && !options.volume.quiet) {
+        draw(demo, options.picture_width, options.source.quiet, folder / "surface.png");
+    if (!no_picture.empty() && !options.source.quiet) {
         fmt::print(stderr, "palpate: note: {}\n", no_picture);
     }
     const bool plotted = plot_trace(folder, folder / "session.png", demo.rows.size()) &&
@@ -167,7 +169,7 @@ void run_demo(const DemoOptions& options) {
     stop_if_interrupted();
     write_report(demo, options, no_picture.empty(), plotted, folder / "report.html");
     results.complete();
-    if (options.volume.quiet) return;
+    if (options.source.quiet) return;
     fmt::print("A simulated hand felt {} at isovalue {:g}.\n{}", demo.loaded.name, demo.isovalue,
                summary_text(demo.summary));
     if (!plotted) fmt::print("No figure over time: gnuplot is not installed.\n");
@@ -182,8 +184,8 @@ void add_demo(CLI::App& app) {
         app.add_subcommand("demo", "A simulated hand explores a volume; pictures and a report");
     command->footer(
         "Examples:\n  palpate demo\n  palpate demo lobster.nrrd --isovalue 35 --motion circle");
-    options->volume.add_to(*command, true);
-    options->field.add_to(*command);
+    options->source.add_to(*command, true);
+    add_field_options(*command, options->field);
     options->render.add_to(*command);
     add_motion_options(*command, options->motion, options->hand);
     command->add_option("--speed", options->hand.speed_mm_s, "Speed of the hand [mm/s]")
@@ -202,9 +204,9 @@ void add_demo(CLI::App& app) {
     add_demo_beating(*command);
     command->callback([options, command] {
         if (!command->get_subcommands().empty()) return;  // it has done its own
-        options->hand.rate_hz = options->render.rate;
-        if (options->volume.volume.empty()) {
-            options->volume.volume = io::sample_volume_path().string();
+        options->hand.rate_hz = options->render.given.rate;
+        if (options->source.name().empty()) {
+            options->source.volume() = io::sample_volume_path().string();
             if (command->count("--seed") == 0) options->hand.seed = 2;  // over the face
         }
         run_demo(*options);

@@ -1,10 +1,7 @@
-// Files that every demo leaves.
+// Files that every demo writes.
 #include "apps/palpate/demo_parts.hpp"
 
 #include <fmt/format.h>
-
-#include <algorithm>
-#include <limits>
 
 #include "io/plot.hpp"
 #include "palpate/io/output.hpp"
@@ -18,13 +15,6 @@ void add_motion_options(CLI::App& command, std::string& motion, scenes::MotionSe
         ->check(CLI::IsMember(scenes::motion_names()))
         ->capture_default_str();
     command.add_option("--duration", hand.duration_s, "Length [s]")->capture_default_str();
-}
-
-Renderer demo_renderer(const RenderOptions& options, const Field& field, double isovalue) {
-    RendererSettings settings = render_settings(options, field, isovalue);
-    settings.device.maximum_force = std::max(settings.device.maximum_force, settings.force.limit);
-    settings.force.stale_after = std::numeric_limits<double>::infinity();  // at any --rate
-    return make_renderer(field, isovalue, settings);
 }
 
 io::Trajectory trajectory_of(const std::vector<scenes::HandSample>& samples) {

@@ -6,7 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "apps/live/volume_options.hpp"
+#include "apps/options/source_options.hpp"
 #include "apps/palpate/commands.hpp"
 #include "apps/palpate/progress.hpp"
 #include "apps/palpate/result_folder.hpp"

@@ -4,7 +4,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "apps/live/volume_options.hpp"
+#include "apps/options/source_options.hpp"
 #include "apps/palpate/commands.hpp"
 #include "apps/palpate/outputs.hpp"
 #include "apps/palpate/progress.hpp"
@@ -15,21 +15,21 @@ namespace palpate::app {
 namespace {
 
 struct ExtractOptions {
-    VolumeOptions volume;
-    FieldOptions field;
+    SourceOptions source;
+    run::FieldSetup field;
     std::string output;
     bool json = false;
 };
 
 void extract(const ExtractOptions& options) {
     (void)io::mesh_format_from(options.output);  // refuse before the work, not after it
-    check_outputs({options.volume.volume}, {options.output});
-    const LoadedVolume loaded = load_for_terminal(options.volume);
-    const Field field = make_field(loaded, options.field);
-    const double isovalue = isovalue_of(loaded, field, options.field);
+    check_outputs({options.source.name()}, {options.output});
+    const run::LoadedVolume loaded = load_for_terminal(options.source);
+    const Field field = run::make_field(loaded.volume, options.field);
+    const double isovalue = required_isovalue(loaded, field, options.field);
     SurfaceMesh mesh;
     {
-        ProgressBar bar("extracting", options.volume.quiet);
+        ProgressBar bar("extracting", options.source.quiet);
         SurfaceOptions surface;
         surface.progress = [&](double fraction) {
             bar.at(fraction);
@@ -45,7 +45,7 @@ void extract(const ExtractOptions& options) {
                                           {"triangles", mesh.triangles.size()},
                                           {"enclosed_volume_mm3", enclosed_volume(mesh)}};
         fmt::print("{}\n", json.dump(2));
-    } else if (!options.volume.quiet) {
+    } else if (!options.source.quiet) {
         fmt::print("{}: isovalue {}, {} vertices, {} triangles, encloses {:.6g} mm3\n",
                    options.output, isovalue, mesh.vertices.size(), mesh.triangles.size(),
                    enclosed_volume(mesh));
@@ -61,8 +61,8 @@ void add_extract(CLI::App& app) {
     command->footer(
         "Marching tetrahedra over the lattice that the proxy walks; coordinates are LPS, mm.\n\n"
         "Example:\n  palpate extract head.nrrd --isovalue 1200 --output skull.ply");
-    options->volume.add_to(*command);
-    options->field.add_to(*command);
+    options->source.add_to(*command);
+    add_field_options(*command, options->field);
     command->add_option("-o,--output", options->output, "Mesh to write: .ply, .stl, .obj or .vtp")
         ->required();
     command->add_flag("--json", options->json, "Print the summary as JSON");

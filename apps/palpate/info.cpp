@@ -1,4 +1,4 @@
-// palpate info: what a volume is, and which of its levels may be worth feeling.
+// palpate info: describes a volume and suggests levels to feel.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,10 +7,10 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "apps/live/statistics.hpp"
-#include "apps/live/volume_options.hpp"
+#include "apps/options/source_options.hpp"
 #include "apps/palpate/commands.hpp"
 #include "apps/palpate/progress.hpp"
+#include "palpate/run/statistics.hpp"
 
 namespace palpate::app {
 namespace {
@@ -44,7 +44,7 @@ std::string size_text(std::size_t bytes) {
     return b < 1e6 ? fmt::format("{:.1f} kB", b / 1e3) : fmt::format("{:.1f} MB", b / 1e6);
 }
 
-nlohmann::ordered_json json_of(const LoadedVolume& loaded, const Histogram& histogram,
+nlohmann::ordered_json json_of(const run::LoadedVolume& loaded, const run::Histogram& histogram,
                                const std::vector<double>& suggested) {
     const Volume& volume = loaded.volume;
     const Geometry& g = volume.geometry();
@@ -77,7 +77,7 @@ std::string json_text(const nlohmann::ordered_json& json) {
     return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-void print_histogram(const Histogram& fine) {
+void print_histogram(const run::Histogram& fine) {
     // Bars on a logarithmic scale: air outnumbers everything else in most scans.
     const std::size_t group = (fine.counts.size() + text_bins - 1) / text_bins;
     const double width = (fine.high - fine.low) / static_cast<double>(fine.counts.size());
@@ -100,7 +100,7 @@ void print_histogram(const Histogram& fine) {
     }
 }
 
-void print_text(const LoadedVolume& loaded, const Histogram& histogram,
+void print_text(const run::LoadedVolume& loaded, const run::Histogram& histogram,
                 const std::vector<double>& suggested) {
     const Volume& volume = loaded.volume;
     const Geometry& g = volume.geometry();
@@ -137,7 +137,7 @@ void print_text(const LoadedVolume& loaded, const Histogram& histogram,
 }  // namespace
 
 void add_info(CLI::App& app) {
-    auto options = std::make_shared<VolumeOptions>();
+    auto options = std::make_shared<SourceOptions>();
     auto json = std::make_shared<bool>(false);
     CLI::App* command = app.add_subcommand("info", "Say what a volume is");
     command->footer(
@@ -146,9 +146,9 @@ void add_info(CLI::App& app) {
     options->add_to(*command);
     command->add_flag("--json", *json, "Print JSON");
     command->callback([options, json] {
-        const LoadedVolume loaded = load_for_terminal(*options);
-        const Histogram histogram = histogram_of(loaded.volume, fine_bins);
-        std::vector<double> suggested = suggested_isovalues(histogram);
+        const run::LoadedVolume loaded = load_for_terminal(*options);
+        const run::Histogram histogram = run::histogram_of(loaded.volume, fine_bins);
+        std::vector<double> suggested = run::suggested_isovalues(histogram);
         const std::optional<double>& own = loaded.isovalue;  // a tiny grid may miss its range
         if (own && *own > loaded.volume.minimum() && *own < loaded.volume.maximum()) {
             suggested.insert(suggested.begin(), *own);

@@ -1,4 +1,4 @@
-// Words and keys.
+// Reads words and keys.
 #include "apps/palpate/live_commands.hpp"
 
 #include <fmt/format.h>
@@ -6,7 +6,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "apps/live/render_options.hpp"
+#include "apps/options/render_options.hpp"
 #include "io/number.hpp"
 #include "palpate/io/csv.hpp"
 #include "palpate/io/level.hpp"
@@ -52,7 +52,9 @@ Penetrability LiveCommands::penetrability_from(const std::vector<std::string>& w
         wrong_words("penetrability off, threshold PT [MINIMUM] or ranges PT LOW:HIGH");
     std::vector<DensityRange> ranges;
     for (std::size_t i = 3; i < words.size(); ++i) {
-        ranges.push_back(range_from(words[i], field_.volume()));
+        const run::LevelRange range = range_from(words[i]);
+        ranges.push_back({io::level_in(field_.volume(), range.low),
+                          io::level_in(field_.volume(), range.high)});
     }
     return penetrability_ranges(threshold, ranges, field_.solid());
 }
@@ -136,7 +138,7 @@ std::optional<Request> LiveCommands::from_key(char key, const Snapshot& now) {
                 penetrability_.value_or(penetrability_threshold(1, isovalue, field_.solid())));
         case 'b':
             brush_ = brush_ ? std::nullopt
-                            : std::optional(last_brush_.value_or(usual_brush(field_.geometry())));
+                            : std::optional(last_brush_.value_or(run::usual_brush(field_.geometry())));
             return DataRequest(ask::SetBrush{brush_});
         case 'u':
             return DataRequest(ask::Undo{});

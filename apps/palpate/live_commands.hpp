@@ -1,4 +1,4 @@
-// What people and scripts ask of a live session: words in a file, and keys.
+// Commands of people and scripts for a live run: words in a file, and keys.
 #pragma once
 
 #include <map>
@@ -12,13 +12,13 @@
 
 namespace palpate::app {
 
-/// What a word or a key may do besides a Command of the session.
+/// Requests that are no Command of the session.
 struct Quit {};
 struct Help {};
 using Request = std::variant<Command, DataRequest, Quit, Help>;
 
-/// Turns words into requests. Knows the data's units, and what was asked before, since words change
-/// one setting at a time.
+/// Turns words into requests. Knows the data's units and the settings so far, since words change one
+/// setting at a time.
 class LiveCommands {
   public:
     LiveCommands(const Field& field, double isovalue, const RendererSettings& settings);
@@ -27,10 +27,10 @@ class LiveCommands {
     /// `friction 0.3,0.2`, `penetrability off`, `penetrability threshold PT [MINIMUM]`,
     /// `penetrability ranges PT LOW:HIGH ...`, `forces on|off`, `freeze on|off`, `clutch on|off`,
     /// `scale 1.5`, `quit`; and those of data_request(). Throws std::invalid_argument, saying what
-    /// was meant to be there.
+    /// was expected.
     Request from_words(std::string_view line);
 
-    /// What a key does now; nothing for a key without a meaning. See key_help().
+    /// The request of a key; nothing for a key without a meaning. See key_help().
     std::optional<Request> from_key(char key, const Snapshot& now);
     static std::string key_help();
 
@@ -40,9 +40,9 @@ class LiveCommands {
     Field field_;
     double isovalue_;
     RendererSettings settings_;
-    std::optional<Penetrability> penetrability_;  // to switch on again; the plain one if none
-    std::optional<HandBrush> brush_;              // in the hand, and the one to take up again
-    std::optional<HandBrush> last_brush_;
+    std::optional<Penetrability> penetrability_;  // to switch on again; nothing: a plain threshold
+    std::optional<run::HandBrush> brush_;       // in use
+    std::optional<run::HandBrush> last_brush_;  // to take up again
 };
 
 /// A request and when [s] it is due.
@@ -51,7 +51,7 @@ struct TimedRequest {
     Request request;
 };
 /// Lines `SECONDS WORDS`, in order of time; # begins a comment. Throws io::InputError with the line
-/// for what is not understood.
+/// for words that are not understood.
 std::vector<TimedRequest> read_commands(const std::string& path, LiveCommands& commands);
 
 }  // namespace palpate::app

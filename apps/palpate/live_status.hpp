@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "apps/live/words.hpp"
+#include "apps/options/words.hpp"
 #include "palpate/servo.hpp"
 
 namespace palpate::app {

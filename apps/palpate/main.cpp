@@ -9,8 +9,8 @@
 #include <iostream>
 #include <string>
 
-#include "apps/live/empty_values.hpp"
-#include "apps/live/exit_status.hpp"
+#include "apps/options/empty_values.hpp"
+#include "apps/options/exit_status.hpp"
 #include "apps/palpate/commands.hpp"
 #include "apps/palpate/window.hpp"
 

@@ -42,10 +42,14 @@ void ProgressBar::at(double fraction) {
     std::fputs(line.c_str(), stderr);
 }
 
-LoadedVolume load_for_terminal(const VolumeOptions& options) {
-    ProgressBar bar("reading " + options.volume, options.quiet);
-    LoadedVolume loaded = load(options, [&](double fraction) { bar.at(fraction); });
-    if (!options.quiet) {
+run::LoadedVolume load_for_terminal(const SourceOptions& options) {
+    return load_for_terminal(options.source(), options.quiet);
+}
+
+run::LoadedVolume load_for_terminal(const run::Source& source, bool quiet) {
+    ProgressBar bar("reading " + name_of(source), quiet);
+    run::LoadedVolume loaded = run::load(source, [&](double fraction) { bar.at(fraction); });
+    if (!quiet) {
         for (const std::string& note : loaded.notes) {
             fmt::print(stderr, "palpate: note: {}: {}\n", loaded.name, note);
         }

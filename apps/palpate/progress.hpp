@@ -1,11 +1,10 @@
-// A progress bar on standard error, where that is a terminal and the work is long enough to wait
-// for.
+// A progress bar on standard error, where that is a terminal and the work takes a while.
 #pragma once
 
 #include <chrono>
 #include <string>
 
-#include "apps/live/volume_options.hpp"
+#include "apps/options/source_options.hpp"
 
 namespace palpate::app {
 
@@ -29,8 +28,9 @@ class ProgressBar {
     bool drawn_ = false;
 };
 
-/// Reads or makes the volume, with a progress bar; prints what there is to note on standard error
-/// unless quiet. Throws as load(), and Interrupted.
-LoadedVolume load_for_terminal(const VolumeOptions& options);
+/// Reads or makes the volume, with a progress bar; prints notes about it on standard error unless
+/// quiet. Throws as run::load(), and Interrupted.
+run::LoadedVolume load_for_terminal(const run::Source& source, bool quiet);
+run::LoadedVolume load_for_terminal(const SourceOptions& options);
 
 }  // namespace palpate::app

@@ -7,7 +7,7 @@
 #include <memory>
 #include <optional>
 
-#include "apps/live/volume_options.hpp"
+#include "apps/options/source_options.hpp"
 #include "apps/palpate/commands.hpp"
 #include "apps/palpate/outputs.hpp"
 #include "apps/palpate/progress.hpp"
@@ -26,8 +26,8 @@ namespace palpate::app {
 namespace {
 
 struct RenderPictureOptions {
-    VolumeOptions volume;
-    FieldOptions field;
+    SourceOptions source;
+    run::FieldSetup field;
     std::vector<std::string> isovalues;
     std::string scp, hip, force;                   ///< X,Y,Z
     double stiffness = ForceSettings{}.stiffness;  ///< [N/mm]
@@ -59,15 +59,13 @@ std::array<int, 2> size_from(const std::string& text) {
 }
 
 /// The levels in the order given; the first is the one that a hand feels.
-std::vector<double> levels_of(const RenderPictureOptions& options, const LoadedVolume& loaded,
+std::vector<double> levels_of(const RenderPictureOptions& options, const run::LoadedVolume& loaded,
                               const Field& field) {
-    std::vector<std::string> texts = options.isovalues;
-    if (texts.empty()) texts.emplace_back();  // the volume's own
     std::vector<double> levels;
-    for (const std::string& text : texts) {
-        FieldOptions one = options.field;
-        one.isovalue = text;
-        const double level = isovalue_of(loaded, field, one);
+    if (options.isovalues.empty()) levels.push_back(required_isovalue(loaded, field, {}));
+    for (const std::string& text : options.isovalues) {
+        const double level = io::level_from_text(text, loaded.volume);
+        warn_of_isovalue(field, level);
         if (std::ranges::count(levels, level) > 0) {
             throw std::invalid_argument("--isovalue " + text + ": is there twice");
         }
@@ -150,8 +148,8 @@ std::string summary_of(const pictures::PictureScene& scene, const pictures::Cont
 }
 
 Drawing drawing_of(const RenderPictureOptions& options) {
-    const LoadedVolume loaded = load_for_terminal(options.volume);
-    const Field field = make_field(loaded, options.field);
+    const run::LoadedVolume loaded = load_for_terminal(options.source);
+    const Field field = run::make_field(loaded.volume, options.field);
     const std::vector<double> levels = levels_of(options, loaded, field);
     const pictures::Contact contact = contact_of(options, field, levels.front());
     const io::Way way = options.path.empty() ? io::Way{} : io::read_way(options.path);
@@ -161,10 +159,10 @@ Drawing drawing_of(const RenderPictureOptions& options) {
     scene.height = size_from(options.size)[1];
     scene.title = std::filesystem::path(loaded.name).filename().string();
     {
-        ProgressBar bar("extracting", options.volume.quiet);
+        ProgressBar bar("extracting", options.source.quiet);
         const int every =
             pictures::add_levels(scene, field, levels, [&](double fraction) { bar.at(fraction); });
-        if (every > 1 && !options.volume.quiet) {
+        if (every > 1 && !options.source.quiet) {
             fmt::print(stderr,
                        "palpate: note: {}: too large for a picture; drawn from one in {} samples "
                        "along each axis, without what is finer\n",
@@ -184,7 +182,7 @@ void render(const RenderPictureOptions& options) {
         throw std::invalid_argument("--output " + options.output +
                                     ": pictures are PNG files; give a name that ends in .png");
     }
-    check_outputs({options.volume.volume, options.path}, {options.output});
+    check_outputs({options.source.name(), options.path}, {options.output});
     (void)size_from(options.size);
     io::PendingFile file(options.output);
     const Drawing drawing = drawing_of(options);
@@ -198,7 +196,7 @@ void render(const RenderPictureOptions& options) {
     }
     stop_if_interrupted();
     file.commit();
-    if (!options.volume.quiet && !is_standard_output(options.output)) {
+    if (!options.source.quiet && !is_standard_output(options.output)) {
         fmt::print("{}: {}\n", options.output, drawing.summary);
     }
 }
@@ -214,13 +212,13 @@ void add_render(CLI::App& app) {
         "--isovalue.\n\nExamples:\n"
         "  palpate render head.nrrd --isovalue 500 --isovalue 1200 --output head.png\n"
         "  palpate render synthetic:torus --hip 0,-20,8 --zoom 3 --output contact.png");
-    options->volume.add_to(*command);
+    options->source.add_to(*command);
     command
         ->add_option("-i,--isovalue", options->isovalues,
                      "Level to draw, in the data's units (300) or percent of its range (53%); "
                      "may be given again: the outer surfaces are translucent")
         ->allow_extra_args(false);
-    options->field.add_side_to(*command);
+    add_side_options(*command, options->field);
     command->add_option("--scp", options->scp, "The proxy [mm, physical]")->type_name("X,Y,Z");
     command->add_option("--hip", options->hip, "The hand [mm, physical]")->type_name("X,Y,Z");
     command

@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "apps/live/view_options.hpp"
+#include "apps/options/view_options.hpp"
 #include "apps/palpate/commands.hpp"
 
 namespace palpate::app {
@@ -64,8 +64,8 @@ void add_view(CLI::App& app, const Words& words) {
         "Without a VOLUME the window is empty: open a file there, or drop one on it. ? lists the "
         "shortcuts.\n\nExample:\n  palpate view head.nrrd --device mouse");
     options->add_to(*command);
-    command->callback([options, command, words] {
-        options->finish(*command);
+    command->callback([options, words] {
+        options->check();
         become_viewer(words);
     });
 }

@@ -128,7 +128,7 @@ TEST(LastResort, lets_go_when_the_stack_runs_out) {
     expect_let_go(SIGSEGV, [] { std::_Exit(endless(0)); });
 }
 
-TEST(LastResort, there_is_one_at_a_time) {
+TEST(LastResort, there_is_one_for_each_device) {
     std::atomic<double> sent;
     Motor motor(sent);
     {

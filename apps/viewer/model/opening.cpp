@@ -1,4 +1,4 @@
-// Loading, and what the histogram says at first sight.
+// Loads a volume and takes grey levels and a first isovalue from its histogram.
 #include "apps/viewer/model/opening.hpp"
 
 #include <numeric>
@@ -8,11 +8,11 @@ namespace palpate::viewer {
 namespace {
 
 constexpr int bins = 256;
-/// Of the samples, at either end, that may be all black or all white.
+/// Part of the samples, at either end, that may be all black or all white.
 constexpr double outliers = 0.002;
 
 /// The level below which this part of the samples lies.
-double quantile(const app::Histogram& histogram, double part) {
+double quantile(const run::Histogram& histogram, double part) {
     const auto& counts = histogram.counts;
     const double all =
         static_cast<double>(std::accumulate(counts.begin(), counts.end(), std::int64_t{0}));
@@ -38,17 +38,17 @@ double Opened::bright() const {
     return level > dark() ? level : loaded.volume.maximum();
 }
 
-Opened open(const app::VolumeOptions& options, const io::Progress& progress) {
-    // Counting takes a tenth of what reading takes, or less.
-    app::LoadedVolume loaded = app::load(options, [&](double part) { progress(0.9 * part); });
-    app::Histogram histogram = app::histogram_of(loaded.volume, bins);
+Opened open(const run::Source& source, const io::Progress& progress) {
+    // Counting takes at most a tenth of the time of reading.
+    run::LoadedVolume loaded = run::load(source, [&](double part) { progress(0.9 * part); });
+    run::Histogram histogram = run::histogram_of(loaded.volume, bins);
     progress(1);
-    return {options, std::move(loaded), std::move(histogram)};
+    return {std::move(loaded), std::move(histogram)};
 }
 
 double first_isovalue(const Opened& opened) {
     if (opened.loaded.isovalue) return *opened.loaded.isovalue;
-    const std::vector<double> levels = app::suggested_isovalues(opened.histogram);
+    const std::vector<double> levels = run::suggested_isovalues(opened.histogram);
     if (levels.empty()) {
         throw std::invalid_argument(opened.loaded.name +
                                     ": the data are constant, there is nothing to feel");

@@ -1,23 +1,22 @@
-// A volume that is ready to be shown and felt, and how it is made in the background.
+// A volume that is ready to be shown and felt.
 #pragma once
 
-#include "apps/live/statistics.hpp"
-#include "apps/live/volume_options.hpp"
+#include "palpate/run/source.hpp"
+#include "palpate/run/statistics.hpp"
 
 namespace palpate::viewer {
 
 struct Opened {
-    app::VolumeOptions options;
-    app::LoadedVolume loaded;
-    app::Histogram histogram;  ///< of 256 bins, as `palpate info`
+    run::LoadedVolume loaded;
+    run::Histogram histogram;  ///< of 256 bins, as `palpate info`
 
     /// The grey levels between which nearly all samples lie [data units].
     double dark() const;
     double bright() const;
 };
 
-/// Reads the volume and counts its samples. `progress` may throw to stop. Throws as app::load().
-Opened open(const app::VolumeOptions& options, const io::Progress& progress);
+/// Reads the volume and counts its samples. `progress` may throw to stop. Throws as run::load().
+Opened open(const run::Source& source, const io::Progress& progress);
 
 /// The level to begin with: the synthetic volume's own, else the first that the histogram suggests.
 /// Throws std::invalid_argument for constant data, in which there is nothing to feel.

@@ -1,4 +1,4 @@
-// Rendering a recording again and keeping what is worth looking at.
+// Renders a recording again and keeps snapshots and an overview of it.
 #include "apps/viewer/model/playback.hpp"
 
 #include <algorithm>
@@ -10,30 +10,8 @@ namespace palpate::viewer {
 namespace {
 
 constexpr std::size_t least_snapshots = 16;
-/// Ticks come a little early or late; every fourth is meant where it is 4 ms.
+/// Part of the interval after which a snapshot is due: ticks come a little early or late.
 constexpr double punctual = 0.9;
-
-bool same(const Tick& a, const Tick& b) {
-    const auto equal = [](const Vec3& p, const Vec3& q) {
-        for (int i = 0; i < 3; ++i) {
-            if (p[i] != q[i] && !(std::isnan(p[i]) && std::isnan(q[i]))) return false;
-        }
-        return true;
-    };
-    return equal(a.proxy.hip, b.proxy.hip) && equal(a.proxy.scp, b.proxy.scp) &&
-           equal(a.force, b.force) && a.proxy.mode == b.proxy.mode;
-}
-
-void carry_out(const Command& recorded, app::RecordedSamples& samples, Session& session,
-               const std::string& recording) {
-    try {
-        const Command command = samples.whole(recorded);
-        check(command, session.renderer.settings, session.renderer.field.solid());
-        apply(session, command);
-    } catch (const std::invalid_argument& e) {
-        throw io::InputError(recording + ": a command that cannot be carried out: " + e.what());
-    }
-}
 
 void join(Overview::Piece& piece, const Overview::Piece& other) {
     if (other.empty) return;
@@ -66,46 +44,40 @@ Overview::Piece piece_of(const SessionTick& session) {
 
 }  // namespace
 
-Playback Playback::read(const std::filesystem::path& recording, const app::LoadedVolume& loaded,
+Playback Playback::read(const std::filesystem::path& recording, const run::LoadedVolume& loaded,
                         const io::Progress& progress, std::size_t most_bytes) {
     const std::size_t most = std::max(most_bytes / sizeof(Snapshot), least_snapshots);
     io::RecordingReader reader(recording);
-    Session session = app::recorded_session(reader.head(), loaded, recording.string());
-    app::RecordedSamples samples(session.renderer.field.shared_samples(), app::frames_of(loaded));
-    Playback playback(reader.head(), session.renderer.field, std::move(samples));
+    run::Replay replay(reader, loaded, recording.string());
+    Playback playback(reader.head(), replay.session().renderer.field);
     Snapshot last;
     bool kept = true;
-    while (const auto event = reader.next()) {
-        if (const auto* command = std::get_if<Command>(&*event)) {
-            carry_out(*command, playback.samples_, session, recording.string());
-            continue;
-        }
-        const auto& recorded = std::get<SessionTick>(*event);
-        const SessionTick again = repeat(session, recorded);
-        if (!same(recorded.tick, again.tick)) ++playback.different_;
-        const auto number = static_cast<std::int64_t>(playback.ticks_++);
-        if (progress && number % 1024 == 0) progress(reader.progress());
-        // A time that is none or goes back belongs to no place of a time line.
-        const double time = again.tick.time;
+    while (const auto tick = replay.next()) {
+        if (run::difference(tick->recorded, tick->again)) ++playback.different_;
+        if (progress && tick->number % 1024 == 0) progress(reader.progress());
+        // A time that is not finite or goes back has no place on a timeline.
+        const double time = tick->again.tick.time;
         if (!std::isfinite(time)) continue;
         if (!playback.snapshots_.empty() && !(time > playback.overview_.end)) continue;
-        last = snapshot_of(session, again, number, 0);
+        last = snapshot_of(replay.session(), tick->again, tick->number, 0);
         kept = playback.snapshots_.empty() ||
                time >= playback.snapshots_.back().session.tick.time + punctual * playback.interval_;
-        playback.survey(again);
+        playback.survey(tick->again);
         if (kept) playback.keep(last, most);
     }
     if (playback.snapshots_.empty()) {
         throw io::InputError(recording.string() + ": has no ticks: nothing was recorded");
     }
     if (!kept) playback.snapshots_.push_back(last);
+    playback.ticks_ = static_cast<std::size_t>(replay.ticks());
+    playback.samples_ = std::move(replay.samples());
     playback.complete_ = reader.complete();
     playback.finish();
     if (progress) progress(1);
     return playback;
 }
 
-/// Where there is no more room, every second goes.
+/// Where there is no more room, drops every second snapshot.
 void Playback::keep(const Snapshot& snapshot, std::size_t most) {
     if (snapshots_.size() + 1 >= most) {
         std::size_t to = 0;
@@ -155,7 +127,7 @@ void Playback::finish() {
 
 Field Playback::field_at(const Snapshot& snapshot) {
     Field field = field_;
-    field.use(samples_.of(snapshot.session.version));
+    field.use(samples_->of(snapshot.session.version));
     field.set_time(snapshot.session.moment);
     return field;
 }

@@ -1,17 +1,17 @@
-// A recording to be looked at: what hand, proxy and force did, by time. No servo, no device.
+// A recording to look at: hand, proxy and force by time. No servo, no device.
 #pragma once
 
 #include <cstdint>
 #include <deque>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
-#include "apps/live/recorded_samples.hpp"
-#include "apps/live/recorded_scene.hpp"
+#include "palpate/run/replay.hpp"
 
 namespace palpate::viewer {
 
-/// A recording at a glance: equal pieces of its time, and what happened in each.
+/// A summary of a recording: equal pieces of its time, and force, level and contact in each.
 struct Overview {
     struct Piece {
         double least_force = 0, most_force = 0;  ///< [N] magnitudes
@@ -32,19 +32,19 @@ struct Overview {
     static constexpr std::size_t most_pieces = 4096;
 };
 
-/// A recording, rendered again once; any moment of it at once. Memory is bounded: it holds
-/// snapshots at least 4 ms apart, and of a recording of more than some half an hour ever fewer of
-/// them, so that they never take more than `most_bytes`.
+/// A recording, rendered again once; any moment of it can then be shown at once. Memory is bounded:
+/// it holds snapshots at least 4 ms apart, and fewer of them in a recording of more than about half
+/// an hour, so that they never take more than `most_bytes`.
 class Playback {
   public:
     static constexpr std::size_t usual_bytes = std::size_t{256} << 20;
     static constexpr double least_interval = 0.004;  ///< [s] between snapshots
 
-    /// Reads a recording and renders it. `loaded` is its volume (app::recorded_volume). `progress`
+    /// Reads a recording and renders it. `loaded` is its volume (run::recorded_source). `progress`
     /// gets 0 to 1 and may throw to stop. Throws io::InputError: no recording, a damaged one,
-    /// without ticks, another volume's, or one that asks for what cannot be rendered. One that was
+    /// without ticks, of another volume, or one that asks for what cannot be rendered. One that was
     /// cut off is read up to there.
-    static Playback read(const std::filesystem::path& recording, const app::LoadedVolume& loaded,
+    static Playback read(const std::filesystem::path& recording, const run::LoadedVolume& loaded,
                          const io::Progress& progress, std::size_t most_bytes = usual_bytes);
 
     /// [s] of the first and the last tick, by the session's clock.
@@ -64,20 +64,20 @@ class Playback {
     const Overview& overview() const { return overview_; }
     /// The field that was felt, as it was at the start.
     const Field& field() const { return field_; }
-    /// As it was then: with the edits up to there, which may have to be made again, or at the
-    /// moment of the sequence.
+    /// The field at a snapshot: with the edits up to then, some of which may have to be repeated, or
+    /// at the moment of the sequence.
     Field field_at(const Snapshot& snapshot);
 
   private:
-    Playback(io::RecordingHead head, Field field, app::RecordedSamples samples)
-        : head_(std::move(head)), field_(std::move(field)), samples_(std::move(samples)) {}
+    Playback(io::RecordingHead head, Field field)
+        : head_(std::move(head)), field_(std::move(field)) {}
     void keep(const Snapshot& snapshot, std::size_t most);
     void survey(const SessionTick& tick);
     void finish();
 
     io::RecordingHead head_;
     Field field_;
-    app::RecordedSamples samples_;
+    std::optional<run::RecordedSamples> samples_;  // once all is read
     std::deque<Snapshot> snapshots_;    // grows without a copy of all of it
     double interval_ = least_interval;  // [s] between snapshots
     std::size_t ticks_ = 0, different_ = 0;

@@ -30,7 +30,7 @@ bool apart(double a, double b, double range) {
     return b - a > 1e-6 * range && b > a;
 }
 
-Levels levels_of(const app::Histogram& histogram, const Volume& volume) {
+Levels levels_of(const run::Histogram& histogram, const Volume& volume) {
     const double low = volume.minimum();
     // A constant volume still has two ends, even where 1 is lost beside the value.
     const double high =
@@ -38,7 +38,7 @@ Levels levels_of(const app::Histogram& histogram, const Volume& volume) {
     const double range = high - low;
     double outer = low + range / 3;
     double inner = low + 2 * range / 3;
-    const std::vector<double> suggested = app::suggested_isovalues(histogram);
+    const std::vector<double> suggested = run::suggested_isovalues(histogram);
     if (!suggested.empty() && apart(low, suggested.front(), range) &&
         apart(suggested.front(), high, range)) {
         outer = suggested.front();
@@ -168,7 +168,7 @@ Points over_the_data(const Points& points, const Levels& l) {
 }
 
 /// Share of the samples that lie above a level.
-double share_above(const app::Histogram& histogram, double level) {
+double share_above(const run::Histogram& histogram, double level) {
     const auto bins = static_cast<double>(histogram.counts.size());
     double above = 0;
     double all = 0;
@@ -181,7 +181,7 @@ double share_above(const app::Histogram& histogram, double level) {
 }
 
 /// CT stored as Hounsfield units + 1000 or + 1024: most of what is not air is near water.
-bool looks_like_shifted_hounsfield(const app::Histogram& histogram, const Levels& l) {
+bool looks_like_shifted_hounsfield(const run::Histogram& histogram, const Levels& l) {
     if (!histogram.whole_numbers || l.low < -1 || l.high < 1500 || l.high > 4200) return false;
     const auto bins = static_cast<double>(histogram.counts.size());
     double peak = 0;
@@ -203,7 +203,7 @@ std::vector<std::string> preset_names() {
     return names;
 }
 
-TransferFunction preset(std::string_view name, const app::Histogram& histogram,
+TransferFunction preset(std::string_view name, const run::Histogram& histogram,
                         const Volume& volume) {
     std::string names;
     for (const Preset& p : presets) {
@@ -217,7 +217,7 @@ TransferFunction preset(std::string_view name, const app::Histogram& histogram,
         fmt::format("there is no transfer function '{}'; there are: {}", name, names));
 }
 
-std::string suggested_preset(const app::Histogram& histogram, const Volume& volume) {
+std::string suggested_preset(const run::Histogram& histogram, const Volume& volume) {
     const Levels levels = levels_of(histogram, volume);
     if (levels.hounsfield || looks_like_shifted_hounsfield(histogram, levels)) return "CT bone";
     if (volume.minimum() == volume.maximum()) return "Grey";

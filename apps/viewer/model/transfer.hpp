@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "apps/live/statistics.hpp"
 #include "apps/viewer/model/look.hpp"
+#include "palpate/run/statistics.hpp"
 
 namespace palpate::viewer {
 
@@ -17,12 +17,12 @@ std::vector<std::string> preset_names();
 /// like Hounsfield units (int16 or float, down to -500 or less) the CT presets stand at those of
 /// tissues; else all presets stand at the levels that the histogram suggests. Throws
 /// std::invalid_argument, listing the names, for one that there is not.
-TransferFunction preset(std::string_view name, const app::Histogram& histogram,
+TransferFunction preset(std::string_view name, const run::Histogram& histogram,
                         const Volume& volume);
 
 /// The preset that is likely to show something of this volume: a guess by type, range and shape of
 /// the histogram.
-std::string suggested_preset(const app::Histogram& histogram, const Volume& volume);
+std::string suggested_preset(const run::Histogram& histogram, const Volume& volume);
 
 /// Colour and opacity at a level [data units]; beyond the outer points theirs. The function must
 /// pass check().

@@ -1,0 +1,32 @@
+// Exceptions to exit status.
+#include "apps/options/exit_status.hpp"
+
+#include <new>
+#include <stdexcept>
+
+#include "palpate/devices/error.hpp"
+#include "palpate/io/error.hpp"
+
+namespace palpate::app {
+
+namespace {
+
+template <class E>
+bool is(const std::exception& exception) {
+    return dynamic_cast<const E*>(&exception) != nullptr;
+}
+
+}  // namespace
+
+Failure failure_of(const std::exception& exception) {
+    if (is<std::bad_alloc>(exception)) {
+        return {bad_input, "not enough memory: use a smaller volume, or one of fewer bits"};
+    }
+    const std::string text = exception.what();
+    if (is<devices::DeviceError>(exception)) return {no_device, text};
+    if (is<io::OutputError>(exception)) return {bad_output, text};
+    if (is<std::invalid_argument>(exception)) return {wrong_use, text};
+    return {bad_input, text};
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,160 @@
+// Options of method, penetrability and force.
+#include "apps/options/render_options.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <stdexcept>
+
+#include "io/number.hpp"
+
+namespace palpate::app {
+namespace {
+
+/// "0.5,0.3" as two numbers; "0.5" as twice the same where one is enough.
+std::array<double, 2> two_numbers(const std::string& option, const std::string& text,
+                                  bool one_is_enough = false) {
+    const auto comma = text.find(',');
+    const auto first = io::number_from<double>(text.substr(0, comma));
+    const auto second =
+        comma == std::string::npos ? first : io::number_from<double>(text.substr(comma + 1));
+    if (!first || !second || (comma == std::string::npos && !one_is_enough)) {
+        throw std::invalid_argument(
+            fmt::format("{} {}: {} separated by a comma, as in 0.5,0.3", option, text,
+                        one_is_enough ? "one number, or two" : "two numbers"));
+    }
+    return {*first, *second};
+}
+
+}  // namespace
+
+Friction friction_from(const std::string& what, const std::string& text) {
+    const auto [still, moving] = two_numbers(what, text, true);
+    return {still, moving};
+}
+
+run::LevelRange range_from(const std::string& text) {
+    const auto colon = text.find(':');
+    if (colon == std::string::npos) {
+        throw std::invalid_argument("range " + text + ": LOW:HIGH is needed, as in 300:700");
+    }
+    return {io::level_from_text(text.substr(0, colon)), io::level_from_text(text.substr(colon + 1))};
+}
+
+void RenderOptions::add_to(CLI::App& command) {
+    std::vector<std::string> names;
+    for (const auto& entry : baselines::methods()) names.emplace_back(entry.name);
+    command
+        .add_option_function<std::string>(
+            "--method",
+            [this](const std::string& name) {
+                for (const auto& entry : baselines::methods()) {
+                    if (name == entry.name) given.method = entry;
+                }
+            },
+            "Proxy method")
+        ->check(CLI::IsMember(names))
+        ->default_str(given.method.name);
+    add_penetrability_to(command);
+    add_force_to(command);
+    command.add_option("--rate", given.rate, "Rate of the loop the forces are meant for [Hz]")
+        ->capture_default_str();
+    command.add_option("--scale", given.scale, "Physical mm per mm of hand")->default_str("1");
+    command.add_option("--step-budget", given.step_budget, "Most tetrahedra an update may enter")
+        ->default_str(std::to_string(ProxySettings{}.step_budget));
+}
+
+void RenderOptions::add_penetrability_to(CLI::App& command) {
+    command
+        .add_option_function<std::string>(
+            "--penetrability",
+            [this](const std::string& name) {
+                penetrability = name == "off"         ? Penetrability::off
+                                : name == "threshold" ? Penetrability::threshold
+                                                      : Penetrability::ranges;
+            },
+            "Pressing through")
+        ->check(CLI::IsMember({"off", "threshold", "ranges"}))
+        ->default_str("off");
+    command.add_option("--threshold", threshold, "Penetration threshold PT [device mm] (1)");
+    command.add_option_function<std::string>(
+        "--minimum", [this](const std::string& text) { minimum = io::level_from_text(text); },
+        "Least level felt (default: the isovalue)");
+    // Without allow_extra_args(false) this would take VOLUME for one more range.
+    command
+        .add_option_function<std::vector<std::string>>(
+            "--range",
+            [this](const std::vector<std::string>& texts) {
+                for (const std::string& text : texts) ranges.push_back(range_from(text));
+            },
+            "Range of interest, LOW:HIGH; may be given again")
+        ->allow_extra_args(false)
+        ->type_name("LOW:HIGH");
+}
+
+void RenderOptions::add_force_to(CLI::App& command) {
+    ForceSettings& force = given.force;
+    command.add_option("-k,--stiffness", given.stiffness, "Stiffness [N/mm]")
+        ->default_str(fmt::format("{}", force.stiffness));
+    command.add_option("--damping", force.damping, "Damping along the normal [N s/mm]");
+    command.add_option("--viscosity", force.viscosity, "Viscosity of the medium [N s/mm]");
+    command
+        .add_option_function<std::string>(
+            "--friction",
+            [this](const std::string& text) { given.friction = friction_from("--friction", text); },
+            "Friction coefficients; dynamic at most static")
+        ->type_name("STATIC[,DYNAMIC]");
+    command
+        .add_option_function<std::string>(
+            "--magnet",
+            [this](const std::string& text) {
+                const auto [distance, peak] = two_numbers("--magnet", text);
+                given.force.magnet = {distance, peak};
+            },
+            "Snap to near surfaces: DISTANCE [mm],PEAK [N]")
+        ->type_name("D,P");
+    command
+        .add_option_function<std::string>(
+            "--texture",
+            [this](const std::string& text) {
+                const auto [amplitude, wavelength] = two_numbers("--texture", text);
+                given.force.texture = {amplitude, wavelength};
+            },
+            "Bumps: AMPLITUDE,WAVELENGTH [mm]")
+        ->type_name("A,W");
+    command.add_option("--force-limit", given.limit, "Largest force [N]")
+        ->default_str(fmt::format("{}", force.limit));
+    command.add_option("--force-rate", force.rate_limit, "Largest change of force [N/s]")
+        ->capture_default_str();
+    command.add_option("--ramp", force.ramp, "Ramp of the force from zero at the start [s]")
+        ->capture_default_str();
+    command
+        .add_option("--start-below", force.start_below,
+                    "After a start or pause no force until the wanted one is this small [N]")
+        ->capture_default_str();
+}
+
+run::RenderSetup RenderOptions::setup() const {
+    const auto refuse = [](const std::string& option, const std::string& mode) {
+        throw std::invalid_argument(option + " does nothing without --penetrability " + mode);
+    };
+    if (threshold && penetrability == Penetrability::off) {
+        refuse("--threshold", "threshold (or ranges)");
+    }
+    if (minimum && penetrability != Penetrability::threshold) refuse("--minimum", "threshold");
+    if (!ranges.empty() && penetrability != Penetrability::ranges) refuse("--range", "ranges");
+    run::RenderSetup setup = given;
+    if (penetrability == Penetrability::threshold) {
+        setup.penetrability = run::ThresholdSetup{threshold.value_or(1), minimum};
+    }
+    if (penetrability == Penetrability::ranges) {
+        if (ranges.empty()) {
+            throw std::invalid_argument(
+                "--penetrability ranges needs at least one --range LOW:HIGH");
+        }
+        setup.penetrability = run::RangesSetup{threshold.value_or(1), ranges};
+    }
+    return setup;
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,37 @@
+// The options that say how to render: proxy method, penetrability, force.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "palpate/run/setup.hpp"
+
+namespace palpate::app {
+
+struct RenderOptions {
+    /// Everything but penetrability, whose options come in any order: take setup().
+    run::RenderSetup given;
+    enum class Penetrability { off, threshold, ranges } penetrability = Penetrability::off;
+    std::optional<double> threshold;  ///< PT [device mm]
+    std::optional<io::Level> minimum;
+    std::vector<run::LevelRange> ranges;
+
+    void add_to(CLI::App& command);
+    /// Once the command line has been read. Throws std::invalid_argument for an option that would do
+    /// nothing.
+    run::RenderSetup setup() const;
+
+  private:
+    void add_penetrability_to(CLI::App& command);
+    void add_force_to(CLI::App& command);
+};
+
+/// "0.5,0.3" as static and dynamic coefficient; "0.5": both. Throws std::invalid_argument, naming
+/// `what` (the option or command).
+Friction friction_from(const std::string& what, const std::string& text);
+/// "LOW:HIGH", each a level (io::level_from_text). Throws std::invalid_argument.
+run::LevelRange range_from(const std::string& text);
+
+}  // namespace palpate::app

@@ -1,0 +1,114 @@
+// Options of device, scripts and data for a live run.
+#include "apps/options/run_options.hpp"
+
+#include <array>
+#include <stdexcept>
+
+#include "io/number.hpp"
+
+namespace palpate::app {
+namespace {
+
+constexpr std::array facings{"anterior", "posterior", "left", "right", "superior", "inferior"};
+
+run::ButtonSetup button_from(const std::string& option, const std::string& text) {
+    if (text == "none") return {};
+    if (text == "auto") return run::UsualButton{};
+    const auto number = io::number_from<int>(text);
+    if (!number || *number < 1 || *number > 32) {
+        throw std::invalid_argument(option + " " + text + ": a button's number from 1, or none");
+    }
+    return run::Button{*number};
+}
+
+}  // namespace
+
+void RunOptions::add_to(CLI::App& command, For purpose) {
+    source.add_to(command, purpose == For::view);
+    add_device_options(command);
+    CLI::Option* file =
+        command.add_option(purpose == For::record ? "-o,--output" : "--record", record,
+                           "Recording to write (CSV; never replaces a file)");
+    if (purpose == For::record) file->required();
+    if (purpose != For::view) add_script_options(command);
+    add_data_options(command);
+    add_field_options(command, given.field);
+    render.given.force.start_below = run::live_start_below;
+    render.add_to(command);
+    command.get_option("--scale")->default_str("fits the device");
+    command.get_option("--force-limit")->default_str("the device's");
+    command.get_option("--stiffness")->default_str("0.5, or what the device is rated for");
+    command.get_option("--step-budget")->default_str("4096, less above 1 kHz");
+    command.add_flag(
+        "--normal-priority", [this](std::int64_t) { given.real_time = false; },
+        "Do not ask for real-time priority");
+}
+
+void RunOptions::add_device_options(CLI::App& command) {
+    command
+        .add_option_function<std::string>(
+            "-d,--device",
+            [this](const std::string& text) { device = devices::parse_device(text); },
+            "Device and its options, NAME[:KEY=VALUE,...]; palpate devices lists them")
+        ->default_str(run::text_of(given.device));
+    command
+        .add_option_function<std::string>(
+            "--facing",
+            [this](const std::string& name) {
+                given.facing =
+                    static_cast<Facing>(std::ranges::find(facings, name) - facings.begin());
+            },
+            "Side of the body that faces you")
+        ->check(CLI::IsMember(std::vector<std::string>(facings.begin(), facings.end())))
+        ->default_str(facings.front());
+    command.add_option_function<std::string>(
+        "--clutch",
+        [this](const std::string& text) { given.clutch = button_from("--clutch", text); },
+        "Button that holds the volume to the hand: 1, 2, ... or none (2, or 1 of 1)");
+    command.add_option_function<std::string>(
+        "--dead-man",
+        [this](const std::string& text) { given.deadman = button_from("--dead-man", text); },
+        "Button without which there is no force (none)");
+}
+
+void RunOptions::add_script_options(CLI::App& command) {
+    command.add_option("--commands", commands,
+                       "File of commands, a line each: SECONDS COMMAND, as in 1.5 isovalue 300");
+    command
+        .add_option("--seconds", seconds, "End after so long (default: when the hand has finished)")
+        ->check(CLI::PositiveNumber);
+    command.add_option("--brush", brush,
+                       "Brush that follows the proxy from the start: 'KIND RADIUS [RATE [VALUE]]', "
+                       "KIND carve, add, smooth or paint, RADIUS [mm], RATE [1/s] or inf");
+    command.add_option("--save", save, "File for the volume as it is at the end, edits included");
+    command.add_flag("--json", json, "Print the report as JSON");
+}
+
+void RunOptions::add_data_options(CLI::App& command) {
+    command
+        .add_option("--playback", given.playback.speed,
+                    "Speed at which a sequence is played from the start; 0: paused")
+        ->check(CLI::Range(-1000.0, 1000.0))
+        ->capture_default_str();
+    command.add_flag(
+        "--once", [this](std::int64_t) { given.playback.loader.loop = false; },
+        "A sequence stops at its end instead of starting again");
+    command
+        .add_option_function<int>(
+            "--sequence-memory",
+            [this](int megabytes) {
+                given.playback.loader.memory_bytes = std::uint64_t(megabytes) << 20;
+            },
+            "Most memory that frames of a sequence may take [MB]")
+        ->check(CLI::Range(1, 1 << 20))
+        ->default_str(std::to_string(given.playback.loader.memory_bytes >> 20));
+}
+
+run::Setup RunOptions::setup() const {
+    run::Setup setup = given;
+    setup.render = render.setup();
+    if (device) setup.device = *device;
+    return setup;
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,115 @@
+// Options of sources and fields.
+#include "apps/options/source_options.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <stdexcept>
+
+#include "io/number.hpp"
+#include "palpate/renderer.hpp"
+
+namespace palpate::app {
+
+std::string flaw_in_count(const std::string& text) {
+    const bool digits = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+    return digits ? "" : text + " is not a whole number from 0";
+}
+
+void SourceOptions::add_to(CLI::App& command, bool optional) {
+    auto* positional =
+        command.add_option("VOLUME", volume(),
+                           "File, folder, series (heart_%03d.nrrd), synthetic:NAME[:WxHxD], or "
+                           "live:FILE");
+    if (!optional) positional->required();
+    const auto text = [&](const char* name, const char* help) {
+        return command.add_option(std::string("--") + name, texts[name], help);
+    };
+    text("dims", "Size of a raw file in samples: WxHxD")->type_name("WxHxD");
+    text("type",
+         "Sample type of a raw file (or a synthetic volume): uint8, int16, uint16, float32");
+    text("spacing", "Spacing [mm] instead of what the file gives or lacks: X,Y,Z")
+        ->type_name("X,Y,Z");
+    text("skip", "Bytes of header to skip in a raw file")->type_name("UINT")->check(flaw_in_count);
+    text("series", "DICOM series: its number in the list, or its UID");
+    command
+        .add_option("--time-step", frame,
+                    "This frame alone of a 4-D file or a numbered series (heart_%d.nrrd), from 0")
+        ->check(flaw_in_count);
+    command
+        .add_option("--frame-interval", frame_interval,
+                    "Time from frame to frame [s] instead of what the file gives or lacks")
+        ->check(CLI::PositiveNumber);
+    command
+        .add_option("--smooth", smooth,
+                    "Smooth the samples so many times (3x3x3 binomial), against the steps of 8-bit "
+                    "data; they become float32")
+        ->check(CLI::Range(0, 64));
+    command.add_flag("-q,--quiet", quiet, "No progress, no notes");
+}
+
+run::Source SourceOptions::source() const {
+    std::map<std::string, std::string> given = texts;
+    std::erase_if(given, [](const auto& entry) { return entry.second.empty(); });
+    if (given.contains("skip") && !io::number_from<std::uint64_t>(given["skip"])) {
+        throw std::invalid_argument("--skip " + given["skip"] + ": no file is that long");
+    }
+    run::Source source = run::source_from(given);
+    source.frame = frame;
+    source.frame_interval = frame_interval;
+    source.smooth = smooth;
+    return source;
+}
+
+void add_field_options(CLI::App& command, run::FieldSetup& field) {
+    command.add_option_function<std::string>(
+        "-i,--isovalue",
+        [&field](const std::string& text) { field.isovalue = io::level_from_text(text); },
+        "Level to feel, in the data's units (300) or percent of its range (53%)");
+    add_side_options(command, field);
+}
+
+void add_side_options(CLI::App& command, run::FieldSetup& field) {
+    command
+        .add_option_function<std::string>(
+            "--solid",
+            [&field](const std::string& text) {
+                field.solid = text == "below" ? Solid::below : Solid::above;
+            },
+            "Which side of the level is solid: above, below")
+        ->check(CLI::IsMember({"above", "below"}))
+        ->default_str("above");
+    command.add_option_function<std::string>(
+        "--background",
+        [&field](const std::string& text) { field.background = io::level_from_text(text); },
+        "Level outside the data (default: the data's minimum; its maximum for "
+        "--solid below)");
+}
+
+void warn_of_isovalue(const Field& field, double isovalue) {
+    const std::string warning = isovalue_warning(field, isovalue);
+    if (warning.empty()) return;
+    const Volume& volume = field.volume();
+    fmt::print(stderr, "palpate: warning: isovalue {} (data {} to {}): {}\n", isovalue,
+               volume.minimum(), volume.maximum(), warning);
+}
+
+double required_isovalue(const run::LoadedVolume& loaded, const Field& field,
+                         const run::FieldSetup& setup) {
+    if (!setup.isovalue && !loaded.isovalue) {
+        throw std::invalid_argument(
+            fmt::format("--isovalue is needed: which level of {} to feel; palpate info {} suggests "
+                        "some",
+                        loaded.name, loaded.name));
+    }
+    return suggested_isovalue(loaded, field, setup);
+}
+
+double suggested_isovalue(const run::LoadedVolume& loaded, const Field& field,
+                          const run::FieldSetup& setup) {
+    const double isovalue = run::isovalue_of(loaded, setup);
+    warn_of_isovalue(field, isovalue);
+    return isovalue;
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,50 @@
+// The options that say what to feel and which level and side of it is the surface.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "palpate/run/setup.hpp"
+#include "palpate/run/source.hpp"
+
+namespace palpate::app {
+
+struct SourceOptions {
+    /// The texts given, under the names that run::source_from() takes: VOLUME is "volume".
+    std::map<std::string, std::string> texts;
+    std::optional<int> frame;
+    std::optional<double> frame_interval;  ///< [s]
+    int smooth = 0;
+    bool quiet = false;
+
+    /// Declares VOLUME and its options on a command. An `optional` VOLUME has a default.
+    void add_to(CLI::App& command, bool optional = false);
+    /// VOLUME; empty where it was not given and has no default.
+    std::string& volume() { return texts["volume"]; }
+    const std::string& name() const { return texts.at("volume"); }
+    /// Once the command line has been read. Throws std::invalid_argument.
+    run::Source source() const;
+};
+
+/// --isovalue, --solid and --background.
+void add_field_options(CLI::App& command, run::FieldSetup& field);
+/// All but --isovalue, for a command that takes several.
+void add_side_options(CLI::App& command, run::FieldSetup& field);
+
+/// Empty for a whole number from 0, else what is wrong: a check for CLI11, which reads -1 as
+/// 2^64-1.
+std::string flaw_in_count(const std::string& text);
+
+/// The isovalue asked for, else the synthetic volume's own; std::invalid_argument if there is none.
+/// Prints a warning on standard error where there is nothing to feel at it.
+double required_isovalue(const run::LoadedVolume& loaded, const Field& field,
+                         const run::FieldSetup& setup);
+/// The same, but of a file without --isovalue the first level that its histogram suggests.
+double suggested_isovalue(const run::LoadedVolume& loaded, const Field& field,
+                          const run::FieldSetup& setup);
+/// The warning alone.
+void warn_of_isovalue(const Field& field, double isovalue);
+
+}  // namespace palpate::app

@@ -1,0 +1,27 @@
+// The options of the viewer: those of a live run, and what to open in place of a volume.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "apps/options/run_options.hpp"
+
+namespace palpate::app {
+
+struct ViewOptions {
+    RunOptions run;
+    std::string session;     ///< session file to open in place of a volume
+    std::string play;        ///< recording to play in place of feeling
+    std::string screenshot;  ///< PNG to write once everything is drawn; then the viewer ends
+    double after = 0;        ///< [s] of the run or recording that the screenshot shows
+    std::string size;        ///< of the window, WIDTHxHEIGHT [pixels]
+
+    /// For `palpate view` and for the viewer itself.
+    void add_to(CLI::App& command);
+    /// Once the command line has been read. Throws std::invalid_argument for options that exclude
+    /// each other.
+    void check() const;
+    bool has_volume() const { return !run.source.name().empty(); }
+};
+
+}  // namespace palpate::app

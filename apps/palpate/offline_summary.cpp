@@ -1,0 +1,41 @@
+// Summaries of offline rendering as text and JSON.
+#include "apps/palpate/offline_summary.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+namespace palpate::app {
+
+std::string summary_text(const run::OfflineSummary& s) {
+    return fmt::format(
+        "ticks {}, in contact {} ({:.1f} %), out of step budget {}, recovering {}, refused {}\n"
+        "largest |density - isovalue| in contact {:.2g} of the data's range\n"
+        "largest force {:.3g} N\n"
+        "tetrahedra an update {:.2f}\n"
+        "proxy update [ns]: mean {:.0f}, p50 {}, p99 {}, p99.9 {}, max {}\n",
+        s.ticks, s.constrained,
+        100.0 * static_cast<double>(s.constrained) / static_cast<double>(s.ticks), s.out_of_budget,
+        s.recovering, s.refused, s.worst_surface_error, s.largest_force, s.mean_tetrahedra,
+        s.mean_ns, s.p50_ns, s.p99_ns, s.p999_ns, s.max_ns);
+}
+
+std::string summary_json(const run::OfflineSummary& s) {
+    const nlohmann::ordered_json json{{"ticks", s.ticks},
+                                      {"constrained", s.constrained},
+                                      {"out_of_budget", s.out_of_budget},
+                                      {"recovering", s.recovering},
+                                      {"refused", s.refused},
+                                      {"worst_surface_error", s.worst_surface_error},
+                                      {"largest_force_n", s.largest_force},
+                                      {"mean_tetrahedra", s.mean_tetrahedra},
+                                      {"update_ns",
+                                       {{"mean", s.mean_ns},
+                                        {"p50", s.p50_ns},
+                                        {"p99", s.p99_ns},
+                                        {"p99.9", s.p999_ns},
+                                        {"max", s.max_ns}}}};
+    return json.dump(2) + "\n";
+}
+
+}  // namespace palpate::app

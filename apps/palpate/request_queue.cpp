@@ -1,0 +1,77 @@
+// Carries out one request after the other.
+#include "apps/palpate/request_queue.hpp"
+
+#include <stdexcept>
+#include <utility>
+
+namespace palpate::app {
+
+RequestQueue::RequestQueue(const run::Run& run) : run_(run), thread_([this] { work(); }) {}
+
+RequestQueue::~RequestQueue() {
+    {
+        const std::scoped_lock lock(mutex_);
+        stop_ = true;
+    }
+    changed_.notify_all();
+    thread_.join();
+}
+
+void RequestQueue::put(const DataRequest& request, const Snapshot& now) {
+    {
+        const std::scoped_lock lock(mutex_);
+        waiting_.push_back({request, now.session.tick.proxy.isovalue});
+    }
+    changed_.notify_all();
+}
+
+std::vector<RequestQueue::Message> RequestQueue::messages() {
+    const std::scoped_lock lock(mutex_);
+    return std::exchange(messages_, {});
+}
+
+void RequestQueue::finish() {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return waiting_.empty() && !busy_; });
+}
+
+std::string RequestQueue::unsaved() const {
+    const std::scoped_lock lock(mutex_);
+    return unsaved_;
+}
+
+void RequestQueue::work() {
+    std::unique_lock lock(mutex_);
+    while (true) {
+        changed_.wait(lock, [&] { return stop_ || !waiting_.empty(); });
+        if (stop_) return;
+        const Waiting next = std::move(waiting_.front());
+        waiting_.pop_front();
+        busy_ = true;
+        lock.unlock();
+        carry_out_one(next);
+        lock.lock();
+        busy_ = false;
+        changed_.notify_all();
+    }
+}
+
+void RequestQueue::carry_out_one(const Waiting& waiting) {
+    try {
+        say(carry_out(waiting.request, run_.data(), run_.field_now(), waiting.isovalue), false);
+    } catch (const io::OutputError& e) {
+        say(std::string("palpate: ") + e.what(), true);
+        const std::scoped_lock lock(mutex_);
+        unsaved_ = e.what();
+    } catch (const std::exception& e) {
+        say(e.what(), true);
+    }
+}
+
+void RequestQueue::say(const std::string& text, bool is_problem) {
+    if (text.empty()) return;
+    const std::scoped_lock lock(mutex_);
+    messages_.push_back({text, is_problem});
+}
+
+}  // namespace palpate::app

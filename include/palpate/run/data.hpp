@@ -1,0 +1,52 @@
+// The data of one or several runs, which may change while they are felt: a volume that is edited,
+// or a sequence that plays.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "palpate/run/player.hpp"
+#include "palpate/run/setup.hpp"
+#include "palpate/run/volume_editor.hpp"
+
+namespace palpate::run {
+
+/// Throws std::invalid_argument for a file name that no volume on this grid can be written under.
+void check_volume_name(const std::string& path, const Geometry& geometry);
+
+/// Shared by the runs that feel it: what one hand edits, all of them feel.
+class Data {
+  public:
+    /// A sequence plays from the start as `playback` says. Throws std::invalid_argument for a
+    /// sequence of which two frames do not fit into the memory granted.
+    explicit Data(LoadedVolume loaded, const PlaybackSetup& playback = {});
+
+    /// As it was loaded.
+    const LoadedVolume& loaded() const { return loaded_; }
+    bool is_sequence() const { return player_ != nullptr; }
+    /// Throw std::invalid_argument, saying what to do, for data of the other kind.
+    VolumeEditor& editor() const;
+    Player& player() const;
+
+    /// The samples before edits, for a field to begin with.
+    const std::shared_ptr<const Samples>& start() const { return start_; }
+    /// Brings a field of these data up to date: edits, or frames and moment.
+    void update(Field& field) const;
+    /// Starts a servo on the data as they are now and keeps it up to date until detach().
+    std::unique_ptr<Servo> attach(Session session, const StartServo& start);
+    void detach(const Servo& servo);
+    /// Why edits or frames do not come; usually empty.
+    std::string problem() const;
+    /// Writes the samples as they are now (of a sequence, at its moment) to a file, whole or not at
+    /// all. Returns a sentence: "saved FILE", and for a raw file how to open it again. Throws
+    /// io::OutputError.
+    std::string save(const std::filesystem::path& path, const io::Progress& progress);
+
+  private:
+    LoadedVolume loaded_;
+    std::shared_ptr<const Samples> start_;
+    std::unique_ptr<VolumeEditor> editor_;
+    std::unique_ptr<Player> player_;
+};
+
+}  // namespace palpate::run

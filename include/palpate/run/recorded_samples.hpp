@@ -1,0 +1,56 @@
+// Makes the samples again that were felt in a recorded run, from the edits and frames in the
+// recording.
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <map>
+
+#include "palpate/run/source.hpp"
+#include "palpate/session.hpp"
+
+namespace palpate::run {
+
+/// Reads the frames of a sequence; null for a volume that is none.
+std::function<Volume(int)> frames_of(const LoadedVolume& loaded);
+
+class RecordedSamples {
+  public:
+    /// `start`: the samples at the start of the recording. `frame` reads a frame of the sequence and
+    /// may throw; null for data that are no sequence.
+    explicit RecordedSamples(std::shared_ptr<const Samples> start,
+                             std::function<Volume(int)> frame = {});
+
+    /// The recorded command; if it is command::Samples, with the samples filled in. Throws
+    /// std::invalid_argument for samples that cannot be made again, and as check(Edit) does.
+    Command whole(const Command& recorded);
+
+    /// The samples of a version that was made before; those of the start for an unknown version; of
+    /// a sequence the last frames. Repeats at most fifteen edits.
+    std::shared_ptr<const Samples> of(std::uint64_t version);
+
+    /// Number of versions in memory.
+    std::size_t kept() const { return kept_.size() + recent_.size(); }
+
+  private:
+    struct Version {
+        EditOf made;
+        int edits = 0;  ///< from the start
+    };
+
+    std::shared_ptr<const Samples> made(const command::Samples& recorded);
+    std::shared_ptr<const Samples> frames_of(const FramesOf& frames);
+    std::shared_ptr<const Samples> find(std::uint64_t version) const;
+    std::shared_ptr<const Samples> made_again(std::uint64_t version);
+    void remember(std::uint64_t version, const std::shared_ptr<const Samples>& samples);
+
+    // Not every version of minutes of brushing fits into memory, but every edit does.
+    std::map<std::uint64_t, Version> versions_;
+    std::map<std::uint64_t, std::shared_ptr<const Samples>> kept_;  // every sixteenth edit
+    std::deque<std::pair<std::uint64_t, std::shared_ptr<const Samples>>> recent_;
+    std::function<Volume(int)> frame_;
+    std::map<int, Volume> read_;  // frames of the last window
+    std::shared_ptr<const Samples> frames_;
+};
+
+}  // namespace palpate::run

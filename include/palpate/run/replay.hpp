@@ -1,0 +1,64 @@
+// Renders a recording again, tick by tick, without device and servo.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "palpate/io/recording.hpp"
+#include "palpate/run/recorded_samples.hpp"
+#include "palpate/run/source.hpp"
+
+namespace palpate::run {
+
+/// The volume of a recording: its recorded name, looked for from the working folder, then beside
+/// the recording; or `instead`, unless that is empty. Throws io::InputError for a live source, whose
+/// frames are not in the recording.
+Source recorded_source(const io::RecordingHead& head, const std::filesystem::path& recording,
+                       const std::string& instead = {});
+
+/// The session of a recording before its first tick. Throws io::InputError if the volume is not the
+/// one that was recorded (size, type or samples), or the head asks for what cannot be rendered.
+Session recorded_session(const io::RecordingHead& head, const LoadedVolume& loaded,
+                         const std::string& recording);
+
+/// The first part of a tick that did not come out as it was recorded.
+struct Difference {
+    std::string part;  ///< "HIP", "force", ...
+    std::string recorded, again;
+};
+/// Compares bit by bit, but two NaN are equal (text keeps no payload). Nothing: the ticks are the
+/// same.
+std::optional<Difference> difference(const SessionTick& recorded, const SessionTick& again);
+
+class Replay {
+  public:
+    /// `reader` stands before the first event and outlives this. Throws as recorded_session().
+    Replay(io::RecordingReader& reader, const LoadedVolume& loaded, std::string recording);
+
+    struct Tick {
+        SessionTick recorded, again;
+        std::int64_t number;  ///< from 0
+    };
+    /// Carries out the commands up to the next tick and renders that; nothing at the end. Throws
+    /// io::InputError for a damaged line and for a command that cannot be carried out.
+    std::optional<Tick> next();
+
+    /// As the last tick left it.
+    const Session& session() const { return session_; }
+    /// Versions of the samples up to the last tick.
+    RecordedSamples& samples() { return samples_; }
+    std::int64_t ticks() const { return ticks_; }
+    std::int64_t commands() const { return commands_; }
+
+  private:
+    void carry_out(const Command& recorded);
+
+    io::RecordingReader& reader_;
+    std::string recording_;
+    Session session_;
+    RecordedSamples samples_;
+    std::int64_t ticks_ = 0, commands_ = 0;
+};
+
+}  // namespace palpate::run

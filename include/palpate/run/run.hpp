@@ -1,0 +1,121 @@
+// A live run: a servo with its device, the data it feels and a recording. Several runs may share
+// the same data; what one of them edits, all of them feel.
+#pragma once
+
+#include <deque>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "palpate/devices/last_resort.hpp"
+#include "palpate/devices/mouse.hpp"
+#include "palpate/io/recording.hpp"
+#include "palpate/run/data.hpp"
+#include "palpate/run/setup.hpp"
+#include "palpate/servo.hpp"
+
+namespace palpate::run {
+
+/// What a recording says about a session that is about to begin.
+io::RecordingHead recording_head(const Session& session, const DeviceInfo& device,
+                                 const Source& source, const RenderSetup& setup);
+
+/// Snapshots come out, commands go in. One thread owns it; data() may be used by any.
+class Run {
+  public:
+    /// Opens the device and fits it to the data. Nothing moves before start(). Throws
+    /// std::invalid_argument for a setup that cannot be, io::InputError for a file that the device
+    /// cannot read, devices::DeviceError.
+    Run(std::shared_ptr<Data> data, const Setup& setup);
+    /// stop(), and finishes a recording silently.
+    ~Run();
+    Run(const Run&) = delete;
+    Run& operator=(const Run&) = delete;
+
+    /// Starts the servo, once. Throws std::system_error if the system gives no thread.
+    void start();
+    /// Forces go to zero and the servo ends, for good. What was seen of it stays.
+    void stop();
+
+    /// As the run began; field_now() has the edits, or the moment of a sequence.
+    const Field& field() const { return field_; }
+    Field field_now() const;
+    /// Edits and playback. They go on when the session starts anew.
+    Data& data() const { return *data_; }
+    const Setup& setup() const { return setup_; }
+    DeviceInfo device() const { return device_->info(); }
+    /// What is wrong with the device and what to do; usually empty.
+    std::string device_problem() const { return device_->problem(); }
+    /// The device, if it is a mouse that the application moves; else null.
+    devices::Mouse* mouse() const { return mouse_; }
+
+    // From start() on:
+    /// What the system granted of real time, and what not.
+    const std::vector<std::string>& privileges() const { return servo_->privileges(); }
+    /// Throws std::invalid_argument, saying what is wrong, for a command that cannot be carried out
+    /// or comes too fast.
+    void send(const Command& command);
+    std::optional<Snapshot> snapshot() const { return servo_->snapshot(); }
+    ServoReport report() const { return servo_->report(); }
+
+    /// As the commands sent so far have left them.
+    const RendererSettings& settings() const { return settings_; }
+    /// The level that was asked for last; the level felt is in the snapshot.
+    double isovalue() const { return isovalue_; }
+    bool frozen() const { return frozen_; }
+
+    /// Goes on with another device, fitted to it, with everything that was asked for so far. Throws
+    /// as the constructor does; the old device then goes on. A recording is finished before.
+    void use_device(const devices::DeviceChoice& device);
+    /// Goes on with the other side solid, or another background outside the grid. The session starts
+    /// anew with everything that was asked for except penetrability, which is switched off. A
+    /// recording is finished before; if that fails, io::OutputError says so and the field stays.
+    /// Throws std::invalid_argument for a background that is not finite; then nothing has changed.
+    void use_field(Solid solid, std::optional<double> background = {});
+
+    /// Records from start() on, or from now on: then the session starts anew (forces ramp up) with
+    /// everything that was asked for. Throws io::OutputError for a file that cannot be created; then
+    /// nothing has changed. A recording that was running is finished; if that fails io::OutputError
+    /// says so, but the new one runs. After many edits this takes a while: it begins with them all.
+    void record(const std::filesystem::path& path);
+    /// Ends the recording; a running session starts anew. Returns its ticks, 0 without a recording.
+    /// Throws io::OutputError for what could not be written.
+    std::int64_t stop_recording();
+    /// Null while nothing is recorded.
+    const io::RecordingWriter* recording() const { return recording_.get(); }
+
+  private:
+    void hold(std::unique_ptr<Device> device);
+    void take(const Session& session);
+    void launch(Session session);
+    void stop_servo();
+    Session session_from(double isovalue, const DeviceTransform& transform,
+                         std::int64_t last) const;
+    std::int64_t last_tick() const;
+    Session session_now() const;
+    Session session_stopped() const;
+
+    std::shared_ptr<Data> data_;
+    Setup setup_;
+    Field field_;
+    std::unique_ptr<Device> device_;
+    devices::Mouse* mouse_ = nullptr;
+    std::optional<devices::LastResort> last_resort_;
+    SessionSettings session_settings_;
+    RendererSettings settings_;
+    double isovalue_ = 0;
+    bool frozen_ = false;
+    /// A command that the servo may not have carried out yet, and the tick it was sent after.
+    struct Sent {
+        std::int64_t after;
+        Command command;
+    };
+    std::deque<Sent> sent_;
+    std::unique_ptr<io::RecordingWriter> recording_;
+    std::unique_ptr<Servo> servo_;  // none before start()
+    bool running_ = false;
+};
+
+}  // namespace palpate::run

@@ -1,0 +1,107 @@
+// How to feel a volume: which level and side of it, how forces are rendered, through which device.
+// One plain value; what is not given depends on volume and device and is filled in when they are
+// known.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "palpate/baselines/methods.hpp"
+#include "palpate/devices/options.hpp"
+#include "palpate/io/frame_loader.hpp"
+#include "palpate/io/level.hpp"
+#include "palpate/run/source.hpp"
+#include "palpate/session.hpp"
+
+namespace palpate::run {
+
+struct FieldSetup {
+    Solid solid = Solid::above;
+    std::optional<io::Level> background;  ///< outside the data; nothing: as Field has it
+    std::optional<io::Level> isovalue;    ///< nothing: the volume's own or a suggested one
+};
+
+struct ThresholdSetup {
+    double threshold = 1;              ///< PT [device mm]
+    std::optional<io::Level> minimum;  ///< least level felt; nothing: the isovalue
+};
+struct LevelRange {
+    io::Level low, high;
+};
+struct RangesSetup {
+    double threshold = 1;  ///< PT [device mm]
+    std::vector<LevelRange> ranges;
+};
+/// Pressing through surfaces: not at all, beyond a threshold, or from range to range.
+using PenetrabilitySetup = std::variant<std::monostate, ThresholdSetup, RangesSetup>;
+
+struct RenderSetup {
+    baselines::NamedMethod method = baselines::methods().front();
+    PenetrabilitySetup penetrability;
+    std::optional<Friction> friction;
+    ForceSettings force;               ///< `limit` and `stiffness` only where the next two are absent
+    std::optional<double> limit;       ///< [N] nothing: the device's
+    std::optional<double> stiffness;   ///< [N/mm] nothing: at most what the device is rated for
+    std::optional<int> step_budget;    ///< nothing: ProxySettings', less above 1 kHz
+    std::optional<double> scale;       ///< physical mm per device mm; nothing: fits the workspace
+    double rate = 1000;                ///< [Hz]
+};
+
+/// A button of the device, by its number from 1.
+struct Button {
+    int number = 1;
+};
+/// The second button, or the first if it is the only one.
+struct UsualButton {};
+/// Nothing (monostate): no button.
+using ButtonSetup = std::variant<std::monostate, UsualButton, Button>;
+
+struct PlaybackSetup {
+    double speed = 1;             ///< of a sequence, from the start; 0: it stands still
+    io::LoaderSettings loader;    ///< memory for frames, and whether the sequence loops
+};
+
+struct Setup {
+    FieldSetup field;
+    RenderSetup render;
+    devices::DeviceChoice device{"simulated", {}};
+    Facing facing = Facing::anterior;
+    ButtonSetup clutch = UsualButton{};
+    ButtonSetup deadman;
+    PlaybackSetup playback;
+    bool real_time = true;  ///< ask for real-time priority
+};
+
+/// The forces of a live run begin when the wanted one is below this [N]: a tenth of what the
+/// smallest devices give. Setups for live runs take it as `force.start_below`.
+inline constexpr double live_start_below = 0.3;
+
+/// Field of these samples. Throws std::invalid_argument as Field does.
+Field make_field(std::shared_ptr<const Samples> samples, const FieldSetup& setup);
+Field make_field(const Volume& volume, const FieldSetup& setup);
+
+/// The level asked for, else the volume's own, else the first that the histogram suggests. Throws
+/// std::invalid_argument for constant data without a level.
+double isovalue_of(const LoadedVolume& loaded, const FieldSetup& setup);
+
+/// The settings asked for. `isovalue` is the least level felt where no minimum is given, `limits`
+/// are the device's. Throws std::invalid_argument, through check(), for what cannot be rendered.
+RendererSettings render_settings(const RenderSetup& setup, const Field& field, double isovalue,
+                                 const DeviceLimits& limits = {});
+/// The same for rendering without a device: only the force limit asked for holds, and no pause
+/// between two positions is too long.
+RendererSettings offline_settings(const RenderSetup& setup, const Field& field, double isovalue);
+
+/// The transform that places the device's workspace in the volume.
+DeviceTransform transform_for(const Geometry& geometry, const DeviceInfo& info, const Setup& setup);
+/// What a device is fitted to: `setup` with its limits, stiffness and buttons. Throws
+/// std::invalid_argument for a button that the device does not have.
+Session make_session(const Field& field, double isovalue, const DeviceInfo& info,
+                     const Setup& setup);
+
+/// "haply:port=10001", the inverse of devices::parse_device().
+std::string text_of(const devices::DeviceChoice& choice);
+
+}  // namespace palpate::run

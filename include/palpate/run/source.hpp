@@ -1,0 +1,72 @@
+// What to feel: a file, a sequence, a synthetic volume or frames that another program pushes; and
+// loading it.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "palpate/io/live_frames.hpp"
+#include "palpate/io/sequence.hpp"
+
+namespace palpate::run {
+
+/// A file, a folder of slices, or a numbered series (heart_%03d.nrrd).
+struct FileSource {
+    std::string path;
+    std::optional<io::RawLayout> raw;  ///< of a file without a header
+    std::optional<Vec3> spacing;       ///< [mm] instead of what the file gives or lacks
+    std::string series;                ///< DICOM series: UID or number; empty: the only one
+};
+/// A volume that scenes::make_volume() makes.
+struct SyntheticSource {
+    std::string scene;  ///< "torus" or "torus:64x64x64"
+    std::optional<SampleType> type;
+};
+/// Frames that another program writes to this file (docs/living_data.md).
+struct LiveSource {
+    std::string path;
+};
+
+struct Source {
+    std::variant<FileSource, SyntheticSource, LiveSource> from;
+    std::optional<int> frame;              ///< of a sequence this one alone, from 0
+    std::optional<double> frame_interval;  ///< [s] instead of what the file gives or lacks
+    int smooth = 0;                        ///< passes of the binomial kernel, see smoothed()
+};
+
+/// As people write it: "head.nrrd", "synthetic:torus", "live:frames.shm".
+std::string name_of(const Source& source);
+/// The inverse, with everything else as its default.
+Source source_named(const std::string& name);
+
+/// The names and values under which recordings and session files keep a source: "volume" is its
+/// name, the others are "dims", "type", "spacing", "skip", "series", "time-step",
+/// "frame-interval" and "smooth". What was not given is left out.
+std::map<std::string, std::string> to_names(const Source& source);
+/// The inverse. Unknown names are ignored, numbers that cannot be read count as not given. Throws
+/// std::invalid_argument for a layout that cannot be, and for values that this kind of source does
+/// not have.
+Source source_from(const std::map<std::string, std::string>& names);
+
+/// A volume and what is known about it.
+struct LoadedVolume {
+    Volume volume;  ///< of a sequence its first frame, of a live source the frame it began with
+    Source source;
+    std::string name;
+    std::string format = {};
+    std::vector<std::string> notes = {};              ///< for people, a sentence each
+    std::optional<double> isovalue = {};              ///< a good one, of a synthetic volume
+    io::Sequence sequence = {};                       ///< empty unless there are several frames
+    std::shared_ptr<const io::LiveFrames> live = {};  ///< null unless it is a live source
+    int time_steps = 1;                               ///< frames there are, whether asked for or not
+};
+
+/// Reads or makes the volume. `progress` may throw to stop. Throws std::invalid_argument for a
+/// source that cannot be, io::InputError for one that cannot be read.
+LoadedVolume load(const Source& source, const io::Progress& progress = {});
+
+}  // namespace palpate::run

@@ -1,0 +1,104 @@
+// Edits the samples that one or several runs feel: a brush that follows each proxy, single edits,
+// undo and redo. It works in a thread of its own; the servos feel an edit within two ticks.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "palpate/editor.hpp"
+#include "palpate/run/brush.hpp"
+#include "palpate/servo.hpp"
+
+namespace palpate::run {
+
+/// The edited samples at one moment.
+struct EditState {
+    std::shared_ptr<const Samples> samples;
+    std::uint64_t version = 0;  ///< as snapshots tell it
+    std::size_t undo_steps = 0, redo_steps = 0;
+    bool changed = false;      ///< since the start, or since they were saved
+    std::string problem = {};  ///< why the brush does nothing although it touches; usually empty
+};
+
+/// Starts a servo with this session, which has the newest data. `history` is what a recording needs
+/// before its first tick: every version so far by its recipe, without samples, and the one felt.
+using StartServo = std::function<std::unique_ptr<Servo>(Session session,
+                                                        const std::vector<Command>& history)>;
+
+/// Any thread may call any function; state() does not wait for an edit.
+class VolumeEditor {
+  public:
+    explicit VolumeEditor(std::shared_ptr<const Samples> samples);
+    ~VolumeEditor();
+    VolumeEditor(const VolumeEditor&) = delete;
+    VolumeEditor& operator=(const VolumeEditor&) = delete;
+
+    /// Starts a servo with the samples as they are and keeps it up to date until detach(): no edit
+    /// is lost in between. Edits wait for `start` to return; what it throws is passed on.
+    std::unique_ptr<Servo> attach(Session session, const StartServo& start);
+    /// For a servo that is not attached: nothing.
+    void detach(const Servo& servo);
+    /// The brush of every attached servo; nothing: the hand only feels. Throws as check().
+    void set_brush(const std::optional<HandBrush>& brush);
+    /// Makes an edit, one step for undo(). Throws std::invalid_argument as check(Edit) does, and
+    /// std::runtime_error for a servo that takes no commands.
+    void apply(const Edit& edit);
+    /// False if there is nothing to undo, or redo. A brush that touches then rests until it has
+    /// been in the air, or was taken up again: else it would undo the undo.
+    bool undo();
+    bool redo();
+
+    EditState state() const;
+    /// These samples were written to a file.
+    void set_saved(const std::shared_ptr<const Samples>& samples);
+
+  private:
+    /// Where the proxy was when it was last seen in contact.
+    struct Touch {
+        Vec3 at = Vec3::Zero();  ///< [mm, physical]
+        double time = 0;         ///< [s] of the session
+        std::int64_t tick = -1;
+    };
+    /// An attached servo and its brush.
+    struct Hand {
+        Servo* servo;
+        Field field;  // for its solid side and background
+        std::optional<Touch> touch = {};
+        bool resting = false;  // after an undo, until it was in the air
+    };
+    struct Version {
+        std::weak_ptr<const Samples> samples;  // expired once undo cannot come back to them
+        command::Samples recipe;               // without samples
+    };
+
+    void run(const std::stop_token& stop);
+    void brush(Hand& hand);
+    bool brush_from(const Touch& from, Hand& hand, const Snapshot& now);
+    void edit(const Edit& edit, EditStep step);
+    bool go_to(SampleBox changed);
+    void send(const command::Samples& command);
+    std::uint64_t version_of(const std::shared_ptr<const Samples>& samples) const;
+    std::vector<Command> history() const;
+    void set_problem(const std::string& problem);
+    void publish();
+
+    mutable std::mutex mutex_;        // for as long as an edit takes
+    mutable std::mutex state_mutex_;  // of state_; a moment
+    EditState state_;
+    Editor editor_;
+    std::vector<Hand> hands_;
+    std::optional<HandBrush> brush_;
+    bool new_step_ = true;  // the next change by a brush begins a step for undo
+    std::chrono::steady_clock::time_point last_change_;  // by a brush
+    std::string problem_;
+    std::vector<Version> versions_;  // by number
+    std::jthread thread_;            // last: it uses all of the above
+};
+
+}  // namespace palpate::run

@@ -1,0 +1,122 @@
+// Makes samples from their recipes.
+#include "palpate/run/recorded_samples.hpp"
+
+#include <stdexcept>
+#include <string>
+
+namespace palpate::run {
+
+std::function<Volume(int)> frames_of(const LoadedVolume& loaded) {
+    if (loaded.sequence.count() == 0) return {};
+    return [sequence = loaded.sequence](int frame) {
+        if (frame < 0 || frame >= sequence.count()) {
+            throw std::invalid_argument("a frame that the sequence does not have");
+        }
+        return io::read_frame(sequence, frame);
+    };
+}
+
+RecordedSamples::RecordedSamples(std::shared_ptr<const Samples> start,
+                                 std::function<Volume(int)> frame)
+    : kept_{{0, std::move(start)}}, frame_(std::move(frame)) {}
+
+Command RecordedSamples::whole(const Command& recorded) {
+    const auto* samples = std::get_if<command::Samples>(&recorded);
+    if (!samples || samples->samples) return recorded;
+    command::Samples whole = *samples;
+    whole.samples = made(*samples);
+    return whole;
+}
+
+std::shared_ptr<const Samples> RecordedSamples::made(const command::Samples& recorded) {
+    if (!recorded.recipe) {
+        if (auto known = made_again(recorded.version)) return known;
+        throw std::invalid_argument("the samples of version " + std::to_string(recorded.version) +
+                                    " came from outside and are not in the recording");
+    }
+    if (const auto* frames = std::get_if<FramesOf>(recorded.recipe.get())) {
+        return frames_of(*frames);
+    }
+    const auto& edit = std::get<EditOf>(*recorded.recipe);
+    const auto before = made_again(edit.version);
+    if (!before) {
+        throw std::invalid_argument("an edit of samples of version " +
+                                    std::to_string(edit.version) +
+                                    ", which are not in the recording");
+    }
+    if (recorded.version == 0 || versions_.contains(recorded.version)) {
+        throw std::invalid_argument("the samples of version " + std::to_string(recorded.version) +
+                                    " came about twice");
+    }
+    auto samples = edited(before, edit.edit).samples;
+    const auto parent = versions_.find(edit.version);
+    versions_[recorded.version] = {edit, parent == versions_.end() ? 1 : parent->second.edits + 1};
+    remember(recorded.version, samples);
+    return samples;
+}
+
+std::shared_ptr<const Samples> RecordedSamples::find(std::uint64_t version) const {
+    const auto kept = kept_.find(version);
+    if (kept != kept_.end()) return kept->second;
+    for (const auto& [number, samples] : recent_) {
+        if (number == version) return samples;
+    }
+    return nullptr;
+}
+
+void RecordedSamples::remember(std::uint64_t version,
+                               const std::shared_ptr<const Samples>& samples) {
+    constexpr int edits_between_kept = 16;
+    constexpr std::size_t most_recent = 16;
+    if (versions_.at(version).edits % edits_between_kept == 0) {
+        kept_[version] = samples;
+        return;
+    }
+    recent_.emplace_back(version, samples);
+    if (recent_.size() > most_recent) recent_.pop_front();
+}
+
+/// From the nearest version before it that is in memory; null if it never was.
+std::shared_ptr<const Samples> RecordedSamples::made_again(std::uint64_t version) {
+    std::vector<std::uint64_t> missing;
+    std::shared_ptr<const Samples> samples = find(version);
+    while (!samples) {
+        const auto known = versions_.find(version);
+        if (known == versions_.end()) return nullptr;
+        missing.push_back(version);
+        version = known->second.made.version;
+        samples = find(version);
+    }
+    for (std::size_t i = missing.size(); i-- > 0;) {
+        samples = edited(samples, versions_.at(missing[i]).made.edit).samples;
+        remember(missing[i], samples);
+    }
+    return samples;
+}
+
+std::shared_ptr<const Samples> RecordedSamples::frames_of(const FramesOf& frames) {
+    if (!frame_) throw std::invalid_argument("frames of a sequence, which the volume is not");
+    std::map<int, Volume> held;
+    std::vector<Frame> window;
+    for (std::size_t i = 0; i < frames.numbers.size(); ++i) {
+        const int number = frames.numbers[i];
+        auto at = held.find(number);
+        if (at == held.end()) {
+            const auto before = read_.find(number);
+            at =
+                held.emplace(number, before != read_.end() ? before->second : frame_(number)).first;
+        }
+        window.push_back({frames.times[i], at->second, number});
+    }
+    read_ = std::move(held);
+    frames_ = std::make_shared<const Samples>(std::move(window), frames.period);
+    return frames_;
+}
+
+std::shared_ptr<const Samples> RecordedSamples::of(std::uint64_t version) {
+    if (frames_) return frames_;
+    const auto samples = made_again(version);
+    return samples ? samples : kept_.at(0);
+}
+
+}  // namespace palpate::run

@@ -1,0 +1,153 @@
+// Volume and session from a recording's head, and its ticks again.
+#include "palpate/run/replay.hpp"
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <stdexcept>
+#include <utility>
+
+#include "io/number.hpp"
+#include "palpate/baselines/methods.hpp"
+
+namespace palpate::run {
+namespace {
+
+std::string volume_name(const std::string& recorded, const std::filesystem::path& recording) {
+    if (recorded.starts_with("synthetic:") || std::filesystem::exists(recorded)) return recorded;
+    std::string name = recorded;
+    while (name.size() > 1 && name.back() == '/') name.pop_back();  // a folder
+    const auto beside = recording.parent_path() / std::filesystem::path(name).filename();
+    return std::filesystem::exists(beside) ? beside.string() : recorded;
+}
+
+bool same(double a, double b) {
+    return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b) ||
+           (std::isnan(a) && std::isnan(b));
+}
+bool same(const Vec3& a, const Vec3& b) {
+    return same(a[0], b[0]) && same(a[1], b[1]) && same(a[2], b[2]);
+}
+template <class T>
+bool same(const T& a, const T& b) {
+    return a == b;
+}
+
+std::string text_of(double value) {
+    std::string text;
+    io::append_number(text, value);
+    return text;
+}
+std::string text_of(const Vec3& v) {
+    return "(" + text_of(v[0]) + ", " + text_of(v[1]) + ", " + text_of(v[2]) + ")";
+}
+std::string text_of(bool value) {
+    return value ? "true" : "false";
+}
+template <class T>
+std::string text_of(const T& value) {
+    return std::to_string(static_cast<std::int64_t>(value));
+}
+
+/// Keeps the first pair that differs.
+struct Comparison {
+    std::optional<Difference> found = {};
+
+    template <class T>
+    void operator()(const char* part, const T& recorded, const T& again) {
+        if (!found && !same(recorded, again)) found = {part, text_of(recorded), text_of(again)};
+    }
+};
+
+}  // namespace
+
+Source recorded_source(const io::RecordingHead& head, const std::filesystem::path& recording,
+                       const std::string& instead) {
+    auto names = head.volume.options;
+    std::string& volume = names["volume"];
+    if (volume.starts_with("live:") && instead.empty()) {
+        throw io::InputError(recording.string() +
+                             ": is of a live source: its frames came from outside and are not in "
+                             "the recording, so it can be plotted but not rendered again");
+    }
+    volume = instead.empty() ? volume_name(volume, recording) : instead;
+    try {
+        return source_from(names);
+    } catch (const std::invalid_argument& e) {
+        throw io::InputError(recording.string() + ": " + e.what());
+    }
+}
+
+Session recorded_session(const io::RecordingHead& head, const LoadedVolume& loaded,
+                         const std::string& recording) {
+    const io::VolumeIdentity now = io::identify(loaded.volume, {});
+    if (now.size != head.volume.size || now.type != head.volume.type ||
+        now.crc32 != head.volume.crc32) {
+        throw io::InputError(loaded.name +
+                             ": is not the volume of the recording (its size, type "
+                             "or samples differ): name the right one with --volume");
+    }
+    try {
+        RendererSettings settings = head.settings;
+        settings.method = baselines::method_named(head.method);
+        check(head.session);
+        return {make_renderer(Field(loaded.volume, head.solid, head.background), head.isovalue,
+                              settings),
+                head.session};
+    } catch (const std::invalid_argument& e) {
+        throw io::InputError(recording +
+                             ": the head asks for what cannot be rendered: " + e.what());
+    }
+}
+
+std::optional<Difference> difference(const SessionTick& recorded, const SessionTick& again) {
+    const ProxyUpdate& a = recorded.tick.proxy;
+    const ProxyUpdate& b = again.tick.proxy;
+    Comparison compare;
+    compare("HIP", a.hip, b.hip);
+    compare("SCP", a.scp, b.scp);
+    compare("status", a.status, b.status);
+    compare("mode", a.mode, b.mode);
+    compare("density", a.density, b.density);
+    compare("isovalue", a.isovalue, b.isovalue);
+    compare("tetrahedra", a.tetrahedra, b.tetrahedra);
+    compare("force", recorded.tick.force, again.tick.force);
+    compare("force flags", recorded.tick.force_flags, again.tick.force_flags);
+    compare("frozen", recorded.frozen, again.frozen);
+    compare("clutched", recorded.clutched, again.clutched);
+    compare("moment", recorded.moment, again.moment);
+    compare("samples", recorded.version, again.version);
+    return compare.found;
+}
+
+Replay::Replay(io::RecordingReader& reader, const LoadedVolume& loaded, std::string recording)
+    : reader_(reader),
+      recording_(std::move(recording)),
+      session_(recorded_session(reader.head(), loaded, recording_)),
+      samples_(session_.renderer.field.shared_samples(), frames_of(loaded)) {}
+
+void Replay::carry_out(const Command& recorded) {
+    try {
+        const Command command = samples_.whole(recorded);
+        check(command, session_.renderer.settings, session_.renderer.field.solid());
+        apply(session_, command);
+    } catch (const std::invalid_argument& e) {
+        throw io::InputError(recording_ + ", before tick " + std::to_string(ticks_) +
+                             ": a command that cannot be carried out: " + e.what());
+    }
+    ++commands_;
+}
+
+std::optional<Replay::Tick> Replay::next() {
+    while (const auto event = reader_.next()) {
+        if (const auto* command = std::get_if<Command>(&*event)) {
+            carry_out(*command);
+            continue;
+        }
+        const auto& recorded = std::get<SessionTick>(*event);
+        return Tick{recorded, repeat(session_, recorded), ticks_++};
+    }
+    return std::nullopt;
+}
+
+}  // namespace palpate::run

@@ -1,0 +1,257 @@
+// Starts, changes and ends a run.
+#include "palpate/run/run.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+#include <stdexcept>
+#include <utility>
+
+#include "io/number.hpp"
+#include "palpate/devices/devices.hpp"
+
+namespace palpate::run {
+namespace {
+
+/// A command that was sent after tick n shows in tick n + sure at the latest.
+constexpr std::int64_t sure = 2;
+
+std::string utc_now() {
+    const std::time_t now = std::time(nullptr);
+    std::tm parts{};
+    gmtime_r(&now, &parts);
+    std::array<char, 32> text{};
+    std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &parts);
+    return text.data();
+}
+
+std::unique_ptr<Device> open_for(const Field& field, double isovalue, const Setup& setup) {
+    const double rate = setup.render.rate;
+    if (!(rate >= 250 && rate <= 8000)) {
+        std::string text;
+        io::append_number(text, rate);
+        throw std::invalid_argument("--rate " + text + ": a live session runs at 250 to 8000 Hz");
+    }
+    return devices::open_device(
+        setup.device, {field, isovalue, rate, [&](const DeviceInfo& info) {
+                           return transform_for(field.geometry(), info, setup);
+                       }});
+}
+
+/// Puts what a run begins with into its recording. Waits while the queue is full; the servo does
+/// not use it yet.
+void tell(io::RecordingWriter& recording, const std::vector<Command>& commands) {
+    for (const Command& command : commands) {
+        while (recording.problem().empty() && !recording.queue().push(command)) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        }
+    }
+}
+
+}  // namespace
+
+io::RecordingHead recording_head(const Session& session, const DeviceInfo& device,
+                                 const Source& source, const RenderSetup& setup) {
+    const Field& field = session.renderer.field;
+    io::RecordingHead head;
+    head.version = PALPATE_VERSION;
+    head.begun = utc_now();
+    head.volume = io::identify(field.volume(), to_names(source));
+    head.solid = field.solid();
+    head.background = field.background();
+    head.isovalue = session.renderer.proxy.isovalue;
+    head.device = device.name + " (" + device.model + ")";
+    head.rate = setup.rate;
+    head.method = setup.method.name;
+    head.settings = session.renderer.settings;
+    head.session = session.settings;
+    return head;
+}
+
+Run::Run(std::shared_ptr<Data> data, const Setup& setup)
+    : data_(std::move(data)), setup_(setup), field_(make_field(data_->start(), setup.field)) {
+    const double isovalue = isovalue_of(data_->loaded(), setup.field);
+    auto device = open_for(field_, isovalue, setup);
+    take(make_session(field_, isovalue, device->info(), setup));
+    hold(std::move(device));
+}
+
+Run::~Run() {
+    stop();
+    try {
+        stop_recording();
+    } catch (const io::OutputError&) {  // RecordingWriter::problem() told it while it ran
+    }
+}
+
+void Run::start() {
+    if (servo_) throw std::logic_error("a run starts once");
+    launch(session_now());
+}
+
+void Run::stop() {
+    if (running_) stop_servo();
+    running_ = false;
+    device_->stop();
+}
+
+void Run::hold(std::unique_ptr<Device> device) {
+    last_resort_.reset();
+    device_ = std::move(device);
+    mouse_ = dynamic_cast<devices::Mouse*>(device_.get());
+    last_resort_.emplace(*device_);
+}
+
+void Run::take(const Session& session) {
+    session_settings_ = session.settings;
+    settings_ = session.renderer.settings;
+    isovalue_ = session.renderer.proxy.isovalue;
+    frozen_ = false;
+    sent_.clear();
+}
+
+void Run::launch(Session session) {
+    take(session);
+    const ServoSettings settings{.rate = setup_.render.rate,
+                                 .real_time = setup_.real_time,
+                                 .recorder = recording_ ? &recording_->queue() : nullptr};
+    servo_ = data_->attach(std::move(session), [&](Session now, const auto& history) {
+        if (recording_) tell(*recording_, history);
+        auto servo = std::make_unique<Servo>(std::move(now), *device_, settings);
+        servo->start();
+        return servo;
+    });
+    running_ = true;
+}
+
+/// The servo first: an edit under way, which detach() waits for, may take seconds.
+void Run::stop_servo() {
+    servo_->stop();
+    data_->detach(*servo_);
+}
+
+Field Run::field_now() const {
+    Field field = field_;
+    data_->update(field);
+    return field;
+}
+
+/// A new session with everything that was asked for, at the level and place to which penetrability,
+/// clutch and scale had led by tick `last`.
+Session Run::session_from(double isovalue, const DeviceTransform& transform,
+                          std::int64_t last) const {
+    RendererSettings settings = settings_;
+    settings.transform = transform;
+    Session session{make_renderer(field_, std::isfinite(isovalue) ? isovalue : isovalue_, settings),
+                    session_settings_};
+    for (const Sent& sent : sent_) {
+        // Only what the servo may not have carried out; everything else is in settings_.
+        const bool leads = std::holds_alternative<command::Isovalue>(sent.command) ||
+                           std::holds_alternative<command::Scale>(sent.command) ||
+                           std::holds_alternative<DeviceTransform>(sent.command);
+        if (leads && last < sent.after + sure) apply(session, sent.command);
+    }
+    if (!std::isfinite(session.renderer.proxy.isovalue)) {
+        session.renderer.proxy.isovalue = isovalue_;
+    }
+    return session;
+}
+
+std::int64_t Run::last_tick() const {
+    const auto now = servo_->snapshot();
+    return now ? now->number : -1;
+}
+
+/// As the servo that has stopped left it.
+Session Run::session_stopped() const {
+    const Renderer& last = servo_->session().renderer;
+    return session_from(last.proxy.isovalue, last.settings.transform, last_tick());
+}
+
+/// As the running servo has it now, or as the first one will begin.
+Session Run::session_now() const {
+    const auto now = servo_ ? servo_->snapshot() : std::nullopt;
+    if (!now) return session_from(isovalue_, settings_.transform, -1);
+    return session_from(now->session.tick.proxy.isovalue, now->session.transform, now->number);
+}
+
+void Run::send(const Command& command) {
+    const std::int64_t after = last_tick();
+    if (!servo_->send(command)) {
+        throw std::invalid_argument("too many commands at once: one was left out");
+    }
+    while (!sent_.empty() && sent_.front().after + sure <= after) sent_.pop_front();
+    sent_.push_back({after, command});
+    Session changed{{field_, settings_, {}, {}}, session_settings_};
+    changed.renderer.proxy.isovalue = isovalue_;
+    changed.frozen = frozen_;
+    apply(changed, command);
+    settings_ = changed.renderer.settings;
+    isovalue_ = changed.renderer.proxy.isovalue;
+    frozen_ = changed.frozen;
+}
+
+void Run::use_device(const devices::DeviceChoice& device) {
+    Setup setup = setup_;
+    setup.device = device;
+    // A simulated hand goes for the surface that is felt now.
+    const double isovalue =
+        std::isfinite(isovalue_) ? isovalue_ : isovalue_of(data_->loaded(), setup_.field);
+    auto opened = open_for(field_, isovalue, setup);
+    const Session fitted = make_session(field_, isovalue, opened->info(), setup);
+    const RendererSettings& fit = fitted.renderer.settings;
+    RendererSettings settings = settings_;
+    settings.device = fit.device;
+    settings.transform = fit.transform;
+    // A limit that was asked for stays; one that was the old device's becomes the new one's.
+    if (settings.force.limit >= device_->info().limits.maximum_force) {
+        settings.force.limit = fit.force.limit;
+    }
+    settings.force.stiffness = std::min(settings.force.stiffness, fit.force.stiffness);
+    Session session{make_renderer(field_, isovalue_, settings), fitted.settings};
+
+    stop_recording();
+    stop_servo();
+    device_->stop();
+    setup_ = std::move(setup);
+    hold(std::move(opened));
+    launch(std::move(session));
+}
+
+void Run::use_field(Solid solid, std::optional<double> background) {
+    Field field(data_->start(), solid, background);
+    stop_recording();
+    stop_servo();
+    field_ = std::move(field);
+    settings_.penetrability = no_penetrability();
+    launch(session_stopped());
+}
+
+void Run::record(const std::filesystem::path& path) {
+    Session session = session_now();
+    auto recording = std::make_unique<io::RecordingWriter>(
+        path, recording_head(session, device_->info(), data_->loaded().source, setup_.render));
+    if (!running_) {
+        recording_ = std::move(recording);
+        return;
+    }
+    stop_servo();
+    const std::int64_t lost = servo_->report().unrecorded;
+    recording_.swap(recording);
+    launch(std::move(session));
+    if (recording) recording->finish(lost);
+}
+
+std::int64_t Run::stop_recording() {
+    if (!recording_) return 0;
+    if (running_) stop_servo();
+    const std::int64_t lost = servo_ ? servo_->report().unrecorded : 0;
+    const auto recording = std::move(recording_);
+    if (running_) launch(session_stopped());  // first the hand, then the file
+    recording->finish(lost);
+    return recording->ticks();
+}
+
+}  // namespace palpate::run

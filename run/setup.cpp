@@ -1,0 +1,149 @@
+// Fills in what a setup leaves to volume and device.
+#include "palpate/run/setup.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+
+#include "palpate/run/statistics.hpp"
+
+namespace palpate::run {
+namespace {
+
+constexpr int bins = 256;
+
+std::optional<double> background_in(const Volume& volume, const FieldSetup& setup) {
+    if (!setup.background) return std::nullopt;
+    return io::level_in(volume, *setup.background);
+}
+
+/// The device's bit for a button; 0 for none.
+std::uint32_t bit_of(const ButtonSetup& setup, const char* option, int buttons) {
+    if (std::holds_alternative<std::monostate>(setup)) return 0;
+    if (std::holds_alternative<UsualButton>(setup)) {
+        return buttons == 0 ? 0 : buttons == 1 ? 1U : 2U;
+    }
+    const int number = std::get<Button>(setup).number;
+    const std::string what = option + (" " + std::to_string(number));
+    if (number < 1 || number > 32) {
+        throw std::invalid_argument(what + ": a button's number from 1, or none");
+    }
+    if (number > buttons) {
+        throw std::invalid_argument(what + ": the device has " + std::to_string(buttons) +
+                                    " buttons");
+    }
+    return std::uint32_t{1} << (number - 1);
+}
+
+struct MakePenetrability {
+    const Field& field;
+    double isovalue;
+
+    Penetrability operator()(std::monostate) const { return no_penetrability(); }
+    Penetrability operator()(const ThresholdSetup& setup) const {
+        const double minimum =
+            setup.minimum ? io::level_in(field.volume(), *setup.minimum) : isovalue;
+        return penetrability_threshold(setup.threshold, minimum, field.solid());
+    }
+    Penetrability operator()(const RangesSetup& setup) const {
+        std::vector<DensityRange> ranges;
+        for (const LevelRange& range : setup.ranges) {
+            ranges.push_back({io::level_in(field.volume(), range.low),
+                              io::level_in(field.volume(), range.high)});
+        }
+        return penetrability_ranges(setup.threshold, ranges, field.solid());
+    }
+};
+
+}  // namespace
+
+Field make_field(std::shared_ptr<const Samples> samples, const FieldSetup& setup) {
+    const auto background = background_in(samples->volume(), setup);
+    return Field(std::move(samples), setup.solid, background);
+}
+
+Field make_field(const Volume& volume, const FieldSetup& setup) {
+    return Field(volume, setup.solid, background_in(volume, setup));
+}
+
+double isovalue_of(const LoadedVolume& loaded, const FieldSetup& setup) {
+    if (setup.isovalue) return io::level_in(loaded.volume, *setup.isovalue);
+    if (loaded.isovalue) return *loaded.isovalue;
+    const std::vector<double> levels = suggested_isovalues(histogram_of(loaded.volume, bins));
+    if (!levels.empty()) return levels.front();
+    throw std::invalid_argument(loaded.name +
+                                ": the data are constant, there is nothing to feel");
+}
+
+RendererSettings render_settings(const RenderSetup& setup, const Field& field, double isovalue,
+                                 const DeviceLimits& limits) {
+    if (setup.friction && setup.method.method != &update_exact) {
+        throw std::invalid_argument("--friction is for --method exact; the others have none");
+    }
+    RendererSettings settings;
+    settings.method = setup.method.method;
+    settings.proxy.step_budget = setup.step_budget.value_or(settings.proxy.step_budget);
+    settings.proxy.friction = setup.friction.value_or(settings.proxy.friction);
+    settings.penetrability = std::visit(MakePenetrability{field, isovalue}, setup.penetrability);
+    settings.force = setup.force;
+    settings.force.limit = setup.limit.value_or(settings.force.limit);
+    settings.force.stiffness = setup.stiffness.value_or(settings.force.stiffness);
+    settings.device = limits;
+    settings.device.rate = setup.rate;
+    settings.transform.scale = setup.scale.value_or(1);
+    check(settings);
+    return settings;
+}
+
+RendererSettings offline_settings(const RenderSetup& setup, const Field& field, double isovalue) {
+    RendererSettings settings = render_settings(setup, field, isovalue);
+    settings.device.maximum_force = std::max(settings.device.maximum_force, settings.force.limit);
+    settings.force.stale_after = std::numeric_limits<double>::infinity();
+    return settings;
+}
+
+DeviceTransform transform_for(const Geometry& geometry, const DeviceInfo& info,
+                              const Setup& setup) {
+    DeviceTransform transform = fit_workspace(geometry, info, setup.facing);
+    if (!setup.render.scale) return transform;
+    const double scale = *setup.render.scale;
+    const Vec3 middle = 0.5 * (info.workspace_low + info.workspace_high);
+    transform.translation += (transform.scale - scale) * (transform.rotation * middle);
+    transform.scale = scale;
+    return transform;
+}
+
+Session make_session(const Field& field, double isovalue, const DeviceInfo& info,
+                     const Setup& setup) {
+    RenderSetup render = setup.render;
+    if (!render.limit) render.limit = info.limits.maximum_force;
+    if (!render.stiffness) render.stiffness = std::min(render.force.stiffness, info.stiffness);
+    if (!render.step_budget) {
+        // Its worst case is half a tick at 1 kHz, whatever the rate.
+        render.step_budget =
+            static_cast<int>(ProxySettings{}.step_budget * std::min(1.0, 1000 / render.rate));
+    }
+    // The slower of device and loop is what renders the spring.
+    render.rate = std::min(render.rate, info.limits.rate);
+    RendererSettings settings = render_settings(render, field, isovalue, info.limits);
+    settings.transform = transform_for(field.geometry(), info, setup);
+    Session session{make_renderer(field, isovalue, settings), {}};
+    session.settings.clutch_buttons = bit_of(setup.clutch, "--clutch", info.buttons);
+    session.settings.deadman_buttons = bit_of(setup.deadman, "--dead-man", info.buttons);
+    if (session.settings.clutch_buttons & session.settings.deadman_buttons) {
+        throw std::invalid_argument("clutch and dead-man switch are the same button: name another");
+    }
+    return session;
+}
+
+std::string text_of(const devices::DeviceChoice& choice) {
+    std::string text = choice.name;
+    char before = ':';
+    for (const auto& [key, value] : choice.options) {
+        text += before + (key.empty() ? value : key + "=" + value);
+        before = ',';
+    }
+    return text;
+}
+
+}  // namespace palpate::run

@@ -1,0 +1,133 @@
+// Loads what a source names.
+#include "palpate/run/source.hpp"
+
+#include <stdexcept>
+
+#include "palpate/scenes/beating.hpp"
+#include "palpate/scenes/volumes.hpp"
+
+namespace palpate::run {
+namespace {
+
+/// [s] How long the first frame of a live source is waited for.
+constexpr double longest_wait = 5;
+
+/// The synthetic volume that is a sequence, with or without a size.
+bool is_beating(const std::string& scene) {
+    return scene == "beating" || scene.starts_with("beating:");
+}
+
+LoadedVolume loaded_from(Volume volume, const Source& source) {
+    return {std::move(volume), source, name_of(source)};
+}
+
+LoadedVolume loaded_from(const scenes::Scene& scene, const Source& source) {
+    LoadedVolume loaded = loaded_from(scene.volume, source);
+    loaded.format = "synthetic (" + scene.description + ")";
+    loaded.isovalue = scene.isovalue;
+    return loaded;
+}
+
+LoadedVolume make_beating(const Source& source, const scenes::Scene& first) {
+    const Geometry grid = first.volume.geometry();
+    const SampleType type = first.volume.type();
+    const auto frame = [grid, type](int number, const io::Progress&) {
+        return scenes::beating_frame(grid, double(number) / scenes::beating_frames, type).volume;
+    };
+    LoadedVolume loaded = loaded_from(first, source);
+    loaded.time_steps = scenes::beating_frames;
+    if (source.frame) {
+        if (*source.frame >= loaded.time_steps) {
+            throw std::invalid_argument(loaded.name + " has " + std::to_string(loaded.time_steps) +
+                                        " frames, from 0");
+        }
+        loaded.volume = frame(*source.frame, {});
+        return loaded;
+    }
+    const double usual = scenes::beating_period / scenes::beating_frames;
+    loaded.sequence = io::made_sequence(scenes::beating_frames,
+                                        source.frame_interval.value_or(usual), frame);
+    return loaded;
+}
+
+LoadedVolume loaded_of(const SyntheticSource& synthetic, const Source& source,
+                       const io::Progress&) {
+    if (source.frame && !is_beating(synthetic.scene)) {
+        throw std::invalid_argument("--time-step is for sequences");
+    }
+    const scenes::Scene scene = scenes::make_volume(synthetic.scene, synthetic.type);
+    return is_beating(synthetic.scene) ? make_beating(source, scene) : loaded_from(scene, source);
+}
+
+LoadedVolume loaded_of(const LiveSource& live, const Source& source, const io::Progress&) {
+    if (source.smooth > 0) throw std::invalid_argument("--smooth is not for live sources");
+    auto frames = std::make_shared<const io::LiveFrames>(live.path);
+    const std::shared_ptr<const Samples> samples = frames->wait(longest_wait);
+    if (!samples) {
+        throw io::InputError(live.path +
+                             ": no frame has come yet; start the program that writes it");
+    }
+    LoadedVolume loaded = loaded_from(samples->volume(), source);
+    loaded.format = "live source";
+    loaded.live = std::move(frames);
+    return loaded;
+}
+
+/// One frame of a file that holds several: read alone.
+LoadedVolume one_frame_of(const FileSource& file, const Source& source, io::ReadOptions read) {
+    read.time_step = *source.frame;
+    io::VolumeFile got = io::read_volume(file.path, read);
+    LoadedVolume loaded = loaded_from(std::move(got.volume), source);
+    loaded.format = std::move(got.format);
+    loaded.notes = std::move(got.notes);
+    loaded.time_steps = got.time_steps;
+    return loaded;
+}
+
+LoadedVolume loaded_of(const FileSource& file, const Source& source, const io::Progress& progress) {
+    io::SequenceOptions options;
+    options.interval = source.frame_interval.value_or(0);
+    options.read.raw = file.raw;
+    options.read.spacing = file.spacing;
+    options.read.series = file.series;
+    options.read.progress = progress;
+    if (source.frame && !io::names_a_series(file.path)) {
+        return one_frame_of(file, source, options.read);
+    }
+    io::SequenceFile got = io::open_sequence(file.path, options);
+    LoadedVolume loaded = loaded_from(std::move(got.first), source);
+    loaded.format = std::move(got.format);
+    loaded.notes = std::move(got.notes);
+    loaded.time_steps = got.sequence.count();
+    if (!source.frame) {
+        if (loaded.time_steps > 1) loaded.sequence = std::move(got.sequence);
+        return loaded;
+    }
+    if (*source.frame >= loaded.time_steps) {
+        throw io::InputError(file.path + ": there is no time step " +
+                             std::to_string(*source.frame) + ": it has " +
+                             std::to_string(loaded.time_steps) + " frames");
+    }
+    if (*source.frame > 0) {
+        loaded.volume = io::read_frame(got.sequence, *source.frame, progress);
+    }
+    return loaded;
+}
+
+}  // namespace
+
+LoadedVolume load(const Source& source, const io::Progress& progress) {
+    LoadedVolume loaded = std::visit(
+        [&](const auto& from) { return loaded_of(from, source, progress); }, source.from);
+    if (source.smooth == 0) return loaded;
+    loaded.volume = smoothed(loaded.volume, source.smooth);
+    if (loaded.sequence.count() == 0) return loaded;
+    loaded.sequence.type = loaded.volume.type();
+    loaded.sequence.reader = [read = std::move(loaded.sequence.reader), passes = source.smooth](
+                                 int frame, const io::Progress& each) {
+        return smoothed(read(frame, each), passes);
+    };
+    return loaded;
+}
+
+}  // namespace palpate::run

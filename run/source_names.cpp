@@ -1,0 +1,129 @@
+// Sources as the names and values that recordings and session files keep.
+#include <stdexcept>
+#include <string_view>
+
+#include "io/number.hpp"
+#include "palpate/io/raw_options.hpp"
+#include "palpate/run/source.hpp"
+
+namespace palpate::run {
+namespace {
+
+constexpr std::string_view synthetic_prefix = "synthetic:";
+constexpr std::string_view live_prefix = "live:";
+
+using Names = std::map<std::string, std::string>;
+
+std::string value_of(const Names& names, const char* name) {
+    const auto found = names.find(name);
+    return found == names.end() ? std::string() : found->second;
+}
+
+std::string number_text(double value) {
+    std::string text;
+    io::append_number(text, value);
+    return text;
+}
+
+std::string spacing_text(const Vec3& spacing) {
+    return number_text(spacing[0]) + "," + number_text(spacing[1]) + "," + number_text(spacing[2]);
+}
+
+void add_names(Names& names, const FileSource& file) {
+    if (file.raw) {
+        const Index3& size = file.raw->size;
+        names["dims"] = std::to_string(size[0]) + "x" + std::to_string(size[1]) + "x" +
+                        std::to_string(size[2]);
+        names["type"] = name_of(file.raw->type);
+        if (file.raw->skip > 0) names["skip"] = std::to_string(file.raw->skip);
+    }
+    if (file.spacing) names["spacing"] = spacing_text(*file.spacing);
+    if (!file.series.empty()) names["series"] = file.series;
+}
+
+void add_names(Names& names, const SyntheticSource& synthetic) {
+    if (synthetic.type) names["type"] = name_of(*synthetic.type);
+}
+
+void add_names(Names&, const LiveSource&) {}
+
+/// What only files have.
+FileSource with_layout(FileSource file, const Names& names) {
+    const std::string dims = value_of(names, "dims"), type = value_of(names, "type");
+    const std::string spacing = value_of(names, "spacing");
+    const auto skip = io::number_from<std::uint64_t>(value_of(names, "skip")).value_or(0);
+    if (!dims.empty() || !type.empty()) {
+        file.raw = io::raw_layout_from(dims, type, spacing, skip);
+    }
+    if (!spacing.empty()) file.spacing = io::spacing_from(spacing);
+    file.series = value_of(names, "series");
+    return file;
+}
+
+SyntheticSource with_type(SyntheticSource synthetic, const Names& names) {
+    if (names.contains("dims") || names.contains("spacing")) {
+        throw std::invalid_argument(
+            "--dims and --spacing are for files; a synthetic volume's size is part of its name: "
+            "synthetic:NAME:WxHxD");
+    }
+    const auto skip = io::number_from<std::uint64_t>(value_of(names, "skip")).value_or(0);
+    if (names.contains("series") || skip != 0) {
+        throw std::invalid_argument("--series and --skip are for files");
+    }
+    const std::string type = value_of(names, "type");
+    if (!type.empty()) synthetic.type = sample_type_from(type);
+    return synthetic;
+}
+
+struct NameOf {
+    std::string operator()(const FileSource& file) const { return file.path; }
+    std::string operator()(const SyntheticSource& synthetic) const {
+        return std::string(synthetic_prefix) + synthetic.scene;
+    }
+    std::string operator()(const LiveSource& live) const {
+        return std::string(live_prefix) + live.path;
+    }
+};
+
+}  // namespace
+
+std::string name_of(const Source& source) {
+    return std::visit(NameOf{}, source.from);
+}
+
+Source source_named(const std::string& name) {
+    Source source;
+    if (name.starts_with(synthetic_prefix)) {
+        source.from = SyntheticSource{name.substr(synthetic_prefix.size()), {}};
+    } else if (name.starts_with(live_prefix)) {
+        source.from = LiveSource{name.substr(live_prefix.size())};
+    } else {
+        source.from = FileSource{name, {}, {}, {}};
+    }
+    return source;
+}
+
+std::map<std::string, std::string> to_names(const Source& source) {
+    Names names{{"volume", name_of(source)}};
+    std::visit([&](const auto& from) { add_names(names, from); }, source.from);
+    if (source.frame) names["time-step"] = std::to_string(*source.frame);
+    if (source.frame_interval) names["frame-interval"] = number_text(*source.frame_interval);
+    if (source.smooth > 0) names["smooth"] = std::to_string(source.smooth);
+    return names;
+}
+
+Source source_from(const std::map<std::string, std::string>& names) {
+    Source source = source_named(value_of(names, "volume"));
+    if (auto* file = std::get_if<FileSource>(&source.from)) {
+        *file = with_layout(std::move(*file), names);
+    } else if (auto* synthetic = std::get_if<SyntheticSource>(&source.from)) {
+        *synthetic = with_type(std::move(*synthetic), names);
+    }
+    source.frame = io::number_from<int>(value_of(names, "time-step"));
+    const auto interval = io::number_from<double>(value_of(names, "frame-interval"));
+    if (interval && *interval > 0) source.frame_interval = interval;
+    source.smooth = io::number_from<int>(value_of(names, "smooth")).value_or(0);
+    return source;
+}
+
+}  // namespace palpate::run

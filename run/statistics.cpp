@@ -1,0 +1,93 @@
+// Histograms and Otsu's thresholds.
+#include "palpate/run/statistics.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace palpate::run {
+namespace {
+
+template <class T>
+void count(const Volume& volume, Histogram& h) {
+    const double scale = static_cast<double>(h.counts.size()) / (h.high - h.low);
+    const auto last = static_cast<std::int64_t>(h.counts.size()) - 1;
+    double sum = 0;
+    double squares = 0;
+    for (const T s : volume.samples<T>()) {
+        const double value = static_cast<double>(s) - h.low;
+        const auto bin = std::min(last, static_cast<std::int64_t>(value * scale));
+        ++h.counts[static_cast<std::size_t>(bin)];
+        sum += value;
+        squares += value * value;
+    }
+    const auto n = static_cast<double>(sample_count(volume.geometry()));
+    h.mean = h.low + sum / n;
+    h.deviation = std::sqrt(std::max(0.0, squares / n - (sum / n) * (sum / n)));
+}
+
+}  // namespace
+
+Histogram histogram_of(const Volume& volume, int bins) {
+    Histogram h{volume.minimum(), volume.maximum(), {}, volume.minimum(), 0};
+    if (h.high == h.low) {
+        h.counts = {sample_count(volume.geometry())};
+        return h;
+    }
+    // Integers get bins of a whole number of values each, or some bins would hold one more.
+    if (volume.type() != SampleType::float32) {
+        const double values = h.high - h.low + 1;
+        const double width = std::max(1.0, std::ceil(values / bins));
+        bins = static_cast<int>(std::ceil(values / width));
+        h.high = h.low + width * bins;
+        h.whole_numbers = true;
+    }
+    h.counts.assign(static_cast<std::size_t>(bins), 0);
+    with_type(volume.type(), [&](auto zero) { count<decltype(zero)>(volume, h); });
+    return h;
+}
+
+std::vector<double> suggested_isovalues(const Histogram& h) {
+    const auto n = h.counts.size();
+    if (n < 2) return {};
+    // Sums below each bin border; the variance between classes is the sum of sum^2 / weight.
+    std::vector<double> weight(n + 1, 0);
+    std::vector<double> sum(n + 1, 0);
+    for (std::size_t i = 0; i < n; ++i) {
+        const auto c = static_cast<double>(h.counts[i]);
+        weight[i + 1] = weight[i] + c;
+        sum[i + 1] = sum[i] + c * (static_cast<double>(i) + 0.5);
+    }
+    const auto part = [&](std::size_t from, std::size_t to) {
+        const double w = weight[to] - weight[from];
+        const double s = sum[to] - sum[from];
+        return w > 0 ? s * s / w : 0;
+    };
+    double best = -1;
+    std::array<std::size_t, 2> cut{1, 1};
+    for (std::size_t a = 1; a < n; ++a) {
+        for (std::size_t b = a; b < n; ++b) {
+            const double between = part(0, a) + part(a, b) + part(b, n);
+            if (between > best) {
+                best = between;
+                cut = {a, b};
+            }
+        }
+    }
+    // Any cut in a gap is as good: its middle is farthest from both classes. (In a mask of 0 and 1
+    // the level must be between them, or nothing is solid.)
+    const double width = (h.high - h.low) / static_cast<double>(n);
+    const double bin_middle = h.whole_numbers ? 0.5 * (width - 1) : 0.5 * width;
+    std::vector<double> levels;
+    for (const std::size_t c : cut) {
+        std::size_t below = c - 1;
+        std::size_t above = c;
+        while (below > 0 && h.counts[below] == 0) --below;
+        while (above + 1 < n && h.counts[above] == 0) ++above;
+        const double level = h.low + bin_middle + 0.5 * width * static_cast<double>(below + above);
+        if (levels.empty() || level > levels.back()) levels.push_back(level);
+    }
+    return levels;
+}
+
+}  // namespace palpate::run

@@ -1,0 +1,207 @@
+// Edits, their versions, and the brushes of the attached servos.
+#include "palpate/run/volume_editor.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <stdexcept>
+
+namespace palpate::run {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Between two steps of the brush: often enough to feel smooth, rarely enough that one version each
+/// is no burden.
+constexpr auto brush_interval = 4ms;
+/// A brush that changed nothing for so long begins a new step for undo.
+constexpr auto rest = 500ms;
+/// [s] Longest time that one step of the brush makes up for, however late the thread was.
+constexpr double longest_step = 0.1;
+/// How often a full queue of commands is tried again, a millisecond apart.
+constexpr int attempts = 200;
+
+}  // namespace
+
+VolumeEditor::VolumeEditor(std::shared_ptr<const Samples> samples)
+    : editor_(samples), versions_{{samples, {}}} {
+    publish();
+    thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+}
+
+VolumeEditor::~VolumeEditor() {
+    thread_.request_stop();
+    thread_.join();
+}
+
+std::unique_ptr<Servo> VolumeEditor::attach(Session session, const StartServo& start) {
+    const std::scoped_lock lock(mutex_);
+    const std::uint64_t version = version_of(editor_.samples());
+    palpate::apply(session, command::Samples{editor_.samples(), version});
+    const Field field = session.renderer.field;
+    std::unique_ptr<Servo> servo = start(std::move(session), history());
+    hands_.push_back({servo.get(), field});
+    new_step_ = true;
+    return servo;
+}
+
+void VolumeEditor::detach(const Servo& servo) {
+    const std::scoped_lock lock(mutex_);
+    std::erase_if(hands_, [&](const Hand& hand) { return hand.servo == &servo; });
+    new_step_ = true;
+}
+
+void VolumeEditor::set_brush(const std::optional<HandBrush>& brush) {
+    if (brush) check(*brush);
+    const std::scoped_lock lock(mutex_);
+    if (brush.has_value() != brush_.has_value()) {
+        for (Hand& hand : hands_) {
+            hand.touch.reset();
+            hand.resting = false;
+        }
+        new_step_ = true;
+    }
+    brush_ = brush;
+    set_problem({});
+}
+
+void VolumeEditor::apply(const Edit& asked) {
+    const std::scoped_lock lock(mutex_);
+    edit(asked, EditStep::own);
+    new_step_ = true;
+}
+
+bool VolumeEditor::undo() {
+    const std::scoped_lock lock(mutex_);
+    return go_to(editor_.undo());
+}
+
+bool VolumeEditor::redo() {
+    const std::scoped_lock lock(mutex_);
+    return go_to(editor_.redo());
+}
+
+/// Sends the version that the editor went back or forth to.
+bool VolumeEditor::go_to(SampleBox changed) {
+    new_step_ = true;
+    for (Hand& hand : hands_) hand.resting = true;
+    if (changed.empty()) return false;
+    send({editor_.samples(), version_of(editor_.samples())});
+    return true;
+}
+
+std::uint64_t VolumeEditor::version_of(const std::shared_ptr<const Samples>& samples) const {
+    for (std::size_t i = versions_.size(); i-- > 0;) {
+        // By owner: the memory of a version that has expired may be used again by this one.
+        const auto& known = versions_[i].samples;
+        if (!known.owner_before(samples) && !samples.owner_before(known)) return i;
+    }
+    return 0;  // not reached: the editor holds what it made
+}
+
+void VolumeEditor::edit(const Edit& asked, EditStep step) {
+    const std::uint64_t from = version_of(editor_.samples());
+    if (editor_.apply(asked, step).empty()) return;
+    command::Samples made{editor_.samples(), versions_.size(),
+                          std::make_shared<const Recipe>(EditOf{from, asked})};
+    versions_.push_back({editor_.samples(), {nullptr, made.version, made.recipe}});
+    send(made);
+}
+
+/// Makes the state visible to threads that do not wait for an edit.
+void VolumeEditor::publish() {
+    EditState now{editor_.samples(),    version_of(editor_.samples()),
+                  editor_.undo_steps(), editor_.redo_steps(),
+                  editor_.changed(),    problem_};
+    const std::scoped_lock lock(state_mutex_);
+    state_ = std::move(now);
+}
+
+void VolumeEditor::set_problem(const std::string& problem) {
+    if (problem_ == problem) return;
+    problem_ = problem;
+    publish();
+}
+
+/// To every servo, even if one of them takes no commands.
+void VolumeEditor::send(const command::Samples& command) {
+    publish();
+    bool refused = false;
+    for (Hand& hand : hands_) {
+        int attempt = 0;
+        while (!hand.servo->send(command) && ++attempt < attempts) std::this_thread::sleep_for(1ms);
+        refused |= attempt == attempts;
+    }
+    if (refused) throw std::runtime_error("the session takes no commands");
+}
+
+void VolumeEditor::run(const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+        std::this_thread::sleep_for(brush_interval);
+        const std::scoped_lock lock(mutex_);
+        try {
+            for (Hand& hand : hands_) brush(hand);
+        } catch (const std::exception& e) {  // a servo that takes no commands, or no memory
+            brush_.reset();
+            set_problem(std::string("the brush was put down: ") + e.what());
+        }
+    }
+}
+
+void VolumeEditor::brush(Hand& hand) {
+    if (!brush_) return;
+    const auto now = hand.servo->snapshot();
+    if (!now || (hand.touch && now->number <= hand.touch->tick)) return;
+    const SessionTick& session = now->session;
+    if (session.tick.proxy.mode == Mode::free) hand.resting = false;
+    const bool works = !hand.resting && session.device.status == DeviceStatus::ready &&
+                       !session.frozen && !session.clutched && now->forces_on &&
+                       session.tick.proxy.mode == Mode::constrained &&
+                       session.tick.proxy.status == UpdateStatus::done;
+    if (!works) return hand.touch.reset();
+    const auto clock = std::chrono::steady_clock::now();
+    if (hand.touch && brush_from(*hand.touch, hand, *now)) last_change_ = clock;
+    if (clock - last_change_ > rest) new_step_ = true;
+    hand.touch = Touch{session.tick.proxy.scp, session.tick.time, now->number};
+}
+
+/// True if it changed something.
+bool VolumeEditor::brush_from(const Touch& from, Hand& hand, const Snapshot& now) {
+    const Tick& tick = now.session.tick;
+    const auto stroke = stroke_of(*brush_, hand.field, tick.proxy.isovalue, from.at, tick.proxy.scp,
+                                  std::min(tick.time - from.time, longest_step));
+    if (!stroke) return false;
+    const std::shared_ptr<const Samples> before = editor_.samples();
+    try {
+        edit(*stroke, new_step_ ? EditStep::own : EditStep::same);
+    } catch (const std::invalid_argument& e) {
+        set_problem(e.what());  // for example a value on the wrong side of the level felt now
+        return false;
+    }
+    set_problem({});
+    const bool changed = editor_.samples() != before;
+    if (changed) new_step_ = false;
+    return changed;
+}
+
+EditState VolumeEditor::state() const {
+    const std::scoped_lock lock(state_mutex_);
+    return state_;
+}
+
+void VolumeEditor::set_saved(const std::shared_ptr<const Samples>& samples) {
+    const std::scoped_lock lock(mutex_);
+    if (editor_.samples() == samples) editor_.set_saved();
+    publish();
+}
+
+std::vector<Command> VolumeEditor::history() const {
+    std::vector<Command> history;
+    for (std::size_t i = 1; i < versions_.size(); ++i) history.emplace_back(versions_[i].recipe);
+    const std::uint64_t now = version_of(editor_.samples());
+    if (now + 1 != versions_.size()) {
+        history.emplace_back(command::Samples{nullptr, now});
+    }
+    return history;
+}
+
+}  // namespace palpate::run
