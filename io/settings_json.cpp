@@ -1,13 +1,13 @@
-// One list of members a struct serves both ways: a Writer or a Reader walks through it.
+// Settings and commands: their lists of members, and plain values as JSON.
 #include "io/settings_json.hpp"
 
 #include <array>
 #include <cmath>
-#include <concepts>
 #include <limits>
 #include <stdexcept>
 #include <string>
 
+#include "io/json_members.hpp"
 #include "io/samples_json.hpp"
 
 namespace palpate::io {
@@ -15,107 +15,92 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-[[noreturn]] void wrong(const char* name, const char* wanted) {
-    throw std::invalid_argument(std::string("'") + name + "' must be " + wanted);
+template <class T>
+T whole_number(const Json& json, const std::string& name) {
+    const auto number = json.is_number_integer() ? json.get<std::int64_t>() : -1;
+    if (number < 0 || number > std::int64_t{std::numeric_limits<T>::max()}) {
+        wrong_member(name, "a whole number");
+    }
+    return static_cast<T>(number);
 }
 
-struct Writer {
-    Json json = Json::object();
+}  // namespace
 
-    void operator()(const char* name, const double& value) { json[name] = number_to_json(value); }
-    void operator()(const char* name, const bool& value) { json[name] = value; }
-    void operator()(const char* name, const int& value) { json[name] = value; }
-    void operator()(const char* name, const std::uint32_t& value) { json[name] = value; }
-    void operator()(const char* name, const Vec3& value) {
-        Json& list = json[name] = Json::array();
-        for (int i = 0; i < 3; ++i) list.push_back(number_to_json(value[i]));
-    }
-    void operator()(const char* name, const Mat3& value) {
-        Json& rows = json[name] = Json::array();
-        for (int r = 0; r < 3; ++r) {
-            Json row = Json::array();
-            for (int c = 0; c < 3; ++c) row.push_back(number_to_json(value(r, c)));
-            rows.push_back(row);
-        }
-    }
-    template <class T>
-    void part(const char* name, const T& value);
-};
+void wrong_member(const std::string& name, const std::string& wanted) {
+    throw std::invalid_argument("'" + name + "' must be " + wanted);
+}
 
-struct Reader {
-    const Json& json;
+Json to_value(const Vec3& value) {
+    Json list = Json::array();
+    for (int i = 0; i < 3; ++i) list.push_back(number_to_json(value[i]));
+    return list;
+}
 
-    const Json* find(const char* name) const {
-        if (!json.is_object()) wrong(name, "a member of an object");
-        const auto found = json.find(name);
-        return found == json.end() ? nullptr : &*found;
-    }
-    void operator()(const char* name, double& value) {
-        if (const Json* j = find(name)) value = number_from_json(*j, name);
-    }
-    void operator()(const char* name, bool& value) {
-        const Json* j = find(name);
-        if (!j) return;
-        if (!j->is_boolean()) wrong(name, "true or false");
-        value = j->get<bool>();
-    }
-    void operator()(const char* name, int& value) { whole(name, value); }
-    void operator()(const char* name, std::uint32_t& value) { whole(name, value); }
-    template <class T>
-    void whole(const char* name, T& value) {
-        const Json* j = find(name);
-        if (!j) return;
-        const auto number = j->is_number_integer() ? j->get<std::int64_t>() : -1;
-        if (number < 0 || number > std::int64_t{std::numeric_limits<T>::max()}) {
-            wrong(name, "a whole number");
-        }
-        value = static_cast<T>(number);
-    }
-    void operator()(const char* name, Vec3& value) {
-        const Json* j = find(name);
-        if (!j) return;
-        if (!j->is_array() || j->size() != 3) wrong(name, "three numbers");
-        for (int i = 0; i < 3; ++i) value[i] = number_from_json((*j)[std::size_t(i)], name);
-    }
-    void operator()(const char* name, Mat3& value) {
-        const Json* j = find(name);
-        if (!j) return;
-        if (!j->is_array() || j->size() != 3) wrong(name, "three rows of three numbers");
-        for (int r = 0; r < 3; ++r) {
-            const Json& row = (*j)[std::size_t(r)];
-            if (!row.is_array() || row.size() != 3) wrong(name, "three rows of three numbers");
-            for (int c = 0; c < 3; ++c) value(r, c) = number_from_json(row[std::size_t(c)], name);
-        }
-    }
-    template <class T>
-    void part(const char* name, T& value);
-};
+Json to_value(const Mat3& value) {
+    Json rows = Json::array();
+    for (int r = 0; r < 3; ++r) rows.push_back(to_value(Vec3(value.row(r))));
+    return rows;
+}
 
-/// S is T, const or not: written from const settings, read into others.
-template <class S, class T>
-concept Is = std::same_as<std::remove_const_t<S>, T>;
+void from_value(const Json& json, const std::string& name, bool& value) {
+    if (!json.is_boolean()) wrong_member(name, "true or false");
+    value = json.get<bool>();
+}
 
-void members(auto& v, Is<Friction> auto& s) {
+void from_value(const Json& json, const std::string& name, double& value) {
+    value = number_from_json(json, name);
+}
+
+void from_value(const Json& json, const std::string& name, std::string& value) {
+    if (!json.is_string()) wrong_member(name, "text");
+    value = json.get<std::string>();
+}
+
+void from_value(const Json& json, const std::string& name, int& value) {
+    value = whole_number<int>(json, name);
+}
+
+void from_value(const Json& json, const std::string& name, std::uint32_t& value) {
+    value = whole_number<std::uint32_t>(json, name);
+}
+
+void from_value(const Json& json, const std::string& name, Vec3& value) {
+    if (!json.is_array() || json.size() != 3) wrong_member(name, "three numbers");
+    for (int i = 0; i < 3; ++i) value[i] = number_from_json(json[std::size_t(i)], name);
+}
+
+void from_value(const Json& json, const std::string& name, Mat3& value) {
+    if (!json.is_array() || json.size() != 3) wrong_member(name, "three rows of three numbers");
+    for (int r = 0; r < 3; ++r) {
+        Vec3 row;
+        from_value(json[std::size_t(r)], name, row);
+        value.row(r) = row;
+    }
+}
+
+// The lists of members. Not in an unnamed namespace, where JsonWriter would not find them.
+
+static void members(auto& v, Is<Friction> auto& s) {
     v("static", s.static_coefficient);
     v("dynamic", s.dynamic_coefficient);
 }
 
-void members(auto& v, Is<Magnet> auto& s) {
+static void members(auto& v, Is<Magnet> auto& s) {
     v("distance", s.distance);
     v("peak", s.peak);
 }
 
-void members(auto& v, Is<Texture> auto& s) {
+static void members(auto& v, Is<Texture> auto& s) {
     v("amplitude", s.amplitude);
     v("wavelength", s.wavelength);
 }
 
-void members(auto& v, Is<ForceSettings> auto& s) {
+static void members(auto& v, Is<ForceSettings> auto& s) {
     v("stiffness", s.stiffness);
     v("damping", s.damping);
     v("viscosity", s.viscosity);
-    v.part("magnet", s.magnet);
-    v.part("texture", s.texture);
+    v("magnet", s.magnet);
+    v("texture", s.texture);
     v("limit", s.limit);
     v("rate_limit", s.rate_limit);
     v("ramp", s.ramp);
@@ -123,99 +108,83 @@ void members(auto& v, Is<ForceSettings> auto& s) {
     v("start_below", s.start_below);
 }
 
-void members(auto& v, Is<DeviceLimits> auto& s) {
+static void members(auto& v, Is<DeviceLimits> auto& s) {
     v("maximum_force", s.maximum_force);
     v("rate", s.rate);
     v("physical_damping", s.physical_damping);
 }
 
-void members(auto& v, Is<DeviceTransform> auto& s) {
+static void members(auto& v, Is<DeviceTransform> auto& s) {
     v("rotation", s.rotation);
     v("translation", s.translation);
     v("scale", s.scale);
 }
 
-void members(auto& v, Is<DensityRange> auto& s) {
+static void members(auto& v, Is<DensityRange> auto& s) {
     v("low", s.low);
     v("high", s.high);
 }
 
-void members(auto& v, Is<Penetrability> auto& s) {
+static void members(auto& v, Is<Penetrability> auto& s) {
     v("on", s.on);
     v("threshold", s.threshold);
     v("range_count", s.range_count);
     if (s.range_count < 0 || s.range_count > Penetrability::most_ranges) {
-        wrong("range_count", "0 to 16");
+        wrong_member("range_count", "0 to 16");
     }
     for (int i = 0; i < s.range_count; ++i) {
-        v.part(("range_" + std::to_string(i + 1)).c_str(), s.ranges[static_cast<std::size_t>(i)]);
+        v("range_" + std::to_string(i + 1), s.ranges[static_cast<std::size_t>(i)]);
     }
 }
 
-void members(auto& v, Is<SessionSettings> auto& s) {
+static void members(auto& v, Is<SessionSettings> auto& s) {
     v("clutch_buttons", s.clutch_buttons);
     v("deadman_buttons", s.deadman_buttons);
     v("fastest_hand", s.fastest_hand);
     v("overrun", s.overrun);
 }
 
-void members(auto& v, Is<RendererSettings> auto& s) {
-    v.part("friction", s.proxy.friction);
+static void members(auto& v, Is<RendererSettings> auto& s) {
+    v("friction", s.proxy.friction);
     v("step_budget", s.proxy.step_budget);
-    v.part("penetrability", s.penetrability);
-    v.part("force", s.force);
-    v.part("device", s.device);
-    v.part("transform", s.transform);
+    v("penetrability", s.penetrability);
+    v("force", s.force);
+    v("device", s.device);
+    v("transform", s.transform);
     v("forces_on", s.forces_on);
 }
 
-void members(auto& v, Is<command::Isovalue> auto& s) {
+static void members(auto& v, Is<command::Isovalue> auto& s) {
     v("value", s.isovalue);
 }
-void members(auto& v, Is<command::Freeze> auto& s) {
+static void members(auto& v, Is<command::Freeze> auto& s) {
     v("on", s.on);
 }
-void members(auto& v, Is<command::Clutch> auto& s) {
+static void members(auto& v, Is<command::Clutch> auto& s) {
     v("on", s.on);
 }
-void members(auto& v, Is<command::Forces> auto& s) {
+static void members(auto& v, Is<command::Forces> auto& s) {
     v("on", s.on);
 }
-void members(auto& v, Is<command::Scale> auto& s) {
+static void members(auto& v, Is<command::Scale> auto& s) {
     v("scale", s.scale);
 }
 
-void members(auto& v, Is<command::Moment> auto& s) {
+static void members(auto& v, Is<command::Moment> auto& s) {
     v("time", s.time);
 }
-void members(auto& v, Is<command::Speed> auto& s) {
+static void members(auto& v, Is<command::Speed> auto& s) {
     v("speed", s.speed);
 }
 
-template <class T>
-void Writer::part(const char* name, const T& value) {
-    Writer part;
-    members(part, value);
-    json[name] = std::move(part.json);
-}
-
-template <class T>
-void Reader::part(const char* name, T& value) {
-    const Json* j = find(name);
-    if (!j) return;
-    if (!j->is_object()) wrong(name, "an object");
-    Reader part{*j};
-    members(part, value);
-}
+namespace {
 
 template <class T>
 Json written(const T& value) {
-    Writer writer;
-    members(writer, value);
-    return std::move(writer.json);
+    return JsonWriter::of(value);
 }
 
-/// Told by their recipe, which is more than a list of members.
+/// Samples are written as their recipe, which is more than a list of members.
 Json written(const command::Samples& samples) {
     return to_json(samples);
 }
@@ -236,7 +205,7 @@ Command command_named(const std::string& name, const Json& json) {
         if constexpr (std::same_as<decltype(command), command::Samples>) {
             return samples_command_from_json(json);
         } else {
-            Reader reader{json};
+            JsonReader reader{json};
             members(reader, command);
             return command;
         }
@@ -252,11 +221,11 @@ const Json& member(const Json& json, const char* name) {
     return json.at(name);
 }
 
-double number_from_json(const Json& json, const char* name) {
+double number_from_json(const Json& json, const std::string& name) {
     if (json.is_number()) return json.get<double>();
     if (json == "inf") return infinity;
     if (json == "-inf") return -infinity;
-    wrong(name, "a number, \"inf\" or \"-inf\"");
+    wrong_member(name, "a number, \"inf\" or \"-inf\"");
 }
 
 Json number_to_json(double value) {
@@ -278,12 +247,12 @@ Json to_json(const Command& command) {
 }
 
 void from_json(const Json& json, RendererSettings& settings) {
-    Reader reader{json};
+    JsonReader reader{json};
     members(reader, settings);
 }
 
 void from_json(const Json& json, SessionSettings& settings) {
-    Reader reader{json};
+    JsonReader reader{json};
     members(reader, settings);
 }
 

@@ -1,8 +1,9 @@
-// Settings and commands as JSON. For io/ and for the viewer's session files. Numbers read back bit
-// for bit; infinities are "inf" and "-inf", which JSON has no number for.
+// Settings and commands as JSON, for recordings and session files. Numbers read back bit for bit;
+// infinities are "inf" and "-inf", since JSON has no number for them.
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "palpate/session.hpp"
 
@@ -24,7 +25,7 @@ Command command_from_json(const Json& json);
 
 /// json's member `name`. Throws std::invalid_argument if it is no object or has none.
 const Json& member(const Json& json, const char* name);
-double number_from_json(const Json& json, const char* name);
+double number_from_json(const Json& json, const std::string& name);
 Json number_to_json(double value);
 
 }  // namespace palpate::io

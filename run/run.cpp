@@ -34,10 +34,10 @@ std::unique_ptr<Device> open_for(const Field& field, double isovalue, const Setu
         io::append_number(text, rate);
         throw std::invalid_argument("--rate " + text + ": a live session runs at 250 to 8000 Hz");
     }
-    return devices::open_device(
-        setup.device, {field, isovalue, rate, [&](const DeviceInfo& info) {
-                           return transform_for(field.geometry(), info, setup);
-                       }});
+    return devices::open_device(setup.device, {field, isovalue, rate, [&](const DeviceInfo& info) {
+                                                   return transform_for(field.geometry(), info,
+                                                                        setup);
+                                               }});
 }
 
 /// Puts what a run begins with into its recording. Waits while the queue is full; the servo does

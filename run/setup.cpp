@@ -71,8 +71,7 @@ double isovalue_of(const LoadedVolume& loaded, const FieldSetup& setup) {
     if (loaded.isovalue) return *loaded.isovalue;
     const std::vector<double> levels = suggested_isovalues(histogram_of(loaded.volume, bins));
     if (!levels.empty()) return levels.front();
-    throw std::invalid_argument(loaded.name +
-                                ": the data are constant, there is nothing to feel");
+    throw std::invalid_argument(loaded.name + ": the data are constant, there is nothing to feel");
 }
 
 RendererSettings render_settings(const RenderSetup& setup, const Field& field, double isovalue,
@@ -134,6 +133,11 @@ Session make_session(const Field& field, double isovalue, const DeviceInfo& info
         throw std::invalid_argument("clutch and dead-man switch are the same button: name another");
     }
     return session;
+}
+
+baselines::NamedMethod named_method(std::string_view name) {
+    const ProxyMethod method = baselines::method_named(name);
+    return *std::ranges::find(baselines::methods(), method, &baselines::NamedMethod::method);
 }
 
 std::string text_of(const devices::DeviceChoice& choice) {

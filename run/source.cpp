@@ -45,8 +45,8 @@ LoadedVolume make_beating(const Source& source, const scenes::Scene& first) {
         return loaded;
     }
     const double usual = scenes::beating_period / scenes::beating_frames;
-    loaded.sequence = io::made_sequence(scenes::beating_frames,
-                                        source.frame_interval.value_or(usual), frame);
+    loaded.sequence =
+        io::made_sequence(scenes::beating_frames, source.frame_interval.value_or(usual), frame);
     return loaded;
 }
 

@@ -32,8 +32,8 @@ std::string spacing_text(const Vec3& spacing) {
 void add_names(Names& names, const FileSource& file) {
     if (file.raw) {
         const Index3& size = file.raw->size;
-        names["dims"] = std::to_string(size[0]) + "x" + std::to_string(size[1]) + "x" +
-                        std::to_string(size[2]);
+        names["dims"] =
+            std::to_string(size[0]) + "x" + std::to_string(size[1]) + "x" + std::to_string(size[2]);
         names["type"] = name_of(file.raw->type);
         if (file.raw->skip > 0) names["skip"] = std::to_string(file.raw->skip);
     }

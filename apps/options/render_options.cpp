@@ -38,21 +38,15 @@ run::LevelRange range_from(const std::string& text) {
     if (colon == std::string::npos) {
         throw std::invalid_argument("range " + text + ": LOW:HIGH is needed, as in 300:700");
     }
-    return {io::level_from_text(text.substr(0, colon)), io::level_from_text(text.substr(colon + 1))};
+    return {io::level_from_text(text.substr(0, colon)),
+            io::level_from_text(text.substr(colon + 1))};
 }
 
 void RenderOptions::add_to(CLI::App& command) {
     std::vector<std::string> names;
     for (const auto& entry : baselines::methods()) names.emplace_back(entry.name);
-    command
-        .add_option_function<std::string>(
-            "--method",
-            [this](const std::string& name) {
-                for (const auto& entry : baselines::methods()) {
-                    if (name == entry.name) given.method = entry;
-                }
-            },
-            "Proxy method")
+    const auto choose = [this](const std::string& name) { given.method = run::named_method(name); };
+    command.add_option_function<std::string>("--method", choose, "Proxy method")
         ->check(CLI::IsMember(names))
         ->default_str(given.method.name);
     add_penetrability_to(command);
@@ -65,15 +59,12 @@ void RenderOptions::add_to(CLI::App& command) {
 }
 
 void RenderOptions::add_penetrability_to(CLI::App& command) {
-    command
-        .add_option_function<std::string>(
-            "--penetrability",
-            [this](const std::string& name) {
-                penetrability = name == "off"         ? Penetrability::off
-                                : name == "threshold" ? Penetrability::threshold
-                                                      : Penetrability::ranges;
-            },
-            "Pressing through")
+    const auto choose = [this](const std::string& name) {
+        penetrability = name == "off"         ? Penetrability::off
+                        : name == "threshold" ? Penetrability::threshold
+                                              : Penetrability::ranges;
+    };
+    command.add_option_function<std::string>("--penetrability", choose, "Pressing through")
         ->check(CLI::IsMember({"off", "threshold", "ranges"}))
         ->default_str("off");
     command.add_option("--threshold", threshold, "Penetration threshold PT [device mm] (1)");

@@ -19,8 +19,8 @@ struct RenderOptions {
     std::vector<run::LevelRange> ranges;
 
     void add_to(CLI::App& command);
-    /// Once the command line has been read. Throws std::invalid_argument for an option that would do
-    /// nothing.
+    /// Once the command line has been read. Throws std::invalid_argument for an option that would
+    /// do nothing.
     run::RenderSetup setup() const;
 
   private:

@@ -13,7 +13,7 @@ namespace palpate::app {
 struct RunOptions {
     SourceOptions source;
     RenderOptions render;
-    run::Setup given;  ///< but for `render` and `device`: take setup()
+    run::Setup given;                             ///< but for `render` and `device`: take setup()
     std::optional<devices::DeviceChoice> device;  ///< nothing: `given.device`
     std::string record, commands;
     double seconds = 0;  ///< 0: until the hand has finished or the run is stopped

@@ -21,7 +21,7 @@ struct SetBrush {
 /// One stroke of a brush, at the level felt when it is carried out.
 struct Touch {
     run::HandBrush brush;  ///< its rate does not matter: the stroke is done at once
-    Vec3 from, to;    ///< [mm, physical]
+    Vec3 from, to;         ///< [mm, physical]
 };
 struct Fill {
     edit::Fill fill;

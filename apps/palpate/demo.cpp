@@ -50,9 +50,9 @@ struct Demo {
 
 /// Renders the motion; writes trajectory, trace and path to files.
 void feel(Demo& demo, const DemoOptions& options, const fs::path& folder) {
-    Renderer renderer = make_renderer(
-        demo.field, demo.isovalue,
-        run::offline_settings(options.render.setup(), demo.field, demo.isovalue));
+    Renderer renderer =
+        make_renderer(demo.field, demo.isovalue,
+                      run::offline_settings(options.render.setup(), demo.field, demo.isovalue));
     write_trajectory(demo.trajectory, folder / "trajectory.csv");
     io::TraceWriter trace(folder / "trace.csv");
     io::PathWriter path(folder / "path.csv");
@@ -81,8 +81,8 @@ Vec3 mean_contact(const std::vector<io::TraceRow>& rows) {
     return sum / count;
 }
 
-/// The isosurface with the trajectories of hand and proxy. Returns why there is no picture; the demo
-/// goes on without it. Empty if it worked.
+/// The isosurface with the trajectories of hand and proxy. Returns why there is no picture; the
+/// demo goes on without it. Empty if it worked.
 std::string draw(const Demo& demo, int width, bool quiet, const fs::path& path) {
     pictures::PictureScene scene;
     scene.width = width;
@@ -132,7 +132,8 @@ void write_report(const Demo& demo, const DemoOptions& options, bool drawn, bool
     html += fmt::format("<pre>{}</pre>\n", summary_text(demo.summary));
     if (drawn) {
         html +=
-            "<p><img src=\"surface.png\" alt=\"The isosurface with the trajectory of the hand\"><br>"
+            "<p><img src=\"surface.png\" alt=\"The isosurface with the trajectory of the "
+            "hand\"><br>"
             "Blue: the hand (HIP). Vermilion: the proxy (SCP) in contact. Fainter where it is "
             "behind "
             "the surface.</p>\n";

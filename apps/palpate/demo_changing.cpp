@@ -62,7 +62,7 @@ struct ChangingDemo {
     std::string what;  ///< in a sentence
     io::Trajectory trajectory;
     std::function<void(Renderer&, std::int64_t tick)> change;
-    std::int64_t first_image = 0;              ///< tick of the first picture
+    std::int64_t first_image = 0;             ///< tick of the first picture
     double seconds_per_picture = 0.1;         ///< of the animation
     std::optional<pictures::View> view = {};  ///< nothing: a view of the contact
     std::vector<io::TraceRow> rows = {};
@@ -72,9 +72,9 @@ struct ChangingDemo {
 
 /// Renders the motion while the data change.
 void feel(ChangingDemo& demo, const ChangingOptions& options, const fs::path& folder) {
-    Renderer renderer = make_renderer(
-        demo.field, demo.isovalue,
-        run::offline_settings(options.render.setup(), demo.field, demo.isovalue));
+    Renderer renderer =
+        make_renderer(demo.field, demo.isovalue,
+                      run::offline_settings(options.render.setup(), demo.field, demo.isovalue));
     write_trajectory(demo.trajectory, folder / "trajectory.csv");
     io::TraceWriter trace(folder / "trace.csv");
     const auto ticks = static_cast<std::int64_t>(demo.trajectory.time.size());
@@ -216,9 +216,9 @@ void sculpt(const ChangingOptions& options) {
         if (tick % brush_interval != 0) return;
         const Proxy& proxy = renderer.proxy;
         if (proxy.mode == Mode::free) return from.reset();
-        const auto stroke =
-            from ? run::stroke_of(options.brush, field, proxy.isovalue, *from, proxy.scp_physical, dt)
-                 : std::nullopt;
+        const auto stroke = from ? run::stroke_of(options.brush, field, proxy.isovalue, *from,
+                                                  proxy.scp_physical, dt)
+                                 : std::nullopt;
         from = proxy.scp_physical;
         if (!stroke) return;
         editor.apply(*stroke, EditStep::same);

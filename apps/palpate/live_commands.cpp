@@ -53,8 +53,8 @@ Penetrability LiveCommands::penetrability_from(const std::vector<std::string>& w
     std::vector<DensityRange> ranges;
     for (std::size_t i = 3; i < words.size(); ++i) {
         const run::LevelRange range = range_from(words[i]);
-        ranges.push_back({io::level_in(field_.volume(), range.low),
-                          io::level_in(field_.volume(), range.high)});
+        ranges.push_back(
+            {io::level_in(field_.volume(), range.low), io::level_in(field_.volume(), range.high)});
     }
     return penetrability_ranges(threshold, ranges, field_.solid());
 }
@@ -137,8 +137,9 @@ std::optional<Request> LiveCommands::from_key(char key, const Snapshot& now) {
             return Command(
                 penetrability_.value_or(penetrability_threshold(1, isovalue, field_.solid())));
         case 'b':
-            brush_ = brush_ ? std::nullopt
-                            : std::optional(last_brush_.value_or(run::usual_brush(field_.geometry())));
+            brush_ = brush_
+                         ? std::nullopt
+                         : std::optional(last_brush_.value_or(run::usual_brush(field_.geometry())));
             return DataRequest(ask::SetBrush{brush_});
         case 'u':
             return DataRequest(ask::Undo{});

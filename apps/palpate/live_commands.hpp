@@ -17,8 +17,8 @@ struct Quit {};
 struct Help {};
 using Request = std::variant<Command, DataRequest, Quit, Help>;
 
-/// Turns words into requests. Knows the data's units and the settings so far, since words change one
-/// setting at a time.
+/// Turns words into requests. Knows the data's units and the settings so far, since words change
+/// one setting at a time.
 class LiveCommands {
   public:
     LiveCommands(const Field& field, double isovalue, const RendererSettings& settings);
@@ -41,8 +41,8 @@ class LiveCommands {
     double isovalue_;
     RendererSettings settings_;
     std::optional<Penetrability> penetrability_;  // to switch on again; nothing: a plain threshold
-    std::optional<run::HandBrush> brush_;       // in use
-    std::optional<run::HandBrush> last_brush_;  // to take up again
+    std::optional<run::HandBrush> brush_;         // in use
+    std::optional<run::HandBrush> last_brush_;    // to take up again
 };
 
 /// A request and when [s] it is due.

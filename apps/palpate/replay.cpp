@@ -41,8 +41,7 @@ void refuse_other_options(const CLI::App& command) {
 
 void replay(const ReplayOptions& options) {
     if (options.validate) {
-        return validate(options.source.name(), options.recorded_volume,
-                        options.source.quiet);
+        return validate(options.source.name(), options.recorded_volume, options.source.quiet);
     }
     if (!options.recorded_volume.empty()) {
         throw std::invalid_argument("--volume is for --validate");

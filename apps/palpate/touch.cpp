@@ -242,7 +242,8 @@ void touch(const RunOptions& options) {
     if (!options.brush.empty()) take_up_brush(options, commands, *data);
     start_recording(run, options);
     const DeviceInfo device = run.device();
-    // A program stopped in the middle could not let go of the forces. Ctrl-Z does nothing meanwhile.
+    // A program stopped in the middle could not let go of the forces. Ctrl-Z does nothing
+    // meanwhile.
     std::signal(SIGTSTP, SIG_IGN);
     run.start();
     if (!options.source.quiet) announce(run, device);

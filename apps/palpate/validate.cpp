@@ -36,11 +36,11 @@ void validate(const std::string& recording, const std::string& volume, bool quie
     ProgressBar bar("validating", quiet);
     while (const auto tick = replay.next()) {
         if (const auto differs = run::difference(tick->recorded, tick->again)) {
-            throw io::InputError(fmt::format("{}: tick {} (line {}, {} s) differs: {}: recorded {}, "
-                                             "now {}{}",
-                                             recording, tick->number, reader.line(),
-                                             tick->recorded.tick.time, differs->part,
-                                             differs->recorded, differs->again, excuses(reader)));
+            throw io::InputError(
+                fmt::format("{}: tick {} (line {}, {} s) differs: {}: recorded {}, "
+                            "now {}{}",
+                            recording, tick->number, reader.line(), tick->recorded.tick.time,
+                            differs->part, differs->recorded, differs->again, excuses(reader)));
         }
         if (replay.ticks() % 1024 == 0) bar.at(reader.progress());
     }

@@ -8,9 +8,9 @@
 #include <csignal>
 #include <cstdio>
 
-#include "apps/live/empty_values.hpp"
-#include "apps/live/exit_status.hpp"
-#include "apps/live/view_options.hpp"
+#include "apps/options/empty_values.hpp"
+#include "apps/options/exit_status.hpp"
+#include "apps/options/view_options.hpp"
 #include "apps/viewer/window/appearance.hpp"
 #include "apps/viewer/window/main_window.hpp"
 #include "apps/viewer/window/screenshot.hpp"
@@ -35,13 +35,13 @@ void open(viewer::MainWindow& window, const app::ViewOptions& options) {
         window.files().open_session(QString::fromStdString(options.session));
     } else if (!options.play.empty()) {
         window.files().open_recording(QString::fromStdString(options.play));
-    } else if (!options.touch.volume.volume.empty()) {
-        window.files().open_volume(options.touch.volume);
+    } else if (options.has_volume()) {
+        window.files().open_volume(options.run.source.source());
     }
 }
 
 int show(QApplication& application, const app::ViewOptions& options) {
-    viewer::MainWindow window(options.touch);
+    viewer::MainWindow window({options.run.setup(), options.run.device, options.run.record});
     const QSize size = viewer::window_size(options.size);
     if (size.isValid()) window.resize(size);
     window.show();
@@ -73,7 +73,7 @@ int main(int argc, char** argv) {
     try {
         app::refuse_empty_values(command, argc, argv);
         command.parse(argc, argv);
-        options.finish(command);
+        options.check();
     } catch (const CLI::Success& e) {
         return command.exit(e);
     } catch (const CLI::ParseError& e) {

@@ -39,12 +39,11 @@ struct Options {
     bool normal_priority = false;
 };
 
-app::TouchOptions touch_of(const Options& options) {
-    app::TouchOptions touch;
-    touch.volume.volume = options.volume;
-    touch.device = "simulated:loop=yes";
-    touch.normal_priority = options.normal_priority;
-    return touch;
+run::Setup setup_of(const Options& options) {
+    run::Setup setup;
+    setup.device = devices::parse_device("simulated:loop=yes");
+    setup.real_time = !options.normal_priority;
+    return setup;
 }
 
 /// Longest time between two rounds of the event loop: for how long the window did not answer.
@@ -81,19 +80,19 @@ void print(const char* what, const ServoReport& report) {
 }
 
 ServoReport alone(const Options& options) {
-    const app::TouchOptions touch = touch_of(options);
-    const Live live(app::load(touch.volume, [](double) {}), touch);
+    run::Run live(std::make_shared<run::Data>(run::load(run::source_named(options.volume))),
+                  setup_of(options));
+    live.start();
     std::this_thread::sleep_for(std::chrono::duration<double>(options.seconds));
     return live.report();
 }
 
 /// Turns the view without a pause and counts pictures.
 ServoReport drawing(const Options& options, double& frame) {
-    const app::TouchOptions touch = touch_of(options);
-    MainWindow window(touch);
+    MainWindow window({setup_of(options), {}, {}});
     window.resize(1280, 800);
     window.show();
-    window.files().open_volume(touch.volume);
+    window.files().open_volume(run::source_named(options.volume));
     run_until([&] { return window.live() && window.settled(); });
     Look look = window.panel().look();
     look.volume = options.volume_rendering;
@@ -101,7 +100,7 @@ ServoReport drawing(const Options& options, double& frame) {
     window.views().set_look(look);
     run_until([&] { return window.settled(); });
     // The same stretch of the session is compared: from its beginning.
-    window.files().open_volume(touch.volume);
+    window.files().open_volume(run::source_named(options.volume));
     run_until([&] { return window.live() && window.settled(); });
     window.views().set_look(look);
     double azimuth = 0;
@@ -118,15 +117,14 @@ ServoReport drawing(const Options& options, double& frame) {
 }
 
 void start_and_open(const Options& options) {
-    const app::TouchOptions touch = touch_of(options);
     const auto begin = Clock::now();
-    MainWindow window(touch);
+    MainWindow window({setup_of(options), {}, {}});
     window.resize(1280, 800);
     window.show();
     QCoreApplication::processEvents();
     fmt::print("window shown after {:.2f} s\n", seconds_since(begin));
     const Stall stall;
-    window.files().open_volume(touch.volume);
+    window.files().open_volume(run::source_named(options.volume));
     run_until([&] { return window.live() != nullptr || !window.messages().problem().isEmpty(); });
     fmt::print("felt after {:.2f} s\n", seconds_since(begin));
     run_until([&] { return window.settled(); });

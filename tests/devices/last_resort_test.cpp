@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <chrono>
@@ -47,11 +48,11 @@ class Motor : public Device {
 };
 
 struct Shared {
-    std::atomic<double> sent{-1}, before{-1};
+    std::atomic<double> sent{-1}, other{-1}, before{-1};  // by one motor and by a second one
 };
 
 /// Presses with 2 N from a thread that goes on and on, as a servo would, until `crash` happens in
-/// another. Returns the child's status and what was sent last.
+/// another. Returns the child's status and the larger force that its two motors sent last.
 template <class F>
 std::pair<int, double> crashed(bool guarded, F&& crash) {
     void* memory =
@@ -62,16 +63,21 @@ std::pair<int, double> crashed(bool guarded, F&& crash) {
         std::fclose(stderr);  // what terminate() has to say
         // Sanitizers have handlers of their own.
         for (const int s : {SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT}) std::signal(s, SIG_DFL);
-        Motor motor(shared->sent);
-        std::optional<LastResort> last_resort;
-        if (guarded) last_resort.emplace(motor);
+        Motor motor(shared->sent), second(shared->other);
+        std::optional<LastResort> last_resort, of_second;
+        if (guarded) {
+            last_resort.emplace(motor);
+            of_second.emplace(second);
+        }
         std::jthread servo([&](std::stop_token stop) {
             while (!stop.stop_requested()) {
                 motor.write({0, 0, 2}, 0);
+                second.write({0, 0, 2}, 0);
                 std::this_thread::sleep_for(1ms);
             }
         });
-        for (int i = 0; i < 10'000 && shared->sent != 2; ++i) std::this_thread::sleep_for(1ms);
+        for (int i = 0; i < 10'000 && (shared->sent != 2 || shared->other != 2); ++i)
+            std::this_thread::sleep_for(1ms);
         shared->before = shared->sent.load();
         crash();
         ::_exit(0);
@@ -79,7 +85,7 @@ std::pair<int, double> crashed(bool guarded, F&& crash) {
     int status = 0;
     ::waitpid(child, &status, 0);
     EXPECT_EQ(shared->before, 2);
-    const double sent = shared->sent;
+    const double sent = std::max<double>(shared->sent, shared->other);
     ::munmap(memory, sizeof(Shared));
     return {status, sent};
 }

@@ -1,9 +1,9 @@
-// Sequences that play in a running session.
-#include "apps/live/player.hpp"
+// Sequences that play while a servo feels them.
+#include "palpate/run/player.hpp"
 
-#include "live/living_support.hpp"
+#include "run/run_support.hpp"
 
-namespace palpate::app {
+namespace palpate::run {
 namespace {
 
 using test::comes_true;
@@ -27,25 +27,20 @@ struct Playing {
 
     explicit Playing(const io::LoaderSettings& settings = {}) : player(sequence, settings) {}
     ~Playing() {
-        player.attach(nullptr);
         servo->stop();
+        player.detach(*servo);
     }
 
     void start(double speed) {
         player.play(speed);
-        Session session{make_renderer(field, 1000, {}), {}};
-        player.bring(session);
-        servo = std::make_unique<Servo>(session, device,
-                                        ServoSettings{.rate = 1000, .real_time = false});
-        servo->start();
-        player.attach(servo.get());
+        servo = player.attach({make_renderer(field, 1000, {}), {}}, test::servo_on(device));
     }
     SessionTick now() const {
         const auto snapshot = servo->snapshot();
         return snapshot ? snapshot->session : SessionTick{};
     }
     bool all_loaded() const {
-        return comes_true([&] { return player.view().loaded_to == player.view().end; });
+        return comes_true([&] { return player.state().loaded_to == player.state().end; });
     }
 };
 
@@ -61,7 +56,7 @@ TEST(Player, plays_round_and_the_field_lies_between_the_frames) {
         const double want = into < 0.8 ? 50 * into : 40 * (1 - (into - 0.8) / 0.2);
         EXPECT_NEAR(now.tick.proxy.density, want, 1e-4) << now.moment;
     }
-    const PlayView view = p.player.view();
+    const PlayState view = p.player.state();
     EXPECT_EQ(view.frames, p.sequence.times);
     EXPECT_EQ(view.end, period);
     EXPECT_GE(view.time, 0);
@@ -93,7 +88,7 @@ TEST(Player, pauses_steps_and_seeks) {
     p.player.play(-1);
     EXPECT_TRUE(comes_true([&] { return p.now().tick.proxy.density < 35; }));
     p.player.step(0);
-    EXPECT_EQ(p.player.view().speed, 0);
+    EXPECT_EQ(p.player.state().speed, 0);
     EXPECT_THROW(p.player.play(2000), std::invalid_argument);
     EXPECT_THROW(p.player.seek(std::nan("")), std::invalid_argument);
 }
@@ -105,7 +100,7 @@ TEST(Player, without_a_loop_it_stops_at_the_end_and_with_one_it_goes_on) {
     EXPECT_NEAR(p.now().tick.proxy.density, 40, 1e-4);
     p.player.set_loop(true);
     EXPECT_TRUE(comes_true([&] { return p.now().moment > 5; }));
-    EXPECT_TRUE(p.player.view().loop);
+    EXPECT_TRUE(p.player.state().loop);
 }
 
 TEST(Player, a_sequence_that_does_not_fit_plays_on_over_its_seam) {
@@ -117,10 +112,10 @@ TEST(Player, a_sequence_that_does_not_fit_plays_on_over_its_seam) {
         last = std::max(last, p.now().moment);
         return last > 2.5 * period;
     }));
-    EXPECT_LE(p.player.view().time, period);
+    EXPECT_LE(p.player.state().time, period);
     p.player.seek(0.6);
     EXPECT_TRUE(comes_true([&] {
-        const double time = p.player.view().time;
+        const double time = p.player.state().time;
         return time >= 0.6 && time < 0.8;
     }));
 }
@@ -131,20 +126,48 @@ TEST(Player, a_session_that_begins_anew_begins_where_play_was) {
     ASSERT_TRUE(p.all_loaded());
     p.player.seek(0.5);
     ASSERT_TRUE(comes_true([&] { return p.now().moment == 0.5; }));
-    p.player.attach(nullptr);
     p.servo->stop();
-    Session next{make_renderer(p.field, 1000, {}), {}};
-    p.player.bring(next);
-    EXPECT_EQ(next.renderer.field.time(), 0.5);
+    p.player.detach(*p.servo);
+    std::vector<Command> history;
+    std::optional<Session> next;
+    const auto start = test::servo_on(p.device, &history);
+    p.servo = p.player.attach({make_renderer(p.field, 1000, {}), {}},
+                              [&](Session session, const std::vector<Command>& told) {
+                                  next = session;
+                                  return start(std::move(session), told);
+                              });
+    EXPECT_EQ(next->renderer.field.time(), 0.5);
     // And so does one that is rendered from its recording.
     Session again{make_renderer(p.field, 1000, {}), {}};
     RecordedSamples samples(p.field.shared_samples(),
                             [&](int frame) { return io::read_frame(p.sequence, frame); });
-    for (const Command& told : p.player.history()) palpate::apply(again, samples.whole(told));
+    for (const Command& told : history) palpate::apply(again, samples.whole(told));
     EXPECT_EQ(again.renderer.field.time(), 0.5);
-    EXPECT_EQ(again.renderer.field.cell({1, 1, 1}), next.renderer.field.cell({1, 1, 1}));
-    EXPECT_EQ(again.version, next.version);
+    EXPECT_EQ(again.renderer.field.cell({1, 1, 1}), next->renderer.field.cell({1, 1, 1}));
+    EXPECT_EQ(again.version, next->version);
+}
+
+TEST(Player, two_servos_get_the_same_frames_and_moments) {
+    Playing p;
+    p.start(0);
+    ASSERT_TRUE(p.all_loaded());
+    support::ScriptedDevice other{[](double) { return support::ready_at({5, 5, 5}); }};
+    auto second = p.player.attach({make_renderer(p.field, 1000, {}), {}}, test::servo_on(other));
+    const auto both_at = [&](double moment, double density) {
+        return comes_true([&] {
+            const auto now = second->snapshot();
+            return now && now->session.moment == moment && p.now().moment == moment &&
+                   std::abs(now->session.tick.proxy.density - density) < 1e-4;
+        });
+    };
+    EXPECT_TRUE(both_at(0, 0));
+    p.player.seek(0.3);
+    EXPECT_TRUE(both_at(0.3, 15));
+    second->stop();
+    p.player.detach(*second);
+    p.player.seek(0.6);
+    EXPECT_TRUE(comes_true([&] { return p.now().moment == 0.6; })) << "the first goes on alone";
 }
 
 }  // namespace
-}  // namespace palpate::app
+}  // namespace palpate::run

@@ -1,13 +1,13 @@
-// Samples that are made again by how they came about.
-#include "apps/live/recorded_samples.hpp"
+// Samples that are made again from their recipes.
+#include "palpate/run/recorded_samples.hpp"
 
 #include <cstring>
 
 #include "io/settings_json.hpp"
-#include "live/living_support.hpp"
+#include "run/run_support.hpp"
 #include "support/random.hpp"
 
-namespace palpate::app {
+namespace palpate::run {
 namespace {
 
 bool same_bits(const Samples& a, const Samples& b) {
@@ -121,4 +121,4 @@ TEST(RecordedSamples, damaged_recipes_are_refused) {
 }
 
 }  // namespace
-}  // namespace palpate::app
+}  // namespace palpate::run

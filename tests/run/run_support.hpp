@@ -1,27 +1,35 @@
-// A session that runs on a ball or a sequence, with a hand that stays where it is put.
+// Servos that start on data, and waiting for what they feel.
 #pragma once
 
 #include <gtest/gtest.h>
 
 #include <chrono>
-#include <functional>
 #include <thread>
 
-#include "apps/live/data_in_hand.hpp"
-#include "apps/live/recorded_samples.hpp"
+#include "palpate/run/data.hpp"
+#include "palpate/run/recorded_samples.hpp"
 #include "support/eventually.hpp"
 #include "support/scripted_device.hpp"
 
-namespace palpate::app::test {
+namespace palpate::run::test {
 
 using namespace std::chrono_literals;
 
 using support::comes_true;
 
 inline LoadedVolume loaded(const std::string& name) {
-    VolumeOptions options;
-    options.volume = name;
-    return load(options, {});
+    return load(source_named(name));
 }
 
-}  // namespace palpate::app::test
+/// Starts a servo on `device`; `told` gets the history, if it is not null.
+inline StartServo servo_on(Device& device, std::vector<Command>* told = nullptr) {
+    return [&device, told](Session session, const std::vector<Command>& history) {
+        if (told) *told = history;
+        auto servo = std::make_unique<Servo>(std::move(session), device,
+                                             ServoSettings{.rate = 1000, .real_time = false});
+        servo->start();
+        return servo;
+    };
+}
+
+}  // namespace palpate::run::test

@@ -1,5 +1,5 @@
-// A session as the window holds it.
-#include "apps/viewer/model/live.hpp"
+// Live runs: commands, recordings, other devices and fields, several runs on the same data.
+#include "palpate/run/run.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -9,11 +9,11 @@
 #include <functional>
 #include <thread>
 
-#include "apps/live/recorded_scene.hpp"
+#include "palpate/run/replay.hpp"
 #include "support/eventually.hpp"
 #include "support/scratch_folder.hpp"
 
-namespace palpate::viewer {
+namespace palpate::run {
 namespace {
 
 using support::comes_true;
@@ -21,27 +21,31 @@ using support::comes_true;
 using namespace std::chrono_literals;
 using support::ScratchFolder;
 
-app::TouchOptions on_a_ball(const std::string& device) {
-    app::TouchOptions options;
-    options.volume.volume = "synthetic:sphere:32x32x32";
-    options.device = device;
-    options.normal_priority = true;
-    return options;
+std::shared_ptr<Data> ball() {
+    return std::make_shared<Data>(load(source_named("synthetic:sphere:32x32x32")));
+}
+
+Setup with_device(const std::string& device) {
+    Setup setup;
+    setup.device = devices::parse_device(device);
+    setup.real_time = false;
+    return setup;
 }
 
 /// A hand that presses from the first moment.
 const std::string pressing = "simulated:hand=hold,depth=5,seconds=60";
 
-struct BallSession {
-    app::TouchOptions options;
-    Live live;
+struct BallRun {
+    Run live;
 
-    explicit BallSession(const std::string& device = "mouse")
-        : options(on_a_ball(device)), live(app::load(options.volume, {}), options) {}
+    explicit BallRun(const std::string& device = "mouse", std::shared_ptr<Data> data = ball())
+        : live(std::move(data), with_device(device)) {
+        live.start();
+    }
 };
 
 /// So many ticks from now on have gone by.
-bool ticks_go_on(const Live& live, std::int64_t count = 20) {
+bool ticks_go_on(const Run& live, std::int64_t count = 20) {
     const auto before = live.snapshot();
     const std::int64_t until = (before ? before->number : 0) + count;
     return comes_true([&] {
@@ -50,8 +54,8 @@ bool ticks_go_on(const Live& live, std::int64_t count = 20) {
     });
 }
 
-TEST(Live, commands_show_in_settings_and_snapshots) {
-    BallSession s;
+TEST(Run, commands_show_in_settings_and_snapshots) {
+    BallRun s;
     ASSERT_NE(s.live.mouse(), nullptr);
     ForceSettings force = s.live.settings().force;
     force.stiffness = 0.25;
@@ -70,8 +74,8 @@ TEST(Live, commands_show_in_settings_and_snapshots) {
     }));
 }
 
-TEST(Live, a_command_that_cannot_be_carried_out_changes_nothing) {
-    BallSession s;
+TEST(Run, a_command_that_cannot_be_carried_out_changes_nothing) {
+    BallRun s;
     ForceSettings force = s.live.settings().force;
     const double before = force.stiffness;
     force.stiffness = 1e6;
@@ -82,8 +86,8 @@ TEST(Live, a_command_that_cannot_be_carried_out_changes_nothing) {
     EXPECT_TRUE(ticks_go_on(s.live));
 }
 
-TEST(Live, the_mouse_moves_the_hand) {
-    BallSession s;
+TEST(Run, the_mouse_moves_the_hand) {
+    BallRun s;
     s.live.mouse()->aim({10, 20, 30});
     EXPECT_TRUE(comes_true([&] {
         const auto now = s.live.snapshot();
@@ -99,8 +103,8 @@ struct Again {
 
     explicit Again(const std::filesystem::path& path) {
         io::RecordingReader reader(path);
-        const auto loaded = app::load(app::recorded_volume(reader.head(), path), {});
-        Session session = app::recorded_session(reader.head(), loaded, path.string());
+        const auto loaded = load(recorded_source(reader.head(), path));
+        Session session = recorded_session(reader.head(), loaded, path.string());
         while (const auto event = reader.next()) {
             if (const auto* command = std::get_if<Command>(&*event)) {
                 apply(session, *command);
@@ -120,9 +124,9 @@ struct Again {
     }
 };
 
-TEST(Live, a_recording_with_commands_comes_out_the_same_bit_for_bit) {
+TEST(Run, a_recording_with_commands_comes_out_the_same_bit_for_bit) {
     const ScratchFolder folder;
-    BallSession s(pressing);
+    BallRun s(pressing);
     s.live.record(folder / "a.csv");
     ASSERT_TRUE(ticks_go_on(s.live, 300));
     s.live.send(command::Isovalue{70});
@@ -139,9 +143,9 @@ TEST(Live, a_recording_with_commands_comes_out_the_same_bit_for_bit) {
     EXPECT_TRUE(ticks_go_on(s.live));
 }
 
-TEST(Live, what_was_asked_for_just_before_a_restart_is_not_lost) {
+TEST(Run, what_was_asked_for_just_before_a_restart_is_not_lost) {
     const ScratchFolder folder;
-    BallSession s;
+    BallRun s;
     ASSERT_TRUE(ticks_go_on(s.live));
     DeviceTransform moved = s.live.settings().transform;
     for (int i = 0; i < 10; ++i) {
@@ -163,9 +167,9 @@ TEST(Live, what_was_asked_for_just_before_a_restart_is_not_lost) {
     }
 }
 
-TEST(Live, a_level_that_was_pressed_to_stays_at_a_restart) {
+TEST(Run, a_level_that_was_pressed_to_stays_at_a_restart) {
     const ScratchFolder folder;
-    BallSession s(pressing);
+    BallRun s(pressing);
     s.live.send(penetrability_threshold(0.2, s.live.isovalue()));
     ASSERT_TRUE(comes_true([&] {
         const auto now = s.live.snapshot();
@@ -178,10 +182,10 @@ TEST(Live, a_level_that_was_pressed_to_stays_at_a_restart) {
     EXPECT_EQ(s.live.isovalue(), felt);
 }
 
-TEST(Live, a_recording_is_complete_when_the_session_ends) {
+TEST(Run, a_recording_is_complete_when_the_session_ends) {
     const ScratchFolder folder;
     {
-        BallSession s(pressing);
+        BallRun s(pressing);
         s.live.record(folder / "a.csv");
         ASSERT_TRUE(ticks_go_on(s.live, 50));
     }
@@ -190,10 +194,10 @@ TEST(Live, a_recording_is_complete_when_the_session_ends) {
     EXPECT_GE(again.ticks, 50);
 }
 
-TEST(Live, recording_to_a_file_that_is_there_changes_nothing) {
+TEST(Run, recording_to_a_file_that_is_there_changes_nothing) {
     const ScratchFolder folder;
     support::put_bytes(folder / "mine.csv", "mine");
-    BallSession s;
+    BallRun s;
     s.live.record(folder / "a.csv");
     ASSERT_TRUE(ticks_go_on(s.live, 20));
     const std::int64_t before = s.live.snapshot()->number;
@@ -229,9 +233,9 @@ class SmallDisk {
     void (*handler_)(int) = nullptr;
 };
 
-TEST(Live, when_the_disk_is_full_the_session_goes_on_and_says_so_at_the_end) {
+TEST(Run, when_the_disk_is_full_the_session_goes_on_and_says_so_at_the_end) {
     const ScratchFolder folder;
-    BallSession s(pressing);
+    BallRun s(pressing);
     std::string problem;
     {
         const SmallDisk disk(30'000);
@@ -248,15 +252,15 @@ TEST(Live, when_the_disk_is_full_the_session_goes_on_and_says_so_at_the_end) {
     EXPECT_GT(again.ticks, 5);
 }
 
-TEST(Live, another_device_goes_on_with_what_was_asked_for) {
-    BallSession s("mouse");
+TEST(Run, another_device_goes_on_with_what_was_asked_for) {
+    BallRun s("mouse");
     ForceSettings force = s.live.settings().force;
     force.stiffness = 0.2;
     force.viscosity = 1e-4;
     s.live.send(force);
     s.live.send(command::Isovalue{65.5});
     s.live.send(Friction{0.4, 0.3});
-    s.live.use_device(pressing);
+    s.live.use_device(devices::parse_device(pressing));
     EXPECT_EQ(s.live.mouse(), nullptr);
     EXPECT_EQ(s.live.device().name, "simulated");
     const auto as_asked = [&] {
@@ -271,51 +275,53 @@ TEST(Live, another_device_goes_on_with_what_was_asked_for) {
         return now && now->session.tick.proxy.mode == Mode::constrained &&
                now->session.tick.proxy.isovalue == 65.5;
     }));
-    s.live.use_device("mouse");
+    s.live.use_device(devices::parse_device("mouse"));
     EXPECT_NE(s.live.mouse(), nullptr);
-    EXPECT_EQ(s.live.options().device, "mouse");
+    EXPECT_EQ(s.live.setup().device.name, "mouse");
     as_asked();
     EXPECT_TRUE(ticks_go_on(s.live));
 }
 
-TEST(Live, a_force_limit_that_was_lowered_stays_low_with_another_device) {
-    BallSession s("mouse");
+TEST(Run, a_force_limit_that_was_lowered_stays_low_with_another_device) {
+    BallRun s("mouse");
     ForceSettings force = s.live.settings().force;
     force.limit = 0.7;
     s.live.send(force);
-    s.live.use_device("simulated");
+    s.live.use_device(devices::parse_device("simulated"));
     EXPECT_EQ(s.live.settings().force.limit, 0.7);
     force.limit = s.live.device().limits.maximum_force;
     s.live.send(force);
-    s.live.use_device("simulated:profile=omega3");
+    s.live.use_device(devices::parse_device("simulated:profile=omega3"));
     EXPECT_EQ(s.live.settings().force.limit, s.live.device().limits.maximum_force);
     EXPECT_GT(s.live.settings().force.limit, force.limit);
 }
 
-TEST(Live, a_device_that_is_refused_leaves_the_old_one_running) {
+TEST(Run, a_device_that_is_refused_leaves_the_old_one_running) {
     const ScratchFolder folder;
-    BallSession s("mouse");
+    BallRun s("mouse");
     s.live.record(folder / "a.csv");
     ASSERT_TRUE(ticks_go_on(s.live));
     const std::int64_t before = s.live.snapshot()->number;
-    EXPECT_THROW(s.live.use_device("gloves"), std::invalid_argument);
-    EXPECT_THROW(s.live.use_device("simulated:grip=iron"), std::invalid_argument);
-    EXPECT_ANY_THROW(s.live.use_device("recorded:file=" + (folder / "none.csv").string()));
+    EXPECT_THROW(s.live.use_device(devices::parse_device("gloves")), std::invalid_argument);
+    EXPECT_THROW(s.live.use_device(devices::parse_device("simulated:grip=iron")),
+                 std::invalid_argument);
+    EXPECT_ANY_THROW(s.live.use_device(
+        devices::parse_device("recorded:file=" + (folder / "none.csv").string())));
     EXPECT_NE(s.live.mouse(), nullptr);
-    EXPECT_EQ(s.live.options().device, "mouse");
+    EXPECT_EQ(s.live.setup().device.name, "mouse");
     EXPECT_NE(s.live.recording(), nullptr);
     ASSERT_TRUE(ticks_go_on(s.live));
     EXPECT_GT(s.live.snapshot()->number, before);
 }
 
-TEST(Live, the_other_side_is_solid_when_that_is_asked_for_and_a_hand_by_itself_finds_it) {
-    BallSession s(pressing);
+TEST(Run, the_other_side_is_solid_when_that_is_asked_for_and_a_hand_by_itself_finds_it) {
+    BallRun s(pressing);
     s.live.send(penetrability_threshold(1, s.live.isovalue()));
     s.live.use_field(Solid::below, 200);
     EXPECT_EQ(s.live.field().solid(), Solid::below);
     EXPECT_EQ(s.live.field().background(), 200);
     EXPECT_FALSE(s.live.settings().penetrability.on);
-    s.live.use_device(pressing);
+    s.live.use_device(devices::parse_device(pressing));
     EXPECT_EQ(s.live.field().solid(), Solid::below);
     const Field& field = s.live.field();
     ASSERT_TRUE(comes_true([&] {
@@ -326,8 +332,8 @@ TEST(Live, the_other_side_is_solid_when_that_is_asked_for_and_a_hand_by_itself_f
     EXPECT_LE(field.sign() * (value_at(field, proxy.scp) - proxy.isovalue), 1e-6);
 }
 
-TEST(Live, a_background_that_is_none_changes_nothing) {
-    BallSession s;
+TEST(Run, a_background_that_is_none_changes_nothing) {
+    BallRun s;
     ASSERT_TRUE(ticks_go_on(s.live));
     const std::int64_t before = s.live.snapshot()->number;
     EXPECT_THROW(s.live.use_field(Solid::below, std::nan("")), std::invalid_argument);
@@ -336,9 +342,9 @@ TEST(Live, a_background_that_is_none_changes_nothing) {
     EXPECT_GT(s.live.snapshot()->number, before);
 }
 
-TEST(Live, every_restart_begins_without_force_and_keeps_to_the_limits) {
+TEST(Run, every_restart_begins_without_force_and_keeps_to_the_limits) {
     const ScratchFolder folder;
-    BallSession s(pressing);
+    BallRun s(pressing);
     ForceSettings force = s.live.settings().force;
     force.limit = 0.8;
     force.start_below = std::numeric_limits<double>::infinity();  // the ramp alone must do it
@@ -375,5 +381,88 @@ TEST(Live, every_restart_begins_without_force_and_keeps_to_the_limits) {
     }
 }
 
+/// The version that a run feels within some ticks.
+bool feels(const Run& run, std::uint64_t version) {
+    return comes_true([&] {
+        const auto now = run.snapshot();
+        return now && now->session.version == version;
+    });
+}
+
+TEST(Run, two_runs_on_the_same_data_feel_each_others_edits_and_undo) {
+    const auto data = ball();
+    BallRun a(pressing, data), b(pressing, data);
+    ASSERT_TRUE(ticks_go_on(a.live));
+    ASSERT_TRUE(ticks_go_on(b.live));
+    a.live.data().editor().apply(edit::Fill{{{5, 5, 5}, {20, 20, 20}}, 0});
+    EXPECT_TRUE(feels(a.live, 1));
+    EXPECT_TRUE(feels(b.live, 1));
+    b.live.data().editor().apply(edit::Fill{{{5, 5, 5}, {9, 9, 9}}, 200});
+    EXPECT_TRUE(feels(a.live, 2));
+    EXPECT_TRUE(feels(b.live, 2));
+    EXPECT_TRUE(b.live.data().editor().undo());
+    EXPECT_TRUE(feels(a.live, 1));
+    EXPECT_TRUE(feels(b.live, 1));
+    EXPECT_EQ(a.live.field_now().shared_samples(), b.live.field_now().shared_samples());
+}
+
+TEST(Run, an_edit_reaches_every_run_within_some_ticks) {
+    const auto data = ball();
+    BallRun a("mouse", data), b("mouse", data);
+    ASSERT_TRUE(ticks_go_on(a.live));
+    ASSERT_TRUE(ticks_go_on(b.live));
+    const ScratchFolder folder;
+    a.live.record(folder / "a.csv");
+    b.live.record(folder / "b.csv");
+    ASSERT_TRUE(ticks_go_on(a.live));
+    ASSERT_TRUE(ticks_go_on(b.live));
+    data->editor().apply(edit::Fill{{{5, 5, 5}, {20, 20, 20}}, 0});
+    const std::int64_t a_sent = a.live.snapshot()->number, b_sent = b.live.snapshot()->number;
+    ASSERT_TRUE(ticks_go_on(a.live, 3));
+    ASSERT_TRUE(ticks_go_on(b.live, 3));
+    (void)a.live.stop_recording();
+    (void)b.live.stop_recording();
+    // apply() has returned, so the command was in both queues before tick a_sent + 1.
+    for (const auto& [name, sent] : {std::pair{"a.csv", a_sent}, std::pair{"b.csv", b_sent}}) {
+        io::RecordingReader reader(folder / name);
+        std::int64_t number = 0;
+        std::optional<std::int64_t> felt;
+        while (const auto event = reader.next()) {
+            const auto* tick = std::get_if<SessionTick>(&*event);
+            if (!tick) continue;
+            if (tick->version == 1 && !felt) felt = number;
+            ++number;
+        }
+        ASSERT_TRUE(felt) << name;
+        EXPECT_LE(*felt, sent + 2) << name;
+    }
+}
+
+TEST(Run, a_run_that_starts_on_edited_data_begins_with_the_edits_and_so_does_its_recording) {
+    const ScratchFolder folder;
+    const auto data = ball();
+    BallRun a("mouse", data);
+    data->editor().apply(edit::Fill{{{5, 5, 5}, {20, 20, 20}}, 0});
+    {
+        run::Run b(data, with_device(pressing));
+        b.record(folder / "b.csv");
+        b.start();
+        EXPECT_TRUE(feels(b, 1));
+        data->editor().apply(edit::Fill{{{5, 5, 5}, {9, 9, 9}}, 200});
+        EXPECT_TRUE(feels(b, 2));
+    }
+    io::RecordingReader reader(folder / "b.csv");
+    Replay replay(reader, data->loaded(), "b.csv");
+    while (const auto tick = replay.next()) {
+        const auto differs = difference(tick->recorded, tick->again);
+        ASSERT_FALSE(differs) << tick->number << ": " << differs->part;
+    }
+    EXPECT_GT(replay.ticks(), 0);
+    EXPECT_GE(replay.commands(), 2);
+    // The run that stays is kept up to date.
+    data->editor().undo();
+    EXPECT_TRUE(feels(a.live, 1));
+}
+
 }  // namespace
-}  // namespace palpate::viewer
+}  // namespace palpate::run

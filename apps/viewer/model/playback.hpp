@@ -64,8 +64,8 @@ class Playback {
     const Overview& overview() const { return overview_; }
     /// The field that was felt, as it was at the start.
     const Field& field() const { return field_; }
-    /// The field at a snapshot: with the edits up to then, some of which may have to be repeated, or
-    /// at the moment of the sequence.
+    /// The field at a snapshot: with the edits up to then, some of which may have to be repeated,
+    /// or at the moment of the sequence.
     Field field_at(const Snapshot& snapshot);
 
   private:
@@ -78,8 +78,8 @@ class Playback {
     io::RecordingHead head_;
     Field field_;
     std::optional<run::RecordedSamples> samples_;  // once all is read
-    std::deque<Snapshot> snapshots_;    // grows without a copy of all of it
-    double interval_ = least_interval;  // [s] between snapshots
+    std::deque<Snapshot> snapshots_;               // grows without a copy of all of it
+    double interval_ = least_interval;             // [s] between snapshots
     std::size_t ticks_ = 0, different_ = 0;
     bool complete_ = false;
     Overview overview_;

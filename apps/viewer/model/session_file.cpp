@@ -1,140 +1,54 @@
-// Sessions as JSON: one list of members a struct, walked through by a writer and a reader.
+// Reads and writes session files: one list of members a struct, for a writer and a reader.
 #include "apps/viewer/model/session_file.hpp"
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <concepts>
+#include <map>
 #include <stdexcept>
-#include <utility>
 
-#include "io/settings_json.hpp"
-#include "palpate/baselines/methods.hpp"
+#include "io/json_members.hpp"
 #include "palpate/io/csv.hpp"
 #include "palpate/io/output.hpp"
 
-namespace palpate::viewer {
-namespace {
+namespace palpate::pictures {
 
-using io::Json;
-
-constexpr const char* format_name = "palpate-session";
-constexpr int version = 1;
-constexpr std::uintmax_t largest_file = std::uintmax_t{16} << 20;  // [bytes] far more than any
-constexpr std::string_view synthetic_prefix = "synthetic:";
-
-[[noreturn]] void wrong(const std::string& name, const std::string& what) {
-    throw std::invalid_argument("'" + name + "' " + what);
+static io::Json to_value(const Colour& c) {
+    return io::to_value(Vec3(c.red, c.green, c.blue));
 }
 
-Json json_from(double value) {
-    return value;
-}
-Json json_from(const Vec3& v) {
-    return {v[0], v[1], v[2]};
-}
-Json json_from(const Colour& c) {
-    return {c.red, c.green, c.blue};
-}
-
-/// Three numbers of an array, whatever they mean.
-Vec3 three_from(const Json& json, const std::string& name) {
-    if (!json.is_array() || json.size() != 3) wrong(name, "must be three numbers");
+static void from_value(const io::Json& json, const std::string& name, Colour& colour) {
     Vec3 v;
-    for (std::size_t i = 0; i < 3; ++i) {
-        if (!json[i].is_number()) wrong(name, "must be three numbers");
-        v[static_cast<int>(i)] = json[i].get<double>();
-    }
-    return v;
+    io::from_value(json, name, v);
+    colour = {v[0], v[1], v[2]};
 }
 
-struct Writer {
-    Json json = Json::object();
+static void members(auto& v, io::Is<Camera> auto& s) {
+    v("focus", s.focus);
+    v("towards_viewer", s.towards_viewer);
+    v("up", s.up);
+    v("half_height", s.half_height);
+}
 
-    template <class T>
-    void operator()(const char* name, const T& value) {
-        if constexpr (requires { members(*this, value); }) {
-            Writer part;
-            members(part, value);
-            json[name] = std::move(part.json);
-        } else if constexpr (std::same_as<T, bool> || std::same_as<T, std::string>) {
-            json[name] = value;
-        } else {
-            json[name] = json_from(value);
-        }
-    }
-    template <class T>
-    void operator()(const char* name, const std::optional<T>& value) {
-        if (value) (*this)(name, *value);
-    }
-    void operator()(const char* name, const std::vector<ControlPoint>& points);
-};
+}  // namespace palpate::pictures
 
-/// Members that are missing leave what is there.
-struct Reader {
-    const Json& json;
-    std::string where;  ///< "" or "look."
+namespace palpate::viewer {
 
-    const Json* find(const char* name) const {
-        const auto found = json.find(name);
-        return found == json.end() ? nullptr : &*found;
-    }
-    static Reader of(const Json& json, const std::string& name) {
-        if (!json.is_object()) wrong(name, "must be an object");
-        return {json, name + "."};
-    }
-    template <class T>
-    void operator()(const char* name, T& value) {
-        const Json* const j = find(name);
-        if (!j) return;
-        if constexpr (requires { members(*this, value); }) {
-            Reader part = of(*j, where + name);
-            members(part, value);
-        } else {
-            get(*j, where + name, value);
-        }
-    }
-    template <class T>
-    void operator()(const char* name, std::optional<T>& value) {
-        if (find(name)) (*this)(name, value.emplace());
-    }
-    static void get(const Json& j, const std::string& name, bool& value) {
-        if (!j.is_boolean()) wrong(name, "must be true or false");
-        value = j.get<bool>();
-    }
-    static void get(const Json& j, const std::string& name, double& value) {
-        if (!j.is_number()) wrong(name, "must be a number");
-        value = j.get<double>();
-    }
-    static void get(const Json& j, const std::string& name, std::string& value) {
-        if (!j.is_string()) wrong(name, "must be text");
-        value = j.get<std::string>();
-    }
-    static void get(const Json& j, const std::string& name, Vec3& value) {
-        value = three_from(j, name);
-    }
-    static void get(const Json& j, const std::string& name, Colour& value) {
-        const Vec3 c = three_from(j, name);
-        value = {c[0], c[1], c[2]};
-    }
-    static void get(const Json& j, const std::string& name, std::vector<ControlPoint>& points);
-};
+using io::Is;
 
-/// S is T, const or not.
-template <class S, class T>
-concept Is = std::same_as<std::remove_const_t<S>, T>;
+// The lists of members. Not in an unnamed namespace, where io::JsonWriter would not find them.
 
-void members(auto& v, Is<ControlPoint> auto& s) {
+static void members(auto& v, Is<ControlPoint> auto& s) {
     v("level", s.level);
     v("colour", s.colour);
     v("opacity", s.opacity);
 }
 
-void members(auto& v, Is<TransferFunction> auto& s) {
+static void members(auto& v, Is<TransferFunction> auto& s) {
     v("preset", s.preset);
     v("points", s.points);
 }
 
-void members(auto& v, Is<Look> auto& s) {
+static void members(auto& v, Is<Look> auto& s) {
     v("surface", s.surface);
     v("surface_colour", s.surface_colour);
     v("surface_opacity", s.surface_opacity);
@@ -150,18 +64,8 @@ void members(auto& v, Is<Look> auto& s) {
     v("scale_bar", s.scale_bar);
 }
 
-void members(auto& v, Is<pictures::Camera> auto& s) {
-    v("focus", s.focus);
-    v("towards_viewer", s.towards_viewer);
-    v("up", s.up);
-    v("half_height", s.half_height);
-}
-
-/// All but volume, solid side, isovalue and settings, which are not plain members.
-void members(auto& v, Is<SessionFile> auto& s) {
-    v("background", s.background);
-    v("device", s.device);
-    v("method", s.method);
+/// The plain members after `device` and `method`.
+static void members(auto& v, Is<SessionFile> auto& s) {
     v("look", s.look);
     v("camera", s.camera);
     v("crosshair", s.crosshair);
@@ -171,22 +75,17 @@ void members(auto& v, Is<SessionFile> auto& s) {
     v("slices_shown", s.slices_shown);
 }
 
-void Writer::operator()(const char* name, const std::vector<ControlPoint>& points) {
-    Json& list = json[name] = Json::array();
-    for (const ControlPoint& point : points) {
-        Writer part;
-        members(part, point);
-        list.push_back(std::move(part.json));
-    }
-}
+namespace {
 
-void Reader::get(const Json& j, const std::string& name, std::vector<ControlPoint>& points) {
-    if (!j.is_array()) wrong(name, "must be a list");
-    points.clear();
-    for (const Json& point : j) {
-        Reader part = of(point, name + "[" + std::to_string(points.size()) + "]");
-        members(part, points.emplace_back());
-    }
+using io::Json;
+
+constexpr const char* format_name = "palpate-session";
+constexpr int version = 1;
+constexpr std::uintmax_t largest_file = std::uintmax_t{16} << 20;  // [bytes] far more than any
+constexpr std::string_view synthetic_prefix = "synthetic:";
+
+[[noreturn]] void wrong(const std::string& name, const std::string& what) {
+    throw std::invalid_argument("'" + name + "' " + what);
 }
 
 void check_part(const std::string& name, double value) {
@@ -229,12 +128,12 @@ void check_camera(const pictures::Camera& camera) {
 
 /// Throws std::invalid_argument naming the member.
 void check_session(const SessionFile& s) {
-    if (s.volume.volume.empty()) wrong("volume", "must have a name");
+    if (name_of(s.source).empty()) wrong("volume", "must have a name");
     check_finite("isovalue", s.isovalue);
     if (s.background) check_finite("background", *s.background);
-    if (s.device.empty()) wrong("device", "must have a name");
+    if (s.device.name.empty()) wrong("device", "must have a name");
     RendererSettings settings = s.settings.value_or(RendererSettings{});
-    settings.method = baselines::method_named(s.method);
+    settings.method = s.method.method;
     check(settings);
     check(settings.penetrability, s.solid);
     check_look(s.look);
@@ -245,21 +144,21 @@ void check_session(const SessionFile& s) {
     if (!(s.window_low <= s.window_high)) wrong("window_low", "must not be above 'window_high'");
 }
 
-app::VolumeOptions volume_from(const Json& json, const std::filesystem::path& folder) {
+run::Source source_from(const Json& json, const std::filesystem::path& folder) {
     if (!json.is_object()) wrong("volume", "must be an object");
     std::map<std::string, std::string> names;
     for (const auto& [name, value] : json.items()) {
-        Reader::get(value, "volume." + name, names[name]);
+        io::JsonReader::get(value, "volume." + name, names[name]);
     }
-    app::VolumeOptions options = app::options_from(names);
-    if (options.volume.empty()) wrong("volume.volume", "is missing");
-    if (!options.volume.starts_with(synthetic_prefix)) {
-        options.volume = (folder / options.volume).lexically_normal().string();
+    std::string& volume = names["volume"];
+    if (volume.empty()) wrong("volume.volume", "is missing");
+    if (!volume.starts_with(synthetic_prefix)) {
+        volume = (folder / volume).lexically_normal().string();
     }
-    return options;
+    return run::source_from(names);
 }
 
-/// As the file names it: relative where it lies below the folder.
+/// The name for the file: relative where the volume lies below the folder.
 std::string name_from(const std::string& volume, const std::filesystem::path& folder) {
     if (volume.starts_with(synthetic_prefix)) return volume;
     const auto whole = std::filesystem::absolute(volume).lexically_normal();
@@ -294,9 +193,9 @@ void check_head(const Json& json) {
 SessionFile session_from(const Json& json, const std::filesystem::path& folder) {
     check_head(json);
     SessionFile session;
-    session.volume = volume_from(needed(json, "volume"), folder);
-    Reader::get(needed(json, "isovalue"), "isovalue", session.isovalue);
-    Reader reader{json, ""};
+    session.source = source_from(needed(json, "volume"), folder);
+    io::JsonReader::get(needed(json, "isovalue"), "isovalue", session.isovalue);
+    io::JsonReader reader{json};
     std::string solid = "above";
     reader("solid", solid);
     if (solid != "above" && solid != "below") wrong("solid", "must be above or below");
@@ -305,9 +204,16 @@ SessionFile session_from(const Json& json, const std::filesystem::path& folder) 
         if (!settings->is_object()) wrong("settings", "must be an object");
         io::from_json(*settings, session.settings.emplace());
     }
+    reader("background", session.background);
+    std::string device = run::text_of(session.device), method = session.method.name;
+    reader("device", device);
+    reader("method", method);
+    if (device.empty()) wrong("device", "must have a name");
+    session.device = devices::parse_device(device);
+    session.method = run::named_method(method);
     members(reader, session);
     check_session(session);
-    if (session.settings) session.settings->method = baselines::method_named(session.method);
+    if (session.settings) session.settings->method = session.method.method;
     return session;
 }
 
@@ -332,15 +238,18 @@ SessionFile read_session(const std::filesystem::path& path) {
 
 void write_session(const std::filesystem::path& path, const SessionFile& session) {
     check_session(session);
-    app::VolumeOptions volume = session.volume;
-    volume.volume = name_from(volume.volume, path.parent_path());
-    Writer writer;
+    auto volume = run::to_names(session.source);
+    volume["volume"] = name_from(volume["volume"], path.parent_path());
+    io::JsonWriter writer;
     writer.json["format"] = format_name;
     writer.json["version"] = version;
-    writer.json["volume"] = app::to_names(volume);
+    writer.json["volume"] = volume;
     writer.json["solid"] = session.solid == Solid::above ? "above" : "below";
     writer.json["isovalue"] = session.isovalue;
     if (session.settings) writer.json["settings"] = io::to_json(*session.settings);
+    writer("background", session.background);
+    writer("device", run::text_of(session.device));
+    writer("method", std::string(session.method.name));
     members(writer, session);
     std::string text;
     try {

@@ -1,39 +1,37 @@
-// A session in a file: what was opened, how it was felt and how it was looked at, to go on another
-// day. JSON; the format is in docs/session_files.md.
+// Session files: what was opened, how it was felt and how it looked, to continue another day. JSON;
+// the format is in docs/session_files.md.
 #pragma once
 
 #include <filesystem>
 #include <optional>
 #include <string>
 
-#include "apps/live/volume_options.hpp"
 #include "apps/viewer/model/look.hpp"
-#include "palpate/renderer.hpp"
+#include "palpate/run/setup.hpp"
 
 namespace palpate::viewer {
 
 struct SessionFile {
-    /// Only what says which volume it is and how it is read; `quiet` is not kept.
-    app::VolumeOptions volume;
+    run::Source source;
     Solid solid = Solid::above;
-    std::optional<double> background;  ///< [data units] unless it is the usual one
+    std::optional<double> background;  ///< [data units] nothing: the usual one
     double isovalue = 0;               ///< [data units] finite
-    std::string device = "simulated";  ///< as for --device, options and all
-    std::string method = "exact";      ///< of the proxy, by name
-    /// `method` goes with the name above when it is read, and is not looked at when it is written;
-    /// a penetrability function is code and cannot be kept. Nothing: what suits device and volume.
+    devices::DeviceChoice device{"simulated", {}};
+    baselines::NamedMethod method = baselines::methods().front();
+    /// `settings->method` is that of `method` when it is read, and ignored when it is written; a
+    /// penetrability function is code and is not kept. Nothing: the defaults for device and volume.
     std::optional<RendererSettings> settings;
     Look look;
-    std::optional<pictures::Camera> camera;  ///< nothing: the whole volume
+    std::optional<pictures::Camera> camera;  ///< nothing: one that shows the whole volume
     std::optional<Vec3> crosshair;           ///< [mm, physical]; nothing: the middle
-    bool follow = true;                      ///< the crosshair goes with the hand
+    bool follow = true;                      ///< the crosshair follows the hand
     double window_low = 0, window_high = 0;  ///< [data units] grey levels; equal: the usual ones
     bool slices_shown = true;                ///< the panes
 };
 
 /// Reads a session. A name of a volume that is relative counts from the session's folder.
-/// Members that this version does not know are passed over, those that are missing have their
-/// defaults, but for the format, the volume and the isovalue. Throws io::InputError, one line that
+/// Unknown members are ignored, missing ones have their defaults, except the format, the volume and
+/// the isovalue, which are needed. Throws io::InputError, one line that
 /// names the file and the member: no session, of a later version, damaged, or with values that
 /// cannot be used.
 SessionFile read_session(const std::filesystem::path& path);

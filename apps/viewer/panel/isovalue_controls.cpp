@@ -86,9 +86,9 @@ void IsovalueControls::connect_inputs() {
             [this](int at) { Q_EMIT solid_wanted(at == 0 ? Solid::above : Solid::below); });
 }
 
-void IsovalueControls::set_data(const Field& field, const app::Histogram& histogram) {
+void IsovalueControls::set_data(const Field& field, const run::Histogram& histogram) {
     field_ = field;
-    chart_->set_data(histogram, app::suggested_isovalues(histogram));
+    chart_->set_data(histogram, run::suggested_isovalues(histogram));
     box_->setSingleStep(chart_->fine_step());
     set_solid(field.solid());
 }

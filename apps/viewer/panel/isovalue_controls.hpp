@@ -20,7 +20,7 @@ class IsovalueControls : public QWidget {
   public:
     explicit IsovalueControls(QWidget* parent = nullptr);
 
-    void set_data(const Field& field, const app::Histogram& histogram);
+    void set_data(const Field& field, const run::Histogram& histogram);
     void clear();
     /// Shows the level asked for; emits nothing.
     void set_isovalue(double isovalue);

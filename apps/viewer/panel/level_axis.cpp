@@ -73,7 +73,7 @@ double rounded_to(double value, double unit) {
     return std::isfinite(rounded) ? rounded : value;
 }
 
-LevelAxis axis_of(const app::Histogram& histogram, const QRectF& plot) {
+LevelAxis axis_of(const run::Histogram& histogram, const QRectF& plot) {
     LevelAxis axis{histogram.low, histogram.high, plot.left(),
                    std::max(plot.right(), plot.left() + 1)};
     if (histogram.whole_numbers) axis.high -= 1;  // the last number itself
@@ -85,7 +85,7 @@ LevelAxis axis_of(const app::Histogram& histogram, const QRectF& plot) {
     return axis;
 }
 
-void paint_histogram(QPainter& painter, const app::Histogram& histogram, const LevelAxis& axis,
+void paint_histogram(QPainter& painter, const run::Histogram& histogram, const LevelAxis& axis,
                      const QRectF& plot, const QColor& colour) {
     if (histogram.counts.empty()) return;
     const auto most = std::max<std::int64_t>(1, *std::ranges::max_element(histogram.counts));

@@ -6,7 +6,7 @@
 #include <QPalette>
 #include <QRectF>
 
-#include "apps/live/statistics.hpp"
+#include "palpate/run/statistics.hpp"
 
 class QPainter;
 class QWheelEvent;
@@ -46,10 +46,10 @@ struct LevelView {
 double rounded_to(double value, double unit);
 
 /// The ends of the axis for a histogram: the data's, or round a single value.
-LevelAxis axis_of(const app::Histogram& histogram, const QRectF& plot);
+LevelAxis axis_of(const run::Histogram& histogram, const QRectF& plot);
 
 /// Bars, their heights the logarithms of the counts, on the plot's lower edge.
-void paint_histogram(QPainter& painter, const app::Histogram& histogram, const LevelAxis& axis,
+void paint_histogram(QPainter& painter, const run::Histogram& histogram, const LevelAxis& axis,
                      const QRectF& plot, const QColor& colour);
 
 /// A level with as few digits as it needs.

@@ -32,7 +32,7 @@ LevelChart::LevelChart(QWidget* parent) : QWidget(parent) {
         "Ctrl-wheel zooms, shift-wheel moves, Ctrl+0 shows all again.");
 }
 
-void LevelChart::set_data(const app::Histogram& histogram, const std::vector<double>& suggested) {
+void LevelChart::set_data(const run::Histogram& histogram, const std::vector<double>& suggested) {
     histogram_ = histogram;
     suggested_ = suggested;
     view_ = {};

@@ -22,7 +22,7 @@ class LevelChart : public QWidget {
     explicit LevelChart(QWidget* parent = nullptr);
 
     /// New data; `suggested` are levels that are worth feeling.
-    void set_data(const app::Histogram& histogram, const std::vector<double>& suggested);
+    void set_data(const run::Histogram& histogram, const std::vector<double>& suggested);
     void clear();
     /// Moves the line; emits nothing.
     void set_level(double level);
@@ -79,7 +79,7 @@ class LevelChart : public QWidget {
     void paint_markers(QPainter& painter, const LevelAxis& axis) const;
     void paint_ends(QPainter& painter) const;
 
-    app::Histogram histogram_;
+    run::Histogram histogram_;
     std::vector<double> suggested_;
     double level_ = 0;
     double felt_ = std::numeric_limits<double>::quiet_NaN();

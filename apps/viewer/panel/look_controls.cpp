@@ -157,7 +157,7 @@ void LookControls::connect_transfer() {
     });
 }
 
-void LookControls::set_data(const Volume& volume, const app::Histogram& histogram) {
+void LookControls::set_data(const Volume& volume, const run::Histogram& histogram) {
     volume_ = volume;
     histogram_ = histogram;
     editor_->set_data(histogram);

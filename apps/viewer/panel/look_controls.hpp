@@ -21,7 +21,7 @@ class LookControls : public QWidget {
     explicit LookControls(QWidget* parent = nullptr);
 
     /// The data for which presets are made.
-    void set_data(const Volume& volume, const app::Histogram& histogram);
+    void set_data(const Volume& volume, const run::Histogram& histogram);
     void clear();
     /// Shows a look; emits nothing.
     void set_look(const Look& look);
@@ -48,7 +48,7 @@ class LookControls : public QWidget {
 
     Look look_;
     std::optional<Volume> volume_;
-    app::Histogram histogram_;
+    run::Histogram histogram_;
     std::vector<Switch> switches_;
     ColourButton *surface_colour_, *point_colour_;
     Quantity* surface_opacity_;

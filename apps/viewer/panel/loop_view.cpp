@@ -3,7 +3,7 @@
 
 #include <QGridLayout>
 
-#include "apps/live/words.hpp"
+#include "apps/options/words.hpp"
 
 namespace palpate::viewer {
 namespace {

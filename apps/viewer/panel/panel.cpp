@@ -139,7 +139,7 @@ void Panel::connect_edits() {
     connect(edit_, &BrushControls::save, this, pass(&Panel::save_asked));
 }
 
-void Panel::set_session(const Field& field, const app::Histogram& histogram, double isovalue,
+void Panel::set_session(const Field& field, const run::Histogram& histogram, double isovalue,
                         const RendererSettings& settings, const DeviceInfo& device) {
     isovalue_->drop();
     force_->drop();

@@ -7,10 +7,10 @@
 #include <optional>
 #include <vector>
 
-#include "apps/live/statistics.hpp"
 #include "apps/viewer/model/look.hpp"
 #include "apps/viewer/panel/brush_choice.hpp"
 #include "palpate/devices/backend.hpp"
+#include "palpate/run/statistics.hpp"
 #include "palpate/servo.hpp"
 
 namespace palpate::viewer {
@@ -36,7 +36,7 @@ class Panel : public QWidget {
 
     /// Shows the values of a session. The brush is off, its values are automatic, there are no
     /// edits and no edit reason; set anything else after this.
-    void set_session(const Field& field, const app::Histogram& histogram, double isovalue,
+    void set_session(const Field& field, const run::Histogram& histogram, double isovalue,
                      const RendererSettings& settings, const DeviceInfo& device);
     /// No volume: nothing can be set.
     void clear();

@@ -5,7 +5,7 @@
 #include <QHBoxLayout>
 #include <QVBoxLayout>
 
-#include "apps/live/words.hpp"
+#include "apps/options/words.hpp"
 #include "apps/viewer/panel/level_axis.hpp"
 
 namespace palpate::viewer {

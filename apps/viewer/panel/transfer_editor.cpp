@@ -36,7 +36,7 @@ TransferEditor::TransferEditor(QWidget* parent) : QWidget(parent) {
         "all again.");
 }
 
-void TransferEditor::set_data(const app::Histogram& histogram) {
+void TransferEditor::set_data(const run::Histogram& histogram) {
     histogram_ = histogram;
     view_ = {};
     update();

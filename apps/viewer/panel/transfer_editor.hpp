@@ -18,7 +18,7 @@ class TransferEditor : public QWidget {
   public:
     explicit TransferEditor(QWidget* parent = nullptr);
 
-    void set_data(const app::Histogram& histogram);
+    void set_data(const run::Histogram& histogram);
     /// Shows a function (one without points: none); emits nothing.
     void set_transfer(const TransferFunction& transfer);
     const TransferFunction& transfer() const { return transfer_; }
@@ -59,7 +59,7 @@ class TransferEditor : public QWidget {
     void edited();
     void paint_function(QPainter& painter) const;
 
-    app::Histogram histogram_;
+    run::Histogram histogram_;
     TransferFunction transfer_;
     int chosen_ = -1;
     bool dragging_ = false;

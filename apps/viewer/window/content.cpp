@@ -5,9 +5,12 @@
 
 namespace palpate::viewer {
 
-void Content::start_run(std::shared_ptr<Opened> volume, const app::TouchOptions& options) {
+void Content::start_run(std::shared_ptr<Opened> volume, const run::Setup& setup) {
     close();
-    live_ = std::make_unique<Live>(volume->loaded, options);
+    auto live = std::make_unique<run::Run>(
+        std::make_shared<run::Data>(volume->loaded, setup.playback), setup);
+    live->start();
+    live_ = std::move(live);
     volume_ = std::move(volume);
     Q_EMIT run_started();
     Q_EMIT run_changed();
@@ -29,8 +32,8 @@ void Content::close() {
     Q_EMIT closed();
 }
 
-void Content::use_device(const std::string& option) {
-    live_->use_device(option);
+void Content::use_device(const devices::DeviceChoice& device) {
+    live_->use_device(device);
     Q_EMIT run_changed();
 }
 
@@ -40,11 +43,11 @@ void Content::use_solid(Solid solid) {
     Q_EMIT run_changed();
 }
 
-app::Sculptor* Content::editor() const {
-    return live_ && !live_->data().is_sequence() ? &live_->data().sculptor() : nullptr;
+run::VolumeEditor* Content::editor() const {
+    return live_ && !live_->data().is_sequence() ? &live_->data().editor() : nullptr;
 }
 
-app::Player* Content::player() const {
+run::Player* Content::player() const {
     return live_ && live_->data().is_sequence() ? &live_->data().player() : nullptr;
 }
 
@@ -55,7 +58,7 @@ std::optional<Snapshot> Content::snapshot() const {
 }
 
 Field Content::field_at(const Snapshot& snapshot) {
-    Field field = live_ ? live_->data().field() : playback_->field_at(snapshot);
+    Field field = live_ ? live_->field_now() : playback_->field_at(snapshot);
     field.set_time(snapshot.session.moment);
     return field;
 }

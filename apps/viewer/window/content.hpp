@@ -6,9 +6,9 @@
 #include <memory>
 #include <optional>
 
-#include "apps/viewer/model/live.hpp"
 #include "apps/viewer/model/opening.hpp"
 #include "apps/viewer/model/playback.hpp"
+#include "palpate/run/run.hpp"
 
 namespace palpate::viewer {
 
@@ -16,12 +16,13 @@ class Content : public QObject {
     Q_OBJECT
 
   public:
-    /// Closes what was open, first: a device serves one run. Throws as Live; then nothing is open.
-    void start_run(std::shared_ptr<Opened> volume, const app::TouchOptions& options);
+    /// Closes what was open first: a device serves one run. Throws as run::Run; then nothing is
+    /// open.
+    void start_run(std::shared_ptr<Opened> volume, const run::Setup& setup);
     void start_playback(std::shared_ptr<Opened> volume, Playback playback);
     void close();
-    /// As Live's; what they throw leaves the run as it was.
-    void use_device(const std::string& option);
+    /// As those of run::Run; what they throw leaves the run as it was.
+    void use_device(const devices::DeviceChoice& device);
     void use_solid(Solid solid);
     /// Ends the run, forces are zero; emits nothing.
     void end_run() { live_.reset(); }
@@ -29,11 +30,11 @@ class Content : public QObject {
     /// Null if nothing is open.
     const std::shared_ptr<Opened>& volume() const { return volume_; }
     /// Null unless there is a live run.
-    Live* live() const { return live_.get(); }
+    run::Run* live() const { return live_.get(); }
     /// Null unless the run's data can be edited.
-    app::Sculptor* editor() const;
+    run::VolumeEditor* editor() const;
     /// Null unless the run's data are a sequence.
-    app::Player* player() const;
+    run::Player* player() const;
     /// Null unless a recording is open.
     Playback* playback() { return playback_ ? &*playback_ : nullptr; }
     const Playback* playback() const { return playback_ ? &*playback_ : nullptr; }
@@ -58,7 +59,7 @@ class Content : public QObject {
 
   private:
     std::shared_ptr<Opened> volume_;
-    std::unique_ptr<Live> live_;
+    std::unique_ptr<run::Run> live_;
     std::optional<Playback> playback_;
     double time_ = 0;
 };

@@ -15,7 +15,7 @@ DisplayController::DisplayController(Content& content, Views& views, Panel& pane
     : content_(content), views_(views), panel_(panel) {
     connect(&content, &Content::closed, this, &DisplayController::clear);
     connect(&content, &Content::run_started, this, [this] {
-        const Live& live = *content_.live();
+        const run::Run& live = *content_.live();
         show_volume(live.field(), live.isovalue(), live.settings().transform);
     });
     connect(&content, &Content::field_replaced, this,

@@ -18,9 +18,9 @@
 namespace palpate::viewer {
 namespace {
 
-std::optional<app::HandBrush> hand_brush(const BrushChoice& choice) {
+std::optional<run::HandBrush> hand_brush(const BrushChoice& choice) {
     if (!choice.on) return std::nullopt;
-    return app::HandBrush{choice.kind, choice.radius, choice.hardness, choice.rate, choice.value};
+    return run::HandBrush{choice.kind, choice.radius, choice.hardness, choice.rate, choice.value};
 }
 
 }  // namespace
@@ -42,7 +42,7 @@ void EditController::show() {
 }
 
 void EditController::use_brush(const BrushChoice& brush) {
-    app::Sculptor* editor = content_.editor();
+    run::VolumeEditor* editor = content_.editor();
     if (!editor) return;
     try {
         editor->set_brush(hand_brush(brush));
@@ -53,24 +53,24 @@ void EditController::use_brush(const BrushChoice& brush) {
 
 void EditController::undo() {
     messages_.guarded([&] {
-        app::Sculptor* editor = content_.editor();
+        run::VolumeEditor* editor = content_.editor();
         if (editor && !editor->undo()) messages_.show_done(tr("There is nothing to undo"));
     });
 }
 
 void EditController::redo() {
     messages_.guarded([&] {
-        app::Sculptor* editor = content_.editor();
+        run::VolumeEditor* editor = content_.editor();
         if (editor && !editor->redo()) messages_.show_done(tr("There is nothing to redo"));
     });
 }
 
 void EditController::observe() {
-    const app::Sculptor* editor = content_.editor();
+    const run::VolumeEditor* editor = content_.editor();
     if (!editor) return;
-    const app::Work work = editor->work();
-    panel_.set_history(work.undo_steps, work.redo_steps, work.changed);
-    const QString problem = QString::fromStdString(work.problem);
+    const run::EditState state = editor->state();
+    panel_.set_history(state.undo_steps, state.redo_steps, state.changed);
+    const QString problem = QString::fromStdString(state.problem);
     if (problem != std::exchange(problem_, problem) && !problem.isEmpty()) {
         messages_.show_done(problem);
     }
@@ -78,7 +78,7 @@ void EditController::observe() {
 
 void EditController::ask_save() {
     if (!content_.live()) return;
-    const std::string& volume = content_.volume()->options.volume;
+    const std::string& volume = content_.volume()->loaded.name;
     const std::string kind(io::written_extension_of(volume));
     const QString suffix = kind.empty() ? "nrrd" : QString::fromStdString(kind.substr(1));
     QString base = QFileInfo(QString::fromStdString(volume)).fileName();
@@ -93,8 +93,8 @@ void EditController::save(const QString& path) {
     if (!content_.live() || saving()) return;
     const std::filesystem::path file(path.toStdString());
     // The samples as they are now, whatever is done to them while they are written.
-    const Field field = content_.live()->data().field();
-    if (!messages_.guarded([&] { app::check_volume_name(file.string(), field.geometry()); })) {
+    const Field field = content_.live()->field_now();
+    if (!messages_.guarded([&] { run::check_volume_name(file.string(), field.geometry()); })) {
         return;
     }
     const auto samples = field.shared_samples();
@@ -108,7 +108,7 @@ void EditController::save(const QString& path) {
             io::write_volume(flattened(*samples, moment), file, options);
         },
         [this, path, words, samples] {
-            if (app::Sculptor* editor = content_.editor()) editor->set_saved(samples);
+            if (run::VolumeEditor* editor = content_.editor()) editor->set_saved(samples);
             messages_.show_done(tr("Saved %1").arg(path) + words);
         });
 }
@@ -128,10 +128,10 @@ bool EditController::may_lose_edits() {
 }
 
 std::shared_ptr<const Samples> EditController::unsaved() const {
-    const app::Sculptor* editor = content_.editor();
+    const run::VolumeEditor* editor = content_.editor();
     if (!editor) return nullptr;
-    const app::Work work = editor->work();
-    return work.changed ? work.samples : nullptr;
+    const run::EditState state = editor->state();
+    return state.changed ? state.samples : nullptr;
 }
 
 void rescue_edits(const Samples& samples) {

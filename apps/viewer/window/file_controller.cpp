@@ -1,12 +1,10 @@
 // Reads files, then starts the live run or the playback that they describe.
 #include "apps/viewer/window/file_controller.hpp"
 
-#include <fmt/format.h>
-
 #include <filesystem>
 #include <utility>
 
-#include "apps/live/recorded_scene.hpp"
+#include "apps/options/exit_status.hpp"
 #include "apps/viewer/window/content.hpp"
 #include "apps/viewer/window/display_controller.hpp"
 #include "apps/viewer/window/file_dialogs.hpp"
@@ -33,21 +31,21 @@ FileController::FileController(Content& content, RunController& run,
       messages_(messages),
       loader_(messages) {}
 
-void FileController::load(const app::VolumeOptions& volume, Then then) {
+void FileController::load(const run::Source& source, Then then) {
     auto result = std::make_shared<std::shared_ptr<Opened>>();
     loader_.start(
-        tr("Reading %1").arg(short_name(QString::fromStdString(volume.volume))),
-        [result, volume](const io::Progress& progress) {
-            *result = std::make_shared<Opened>(open(volume, progress));
+        tr("Reading %1").arg(short_name(QString::fromStdString(name_of(source)))),
+        [result, source](const io::Progress& progress) {
+            *result = std::make_shared<Opened>(open(source, progress));
         },
         [result, then = std::move(then)] { then(*result); });
 }
 
 /// As load(), but does not read again what is open already.
-void FileController::load_or_reuse(const app::VolumeOptions& volume, Then then) {
+void FileController::load_or_reuse(const run::Source& source, Then then) {
     const std::shared_ptr<Opened> opened = content_.volume();
-    if (!opened || app::to_names(opened->options) != app::to_names(volume)) {
-        return load(volume, std::move(then));
+    if (!opened || run::to_names(opened->loaded.source) != run::to_names(source)) {
+        return load(source, std::move(then));
     }
     loader_.abandon();
     messages_.guarded([&] { then(opened); });
@@ -57,28 +55,23 @@ void FileController::open_path(const QString& path) {
     remember_folder(path);
     if (path.endsWith(".json", Qt::CaseInsensitive)) return open_session(path);
     if (path.endsWith(".csv", Qt::CaseInsensitive)) return open_recording(path);
-    app::VolumeOptions volume;
-    volume.volume = path.toStdString();
-    open_volume(volume);
+    open_volume(run::source_named(path.toStdString()));
 }
 
-void FileController::open_volume(const app::VolumeOptions& volume) {
+void FileController::open_volume(const run::Source& source) {
     messages_.forget();
-    load(volume, [this, options = run_.take_options()](std::shared_ptr<Opened> opened) mutable {
-        options.volume = opened->options;
-        options.device = run_.device();
-        if (options.field.isovalue.empty()) {
-            options.field.isovalue = fmt::format("{}", first_isovalue(*opened));
-        }
-        feel(std::move(opened), options);
+    load(source, [this, request = run_.take_request()](std::shared_ptr<Opened> opened) mutable {
+        request.setup.device = run_.device();
+        if (!request.setup.field.isovalue) request.setup.field.isovalue = first_isovalue(*opened);
+        feel(std::move(opened), request);
         display_.use_usual_look();
     });
 }
 
-void FileController::feel(std::shared_ptr<Opened> opened, const app::TouchOptions& options) {
-    run_.start(opened, options);
-    if (!options.record.empty()) recordings_.start(QString::fromStdString(options.record));
-    remember_file(QString::fromStdString(opened->options.volume));
+void FileController::feel(std::shared_ptr<Opened> opened, const RunRequest& request) {
+    run_.start(opened, request.setup);
+    if (!request.record.empty()) recordings_.start(QString::fromStdString(request.record));
+    remember_file(QString::fromStdString(opened->loaded.name));
     for (const std::string& note : opened->loaded.notes) {
         messages_.show_done(QString::fromStdString(note));
     }
@@ -88,9 +81,9 @@ void FileController::open_recording(const QString& path) {
     messages_.forget();
     messages_.guarded([&] {
         const io::RecordingReader reader(path_of(path));
-        const auto volume = app::recorded_volume(reader.head(), path_of(path));
-        (void)run_.take_options();  // they were for a volume to feel
-        load_or_reuse(volume, [this, path](std::shared_ptr<Opened> opened) {
+        const run::Source source = run::recorded_source(reader.head(), path_of(path));
+        (void)run_.take_request();  // they were for a volume to feel
+        load_or_reuse(source, [this, path](std::shared_ptr<Opened> opened) {
             play(std::move(opened), path);
         });
     });
@@ -116,19 +109,19 @@ void FileController::leave_playback() {
     SessionFile session = session_now();
     session.isovalue = display_.isovalue().value_or(session.isovalue);
     session.settings.reset();  // the recorded device's
-    feel_session(content_.volume(), session, run_.take_options());
+    feel_session(content_.volume(), session, run_.take_request());
 }
 
 SessionFile FileController::session_now() const {
     SessionFile session;
-    session.volume = content_.volume()->options;
-    if (const Live* live = content_.live()) {
+    session.source = content_.volume()->loaded.source;
+    if (const run::Run* live = content_.live()) {
         const auto now = live->snapshot();
         session.solid = live->field().solid();
         session.background = live->field().background();
         session.isovalue = live->isovalue();
-        session.device = live->options().device;
-        session.method = live->options().render.method;
+        session.device = live->setup().device;
+        session.method = live->setup().render.method;
         session.settings = live->settings();
         if (now) session.settings->transform = now->session.transform;
     } else {
@@ -137,7 +130,7 @@ SessionFile FileController::session_now() const {
         session.background = head.background;
         session.isovalue = head.isovalue;
         session.device = run_.device();
-        session.method = head.method;
+        session.method = run::named_method(head.method);
         session.settings = head.settings;
     }
     display_.save_view(session);
@@ -155,9 +148,9 @@ void FileController::open_session(const QString& path) {
     messages_.forget();
     messages_.guarded([&] {
         const SessionFile session = read_session(path.toStdString());
-        load_or_reuse(session.volume, [this, session, path, options = run_.take_options()](
+        load_or_reuse(session.source, [this, session, path, request = run_.take_request()](
                                           std::shared_ptr<Opened> opened) {
-            feel_session(std::move(opened), session, options);
+            feel_session(std::move(opened), session, request);
             remember_file(path);
         });
     });
@@ -166,23 +159,21 @@ void FileController::open_session(const QString& path) {
 /// The device is the one of the command line, else the session's; where that cannot be had, the one
 /// chosen in this window.
 void FileController::feel_session(std::shared_ptr<Opened> opened, const SessionFile& session,
-                                  app::TouchOptions options) {
-    options.volume = session.volume;
-    options.field.solid = session.solid == Solid::above ? "above" : "below";
-    options.field.background = session.background ? fmt::format("{}", *session.background) : "";
-    options.field.isovalue = fmt::format("{}", session.isovalue);
-    if (!options.device_given) options.device = session.device;
-    options.render.method = session.method;
+                                  RunRequest request) {
+    run::Setup& setup = request.setup;
+    setup.field = {session.solid, session.background, session.isovalue};
+    setup.device = request.device.value_or(session.device);
+    setup.render.method = session.method;
     try {
-        feel(opened, options);
-        run_.set_device(options.device);
+        feel(opened, request);
+        run_.set_device(setup.device);
     } catch (const std::exception& e) {
-        if (options.device == run_.device()) throw;
+        if (setup.device == run_.device()) throw;
         const QString why = QString::fromStdString(app::failure_of(e).text);
-        options.device = run_.device();
-        feel(opened, options);
-        messages_.show_done(
-            tr("%1; felt through the device %2").arg(why, QString::fromStdString(options.device)));
+        setup.device = run_.device();
+        feel(opened, request);
+        messages_.show_done(tr("%1; felt through the device %2")
+                                .arg(why, QString::fromStdString(run::text_of(setup.device))));
     }
     display_.use_usual_look();
     if (session.settings) run_.restore(*session.settings);

@@ -6,7 +6,7 @@
 #include <functional>
 #include <memory>
 
-#include "apps/live/touch_options.hpp"
+#include "apps/viewer/model/run_request.hpp"
 #include "apps/viewer/model/session_file.hpp"
 #include "apps/viewer/window/background_task.hpp"
 
@@ -29,7 +29,7 @@ class FileController : public QObject {
     /// A volume, a folder, a session or a recording: its name tells which.
     void open_path(const QString& path);
     /// Feels it, with the settings of the command line.
-    void open_volume(const app::VolumeOptions& volume);
+    void open_volume(const run::Source& source);
     void open_session(const QString& path);
     void open_recording(const QString& path);
     /// Ends the playback: feels the recording's volume, at the level and in the view shown.
@@ -43,11 +43,11 @@ class FileController : public QObject {
 
   private:
     using Then = std::function<void(std::shared_ptr<Opened>)>;
-    void load(const app::VolumeOptions& volume, Then then);
-    void load_or_reuse(const app::VolumeOptions& volume, Then then);
-    void feel(std::shared_ptr<Opened> opened, const app::TouchOptions& options);
+    void load(const run::Source& source, Then then);
+    void load_or_reuse(const run::Source& source, Then then);
+    void feel(std::shared_ptr<Opened> opened, const RunRequest& request);
     void feel_session(std::shared_ptr<Opened> opened, const SessionFile& session,
-                      app::TouchOptions options);
+                      RunRequest request);
     void play(std::shared_ptr<Opened> opened, const QString& path);
     SessionFile session_now() const;
 

@@ -49,13 +49,13 @@ QString ask_save_name(QWidget* window, const QString& title, const QString& name
     return dialog.selectedFiles().value(0);
 }
 
-std::optional<app::VolumeOptions> ask_open_raw(QWidget* window) {
+std::optional<run::Source> ask_open_raw(QWidget* window) {
     const QString path = QFileDialog::getOpenFileName(
         window, QFileDialog::tr("Open raw data"), last_folder(), QFileDialog::tr("All files (*)"));
     if (path.isEmpty()) return std::nullopt;
     RawDialog dialog(path, window);
     if (dialog.exec() != QDialog::Accepted) return std::nullopt;
-    return dialog.options();
+    return dialog.source();
 }
 
 void remember_folder(const QString& path) {

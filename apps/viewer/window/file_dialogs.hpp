@@ -6,7 +6,7 @@
 #include <QStringList>
 #include <optional>
 
-#include "apps/live/volume_options.hpp"
+#include "palpate/run/source.hpp"
 
 class QWidget;
 
@@ -20,7 +20,7 @@ QString ask_open_folder(QWidget* window);
 QString ask_save_name(QWidget* window, const QString& title, const QString& name,
                       const QString& suffix, bool replaces = true);
 /// A raw file and what it holds.
-std::optional<app::VolumeOptions> ask_open_raw(QWidget* window);
+std::optional<run::Source> ask_open_raw(QWidget* window);
 
 /// The dialogs begin in the folder of this file.
 void remember_folder(const QString& path);

@@ -33,14 +33,14 @@ constexpr int message_ms = 10'000;
 
 }  // namespace
 
-MainWindow::MainWindow(const app::TouchOptions& options)
+MainWindow::MainWindow(const RunRequest& request)
     : views_(new Views(this)),
       panel_(new Panel(this)),
       timeline_(new Timeline(this)),
       frame_time_(new QLabel),
       messages_(this),
       display_(content_, *views_, *panel_),
-      run_(options, content_, *panel_, messages_),
+      run_(request, content_, *panel_, messages_),
       recordings_(content_, *panel_, messages_),
       probe_(content_, run_, *views_, messages_),
       editing_(content_, *panel_, messages_, this),

@@ -28,9 +28,9 @@ class MainWindow : public QMainWindow {
     Q_OBJECT
 
   public:
-    /// `options` are those of the command line: device and settings of the runs to come. Opens
+    /// `request`: the command line's, for the runs to come. Opens
     /// nothing yet.
-    explicit MainWindow(const app::TouchOptions& options);
+    explicit MainWindow(const RunRequest& request);
     /// Ends the live run: forces are zero.
     ~MainWindow() override;
     /// The same, and ends the program. Unsaved edits go to a file in the folder for temporary
@@ -45,7 +45,7 @@ class MainWindow : public QMainWindow {
     DisplayController& display() { return display_; }
     Messages& messages() { return messages_; }
     Content& content() { return content_; }
-    const Live* live() const { return content_.live(); }
+    const run::Run* live() const { return content_.live(); }
     Playback* playback() { return content_.playback(); }
     Views& views() { return *views_; }
     Panel& panel() { return *panel_; }

@@ -6,7 +6,7 @@
 #include <QString>
 #include <functional>
 
-#include "apps/live/exit_status.hpp"
+#include "apps/options/exit_status.hpp"
 
 class QWidget;
 

@@ -1,8 +1,6 @@
 // The dialog for raw files.
 #include "apps/viewer/window/raw_dialog.hpp"
 
-#include <fmt/format.h>
-
 #include <QComboBox>
 #include <QDialogButtonBox>
 #include <QDoubleSpinBox>
@@ -82,15 +80,17 @@ void RawDialog::judge() {
                                             .arg(bytes, 0, 'f', 0));
 }
 
-app::VolumeOptions RawDialog::options() const {
-    app::VolumeOptions options;
-    options.volume = path_.toStdString();
-    options.dims = fmt::format("{}x{}x{}", size_[0]->value(), size_[1]->value(), size_[2]->value());
-    options.type = type_->currentText().toStdString();
-    options.spacing =
-        fmt::format("{},{},{}", spacing_[0]->value(), spacing_[1]->value(), spacing_[2]->value());
-    options.skip = static_cast<std::uint64_t>(skip_->value());
-    return options;
+run::Source RawDialog::source() const {
+    io::RawLayout layout;
+    for (int a = 0; a < 3; ++a) {
+        layout.size[a] = size_.at(static_cast<std::size_t>(a))->value();
+        layout.spacing[a] = spacing_.at(static_cast<std::size_t>(a))->value();
+    }
+    layout.type = sample_type_from(type_->currentText().toStdString());
+    layout.skip = static_cast<std::uint64_t>(skip_->value());
+    run::Source source;
+    source.from = run::FileSource{path_.toStdString(), layout, layout.spacing, {}};
+    return source;
 }
 
 }  // namespace palpate::viewer

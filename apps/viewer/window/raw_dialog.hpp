@@ -3,7 +3,7 @@
 
 #include <QDialog>
 
-#include "apps/live/volume_options.hpp"
+#include "palpate/run/source.hpp"
 
 class QComboBox;
 class QDoubleSpinBox;
@@ -19,7 +19,7 @@ class RawDialog : public QDialog {
 
   public:
     explicit RawDialog(const QString& path, QWidget* parent = nullptr);
-    app::VolumeOptions options() const;
+    run::Source source() const;
 
   private:
     void judge();

@@ -9,9 +9,9 @@
 
 namespace palpate::viewer {
 
-RunController::RunController(const app::TouchOptions& options, Content& content, Panel& panel,
+RunController::RunController(const RunRequest& request, Content& content, Panel& panel,
                              Messages& messages)
-    : options_(options), content_(content), panel_(panel), messages_(messages), search_(messages) {
+    : request_(request), content_(content), panel_(panel), messages_(messages), search_(messages) {
     connect(&content, &Content::run_changed, this, &RunController::show_settings);
     connect(&panel, &Panel::asked, this, &RunController::send);
     connect(&panel, &Panel::device_chosen, this, &RunController::use_device);
@@ -20,16 +20,17 @@ RunController::RunController(const app::TouchOptions& options, Content& content,
     since_report_.start();
 }
 
-app::TouchOptions RunController::take_options() {
-    app::TouchOptions options = options_;
-    options_.field.isovalue.clear();
-    options_.record.clear();
-    return options;
+RunRequest RunController::take_request() {
+    RunRequest request = request_;
+    request_.setup.field.isovalue.reset();
+    request_.record.clear();
+    return request;
 }
 
-void RunController::start(std::shared_ptr<Opened> volume, const app::TouchOptions& options) {
-    content_.start_run(std::move(volume), options);
-    QString words = tr("Felt through the device %1").arg(QString::fromStdString(options.device));
+void RunController::start(std::shared_ptr<Opened> volume, const run::Setup& setup) {
+    content_.start_run(std::move(volume), setup);
+    QString words =
+        tr("Felt through the device %1").arg(QString::fromStdString(run::text_of(setup.device)));
     for (const std::string& sentence : content_.live()->privileges()) {
         words += "; " + QString::fromStdString(sentence);
     }
@@ -39,7 +40,7 @@ void RunController::start(std::shared_ptr<Opened> volume, const app::TouchOption
 }
 
 void RunController::send(const Command& command) {
-    Live* live = content_.live();
+    run::Run* live = content_.live();
     if (!live) {
         panel_.show_refused(content_.playback()
                                 ? tr("A recording is played: nothing here changes it.")
@@ -63,14 +64,14 @@ void RunController::restore(const RendererSettings& settings) {
 }
 
 void RunController::raise_isovalue(double percent) {
-    const Live* live = content_.live();
+    const run::Run* live = content_.live();
     if (!live) return;
     const double step = 0.01 * percent * live->field().volume().range();
     send(command::Isovalue{live->isovalue() + step});
 }
 
 void RunController::scale_hand(double factor) {
-    if (const Live* live = content_.live()) {
+    if (const run::Run* live = content_.live()) {
         send(command::Scale{live->settings().transform.scale * factor});
     }
 }
@@ -88,30 +89,30 @@ void RunController::find_devices() {
 }
 
 void RunController::show_devices() {
-    const std::string& current =
-        content_.live() ? content_.live()->options().device : options_.device;
-    panel_.set_devices(findings_, QString::fromStdString(current));
+    const devices::DeviceChoice& current =
+        content_.live() ? content_.live()->setup().device : request_.setup.device;
+    panel_.set_devices(findings_, QString::fromStdString(run::text_of(current)));
     status_.reset();
 }
 
 void RunController::show_settings() {
-    const Live& live = *content_.live();
+    const run::Run& live = *content_.live();
     panel_.set_session(live.field(), content_.volume()->histogram, live.isovalue(), live.settings(),
                        live.device());
 }
 
 void RunController::use_device(const QString& option) {
     messages_.guarded([&] {
-        (void)devices::parse_device(option.toStdString());
-        if (Live* live = content_.live()) {
+        const devices::DeviceChoice device = devices::parse_device(option.toStdString());
+        if (run::Run* live = content_.live()) {
             const std::int64_t ticks = live->recording() ? live->recording()->ticks() : 0;
-            content_.use_device(option.toStdString());
+            content_.use_device(device);
             if (ticks > 0) {
                 messages_.show_done(tr("%1 ticks recorded, up to the other device").arg(ticks));
             }
             Q_EMIT device_changed();
         }
-        options_.device = option.toStdString();
+        request_.setup.device = device;
     });
     show_devices();
 }
@@ -122,7 +123,7 @@ void RunController::use_solid(Solid solid) {
 }
 
 void RunController::observe(const Snapshot& now) {
-    const Live* live = content_.live();
+    const run::Run* live = content_.live();
     if (!live) return;
     const DeviceStatus status = now.session.device.status;
     const QString problem = QString::fromStdString(live->device_problem());

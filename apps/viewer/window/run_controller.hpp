@@ -8,8 +8,9 @@
 #include <optional>
 #include <vector>
 
-#include "apps/live/touch_options.hpp"
+#include "apps/viewer/model/run_request.hpp"
 #include "apps/viewer/window/background_task.hpp"
+#include "palpate/devices/devices.hpp"
 #include "palpate/servo.hpp"
 
 namespace palpate::viewer {
@@ -23,18 +24,17 @@ class RunController : public QObject {
     Q_OBJECT
 
   public:
-    /// `options` are those of the command line, for the runs to come.
-    RunController(const app::TouchOptions& options, Content& content, Panel& panel,
-                  Messages& messages);
+    /// `request`: the command line's, for the runs to come.
+    RunController(const RunRequest& request, Content& content, Panel& panel, Messages& messages);
 
-    /// The options for another run. The level and the recording of the command line are for the
+    /// The request for another run. The level and the recording of the command line are for the
     /// first one only.
-    app::TouchOptions take_options();
-    /// The device chosen last, by its option.
-    const std::string& device() const { return options_.device; }
-    void set_device(const std::string& option) { options_.device = option; }
+    RunRequest take_request();
+    /// The device chosen last.
+    const devices::DeviceChoice& device() const { return request_.setup.device; }
+    void set_device(const devices::DeviceChoice& device) { request_.setup.device = device; }
     /// Feels the volume. Throws as Content::start_run.
-    void start(std::shared_ptr<Opened> volume, const app::TouchOptions& options);
+    void start(std::shared_ptr<Opened> volume, const run::Setup& setup);
 
     /// What cannot be carried out is said in the panel.
     void send(const Command& command);
@@ -60,7 +60,7 @@ class RunController : public QObject {
     void show_devices();
     void show_settings();
 
-    app::TouchOptions options_;
+    RunRequest request_;
     Content& content_;
     Panel& panel_;
     Messages& messages_;

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <stdexcept>
 
-#include "apps/live/exit_status.hpp"
+#include "apps/options/exit_status.hpp"
 #include "apps/viewer/window/main_window.hpp"
 
 namespace palpate::viewer {
@@ -29,7 +29,7 @@ bool Screenshot::reached() {
         held_ = true;
         return true;
     }
-    const Live* live = window_.live();
+    const run::Run* live = window_.live();
     const auto now = live ? live->snapshot() : std::nullopt;
     if (!now) return false;
     if (!held_ && now->session.tick.time >= after_) {

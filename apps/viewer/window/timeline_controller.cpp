@@ -11,7 +11,7 @@
 namespace palpate::viewer {
 namespace {
 
-TimelineView view_of(const app::PlayView& play) {
+TimelineView view_of(const run::PlayState& play) {
     TimelineView view;
     view.begin = play.begin;
     view.end = play.end;
@@ -45,7 +45,7 @@ TimelineController::TimelineController(Content& content, Timeline& timeline, Mes
 void TimelineController::connect_timeline() {
     // Both can play, seek and loop.
     const auto ask = [this](auto&& action) {
-        if (app::Player* player = content_.player()) {
+        if (run::Player* player = content_.player()) {
             messages_.guarded([&] { action(*player); });
         } else if (content_.playback()) {
             action(clock_);
@@ -61,7 +61,7 @@ void TimelineController::connect_timeline() {
 }
 
 TimelineView TimelineController::view() const {
-    if (const app::Player* player = content_.player()) return view_of(player->view());
+    if (const run::Player* player = content_.player()) return view_of(player->state());
     TimelineView view;
     if (const Playback* playback = content_.playback()) {
         view.begin = playback->begin();
@@ -98,7 +98,7 @@ void TimelineController::observe() {
     if (timeline_.isHidden()) return;
     timeline_.set_view(view());
     if (!content_.player()) return;
-    const QString problem = QString::fromStdString(content_.player()->view().problem);
+    const QString problem = QString::fromStdString(content_.player()->state().problem);
     if (problem != std::exchange(problem_, problem) && !problem.isEmpty()) {
         messages_.show_problem(problem);
     }

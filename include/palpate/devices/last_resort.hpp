@@ -12,8 +12,8 @@ namespace palpate::devices {
 /// send the zero, and then lets the crash go on as it would have: the same signal, the same core
 /// file. What ends a program without asking (SIGKILL, loss of power) is left to the device, and so
 /// is a crash of the very thread that talks to it, in a vendor's driver say, for nobody is left to
-/// send the zero: see docs/devices for what each does then. One for each device, up to `most` at once; more
-/// throw std::logic_error.
+/// send the zero: see docs/devices for what each does then. One for each device, up to `most` at
+/// once; more throw std::logic_error.
 class LastResort {
   public:
     static constexpr std::size_t most = 8;

@@ -13,6 +13,8 @@ namespace palpate::devices {
 struct DeviceChoice {
     std::string name;
     std::map<std::string, std::string> options;
+
+    bool operator==(const DeviceChoice&) const = default;
 };
 /// Throws std::invalid_argument for an empty name, an empty key, or a key that is there twice.
 DeviceChoice parse_device(std::string_view text);

@@ -13,7 +13,8 @@ struct HandBrush {
     BrushKind kind = BrushKind::carve;
     double radius = 3;    ///< [mm, physical]
     double hardness = 1;  ///< Brush::hardness
-    double rate = 10;     ///< [1/s] after one second 1 - exp(-rate) of the change is done; inf: at once
+    double rate =
+        10;  ///< [1/s] after one second 1 - exp(-rate) of the change is done; inf: at once
     /// [data units] The value that it leaves; nothing: what brush_for() takes. Paint needs one.
     std::optional<double> value = {};
 };

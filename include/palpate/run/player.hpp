@@ -1,5 +1,5 @@
-// Plays a sequence for one or several runs: sends their servos the frames round the play position as
-// they come into memory, and seeks. It works in a thread of its own.
+// Plays a sequence for one or several runs: sends their servos the frames round the play position
+// as they come into memory, and seeks. It works in a thread of its own.
 #pragma once
 
 #include <memory>

@@ -16,8 +16,8 @@ std::function<Volume(int)> frames_of(const LoadedVolume& loaded);
 
 class RecordedSamples {
   public:
-    /// `start`: the samples at the start of the recording. `frame` reads a frame of the sequence and
-    /// may throw; null for data that are no sequence.
+    /// `start`: the samples at the start of the recording. `frame` reads a frame of the sequence
+    /// and may throw; null for data that are no sequence.
     explicit RecordedSamples(std::shared_ptr<const Samples> start,
                              std::function<Volume(int)> frame = {});
 

@@ -12,8 +12,8 @@
 namespace palpate::run {
 
 /// The volume of a recording: its recorded name, looked for from the working folder, then beside
-/// the recording; or `instead`, unless that is empty. Throws io::InputError for a live source, whose
-/// frames are not in the recording.
+/// the recording; or `instead`, unless that is empty. Throws io::InputError for a live source,
+/// whose frames are not in the recording.
 Source recorded_source(const io::RecordingHead& head, const std::filesystem::path& recording,
                        const std::string& instead = {});
 

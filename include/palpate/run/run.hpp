@@ -69,16 +69,17 @@ class Run {
     /// Goes on with another device, fitted to it, with everything that was asked for so far. Throws
     /// as the constructor does; the old device then goes on. A recording is finished before.
     void use_device(const devices::DeviceChoice& device);
-    /// Goes on with the other side solid, or another background outside the grid. The session starts
-    /// anew with everything that was asked for except penetrability, which is switched off. A
-    /// recording is finished before; if that fails, io::OutputError says so and the field stays.
+    /// Goes on with the other side solid, or another background outside the grid. The session
+    /// starts anew with everything that was asked for except penetrability, which is switched off.
+    /// A recording is finished before; if that fails, io::OutputError says so and the field stays.
     /// Throws std::invalid_argument for a background that is not finite; then nothing has changed.
     void use_field(Solid solid, std::optional<double> background = {});
 
     /// Records from start() on, or from now on: then the session starts anew (forces ramp up) with
-    /// everything that was asked for. Throws io::OutputError for a file that cannot be created; then
-    /// nothing has changed. A recording that was running is finished; if that fails io::OutputError
-    /// says so, but the new one runs. After many edits this takes a while: it begins with them all.
+    /// everything that was asked for. Throws io::OutputError for a file that cannot be created;
+    /// then nothing has changed. A recording that was running is finished; if that fails
+    /// io::OutputError says so, but the new one runs. After many edits this takes a while: it
+    /// begins with them all.
     void record(const std::filesystem::path& path);
     /// Ends the recording; a running session starts anew. Returns its ticks, 0 without a recording.
     /// Throws io::OutputError for what could not be written.

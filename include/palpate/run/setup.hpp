@@ -5,6 +5,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -41,12 +42,12 @@ struct RenderSetup {
     baselines::NamedMethod method = baselines::methods().front();
     PenetrabilitySetup penetrability;
     std::optional<Friction> friction;
-    ForceSettings force;               ///< `limit` and `stiffness` only where the next two are absent
-    std::optional<double> limit;       ///< [N] nothing: the device's
-    std::optional<double> stiffness;   ///< [N/mm] nothing: at most what the device is rated for
-    std::optional<int> step_budget;    ///< nothing: ProxySettings', less above 1 kHz
-    std::optional<double> scale;       ///< physical mm per device mm; nothing: fits the workspace
-    double rate = 1000;                ///< [Hz]
+    ForceSettings force;          ///< `limit` and `stiffness` only where the next two are absent
+    std::optional<double> limit;  ///< [N] nothing: the device's
+    std::optional<double> stiffness;  ///< [N/mm] nothing: at most what the device is rated for
+    std::optional<int> step_budget;   ///< nothing: ProxySettings', less above 1 kHz
+    std::optional<double> scale;      ///< physical mm per device mm; nothing: fits the workspace
+    double rate = 1000;               ///< [Hz]
 };
 
 /// A button of the device, by its number from 1.
@@ -59,8 +60,8 @@ struct UsualButton {};
 using ButtonSetup = std::variant<std::monostate, UsualButton, Button>;
 
 struct PlaybackSetup {
-    double speed = 1;             ///< of a sequence, from the start; 0: it stands still
-    io::LoaderSettings loader;    ///< memory for frames, and whether the sequence loops
+    double speed = 1;           ///< of a sequence, from the start; 0: it stands still
+    io::LoaderSettings loader;  ///< memory for frames, and whether the sequence loops
 };
 
 struct Setup {
@@ -100,6 +101,9 @@ DeviceTransform transform_for(const Geometry& geometry, const DeviceInfo& info, 
 /// std::invalid_argument for a button that the device does not have.
 Session make_session(const Field& field, double isovalue, const DeviceInfo& info,
                      const Setup& setup);
+
+/// The method of this name. Throws std::invalid_argument, listing the names, for another.
+baselines::NamedMethod named_method(std::string_view name);
 
 /// "haply:port=10001", the inverse of devices::parse_device().
 std::string text_of(const devices::DeviceChoice& choice);

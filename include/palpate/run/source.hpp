@@ -62,7 +62,7 @@ struct LoadedVolume {
     std::optional<double> isovalue = {};              ///< a good one, of a synthetic volume
     io::Sequence sequence = {};                       ///< empty unless there are several frames
     std::shared_ptr<const io::LiveFrames> live = {};  ///< null unless it is a live source
-    int time_steps = 1;                               ///< frames there are, whether asked for or not
+    int time_steps = 1;  ///< frames there are, whether asked for or not
 };
 
 /// Reads or makes the volume. `progress` may throw to stop. Throws std::invalid_argument for a

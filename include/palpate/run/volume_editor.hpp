@@ -28,8 +28,8 @@ struct EditState {
 
 /// Starts a servo with this session, which has the newest data. `history` is what a recording needs
 /// before its first tick: every version so far by its recipe, without samples, and the one felt.
-using StartServo = std::function<std::unique_ptr<Servo>(Session session,
-                                                        const std::vector<Command>& history)>;
+using StartServo =
+    std::function<std::unique_ptr<Servo>(Session session, const std::vector<Command>& history)>;
 
 /// Any thread may call any function; state() does not wait for an edit.
 class VolumeEditor {

@@ -11,15 +11,11 @@
 namespace palpate::viewer {
 namespace {
 
-app::VolumeOptions named(const std::string& name) {
-    app::VolumeOptions options;
-    options.volume = name;
-    return options;
-}
+using run::source_named;
 
 TEST(Opening, every_sample_is_counted_and_progress_rises_to_the_end) {
     double last = 0;
-    const Opened opened = open(named("synthetic:shepp-logan:32x32x32"), [&](double part) {
+    const Opened opened = open(source_named("synthetic:shepp-logan:32x32x32"), [&](double part) {
         EXPECT_GE(part, last);
         last = part;
     });
@@ -32,15 +28,14 @@ TEST(Opening, every_sample_is_counted_and_progress_rises_to_the_end) {
 }
 
 TEST(Opening, first_level_lies_within_the_data) {
-    const Opened opened = open(named("synthetic:noise:16x16x16"), [](double) {});
+    const Opened opened = open(source_named("synthetic:noise:16x16x16"), [](double) {});
     EXPECT_GT(first_isovalue(opened), opened.loaded.volume.minimum());
     EXPECT_LT(first_isovalue(opened), opened.loaded.volume.maximum());
 }
 
 TEST(Opening, constant_data_are_refused_with_their_name) {
     Volume constant(Geometry{.size = {4, 4, 4}}, std::vector<std::uint8_t>(64, 9));
-    const Opened opened{
-        named("flat"), {constant, "flat", "made"}, app::histogram_of(constant, 256)};
+    const Opened opened{{constant, source_named("flat"), "flat"}, run::histogram_of(constant, 256)};
     try {
         (void)first_isovalue(opened);
         FAIL();
@@ -51,7 +46,7 @@ TEST(Opening, constant_data_are_refused_with_their_name) {
 }
 
 TEST(Opening, a_file_that_is_not_there_is_an_input_error) {
-    EXPECT_THROW((void)open(named("no-such-file.nrrd"), [](double) {}), io::InputError);
+    EXPECT_THROW((void)open(source_named("no-such-file.nrrd"), [](double) {}), io::InputError);
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "apps/live/touch_options.hpp"
+#include "palpate/run/run.hpp"
 #include "support/random.hpp"
 #include "support/scratch_folder.hpp"
 
@@ -26,18 +26,16 @@ using support::ScratchFolder;
 struct Recorded {
     ScratchFolder folder;
     std::filesystem::path path = folder / "a.csv";
-    app::LoadedVolume loaded;
+    run::LoadedVolume loaded;
     std::vector<SessionTick> ticks;
 
     explicit Recorded(int count, const std::function<double(int)>& time = {})
-        : loaded(app::load(volume(), {})) {
-        app::TouchOptions options;
-        options.volume = volume();
+        : loaded(run::load(volume())) {
         const Field field(loaded.volume);
         RendererSettings settings;
         settings.method = &update_exact;
         Session session{make_renderer(field, 76.5, settings), {}};
-        io::RecordingWriter writer(path, app::recording_head(session, {}, options));
+        io::RecordingWriter writer(path, run::recording_head(session, {}, volume(), {}));
         std::vector<SessionEvent> events;
         for (int i = 0; i < count; ++i) {
             if (i % 1500 == 700) {
@@ -57,11 +55,7 @@ struct Recorded {
         }
         writer.finish(0);
     }
-    static app::VolumeOptions volume() {
-        app::VolumeOptions options;
-        options.volume = "synthetic:sphere:32x32x32";
-        return options;
-    }
+    static run::Source volume() { return run::source_named("synthetic:sphere:32x32x32"); }
     Playback play(std::size_t most_bytes = Playback::usual_bytes) const {
         return Playback::read(path, loaded, {}, most_bytes);
     }
@@ -222,9 +216,7 @@ TEST(Playback, what_cannot_be_played_is_an_input_error_that_names_the_file) {
     words(text.substr(0, first_tick) + "# command {\"scale\": {\"scale\": -1}}\n" +
           text.substr(first_tick));
     support::put_bytes(recorded.path, text);
-    app::VolumeOptions other;
-    other.volume = "synthetic:torus:32x32x32";
-    const app::LoadedVolume torus = app::load(other, {});
+    const run::LoadedVolume torus = run::load(run::source_named("synthetic:torus:32x32x32"));
     EXPECT_TRUE(support::contains(
         message_of<io::InputError>([&] { (void)Playback::read(recorded.path, torus, {}); }),
         "synthetic:torus"));

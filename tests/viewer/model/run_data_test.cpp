@@ -8,9 +8,9 @@
 #include <functional>
 #include <thread>
 
-#include "apps/viewer/model/live.hpp"
 #include "apps/viewer/model/playback.hpp"
 #include "apps/viewer/model/work.hpp"
+#include "palpate/run/run.hpp"
 #include "palpate/surface.hpp"
 #include "support/eventually.hpp"
 #include "support/scratch_folder.hpp"
@@ -22,29 +22,31 @@ using namespace std::chrono_literals;
 using support::comes_true;
 using support::ScratchFolder;
 
-struct LivingSession {
-    app::TouchOptions options;
-    Live live;
+run::Setup sliding() {
+    run::Setup setup;
+    setup.device = devices::parse_device("simulated:hand=slide,depth=3,seconds=600");
+    setup.real_time = false;
+    return setup;
+}
 
-    explicit LivingSession(const std::string& volume)
-        : options(on(volume)), live(app::load(options.volume, {}), options) {}
+struct ChangingRun {
+    run::LoadedVolume loaded;
+    run::Run live;
 
-    static app::TouchOptions on(const std::string& volume) {
-        app::TouchOptions options;
-        options.volume.volume = volume;
-        options.device = "simulated:hand=slide,depth=3,seconds=600";
-        options.normal_priority = true;
-        return options;
+    explicit ChangingRun(const std::string& volume)
+        : loaded(run::load(run::source_named(volume))),
+          live(std::make_shared<run::Data>(loaded), sliding()) {
+        live.start();
     }
 };
 
 /// Looks at the data from two more threads, as painter and saving do, while `window` runs here.
-void with_observers(const Live& live, const std::function<void()>& window) {
+void with_observers(const run::Run& live, const std::function<void()>& window) {
     std::atomic<bool> done{false};
     std::atomic<int> surfaces{0};
     std::jthread painter([&] {
         while (!done) {
-            const Field field = live.data().field();
+            const Field field = live.field_now();
             surfaces += extract_surface(field, 76.5).complete;
         }
     });
@@ -59,18 +61,18 @@ void with_observers(const Live& live, const std::function<void()>& window) {
     done = true;
 }
 
-TEST(LivingLive, a_brush_works_while_all_others_look_record_and_save) {
+TEST(RunData, a_brush_works_while_all_others_look_record_and_save) {
     const ScratchFolder folder;
     std::shared_ptr<const Samples> felt;
     {
-        LivingSession s("synthetic:sphere:32x32x32");
+        ChangingRun s("synthetic:sphere:32x32x32");
         s.live.record(folder / "r.csv");
-        app::Sculptor& sculptor = s.live.data().sculptor();
+        run::VolumeEditor& editor = s.live.data().editor();
         std::unique_ptr<Work> saving;
         with_observers(s.live, [&] {
-            sculptor.set_brush(app::HandBrush{.radius = 2, .rate = 20});
-            ASSERT_TRUE(comes_true([&] { return sculptor.work().version > 30; }));
-            const auto samples = s.live.data().field().shared_samples();
+            editor.set_brush(run::HandBrush{.radius = 2, .rate = 20});
+            ASSERT_TRUE(comes_true([&] { return editor.state().version > 30; }));
+            const auto samples = s.live.field_now().shared_samples();
             saving = std::make_unique<Work>(
                 [&, samples](const io::Progress&) {
                     io::WriteOptions options;
@@ -79,36 +81,36 @@ TEST(LivingLive, a_brush_works_while_all_others_look_record_and_save) {
                 },
                 [] {});
             for (int i = 0; i < 5; ++i) {
-                sculptor.apply(edit::Fill{{{i, i, i}, {i + 3, i + 3, i + 3}}, 200});
-                sculptor.undo();
-                sculptor.redo();
+                editor.apply(edit::Fill{{{i, i, i}, {i + 3, i + 3, i + 3}}, 200});
+                editor.undo();
+                editor.redo();
             }
-            sculptor.set_brush({});
+            editor.set_brush({});
         });
-        felt = sculptor.work().samples;
+        felt = editor.state().samples;
         EXPECT_TRUE(comes_true([&] { return saving->ended(); }));
         EXPECT_TRUE(saving->finish());
         EXPECT_GT(s.live.stop_recording(), 0);
-        EXPECT_EQ(sculptor.work().samples, felt) << "the session began anew with its edits";
+        EXPECT_EQ(editor.state().samples, felt) << "the session began anew with its edits";
         EXPECT_TRUE(comes_true([&] {
             const auto now = s.live.snapshot();
-            return now && now->session.version == sculptor.work().version;
+            return now && now->session.version == editor.state().version;
         }));
     }
-    Playback played = Playback::read(
-        folder / "r.csv", app::load(LivingSession::on("synthetic:sphere:32x32x32").volume, {}), {});
+    Playback played = Playback::read(folder / "r.csv",
+                                     run::load(run::source_named("synthetic:sphere:32x32x32")), {});
     EXPECT_EQ(played.different(), 0U);
     const Volume seen = flattened(played.field_at(played.at(played.end())).samples());
     const Volume want = flattened(*felt);
     EXPECT_EQ(std::memcmp(seen.data(), want.data(), want.bytes()), 0);
 }
 
-TEST(LivingLive, a_sequence_plays_while_all_others_look_and_record) {
+TEST(RunData, a_sequence_plays_while_all_others_look_and_record) {
     const ScratchFolder folder;
     {
-        LivingSession s("synthetic:beating:24x24x24");
+        ChangingRun s("synthetic:beating:24x24x24");
         s.live.record(folder / "r.csv");
-        app::Player& player = s.live.data().player();
+        run::Player& player = s.live.data().player();
         with_observers(s.live, [&] {
             ASSERT_TRUE(comes_true([&] {
                 const auto now = s.live.snapshot();
@@ -120,40 +122,39 @@ TEST(LivingLive, a_sequence_plays_while_all_others_look_and_record) {
             player.step(1);
             player.set_loop(true);
             player.play(3);
-            ASSERT_TRUE(comes_true([&] { return player.view().time > 0.5; }));
+            ASSERT_TRUE(comes_true([&] { return player.state().time > 0.5; }));
         });
         EXPECT_GT(s.live.stop_recording(), 0);
-        EXPECT_EQ(player.view().speed, 3) << "it goes on in the session that began anew";
+        EXPECT_EQ(player.state().speed, 3) << "it goes on in the session that began anew";
     }
-    const Playback played =
-        Playback::read(folder / "r.csv",
-                       app::load(LivingSession::on("synthetic:beating:24x24x24").volume, {}), {});
+    const Playback played = Playback::read(
+        folder / "r.csv", run::load(run::source_named("synthetic:beating:24x24x24")), {});
     EXPECT_EQ(played.different(), 0U);
 }
 
-TEST(LivingLive, a_recording_that_begins_after_edits_begins_with_them) {
+TEST(RunData, a_recording_that_begins_after_edits_begins_with_them) {
     const ScratchFolder folder;
-    LivingSession s("synthetic:sphere:32x32x32");
-    app::Sculptor& sculptor = s.live.data().sculptor();
-    sculptor.apply(edit::Fill{{{5, 5, 5}, {20, 20, 20}}, 0});
-    sculptor.apply(edit::Fill{{{5, 5, 5}, {9, 9, 9}}, 200});
-    sculptor.undo();
+    ChangingRun s("synthetic:sphere:32x32x32");
+    run::VolumeEditor& editor = s.live.data().editor();
+    editor.apply(edit::Fill{{{5, 5, 5}, {20, 20, 20}}, 0});
+    editor.apply(edit::Fill{{{5, 5, 5}, {9, 9, 9}}, 200});
+    editor.undo();
     s.live.record(folder / "r.csv");
     ASSERT_TRUE(comes_true([&] { return s.live.recording()->ticks() > 50; }));
     (void)s.live.stop_recording();
-    const Playback played = Playback::read(folder / "r.csv", app::load(s.options.volume, {}), {});
+    const Playback played = Playback::read(folder / "r.csv", s.loaded, {});
     EXPECT_EQ(played.different(), 0U);
     EXPECT_EQ(played.at(played.begin()).session.version, 1U);
     // And after more of them than its queue has room for.
     for (int i = 0; i < 9000; ++i) {
-        sculptor.apply(edit::Fill{{{1, 1, 1}, {1, 1, 1}}, double(i % 2 + 1)});
+        editor.apply(edit::Fill{{{1, 1, 1}, {1, 1, 1}}, double(i % 2 + 1)});
     }
     s.live.record(folder / "s.csv");
     ASSERT_TRUE(comes_true([&] { return s.live.recording()->ticks() > 50; }));
     (void)s.live.stop_recording();
-    const Playback long_one = Playback::read(folder / "s.csv", app::load(s.options.volume, {}), {});
+    const Playback long_one = Playback::read(folder / "s.csv", s.loaded, {});
     EXPECT_EQ(long_one.different(), 0U);
-    EXPECT_EQ(long_one.at(long_one.begin()).session.version, sculptor.work().version);
+    EXPECT_EQ(long_one.at(long_one.begin()).session.version, editor.state().version);
 }
 
 }  // namespace

@@ -26,14 +26,12 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 SessionFile some_session() {
     SessionFile s;
-    s.volume.volume = "synthetic:sphere:32x32x32";
-    s.volume.type = "uint16";
-    s.volume.smooth = 2;
+    s.source.from = run::SyntheticSource{"sphere:32x32x32", SampleType::uint16};
+    s.source.smooth = 2;
     s.solid = Solid::below;
     s.background = 0.1 + 0.2;
     s.isovalue = 1.0 / 3;
-    s.device = "haply:port=10001";
-    s.method = "exact";
+    s.device = {"haply", {{"port", "10001"}}};
     s.settings.emplace();
     s.settings->proxy.friction = {0.3, 0.2};
     s.settings->proxy.step_budget = 777;
@@ -67,7 +65,7 @@ void expect_same(const SessionFile& a, const SessionFile& b) {
     EXPECT_EQ(a.background, b.background);
     EXPECT_EQ(a.isovalue, b.isovalue);
     EXPECT_EQ(a.device, b.device);
-    EXPECT_EQ(a.method, b.method);
+    EXPECT_EQ(a.method.method, b.method.method);
     EXPECT_EQ(a.settings->proxy.friction.static_coefficient,
               b.settings->proxy.friction.static_coefficient);
     EXPECT_EQ(a.settings->proxy.step_budget, b.settings->proxy.step_budget);
@@ -106,9 +104,9 @@ TEST(SessionFile, everything_comes_back_bit_for_bit) {
     write_session(folder / "s.json", before);
     const SessionFile after = read_session(folder / "s.json");
     expect_same(before, after);
-    EXPECT_EQ(after.volume.volume, before.volume.volume);
-    EXPECT_EQ(after.volume.type, "uint16");
-    EXPECT_EQ(after.volume.smooth, 2);
+    EXPECT_EQ(run::to_names(after.source), run::to_names(before.source));
+    EXPECT_EQ(run::to_names(after.source).at("type"), "uint16");
+    EXPECT_EQ(after.source.smooth, 2);
     EXPECT_EQ(after.settings->method, &update_exact);
     write_session(folder / "again.json", after);
     EXPECT_EQ(bytes_of(folder / "again.json"), bytes_of(folder / "s.json"));
@@ -134,10 +132,10 @@ TEST(SessionFile, a_volume_below_its_folder_moves_with_it_and_others_stay_where_
     SessionFile s = some_session();
     const auto file = folder.path() / "here" / "s.json";
     const auto volume_of = [&](const std::filesystem::path& volume) {
-        s.volume.volume = volume.string();
+        s.source = run::source_named(volume.string());
         write_session(file, s);
         std::filesystem::rename(folder / "here", folder / "there");
-        const std::string read = read_session(folder.path() / "there" / "s.json").volume.volume;
+        const std::string read = name_of(read_session(folder.path() / "there" / "s.json").source);
         std::filesystem::rename(folder / "there", folder / "here");
         return read;
     };
@@ -265,12 +263,12 @@ TEST(SessionFile, what_cannot_be_kept_is_refused_before_anything_is_written) {
         EXPECT_EQ(bytes_of(folder / "s.json"), "mine");
     };
     refused([](SessionFile& s) { s.isovalue = infinity; });
-    refused([](SessionFile& s) { s.volume.volume.clear(); });
-    refused([](SessionFile& s) { s.method = "magic"; });
+    refused([](SessionFile& s) { s.source = {}; });
+    refused([](SessionFile& s) { s.device.name.clear(); });
     refused([](SessionFile& s) { s.look.surface_opacity = 2; });
     refused([](SessionFile& s) { s.camera->half_height = std::nan(""); });
     SessionFile s = some_session();
-    s.volume.volume = "/data/\xff\xfe.nrrd";
+    s.source = run::source_named("/data/\xff\xfe.nrrd");
     EXPECT_THROW(write_session(folder / "s.json", s), io::OutputError);
     EXPECT_EQ(bytes_of(folder / "s.json"), "mine");
     EXPECT_THROW(write_session(folder.path() / "no" / "s.json", some_session()), io::OutputError);

@@ -63,7 +63,7 @@ TEST(Transfer, presets_of_any_data_are_valid_and_lie_within_the_data) {
     for (int round = 0; round < 1500; ++round) {
         const Volume volume = any_volume(random);
         const int bins = std::uniform_int_distribution(1, 300)(random);
-        const app::Histogram histogram = app::histogram_of(volume, bins);
+        const run::Histogram histogram = run::histogram_of(volume, bins);
         for (const std::string& name : preset_names()) {
             const TransferFunction transfer = preset(name, histogram, volume);
             ASSERT_NO_THROW(check(transfer)) << name << ", round " << round;
@@ -96,7 +96,7 @@ TEST(Transfer, hounsfield_data_show_bone_and_hide_soft_tissue_as_bone_preset) {
     samples.insert(samples.end(), 900, 40);
     samples.insert(samples.end(), 200, 900);
     const Volume volume = volume_of(samples);
-    const app::Histogram histogram = app::histogram_of(volume, 256);
+    const run::Histogram histogram = run::histogram_of(volume, 256);
     EXPECT_EQ(suggested_preset(histogram, volume), "CT bone");
     const TransferFunction bone = preset("CT bone", histogram, volume);
     EXPECT_EQ(sampled(bone, 40).opacity, 0);
@@ -111,7 +111,7 @@ TEST(Transfer, without_hounsfield_units_the_classes_of_the_histogram_count) {
     samples.insert(samples.end(), 900, 300);
     samples.insert(samples.end(), 200, 700);
     const Volume volume = volume_of(samples);
-    const app::Histogram histogram = app::histogram_of(volume, 256);
+    const run::Histogram histogram = run::histogram_of(volume, 256);
     EXPECT_EQ(sampled(preset("CT bone", histogram, volume), 300).opacity, 0);
     EXPECT_GT(sampled(preset("CT bone", histogram, volume), 690).opacity, 0.5);
     for (const std::string& name : preset_names()) {
@@ -130,7 +130,7 @@ TEST(Transfer, suggestions_follow_the_kind_of_data) {
     cells.insert(cells.end(), 200, 180);
     const std::vector<float> constant(10, 3.5F);
     const auto suggested = [](const Volume& volume) {
-        return suggested_preset(app::histogram_of(volume, 256), volume);
+        return suggested_preset(run::histogram_of(volume, 256), volume);
     };
     EXPECT_EQ(suggested(volume_of(shifted)), "CT bone");
     EXPECT_EQ(suggested(volume_of(cells)), "Microscopy");
@@ -152,7 +152,7 @@ TEST(Transfer, what_is_not_a_function_is_refused) {
     EXPECT_THROW(check({"", {a, {1, {0, 1.5, 0}, 0}}}), std::invalid_argument);
     EXPECT_THROW(check({"", {a, {1, {0, 0, 0}, std::nan("")}}}), std::invalid_argument);
     const Volume volume = volume_of(std::vector<std::uint8_t>{0, 1});
-    EXPECT_THROW(preset("Sepia", app::histogram_of(volume, 2), volume), std::invalid_argument);
+    EXPECT_THROW(preset("Sepia", run::histogram_of(volume, 2), volume), std::invalid_argument);
 }
 
 }  // namespace

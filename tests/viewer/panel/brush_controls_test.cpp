@@ -258,7 +258,7 @@ TEST_F(Brushes, another_volume_begins_with_the_brush_off_and_a_radius_that_fits)
     Geometry small;
     small.size = {12, 12, 12};
     const Field other(Volume(small, std::vector<std::uint8_t>(12 * 12 * 12, 9)));
-    panel.set_session(other, app::histogram_of(other.volume(), 16), 4, {}, desktop_device());
+    panel.set_session(other, run::histogram_of(other.volume(), 16), 4, {}, desktop_device());
     EXPECT_FALSE(panel.brush().on);
     EXPECT_FALSE(panel.brush().value);
     EXPECT_EQ(panel.brush().radius, 4);  // a thin grid leaves four voxels

@@ -108,7 +108,7 @@ TEST(RateLimiter, what_is_held_back_comes_by_itself) {
 
 TEST_F(Isovalue, a_tick_of_a_suggested_level_is_taken_exactly) {
     set();
-    const double suggested = app::suggested_isovalues(histogram).front();
+    const double suggested = run::suggested_isovalues(histogram).front();
     QTest::mouseClick(chart(), Qt::LeftButton, {},
                       QPoint(static_cast<int>(chart()->axis().x_of(suggested)), 2));
     ASSERT_EQ(levels().size(), 1U);
@@ -262,7 +262,7 @@ TEST_F(Isovalue, any_data_can_be_shown_and_stepped_through) {
         Geometry geometry;
         geometry.size = {static_cast<int>(samples.size()), 1, 1};
         const Field data(Volume(geometry, samples));
-        histogram = app::histogram_of(data.volume(), 64);
+        histogram = run::histogram_of(data.volume(), 64);
         panel.set_session(data, histogram, data.volume().minimum(), {}, desktop_device());
         commands.clear();
         chart()->setFocus();

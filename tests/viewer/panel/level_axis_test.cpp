@@ -13,14 +13,14 @@ namespace palpate::viewer {
 namespace {
 
 template <class T>
-app::Histogram histogram_of(const std::vector<T>& samples, int bins = 256) {
+run::Histogram histogram_of(const std::vector<T>& samples, int bins = 256) {
     Geometry geometry;
     geometry.size = {static_cast<int>(samples.size()), 1, 1};
-    return app::histogram_of(Volume(geometry, samples), bins);
+    return run::histogram_of(Volume(geometry, samples), bins);
 }
 
 /// Heights [pixels] of what is drawn in each column.
-std::vector<int> heights(const app::Histogram& histogram, int width, int height) {
+std::vector<int> heights(const run::Histogram& histogram, int width, int height) {
     QImage image(width, height, QImage::Format_ARGB32);
     image.fill(Qt::white);
     const QRectF plot(0, 0, width, height);
@@ -106,7 +106,7 @@ TEST(LevelAxis, both_values_of_a_mask_are_drawn) {
 }
 
 TEST(LevelAxis, a_constant_volume_is_one_bar_in_the_middle) {
-    const app::Histogram histogram = histogram_of(std::vector<float>(10, 7.5F));
+    const run::Histogram histogram = histogram_of(std::vector<float>(10, 7.5F));
     const LevelAxis axis = axis_of(histogram, QRectF(0, 0, 100, 50));
     EXPECT_LT(axis.low, 7.5);
     EXPECT_GT(axis.high, 7.5);

@@ -1,5 +1,5 @@
 // The panel with a live run: what it asks for is carried out, and both agree.
-#include "apps/viewer/model/live.hpp"
+#include "palpate/run/run.hpp"
 
 #include <QPushButton>
 #include <QSlider>
@@ -15,10 +15,12 @@ namespace {
 class WithLive : public PanelFixture {
   protected:
     WithLive() {
-        options_.volume.volume = "synthetic:sphere:32x32x32";
-        options_.device = "mouse";
-        live = std::make_unique<Live>(app::load(options_.volume, {}), options_);
-        histogram = app::histogram_of(live->field().volume(), 256);
+        run::Setup setup;
+        setup.device = {"mouse", {}};
+        const auto source = run::source_named("synthetic:sphere:32x32x32");
+        live = std::make_unique<run::Run>(std::make_shared<run::Data>(run::load(source)), setup);
+        live->start();
+        histogram = run::histogram_of(live->field().volume(), 256);
         panel.set_session(live->field(), histogram, live->isovalue(), live->settings(),
                           live->device());
         QObject::connect(&panel, &Panel::asked, [this](const Command& command) {
@@ -53,11 +55,8 @@ class WithLive : public PanelFixture {
         }
     }
 
-    std::unique_ptr<Live> live;
+    std::unique_ptr<run::Run> live;
     std::vector<std::string> refusals;
-
-  private:
-    app::TouchOptions options_;
 };
 
 TEST_F(WithLive, random_requests_by_mouse_and_keys_are_all_carried_out) {

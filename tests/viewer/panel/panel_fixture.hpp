@@ -67,7 +67,7 @@ class PanelFixture : public testing::Test {
              Solid solid = Solid::above) {
         session_settings = settings;
         field.emplace(head_like(), solid);
-        histogram = app::histogram_of(field->volume(), 256);
+        histogram = run::histogram_of(field->volume(), 256);
         panel.set_session(*field, histogram, isovalue, settings, desktop_device());
         QApplication::processEvents();
     }
@@ -131,7 +131,7 @@ class PanelFixture : public testing::Test {
     QString refuse_with;
     RendererSettings session_settings;
     std::optional<Field> field;
-    app::Histogram histogram;
+    run::Histogram histogram;
     QScrollArea area;
     Panel panel;
 };

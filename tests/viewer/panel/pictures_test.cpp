@@ -4,8 +4,8 @@
 
 #include <filesystem>
 
-#include "apps/live/volume_options.hpp"
 #include "apps/viewer/model/transfer.hpp"
+#include "palpate/run/source.hpp"
 #include "tests/viewer/panel/panel_fixture.hpp"
 
 namespace palpate::viewer {
@@ -112,14 +112,11 @@ TEST_F(Pictures, narrow_with_a_threshold_and_refusals) {
 TEST_F(Pictures, real_volumes_get_a_preset_that_shows_something) {
     for (const std::string name : {"cthead_unc", "lobster", "daisy_pollen", "neuron_confocal"}) {
         SCOPED_TRACE(name);
-        app::VolumeOptions options;
-        options.volume = std::string(PALPATE_DATA_FOLDER) + "/" + name + ".nrrd";
-        options.quiet = true;
-        if (!std::filesystem::exists(options.volume))
-            GTEST_SKIP() << options.volume << " is absent";
-        field.emplace(app::load(options, {}).volume);
-        histogram = app::histogram_of(field->volume(), 256);
-        const double isovalue = app::suggested_isovalues(histogram).front();
+        const std::string file = std::string(PALPATE_DATA_FOLDER) + "/" + name + ".nrrd";
+        if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is absent";
+        field.emplace(run::load(run::source_named(file)).volume);
+        histogram = run::histogram_of(field->volume(), 256);
+        const double isovalue = run::suggested_isovalues(histogram).front();
         panel.set_session(*field, histogram, isovalue, {}, desktop_device());
         Look look;
         look.volume = true;

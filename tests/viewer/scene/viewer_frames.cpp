@@ -17,8 +17,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/live/volume_options.hpp"
 #include "apps/viewer/scene/scene.hpp"
+#include "palpate/run/source.hpp"
 #include "tests/viewer/scene/timing.hpp"
 
 namespace {
@@ -142,10 +142,7 @@ struct Meter {
 };
 
 void measure(const std::string& name, std::optional<double> level) {
-    app::VolumeOptions options;
-    options.volume = name;
-    options.quiet = true;
-    const app::LoadedVolume loaded = app::load(options, {});
+    const run::LoadedVolume loaded = run::load(run::source_named(name));
     const Field field(loaded.volume);
     const double isovalue = level ? *level : loaded.isovalue.value_or(loaded.volume.minimum());
     Scene scene;

@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "apps/live/volume_options.hpp"
+#include "palpate/run/source.hpp"
 #include "support/fields.hpp"
 #include "viewer/slices/pane_support.hpp"
 
@@ -12,9 +12,7 @@ namespace palpate::viewer {
 namespace {
 
 Volume real(const std::string& name) {
-    app::VolumeOptions options;
-    options.volume = std::string(PALPATE_DATA_FOLDER) + "/" + name;
-    return app::load(options, {}).volume;
+    return run::load(run::source_named(std::string(PALPATE_DATA_FOLDER) + "/" + name)).volume;
 }
 
 bool there_is(const std::string& name) {

@@ -10,9 +10,9 @@
 #include <functional>
 #include <vector>
 
-#include "apps/live/volume_options.hpp"
 #include "apps/viewer/slices/slice_pane.hpp"
 #include "apps/viewer/slices/slice_picture.hpp"
+#include "palpate/run/source.hpp"
 
 namespace {
 
@@ -91,9 +91,8 @@ void measure(const Field& field, int axis, int edge) {
 
 int main(int argc, char** argv) {
     const QApplication application(argc, argv);
-    app::VolumeOptions options;
-    if (argc > 1) options.volume = argv[1];
-    const Field field(argc > 1 ? app::load(options, {}).volume : blobs({512, 512, 640}));
+    const Field field(argc > 1 ? run::load(run::source_named(argv[1])).volume
+                               : blobs({512, 512, 640}));
     for (const int edge : {300, 512, 1000}) {
         for (int axis = 0; axis < 3; ++axis) measure(field, axis, edge);
     }

@@ -24,7 +24,7 @@ void answer(QMessageBox::StandardButton button) {
 
 class ChangingData : public InWindow {
   protected:
-    app::Work work() { return window_->live()->data().sculptor().work(); }
+    run::EditState work() { return window_->live()->data().editor().state(); }
     /// Presses, and carves until something is gone.
     void carve() {
         press_until_force();

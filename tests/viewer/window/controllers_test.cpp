@@ -73,12 +73,12 @@ class Controllers : public testing::Test {
     }
     /// Feels a synthetic volume, with the mouse as device.
     void feel(const std::string& volume) {
-        app::TouchOptions options;
-        options.device = "mouse";
-        options.normal_priority = true;
-        options.volume.volume = volume;
-        options.field.isovalue = "100";
-        content.start_run(std::make_shared<Opened>(open(options.volume, [](double) {})), options);
+        run::Setup setup;
+        setup.device = {"mouse", {}};
+        setup.real_time = false;
+        setup.field.isovalue = 100.0;
+        content.start_run(std::make_shared<Opened>(open(run::source_named(volume), [](double) {})),
+                          setup);
     }
 
     QWidget parent;

@@ -80,9 +80,7 @@ TEST_F(Failures, opening_what_is_open_gives_up_what_is_being_loaded) {
     window_->recordings().start(scratch("a.csv"));
     ASSERT_TRUE(wait_until([&] { return window_->live()->recording()->ticks() > 50; }));
     window_->recordings().stop();
-    app::VolumeOptions other;
-    other.volume = "synthetic:noise:200x200x200";
-    window_->files().open_volume(other);
+    window_->files().open_volume(run::source_named("synthetic:noise:200x200x200"));
     window_->files().open_path(scratch("a.csv"));
     ASSERT_TRUE(wait_until([&] { return window_->playback() != nullptr; }));
     QTest::qWait(500);
@@ -129,9 +127,7 @@ TEST_F(Failures, words_can_be_read_in_light_and_dark) {
 
 TEST_F(Failures, the_servo_ends_before_what_takes_long_when_the_window_goes) {
     feel(sphere);
-    app::VolumeOptions slow;
-    slow.volume = "synthetic:marschner-lobb:260x260x260";
-    window_->files().open_volume(slow);
+    window_->files().open_volume(run::source_named("synthetic:marschner-lobb:260x260x260"));
     QTest::qWait(50);
     window_.reset();  // neither hangs nor crashes
 }

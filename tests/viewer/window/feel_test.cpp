@@ -17,9 +17,7 @@ using Window = InWindow;
 constexpr const char* sphere = "synthetic:sphere:48x48x48";
 
 TEST_F(Window, a_file_is_opened_through_the_dialog_by_keys) {
-    app::VolumeOptions options;
-    options.volume = sphere;
-    const Volume ball = app::load(options, [](double) {}).volume;
+    const Volume ball = run::load(run::source_named(sphere)).volume;
     io::write_volume(ball, scratch_.path() / "ball.nrrd");
     type_in_dialog(Qt::Key_O, scratch("ball.nrrd"));
     ASSERT_TRUE(wait_until([&] { return window_->live() != nullptr; }));
@@ -135,7 +133,7 @@ TEST_F(Window, a_session_is_recorded_and_played_back_with_the_timeline) {
 
 TEST_F(Window, what_cannot_be_opened_is_told_and_the_session_goes_on) {
     feel(sphere);
-    const Live* live = window_->live();
+    const run::Run* live = window_->live();
     window_->files().open_path(scratch("missing.nrrd"));
     ASSERT_TRUE(wait_until([&] { return !window_->messages().problem().isEmpty(); }));
     EXPECT_TRUE(window_->messages().problem().contains("missing.nrrd"));
@@ -183,7 +181,7 @@ TEST_F(Window, another_device_takes_over_with_what_was_set) {
     ASSERT_TRUE(wait_until([&] { return force() > 0.2; }));
     Q_EMIT window_->panel().device_chosen("nonsense");
     EXPECT_TRUE(window_->messages().problem().contains("nonsense"));
-    EXPECT_EQ(window_->live()->options().device, "simulated:hand=press");
+    EXPECT_EQ(run::text_of(window_->live()->setup().device), "simulated:hand=press");
 }
 
 TEST_F(Window, control_q_ends_the_window_and_the_session) {

@@ -22,10 +22,9 @@ class Files : public InWindow {
   protected:
     /// A volume in a file, of this size.
     QString file_of(int size, const char* name) {
-        app::VolumeOptions options;
-        options.volume = "synthetic:sphere:" + std::to_string(size) + "x" + std::to_string(size) +
-                         "x" + std::to_string(size);
-        io::write_volume(app::load(options, [](double) {}).volume, scratch_.path() / name);
+        const std::string n = std::to_string(size);
+        const auto source = run::source_named("synthetic:sphere:" + n + "x" + n + "x" + n);
+        io::write_volume(run::load(source).volume, scratch_.path() / name);
         return scratch(name);
     }
 };
@@ -59,10 +58,9 @@ TEST_F(Files, recent_files_are_listed_newest_first_and_open_again) {
 
 TEST_F(Files, loading_can_be_cancelled_and_what_was_felt_goes_on) {
     feel("synthetic:sphere:32x32x32");
-    const Live* before = window_->live();
+    const run::Run* before = window_->live();
     // Smoothing so often takes seconds: time enough to find the button.
-    app::VolumeOptions slow;
-    slow.volume = file_of(128, "slow.nrrd").toStdString();
+    run::Source slow = run::source_named(file_of(128, "slow.nrrd").toStdString());
     slow.smooth = 24;
     window_->files().open_volume(slow);
     auto& cancel = part<QPushButton>("cancel");
@@ -92,10 +90,10 @@ TEST_F(Files, a_raw_file_is_opened_once_the_dialog_knows_its_size) {
     set("size2", 8);
     dialog.findChild<QComboBox*>()->setCurrentText("uint16");
     EXPECT_TRUE(open->isEnabled());
-    const app::VolumeOptions options = dialog.options();
-    EXPECT_EQ(options.dims, "12x10x8");
-    EXPECT_EQ(options.type, "uint16");
-    const Volume volume = app::load(options, [](double) {}).volume;
+    const run::Source source = dialog.source();
+    EXPECT_EQ(run::to_names(source).at("dims"), "12x10x8");
+    EXPECT_EQ(run::to_names(source).at("type"), "uint16");
+    const Volume volume = run::load(source).volume;
     EXPECT_EQ(volume.minimum(), 0x0505);
 }
 

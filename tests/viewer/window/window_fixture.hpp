@@ -52,10 +52,10 @@ class InWindow : public testing::Test {
     }
 
     void open_window(const std::string& device) {
-        app::TouchOptions options;
-        options.device = device;
-        options.normal_priority = true;
-        window_ = std::make_unique<MainWindow>(options);
+        run::Setup setup;
+        setup.device = devices::parse_device(device);
+        setup.real_time = false;
+        window_ = std::make_unique<MainWindow>(RunRequest{setup, {}, {}});
         window_->resize(1280, 860);
         window_->show();
         ASSERT_TRUE(QTest::qWaitForWindowExposed(window_.get()));

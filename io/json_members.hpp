@@ -1,0 +1,115 @@
+// JSON from lists of members: a struct has one function template members(visitor, value), which
+// calls visitor("name", value.name) for each member, in the struct's namespace or in palpate::io.
+// JsonWriter and JsonReader walk through it. Other types have to_value() and from_value(), found in
+// the same places.
+#pragma once
+
+#include <concepts>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "io/settings_json.hpp"
+
+namespace palpate::io {
+
+/// Throws std::invalid_argument: "'name' must be WANTED".
+[[noreturn]] void wrong_member(const std::string& name, const std::string& wanted);
+
+/// S is T, const or not: written from const values, read into others.
+template <class S, class T>
+concept Is = std::same_as<std::remove_const_t<S>, T>;
+
+template <class T>
+requires(std::same_as<T, bool> || std::same_as<T, int> || std::same_as<T, std::uint32_t> ||
+         std::same_as<T, std::string>) Json to_value(const T& value) {
+    return value;
+}
+inline Json to_value(double value) {
+    return number_to_json(value);
+}
+Json to_value(const Vec3& value);
+Json to_value(const Mat3& value);  ///< rows
+
+/// `name` is for errors: std::invalid_argument.
+void from_value(const Json& json, const std::string& name, bool& value);
+void from_value(const Json& json, const std::string& name, double& value);
+void from_value(const Json& json, const std::string& name, std::string& value);
+void from_value(const Json& json, const std::string& name, int& value);
+void from_value(const Json& json, const std::string& name, std::uint32_t& value);
+void from_value(const Json& json, const std::string& name, Vec3& value);
+void from_value(const Json& json, const std::string& name, Mat3& value);
+
+struct JsonWriter {
+    Json json = Json::object();
+
+    template <class T>
+    static Json of(const T& value) {
+        if constexpr (requires(JsonWriter & part) { members(part, value); }) {
+            JsonWriter part;
+            members(part, value);
+            return std::move(part.json);
+        } else {
+            return to_value(value);
+        }
+    }
+    template <class T>
+    void operator()(const std::string& name, const T& value) {
+        json[name] = of(value);
+    }
+    /// Nothing is left out.
+    template <class T>
+    void operator()(const std::string& name, const std::optional<T>& value) {
+        if (value) json[name] = of(*value);
+    }
+    template <class T>
+    void operator()(const std::string& name, const std::vector<T>& values) {
+        Json& list = json[name] = Json::array();
+        for (const T& value : values) list.push_back(of(value));
+    }
+};
+
+/// Members that are missing leave their value as it is.
+struct JsonReader {
+    const Json& json;
+    std::string where = {};  ///< for errors: "" or "look."
+
+    const Json* find(const std::string& name) const {
+        if (!json.is_object()) wrong_member(where + name, "a member of an object");
+        const auto found = json.find(name);
+        return found == json.end() ? nullptr : &*found;
+    }
+    template <class T>
+    static void get(const Json& json, const std::string& name, T& value) {
+        JsonReader part{json, name + "."};
+        if constexpr (requires { members(part, value); }) {
+            if (!json.is_object()) wrong_member(name, "an object");
+            members(part, value);
+        } else {
+            from_value(json, name, value);
+        }
+    }
+    template <class T>
+    void operator()(const std::string& name, T& value) {
+        if (const Json* const found = find(name)) get(*found, where + name, value);
+    }
+    template <class T>
+    void operator()(const std::string& name, std::optional<T>& value) {
+        if (const Json* const found = find(name)) get(*found, where + name, value.emplace());
+    }
+    template <class T>
+    void operator()(const std::string& name, std::vector<T>& values) {
+        const Json* const found = find(name);
+        if (!found) return;
+        if (!found->is_array()) wrong_member(where + name, "a list");
+        values.clear();
+        for (const Json& value : *found) {
+            get(value, where + name + "[" + std::to_string(values.size()) + "]",
+                values.emplace_back());
+        }
+    }
+};
+
+}  // namespace palpate::io
