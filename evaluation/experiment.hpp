@@ -1,5 +1,5 @@
-// What an experiment is: a question put to the methods, and an answer as a table, figures, a
-// paragraph and claims that were checked. One experiment is one file; all are listed here.
+// The interface of an experiment: options in; a table, figures, a paragraph and checked claims out.
+// One experiment is one folder; all are listed here.
 #pragma once
 
 #include <functional>
@@ -22,21 +22,20 @@ struct Options {
     std::string method = "exact";   ///< for an experiment that shows one method
     std::vector<Subject> subjects;  ///< instead of the experiment's own volumes
     std::filesystem::path data;     ///< folder with the real volumes; empty: there is none
-    /// The part of the work that is done, 0 to 1. May throw to stop.
+    /// Called with the part that is done, 0 to 1. May throw to stop.
     std::function<void(double)> progress = [](double) {};
     /// One line for the user about something that was left out.
     std::function<void(const std::string&)> note = [](const std::string&) {};
 };
 
-/// A statement that the numbers either bear out or not, exactly: it never depends on how fast the
-/// machine is.
+/// A statement that the run checks. It never depends on how fast the machine is.
 struct Claim {
     std::string statement;
     bool held = false;
-    std::string measured;  ///< what it rests on, as in "largest 3.1e-15 over 5,000,000 updates"
+    std::string measured;  ///< the number behind it: "largest 3.1e-15 over 5,000,000 updates"
 };
 
-/// A picture that is there already (a rendering), beside the plotted figures.
+/// A rendering, beside the plotted figures.
 struct Picture {
     std::string suffix;  ///< file name: EXPERIMENT-SUFFIX.png
     std::string caption;
@@ -45,6 +44,7 @@ struct Picture {
 
 struct Result {
     Table table;
+    Table summary;  ///< the main numbers side by side, shown in the page; may be empty
     std::vector<Figure> figures;  ///< the first is the experiment's figure
     std::vector<Picture> pictures;
     std::string paragraph;  ///< what was done and what came out, with the figures' numbers
@@ -60,7 +60,8 @@ struct Experiment {
 /// In the order of docs/evaluation.md.
 std::span<const Experiment> experiments();
 
-// Each in the file of its name. They throw std::invalid_argument for options that cannot be meant.
+// Each is in the folder of its name. They throw std::invalid_argument for options that make no
+// sense.
 Result drift(const Options& options);
 Result fall_through(const Options& options);
 Result performance(const Options& options);

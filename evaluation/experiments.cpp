@@ -6,13 +6,14 @@ namespace palpate::evaluation {
 std::span<const Experiment> experiments() {
     static constexpr Experiment all[] = {
         {"drift", "Does the proxy stay on the isosurface?", &drift},
-        {"fall-through", "Does a fast hand get through a thin wall?", &fall_through},
+        {"fall-through", "Does a fast hand fall through a thin wall?", &fall_through},
         {"performance", "What does an update cost?", &performance},
-        {"scaling", "What does the cost grow with, and what does the explicit way cost?", &scaling},
+        {"scaling", "What does the cost grow with, and what does the explicit approach cost?",
+         &scaling},
         {"fidelity", "How near is the force to the true surface's?", &fidelity},
         {"stability", "How stiff may a surface be before it buzzes?", &stability},
-        {"walk-through", "How does a proxy go, step by step?", &walk_through},
-        {"penetration", "What is felt on the way from the skin into the brain?", &penetration},
+        {"walk-through", "How does a proxy move, step by step?", &walk_through},
+        {"penetration", "What is felt from the skin into the brain?", &penetration},
     };
     return all;
 }

@@ -1,4 +1,4 @@
-// Foreign text in HTML. Header only; also for the demo's report.
+// Escapes text for HTML. Header only; the demo's report uses it, too.
 #pragma once
 
 #include <string>

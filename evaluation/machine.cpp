@@ -1,4 +1,4 @@
-// What the system tells of itself.
+// Reads the machine's description from the system.
 #include "evaluation/machine.hpp"
 
 #include <fmt/chrono.h>

@@ -1,4 +1,4 @@
-// Where and when numbers were measured.
+// A line that says on which machine and when numbers were measured.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// Markdown for a repository, HTML for a reader.
+// Writes results as files: Markdown beside the tables and figures, and one HTML page.
 #include "evaluation/report.hpp"
 
 #include <fmt/format.h>
@@ -26,9 +26,28 @@ std::string file_name(const Report& report, const std::string& suffix) {
     return report.experiment.name + (suffix.empty() ? "" : "-" + suffix);
 }
 
+std::string markdown_from(const Table& table) {
+    std::string text, rule;
+    const auto cell = [&](const std::string& content) { text += "| " + content + " "; };
+    for (const std::string& column : table.columns()) {
+        cell(column);
+        rule += "|---";
+    }
+    text += "|\n" + rule + "|\n";
+    for (const auto& row : table.rows()) {
+        for (const Cell& value : row) {
+            const double* const number = std::get_if<double>(&value);
+            cell(number ? fmt::format("{:.4g}", *number) : std::get<std::string>(value));
+        }
+        text += "|\n";
+    }
+    return text + "\n";
+}
+
 std::string markdown_from(const Report& report) {
     std::string text = fmt::format("# {}: {}\n\n{}\n\n", report.experiment.name,
                                    report.experiment.title, report.result.paragraph);
+    if (!report.result.summary.rows().empty()) text += markdown_from(report.result.summary);
     for (const Figure& figure : report.result.figures) {
         text += fmt::format("![{0}]({1}.svg)\n\n{0}\n\n", figure.caption,
                             file_name(report, figure.suffix));
@@ -63,11 +82,11 @@ std::string base64(const std::string& bytes) {
     return text;
 }
 
-/// The file as an address that is itself the picture.
+/// The file as a data URL.
 std::string embedded(const fs::path& file) {
     std::ifstream in(file, std::ios::binary);
     const std::string bytes{std::istreambuf_iterator<char>(in), {}};
-    if (!in || bytes.empty()) throw io::OutputError(file.string() + ": is gone again");
+    if (!in || bytes.empty()) throw io::OutputError(file.string() + ": cannot be read");
     return fmt::format("data:image/{};base64,{}", file.extension() == ".svg" ? "svg+xml" : "png",
                        base64(bytes));
 }
@@ -81,6 +100,7 @@ std::string section(const Report& report, const fs::path& folder) {
     std::string html =
         fmt::format("<h2 id=\"{0}\">{0}: {1}</h2>\n<p>{2}</p>\n", report.experiment.name,
                     html_text(report.experiment.title), html_text(report.result.paragraph));
+    if (!report.result.summary.rows().empty()) html += html_from(report.result.summary);
     for (const Figure& figure : report.result.figures) {
         html += figure_html(folder / (file_name(report, figure.suffix) + ".svg"), figure.caption);
     }

@@ -1,5 +1,5 @@
-// What an experiment leaves: NAME.csv, its figures as SVG and PNG, its pictures, NAME.md; and the
-// report of several as one HTML file that needs no other.
+// Writes an experiment's result: NAME.csv, NAME.md, figures as SVG and PNG, pictures; and the
+// results of several experiments as one HTML file with everything inside.
 #pragma once
 
 #include <filesystem>
@@ -19,7 +19,8 @@ struct Report {
 /// Files go into `folder`, which exists. Throws io::OutputError.
 void write_files(const Report& report, const std::filesystem::path& folder);
 
-/// `folder` is where write_files() put the figures, which go into the page. Throws io::OutputError.
+/// `folder` is where write_files() put the figures; they are embedded in the page. Throws
+/// io::OutputError.
 void write_html(const std::vector<Report>& reports, const std::filesystem::path& folder,
                 const std::filesystem::path& page);
 

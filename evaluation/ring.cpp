@@ -1,4 +1,4 @@
-// Rays towards the centre, and arc length.
+// Casts rays towards the centre of a body, and measures arc length.
 #include "evaluation/ring.hpp"
 
 #include <algorithm>

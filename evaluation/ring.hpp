@@ -1,4 +1,4 @@
-// A closed way of a hand round a body, just below its surface.
+// A closed trajectory of a hand round a body, just below its surface.
 #pragma once
 
 #include <vector>
@@ -14,7 +14,7 @@ class Ring {
     explicit Ring(std::vector<Vec3> points);
 
     double length() const { return arc_.back(); }  ///< [mm]
-    /// The point after `arc` [mm] from the start, round and round.
+    /// The point `arc` [mm] from the start; it goes on after a full turn.
     Vec3 at(double arc) const;
 
   private:

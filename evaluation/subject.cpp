@@ -1,4 +1,4 @@
-// Where the volumes come from.
+// Makes or reads the volumes of experiments.
 #include "evaluation/subject.hpp"
 
 #include <array>

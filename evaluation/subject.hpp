@@ -1,5 +1,5 @@
-// A volume that an experiment is done on: a synthetic one, a real one from the data folder, or one
-// that the user chose.
+// A volume for an experiment: a synthetic one, a real one from the data folder, or one that the
+// user chose.
 #pragma once
 
 #include <filesystem>

@@ -1,10 +1,11 @@
-// Passes, percentiles, and updates with empty caches.
+// Times updates in passes, in batches and one by one, with warm and with empty caches.
 #include "evaluation/timing.hpp"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <limits>
+
+#include "evaluation/table.hpp"
 
 namespace palpate::evaluation {
 namespace {
@@ -18,16 +19,16 @@ double nanoseconds(Clock::duration duration) {
 struct Timed {
     const Subject& subject;
     ProxyMethod method;
-    const std::vector<Stroke>& strokes;
+    const std::vector<Trajectory>& trajectories;
 
-    /// `update` is called with the proxy and each place of the hand; the way to a stroke's start is
-    /// not timed.
+    /// `update` is called with the proxy and each place of the hand; the move to a trajectory's
+    /// start is not timed.
     template <class Update>
     void follow(Update&& update) const {
-        for (const Stroke& stroke : strokes) {
+        for (const Trajectory& trajectory : trajectories) {
             Proxy proxy;
-            place(proxy, subject.field, stroke.front(), subject.isovalue);
-            for (std::size_t i = 1; i < stroke.size(); ++i) update(proxy, stroke[i]);
+            place(proxy, subject.field, trajectory.front(), subject.isovalue);
+            for (std::size_t i = 1; i < trajectory.size(); ++i) update(proxy, trajectory[i]);
         }
     }
     ProxyUpdate update(Proxy& proxy, const Vec3& hip) const {
@@ -42,20 +43,20 @@ double mean_of_batches(const Timed& timed, int passes, std::int64_t updates) {
     std::vector<std::vector<double>> batches;  // [ns], of each the passes
     for (int pass = 0; pass < passes; ++pass) {
         std::size_t number = 0;
-        for (const Stroke& stroke : timed.strokes) {
+        for (const Trajectory& trajectory : timed.trajectories) {
             Proxy proxy;
-            place(proxy, timed.subject.field, stroke.front(), timed.subject.isovalue);
-            for (std::size_t first = 1; first < stroke.size(); first += batch, ++number) {
-                const std::size_t last = std::min(stroke.size(), first + batch);
+            place(proxy, timed.subject.field, trajectory.front(), timed.subject.isovalue);
+            for (std::size_t first = 1; first < trajectory.size(); first += batch, ++number) {
+                const std::size_t last = std::min(trajectory.size(), first + batch);
                 if (number == batches.size()) batches.emplace_back();
                 const auto begin = Clock::now();
-                for (std::size_t i = first; i < last; ++i) timed.update(proxy, stroke[i]);
+                for (std::size_t i = first; i < last; ++i) timed.update(proxy, trajectory[i]);
                 batches[number].push_back(nanoseconds(Clock::now() - begin));
             }
         }
     }
     double sum = 0;
-    for (auto& times : batches) sum += quantile(times, 0.5);
+    for (const auto& times : batches) sum += quantile(times, 0.5);
     return sum / static_cast<double>(updates);
 }
 
@@ -105,7 +106,7 @@ void time_singly(const Timed& timed, int passes, UpdateTimes& times) {
     times.p50_ns = quantile(medians, 0.5);
     times.p99_ns = quantile(medians, 0.99);
     times.p999_ns = quantile(medians, 0.999);
-    times.max_ns = medians.back();
+    times.max_ns = largest(medians);
 }
 
 /// Median over updates before each of which more memory was walked through than caches hold: what
@@ -133,16 +134,9 @@ double cold_median(const Timed& timed, int wanted, std::int64_t updates) {
 
 }  // namespace
 
-double quantile(std::vector<double>& values, double share) {
-    if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-    std::sort(values.begin(), values.end());
-    const double rank = std::ceil(share * static_cast<double>(values.size()));
-    return values[static_cast<std::size_t>(std::max(1.0, rank)) - 1];
-}
-
 UpdateTimes time_updates(const Subject& subject, ProxyMethod method,
-                         const std::vector<Stroke>& strokes, const TimingPlan& plan) {
-    const Timed timed{subject, method, strokes};
+                         const std::vector<Trajectory>& trajectories, const TimingPlan& plan) {
+    const Timed timed{subject, method, trajectories};
     UpdateTimes times;
     count(timed, times);
     times.mean_ns = mean_of_batches(timed, plan.passes, times.updates);

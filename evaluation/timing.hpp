@@ -1,11 +1,12 @@
-// How proxy updates are timed on a machine that others use too: the same strokes in several passes.
-// A proxy does the same work in every pass, so what differs between passes is the machine's.
+// How proxy updates are timed on a machine that others use too: the same trajectories in several
+// passes. A proxy does the same work in every pass, so what differs between passes is the
+// machine's.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
-#include "evaluation/hand_at_work.hpp"
+#include "evaluation/exploring_hand.hpp"
 
 namespace palpate::evaluation {
 
@@ -31,9 +32,6 @@ struct UpdateTimes {
 };
 
 UpdateTimes time_updates(const Subject& subject, ProxyMethod method,
-                         const std::vector<Stroke>& strokes, const TimingPlan& plan);
-
-/// The value that a share of all values does not exceed; sorts them. NaN without values.
-double quantile(std::vector<double>& values, double share);
+                         const std::vector<Trajectory>& trajectories, const TimingPlan& plan);
 
 }  // namespace palpate::evaluation

@@ -1,5 +1,5 @@
-// APNG: the chunks of the pictures in one file. The first picture's data are a PNG's own (IDAT),
-// those of the rest have numbers before them (fdAT).
+// Writes APNG: the chunks of several PNGs in one file. The first picture's data stay in IDAT
+// chunks, the others' go into numbered fdAT chunks.
 #include "pictures/animation.hpp"
 
 #include <zlib.h>

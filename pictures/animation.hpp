@@ -1,5 +1,5 @@
-// Pictures that move: PNGs of one size as one animated PNG (APNG), which browsers play and anything
-// else shows the first picture of.
+// Combines PNGs of one size into an animated PNG (APNG). Browsers play it; other programs show its
+// first picture.
 #pragma once
 
 #include <span>

@@ -1,4 +1,4 @@
-// Markers of a contact.
+// Adds the markers of a contact to a scene.
 #include "pictures/contact.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Hand, proxy, spring and force as things to see, sized by the picture they are in.
+// Hand, proxy, spring and force as markers in a scene, sized for its picture.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-// Levels and ways.
+// Adds isosurfaces and the path of a hand to a scene.
 #include "pictures/levels.hpp"
 
 #include <algorithm>
@@ -66,10 +66,10 @@ void add_way(PictureScene& scene, const std::vector<Vec3>& hip, const std::vecto
              const std::vector<bool>& constrained) {
     const double thin = line_radius(scene, 1.6), thick = line_radius(scene, 3.2);
     if (!hip.empty()) {
-        scene.lines.push_back({thinned(hip, 0.5 * thin), thin, hip_colour, "way of the hand"});
+        scene.lines.push_back({thinned(hip, 0.5 * thin), thin, hip_colour, "path of the hand"});
     }
     std::vector<Vec3> touch;
-    std::string label = "way of the proxy in contact";
+    std::string label = "path of the proxy in contact";
     const auto finish = [&] {
         if (!touch.empty()) {
             scene.lines.push_back({thinned(touch, 0.5 * thick), thick, scp_colour, label});

@@ -1,4 +1,5 @@
-// The isosurfaces of a picture and the way of a hand, with the colours that all our pictures share.
+// The isosurfaces of a picture and the path of a hand, with the colours that all our pictures
+// share.
 #pragma once
 
 #include <functional>
@@ -20,8 +21,8 @@ int add_levels(
     PictureScene& scene, const Field& field, std::span<const double> levels,
     const std::function<void(double)>& progress = [](double) {});
 
-/// Adds the ways of hand and proxy, the proxy's in contact only: where it is free it is the hand.
-/// `hip` may be empty; `constrained` is for each `scp`. The camera must be directed before.
+/// Adds the paths of hand and proxy; that of the proxy in contact only, since else it is at the
+/// hand. `hip` may be empty; `constrained` is for each `scp`. The camera must be directed before.
 void add_way(PictureScene& scene, const std::vector<Vec3>& hip, const std::vector<Vec3>& scp,
              const std::vector<bool>& constrained);
 

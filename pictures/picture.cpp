@@ -1,4 +1,4 @@
-// A scene into shared memory, the helper's PNG out of it.
+// Passes a scene to the helper in shared memory and reads the PNG from it.
 #include "pictures/picture.hpp"
 
 #include <sys/stat.h>

@@ -1,5 +1,5 @@
-// Pictures of surfaces, hand and proxy on a machine without a display: VTK in a helper process
-// (palpate-picture-helper), so that what is slow to load or crashes there is one error here.
+// Pictures of surfaces, hand and proxy on a machine without a display. VTK draws them in a helper
+// process (palpate-picture-helper), so that slow loading or a crash there is only an error here.
 #pragma once
 
 #include <filesystem>

@@ -1,5 +1,5 @@
-// What is in a picture: plain values in physical space (LPS, mm) with colours. Drawing it is
-// picture.hpp's. Header only, so that the helper program knows the same values.
+// The contents of a picture: plain values in physical space (LPS, mm) with colours. picture.hpp
+// draws it. Header only, since the helper program uses the same values.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// Meshes with normals.
+// Extracts isosurfaces and gives them normals.
 #include "pictures/surface.hpp"
 
 #include <Eigen/Geometry>

@@ -1,4 +1,4 @@
-// Isosurfaces ready for a picture: the mesh that the proxy meets, with normals to shade it by.
+// Isosurfaces for pictures: the mesh that the proxy meets, with normals for shading.
 #pragma once
 
 #include <functional>

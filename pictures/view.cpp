@@ -1,4 +1,4 @@
-// Views and framing.
+// Camera views, and framing a scene in them.
 #include "pictures/view.hpp"
 
 #include <Eigen/Geometry>

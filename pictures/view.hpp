@@ -1,5 +1,5 @@
-// Where a picture is taken from. Directions are the body's (LPS): the front is anterior (-y), its
-// left is +x, its top superior (+z).
+// The view of a picture: where the camera is. Directions are the body's (LPS): the front is
+// anterior (-y), its left is +x, its top superior (+z).
 #pragma once
 
 #include <optional>

@@ -1,5 +1,5 @@
-// How a scene crosses to the helper program and the picture comes back, in one place so that both
-// agree. The shared memory (descriptor 3) holds:
+// How a scene is passed to the helper program and the picture comes back, for both sides. The
+// shared memory (descriptor 3) holds:
 //   8 bytes      length of the JSON text that follows
 //   JSON         the scene; a surface's arrays are {"at": byte offset, "count": elements}
 //   arrays       each at a multiple of 16: positions and normals 3 x float32 a vertex, positions

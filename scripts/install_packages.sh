@@ -22,7 +22,7 @@ TEXT
 core=(g++ cmake ninja-build ccache libeigen3-dev libgtest-dev libgmock-dev libbenchmark-dev python3)
 io=("${core[@]}" libinsighttoolkit5-dev libvtk9-dev libcli11-dev libfmt-dev nlohmann-json3-dev
     libgdcm-dev libtiff-dev libpng-dev zlib1g-dev gnuplot-nox libboost-dev libegl-dev libegl1
-    libgl1-mesa-dri)
+    libgl1-mesa-dri libembree-dev)
 viewer=("${io[@]}" libvtk9-qt-dev qtbase5-dev xvfb)
 dev=(git clang clang-format-14 clang-tidy libclang-rt-14-dev shellcheck)
 

@@ -30,7 +30,7 @@ bool is_noted(int turn, int turns, bool shown) {
     return turn == turns || (shown && (turn <= 10 || turn % 2 == 0));
 }
 
-struct Course {
+struct Round {
     const Subject& subject;
     const Ring& ring;
     const baselines::NamedMethod& method;
@@ -41,33 +41,40 @@ struct Course {
 };
 
 /// Adds the rows of one proxy that is taken round.
-void go_round(const Course& course, Table& table) {
-    const Field& field = course.subject.field;
+void go_round(const Round& round, Table& table) {
+    const Field& field = round.subject.field;
     Proxy proxy;
     // Where the hand comes from: outside, so that every method starts in contact from the free
     // side.
     const Vec3 centre = physical_centre(field.geometry());
-    place(proxy, field, centre + 2 * (course.ring.at(0) - centre), course.subject.isovalue);
-    course.method.method(proxy, field, course.ring.at(0), {}, {});
-    const double step = course.speed / course.rate;
+    place(proxy, field, centre + 2 * (round.ring.at(0) - centre), round.subject.isovalue);
+    round.method.method(proxy, field, round.ring.at(0), {}, {});
+    const double step = round.speed / round.rate;
     double arc = 0, worst = 0;
-    for (int turn = 1; turn <= course.turns; ++turn) {
-        course.alive();
+    for (int turn = 1; turn <= round.turns; ++turn) {
+        round.alive();
         double density = 0;
         std::int64_t constrained = 0, ticks = 0;
-        for (; arc < turn * course.ring.length(); arc += step, ++ticks) {
+        for (; arc < turn * round.ring.length(); arc += step, ++ticks) {
             const ProxyUpdate update =
-                course.method.method(proxy, field, course.ring.at(arc), {}, {});
+                round.method.method(proxy, field, round.ring.at(arc), {}, {});
             density = update.density;
             constrained += update.mode == Mode::constrained;
             // In contact it has to be on the isosurface, and free it has to be outside.
-            const double off = field.sign() * (density - course.subject.isovalue) / field.range();
+            const double off = field.sign() * (density - round.subject.isovalue) / field.range();
             worst = std::max(worst, update.mode == Mode::constrained ? std::abs(off) : off);
         }
-        if (!is_noted(turn, course.turns, course.shown)) continue;
-        table.add({course.subject.name, course.method.name, course.speed, course.rate, double(turn),
-                   density, course.subject.isovalue, worst,
-                   double(constrained) / double(std::max<std::int64_t>(1, ticks))});
+        if (!is_noted(turn, round.turns, round.shown)) continue;
+        table.add({{"volume", round.subject.name},
+                   {"method", round.method.name},
+                   {"speed_mm_s", round.speed},
+                   {"rate_hz", round.rate},
+                   {"turn", double(turn)},
+                   {"density", density},
+                   {"isovalue", round.subject.isovalue},
+                   {"worst_deviation_of_range", worst},
+                   {"constrained_share",
+                    double(constrained) / double(std::max<std::int64_t>(1, ticks))}});
     }
 }
 
@@ -89,80 +96,61 @@ std::vector<Subject> subjects_of(const Options& options) {
     return subjects;
 }
 
-double worst_of(const Table& table, const std::string& method, const std::string& subject = "") {
-    double worst = 0;
-    for (std::size_t i = 0; i < table.rows().size(); ++i) {
-        if (table.text(i, "method") != method) continue;
-        if (!subject.empty() && table.text(i, "volume") != subject) continue;
-        worst = std::max(worst, table.number(i, "worst_deviation_of_range"));
-    }
-    return worst;
+double worst_of(const Table& table, const std::string& method) {
+    return largest(table.where("method", method).numbers("worst_deviation_of_range"));
 }
 
-/// Density at the SCP after each turn, by the hand that is shown.
-std::string density_panel(const Table& table, const std::string& subject, double speed,
-                          double rate) {
-    std::string blocks;
-    std::string plots =
-        fmt::format("set title {} noenhanced\n",
-                    gnuplot_text(fmt::format("{}, {} mm/s, {} Hz", subject, speed, rate)));
-    plots +=
-        "set xlabel 'turns round the surface'\nset ylabel 'density at the SCP'\n"
-        "set key outside below horizontal\nset xrange [0:*]\nplot ";
-    double isovalue = 0;
+/// Density at the SCP after each turn, of the hand that is shown.
+Panel density_panel(const Table& table, const Plan& plan) {
+    Panel panel;
+    const std::string volume = table.text(0, "volume");
+    panel.title = fmt::format("{}, {} mm/s, {} Hz", volume, plan.shown_speed, plan.shown_rate);
+    panel.x.title = "turns round the surface";
+    panel.y.title = "density at the SCP";
+    panel.x.low = 0;
+    const Table shown = table.where("volume", volume)
+                            .where("speed_mm_s", plan.shown_speed)
+                            .where("rate_hz", plan.shown_rate);
     for (const auto& method : baselines::methods()) {
-        std::vector<std::vector<double>> rows;
-        for (std::size_t i = 0; i < table.rows().size(); ++i) {
-            if (table.text(i, "volume") != subject || table.text(i, "method") != method.name ||
-                table.number(i, "speed_mm_s") != speed || table.number(i, "rate_hz") != rate) {
-                continue;
-            }
-            rows.push_back({table.number(i, "turn"), table.number(i, "density")});
-            isovalue = table.number(i, "isovalue");
-        }
-        const std::string name = "d" + std::to_string(&method - baselines::methods().data());
-        blocks += block(name, rows);
-        plots += fmt::format("${} with linespoints {} title '{}', ", name,
-                             method_style(method.name), method.name);
+        panel.series.push_back({Draw::line_points, method.name, look_of_method(method.name),
+                                shown.where("method", method.name).rows_of({"turn", "density"})});
     }
-    return blocks + plots + fmt::format("{} lc rgb '#808080' dt 2 title 'isovalue'\n", isovalue);
+    panel.series.push_back(level_line(shown.number(0, "isovalue"), "isovalue",
+                                      {.colour = colours::grey, .dash = Dash::dashed}));
+    return panel;
 }
 
-/// The worst deviation over everything else, against the update rate.
-std::string rate_panel(const Table& table, const Plan& plan) {
-    std::string blocks;
-    std::string plots =
-        "set title 'all volumes and speeds'\nset xlabel 'update rate [Hz]'\n"
-        "set ylabel 'largest deviation / range of the data'\nset logscale xy\n"
-        "set format x '%g'\nset format y '10^{%L}'\nset yrange [1e-17:10]\nset xrange [*:*]\nplot ";
+/// The worst deviation of each method against the update rate, over all volumes and speeds.
+Panel rate_panel(const Table& table, const Plan& plan) {
+    Panel panel;
+    panel.title = "all volumes and speeds";
+    panel.x = {.title = "update rate [Hz]", .is_logarithmic = true};
+    panel.y = {.title = "largest deviation / range of the data",
+               .is_logarithmic = true,
+               .low = 1e-17,
+               .high = 10,
+               .format = "10^{%L}"};
     for (const auto& method : baselines::methods()) {
-        std::vector<std::vector<double>> rows;
+        Rows rows;
         for (const double rate : plan.rates) {
-            double worst = 1e-17;  // a logarithm has no zero
-            for (std::size_t i = 0; i < table.rows().size(); ++i) {
-                if (table.text(i, "method") == method.name && table.number(i, "rate_hz") == rate) {
-                    worst = std::max(worst, table.number(i, "worst_deviation_of_range"));
-                }
-            }
-            rows.push_back({rate, worst});
+            const double worst = worst_of(table.where("rate_hz", rate), method.name);
+            rows.push_back({rate, std::max(worst, 1e-17)});  // a logarithm has no zero
         }
-        const std::string name = "r" + std::to_string(&method - baselines::methods().data());
-        blocks += block(name, rows);
-        plots += fmt::format("${} with linespoints {} title '{}', ", name,
-                             method_style(method.name), method.name);
+        panel.series.push_back({Draw::line_points, method.name, look_of_method(method.name), rows});
     }
-    return blocks + plots + fmt::format("{} lc rgb '#808080' dt 2 title 'granted (G2)'\n", granted);
+    panel.series.push_back(
+        level_line(granted, "tolerance (G2)", {.colour = colours::grey, .dash = Dash::dotted}));
+    return panel;
 }
 
-Figure figure_of(const Table& table, const std::string& subject, const Plan& plan) {
+Figure figure_of(const Table& table, const Plan& plan) {
     Figure figure;
     figure.caption =
         "Left: density at the SCP after each turn. Right: the largest deviation from the isovalue "
         "in any update, as a part of the data's range, over all volumes and speeds.";
-    figure.size = {1200, 560};
-    figure.script = "set multiplot layout 1,2\nset bmargin 7\n" +
-                    density_panel(table, subject, plan.shown_speed, plan.shown_rate) +
-                    rate_panel(table, plan) + "unset multiplot\n";
+    figure.columns = 2;
+    figure.panels = {density_panel(table, plan), rate_panel(table, plan)};
+    figure.key_columns = 6;
     return figure;
 }
 
@@ -176,7 +164,7 @@ std::vector<Claim> claims_of(const Table& table, bool own_volumes) {
                           worst <= granted, fmt::format("largest deviation {:.2g}", worst)});
     }
     if (own_volumes) {
-        const double worst = worst_of(table, "gradient", "cylinder");
+        const double worst = worst_of(table.where("volume", "cylinder"), "gradient");
         claims.push_back(
             {"gradient loses the cylinder's isosurface by more than a hundredth of "
              "the data's range",
@@ -191,8 +179,6 @@ Result drift(const Options& options) {
     const Plan plan = options.quick ? Plan{20, {200, 1000}, {100, 1000}}
                                     : Plan{200, {50, 200, 1000}, {100, 1000, 10000}};
     Result result;
-    result.table = Table({"volume", "method", "speed_mm_s", "rate_hz", "turn", "density",
-                          "isovalue", "worst_deviation_of_range", "constrained_share"});
     const std::vector<Subject> subjects = subjects_of(options);
     const double cases = double(subjects.size() * plan.speeds.size() * plan.rates.size());
     double done = 0;
@@ -210,7 +196,7 @@ Result drift(const Options& options) {
             }
         }
     }
-    result.figures.push_back(figure_of(result.table, subjects.front().name, plan));
+    result.figures.push_back(figure_of(result.table, plan));
     result.claims = claims_of(result.table, options.subjects.empty());
     result.paragraph = fmt::format(
         "A hand goes round each body {} times, 2 voxels below its surface, with penetrability off; "

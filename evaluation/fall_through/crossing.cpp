@@ -1,4 +1,4 @@
-// Lines are cast through the lattice exactly, into the wall and out of it.
+// Draws lines through walls, and moves a proxy along them. Rays are cast exactly, on the lattice.
 #include "evaluation/fall_through/crossing.hpp"
 
 #include <algorithm>
@@ -29,8 +29,8 @@ Vec3 unit_vector(scenes::Random& random) {
 struct Lines {
     const Subject& subject;
     const Outside& outside;
-    Ways ways;
-    Field inverse;  // solid and free exchanged: a ray in it finds the way out of a wall
+    Target target;
+    Field inverse;  // solid and free exchanged: a ray in it finds where it leaves a wall
     double voxel, farthest;
 
     std::optional<Crossing> draw(scenes::Random& random) const {
@@ -57,7 +57,7 @@ struct Lines {
         crossing.end = behind + 0.5 * (next.point - at(behind)).norm();
         const Vec3 end = index_from_physical(geometry, at(crossing.end));
         if (out.hit && !outside.holds(locate(end))) return crossing;
-        if (ways == Ways::through_walls) return {};
+        if (target == Target::behind_walls) return {};
         crossing.end = std::min(end_in_body * voxel, 0.5 * crossing.wall);
         crossing.wall = std::numeric_limits<double>::infinity();
         return crossing;
@@ -66,14 +66,14 @@ struct Lines {
 
 }  // namespace
 
-std::vector<Crossing> draw_crossings(const Subject& subject, const Outside& outside, Ways ways,
+std::vector<Crossing> draw_crossings(const Subject& subject, const Outside& outside, Target target,
                                      std::size_t count, std::uint64_t seed) {
     const Field& field = subject.field;
     const Geometry& geometry = field.geometry();
     const Solid other = field.solid() == Solid::above ? Solid::below : Solid::above;
     const Lines lines{subject,
                       outside,
-                      ways,
+                      target,
                       Field(field.volume(), other, field.background()),
                       geometry.spacing.minCoeff(),
                       2 * geometry.size.cast<double>().cwiseProduct(geometry.spacing).norm()};

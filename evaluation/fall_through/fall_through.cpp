@@ -1,9 +1,10 @@
-// fall-through: a hand goes straight through thin walls at all speeds; does the proxy end inside?
+// fall-through: a hand moves straight through thin walls at all speeds; does the proxy end inside?
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numeric>
 #include <thread>
 
 #include "evaluation/experiment.hpp"
@@ -26,33 +27,32 @@ struct Plan {
     std::size_t crossings;            // in each cell
 };
 
-/// A subject with the ways through it; the same ways for every method, speed and rate.
+/// A subject and the lines through it, the same for every method, speed and rate.
 struct Wall {
     Subject subject;
     Outside outside;
     std::vector<Crossing> crossings;
 
-    Wall(Subject s, Ways ways, std::size_t count, const Options& options)
+    Wall(Subject s, Target target, std::size_t count, const Options& options)
         : subject(std::move(s)),
           outside(subject.field, subject.isovalue, [&] { options.progress(0); }),
-          crossings(draw_crossings(subject, outside, ways, count, options.seed)) {}
+          crossings(draw_crossings(subject, outside, target, count, options.seed)) {}
 };
 
-/// What shares a row of the figure.
+/// The walls of one row of the figure.
 struct Row {
     std::string name;  // as the table has it
     double thickness;  // [voxel]; NaN for a volume of the user
     std::vector<Wall> walls;
 };
 
-/// The median way in the solid [voxel]; NaN where most crossings end in it.
+/// The median path in the solid [voxel]; NaN where most crossings end in it.
 double median_wall(const Wall& wall) {
-    std::vector<double> ways;
-    for (const Crossing& crossing : wall.crossings) ways.push_back(crossing.wall);
-    const auto middle = ways.begin() + std::ssize(ways) / 2;
-    std::nth_element(ways.begin(), middle, ways.end());
-    if (std::isinf(*middle)) return std::nan("");
-    return *middle / wall.subject.field.geometry().spacing.minCoeff();
+    std::vector<double> lengths;
+    for (const Crossing& crossing : wall.crossings) lengths.push_back(crossing.wall);
+    const double median = quantile(std::move(lengths), 0.5);
+    if (std::isinf(median)) return std::nan("");
+    return median / wall.subject.field.geometry().spacing.minCoeff();
 }
 
 std::vector<Row> rows_of(const Options& options, const Plan& plan) {
@@ -64,14 +64,14 @@ std::vector<Row> rows_of(const Options& options, const Plan& plan) {
         const std::string level =
             namesakes > 1 ? fmt::format(" at {:g}", subject.isovalue) : std::string();
         Row row{subject.name + level, std::nan(""), {}};
-        row.walls.emplace_back(subject, Ways::into_anything, plan.crossings, options);
+        row.walls.emplace_back(subject, Target::anywhere, plan.crossings, options);
         rows.push_back(std::move(row));
     }
     if (!rows.empty()) return rows;
     for (const double thickness : plan.thicknesses) {
         Row row{"box and ball", thickness, {}};
         for (const Enclosed enclosed : {Enclosed::box, Enclosed::ball}) {
-            row.walls.emplace_back(closed_shell(enclosed, thickness), Ways::through_walls,
+            row.walls.emplace_back(closed_shell(enclosed, thickness), Target::behind_walls,
                                    plan.crossings / 2, options);
         }
         rows.push_back(std::move(row));
@@ -79,7 +79,7 @@ std::vector<Row> rows_of(const Options& options, const Plan& plan) {
     return rows;
 }
 
-/// One of the table's rows: all ways through the walls of a row, at one speed and rate.
+/// One of the table's rows: all lines through the walls of a row, at one speed and rate.
 struct Case {
     const Row& row;
     const baselines::NamedMethod& method;
@@ -111,8 +111,8 @@ struct Shares {
     }
 };
 
-/// All ways through one wall, some at a time on each processor: all sums are of whole numbers, so
-/// their order does not matter. `alive` is called in between and may throw.
+/// All lines through one wall, spread over the processors: all sums are of whole numbers, so their
+/// order does not matter. `alive` is called in between and may throw.
 Shares go_through(const Wall& wall, const Case& c, scenes::Random& random,
                   const std::function<void()>& alive) {
     constexpr std::size_t batch = 1000;
@@ -154,10 +154,7 @@ double effort(const Plan& plan, double speed, double rate) {
 }
 
 Table measured(const std::vector<Row>& rows, const Plan& plan, const Options& options) {
-    Table table({"wall", "thickness_voxel", "median_way_in_wall_voxel", "method", "speed_mm_s",
-                 "rate_hz", "way_per_tick_mm", "crossings", "inside_share", "pressed_share",
-                 "inside_while_pressed_share", "unfelt_share", "worst_excess_of_range",
-                 "ticks_per_crossing"});
+    Table table;
     double total = 0, done = 0;
     for (const double speed : plan.speeds) {
         for (const double rate : plan.rates) total += effort(plan, speed, rate);
@@ -165,8 +162,8 @@ Table measured(const std::vector<Row>& rows, const Plan& plan, const Options& op
     total *= double(rows.size() * baselines::methods().size());
     std::uint64_t cell = 0;
     for (const Row& row : rows) {
-        double way = 0;
-        for (const Wall& wall : row.walls) way += median_wall(wall) / double(row.walls.size());
+        double path = 0;
+        for (const Wall& wall : row.walls) path += median_wall(wall) / double(row.walls.size());
         for (const double speed : plan.speeds) {
             for (const double rate : plan.rates) {
                 ++cell;  // every method meets the same phases
@@ -175,13 +172,23 @@ Table measured(const std::vector<Row>& rows, const Plan& plan, const Options& op
                         go_through({row, method, speed, rate}, options.seed + 1000 * cell,
                                    [&] { options.progress(std::min(1.0, done / total)); });
                     done += effort(plan, speed, rate);
-                    table.add(
-                        {row.name, row.thickness, way, method.name, speed, rate, speed / rate,
-                         shares.crossings, shares.inside / shares.crossings,
-                         shares.pressed / shares.crossings,
-                         shares.pressed > 0 ? shares.inside_pressed / shares.pressed : std::nan(""),
-                         shares.unfelt / shares.crossings, shares.worst,
-                         shares.ticks / shares.crossings});
+                    const double crossings = shares.crossings;
+                    table.add({{"wall", row.name},
+                               {"thickness_voxel", row.thickness},
+                               {"median_path_in_wall_voxel", path},
+                               {"method", method.name},
+                               {"speed_mm_s", speed},
+                               {"rate_hz", rate},
+                               {"step_mm", speed / rate},
+                               {"crossings", crossings},
+                               {"inside_share", shares.inside / crossings},
+                               {"pressed_share", shares.pressed / crossings},
+                               {"inside_while_pressed_share",
+                                shares.pressed > 0 ? shares.inside_pressed / shares.pressed
+                                                   : std::nan("")},
+                               {"unfelt_share", shares.unfelt / crossings},
+                               {"worst_excess_of_range", shares.worst},
+                               {"ticks_per_crossing", shares.ticks / crossings}});
                 }
             }
         }
@@ -189,28 +196,16 @@ Table measured(const std::vector<Row>& rows, const Plan& plan, const Options& op
     return table;
 }
 
-/// The largest number of a column over a method's rows, or the smallest.
 double most(const Table& table, const std::string& method, const std::string& column) {
-    double most = 0;
-    for (std::size_t i = 0; i < table.rows().size(); ++i) {
-        if (table.text(i, "method") == method) most = std::max(most, table.number(i, column));
-    }
-    return most;
+    return largest(table.where("method", method).numbers(column));
 }
 double least(const Table& table, const std::string& method, const std::string& column) {
-    double least = 1;
-    for (std::size_t i = 0; i < table.rows().size(); ++i) {
-        if (table.text(i, "method") == method) least = std::min(least, table.number(i, column));
-    }
-    return least;
+    return smallest(table.where("method", method).numbers(column), 1);
 }
 
 double crossings_of(const Table& table, const std::string& method) {
-    double sum = 0;
-    for (std::size_t i = 0; i < table.rows().size(); ++i) {
-        if (table.text(i, "method") == method) sum += table.number(i, "crossings");
-    }
-    return sum;
+    const auto counts = table.where("method", method).numbers("crossings");
+    return std::accumulate(counts.begin(), counts.end(), 0.0);
 }
 
 /// Whether nothing inside any of the walls can be reached, by the flood from outside.
@@ -239,7 +234,7 @@ std::vector<Claim> claims_of(const Table& table, const std::vector<Row>& rows, b
                           worst <= granted, fmt::format("largest {:.2g}", worst)});
     }
     if (!own_walls) return claims;
-    claims.push_back({"the walls are closed: no free way through the lattice leads in",
+    claims.push_back({"the walls are closed: no free path through the lattice leads in",
                       are_closed(rows), fmt::format("{} thicknesses, two shapes", rows.size())});
     for (const char* method : {"gradient", "gradient-improved"}) {
         const double inside = least(table, method, "inside_share");
@@ -260,16 +255,17 @@ std::string paragraph_of(const Table& table, const Plan& plan, bool own_walls) {
         return text;
     };
     return fmt::format(
-        "{} The hand is as fast as {:g} to {:g} mm/s at {:g} to {:g} Hz, {} crossings a cell. It "
+        "{} The hand moves at {:g} to {:g} mm/s and {:g} to {:g} Hz, {} crossings a cell. It "
         "starts a random part of a step before the surface, because ticks in free space decide "
         "nothing, and rests for a tick at the end. The proxy is inside if it is in the solid by "
-        "more than a hundredth of the data's range, or where no free way from outside leads: that "
+        "more than a hundredth of the data's range, or where no free path leads from outside: that "
         "is decided on the lattice's connectivity, exactly. Ends inside, from the best cell to the "
         "worst: {}. Is inside when the hand is still in the solid: {}. Touches nothing in any "
         "tick, "
-        "so that the wall is not felt at all: {}. exact and paper look at the whole way of a tick. "
-        "The gradient methods look at the density where the hand is: where it is free again they "
-        "take it for free, on whichever side.",
+        "so that the wall is not felt at all: {}. exact and paper look at the whole step of a "
+        "tick. "
+        "The gradient methods look at the density where the hand is: if it is free there, they "
+        "take the hand to be free, on whichever side.",
         own_walls
             ? "A hand goes straight through closed shells, a flat one (box) and a stepped one "
               "(ball of voxels), on random lines, to 3 voxels or 50 ticks behind the wall. "

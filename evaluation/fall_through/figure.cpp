@@ -1,4 +1,4 @@
-// Maps with their numbers in them: white is none, dark blue is all.
+// Heat maps with their numbers in them: one panel a method, white is 0 %, dark blue is 100 %.
 #include "evaluation/fall_through/figure.hpp"
 
 #include <fmt/format.h>
@@ -11,85 +11,67 @@
 namespace palpate::evaluation {
 namespace {
 
-/// What the axes of all panels are: the values met, in order.
+/// The axes of all panels.
 struct Axes {
-    std::vector<double> ways;        // [mm] in a tick, rising
-    std::vector<std::string> walls;  // from the first row of the table on
-    bool thickness;                  // of own walls, instead of names of volumes
+    std::vector<double> steps;       // [mm] of the hand in a tick, rising
+    std::vector<std::string> names;  // of thicknesses or of the user's volumes
+    std::vector<Cell> walls;         // the same, as `column` of the table holds them
+    const char* column;
+    bool has_thickness;
 
-    explicit Axes(const Table& table) : thickness(!std::isnan(table.number(0, "thickness_voxel"))) {
-        for (std::size_t i = 0; i < table.rows().size(); ++i) {
-            ways.push_back(table.number(i, "way_per_tick_mm"));
-            const std::string wall = wall_of(table, i);
-            if (std::find(walls.begin(), walls.end(), wall) == walls.end()) walls.push_back(wall);
+    explicit Axes(const Table& table)
+        : has_thickness(!std::isnan(table.number(0, "thickness_voxel"))) {
+        column = has_thickness ? "thickness_voxel" : "wall";
+        if (has_thickness) {
+            for (const double thickness : table.distinct_numbers(column)) {
+                names.push_back(fmt::format("{:g}", thickness));
+                walls.emplace_back(thickness);
+            }
+        } else {
+            names = table.distinct(column);
+            walls.assign(names.begin(), names.end());
         }
-        std::sort(ways.begin(), ways.end());
-        ways.erase(std::unique(ways.begin(), ways.end(), same_way), ways.end());
+        steps = table.distinct_numbers("step_mm");
+        std::sort(steps.begin(), steps.end());
+        steps.erase(std::unique(steps.begin(), steps.end(), is_same), steps.end());
     }
 
-    static bool same_way(double a, double b) { return std::abs(a - b) < 1e-9 * (a + b); }
-    static std::string wall_of(const Table& table, std::size_t row) {
-        const double thickness = table.number(row, "thickness_voxel");
-        return std::isnan(thickness) ? table.text(row, "wall") : fmt::format("{:g}", thickness);
-    }
+    static bool is_same(double a, double b) { return std::abs(a - b) < 1e-9 * (a + b); }
 };
 
-/// The mean of a column over the rows of a cell of the map [%]; NaN where there is none.
-double percent(const Table& table, const std::string& method, const std::string& wall, double way,
-               const char* column) {
-    double sum = 0, rows = 0;
-    for (std::size_t i = 0; i < table.rows().size(); ++i) {
-        if (table.text(i, "method") != method || Axes::wall_of(table, i) != wall ||
-            !Axes::same_way(table.number(i, "way_per_tick_mm"), way)) {
-            continue;
-        }
-        sum += table.number(i, column);
-        rows += 1;
-    }
-    return rows > 0 ? 100 * sum / rows : std::nan("");
+/// A share that is not 0 must not look like it.
+std::string percent_text(double percent) {
+    if (percent == 0) return "0";
+    if (percent < 1) return "<1";
+    return percent > 99 && percent < 100 ? "99" : fmt::format("{:.0f}", percent);
 }
 
-std::string panel(const Table& table, const Axes& axes, const std::string& method,
-                  const char* column, const std::string& name) {
-    // Number on white or on dark: two blocks.
-    std::vector<std::vector<double>> cells, on_light, on_dark;
-    for (std::size_t w = 0; w < axes.walls.size(); ++w) {
-        for (std::size_t x = 0; x < axes.ways.size(); ++x) {
-            const double share = percent(table, method, axes.walls[w], axes.ways[x], column);
-            cells.push_back({double(x), double(w), share});
-            if (std::isnan(share)) continue;
-            (share > 50 ? on_dark : on_light).push_back(cells.back());
+Panel panel_of(const Table& table, const Axes& axes, const char* column) {
+    Panel panel;
+    panel.has_grid = false;
+    Series cells{Draw::cells, "", {}, {}};
+    Series on_light{Draw::text, "", {"#202020"}, {}}, on_dark{Draw::text, "", {"#ffffff"}, {}};
+    on_light.text.size = on_dark.text.size = 9;
+    for (std::size_t w = 0; w < axes.names.size(); ++w) {
+        const Table wall = table.where(axes.column, axes.walls[w]);
+        const Rows shares = wall.rows_of({"step_mm", column});
+        for (std::size_t x = 0; x < axes.steps.size(); ++x) {
+            double sum = 0, count = 0;  // several speeds and rates have the same step
+            for (const auto& share : shares) {
+                if (!Axes::is_same(share[0], axes.steps[x])) continue;
+                sum += share[1];
+                count += 1;
+            }
+            const double percent = count > 0 ? 100 * sum / count : std::nan("");
+            cells.rows.push_back({double(x), double(w), percent});
+            if (std::isnan(percent)) continue;
+            Series& text = percent > 50 ? on_dark : on_light;
+            text.rows.push_back({double(x), double(w)});
+            text.labels.push_back(percent_text(percent));
         }
     }
-    const std::vector<double> none{std::nan(""), std::nan(""), std::nan("")};
-    if (on_light.empty()) on_light.push_back(none);
-    if (on_dark.empty()) on_dark.push_back(none);
-    const auto labels = [](const std::string& data, const char* colour) {
-        // A share that is not 0 must not look like it.
-        return fmt::format(
-            "${} using 1:2:($3 == 0 ? '0' : $3 < 1 ? '<1' : $3 > 99 && $3 < 100 ? '99' : "
-            "sprintf('%.0f', $3)) with labels tc rgb '{}' font ',9' notitle",
-            data, colour);
-    };
-    return block("c" + name, cells) + block("l" + name, on_light) + block("d" + name, on_dark) +
-           fmt::format(
-               "set title '{}' noenhanced\nplot $c{} using 1:2:3 with image notitle, {}, "
-               "{}\n",
-               method, name, labels("l" + name, "#202020"), labels("d" + name, "#ffffff"));
-}
-
-std::string tics(const Axes& axes) {
-    std::string x, y;
-    for (std::size_t i = 0; i < axes.ways.size(); ++i) {
-        x += fmt::format("{}'{:g}' {}", i ? ", " : "", axes.ways[i], i);
-    }
-    for (std::size_t i = 0; i < axes.walls.size(); ++i) {
-        y += fmt::format("{}{} {}", i ? ", " : "", gnuplot_text(axes.walls[i]), i);
-    }
-    return fmt::format(
-        "set xtics ({}) rotate by 90 right font ',9' scale 0\nset ytics ({}) noenhanced scale 0\n"
-        "set xrange [-0.5:{}]\nset yrange [{}:-0.5]\n",
-        x, y, double(axes.ways.size()) - 0.5, double(axes.walls.size()) - 0.5);
+    panel.series = {cells, on_light, on_dark};
+    return panel;
 }
 
 Figure map(const Table& table, const char* column, const std::string& suffix,
@@ -98,31 +80,33 @@ Figure map(const Table& table, const char* column, const std::string& suffix,
     Figure figure;
     figure.suffix = suffix;
     figure.caption = caption;
-    figure.size = {1500, 330 + 2 * std::max(200, 42 * static_cast<int>(axes.walls.size()))};
-    const double height = figure.size.height;
-    std::size_t longest = 0;
-    for (const std::string& wall : axes.walls) longest = std::max(longest, wall.size());
-    // Room for the longest name on the axis.
-    const double left = std::min(0.2, 0.03 + 0.0056 * double(std::max<std::size_t>(4, longest)));
-    const std::string wall_axis = axes.thickness ? "'thickness of the wall [voxel]'" : "'volume'";
-    figure.script = fmt::format(
-        "unset grid\nset palette defined (0 '#ffffff', 50 '#6baed6', 100 '#08306b')\n"
-        "set cbrange [0:100]\nset cblabel '{} [% of crossings]'\nset cbtics 25\n{}"
-        "set xlabel 'way of the hand in a tick [mm]{}'\n"
-        "set multiplot layout 2,2 margins screen {}, screen 0.92, screen {}, screen {} "
-        "spacing screen {}, screen {}\n",
-        what, tics(axes), axes.thickness ? ", voxels of 1 mm" : "", left, 115 / height,
-        1 - 40 / height, left, 165 / height);
+    figure.width = 1500;
+    figure.height = 330 + 2 * std::max(200, 42 * static_cast<int>(axes.names.size()));
+    figure.columns = 2;
     for (const auto& method : baselines::methods()) {
-        const auto number = &method - baselines::methods().data();
-        if (number % 2 == 1) figure.script += "set ylabel ''\n";
-        if (number % 2 == 0) figure.script += "set ylabel " + wall_axis + "\n";
-        // One bar of colours serves all panels.
-        figure.script += number == 0 ? "set colorbox user origin 0.935,0.3 size 0.015,0.4\n"
-                                     : "unset colorbox\n";
-        figure.script += panel(table, axes, method.name, column, std::to_string(number));
+        Panel panel = panel_of(table.where("method", method.name), axes, column);
+        const bool is_left = figure.panels.size() % 2 == 0, is_top = figure.panels.size() < 2;
+        panel.title = method.name;
+        panel.scale = ColourScale{what + " [% of crossings]", 0, 100, false};
+        panel.x.low = -0.5;
+        panel.x.high = double(axes.steps.size()) - 0.5;
+        panel.x.turned = 90;
+        panel.x.has_labels = !is_top;
+        panel.y.low = double(axes.names.size()) - 0.5;
+        panel.y.high = -0.5;
+        panel.y.ticks = ticks_named(axes.names);
+        panel.y.has_labels = is_left;
+        for (std::size_t i = 0; i < axes.steps.size(); ++i) {
+            panel.x.ticks.push_back({double(i), fmt::format("{:g}", axes.steps[i])});
+        }
+        if (is_left)
+            panel.y.title = axes.has_thickness ? "thickness of the wall [voxel]" : "volume";
+        if (!is_top) {
+            panel.x.title = axes.has_thickness ? "step of the hand in a tick [mm], voxels of 1 mm"
+                                               : "step of the hand in a tick [mm]";
+        }
+        figure.panels.push_back(std::move(panel));
     }
-    figure.script += "unset multiplot\n";
     return figure;
 }
 
@@ -130,8 +114,8 @@ Figure map(const Table& table, const char* column, const std::string& suffix,
 
 std::vector<Figure> fall_through_figures(const Table& table) {
     return {map(table, "inside_share", "", "ends inside",
-                "Share of the crossings after which the proxy is inside, in percent. Columns: the "
-                "hand's way in a tick, which is speed over rate."),
+                "Share of the crossings after which the proxy is inside, in percent. Columns: how "
+                "far the hand moves in a tick, which is speed over rate."),
             map(table, "inside_while_pressed_share", "pressed", "inside while pressed",
                 "Share of the crossings in which the proxy is inside before the hand has left the "
                 "solid, in percent of those in which the hand is in the solid in any tick."),

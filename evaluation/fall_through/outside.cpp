@@ -1,4 +1,4 @@
-// A flood from corner to corner along the edges of the lattice.
+// Floods the free space from outside, from corner to corner along the edges of the lattice.
 #include "evaluation/fall_through/outside.hpp"
 
 #include <array>

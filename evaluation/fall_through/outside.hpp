@@ -1,5 +1,5 @@
-// Which points can be reached from outside without passing through the solid. With it a proxy on
-// the far side of a wall is told from one that went round it.
+// Finds the points that can be reached from outside without passing through the solid, which tells
+// a proxy that fell through a wall from one that went round it.
 #pragma once
 
 #include <cstdint>

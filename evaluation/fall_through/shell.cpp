@@ -1,4 +1,4 @@
-// Voxel by voxel: which samples are full.
+// Fills the samples of a shell, voxel by voxel.
 #include "evaluation/fall_through/shell.hpp"
 
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
-// Closed walls as thin as wanted: shells of samples that no way through the lattice passes. A ramp
-// sampled thinner than a voxel would be a lace of holes, through which a proxy may rightly go.
+// Closed walls of any thickness: shells of samples that no path through the lattice passes. A ramp
+// sampled thinner than a voxel would have holes, through which a proxy may rightly go.
 #pragma once
 
 #include "evaluation/subject.hpp"

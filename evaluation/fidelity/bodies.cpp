@@ -1,4 +1,4 @@
-// Ball, torus and ripples, and ways over them.
+// Ball, torus and ripples, and trajectories over them.
 #include "evaluation/fidelity/bodies.hpp"
 
 #include <fmt/format.h>
@@ -38,9 +38,10 @@ Mat3 tilted() {
     return Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
 }
 
-Body ball(int grid, Samples samples, const char* way, std::function<Vec3(double)> direction) {
+Body ball(int grid, Samples samples, const char* trajectory,
+          std::function<Vec3(double)> direction) {
     Body body(protocol_ball(grid, samples));
-    body.way = way;
+    body.trajectory = trajectory;
     body.samples = name_of(samples);
     body.grid = grid;
     body.depth = depth * grid;
@@ -97,7 +98,7 @@ Body ball_by_spiral(int grid, Samples samples) {
 
 Body torus_by_helix(int grid, Samples samples) {
     Body body(scene(fmt::format("torus:{}x{}x{}", grid, grid, grid / 2), samples));
-    body.way = "helix";
+    body.trajectory = "helix";
     body.samples = name_of(samples);
     body.grid = grid;
     body.depth = depth * grid;
@@ -120,7 +121,7 @@ Body torus_by_helix(int grid, Samples samples) {
 
 Body ripples_by_spiral(int grid, Samples samples) {
     Body body(scene(fmt::format("marschner-lobb:{0}x{0}x{0}", grid), samples));
-    body.way = "spiral";
+    body.trajectory = "spiral";
     body.samples = name_of(samples);
     body.grid = grid;
     // On the level, sin(pi z / 2) is a quarter of the ripple, so the troughs are at -0.161 and the
@@ -146,7 +147,7 @@ Body body_of(const Subject& subject) {
                                     "cannot come to it; choose another level");
     }
     Body body(subject);
-    body.way = "ring";
+    body.trajectory = "ring";
     body.samples = name_of(subject.field.volume().type());
     body.grid = geometry.size.maxCoeff();
     body.depth = depth * geometry.size.cast<double>().cwiseProduct(geometry.spacing).minCoeff();

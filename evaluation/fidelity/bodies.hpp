@@ -1,4 +1,4 @@
-// Bodies whose true surface is known, and hands that go round them just below it.
+// Bodies whose true surface is known, and trajectories of a hand just below it.
 #pragma once
 
 #include <functional>
@@ -14,16 +14,16 @@ namespace palpate::evaluation {
 enum class Samples : std::uint8_t { uint8, smoothed, float32 };
 const char* name_of(Samples samples);
 
-/// A body and the way of a hand.
+/// A body and the trajectory of a hand.
 struct Body {
     explicit Body(Subject s) : subject(std::move(s)) {}
 
     Subject subject;
-    std::string way;            ///< what the hand does, in a word
+    std::string trajectory;     ///< its name
     std::string samples;        ///< how they are stored
     int grid = 0;               ///< samples along the longest axis
     double depth = 0;           ///< [mm] of the hand below the true surface, where that is constant
-    Vec3 start = Vec3::Zero();  ///< a free place near the way's begin [mm, physical]
+    Vec3 start = Vec3::Zero();  ///< a free place near the trajectory's start [mm, physical]
     std::function<Vec3(double part)> hand;  ///< from 0 to 1 [mm, physical]
     /// Where a perfect force at this place of the hand would point to (unit vector); empty where
     /// it is not known.

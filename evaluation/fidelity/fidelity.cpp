@@ -1,5 +1,5 @@
-// fidelity: how near the rendered force is to that of the true surface, and how much of the error
-// is the linear pieces', how much the 8 bits'.
+// fidelity: how far the rendered force is from that of the true surface, and how much of the error
+// comes from the linear pieces, how much from the 8 bits.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,8 +8,8 @@
 
 #include "evaluation/experiment.hpp"
 #include "evaluation/fidelity/bodies.hpp"
-#include "evaluation/fidelity/course.hpp"
 #include "evaluation/fidelity/figure.hpp"
+#include "evaluation/fidelity/trajectory.hpp"
 #include "palpate/baselines/methods.hpp"
 
 namespace palpate::evaluation {
@@ -60,125 +60,87 @@ std::vector<MakeBody> bodies_of(const Options& options) {
     return bodies;
 }
 
-Table empty_table() {
-    return Table({"body",
-                  "way",
-                  "grid",
-                  "samples",
-                  "method",
-                  "steps",
-                  "depth_voxel",
-                  "way_per_tick_voxel",
-                  "contact_share",
-                  "angle_mean_deg",
-                  "angle_p99_deg",
-                  "angle_max_deg",
-                  "off_ideal_mean_deg",
-                  "off_ideal_p99_deg",
-                  "off_ideal_max_deg",
-                  "surface_error_mean_voxel",
-                  "surface_error_max_voxel",
-                  "turn_mean_deg",
-                  "turn_p99_deg",
-                  "turn_max_deg",
-                  "jump_p99_share",
-                  "jump_max_share",
-                  "update_median_us",
-                  "worst_deviation_of_range"});
-}
-
 void add_row(Table& table, const Body& body, const std::string& method, int steps,
-             const CourseResult& course) {
+             const TrajectoryResult& measured) {
     const double voxel = body.subject.field.geometry().spacing.minCoeff();
-    table.add({body.subject.name,
-               body.way,
-               double(body.grid),
-               body.samples,
-               method,
-               double(steps),
-               body.depth / voxel,
-               course.way_per_tick / voxel,
-               course.contact_share,
-               course.angle.mean,
-               course.angle.p99,
-               course.angle.max,
-               course.off_ideal.mean,
-               course.off_ideal.p99,
-               course.off_ideal.max,
-               course.surface_error.mean / voxel,
-               course.surface_error.max / voxel,
-               course.turn.mean,
-               course.turn.p99,
-               course.turn.max,
-               course.jump.p99,
-               course.jump.max,
-               course.update_us.median,
-               course.worst_deviation});
+    table.add({{"body", body.subject.name},
+               {"trajectory", body.trajectory},
+               {"grid", double(body.grid)},
+               {"samples", body.samples},
+               {"method", method},
+               {"steps", double(steps)},
+               {"depth_voxel", body.depth / voxel},
+               {"step_voxel", measured.step / voxel},
+               {"contact_share", measured.contact_share},
+               {"angle_mean_deg", measured.angle.mean},
+               {"angle_p99_deg", measured.angle.p99},
+               {"angle_max_deg", measured.angle.max},
+               {"off_ideal_mean_deg", measured.off_ideal.mean},
+               {"off_ideal_p99_deg", measured.off_ideal.p99},
+               {"off_ideal_max_deg", measured.off_ideal.max},
+               {"surface_error_mean_voxel", measured.surface_error.mean / voxel},
+               {"surface_error_max_voxel", measured.surface_error.max / voxel},
+               {"turn_mean_deg", measured.turn.mean},
+               {"turn_p99_deg", measured.turn.p99},
+               {"turn_max_deg", measured.turn.max},
+               {"jump_p99_share", measured.jump.p99},
+               {"jump_max_share", measured.jump.max},
+               {"update_median_us", measured.update_us.median},
+               {"worst_deviation_of_range", measured.worst_deviation}});
 }
 
 void add_incumbent(Table& table, int grid) {
-    const double none = std::nan("");
     for (const Incumbent& known : incumbents) {
         if (known.grid != grid) continue;
-        table.add({"ball",
-                   "circle",
-                   double(grid),
-                   "uint8",
-                   incumbent_name,
-                   20000.0,
-                   0.03 * grid,
-                   none,
-                   none,
-                   known.mean,
-                   known.p99,
-                   none,
-                   known.mean,
-                   known.p99,
-                   none,
-                   none,
-                   none,
-                   none,
-                   none,
-                   none,
-                   none,
-                   none,
-                   known.update_us,
-                   none});
+        table.add({{"body", "ball"},
+                   {"trajectory", "circle"},
+                   {"grid", double(grid)},
+                   {"samples", "uint8"},
+                   {"method", incumbent_name},
+                   {"steps", 20000.0},
+                   {"depth_voxel", 0.03 * grid},
+                   {"angle_mean_deg", known.mean},
+                   {"angle_p99_deg", known.p99},
+                   {"off_ideal_mean_deg", known.mean},
+                   {"off_ideal_p99_deg", known.p99},
+                   {"update_median_us", known.update_us}});
     }
 }
 
-struct Number {
-    const Table& table;
-    /// A number of the exact method, or another, going round the ball; NaN where that was not run.
-    double operator()(const char* column, int grid, const char* samples, const char* way = "circle",
-                      const char* method = "exact") const {
-        for (std::size_t i = 0; i < table.rows().size(); ++i) {
-            if (table.text(i, "body") == "ball" && table.text(i, "way") == way &&
-                table.number(i, "grid") == grid && table.text(i, "samples") == samples &&
-                table.text(i, "method") == method) {
-                return table.number(i, column);
-            }
-        }
-        return std::nan("");
-    }
-};
+/// Of the exact method or another: its rows on the ball.
+Table ball_rows(const Table& table, const std::string& samples, const char* trajectory = "circle",
+                const char* method = "exact") {
+    return table.where("body", "ball")
+        .where("trajectory", trajectory)
+        .where("samples", samples)
+        .where("method", method);
+}
+
+/// A number of one of them; NaN where that was not run.
+double number_of(const Table& rows, const char* column, int grid) {
+    const Table found = rows.where("grid", double(grid));
+    return found.rows().empty() ? std::nan("") : found.number(0, column);
+}
 
 /// The grids on which the incumbent's numbers are known and ours are, too.
 std::vector<Incumbent> rivals(const Table& table) {
     std::vector<Incumbent> met;
     for (const Incumbent& known : incumbents) {
-        if (!std::isnan(Number{table}("angle_mean_deg", known.grid, "uint8"))) met.push_back(known);
+        if (!ball_rows(table, "uint8").where("grid", double(known.grid)).rows().empty()) {
+            met.push_back(known);
+        }
     }
     return met;
 }
 
 /// Whether exact is below the incumbent in mean and p99, by the normal at the SCP and by the ideal
-/// force, on every way.
+/// force, on every trajectory.
 bool is_below(const Table& table, const Incumbent& known, const char* samples) {
     bool below = true;
-    for (const char* way : {"circle", "spiral"}) {
+    for (const char* trajectory : {"circle", "spiral"}) {
+        const Table rows = ball_rows(table, samples, trajectory);
         const auto worse = [&](const char* column, double theirs) {
-            return Number{table}(column, known.grid, samples, way) >= theirs;  // false for NaN
+            return number_of(rows, column, known.grid) >= theirs;  // false for NaN
         };
         below &= !worse("angle_mean_deg", known.mean) && !worse("off_ideal_mean_deg", known.mean) &&
                  !worse("angle_p99_deg", known.p99) && !worse("off_ideal_p99_deg", known.p99);
@@ -190,22 +152,21 @@ bool is_below(const Table& table, const Incumbent& known, const char* samples) {
 std::string comparison(const Table& table, const std::vector<Incumbent>& grids,
                        const char* samples) {
     std::string text;
+    const Table rows = ball_rows(table, samples);
     for (const Incumbent& known : grids) {
-        const Number number{table};
         text += fmt::format("{}{} ({:.2g} against {:g}, p99 {:.2g} against {:g})",
                             text.empty() ? "" : ", ", known.grid,
-                            number("off_ideal_mean_deg", known.grid, samples), known.mean,
-                            number("off_ideal_p99_deg", known.grid, samples), known.p99);
+                            number_of(rows, "off_ideal_mean_deg", known.grid), known.mean,
+                            number_of(rows, "off_ideal_p99_deg", known.grid), known.p99);
     }
     return text;
 }
 
 Claim stays_on_surface(const Table& table) {
     double worst = 0;
-    for (std::size_t i = 0; i < table.rows().size(); ++i) {
-        const std::string& method = table.text(i, "method");
-        if (method != "exact" && method != "paper") continue;
-        worst = std::max(worst, table.number(i, "worst_deviation_of_range"));
+    for (const char* method : {"exact", "paper"}) {
+        const Table rows = table.where("method", method);
+        worst = std::max(worst, largest(rows.numbers("worst_deviation_of_range")));
     }
     return {
         fmt::format("exact and paper stay on the sampled isosurface to {:g} of the data's range",
@@ -217,12 +178,11 @@ Claim stays_on_surface(const Table& table) {
 Claim converges(const Table& table, const std::string& body) {
     double last = std::nan(""), least = 1e9;
     int doublings = 0;
-    for (std::size_t i = 0; i < table.rows().size(); ++i) {
-        if (table.text(i, "body") != body || table.text(i, "samples") != "float32" ||
-            table.text(i, "method") != "exact" || table.text(i, "way") == "spiral") {
-            continue;
-        }
-        const double mean = table.number(i, "angle_mean_deg");
+    const Table rows =
+        table.where("body", body).where("samples", "float32").where("method", "exact");
+    for (std::size_t i = 0; i < rows.rows().size(); ++i) {
+        if (rows.text(i, "trajectory") == "spiral") continue;
+        const double mean = rows.number(i, "angle_mean_deg");
         if (!std::isnan(last)) {
             least = std::min(least, last / mean);
             ++doublings;
@@ -268,9 +228,9 @@ std::string against_incumbent(const Table& table) {
     if (!above.empty()) {
         std::string nearest;
         for (const Incumbent& known : above) {
-            nearest += fmt::format(
-                "{}{:.2g}", nearest.empty() ? "" : " and ",
-                Number{table}("off_ideal_mean_deg", known.grid, "uint8", "circle", nearest_name));
+            nearest += fmt::format("{}{:.2g}", nearest.empty() ? "" : " and ",
+                                   number_of(ball_rows(table, "uint8", "circle", nearest_name),
+                                             "off_ideal_mean_deg", known.grid));
         }
         text += fmt::format(
             " It is not at grid {}: there the ramp rises by at most 1.4 levels a voxel and the "
@@ -284,22 +244,18 @@ std::string against_incumbent(const Table& table) {
 /// "0.43 at grid 64, 0.21 at grid 128": exact where nothing is rounded.
 std::string facets_of(const Table& table) {
     std::string text;
-    for (std::size_t i = 0; i < table.rows().size(); ++i) {
-        if (table.text(i, "body") != "ball" || table.text(i, "way") != "circle" ||
-            table.text(i, "samples") != name_of(Samples::float32) ||
-            table.text(i, "method") != "exact") {
-            continue;
-        }
-        text += fmt::format("{}{:.2g} at grid {:g}", text.empty() ? "" : ", ",
-                            table.number(i, "off_ideal_mean_deg"), table.number(i, "grid"));
+    for (const auto& row : ball_rows(table, "float32").rows_of({"off_ideal_mean_deg", "grid"})) {
+        text += fmt::format("{}{:.2g} at grid {:g}", text.empty() ? "" : ", ", row[0], row[1]);
     }
     return text;
 }
 
 std::string paragraph_of(const Table& table, int steps) {
-    const Number number{table};
     const std::vector<Incumbent> met = rivals(table);
     const int grid = incumbents.front().grid;
+    const auto number = [&](const char* column, int at, const char* samples) {
+        return number_of(ball_rows(table, samples), column, at);
+    };
     return fmt::format(
         "A ball of radius 0.35 in a unit box, density 1/2 + 1.4 (0.35 - r) in 8 bits, felt at 1/2; "
         "a hand goes round it 0.03 below the surface on a tilted great circle in {} steps. Angle "
@@ -344,21 +300,21 @@ Result fidelity(const Options& options) {
     const int steps = options.quick ? 1500 : 20000;
     const bool own_bodies = options.subjects.empty();
     Result result;
-    result.table = empty_table();
     const std::vector<MakeBody> bodies = bodies_of(options);
     for (std::size_t i = 0; i < bodies.size(); ++i) {
         options.progress(double(i) / double(bodies.size()));
         const Body body = bodies[i]();
         const bool is_protocol = own_bodies && body.subject.name == "ball" &&
-                                 body.way == "circle" && body.samples == name_of(Samples::uint8);
+                                 body.trajectory == "circle" &&
+                                 body.samples == name_of(Samples::uint8);
         for (const auto& method : baselines::methods()) {
             options.progress(double(i) / double(bodies.size()));
             add_row(result.table, body, method.name, steps,
-                    go_along(body, method.method, steps, 0, 1));
+                    follow(body, method.method, steps, 0, 1));
         }
         if (!is_protocol) continue;
         const int hands = options.quick ? 20 : 100;  // each looks at the whole surface
-        add_row(result.table, body, nearest_name, hands, go_along_nearest(body, hands));
+        add_row(result.table, body, nearest_name, hands, follow_nearest(body, hands));
         add_incumbent(result.table, body.grid);
     }
     if (own_bodies) {

@@ -1,4 +1,4 @@
-// Balls, filled row by row because some are large, and the hand's great circles.
+// Makes balls, row by row because some are large, and great circles round them.
 #include "evaluation/scaling/bodies.hpp"
 
 #include <algorithm>
@@ -59,19 +59,19 @@ Subject noisy_ball(const Ball& shape, double amplitude, std::uint64_t seed) {
     return {"noisy-ball", Field(Volume(geometry, std::move(samples))), 0.5, {}, ""};
 }
 
-Stroke round_the_ball(double radius, double step, int ticks, double from) {
+Trajectory round_the_ball(double radius, double step, int ticks, double from) {
     constexpr double tilt = 0.9;      // [rad] of the circles, off the planes of symmetry
-    constexpr double turning = 0.02;  // of the circles' plane, to the way along them
+    constexpr double turning = 0.02;  // of the circles' plane, per angle along them
     const auto direction = [&](double angle) {
         const Vec3 flat(std::cos(angle), std::sin(angle) * std::cos(tilt),
                         std::sin(angle) * std::sin(tilt));
         const double c = std::cos(turning * angle), s = std::sin(turning * angle);
         return Vec3(c * flat[0] - s * flat[1], s * flat[0] + c * flat[1], flat[2]);
     };
-    Stroke stroke{from * direction(0)};
-    stroke.reserve(static_cast<std::size_t>(ticks) + 1);
-    for (int i = 0; i < ticks; ++i) stroke.emplace_back(radius * direction(step / radius * i));
-    return stroke;
+    Trajectory trajectory{from * direction(0)};
+    trajectory.reserve(static_cast<std::size_t>(ticks) + 1);
+    for (int i = 0; i < ticks; ++i) trajectory.emplace_back(radius * direction(step / radius * i));
+    return trajectory;
 }
 
 }  // namespace palpate::evaluation

@@ -1,10 +1,10 @@
-// Bodies and hands of scaling, made so that one thing grows and all others stay.
+// Bodies and trajectories for scaling, of which one property grows and the others stay the same.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
-#include "evaluation/hand_at_work.hpp"
+#include "evaluation/exploring_hand.hpp"
 
 namespace palpate::evaluation {
 
@@ -21,8 +21,8 @@ Subject ball(const Ball& shape);
 /// float32 of 0..1 and white noise of +-amplitude/2, felt at 0.5.
 Subject noisy_ball(const Ball& shape, double amplitude, std::uint64_t seed);
 
-/// One stroke on a sphere of `radius` [mm] round the origin: great circles that turn slowly over
-/// the whole of it, `step` [mm] a tick. It begins at `from` [mm] from the centre.
-Stroke round_the_ball(double radius, double step, int ticks, double from);
+/// One trajectory on a sphere of `radius` [mm] round the origin: great circles that turn slowly
+/// over the whole of it, `step` [mm] a tick. It begins at `from` [mm] from the centre.
+Trajectory round_the_ball(double radius, double step, int ticks, double from);
 
 }  // namespace palpate::evaluation

@@ -1,4 +1,4 @@
-// Both ways over the same strokes.
+// Measures both approaches over the same trajectories.
 #include "evaluation/scaling/explicit.hpp"
 
 #include <malloc.h>
@@ -10,6 +10,7 @@
 #include <cstring>
 #include <limits>
 
+#include "evaluation/table.hpp"
 #include "evaluation/timing.hpp"
 #include "io/helper_process.hpp"
 
@@ -43,33 +44,34 @@ double changed(const Field& field, double isovalue, bool up) {
 /// Changes the level every now and then while the hand goes on, and gives each changed update to
 /// `note` with its time [ns].
 template <class Note>
-void change_levels(const Subject& subject, const std::vector<Stroke>& strokes, Note&& note) {
+void change_levels(const Subject& subject, const std::vector<Trajectory>& trajectories,
+                   Note&& note) {
     constexpr std::size_t every = 25;
     bool up = false;
-    for (const Stroke& stroke : strokes) {
+    for (const Trajectory& trajectory : trajectories) {
         Proxy proxy;
-        place(proxy, subject.field, stroke.front(), subject.isovalue);
-        for (std::size_t i = 1; i < stroke.size(); ++i) {
+        place(proxy, subject.field, trajectory.front(), subject.isovalue);
+        for (std::size_t i = 1; i < trajectory.size(); ++i) {
             if (i % every != 0) {
-                update_exact(proxy, subject.field, stroke[i]);
+                update_exact(proxy, subject.field, trajectory[i]);
                 continue;
             }
             const bool away = proxy.isovalue == subject.isovalue;
             if (away) up = !up;
             proxy.isovalue = away ? changed(subject.field, subject.isovalue, up) : subject.isovalue;
             const auto begin = Clock::now();
-            const ProxyUpdate update = update_exact(proxy, subject.field, stroke[i]);
+            const ProxyUpdate update = update_exact(proxy, subject.field, trajectory[i]);
             note(update, nanoseconds_since(begin));
         }
     }
 }
 
-void time_changes(const Subject& subject, const std::vector<Stroke>& strokes, int passes,
+void time_changes(const Subject& subject, const std::vector<Trajectory>& trajectories, int passes,
                   DynamicCost& cost) {
     std::vector<std::vector<double>> times;  // [ns], of each change the passes
     for (int pass = 0; pass < passes; ++pass) {
         std::size_t number = 0;
-        change_levels(subject, strokes, [&](const ProxyUpdate& update, double ns) {
+        change_levels(subject, trajectories, [&](const ProxyUpdate& update, double ns) {
             if (number == times.size()) times.emplace_back();
             times[number++].push_back(ns);
             if (pass > 0) return;
@@ -83,10 +85,10 @@ void time_changes(const Subject& subject, const std::vector<Stroke>& strokes, in
         });
     }
     std::vector<double> medians;
-    for (auto& readings : times) medians.push_back(quantile(readings, 0.5));
+    for (const auto& readings : times) medians.push_back(quantile(readings, 0.5));
     cost.change_p50_ns = quantile(medians, 0.5);
     cost.change_p99_ns = quantile(medians, 0.99);
-    cost.change_max_ns = quantile(medians, 1);
+    cost.change_max_ns = largest(medians);
 }
 
 double segment_time(const Subject& subject, const std::vector<Segment>& segments, int passes) {
@@ -107,18 +109,18 @@ Vec3 in_grid(const Geometry& geometry, const Vec3& physical) {
 
 }  // namespace
 
-std::vector<Segment> segments_of(const Subject& subject, const std::vector<Stroke>& strokes,
-                                 std::size_t most) {
+std::vector<Segment> segments_of(const Subject& subject,
+                                 const std::vector<Trajectory>& trajectories, std::size_t most) {
     const double above = 0.5 * subject.field.geometry().spacing.minCoeff();
     std::vector<Segment> all;
-    for (const Stroke& stroke : strokes) {
+    for (const Trajectory& trajectory : trajectories) {
         Proxy proxy;
-        place(proxy, subject.field, stroke.front(), subject.isovalue);
-        for (std::size_t i = 1; i < stroke.size(); ++i) {
-            const ProxyUpdate update = update_exact(proxy, subject.field, stroke[i]);
+        place(proxy, subject.field, trajectory.front(), subject.isovalue);
+        for (std::size_t i = 1; i < trajectory.size(); ++i) {
+            const ProxyUpdate update = update_exact(proxy, subject.field, trajectory[i]);
             if (update.mode != Mode::constrained) continue;
             const Vec3 from = update.scp + above * normal_at(proxy, subject.field);
-            all.push_back({from, stroke[i]});
+            all.push_back({from, trajectory[i]});
         }
     }
     if (all.size() <= most) return all;
@@ -127,16 +129,16 @@ std::vector<Segment> segments_of(const Subject& subject, const std::vector<Strok
     return some;
 }
 
-DynamicCost dynamic_cost(const Subject& subject, const std::vector<Stroke>& strokes,
+DynamicCost dynamic_cost(const Subject& subject, const std::vector<Trajectory>& trajectories,
                          const std::vector<Segment>& segments, int passes) {
     DynamicCost cost;
-    cost.update_ns = time_updates(subject, &update_exact, strokes, {passes, 0}).mean_ns;
+    cost.update_ns = time_updates(subject, &update_exact, trajectories, {passes, 0}).mean_ns;
     cost.segment_ns = segment_time(subject, segments, passes);
-    time_changes(subject, strokes, passes, cost);
+    time_changes(subject, trajectories, passes, cost);
     cost.state_bytes = sizeof(Proxy);
     const double before = heap_in_use();
     double most = before;
-    change_levels(subject, strokes,
+    change_levels(subject, trajectories,
                   [&](const ProxyUpdate&, double) { most = std::max(most, heap_in_use()); });
     cost.heap_growth_bytes = most - before;
     return cost;
@@ -169,7 +171,7 @@ ExplicitAnswer explicit_cost(const Subject& subject, const std::vector<Segment>&
     ExplicitAnswer answer;
     answer.failure = result.failure;
     if (!answer.failure.empty()) return answer;
-    answer.cost = cost_from(result.done);
+    answer.cost = result.done.get<ExplicitCost>();
     const auto* const hits = reinterpret_cast<const double*>(bytes + request.hits_at());
     answer.hits.assign(hits, hits + segments.size());
     return answer;

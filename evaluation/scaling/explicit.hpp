@@ -1,5 +1,5 @@
-// The explicit way beside ours: the whole isosurface extracted and put into a tree before anything
-// can be touched, and again when the level changes.
+// The explicit approach beside ours: the whole isosurface is extracted and put into a hierarchy
+// before anything can be touched, and again when the level changes.
 #pragma once
 
 #include <functional>
@@ -7,14 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "evaluation/hand_at_work.hpp"
+#include "evaluation/exploring_hand.hpp"
 #include "evaluation/scaling/explicit_helper/wire.hpp"
 
 namespace palpate::evaluation {
 
-/// What the same touch takes us. Times in ns.
+/// What the same touch costs our method. Times in ns.
 struct DynamicCost {
-    double update_ns = 0;   ///< mean of an update of the hand's strokes
+    double update_ns = 0;   ///< mean of an update of the hand's trajectories
     double segment_ns = 0;  ///< mean of cast_ray over the segments that the mesh is asked for
     /// The update after the level has changed by a tenth of the data's range, to and fro, recovery
     /// included.
@@ -27,22 +27,23 @@ struct DynamicCost {
     double heap_growth_bytes = 0;         ///< over all updates and changes
 };
 
-/// A segment that starts free and that the hand made [mm, physical].
+/// From free space to the hand [mm, physical].
 struct Segment {
     Vec3 from, to;
 };
 
-/// At most `most` of those from half a voxel above the SCP to the HIP, spread over the strokes.
-std::vector<Segment> segments_of(const Subject& subject, const std::vector<Stroke>& strokes,
-                                 std::size_t most);
+/// At most `most` of those from half a voxel above the SCP to the HIP, spread over the
+/// trajectories.
+std::vector<Segment> segments_of(const Subject& subject,
+                                 const std::vector<Trajectory>& trajectories, std::size_t most);
 
-DynamicCost dynamic_cost(const Subject& subject, const std::vector<Stroke>& strokes,
+DynamicCost dynamic_cost(const Subject& subject, const std::vector<Trajectory>& trajectories,
                          const std::vector<Segment>& segments, int passes);
 
 struct ExplicitAnswer {
     ExplicitCost cost;
     std::vector<double> hits;  ///< how far along each segment, 0 to 1; NaN: none
-    std::string failure;       ///< then nothing else is set
+    std::string failure;       ///< empty: it worked; else nothing else is set
 };
 
 /// By palpate-explicit-helper. `progress` as in Options.

@@ -8,7 +8,8 @@
 
 namespace palpate::evaluation {
 
-/// What an update's time grows with, a panel a part; and the explicit way beside the dynamic one.
+/// What an update's time grows with, a panel for each part; and the explicit approach beside the
+/// dynamic one.
 std::vector<Figure> scaling_figures(const Table& table);
 
 }  // namespace palpate::evaluation

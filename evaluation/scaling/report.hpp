@@ -1,4 +1,4 @@
-// What scaling says of its numbers.
+// Claims and paragraph of scaling.
 #pragma once
 
 #include <string>

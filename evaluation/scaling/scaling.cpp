@@ -1,12 +1,11 @@
-// scaling: what the cost of an update grows with, and what it does not; and the explicit way, which
-// extracts the whole isosurface first.
+// scaling: what the cost of an update grows with, and what it does not; and the explicit approach,
+// which extracts the whole isosurface first.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <limits>
-#include <map>
 
 #include "evaluation/experiment.hpp"
 #include "evaluation/scaling/bodies.hpp"
@@ -45,20 +44,9 @@ Plan plan_of(bool quick) {
             {"lobster", "ct-head"}};
 }
 
-/// Adds a row with the cells that are given; the others are empty.
-void add(Table& table, const std::map<std::string, Cell>& cells) {
-    std::vector<Cell> row;
-    for (const std::string& column : table.columns()) {
-        const auto cell = cells.find(column);
-        const bool is_text = column == "part" || column == "volume" || column == "size";
-        row.push_back(cell != cells.end() ? cell->second
-                      : is_text           ? Cell(std::string())
-                                          : Cell(unknown));
-    }
-    table.add(std::move(row));
-}
+using Cells = std::vector<NamedCell>;
 
-std::map<std::string, Cell> cells_of(const Subject& subject, const char* part) {
+Cells cells_of(const Subject& subject, const char* part) {
     const Geometry& geometry = subject.field.geometry();
     return {{"part", part},
             {"volume", subject.name},
@@ -66,49 +54,51 @@ std::map<std::string, Cell> cells_of(const Subject& subject, const char* part) {
             {"samples", double(sample_count(geometry))}};
 }
 
-/// Way of the hand [voxel, smallest spacing].
-double way_of(const Subject& subject, const std::vector<Stroke>& strokes) {
-    double way = 0;
-    for (const Stroke& stroke : strokes) {
-        for (std::size_t i = 1; i < stroke.size(); ++i) way += (stroke[i] - stroke[i - 1]).norm();
+/// Length of the hand's path [voxel, smallest spacing].
+double path_of(const Subject& subject, const std::vector<Trajectory>& trajectories) {
+    double path = 0;
+    for (const Trajectory& trajectory : trajectories) {
+        for (std::size_t i = 1; i < trajectory.size(); ++i)
+            path += (trajectory[i] - trajectory[i - 1]).norm();
     }
-    return way / subject.field.geometry().spacing.minCoeff();
+    return path / subject.field.geometry().spacing.minCoeff();
 }
 
-void add_times(std::map<std::string, Cell> cells, const Subject& subject,
-               const std::vector<Stroke>& strokes, int passes, Table& table) {
-    const UpdateTimes times = time_updates(subject, &update_exact, strokes, {passes, 0});
+void add_times(Cells cells, const Subject& subject, const std::vector<Trajectory>& trajectories,
+               int passes, Table& table) {
+    const UpdateTimes times = time_updates(subject, &update_exact, trajectories, {passes, 0});
     const auto updates = static_cast<double>(times.updates);
-    cells["updates"] = updates;
-    cells["mean_ns"] = times.mean_ns;
-    cells["p50_ns"] = times.p50_ns;
-    cells["p99_ns"] = times.p99_ns;
-    cells["p999_ns"] = times.p999_ns;
-    cells["max_ns"] = times.max_ns;
-    cells["tetrahedra"] = double(times.tetrahedra);
-    cells["tetrahedra_per_update"] = double(times.tetrahedra) / updates;
-    cells["way_voxel"] = way_of(subject, strokes);
-    cells["constrained_share"] = double(times.constrained) / updates;
-    add(table, cells);
+    const Cells measured{{"updates", updates},
+                         {"path_voxel", path_of(subject, trajectories)},
+                         {"constrained_share", double(times.constrained) / updates},
+                         {"tetrahedra", double(times.tetrahedra)},
+                         {"tetrahedra_per_update", double(times.tetrahedra) / updates},
+                         {"mean_ns", times.mean_ns},
+                         {"p50_ns", times.p50_ns},
+                         {"p99_ns", times.p99_ns},
+                         {"p999_ns", times.p999_ns},
+                         {"max_ns", times.max_ns}};
+    cells.insert(cells.end(), measured.begin(), measured.end());
+    table.add(cells);
 }
 
 /// Round a ball at a depth, both as long as they are in voxels.
-std::vector<Stroke> round(const Ball& shape, double depth, double step, int ticks) {
+std::vector<Trajectory> round(const Ball& shape, double depth, double step, int ticks) {
     return {round_the_ball(shape.radius - depth, step, ticks, shape.radius + 1)};
 }
 
 /// A hand on any body that hardly ever leaves it.
-std::vector<Stroke> over(const Subject& subject, double speed, double voxels_per_mm, int ticks,
-                         std::uint64_t seed) {
+std::vector<Trajectory> over(const Subject& subject, double speed, double voxels_per_mm, int ticks,
+                             std::uint64_t seed) {
     const double scale = scale_for_voxels_per_mm(subject.field.geometry(), voxels_per_mm);
-    HandAtWork hand;
+    ExploringHand hand;
     hand.speed_mm_s = speed * scale;
     hand.depth_mm = usual.depth_mm * scale;
     hand.touching = 0.95;
-    hand.strokes = 4;
-    hand.stroke_s = ticks / usual.rate_hz / hand.strokes;
+    hand.trajectories = 4;
+    hand.trajectory_s = ticks / usual.rate_hz / hand.trajectories;
     hand.seed = seed;
-    return work(subject, hand);
+    return explore(subject, hand);
 }
 
 constexpr double step_of(double speed, double voxels_per_mm) {
@@ -130,10 +120,10 @@ bool has_room(int size, double copies, const char* what, const Options& options)
     return true;  // the system does not tell
 }
 
-/// What is going on, for progress between the cases of all parts.
-class Course {
+/// Reports progress between the cases of all parts.
+class Progress {
   public:
-    Course(const Options& options, std::size_t cases) : options_(options), cases_(cases) {}
+    Progress(const Options& options, std::size_t cases) : options_(options), cases_(cases) {}
     void next() { options_.progress(double(done_++) / double(cases_)); }
     void wait() const { options_.progress(double(done_ - 1) / double(cases_)); }
 
@@ -143,18 +133,18 @@ class Course {
     std::size_t done_ = 0;
 };
 
-void by_hand(const Plan& plan, const Options& options, Course& course, Table& table) {
+void by_hand(const Plan& plan, const Options& options, Progress& progress, Table& table) {
     const auto measure = [&](const char* part, const Subject& subject, double speed, double voxels,
-                             const std::vector<Stroke>& strokes) {
+                             const std::vector<Trajectory>& trajectories) {
         auto cells = cells_of(subject, part);
-        cells["speed_mm_s"] = speed;
-        cells["voxels_per_mm"] = voxels;
-        add_times(std::move(cells), subject, strokes, plan.passes, table);
+        cells.emplace_back("speed_mm_s", speed);
+        cells.emplace_back("voxels_per_mm", voxels);
+        add_times(std::move(cells), subject, trajectories, plan.passes, table);
     };
     const Ball same;
     const Subject body = ball(same);
     for (const double speed : plan.speeds) {
-        course.next();
+        progress.next();
         for (const Subject& own : options.subjects) {
             measure("speed", own, speed, usual.voxels_per_mm,
                     over(own, speed, usual.voxels_per_mm, plan.ticks, options.seed));
@@ -165,7 +155,7 @@ void by_hand(const Plan& plan, const Options& options, Course& course, Table& ta
                       step_of(speed, usual.voxels_per_mm), plan.ticks));
     }
     for (const double voxels : plan.voxels_per_mm) {
-        course.next();
+        progress.next();
         for (const Subject& own : options.subjects) {
             measure("voxels-per-mm", own, usual.speed_mm_s, voxels,
                     over(own, usual.speed_mm_s, voxels, plan.ticks, options.seed));
@@ -179,87 +169,92 @@ void by_hand(const Plan& plan, const Options& options, Course& course, Table& ta
     }
 }
 
-void by_body(const Plan& plan, const Options& options, Course& course, Table& table) {
+void by_body(const Plan& plan, const Options& options, Progress& progress, Table& table) {
     const Ball same;
-    const auto strokes = round(same, usual.depth_mm * usual.voxels_per_mm,
-                               step_of(usual.speed_mm_s, usual.voxels_per_mm), plan.ticks);
+    const auto trajectories = round(same, usual.depth_mm * usual.voxels_per_mm,
+                                    step_of(usual.speed_mm_s, usual.voxels_per_mm), plan.ticks);
     for (const int size : plan.sizes) {
-        course.next();
+        progress.next();
         if (!has_room(size, 1.2, "the volume", options)) continue;
         Ball shape = same;
         shape.size = size;
         const Subject subject = ball(shape);
-        add_times(cells_of(subject, "size"), subject, strokes, plan.passes, table);
+        add_times(cells_of(subject, "size"), subject, trajectories, plan.passes, table);
     }
     for (const double noise : plan.noises) {
-        course.next();
+        progress.next();
         const Subject subject = noisy_ball(same, noise, options.seed);
         auto cells = cells_of(subject, "noise");
-        cells["noise_of_range"] = noise;
-        add_times(std::move(cells), subject, strokes, plan.passes, table);
+        cells.emplace_back("noise_of_range", noise);
+        add_times(std::move(cells), subject, trajectories, plan.passes, table);
     }
 }
 
-/// Both ways on one volume; without the explicit one, and a note, if it cannot be gone.
-void compare(const Subject& subject, const std::vector<Stroke>& strokes, int passes,
-             const Options& options, Course& course, Table& table) {
+/// Both approaches on one volume; without the explicit one, and a note, if its helper fails.
+void compare(const Subject& subject, const std::vector<Trajectory>& trajectories, int passes,
+             const Options& options, Progress& progress, Table& table) {
     constexpr std::size_t most_segments = 4000;
     constexpr int repeats = 3;  // of which the fastest counts
-    auto cells = cells_of(subject, "explicit");
-    const auto segments = segments_of(subject, strokes, most_segments);
-    const DynamicCost ours = dynamic_cost(subject, strokes, segments, passes);
-    cells["mean_ns"] = ours.update_ns;
-    cells["segment_ns"] = ours.segment_ns;
-    cells["change_p50_ns"] = ours.change_p50_ns;
-    cells["change_p99_ns"] = ours.change_p99_ns;
-    cells["change_max_ns"] = ours.change_max_ns;
-    cells["changes"] = double(ours.changes);
-    cells["unfinished_changes"] = double(ours.unfinished_changes);
-    cells["worst_deviation_of_range"] = ours.worst_deviation;
-    cells["state_bytes"] = ours.state_bytes;
-    cells["heap_growth_bytes"] = ours.heap_growth_bytes;
-    cells["samples_bytes"] = double(subject.field.volume().bytes());
-    const ExplicitAnswer theirs = explicit_cost(subject, segments, repeats, [&] { course.wait(); });
-    if (!theirs.failure.empty()) {
-        options.note("scaling: without the explicit way on " + subject.name + ": " +
-                     theirs.failure);
+    Cells cells = cells_of(subject, "explicit");
+    const auto segments = segments_of(subject, trajectories, most_segments);
+    const DynamicCost ours = dynamic_cost(subject, trajectories, segments, passes);
+    const ExplicitAnswer theirs =
+        explicit_cost(subject, segments, repeats, [&] { progress.wait(); });
+    const ExplicitCost& cost = theirs.cost;
+    Difference difference{unknown, unknown};
+    if (theirs.failure.empty()) {
+        difference = difference_of(subject, segments, theirs.hits);
     } else {
-        const ExplicitCost& cost = theirs.cost;
-        cells["explicit_triangles"] = double(cost.triangles);
-        cells["explicit_extraction_s"] = cost.extraction_s;
-        cells["explicit_tree_s"] = cost.tree_s;
-        cells["explicit_cpu_s"] = cost.cpu_s;
-        cells["explicit_mesh_bytes"] = cost.mesh_bytes;
-        cells["explicit_tree_bytes"] = cost.tree_bytes;
-        cells["explicit_peak_bytes"] = cost.peak_bytes;
-        cells["explicit_segment_ns"] = cost.query_ns;
-        const Difference difference = difference_of(subject, segments, theirs.hits);
-        cells["one_sided_hits_share"] = difference.one_sided_share;
-        cells["hit_difference_voxel"] = difference.worst_voxel;
+        options.note("scaling: without the explicit approach on " + subject.name + ": " +
+                     theirs.failure);
     }
-    add(table, cells);
+    const Cells measured{{"samples_bytes", double(subject.field.volume().bytes())},
+                         {"mean_ns", ours.update_ns},
+                         {"segment_ns", ours.segment_ns},
+                         {"change_p50_ns", ours.change_p50_ns},
+                         {"change_p99_ns", ours.change_p99_ns},
+                         {"change_max_ns", ours.change_max_ns},
+                         {"changes", double(ours.changes)},
+                         {"unfinished_changes", double(ours.unfinished_changes)},
+                         {"worst_deviation_of_range", ours.worst_deviation},
+                         {"state_bytes", ours.state_bytes},
+                         {"heap_growth_bytes", ours.heap_growth_bytes},
+                         {"explicit_triangles", cost.triangles},
+                         {"explicit_extraction_s", cost.extraction_s},
+                         {"explicit_tree_s", cost.tree_s},
+                         {"explicit_ready_s", cost.extraction_s + cost.tree_s},
+                         {"explicit_cpu_s", cost.cpu_s},
+                         {"explicit_mesh_bytes", cost.mesh_bytes},
+                         {"explicit_tree_bytes", cost.tree_bytes},
+                         {"explicit_kept_bytes", cost.mesh_bytes + cost.tree_bytes},
+                         {"explicit_peak_bytes", cost.peak_bytes},
+                         {"explicit_segment_ns", cost.query_ns},
+                         {"one_sided_hits_share", difference.one_sided_share},
+                         {"hit_difference_voxel", difference.worst_voxel}};
+    cells.insert(cells.end(), measured.begin(), measured.end());
+    table.add(cells);
 }
 
-void by_way(const Plan& plan, const Options& options, Course& course, Table& table) {
+void by_approach(const Plan& plan, const Options& options, Progress& progress, Table& table) {
     for (const Subject& own : options.subjects) {
-        course.next();
-        const auto strokes =
+        progress.next();
+        const auto trajectories =
             over(own, usual.speed_mm_s, usual.voxels_per_mm, plan.ticks, options.seed);
-        compare(own, strokes, plan.passes, options, course, table);
+        compare(own, trajectories, plan.passes, options, progress, table);
     }
     if (!options.subjects.empty()) return;
     for (const int size : plan.explicit_sizes) {
-        course.next();
-        // Ours, the one that is shared, and what extraction takes at its peak.
-        if (!has_room(size, 3.6, "the explicit way", options)) continue;
+        progress.next();
+        // Our samples, the shared copy, and what extraction takes at its peak.
+        if (!has_room(size, 3.6, "the explicit approach", options)) continue;
         // Grows with the grid, with the blur of its edge in voxels as a scanner has it.
         const Ball shape{size, 0.35 * size, 16};
-        const auto strokes =
+        const auto trajectories =
             round(shape, 3, step_of(usual.speed_mm_s, usual.voxels_per_mm), plan.ticks);
-        compare(ball(shape), strokes, plan.passes, options, course, table);
+        compare(ball(shape), trajectories, plan.passes, options, progress, table);
     }
     for (const char* name : plan.real) {
-        course.next();
+        progress.next();
         const auto subject = real(options.data, name);
         if (!subject) {
             options.note(fmt::format(
@@ -268,48 +263,8 @@ void by_way(const Plan& plan, const Options& options, Course& course, Table& tab
         }
         compare(*subject,
                 over(*subject, usual.speed_mm_s, usual.voxels_per_mm, plan.ticks, options.seed),
-                plan.passes, options, course, table);
+                plan.passes, options, progress, table);
     }
-}
-
-Table empty_table() {
-    return Table({"part",
-                  "volume",
-                  "size",
-                  "samples",
-                  "samples_bytes",
-                  "speed_mm_s",
-                  "voxels_per_mm",
-                  "noise_of_range",
-                  "updates",
-                  "way_voxel",
-                  "constrained_share",
-                  "tetrahedra",
-                  "tetrahedra_per_update",
-                  "mean_ns",
-                  "p50_ns",
-                  "p99_ns",
-                  "p999_ns",
-                  "max_ns",
-                  "segment_ns",
-                  "change_p50_ns",
-                  "change_p99_ns",
-                  "change_max_ns",
-                  "changes",
-                  "unfinished_changes",
-                  "worst_deviation_of_range",
-                  "state_bytes",
-                  "heap_growth_bytes",
-                  "explicit_triangles",
-                  "explicit_extraction_s",
-                  "explicit_tree_s",
-                  "explicit_cpu_s",
-                  "explicit_mesh_bytes",
-                  "explicit_tree_bytes",
-                  "explicit_peak_bytes",
-                  "explicit_segment_ns",
-                  "one_sided_hits_share",
-                  "hit_difference_voxel"});
 }
 
 }  // namespace
@@ -326,12 +281,11 @@ Result scaling(const Options& options) {
                               (own_volumes ? plan.sizes.size() + plan.noises.size() +
                                                  plan.explicit_sizes.size() + plan.real.size()
                                            : options.subjects.size());
-    Course course(options, cases);
+    Progress progress(options, cases);
     Result result;
-    result.table = empty_table();
-    by_hand(plan, options, course, result.table);
-    if (own_volumes) by_body(plan, options, course, result.table);
-    by_way(plan, options, course, result.table);
+    by_hand(plan, options, progress, result.table);
+    if (own_volumes) by_body(plan, options, progress, result.table);
+    by_approach(plan, options, progress, result.table);
     result.figures = scaling_figures(result.table);
     result.claims = scaling_claims(result.table, own_volumes);
     result.paragraph = scaling_paragraph(result.table, own_volumes);

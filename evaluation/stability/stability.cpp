@@ -1,5 +1,5 @@
 // stability: the simulated device and hand in a closed loop with the renderer, pressed into a
-// surface and held there. What does not come to rest is a limit cycle, and is felt as buzzing.
+// surface and held there. A loop that does not come to rest is in a limit cycle, felt as buzzing.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -117,55 +117,56 @@ constexpr const char* map_profile = "touch";
 /// Runs a case and adds its row.
 Held add_case(const Case& c, const Subject& subject, const char* part, Table& table) {
     const Held held = press(c, subject);
-    table.add({part, c.profile, c.friction ? "yes" : "no", c.encoder, c.rate, c.stiffness,
-               held.position, held.force, held.push, held.in_contact ? "yes" : "no",
-               held.at_rest ? "yes" : "no"});
+    table.add({{"part", part},
+               {"profile", c.profile},
+               {"friction", c.friction ? "yes" : "no"},
+               {"encoder_step_mm", c.encoder},
+               {"rate_hz", c.rate},
+               {"stiffness_N_mm", c.stiffness},
+               {"position_peak_to_peak_mm", held.position},
+               {"force_peak_to_peak_N", held.force},
+               {"push_N", held.push},
+               {"in_contact", held.in_contact ? "yes" : "no"},
+               {"at_rest", held.at_rest ? "yes" : "no"}});
     return held;
 }
 
 /// The largest stiffness up to which every one tried comes to rest; 0 if none does.
-double largest_stable(const Table& table, const std::string& part, const std::string& profile,
-                      double encoder, double rate) {
+double largest_stable(const Table& table, double rate) {
     double largest = 0;
-    for (std::size_t i = 0; i < table.rows().size(); ++i) {
-        if (table.text(i, "part") != part || table.text(i, "profile") != profile ||
-            table.number(i, "rate_hz") != rate) {
-            continue;
-        }
-        if (part == "map" && table.number(i, "encoder_step_mm") != encoder) continue;
-        if (table.text(i, "at_rest") == "no") break;  // rows rise in stiffness
-        largest = table.number(i, "stiffness_N_mm");
+    const Table at_rate = table.where("rate_hz", rate);  // rows rise in stiffness
+    for (std::size_t i = 0; i < at_rate.rows().size(); ++i) {
+        if (at_rate.text(i, "at_rest") == "no") break;
+        largest = at_rate.number(i, "stiffness_N_mm");
     }
     return largest;
 }
 
-/// One panel: stiffness over rate, the colour the movement at rest; a line where it ends.
-std::string map_panel(const Table& table, const Plan& plan, double encoder, std::size_t number) {
-    std::vector<std::vector<double>> cells, limit;
+/// Stiffness over rate, the colour the movement at rest; a line where it ends.
+Panel map_panel(const Table& table, const Plan& plan, double encoder) {
+    const Table map = table.where("part", "map").where("encoder_step_mm", encoder);
+    Series cells{Draw::cells, "", {}, {}};
+    Series limit{Draw::line, "", {.colour = colours::vermilion, .width = 3}, {}};
+    Panel panel;
     for (std::size_t r = 0; r < plan.rates.size(); ++r) {
-        const double stable = largest_stable(table, "map", map_profile, encoder, plan.rates[r]);
-        limit.push_back({double(r) - 0.5, stable + 0.05});
-        limit.push_back({double(r) + 0.5, stable + 0.05});
-        for (std::size_t i = 0; i < table.rows().size(); ++i) {
-            if (table.text(i, "part") != "map" || table.number(i, "rate_hz") != plan.rates[r] ||
-                table.number(i, "encoder_step_mm") != encoder) {
-                continue;
-            }
-            cells.push_back({double(r), table.number(i, "stiffness_N_mm"),
-                             std::max(1e-3, table.number(i, "position_peak_to_peak_mm"))});
+        const double stable = largest_stable(map, plan.rates[r]);
+        limit.rows.push_back({double(r) - 0.5, stable + 0.05});
+        limit.rows.push_back({double(r) + 0.5, stable + 0.05});
+        for (const auto& row : map.where("rate_hz", plan.rates[r])
+                                   .rows_of({"stiffness_N_mm", "position_peak_to_peak_mm"})) {
+            cells.rows.push_back({double(r), row[0], std::max(1e-3, row[1])});
         }
+        panel.x.ticks.push_back({double(r), fmt::format("{:g}", plan.rates[r] / 1000)});
     }
-    std::string tics;
-    for (std::size_t r = 0; r < plan.rates.size(); ++r) {
-        tics += fmt::format("{}'{:g}' {}", r ? ", " : "", plan.rates[r] / 1000, r);
-    }
-    return block(fmt::format("cells{}", number), cells) +
-           block(fmt::format("limit{}", number), limit) +
-           fmt::format(
-               "set title 'encoder step {:g} mm'\nset xtics ({})\n"
-               "plot $cells{} using 1:2:3 with image notitle, $limit{} with lines lw 3 lc rgb "
-               "'#D55E00'\n",
-               encoder, tics, number, number);
+    panel.series = {std::move(cells), std::move(limit)};
+    panel.title = fmt::format("encoder step {:g} mm", encoder);
+    panel.x.title = "update rate [kHz]";
+    panel.x.low = -0.5;
+    panel.x.high = double(plan.rates.size()) - 0.5;
+    panel.y = {.low = 0, .high = 3.05};
+    panel.has_grid = false;
+    panel.scale = ColourScale{"peak to peak [mm]", 0.001, 10, true};
+    return panel;
 }
 
 Figure map_figure(const Table& table, const Plan& plan) {
@@ -175,23 +176,13 @@ Figure map_figure(const Table& table, const Plan& plan) {
         "friction in its mechanics): white is rest, dark a limit cycle. Below the vermilion line "
         "it moves by two encoder steps at most.",
         map_profile);
-    figure.size = {1200, 460};
-    figure.script = fmt::format(
-        "set multiplot layout 1,{} margins 0.07,0.9,0.16,0.86 spacing 0.035,0.1\n"
-        "set palette defined (0 '#ffffff', 0.35 '#9ecae1', 0.7 '#3182bd', 1 '#08306b')\n"
-        "set logscale cb\nset cbrange [0.001:10]\nset format cb '%g'\nunset colorbox\n"
-        "set cblabel 'peak to peak [mm]'\nset xlabel 'update rate [kHz]'\n"
-        "set yrange [0:3.05]\nset xrange [-0.5:{}]\nunset key\n"
-        "set ylabel 'stiffness [N/mm]'\nunset grid\n",
-        plan.encoders.size(), double(plan.rates.size()) - 0.5);
-    for (std::size_t i = 0; i < plan.encoders.size(); ++i) {
-        if (i == 1) figure.script += "unset ylabel\nset format y ''\n";
-        if (i + 1 == plan.encoders.size()) {
-            figure.script += "set colorbox user origin 0.92,0.16 size 0.015,0.7\n";
-        }
-        figure.script += map_panel(table, plan, plan.encoders[i], i);
+    figure.height = 460;
+    figure.columns = plan.encoders.size();
+    for (const double encoder : plan.encoders) {
+        figure.panels.push_back(map_panel(table, plan, encoder));
+        figure.panels.back().y.has_labels = figure.panels.size() == 1;
     }
-    figure.script += "unset multiplot\n";
+    figure.panels.front().y.title = "stiffness [N/mm]";
     return figure;
 }
 
@@ -203,31 +194,28 @@ Figure profile_figure(const Table& table, const Plan& plan) {
         "The largest stiffness up to 3 N/mm at which a simulated device in a light hand comes to "
         "rest, with its own encoders, delay and (left) friction. Right: without the friction, "
         "which stills small limit cycles.";
-    figure.size = {1200, 520};
-    figure.script =
-        "set multiplot layout 1,2\nset logscale x\nset xlabel 'update rate [kHz]'\n"
-        "set xrange [0.2:5]\nset xtics (0.25, 0.5, 1, 2, 4)\nset bmargin 7\n"
-        "set ylabel 'largest stable stiffness [N/mm]'\nset yrange [0:3.1]\n"
-        "set key outside below horizontal\n";
-    for (const char* part : {"profiles", "profiles without friction"}) {
-        std::string plots = "plot ", blocks;
-        for (std::size_t p = 0; p < plan.profiles.size(); ++p) {
-            std::vector<std::vector<double>> rows;
+    figure.height = 520;
+    figure.columns = 2;
+    figure.key_columns = 6;
+    for (const std::string part : {"profiles", "profiles without friction"}) {
+        Panel panel;
+        panel.title = part == "profiles" ? "as they are" : "without friction";
+        panel.x = {.title = "update rate [kHz]",
+                   .is_logarithmic = true,
+                   .low = 0.2,
+                   .high = 5,
+                   .ticks = ticks_at({0.25, 0.5, 1, 2, 4})};
+        panel.y = {.title = "largest stable stiffness [N/mm]", .low = 0, .high = 3.1};
+        for (const std::string& profile : plan.profiles) {
+            const Table rows = table.where("part", part).where("profile", profile);
+            Series line{Draw::line_points, profile, look_of(panel.series.size()), {}};
             for (const double rate : plan.rates) {
-                rows.push_back(
-                    {rate / 1000, largest_stable(table, part, plan.profiles[p], 0, rate)});
+                line.rows.push_back({rate / 1000, largest_stable(rows, rate)});
             }
-            const std::string name = fmt::format("p{}{}", part == std::string("profiles"), p);
-            blocks += block(name, rows);
-            plots += fmt::format("{}${} with linespoints lt {} title '{}'", p ? ", " : "", name,
-                                 p + 1, plan.profiles[p]);
+            panel.series.push_back(std::move(line));
         }
-        figure.script +=
-            fmt::format("set title '{}'\n",
-                        part == std::string("profiles") ? "as they are" : "without friction") +
-            blocks + plots + "\n";
+        figure.panels.push_back(std::move(panel));
     }
-    figure.script += "unset multiplot\n";
     return figure;
 }
 
@@ -251,16 +239,14 @@ Claim control_claim(const Table& table) {
     Claim claim{
         fmt::format("a loop that must buzz does: {}, 3 N/mm at 250 Hz, no friction", map_profile),
         false, "not run"};
-    for (std::size_t i = 0; i < table.rows().size(); ++i) {
-        if (table.text(i, "part") != "map" || table.number(i, "rate_hz") != 250 ||
-            std::abs(table.number(i, "stiffness_N_mm") - 3) > 1e-9 ||
-            table.number(i, "encoder_step_mm") != 0) {
-            continue;
-        }
-        claim.held = table.text(i, "at_rest") == "no";
-        claim.measured =
-            fmt::format("{:.3g} mm peak to peak", table.number(i, "position_peak_to_peak_mm"));
-    }
+    const Table corner = table.where("part", "map")
+                             .where("rate_hz", 250.0)
+                             .where("stiffness_N_mm", stiffnesses(0.1).back())
+                             .where("encoder_step_mm", 0.0);
+    if (corner.rows().empty()) return claim;
+    claim.held = corner.text(0, "at_rest") == "no";
+    claim.measured =
+        fmt::format("{:.3g} mm peak to peak", corner.number(0, "position_peak_to_peak_mm"));
     return claim;
 }
 
@@ -275,9 +261,9 @@ std::string paragraph_of(const Table& table, const Plan& plan, const Subject& su
         subject.name, seconds, least_step, map_profile);
     for (const double encoder : plan.encoders) {
         text += fmt::format("{} with encoder steps of {:g} mm", encoder > 0 ? ";" : "", encoder);
+        const Table map = table.where("part", "map").where("encoder_step_mm", encoder);
         for (const double rate : plan.rates) {
-            text += fmt::format(" {:.1f} N/mm at {:g} Hz,",
-                                largest_stable(table, "map", map_profile, encoder, rate), rate);
+            text += fmt::format(" {:.1f} N/mm at {:g} Hz,", largest_stable(map, rate), rate);
         }
         text.pop_back();
     }
@@ -294,9 +280,6 @@ Result stability(const Options& options) {
     const Subject subject =
         options.subjects.empty() ? synthetic("sphere") : options.subjects.front();
     Result result;
-    result.table = Table({"part", "profile", "friction", "encoder_step_mm", "rate_hz",
-                          "stiffness_N_mm", "position_peak_to_peak_mm", "force_peak_to_peak_N",
-                          "push_N", "in_contact", "at_rest"});
     std::vector<std::pair<const char*, Case>> cases;
     for (const double encoder : plan.encoders) {
         for (const double rate : plan.rates) {

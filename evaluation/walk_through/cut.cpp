@@ -1,4 +1,4 @@
-// The pictures that are walked through: a made one, and slices of the user's volumes.
+// Makes cuts: a synthetic one, and slices of the user's volumes.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,4 +1,4 @@
-// The cut as it is: every triangle with its solid part, every density, and the proxy's way.
+// Draws a cut: every triangle with its solid part, every density, and the path of the proxy.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,8 +10,6 @@
 
 namespace palpate::evaluation {
 namespace {
-
-using Rows = std::vector<std::vector<double>>;
 
 /// A corner of the cut's triangulation.
 struct Corner {
@@ -31,17 +29,18 @@ void add(Rows& rows, const Corner& corner) {
 /// Everything in the cut that does not depend on a method.
 struct Drawing {
     Rows edges, solid, contour;
-    std::string labels;  // rows of x, y, "density"
+    Series densities{Draw::text, "", {"#707070"}, {}};
 
     explicit Drawing(const Cut& cut) {
         for (int j = cut.low[1]; j <= cut.high[1]; ++j) {
             for (int i = cut.low[0]; i <= cut.high[0]; ++i) {
                 const Corner corner = at(cut, i, j);
-                labels += fmt::format("{} {} {}\n", corner.x, corner.y,
-                                      fmt::format("{:.4g}", density(cut, corner)));
+                add(densities.rows, corner);
+                densities.labels.push_back(fmt::format("{:.4g}", density(cut, corner)));
                 if (i < cut.high[0] && j < cut.high[1]) add_square(cut, i, j);
             }
         }
+        densities.text = {.size = 9, .right = 1.2, .up = -0.5};
     }
 
     static double density(const Cut& cut, const Corner& corner) {
@@ -104,11 +103,14 @@ class Marks {
         marks_.push_back({point, out, {number}});
     }
 
-    /// Rows of x, y, x and y of the label, text. Labels of close neighbours are put farther off,
-    /// each more than the one before.
-    std::string rows() const {
+    /// Adds the marks, their numbers off them, and a thin line from each mark to its number.
+    /// Numbers of close neighbours are put farther off, each more than the one before.
+    void add_to(Panel& panel, const char* title, const Look& look) const {
         constexpr double nearest = 0.4, step = 0.36, farthest = 1.2;  // [voxel]
-        std::string rows;
+        Series marks{Draw::points, title, look, {}};
+        Series numbers{Draw::text, "", {"#8a3c00"}, {}};
+        Series leads{Draw::segments, "", {.colour = "#8a3c00", .width = 0.7}, {}};
+        numbers.text.has_background = true;
         double off = 0;
         const Vec3* last = nullptr;
         for (const Mark& mark : marks_) {
@@ -116,10 +118,25 @@ class Marks {
             off = is_close && off + step <= farthest ? off + step : nearest;
             last = &mark.point;
             const Vec3 label = mark.point + off * voxel_ * mark.out;
-            rows += fmt::format("{} {} {} {} {}\n", mark.point[0], mark.point[1], label[0],
-                                label[1], text_of(mark.numbers));
+            marks.rows.push_back({mark.point[0], mark.point[1]});
+            numbers.rows.push_back({label[0], label[1]});
+            numbers.labels.push_back(text_of(mark.numbers));
+            leads.rows.push_back({mark.point[0], mark.point[1], label[0], label[1]});
         }
-        return rows;
+        panel.series.insert(panel.series.end(), {marks, leads, numbers});
+    }
+
+    /// Adds the marks with their numbers at their right.
+    void add_plain(Panel& panel, const char* title, const Look& look, const char* colour) const {
+        Series marks{Draw::points, title, look, {}};
+        Series numbers{Draw::text, "", {colour}, {}};
+        numbers.text = {.align = Align::left, .right = 1.2};
+        for (const Mark& mark : marks_) {
+            marks.rows.push_back({mark.point[0], mark.point[1]});
+            numbers.labels.push_back(text_of(mark.numbers));
+        }
+        numbers.rows = marks.rows;
+        panel.series.insert(panel.series.end(), {marks, numbers});
     }
 
   private:
@@ -145,21 +162,12 @@ class Marks {
     std::vector<Mark> marks_;
 };
 
-std::string text_block(const std::string& name, const std::string& rows) {
-    return "$" + name + " << EOD\n" + (rows.empty() ? "NaN NaN NaN NaN x\n" : rows) + "EOD\n";
-}
-
-Rows or_nothing(Rows rows) {
-    if (rows.empty()) rows.push_back({std::nan(""), std::nan("")});
-    return rows;
-}
-
-/// The data blocks of a walk: its way, crossings, SCPs and GOALs.
-std::string blocks_of(const Cut& cut, const Walk& walk, const std::string& name) {
+/// The path of the SCP, where it crosses walls, and its moves with their numbers.
+void add_walk(Panel& panel, const Cut& cut, const Walk& walk) {
     const double voxel = cut.subject.field.geometry().spacing.minCoeff();
-    Rows way{{walk.before[0], walk.before[1]}}, crossings;
+    Rows path{{walk.before[0], walk.before[1]}}, crossings;
     Marks scps(voxel), goals(voxel);
-    // Numbers stand across the way, on the side that was free at the start.
+    // Numbers stand across the path, on the side that was free at the start.
     const Field& field = cut.subject.field;
     const Vec3 into = field.sign() * gradient_at(field, walk.before);
     Vec3 out = into.norm() > 0 ? Vec3(-into.normalized()) : Vec3(Vec3::UnitY());
@@ -179,7 +187,7 @@ std::string blocks_of(const Cut& cut, const Walk& walk, const std::string& name)
             goal = step.goal;
             continue;
         }
-        way.push_back({step.point[0], step.point[1]});
+        path.push_back({step.point[0], step.point[1]});
         if (step.kind == StepKind::cross) {
             crossings.push_back({step.point[0], step.point[1]});
             continue;
@@ -188,97 +196,64 @@ std::string blocks_of(const Cut& cut, const Walk& walk, const std::string& name)
         if (goal) goals.put(*goal, Vec3::UnitX(), number);
         goal.reset();
     }
-    return block("way" + name, way) + block("crossings" + name, or_nothing(crossings)) +
-           text_block("scps" + name, scps.rows()) + text_block("goals" + name, goals.rows());
+    goals.add_plain(panel, "GOAL of a move", {colours::green, Marker::open_diamond, 2}, "#006b4e");
+    panel.series.push_back(
+        {Draw::line, "", {.colour = colours::vermilion, .width = 2.5}, std::move(path)});
+    panel.series.push_back({Draw::points,
+                            "wall crossed",
+                            {colours::vermilion, Marker::circle, 0.6},
+                            std::move(crossings)});
+    scps.add_to(panel, "SCP, after each move", {colours::vermilion, Marker::circle, 1.3});
 }
 
-/// In the order in which they are drawn: later ones on top. `$` data of the walk end in `name`.
-std::string panel(const Walk& walk, const std::string& name) {
-    const std::string way = "$way" + name, crossings = "$crossings" + name;
-    const std::string scps = "$scps" + name, goals = "$goals" + name;
-    const auto numbered = [](const std::string& data, const char* look) {
-        return data + " using 1:2:3 with labels noenhanced " + look + " notitle, ";
-    };
-    // With a thin line from the mark to its number.
-    const std::string led = fmt::format(
-        "{0} using 1:2:($3-$1):($4-$2) with vectors nohead lc rgb '#8a3c00' lw 0.7 notitle, "
-        "{0} using 3:4:5 with labels boxed noenhanced font ',12' tc rgb '#8a3c00' notitle, ",
-        scps);
-    return "set title " + gnuplot_text(walk.method) +
-           " noenhanced\nplot $solid with filledcurves closed fc rgb '#dbe9f6' notitle, "
-           "$edges with lines lc rgb '#c4c4c4' lw 1 notitle, "
-           "$labels using 1:2 with points pt 7 ps 0.4 lc rgb '#707070' notitle, " +
-           numbered("$labels", "font ',9' tc rgb '#707070' offset 1.2,-0.5") +
-           "$contour with lines lc rgb '#0072B2' lw 3 notitle, " + goals +
-           " using 1:2 with points pt 12 ps 2 lw 2 lc rgb '#009E73' notitle, " + goals +
-           " using 1:2:5 with labels noenhanced font ',12' tc rgb '#006b4e' left offset 1.2,0 "
-           "notitle, " +
-           way + " with lines lc rgb '#D55E00' lw 2.5 notitle, " + crossings +
-           " with points pt 7 ps 0.6 lc rgb '#D55E00' notitle, " + scps +
-           " using 1:2 with points pt 7 ps 1.3 lc rgb '#D55E00' notitle, " + led +
-           "$hips using 1:2 with points pt 2 ps 1.6 lw 3 lc rgb '#000000' notitle, " +
-           numbered("$hips", "font ',11' left offset 1.2,0") + "-1 notitle\n";
-}
-
-/// What the marks mean, in an empty panel under the others.
-std::string key(double height, double isovalue) {
-    return fmt::format(
-        "set lmargin at screen 0.02\nset rmargin at screen 0.98\nset bmargin at screen 0\n"
-        "set tmargin at screen {}\nunset border\nunset tics\nunset grid\nunset title\n"
-        "set size noratio\nset xlabel ''\nset ylabel ''\nset xrange [0:1]\nset yrange [0:1]\n"
-        "set key noenhanced center horizontal maxcols 4 width 1\nplot -1 notitle, "
-        "keyentry with points pt 7 ps 1.3 lc rgb '#D55E00' title 'SCP, after each move', "
-        "keyentry with points pt 7 ps 0.6 lc rgb '#D55E00' title 'wall crossed', "
-        "keyentry with points pt 12 ps 2 lw 2 lc rgb '#009E73' title 'GOAL of a move', "
-        "keyentry with points pt 2 ps 1.6 lw 3 lc rgb '#000000' title 'HIP', "
-        "keyentry with lines lc rgb '#0072B2' lw 3 title 'isosurface at {:g}', "
-        "keyentry with boxes fs solid 1 fc rgb '#dbe9f6' title 'solid', "
-        "keyentry with lines lc rgb '#c4c4c4' title 'tetrahedra in the cut', "
-        "keyentry with points pt 7 ps 0.4 lc rgb '#707070' title 'sample, with its density'\n"
-        "unset multiplot\n",
-        height, isovalue);
+Panel panel_of(const Cut& cut, const Drawing& drawing, const Walk& walk) {
+    Panel panel;
+    panel.title = walk.method;
+    panel.has_grid = false;
+    panel.is_to_scale = true;
+    const Vec3 spacing = cut.subject.field.geometry().spacing;
+    panel.x = {.title = "x [mm]",
+               .low = (cut.low[0] - 0.4) * spacing[0],
+               .high = (cut.high[0] + 0.8) * spacing[0]};
+    panel.y = {.title = "y [mm]",
+               .low = (cut.low[1] - 0.6) * spacing[1],
+               .high = (cut.high[1] + 0.4) * spacing[1]};
+    panel.series = {
+        {Draw::polygons, "solid", {"#dbe9f6"}, drawing.solid},
+        {Draw::line, "tetrahedra in the cut", {.colour = "#c4c4c4", .width = 1}, drawing.edges},
+        {Draw::points,
+         "sample, with its density",
+         {"#707070", Marker::circle, 0.4},
+         drawing.densities.rows},
+        drawing.densities,
+        {Draw::line,
+         fmt::format("isosurface at {:g}", cut.subject.isovalue),
+         {.colour = colours::blue, .width = 3},
+         drawing.contour}};
+    add_walk(panel, cut, walk);
+    const Rows hips{{cut.hip_before[0], cut.hip_before[1]}, {cut.hip[0], cut.hip[1]}};
+    panel.series.push_back({Draw::points, "HIP", {colours::black, Marker::cross, 1.6, 3}, hips});
+    Series names{Draw::text, "", {colours::black}, hips, {"HIP before", "HIP"}};
+    names.text = {.size = 11, .align = Align::left, .right = 1.2};
+    panel.series.push_back(std::move(names));
+    return panel;
 }
 
 }  // namespace
 
 Figure walk_figure(const Cut& cut, const std::vector<Walk>& walks) {
-    const Vec3 spacing = cut.subject.field.geometry().spacing;
-    const double left = (cut.low[0] - 0.4) * spacing[0], right = (cut.high[0] + 0.8) * spacing[0];
-    const double bottom = (cut.low[1] - 0.6) * spacing[1], top = (cut.high[1] + 0.4) * spacing[1];
     const Drawing drawing(cut);
     Figure figure;
     figure.caption = fmt::format(
         "{}: one update in a plane cut of the lattice by {} and by {}. 0 is the SCP before the "
         "update, the numbers are its moves; GOALs are shown where they are not the HIP.",
         cut.subject.name, walks.front().method, walks.back().method);
-    constexpr double key_pixels = 90, axis_pixels = 60, title_pixels = 40, panel_pixels = 680;
-    const double panel_height =
-        std::clamp(panel_pixels * (top - bottom) / (right - left), 200.0, 1400.0);
-    figure.size = {1500, static_cast<int>(panel_height + key_pixels + axis_pixels + title_pixels)};
-    const double height = figure.size.height;
-    figure.script =
-        block("solid", or_nothing(drawing.solid)) + block("edges", drawing.edges) +
-        block("contour", or_nothing(drawing.contour)) + text_block("labels", drawing.labels) +
-        text_block("hips", fmt::format("{} {} \"HIP before\"\n{} {} HIP\n", cut.hip_before[0],
-                                       cut.hip_before[1], cut.hip[0], cut.hip[1]));
-    for (std::size_t w = 0; w < walks.size(); ++w) {
-        figure.script += blocks_of(cut, walks[w], std::to_string(w));
-    }
-    figure.script += fmt::format(
-        "set multiplot\nunset key\nunset grid\nset style textbox opaque noborder margins 0.6,0.6\n"
-        "set size ratio -1\nset xrange [{}:{}]\n"
-        "set yrange [{}:{}]\nset xlabel 'x [mm]'\nset ylabel 'y [mm]'\n",
-        left, right, bottom, top);
-    for (std::size_t w = 0; w < walks.size(); ++w) {
-        const double width = 1.0 / double(walks.size());
-        figure.script += fmt::format(
-            "set lmargin at screen {}\nset rmargin at screen {}\nset bmargin at screen {}\n"
-            "set tmargin at screen {}\n",
-            double(w) * width + 0.055, double(w + 1) * width - 0.005,
-            (key_pixels + axis_pixels) / height, 1 - title_pixels / height);
-        figure.script += panel(walks[w], std::to_string(w));
-    }
-    figure.script += key(key_pixels / height, cut.subject.isovalue);
+    figure.columns = walks.size();
+    for (const Walk& walk : walks) figure.panels.push_back(panel_of(cut, drawing, walk));
+    const Panel& first = figure.panels.front();
+    const double shape = (first.y.high - first.y.low) / (first.x.high - first.x.low);
+    figure.width = 1500;
+    figure.height = static_cast<int>(std::clamp(650 * shape, 200.0, 1400.0)) + 180;
     return figure;
 }
 

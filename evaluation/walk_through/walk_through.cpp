@@ -39,9 +39,18 @@ std::string text_of(const Tetrahedron& t) {
 void add_rows(Table& table, const Cut& cut, const Walk& walk) {
     const auto add = [&](double number, const char* kind, const Vec3& scp, const Vec3& goal,
                          const std::string& tetrahedron) {
-        table.add({cut.subject.name, walk.method, number, kind, scp[0], scp[1], goal[0], goal[1],
-                   value_at(cut.subject.field, scp), cut.subject.isovalue, tetrahedron,
-                   (scp - cut.hip).norm()});
+        table.add({{"volume", cut.subject.name},
+                   {"method", walk.method},
+                   {"step", number},
+                   {"kind", kind},
+                   {"scp_x_mm", scp[0]},
+                   {"scp_y_mm", scp[1]},
+                   {"goal_x_mm", goal[0]},
+                   {"goal_y_mm", goal[1]},
+                   {"density", value_at(cut.subject.field, scp)},
+                   {"isovalue", cut.subject.isovalue},
+                   {"tetrahedron", tetrahedron},
+                   {"distance_to_hip_mm", (scp - cut.hip).norm()}});
     };
     add(0, "before", walk.before, cut.hip_before, "");
     double number = 0;
@@ -81,7 +90,7 @@ void add_claims(std::vector<Claim>& claims, const Cut& cut, const std::vector<Wa
         if (walk.method != "exact" && walk.method != "paper") continue;
         const double worst = worst_on_path(cut, walk);
         claims.push_back(
-            {fmt::format("{}: every SCP of {} and the way between them is outside to "
+            {fmt::format("{}: every SCP of {} and the path between them is outside to "
                          "{:g} of the data's range",
                          cut.subject.name, walk.method, granted),
              worst <= granted,
@@ -157,8 +166,6 @@ Result walk_through(const Options& options) {
     const bool own_cut = cuts.empty();
     if (own_cut) cuts.push_back(wall_cut());
     Result result;
-    result.table = Table({"volume", "method", "step", "kind", "scp_x_mm", "scp_y_mm", "goal_x_mm",
-                          "goal_y_mm", "density", "isovalue", "tetrahedron", "distance_to_hip_mm"});
     for (const Cut& cut : cuts) {
         options.progress(double(&cut - cuts.data()) / double(cuts.size()));
         std::vector<Walk> walks, shown;

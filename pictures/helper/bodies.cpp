@@ -1,4 +1,4 @@
-// Meshes and markers.
+// Makes VTK actors of meshes and markers.
 #include "pictures/helper/bodies.hpp"
 
 #include <vtkCellArray.h>
@@ -91,13 +91,13 @@ Vec3 across(const Vec3& along) {
 
 std::vector<Vec3> coil(const Spring& spring) {
     constexpr int turns = 7, steps = 24;
-    const Vec3 way = spring.to - spring.from;
-    const Vec3 u = across(way.normalized()), v = way.normalized().cross(u);
+    const Vec3 axis = spring.to - spring.from;
+    const Vec3 u = across(axis.normalized()), v = axis.normalized().cross(u);
     std::vector<Vec3> points{spring.from};
     for (int i = 0; i <= turns * steps; ++i) {
         const double t = double(i) / (turns * steps);
         const double angle = 2 * std::numbers::pi * turns * t;
-        points.push_back(spring.from + (0.12 + 0.76 * t) * way +
+        points.push_back(spring.from + (0.12 + 0.76 * t) * axis +
                          spring.radius * (std::cos(angle) * u + std::sin(angle) * v));
     }
     points.push_back(spring.to);
@@ -178,8 +178,8 @@ std::vector<vtkSmartPointer<vtkActor>> marker_actors(const PictureScene& scene) 
     }
     for (const Arrow& a : scene.arrows) {
         if (a.from == a.to) continue;
-        const Vec3 way = a.to - a.from;
-        const Vec3 neck = a.to - std::min(0.6 * way.norm(), 6 * a.radius) * way.normalized();
+        const Vec3 axis = a.to - a.from;
+        const Vec3 neck = a.to - std::min(0.6 * axis.norm(), 6 * a.radius) * axis.normalized();
         actors.push_back(tube({a.from, neck}, a.radius, a.colour, origin));
         actors.push_back(cone(neck - origin, a.to - origin, 2.4 * a.radius, a.colour));
     }

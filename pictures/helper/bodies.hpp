@@ -1,4 +1,4 @@
-// The bodies of a scene as VTK's actors.
+// The surfaces and markers of a scene as VTK actors.
 #pragma once
 
 #include <vtkActor.h>

@@ -1,4 +1,4 @@
-// Why a picture cannot be drawn, in words for the one who asked for it.
+// The error that a picture cannot be drawn, with a message for the user.
 #pragma once
 
 #include <stdexcept>

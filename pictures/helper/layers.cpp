@@ -1,4 +1,4 @@
-// The arithmetic of layers.
+// Blends drawings, pixel by pixel.
 #include "pictures/helper/layers.hpp"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// Drawings laid one over the other, pixel by pixel. A surface of glass is one pane: its nearest
-// part alone, or the far side of a body and all that is inside it would cloud the view.
+// Blends drawings over one another, pixel by pixel. Of a transparent surface only the nearest part
+// is drawn, since its far side and inner parts would hide what is behind it.
 #pragma once
 
 #include <vector>

@@ -1,5 +1,5 @@
-// palpate-picture-helper: draws one scene with VTK and reports; wire.hpp says what crosses. It
-// exists so that palpate starts fast and that a crash of OpenGL is not the caller's.
+// palpate-picture-helper: draws one scene with VTK and reports; wire.hpp defines the format. As a
+// separate process it lets palpate start fast and survive a crash of OpenGL.
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -18,8 +18,8 @@
 
 #include "io/helper/child.hpp"
 #include "io/helper/report.hpp"
+#include "pictures/helper/compositor.hpp"
 #include "pictures/helper/failure.hpp"
-#include "pictures/helper/stage.hpp"
 #include "pictures/helper/window.hpp"
 #include "pictures/wire.hpp"
 

@@ -1,4 +1,4 @@
-// Text and small signs, all in the window's pixels from its lower left corner.
+// Draws text and small signs, in pixels from the window's lower left corner.
 #include "pictures/helper/notes.hpp"
 
 #include <vtkActor2D.h>

@@ -1,4 +1,4 @@
-// What is written on a picture: legend, scale bar, the cube that says where left and right are.
+// The annotations of a picture: legend, scale bar, and the cube that shows the directions.
 #pragma once
 
 #include <vtkRenderer.h>

@@ -1,4 +1,4 @@
-// EGL is opened at run time, so that a machine without it gets a sentence and not the loader's.
+// Opens EGL at run time, so that a machine without it gets a readable message.
 #include "pictures/helper/window.hpp"
 
 #include <dlfcn.h>
@@ -96,7 +96,7 @@ void make_surfaceless_context() {
     EGLint major = 0, minor = 0;
     if (display == EGL_NO_DISPLAY ||
         !egl.function<decltype(&eglInitialize)>("eglInitialize")(display, &major, &minor)) {
-        throw Failure(std::string("EGL has no way to draw without a screen (Mesa's surfaceless "
+        throw Failure(std::string("EGL cannot draw without a screen (Mesa's surfaceless "
                                   "platform)") +
                       remedy);
     }

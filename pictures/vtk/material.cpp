@@ -1,4 +1,4 @@
-// Light on surfaces, as properties and shaders.
+// Materials as VTK properties and shaders.
 #include "pictures/vtk/material.hpp"
 
 #include <vtkProperty.h>

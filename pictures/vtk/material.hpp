@@ -1,5 +1,4 @@
-// What the bodies in our pictures are made of, the same in every picture. For the picture helper
-// and the viewer's scene.
+// The materials of surfaces and markers, shared by the picture helper and the viewer's scene.
 #pragma once
 
 #include <vtkActor.h>

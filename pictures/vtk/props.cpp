@@ -1,4 +1,4 @@
-// Light, cube and scale.
+// Makes the lights, the orientation cube and the scale bar.
 #include "pictures/vtk/props.hpp"
 
 #include <vtkLight.h>

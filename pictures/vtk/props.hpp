@@ -1,4 +1,4 @@
-// What every 3-D picture of ours has, drawn by VTK: the same light, cube and scale. For the picture
+// The lights, orientation cube and scale bar of every 3-D picture, in VTK, shared by the picture
 // helper and the viewer's scene.
 #pragma once
 

@@ -1,5 +1,5 @@
-// fall-through in its quick mode, and what its verdict rests on: walls that are closed, and knowing
-// what can be reached from outside.
+// fall-through in its quick mode; closed walls, and the search for what can be reached from
+// outside.
 #include <gtest/gtest.h>
 
 #include "evaluation/claims.hpp"
@@ -20,7 +20,7 @@ Outside outside_of(const Subject& subject) {
 
 constexpr double thicknesses[] = {3, 2, 1.5, 1, 0.75, 0.5, 0.25};
 
-TEST(FallThrough, quick_mode_bears_out_its_claims) {
+TEST(FallThrough, claims_hold_in_quick_mode) {
     const Result result = quick_result(fall_through);
     EXPECT_EQ(result.claims.size(), 7U);
 }
@@ -34,7 +34,7 @@ TEST(FallThrough, the_same_seed_gives_the_same_table_and_another_one_another) {
     EXPECT_NE(first, csv_from(fall_through(options).table));
 }
 
-TEST(FallThrough, a_thick_body_of_the_user_is_entered_and_left_by_none_of_the_exact_proxies) {
+TEST(FallThrough, no_exact_proxy_ends_inside_a_thick_body_of_the_user) {
     Options options = quick_options();
     options.subjects.push_back(synthetic("sphere:40x40x40"));
     const Result result = fall_through(options);
@@ -80,7 +80,7 @@ TEST(FallThrough, walls_are_closed_by_the_surface_and_by_the_flood) {
     }
 }
 
-TEST(FallThrough, walls_are_as_thick_as_they_say) {
+TEST(FallThrough, walls_have_the_thickness_that_is_asked_for) {
     for (const double thickness : thicknesses) {
         const Subject wall = closed_shell(Enclosed::box, thickness);
         const Field inverse(wall.field.volume(), Solid::below, wall.field.background());
@@ -100,7 +100,7 @@ TEST(FallThrough, walls_are_as_thick_as_they_say) {
     EXPECT_THROW(closed_shell(Enclosed::box, 4.5), std::invalid_argument);
 }
 
-TEST(FallThrough, no_exact_proxy_drawn_about_at_random_leaves_what_the_flood_has_reached) {
+TEST(FallThrough, no_exact_proxy_on_a_random_trajectory_leaves_what_the_flood_has_reached) {
     const Field field(
         scenes::noise(scenes::centred(Index3::Constant(16)), SampleType::uint8, 5, 255));
     const double isovalue = 65;  // near the level at which the free space falls apart
@@ -143,11 +143,11 @@ TEST(FallThrough, a_hole_in_a_wall_is_found_by_the_flood_and_by_a_proxy_that_is_
     EXPECT_EQ(update_exact(proxy, open, within).scp, within);
 }
 
-TEST(FallThrough, every_way_leads_from_free_space_into_what_cannot_be_reached) {
+TEST(FallThrough, every_line_leads_from_free_space_into_what_cannot_be_reached) {
     const Subject wall = closed_shell(Enclosed::ball, 0.75);
     const Outside outside = outside_of(wall);
     const Geometry& geometry = wall.field.geometry();
-    for (const Crossing& crossing : draw_crossings(wall, outside, Ways::through_walls, 300, 1)) {
+    for (const Crossing& crossing : draw_crossings(wall, outside, Target::behind_walls, 300, 1)) {
         const auto at = [&](double s) {
             return locate(index_from_physical(geometry, crossing.entry + s * crossing.along));
         };

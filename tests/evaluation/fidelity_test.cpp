@@ -1,4 +1,4 @@
-// fidelity in its quick mode, and what it measures with: true normals, smoothing, nearest points.
+// fidelity in its quick mode, and its parts: true normals, smoothing, nearest points.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -6,15 +6,15 @@
 #include <limits>
 
 #include "evaluation/claims.hpp"
-#include "evaluation/fidelity/course.hpp"
 #include "evaluation/fidelity/nearest_point.hpp"
+#include "evaluation/fidelity/trajectory.hpp"
 #include "palpate/scenes/volumes.hpp"
 #include "support/random.hpp"
 
 namespace palpate::evaluation {
 namespace {
 
-TEST(Fidelity, quick_mode_bears_out_its_claims) {
+TEST(Fidelity, claims_hold_in_quick_mode) {
     const Result result = quick_result(fidelity);
     EXPECT_EQ(result.claims.size(), 5U);
     EXPECT_EQ(result.figures.size(), 3U);
@@ -91,7 +91,7 @@ TEST(Fidelity, the_samples_are_those_of_the_exact_density) {
     }
 }
 
-TEST(Fidelity, nearest_points_are_those_of_a_fine_search) {
+TEST(Fidelity, nearest_points_agree_with_a_fine_search) {
     const Subject noise{"noise",
                         Field(scenes::noise(scenes::centred({6, 6, 6}), SampleType::uint8, 9, 255)),
                         128,
@@ -120,7 +120,7 @@ TEST(Fidelity, nearest_points_are_those_of_a_fine_search) {
     EXPECT_THROW(nearest_point(SurfaceMesh{}, Vec3::Zero()), std::invalid_argument);
 }
 
-TEST(Fidelity, spreads_are_of_what_is_there) {
+TEST(Fidelity, a_spread_is_of_the_numbers_that_are_there) {
     const Spread spread = spread_of({4, 1, 3, 2});
     EXPECT_EQ(spread.mean, 2.5);
     EXPECT_EQ(spread.max, 4);

@@ -1,23 +1,24 @@
-// performance, in its quick mode, and what its numbers rest on: the hand, the clockwork, the
-// synthetic neuron.
+// performance in its quick mode, and what it uses: the exploring hand, the timing, the paper's
+// table.
 #include <algorithm>
 #include <cmath>
 
 #include "evaluation/claims.hpp"
-#include "evaluation/hand_at_work.hpp"
-#include "evaluation/performance/neuron.hpp"
+#include "evaluation/exploring_hand.hpp"
+#include "evaluation/performance/paper_table.hpp"
 #include "evaluation/timing.hpp"
 
 namespace palpate::evaluation {
 namespace {
 
-TEST(Performance, quick_mode_bears_out_its_claims) {
+TEST(Performance, claims_hold_in_quick_mode) {
     const Result result = quick_result(performance);
     EXPECT_EQ(result.claims.size(), 2U);
     EXPECT_EQ(result.table.rows().size(), 8U);  // 2 volumes, 2 resolutions, 2 methods
     EXPECT_EQ(result.table.number(0, "paper_mean_us"), 52);
     EXPECT_EQ(result.table.number(2, "paper_mean_us"), 72);
-    EXPECT_TRUE(std::isnan(result.table.number(4, "paper_mean_us")));
+    EXPECT_EQ(result.summary.rows().size(), 4U);
+    EXPECT_EQ(result.summary.number(0, "hand in the paper [cm/s]"), 9.54);
 }
 
 TEST(Performance, same_seed_gives_the_same_table_but_for_the_times) {
@@ -37,7 +38,7 @@ TEST(Performance, same_seed_gives_the_same_table_but_for_the_times) {
     EXPECT_TRUE(differs);
 }
 
-TEST(Performance, a_body_too_ragged_for_the_hand_is_noted_not_claimed) {
+TEST(Performance, on_a_body_too_ragged_for_the_hand_there_is_a_note_and_no_claim) {
     Options options = quick_options();
     options.subjects.push_back(synthetic("noise:32x32x32"));
     std::string notes;
@@ -46,59 +47,59 @@ TEST(Performance, a_body_too_ragged_for_the_hand_is_noted_not_claimed) {
     EXPECT_NE(notes.find("very small"), std::string::npos);
 }
 
-TEST(HandAtWork, comes_within_two_percent_of_the_manner_that_is_wanted) {
+TEST(ExploringHand, comes_within_two_percent_of_the_wanted_speed_and_share) {
     const Subject torus = synthetic("torus");
     for (const double share : {0.3, 0.8}) {
-        HandAtWork hand;
-        hand.strokes = 4;
-        const Tuned at_work = tuned(torus, hand, {30, share});
-        EXPECT_NEAR(at_work.manner.speed_mm_s, 30, 0.02 * 30);
-        EXPECT_NEAR(at_work.manner.constrained_share, share, 0.02 * share);
-        const Manner again = manner_of(torus, at_work.strokes, hand.rate_hz);
-        EXPECT_EQ(again.constrained_share, at_work.manner.constrained_share);
+        ExploringHand hand;
+        hand.trajectories = 4;
+        const TunedHand tuned = tuned_hand(torus, hand, {30, share});
+        EXPECT_NEAR(tuned.behaviour.speed_mm_s, 30, 0.02 * 30);
+        EXPECT_NEAR(tuned.behaviour.constrained_share, share, 0.02 * share);
+        const Behaviour again = behaviour_of(torus, tuned.trajectories, hand.rate_hz);
+        EXPECT_EQ(again.constrained_share, tuned.behaviour.constrained_share);
     }
 }
 
-TEST(HandAtWork, is_never_faster_than_its_swelling_speed) {
+TEST(ExploringHand, is_never_faster_than_its_swelling_speed) {
     const Subject noise = synthetic("noise:24x24x24");
-    HandAtWork hand;
-    hand.strokes = 2;
-    for (const Stroke& stroke : work(noise, hand)) {
-        EXPECT_EQ(stroke.size(), 5001U);
-        for (std::size_t i = 1; i < stroke.size(); ++i) {
-            EXPECT_LE((stroke[i] - stroke[i - 1]).norm(), 1.8 * 0.05 + 1e-12);
+    ExploringHand hand;
+    hand.trajectories = 2;
+    for (const Trajectory& trajectory : explore(noise, hand)) {
+        EXPECT_EQ(trajectory.size(), 5001U);
+        for (std::size_t i = 1; i < trajectory.size(); ++i) {
+            EXPECT_LE((trajectory[i] - trajectory[i - 1]).norm(), 1.8 * 0.05 + 1e-12);
         }
     }
 }
 
-TEST(HandAtWork, presses_more_lightly_on_a_body_too_fine_for_it) {
-    HandAtWork hand;
-    hand.strokes = 4;
+TEST(ExploringHand, presses_more_lightly_on_a_body_too_fine_for_it) {
+    ExploringHand hand;
+    hand.trajectories = 4;
     hand.speed_mm_s = 150;
     hand.depth_mm = 6;
-    const Tuned at_work = tuned(synthetic("torus:40x40x20"), hand, {150, 0.9});
-    EXPECT_LT(at_work.hand.depth_mm, 6);
-    EXPECT_NEAR(at_work.manner.constrained_share, 0.9, 0.15 * 0.9);
+    const TunedHand tuned = tuned_hand(synthetic("torus:40x40x20"), hand, {150, 0.9});
+    EXPECT_LT(tuned.hand.depth_mm, 6);
+    EXPECT_NEAR(tuned.behaviour.constrained_share, 0.9, 0.15 * 0.9);
 }
 
-TEST(HandAtWork, a_level_without_a_surface_is_refused) {
-    EXPECT_THROW(work(synthetic("sphere", 500), {}), std::invalid_argument);
-    EXPECT_THROW(work(synthetic("sphere", -5), {}), std::invalid_argument);
+TEST(ExploringHand, a_level_without_a_surface_is_refused) {
+    EXPECT_THROW(explore(synthetic("sphere", 500), {}), std::invalid_argument);
+    EXPECT_THROW(explore(synthetic("sphere", -5), {}), std::invalid_argument);
 }
 
 TEST(UpdateTimes, counts_are_the_methods_own_and_percentiles_are_in_order) {
     const Subject sphere = synthetic("sphere:32x32x32");
-    HandAtWork hand;
-    hand.strokes = 2;
-    hand.stroke_s = 0.5;
-    const auto strokes = work(sphere, hand);
-    const UpdateTimes times = time_updates(sphere, &update_exact, strokes, {3, 5});
+    ExploringHand hand;
+    hand.trajectories = 2;
+    hand.trajectory_s = 0.5;
+    const auto trajectories = explore(sphere, hand);
+    const UpdateTimes times = time_updates(sphere, &update_exact, trajectories, {3, 5});
     std::int64_t tetrahedra = 0, constrained = 0;
-    for (const Stroke& stroke : strokes) {
+    for (const Trajectory& trajectory : trajectories) {
         Proxy proxy;
-        place(proxy, sphere.field, stroke.front(), sphere.isovalue);
-        for (std::size_t i = 1; i < stroke.size(); ++i) {
-            const ProxyUpdate update = update_exact(proxy, sphere.field, stroke[i]);
+        place(proxy, sphere.field, trajectory.front(), sphere.isovalue);
+        for (std::size_t i = 1; i < trajectory.size(); ++i) {
+            const ProxyUpdate update = update_exact(proxy, sphere.field, trajectory[i]);
             tetrahedra += update.tetrahedra;
             constrained += update.mode == Mode::constrained;
         }
@@ -114,29 +115,22 @@ TEST(UpdateTimes, counts_are_the_methods_own_and_percentiles_are_in_order) {
     EXPECT_GT(times.cold_p50_ns, 0);
 }
 
-TEST(UpdateTimes, a_quantile_is_the_least_value_that_its_share_does_not_exceed) {
-    std::vector<double> values{4, 1, 3, 2};
-    EXPECT_EQ(quantile(values, 0.5), 2);
-    EXPECT_EQ(quantile(values, 0.51), 3);
-    EXPECT_EQ(quantile(values, 1), 4);
-    EXPECT_EQ(quantile(values, 0), 1);
-    std::vector<double> none;
-    EXPECT_TRUE(std::isnan(quantile(none, 0.5)));
+TEST(PaperTable, a_row_has_the_speeds_and_shares_of_both_resolutions) {
+    const PaperRow* const orange = paper_row("orange");
+    ASSERT_NE(orange, nullptr);
+    EXPECT_EQ(orange->at[0].mean_us, 55);
+    EXPECT_EQ(orange->at[1].speed_mm_s, 30.2);
+    EXPECT_EQ(orange->at[1].constrained_share, 0.606);
+    EXPECT_EQ(paper_row("bonsai"), nullptr);
 }
 
-TEST(SyntheticNeuron, is_sparse_branching_and_the_same_every_time) {
-    const Subject neuron = synthetic_neuron({160, 140, 20}, 3);
-    const auto samples = neuron.field.volume().samples<std::uint8_t>();
-    const auto solid =
-        std::count_if(samples.begin(), samples.end(), [](std::uint8_t s) { return s > 64; });
-    EXPECT_GT(solid, 500);
-    EXPECT_LT(double(solid), 0.1 * double(samples.size()));
-    const Subject again = synthetic_neuron({160, 140, 20}, 3);
-    const auto same = again.field.volume().samples<std::uint8_t>();
-    EXPECT_TRUE(std::equal(samples.begin(), samples.end(), same.begin(), same.end()));
-    const Subject other = synthetic_neuron({160, 140, 20}, 4);
-    const auto different = other.field.volume().samples<std::uint8_t>();
-    EXPECT_FALSE(std::equal(samples.begin(), samples.end(), different.begin(), different.end()));
+TEST(Performance, a_volume_of_the_user_has_our_target_and_no_row_of_the_paper) {
+    Options options = quick_options();
+    options.subjects.push_back(synthetic("torus:40x40x20"));
+    const Result result = performance(options);
+    EXPECT_EQ(result.table.text(0, "target_from"), "ours");
+    EXPECT_TRUE(std::isnan(result.table.number(0, "paper_mean_us")));
+    EXPECT_TRUE(result.summary.rows().empty());
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What an experiment leaves behind: files, and a page that needs no other.
+// The files of an experiment, and the HTML page.
 #include "evaluation/report.hpp"
 
 #include <gtest/gtest.h>
@@ -17,11 +17,12 @@ using support::contains;
 /// Three points, a claim that holds and one that does not.
 Report some_report() {
     Report report{{"points", "Are there <three>?", nullptr}, {}, "a machine, some day"};
-    report.result.table = Table({"x", "y"});
-    for (const double x : {1.0, 2.0, 3.0}) report.result.table.add({x, x * x});
+    for (const double x : {1.0, 2.0, 3.0}) report.result.table.add({{"x", x}, {"y", x * x}});
+    report.result.summary.add({{"mean y", 14.0 / 3}, {"of", "three"}});
     Figure figure;
     figure.caption = "Three points & no more";
-    figure.script = block("p", {{1, 1}, {2, 4}, {3, 9}}) + "plot $p with points notitle\n";
+    figure.panels.resize(1);
+    figure.panels[0].series = {{Draw::points, "", {}, {{1, 1}, {2, 4}, {3, 9}}}};
     report.result.figures = {figure};
     figure.suffix = "again";
     report.result.figures.push_back(figure);
@@ -39,9 +40,10 @@ TEST(Report, leaves_a_table_each_figure_twice_and_a_text_that_names_them) {
         EXPECT_TRUE(bytes_of(folder / (name + std::string(".png"))).starts_with("\x89PNG")) << name;
     }
     const std::string text = bytes_of(folder / "points.md");
-    for (const char* part : {"There are three.", "](points.svg)", "](points-again.svg)",
-                             "| there are three | yes | 3 |", "| there are four | **no** | 3 |",
-                             "(points.csv)", "a machine, some day"}) {
+    for (const char* part :
+         {"There are three.", "](points.svg)", "](points-again.svg)",
+          "| mean y | of |\n|---|---|\n| 4.667 | three |\n", "| there are three | yes | 3 |",
+          "| there are four | **no** | 3 |", "(points.csv)", "a machine, some day"}) {
         EXPECT_TRUE(contains(text, part)) << part;
     }
 }
@@ -61,7 +63,10 @@ TEST(Report, the_page_has_its_figures_inside_and_no_link_to_the_outside) {
 TEST(Report, a_figure_that_gnuplot_refuses_is_an_error_that_says_why) {
     const support::ScratchFolder folder;
     Report report = some_report();
-    report.result.figures[0].script = "plot nonsense(\n";
+    Axis& x = report.result.figures[0].panels[0].x;
+    x.is_logarithmic = true;
+    x.low = -1;
+    x.high = 1;
     try {
         write_files(report, folder.path());
         FAIL() << "drawn";

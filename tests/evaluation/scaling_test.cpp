@@ -1,4 +1,4 @@
-// scaling, in its quick mode, and the explicit side, which has to be a fair one.
+// scaling in its quick mode, and the explicit approach that it compares with.
 #include <cmath>
 #include <cstdlib>
 #include <stdexcept>
@@ -6,14 +6,13 @@
 #include "evaluation/claims.hpp"
 #include "evaluation/scaling/bodies.hpp"
 #include "evaluation/scaling/explicit.hpp"
-#include "evaluation/scaling/explicit_helper/aabb_tree.hpp"
 #include "palpate/scenes/volumes.hpp"
 #include "scenes/random.hpp"
 
 namespace palpate::evaluation {
 namespace {
 
-TEST(Scaling, quick_mode_bears_out_its_claims) {
+TEST(Scaling, claims_hold_in_quick_mode) {
     const Result result = quick_result(scaling);
     EXPECT_EQ(result.claims.size(), 7U);  // the last two need the helper program
     EXPECT_EQ(result.figures.size(), 2U);
@@ -24,7 +23,7 @@ TEST(Scaling, same_seed_gives_the_same_table_but_for_the_times) {
     const Table once = scaling(options).table, again = scaling(options).table;
     for (std::size_t i = 0; i < once.rows().size(); ++i) {
         for (const char* column :
-             {"tetrahedra", "way_voxel", "constrained_share", "unfinished_changes",
+             {"tetrahedra", "path_voxel", "constrained_share", "unfinished_changes",
               "worst_deviation_of_range", "explicit_triangles", "hit_difference_voxel"}) {
             const double value = once.number(i, column);
             if (std::isnan(value)) continue;
@@ -47,7 +46,7 @@ TEST(Scaling, a_volume_of_the_user_is_measured_instead_without_the_parts_that_ma
     }
 }
 
-TEST(Scaling, goes_on_without_the_explicit_way_where_its_program_cannot_be_run) {
+TEST(Scaling, goes_on_without_the_explicit_approach_where_its_program_cannot_be_run) {
     setenv("PALPATE_EXPLICIT_HELPER", "/nonexistent/palpate-explicit-helper", 1);
     Options options = quick_options();
     options.subjects.push_back(synthetic("sphere:24x24x24"));
@@ -56,7 +55,7 @@ TEST(Scaling, goes_on_without_the_explicit_way_where_its_program_cannot_be_run) 
     const Result result = scaling(options);
     unsetenv("PALPATE_EXPLICIT_HELPER");
     EXPECT_TRUE(all_hold(result));
-    EXPECT_NE(notes.find("without the explicit way"), std::string::npos);
+    EXPECT_NE(notes.find("without the explicit approach"), std::string::npos);
     const std::size_t last = result.table.rows().size() - 1;
     EXPECT_TRUE(std::isnan(result.table.number(last, "explicit_triangles")));
     EXPECT_FALSE(std::isnan(result.table.number(last, "change_p50_ns")));
@@ -69,7 +68,7 @@ TEST(Scaling, stops_while_the_helper_works) {
     options.progress = [&](double done) {
         EXPECT_GE(done, 0);
         EXPECT_LE(done, 1);
-        // Three speeds, two resolutions, one comparison: after that it is the helper's waiting.
+        // Three speeds, two resolutions, one comparison: after that it waits for the helper.
         if (++calls == 7) throw std::runtime_error("stopped");
     };
     EXPECT_THROW(scaling(options), std::runtime_error);
@@ -101,75 +100,7 @@ TEST(Bodies, noise_is_seeded_and_as_large_as_asked_for) {
     EXPECT_GT(largest, 0.19);
 }
 
-/// A mesh without any order: triangles as wide as 1/5 of the box.
-struct Soup {
-    std::vector<Point3> points;
-    std::vector<Triangle> triangles;
-};
-
-Soup soup(std::size_t count, scenes::Random& random) {
-    Soup made;
-    const auto uniform = [&] { return static_cast<float>(random.uniform()); };
-    for (std::size_t i = 0; i < count; ++i) {
-        const Point3 middle{uniform(), uniform(), uniform()};
-        Triangle triangle;
-        for (auto& corner : triangle) {
-            corner = static_cast<std::uint32_t>(made.points.size());
-            made.points.push_back({middle[0] + 0.2F * uniform(), middle[1] + 0.2F * uniform(),
-                                   middle[2] + 0.2F * uniform()});
-        }
-        made.triangles.push_back(triangle);
-    }
-    return made;
-}
-
-TEST(AabbTree, finds_the_hit_that_going_through_all_triangles_finds) {
-    scenes::Random random(1);
-    std::size_t hits = 0;
-    for (const std::size_t count : {1, 2, 5, 40, 1000}) {
-        Soup all = soup(count, random);
-        const AabbTree tree(all.points, all.triangles);
-        // Trees of a single triangle: a leaf each, nothing to descend.
-        for (int query = 0; query < 400; ++query) {
-            std::array<double, 3> from, to;
-            for (std::size_t a = 0; a < 3; ++a) {
-                from[a] = random.uniform(-0.2, 1.4);
-                to[a] = query % 5 == int(a) ? from[a] : random.uniform(-0.2, 1.4);
-            }
-            double nearest = std::numeric_limits<double>::quiet_NaN();
-            for (const Triangle& triangle : all.triangles) {
-                std::vector<Triangle> alone{triangle};
-                const double t = AabbTree(all.points, alone).first_hit(from, to);
-                if (!(nearest <= t)) nearest = std::isnan(t) ? nearest : t;
-            }
-            const double found = tree.first_hit(from, to);
-            EXPECT_EQ(std::isnan(found), std::isnan(nearest));
-            if (std::isnan(found)) continue;
-            EXPECT_EQ(found, nearest);
-            ++hits;
-        }
-    }
-    EXPECT_GT(hits, 150U);
-}
-
-TEST(AabbTree, of_nothing_is_never_hit) {
-    std::vector<Triangle> none;
-    const AabbTree tree({}, none);
-    EXPECT_TRUE(std::isnan(tree.first_hit({0, 0, 0}, {1, 1, 1})));
-    EXPECT_EQ(tree.bytes(), 0U);
-}
-
-TEST(AabbTree, a_triangle_is_hit_where_its_plane_is_crossed_inside_it) {
-    const std::vector<Point3> points{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
-    std::vector<Triangle> triangles{{0, 1, 2}};
-    const AabbTree tree(points, triangles);
-    EXPECT_DOUBLE_EQ(tree.first_hit({0.2, 0.3, 0}, {0.2, 0.3, 4}), 0.25);
-    EXPECT_DOUBLE_EQ(tree.first_hit({0.2, 0.3, 4}, {0.2, 0.3, 0}), 0.75);
-    EXPECT_TRUE(std::isnan(tree.first_hit({0.6, 0.6, 0}, {0.6, 0.6, 4})));
-    EXPECT_TRUE(std::isnan(tree.first_hit({0.2, 0.3, 0}, {0.2, 0.3, 0.9})));
-}
-
-TEST(ExplicitWay, extracts_the_surface_that_is_felt_on_every_type_and_an_oblique_grid) {
+TEST(ExplicitApproach, extracts_the_surface_that_is_felt_on_every_type_and_an_oblique_grid) {
     Geometry geometry;
     geometry.size = {30, 34, 26};
     geometry.spacing = {1, 0.8, 1.5};
@@ -179,18 +110,18 @@ TEST(ExplicitWay, extracts_the_surface_that_is_felt_on_every_type_and_an_oblique
          {SampleType::uint8, SampleType::int16, SampleType::uint16, SampleType::float32}) {
         scenes::Scene scene = scenes::make_volume("sphere", geometry, type);
         const Subject subject{"sphere", Field(std::move(scene.volume)), scene.isovalue, {}, ""};
-        const auto strokes = work(subject, {.strokes = 2, .stroke_s = 0.5});
-        const auto segments = segments_of(subject, strokes, 100);
+        const auto trajectories = explore(subject, {.trajectories = 2, .trajectory_s = 0.5});
+        const auto segments = segments_of(subject, trajectories, 100);
         EXPECT_EQ(segments.size(), 100U);
         const ExplicitAnswer answer = explicit_cost(subject, segments, 1, [] {});
         ASSERT_EQ(answer.failure, "");
         const Difference difference = difference_of(subject, segments, answer.hits);
         EXPECT_EQ(difference.one_sided_share, 0);
         EXPECT_LT(difference.worst_voxel, 0.2);
+        EXPECT_GT(answer.cost.tree_bytes, answer.cost.triangles);
         // Euler: a closed surface of genus 0 has 2 V - 4 triangles.
         EXPECT_EQ(answer.cost.triangles, 2 * answer.cost.vertices - 4);
-        EXPECT_EQ(answer.cost.mesh_bytes,
-                  12.0 * double(answer.cost.vertices + answer.cost.triangles));
+        EXPECT_EQ(answer.cost.mesh_bytes, 12 * (answer.cost.vertices + answer.cost.triangles));
     }
 }
 

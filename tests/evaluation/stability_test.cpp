@@ -1,10 +1,10 @@
-// stability, in its quick mode.
+// stability in its quick mode.
 #include "evaluation/claims.hpp"
 
 namespace palpate::evaluation {
 namespace {
 
-TEST(Stability, quick_mode_bears_out_its_claims_and_what_rests_is_in_contact) {
+TEST(Stability, claims_hold_in_quick_mode_and_devices_at_rest_are_in_contact) {
     const Result result = quick_result(stability);
     EXPECT_EQ(result.claims.size(), 2U);
     EXPECT_EQ(result.figures.size(), 2U);

@@ -1,4 +1,4 @@
-// Volumes by name, by file, by the user's text.
+// The volumes of experiments: scenes, files, and what the user names.
 #include "evaluation/subject.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// walk-through in its quick mode, its cuts, and that its picture draws the field as it is.
+// walk-through in its quick mode, its cuts, and that the figure shows the field exactly.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,7 +11,7 @@
 namespace palpate::evaluation {
 namespace {
 
-TEST(WalkThrough, quick_mode_bears_out_its_claims) {
+TEST(WalkThrough, claims_hold_in_quick_mode) {
     const Result result = quick_result(walk_through);
     EXPECT_EQ(result.claims.size(), 4U);
     int goals = 0, slides = 0, free_moves = 0, crossed = 0;

@@ -1,4 +1,4 @@
-// Animated PNGs, looked at by libpng and by their chunks.
+// Animated PNGs, read by libpng and chunk by chunk.
 #include "pictures/animation.hpp"
 
 #include <gtest/gtest.h>
@@ -56,7 +56,7 @@ std::vector<Chunk> chunks_of(const std::string& file) {
     return chunks;
 }
 
-TEST(Animation, is_a_png_that_shows_its_first_picture_to_who_knows_no_animations) {
+TEST(Animation, is_a_png_that_shows_its_first_picture_to_programs_without_animation) {
     const std::vector<std::string> pictures{plain_png(20, 10, 200), plain_png(20, 10, 100)};
     const support::Png png = support::png_from(pictures::animation_of(pictures, 0.05));
     EXPECT_EQ(png.width, 20U);
@@ -94,7 +94,7 @@ TEST(Animation, its_frames_are_the_pictures_data_in_order_and_numbered) {
     }
 }
 
-TEST(Animation, refuses_what_is_no_animation) {
+TEST(Animation, refuses_pictures_that_make_no_animation) {
     const std::string good = plain_png(20, 10, 1);
     const auto refused = [](const std::vector<std::string>& pictures, double seconds) {
         EXPECT_THROW(pictures::animation_of(pictures, seconds), std::invalid_argument);

@@ -1,4 +1,4 @@
-// Pictures by the helper program: what is asked for is seen, and whatever goes wrong is one error.
+// Pictures by the helper program show what the scene holds, and every failure becomes an error.
 #include "pictures/picture.hpp"
 
 #include <chrono>
@@ -88,7 +88,7 @@ TEST(Picture, hand_proxy_and_force_are_seen_where_they_are) {
     EXPECT_EQ(png.count(is_green), to_the_right);
 }
 
-TEST(Picture, what_lies_behind_a_surface_shines_through_faintly) {
+TEST(Picture, a_marker_behind_a_surface_is_seen_faintly) {
     PictureScene scene = scene_of_ball();
     add_contact(scene, {{}, Vec3(0, 0, 0), {}});
     const Png png = png_from(png_of(scene));
@@ -97,7 +97,7 @@ TEST(Picture, what_lies_behind_a_surface_shines_through_faintly) {
     EXPECT_GT(hidden[2] - hidden[0], beside[2] - beside[0] + 30);
 }
 
-TEST(Picture, an_outer_level_is_glass_over_the_inner_one) {
+TEST(Picture, an_outer_level_is_transparent_over_the_inner_one) {
     const Png one = png_from(png_of(scene_of_ball({180})));
     const Png two = png_from(png_of(scene_of_ball({180, 20})));
     ASSERT_EQ(one.width, two.width);
@@ -131,7 +131,7 @@ TEST(Picture, legend_scale_bar_and_cube_are_written_where_they_belong) {
     EXPECT_EQ(changed(120, 280, 120, 280), 0);   // not over the ball
 }
 
-TEST(Picture, nothing_at_all_can_be_drawn_too) {
+TEST(Picture, an_empty_scene_can_be_drawn) {
     PictureScene scene;
     scene.width = scene.height = 100;
     const Png png = png_from(png_of(scene));
@@ -151,7 +151,7 @@ TEST(Picture, a_body_far_from_the_origin_is_as_sharp) {
     EXPECT_LT(different, a.pixels.size() / 100);
 }
 
-TEST(Picture, scenes_that_cannot_be_meant_are_refused) {
+TEST(Picture, scenes_without_sense_are_refused) {
     const auto refused = [](const std::function<void(PictureScene&)>& spoil) {
         PictureScene scene = scene_of_ball();
         spoil(scene);
@@ -205,7 +205,7 @@ std::string refusal(const DrawOptions& options) {
     return {};
 }
 
-TEST(Picture, whatever_the_helper_does_is_one_error) {
+TEST(Picture, every_failure_of_the_helper_is_an_error) {
     const ScratchFolder folder;
     EXPECT_TRUE(contains(refusal(with_script(folder, "kill -SEGV $$")), "libgl1-mesa-dri"));
     EXPECT_TRUE(contains(refusal(with_script(folder, "kill -KILL $$")), "out of memory"));
@@ -223,7 +223,7 @@ TEST(Picture, whatever_the_helper_does_is_one_error) {
     EXPECT_TRUE(contains(refusal(slow), "no answer after"));
 }
 
-TEST(Picture, a_library_that_is_missing_is_said) {
+TEST(Picture, a_missing_library_is_named) {
     const ScratchFolder folder;
     // What the loader does when it does not find one.
     const std::string message = refusal(with_script(
@@ -234,7 +234,7 @@ TEST(Picture, a_library_that_is_missing_is_said) {
     EXPECT_TRUE(contains(message, "library that it needs is missing")) << message;
 }
 
-TEST(Picture, a_machine_without_egl_is_told_what_to_install) {
+TEST(Picture, without_egl_the_message_says_what_to_install) {
     ASSERT_EQ(::setenv("__EGL_VENDOR_LIBRARY_FILENAMES", "/nowhere", 1), 0);
     const std::string message = refusal({});
     ::unsetenv("__EGL_VENDOR_LIBRARY_FILENAMES");
@@ -250,7 +250,7 @@ TEST(Picture, an_exception_while_waiting_ends_the_helper_and_leaves_no_file) {
     EXPECT_EQ(folder.names(), std::vector<std::string>{"helper"});
 }
 
-TEST(Picture, a_file_is_whole_or_not_there) {
+TEST(Picture, a_file_is_complete_or_not_there) {
     const ScratchFolder folder;
     draw_picture(scene_of_ball(), folder / "p.png");
     EXPECT_EQ(png_from(support::bytes_of(folder / "p.png")).width, 200U);

@@ -1,4 +1,4 @@
-// Surfaces for pictures, and where they are seen from.
+// Surfaces for pictures, and camera views.
 #include "pictures/surface.hpp"
 
 #include <gtest/gtest.h>
@@ -129,7 +129,7 @@ TEST(PictureLevels, are_ordered_from_the_outside_in) {
                  std::invalid_argument);
 }
 
-TEST(PictureWay, of_the_proxy_is_drawn_in_contact_only) {
+TEST(PicturePath, of_the_proxy_is_drawn_in_contact_only) {
     PictureScene scene;
     const std::vector<Vec3> hip{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {4, 0, 0}};
     add_way(scene, hip, hip, {true, true, false, true, true});

@@ -1,10 +1,11 @@
-// How a volume and segments cross to palpate-explicit-helper, in one place so that both agree:
+// How a volume and segments are passed to palpate-explicit-helper, for both sides of the pipe:
 //   palpate-explicit-helper extract REQUEST
-// REQUEST is JSON of what Request holds. The shared memory (descriptor 3) holds the samples, then
+// REQUEST is JSON of ExplicitRequest. The shared memory (descriptor 3) holds the samples, then
 // `segments` times two points of three doubles [mm, grid axes, from sample (0, 0, 0)], then as many
 // doubles for how far along each the mesh was hit (NaN: not at all), which the helper writes.
 #pragma once
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <vector>
 
@@ -16,7 +17,7 @@ struct ExplicitRequest {
     Geometry geometry;
     SampleType type = SampleType::uint8;
     double isovalue = 0;
-    int repeats = 1;  ///< so often it is extracted and built anew
+    int repeats = 1;  ///< how often the surface is extracted and the hierarchy built
     std::size_t segments = 0;
 
     std::size_t samples_bytes() const {
@@ -41,36 +42,18 @@ inline ExplicitRequest request_from(const nlohmann::json& json) {
             json.at("repeats").get<int>(), json.at("segments").get<std::size_t>()};
 }
 
-/// What comes back.
+/// What the helper answers. NaN: not measured.
 struct ExplicitCost {
-    double extraction_s = 0, tree_s = 0;  ///< the least of the repeats
-    double cpu_s = 0;  ///< of both, all threads together: the least of the repeats
-    std::int64_t vertices = 0, triangles = 0;
-    double mesh_bytes = 0;  ///< 12 a vertex and 12 a triangle
-    double tree_bytes = 0;
-    double peak_bytes = 0;  ///< growth of the process while it extracts and builds, samples not
-                            ///< counted
-    double query_ns = 0;    ///< mean over the segments, the least of the passes
+    double extraction_s = std::nan(""), tree_s = std::nan("");  ///< the least of the repeats
+    double cpu_s = std::nan("");  ///< of both, all threads together: the least of the repeats
+    double vertices = std::nan(""), triangles = std::nan("");
+    double mesh_bytes = std::nan("");  ///< 12 a vertex and 12 a triangle
+    double tree_bytes = std::nan("");  ///< of Embree's hierarchy
+    double peak_bytes = std::nan("");  ///< growth of the process while it extracts and builds,
+                                       ///< without the samples
+    double query_ns = std::nan("");    ///< mean over the segments, the least of the passes
 };
-
-inline nlohmann::json json_from(const ExplicitCost& cost) {
-    return {{"extraction_s", cost.extraction_s},
-            {"tree_s", cost.tree_s},
-            {"cpu_s", cost.cpu_s},
-            {"vertices", cost.vertices},
-            {"triangles", cost.triangles},
-            {"mesh_bytes", cost.mesh_bytes},
-            {"tree_bytes", cost.tree_bytes},
-            {"peak_bytes", cost.peak_bytes},
-            {"query_ns", cost.query_ns}};
-}
-
-inline ExplicitCost cost_from(const nlohmann::json& json) {
-    return {json.at("extraction_s").get<double>(),    json.at("tree_s").get<double>(),
-            json.at("cpu_s").get<double>(),           json.at("vertices").get<std::int64_t>(),
-            json.at("triangles").get<std::int64_t>(), json.at("mesh_bytes").get<double>(),
-            json.at("tree_bytes").get<double>(),      json.at("peak_bytes").get<double>(),
-            json.at("query_ns").get<double>()};
-}
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ExplicitCost, extraction_s, tree_s, cpu_s, vertices, triangles,
+                                   mesh_bytes, tree_bytes, peak_bytes, query_ns)
 
 }  // namespace palpate::evaluation

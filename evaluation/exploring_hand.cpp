@@ -1,10 +1,11 @@
-// Places on the surface, the hand's steering, and the search for the wanted manner.
-#include "evaluation/hand_at_work.hpp"
+// Steers a hand over a surface, and searches for the speed and share of contact that are wanted.
+#include "evaluation/exploring_hand.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
 
 #include "scenes/random.hpp"
@@ -37,43 +38,22 @@ bool is_solid(const Field& field, double isovalue, const Vec3& physical) {
     return field.sign() * (value_at(field, physical) - isovalue) > field.tolerance();
 }
 
-/// Indices of `count` solid samples, evenly drawn from all there are; empty if there are none.
-template <class T>
-std::vector<std::size_t> solid_samples(const Field& field, double isovalue, std::size_t count,
-                                       Random& random) {
-    const auto samples = field.volume().samples<T>();
-    const auto is_solid = [&](T sample) { return field.sign() * (double(sample) - isovalue) > 0; };
-    const auto solid =
-        static_cast<std::size_t>(std::count_if(samples.begin(), samples.end(), is_solid));
-    if (solid == 0) return {};
-    std::vector<std::size_t> ranks(count);
-    for (auto& rank : ranks) {
-        rank = std::min(solid - 1, static_cast<std::size_t>(random.uniform() * double(solid)));
+/// A random sample in the solid; nothing if hardly any is.
+std::optional<Vec3> solid_sample(const Subject& subject, Random& random) {
+    constexpr int most_tries = 3'000'000;
+    const Field& field = subject.field;
+    const Vec3 size = field.geometry().size.cast<double>();
+    for (int i = 0; i < most_tries; ++i) {
+        const Vec3 at(random.uniform(), random.uniform(), random.uniform());
+        const Index3 index = size.cwiseProduct(at).cast<int>();
+        if (field.sign() * (field.volume().sample(index) - subject.isovalue) > 0) {
+            return physical_from_index(field.geometry(), index.cast<double>());
+        }
     }
-    std::vector<std::size_t> sorted = ranks;
-    std::sort(sorted.begin(), sorted.end());
-    std::vector<std::size_t> found;
-    std::size_t rank = 0;
-    for (std::size_t i = 0; i < samples.size() && found.size() < count; ++i) {
-        if (!is_solid(samples[i])) continue;
-        while (found.size() < count && sorted[found.size()] == rank) found.push_back(i);
-        ++rank;
-    }
-    // In the order in which they were drawn, or the strokes would go through the volume in order.
-    for (auto& r : ranks) {
-        const auto at = std::lower_bound(sorted.begin(), sorted.end(), r) - sorted.begin();
-        r = found[static_cast<std::size_t>(at)];
-    }
-    return ranks;
+    return {};
 }
 
-std::vector<std::size_t> solid_samples(const Subject& subject, std::size_t count, Random& random) {
-    return with_type(subject.field.volume().type(), [&](auto zero) {
-        return solid_samples<decltype(zero)>(subject.field, subject.isovalue, count, random);
-    });
-}
-
-/// Where a hand from outside first meets the body on its straight way to a solid sample.
+/// Where a hand from outside first meets the body on a straight line to a solid sample.
 struct Place {
     Vec3 point, outward;  // [mm, physical]; outward is where it came from
 };
@@ -83,14 +63,13 @@ std::vector<Place> places(const Subject& subject, int count, Random& random) {
     const double outside =
         (geometry.size + Index3::Constant(2)).cast<double>().cwiseProduct(geometry.spacing).norm();
     std::vector<Place> found;
-    for (const std::size_t i : solid_samples(subject, std::size_t(count), random)) {
-        const auto nx = std::size_t(geometry.size[0]), ny = std::size_t(geometry.size[1]);
-        const Vec3 target = physical_from_index(
-            geometry, Vec3(double(i % nx), double(i / nx % ny), double(i / (nx * ny))));
+    for (int i = 0; i < count; ++i) {
+        const auto target = solid_sample(subject, random);
+        if (!target) break;
         const Vec3 outward = unit_vector(random);
-        const Vec3 from = target + outside * outward;
+        const Vec3 from = *target + outside * outward;
         if (is_solid(subject.field, subject.isovalue, from)) continue;
-        const RayHit hit = cast_ray(subject.field, subject.isovalue, from, target);
+        const RayHit hit = cast_ray(subject.field, subject.isovalue, from, *target);
         if (hit.hit) found.push_back({hit.point, outward});
     }
     if (found.empty()) {
@@ -101,17 +80,17 @@ std::vector<Place> places(const Subject& subject, int count, Random& random) {
     return found;
 }
 
-/// A hand on one stroke.
+/// A hand on one trajectory.
 class Steering {
   public:
-    Steering(const Subject& subject, const HandAtWork& hand, const Place& place, Random& random)
+    Steering(const Subject& subject, const ExploringHand& hand, const Place& place, Random& random)
         : field_(subject.field),
           hand_(hand),
           random_(random),
           hip_(place.point + 2 * hand.depth_mm * place.outward),
           touched_(place.point),
           normal_(place.outward),
-          way_(-place.outward) {
+          heading_(-place.outward) {
         palpate::place(proxy_, field_, hip_, subject.isovalue);
         new_cycle();
     }
@@ -134,7 +113,7 @@ class Steering {
 
     void new_cycle() {
         turn_per_s_ = random_.uniform(-1.5, 1.5);
-        way_ = unit(normal_ + 0.7 * unit_vector(random_), normal_);
+        heading_ = unit(normal_ + 0.7 * unit_vector(random_), normal_);
     }
 
     void feel() {
@@ -146,12 +125,12 @@ class Steering {
         normal_ = unit(normal_ + share * (felt - normal_), felt);
     }
 
-    /// Away from where it last touched; off whatever is in the way.
+    /// Away from where it last touched; off whatever it meets.
     Vec3 exploring() {
-        if (constrained_ && way_.dot(normal_) < 0.5) {
-            way_ = unit(way_ + (1 - way_.dot(normal_)) * normal_, normal_);
+        if (constrained_ && heading_.dot(normal_) < 0.5) {
+            heading_ = unit(heading_ + (1 - heading_.dot(normal_)) * normal_, normal_);
         }
-        return way_;
+        return heading_;
     }
 
     /// Along the surface at its depth, in a slow turn; free, straight back to the surface.
@@ -160,7 +139,7 @@ class Steering {
         if (!constrained_) return unit(lag - hand_.depth_mm * normal_, -normal_);
         const Vec3 across = normal_.cross(along_);
         along_ += turn_per_s_ / hand_.rate_hz * across;
-        // A proxy that something holds back is fetched: the hand does not go on without it.
+        // Where the proxy is held back, the hand goes back for it.
         if (lag.norm() > 4 * hand_.depth_mm) along_ = lag;
         along_ = unit(along_ - along_.dot(normal_) * normal_, normal_.unitOrthogonal());
         keep_to_the_body();
@@ -181,74 +160,76 @@ class Steering {
     }
 
     const Field& field_;
-    const HandAtWork& hand_;
+    const ExploringHand& hand_;
     Random& random_;
     Proxy proxy_;
-    Vec3 hip_, touched_, normal_, way_;  // [mm, physical] and unit vectors
+    Vec3 hip_, touched_, normal_, heading_;  // [mm, physical] and unit vectors
     Vec3 along_ = Vec3::Zero();
     double turn_per_s_ = 0, into_cycle_ = 0;
     bool constrained_ = false;
 };
 
 /// 0 where both are as wanted.
-double miss(const Manner& manner, const Manner& wanted) {
-    return std::max(std::abs(manner.speed_mm_s / wanted.speed_mm_s - 1),
-                    std::abs(manner.constrained_share / wanted.constrained_share - 1));
+double miss(const Behaviour& behaviour, const Behaviour& wanted) {
+    return std::max(std::abs(behaviour.speed_mm_s / wanted.speed_mm_s - 1),
+                    std::abs(behaviour.constrained_share / wanted.constrained_share - 1));
 }
 
 }  // namespace
 
-std::vector<Stroke> work(const Subject& subject, const HandAtWork& hand) {
+std::vector<Trajectory> explore(const Subject& subject, const ExploringHand& hand) {
     Random random(hand.seed);
-    const auto starts = places(subject, hand.strokes, random);
-    const auto ticks = static_cast<std::size_t>(hand.stroke_s * hand.rate_hz);
-    std::vector<Stroke> strokes;
-    for (int i = 0; i < hand.strokes; ++i) {
+    const auto starts = places(subject, hand.trajectories, random);
+    const auto ticks = static_cast<std::size_t>(hand.trajectory_s * hand.rate_hz);
+    std::vector<Trajectory> trajectories;
+    for (int i = 0; i < hand.trajectories; ++i) {
         Steering steering(subject, hand, starts[std::size_t(i) % starts.size()], random);
-        Stroke stroke{steering.hip()};
-        stroke.reserve(ticks + 1);
+        Trajectory trajectory{steering.hip()};
+        trajectory.reserve(ticks + 1);
         for (std::size_t k = 0; k < ticks; ++k) {
-            stroke.push_back(steering.step(static_cast<double>(k) / hand.rate_hz));
+            trajectory.push_back(steering.step(static_cast<double>(k) / hand.rate_hz));
         }
-        strokes.push_back(std::move(stroke));
+        trajectories.push_back(std::move(trajectory));
     }
-    return strokes;
+    return trajectories;
 }
 
-Manner manner_of(const Subject& subject, const std::vector<Stroke>& strokes, double rate_hz) {
-    double way = 0;
+Behaviour behaviour_of(const Subject& subject, const std::vector<Trajectory>& trajectories,
+                       double rate_hz) {
+    double path = 0;
     std::size_t ticks = 0, constrained = 0;
-    for (const Stroke& stroke : strokes) {
+    for (const Trajectory& trajectory : trajectories) {
         Proxy proxy;
-        place(proxy, subject.field, stroke.front(), subject.isovalue);
-        for (std::size_t i = 1; i < stroke.size(); ++i) {
-            way += (stroke[i] - stroke[i - 1]).norm();
-            constrained += update_exact(proxy, subject.field, stroke[i]).mode == Mode::constrained;
+        place(proxy, subject.field, trajectory.front(), subject.isovalue);
+        for (std::size_t i = 1; i < trajectory.size(); ++i) {
+            path += (trajectory[i] - trajectory[i - 1]).norm();
+            constrained +=
+                update_exact(proxy, subject.field, trajectory[i]).mode == Mode::constrained;
             ++ticks;
         }
     }
-    return {way * rate_hz / double(ticks), double(constrained) / double(ticks)};
+    return {path * rate_hz / double(ticks), double(constrained) / double(ticks)};
 }
 
-Tuned tuned(const Subject& subject, HandAtWork hand, const Manner& wanted) {
+TunedHand tuned_hand(const Subject& subject, ExploringHand hand, const Behaviour& wanted) {
     constexpr int attempts = 24;
     constexpr double near_enough = 0.02;
-    Tuned best;
+    TunedHand best;
     double low = 0, high = 1;
     hand.speed_mm_s = wanted.speed_mm_s;
     hand.touching = wanted.constrained_share;
     for (int attempt = 0; attempt < attempts; ++attempt) {
-        auto strokes = work(subject, hand);
-        const Manner manner = manner_of(subject, strokes, hand.rate_hz);
+        auto trajectories = explore(subject, hand);
+        const Behaviour behaviour = behaviour_of(subject, trajectories, hand.rate_hz);
         const bool is_best =
-            best.strokes.empty() || miss(manner, wanted) < miss(best.manner, wanted);
-        if (is_best) best = {std::move(strokes), manner, hand};
-        if (miss(best.manner, wanted) <= near_enough) break;
-        if (manner.speed_mm_s > 0) hand.speed_mm_s *= wanted.speed_mm_s / manner.speed_mm_s;
-        (manner.constrained_share < wanted.constrained_share ? low : high) = hand.touching;
+            best.trajectories.empty() || miss(behaviour, wanted) < miss(best.behaviour, wanted);
+        if (is_best) best = {std::move(trajectories), behaviour, hand};
+        if (miss(best.behaviour, wanted) <= near_enough) break;
+        if (behaviour.speed_mm_s > 0) hand.speed_mm_s *= wanted.speed_mm_s / behaviour.speed_mm_s;
+        (behaviour.constrained_share < wanted.constrained_share ? low : high) = hand.touching;
         hand.touching = 0.5 * (low + high);
         const double least = (1 - near_enough) * wanted.constrained_share;
-        if (low < 0.98 || manner.constrained_share >= least) continue;
+        if (low < 0.98 || behaviour.constrained_share >= least) continue;
         // It means to touch all the time and slips off: the body is too fine for so firm a hand.
         hand.depth_mm *= 0.5;
         hand.touching = wanted.constrained_share;

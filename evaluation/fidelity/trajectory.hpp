@@ -1,4 +1,4 @@
-// A hand that goes along a body's way, and what its force was compared with the true surface's.
+// Moves a hand along a body's trajectory and compares the force with that of the true surface.
 #pragma once
 
 #include <vector>
@@ -8,13 +8,13 @@
 
 namespace palpate::evaluation {
 
-/// Of one number over the ticks of a course; NaN where it was never measured.
+/// Of one number over the ticks of a trajectory; NaN where it was never measured.
 struct Spread {
     double mean = 0, median = 0, p99 = 0, max = 0;
 };
-Spread spread_of(std::vector<double> numbers);
+Spread spread_of(const std::vector<double>& numbers);
 
-struct CourseResult {
+struct TrajectoryResult {
     Spread angle;          ///< [deg] of the force to the true normal at the SCP
     Spread off_ideal;      ///< [deg] of the force to Body::ideal
     Spread surface_error;  ///< [mm] of the SCP to the true surface, to first order
@@ -22,18 +22,18 @@ struct CourseResult {
     Spread jump;           ///< |change of the force| from tick to tick / mean |force|
     Spread update_us;      ///< [us] of an update alone, the clock's own time included
     double contact_share = 0;
-    double way_per_tick = 0;     ///< [mm] mean
+    double step = 0;             ///< [mm] mean, of the hand in a tick
     double worst_deviation = 0;  ///< of an SCP in contact from the level, relative to the range
     std::vector<double> angles;  ///< [deg] off_ideal, tick by tick; NaN without contact
 };
 
-/// From part `from` to part `to` of the body's way in equal parts, one tick each. The force is
-/// SCP - HIP: stiffness does not turn it.
-CourseResult go_along(const Body& body, ProxyMethod method, int steps, double from, double to);
+/// From part `from` to part `to` of the body's trajectory in equal parts, one tick each. The force
+/// is SCP - HIP: stiffness does not turn it.
+TrajectoryResult follow(const Body& body, ProxyMethod method, int steps, double from, double to);
 
 /// The same angles and errors of a proxy that is always at the sampled isosurface's nearest point;
 /// what has to do with time or with ticks is NaN.
-CourseResult go_along_nearest(const Body& body, int steps);
+TrajectoryResult follow_nearest(const Body& body, int steps);
 
 /// Unit normal of a subject's analytic density, out of the solid; zero where it is flat. Central
 /// differences over 1e-3 mm: the surfaces here bend by far more than that.

@@ -1,12 +1,14 @@
-// Tick by tick.
-#include "evaluation/fidelity/course.hpp"
+// Moves a proxy tick by tick and measures its force.
+#include "evaluation/fidelity/trajectory.hpp"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "evaluation/fidelity/nearest_point.hpp"
+#include "evaluation/table.hpp"
 
 namespace palpate::evaluation {
 namespace {
@@ -56,16 +58,10 @@ void compare(const Body& body, const ProxyUpdate& update, Log& log, std::vector<
 
 }  // namespace
 
-Spread spread_of(std::vector<double> numbers) {
-    const double none = std::nan("");
-    if (numbers.empty()) return {none, none, none, none};
-    std::sort(numbers.begin(), numbers.end());
-    double sum = 0;
-    for (const double number : numbers) sum += number;
-    const auto at = [&](double part) {
-        return numbers[static_cast<std::size_t>(part * double(numbers.size() - 1))];
-    };
-    return {sum / double(numbers.size()), at(0.5), at(0.99), numbers.back()};
+Spread spread_of(const std::vector<double>& numbers) {
+    const double sum = std::accumulate(numbers.begin(), numbers.end(), 0.0);
+    return {sum / double(numbers.size()), quantile(numbers, 0.5), quantile(numbers, 0.99),
+            quantile(numbers, 1)};
 }
 
 Vec3 true_normal(const Subject& subject, const Vec3& physical) {
@@ -74,16 +70,16 @@ Vec3 true_normal(const Subject& subject, const Vec3& physical) {
     return steepness > 0 ? Vec3(-subject.field.sign() / steepness * gradient) : Vec3(Vec3::Zero());
 }
 
-CourseResult go_along(const Body& body, ProxyMethod method, int steps, double from, double to) {
+TrajectoryResult follow(const Body& body, ProxyMethod method, int steps, double from, double to) {
     using Clock = std::chrono::steady_clock;
     const Field& field = body.subject.field;
     Proxy proxy;
     place(proxy, field, body.start, body.subject.isovalue);
     method(proxy, field, body.hand(from), {}, {});
-    CourseResult result;
+    TrajectoryResult result;
     Log log;
     Vec3 last_force = Vec3::Zero(), last_hand = body.hand(from);
-    double contacts = 0, way = 0;
+    double contacts = 0, path = 0;
     for (int i = 0; i < steps; ++i) {
         const Vec3 hand = body.hand(from + (to - from) * (i + 1) / steps);
         const auto begin = Clock::now();
@@ -106,26 +102,26 @@ CourseResult go_along(const Body& body, ProxyMethod method, int steps, double fr
                 log.turn.push_back(degrees_between(force, last_force));
             }
         }
-        way += (hand - last_hand).norm();
+        path += (hand - last_hand).norm();
         last_force = force;
         last_hand = hand;
     }
     const double strength = spread_of(log.strength).mean;
     for (double& change : log.change) change /= strength;
-    result.angle = spread_of(std::move(log.angle));
-    result.off_ideal = spread_of(std::move(log.off_ideal));
-    result.surface_error = spread_of(std::move(log.surface_error));
-    result.turn = spread_of(std::move(log.turn));
-    result.jump = spread_of(std::move(log.change));
-    result.update_us = spread_of(std::move(log.update_us));
+    result.angle = spread_of(log.angle);
+    result.off_ideal = spread_of(log.off_ideal);
+    result.surface_error = spread_of(log.surface_error);
+    result.turn = spread_of(log.turn);
+    result.jump = spread_of(log.change);
+    result.update_us = spread_of(log.update_us);
     result.contact_share = contacts / steps;
-    result.way_per_tick = way / steps;
+    result.step = path / steps;
     return result;
 }
 
-CourseResult go_along_nearest(const Body& body, int steps) {
+TrajectoryResult follow_nearest(const Body& body, int steps) {
     const SurfaceMesh mesh = extract_surface(body.subject.field, body.subject.isovalue);
-    CourseResult result;
+    TrajectoryResult result;
     Log log;
     for (int i = 0; i < steps; ++i) {
         ProxyUpdate rest;
@@ -134,11 +130,11 @@ CourseResult go_along_nearest(const Body& body, int steps) {
         rest.scp = nearest_point(mesh, rest.hip);
         compare(body, rest, log, result.angles);
     }
-    result.angle = spread_of(std::move(log.angle));
-    result.off_ideal = spread_of(std::move(log.off_ideal));
-    result.surface_error = spread_of(std::move(log.surface_error));
+    result.angle = spread_of(log.angle);
+    result.off_ideal = spread_of(log.off_ideal);
+    result.surface_error = spread_of(log.surface_error);
     result.turn = result.jump = result.update_us = spread_of({});
-    result.contact_share = result.way_per_tick = result.worst_deviation = std::nan("");
+    result.contact_share = result.step = result.worst_deviation = std::nan("");
     return result;
 }
 

@@ -1,4 +1,4 @@
-// Where and how a hand presses into a body, and what it feels on the way in and out again.
+// Where and how a hand presses into a body, and what it feels going in and out again.
 #pragma once
 
 #include <functional>
@@ -19,8 +19,8 @@ struct NamedLevel {
 };
 
 /// A straight line into a body.
-struct PressingCourse {
-    explicit PressingCourse(Subject s) : subject(std::move(s)) {}
+struct PressingLine {
+    explicit PressingLine(Subject s) : subject(std::move(s)) {}
 
     Subject subject;                   ///< `isovalue` is the level felt first: the skin
     Vec3 entry = Vec3::Zero();         ///< [mm, physical] where the line first meets that level
@@ -35,9 +35,9 @@ struct PressingCourse {
 /// the Shepp-Logan head (from its left to its middle); or the user's volumes, each from the first
 /// side of its box that meets its level towards the middle. Throws std::invalid_argument where none
 /// does.
-std::vector<PressingCourse> pressing_courses(const std::vector<Subject>& subjects,
-                                             const std::filesystem::path& data, bool quick,
-                                             const std::function<void(const std::string&)>& note);
+std::vector<PressingLine> pressing_lines(const std::vector<Subject>& subjects,
+                                         const std::filesystem::path& data, bool quick,
+                                         const std::function<void(const std::string&)>& note);
 
 /// How the hand presses.
 struct PressingPlan {
@@ -45,13 +45,13 @@ struct PressingPlan {
     double threshold = 1;    ///< PT [device mm]
     double speed = 20;       ///< [device mm/s]
     double rate = 1000;      ///< [Hz]
-    double approach = 5;     ///< [device mm] of free way before the entry
+    double approach = 5;     ///< [device mm] of free space before the entry
 };
 
 /// One tick.
 struct PressingTick {
     double depth = 0;     ///< [mm of volume] of the hand past the entry
-    bool inwards = true;  ///< on the way in
+    bool inwards = true;  ///< going in
     ProxyUpdate update;   ///< after penetrability
     double pull = 0;      ///< |SCP - HIP| [device mm]
     double force = 0;     ///< k |SCP - HIP| in contact, else 0 [N]
@@ -59,10 +59,10 @@ struct PressingTick {
 };
 
 /// mm of volume a mm of hand: a voxel.
-double pressing_scale(const PressingCourse& course);
+double pressing_scale(const PressingLine& line);
 
 /// All ticks in order, from free space in and out again.
-std::vector<PressingTick> press(const PressingCourse& course, const Penetrability& penetrability,
+std::vector<PressingTick> press(const PressingLine& line, const Penetrability& penetrability,
                                 const PressingPlan& plan);
 
 }  // namespace palpate::evaluation

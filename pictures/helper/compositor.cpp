@@ -1,5 +1,5 @@
-// Light and the camera, and the drawings that the compositor lays one over the other.
-#include "pictures/helper/stage.hpp"
+// Sets up light and camera, renders opaque and transparent parts, and blends them.
+#include "pictures/helper/compositor.hpp"
 
 #include <vtkCallbackCommand.h>
 #include <vtkCamera.h>

@@ -1,4 +1,4 @@
-// Draws a scene: light, layers, and the pixels of it.
+// Renders a scene to pixels.
 #pragma once
 
 #include <vector>

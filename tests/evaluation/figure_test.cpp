@@ -1,0 +1,79 @@
+// Figures are drawn as they are described.
+#include "evaluation/figure.hpp"
+
+#include <gtest/gtest.h>
+
+#include "support/scratch_folder.hpp"
+
+namespace palpate::evaluation {
+namespace {
+
+using support::bytes_of;
+using support::contains;
+
+std::string svg_of(const Figure& figure) {
+    const support::ScratchFolder folder;
+    draw(figure, folder / "figure.svg");
+    return bytes_of(folder / "figure.svg");
+}
+
+TEST(Figure, every_way_to_draw_a_series_is_drawn_with_its_title_in_the_key) {
+    Figure figure;
+    figure.columns = 2;
+    figure.panels.resize(2);
+    const Rows points{{1, 2}, {2, 4}, {}, {3, 1}};
+    const Rows boxes{{1, 2, 1, 2}};
+    for (Panel& panel : figure.panels) {
+        panel.y.low = 0;
+        panel.series = {{Draw::area, "an area", {}, points},
+                        {Draw::polygons, "polygons", {}, points},
+                        {Draw::boxes, "boxes", {}, boxes},
+                        {Draw::segments, "segments", {}, boxes},
+                        {Draw::line, "a line", {.dash = Dash::dashed}, points},
+                        {Draw::points, "points", {.marker = Marker::circle}, points},
+                        {Draw::line_points, "both", look_of(3), points},
+                        level_line(3, "a level", {})};
+        panel.series.push_back({Draw::text, "", {}, {{1, 3}}, {"some text"}});
+    }
+    figure.panels[1].title = "to the right";
+    const std::string svg = svg_of(figure);
+    for (const char* text : {"an area", "polygons", "boxes", "segments", "a line", "points", "both",
+                             "a level", "some text", "to the right"}) {
+        EXPECT_TRUE(contains(svg, text)) << text;
+    }
+    const std::size_t first = svg.find("a level");
+    EXPECT_EQ(svg.find("a level", first + 1), std::string::npos);  // in the key once
+}
+
+TEST(Figure, a_map_has_a_scale_of_colours_and_its_texts) {
+    Figure figure;
+    figure.panels.resize(1);
+    Panel& panel = figure.panels[0];
+    panel.scale = ColourScale{"share [%]", 0, 100, false};
+    panel.series = {{Draw::cells, "", {}, {{0, 0, 10}, {1, 0, 50}, {0, 1, 90}, {1, 1, 100}}}};
+    panel.x.ticks = ticks_named({"left", "right\nside"});
+    const std::string svg = svg_of(figure);
+    for (const char* text : {"share [%]", "left", "right", "side"}) {
+        EXPECT_TRUE(contains(svg, text)) << text;
+    }
+}
+
+TEST(Figure, a_name_is_never_read_as_a_command) {
+    Figure figure;
+    figure.panels.resize(1);
+    figure.panels[0].title = "it's `echo run` \"$x\" {/Bold a_b}";
+    figure.panels[0].series = {{Draw::points, "b'`echo run`", {.marker = Marker::plus}, {{1, 1}}}};
+    const std::string svg = svg_of(figure);
+    EXPECT_TRUE(contains(svg, "it's `echo run`"));
+    EXPECT_TRUE(contains(svg, "{/Bold a_b}"));
+    EXPECT_TRUE(contains(svg, "b'`echo run`"));
+}
+
+TEST(Figure, methods_look_the_same_everywhere_and_differ_in_colour_and_marker) {
+    EXPECT_STREQ(look_of_method("exact").colour, look_of(0).colour);
+    EXPECT_STRNE(look_of_method("exact").colour, look_of_method("paper").colour);
+    EXPECT_NE(look_of_method("exact").marker, look_of_method("paper").marker);
+}
+
+}  // namespace
+}  // namespace palpate::evaluation
