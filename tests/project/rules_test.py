@@ -28,6 +28,11 @@ GOOD = {
     "scenes/volumes.hpp": '#include "palpate/volume.hpp"\n',
     "io/read.hpp": '#include <itkImage.h>\n#include "scenes/volumes.hpp"\n',
     "apps/palpate/main.cpp": '#include "io/read.hpp"\n#include "palpate/palpate.hpp"\n',
+    "devices/devices.cpp": '#include "devices/haply/haply.hpp"\n',
+    "devices/haply/haply.hpp": "#include <string>\n",
+    "devices/spacenav/puck.hpp": "#include <string>\n",
+    "apps/viewer/model/run_state.hpp": '#include "palpate/proxy.hpp"\n',
+    "apps/viewer/window/main_window.cpp": '#include "apps/viewer/model/run_state.hpp"\n',
     "tests/core/cone_test.cpp": '#include "proxy/site.hpp"\n#include <gtest/gtest.h>\n',
 }
 
@@ -89,6 +94,18 @@ class Includes(unittest.TestCase):
         self.assert_found("scenes/volumes.hpp", '"io/read.hpp"', "may not see io/")
         self.assert_found("apps/palpate/main.cpp", '"proxy/site.hpp"', "may not see src/")
         self.assert_found("io/read.hpp", '"apps/palpate/main.cpp"', "may not see apps/")
+
+    def test_an_inner_folder_sees_what_its_own_line_lists(self):
+        self.assert_found("apps/viewer/model/run_state.hpp", '"apps/viewer/window/main_window.cpp"',
+                          "may not see apps/viewer/window/")
+        self.assert_found("apps/palpate/main.cpp", '"apps/viewer/model/run_state.hpp"',
+                          "may not see apps/viewer/model/")
+
+    def test_alternatives_beside_each_other_do_not_know_of_each_other(self):
+        self.assert_found("devices/haply/haply.hpp", '"devices/spacenav/puck.hpp"', "beside it")
+
+    def test_a_folder_that_nobody_listed_is_found(self):
+        self.assertIn("in no line", self.problems({"apps/new/a.cpp": '#include "io/read.hpp"\n'})[0])
 
     def test_a_public_header_that_includes_a_private_one_is_found(self):
         for name, include in (("include/palpate/io/read.hpp", '"io/read.hpp"'),
