@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "devices/recorded/recording.hpp"
-#include "devices/recorded/timed_path.hpp"
+#include "devices/timed_path.hpp"
 
 namespace palpate::devices {
 namespace {

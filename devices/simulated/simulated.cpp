@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "devices/recorded/timed_path.hpp"
 #include "devices/simulated/dynamics.hpp"
+#include "devices/timed_path.hpp"
 #include "palpate/io/trajectory.hpp"
 #include "palpate/scenes/motions.hpp"
 

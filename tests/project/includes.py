@@ -37,7 +37,7 @@ MAY_SEE = {
     "apps/viewer/model": (*LIBRARIES, "pictures", "apps/options"),
     "apps/viewer/scene": ("include", "pictures", "pictures/vtk", "apps/viewer/model"),
     "apps/viewer/slices": ("include", "pictures", "apps/viewer/model"),
-    "apps/viewer/panel": (*LIBRARIES, "apps/options", "apps/viewer/model"),
+    "apps/viewer/panel": (*LIBRARIES, "pictures", "apps/options", "apps/viewer/model"),
     "apps/viewer/window": (*LIBRARIES, *WINDOW),
     "benchmarks": (*LIBRARIES, *WINDOW, "pictures", "tests"),
     "examples": LIBRARIES,

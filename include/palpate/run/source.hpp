@@ -26,7 +26,7 @@ struct SyntheticSource {
     std::string scene;  ///< "torus" or "torus:64x64x64"
     std::optional<SampleType> type;
 };
-/// Frames that another program writes to this file (docs/living_data.md).
+/// Frames that another program writes to this file (docs/changing_data.md).
 struct LiveSource {
     std::string path;
 };

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "devices/recorded/timed_path.hpp"
+#include "devices/timed_path.hpp"
 #include "palpate/io/recording.hpp"
 #include "palpate/scenes/volumes.hpp"
 #include "support/allocation_counter.hpp"

@@ -1,4 +1,4 @@
-// What living data cost: updates in edited samples and between two frames, beside the same in one
+// What changing data cost: updates in edited samples and between two frames, beside the same in one
 // piece; and edits themselves, on whichever thread makes them. docs/changing_data.md.
 #include <string>
 
@@ -21,7 +21,7 @@ void contact(benchmark::State& state, const Touch& touch) {
 
 void add_contact(const std::string& resolution, double voxels_per_mm) {
     const auto add = [&](const std::string& kind, auto make) {
-        const std::string name = "living/contact/" + kind + "/uint8/" + resolution;
+        const std::string name = "changing/contact/" + kind + "/uint8/" + resolution;
         benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
             contact(state, make(cylinder_touch(SampleType::uint8, voxels_per_mm, 1)));
         })->Unit(benchmark::kMicrosecond);
@@ -54,7 +54,7 @@ void carve(benchmark::State& state) {
         double(table.at.size() * sizeof(table.at.front())) / double(block->volume().bytes());
 }
 BENCHMARK(carve)
-    ->Name("living/edit/carve_voxels")
+    ->Name("changing/edit/carve_voxels")
     ->Arg(2)
     ->Arg(5)
     ->Arg(20)
