@@ -119,7 +119,7 @@ constexpr std::array<Curve, 4> memory_curves{
      {"dynamic: the proxy", dynamic_change, "state_bytes", 1},
      {"both: the samples", samples_look, "samples_bytes", 1}}};
 
-std::string time_text(double seconds) {
+std::string label_time(double seconds) {
     if (seconds < 1e-3) return fmt::format("{:.2g} µs", 1e6 * seconds);
     return seconds < 1 ? fmt::format("{:.2g} ms", 1e3 * seconds) : fmt::format("{:.2g} s", seconds);
 }
@@ -147,7 +147,7 @@ void add_curve(Panel& panel, const Table& table, const Curve& curve, bool has_ti
     }
     if (has_times && curve.is_named && !balls.rows.empty()) {
         Series time{Draw::text, "", {curve.look.colour}, {balls.rows.back()}};
-        time.labels = {time_text(balls.rows.back()[1])};
+        time.labels = {label_time(balls.rows.back()[1])};
         time.text.up = 0.9;
         panel.series.push_back(std::move(time));
     }
@@ -183,7 +183,7 @@ Figure explicit_figure(const Table& all) {
     time.y = {.title = "time", .is_logarithmic = true, .low = 1e-7, .high = 100};
     for (double seconds = 1e-7; seconds < 20; seconds *= 10) {
         time.y.ticks.push_back(
-            {seconds, seconds < 5e-7 ? std::string("100 ns") : time_text(1.0001 * seconds)});
+            {seconds, seconds < 5e-7 ? std::string("100 ns") : label_time(1.0001 * seconds)});
     }
     memory.title = "memory that it takes";
     memory.y = {.title = "memory",
