@@ -120,8 +120,7 @@ struct Figure {
     std::string caption;             ///< what is seen, in a sentence or two
     int width = 1200, height = 560;  ///< [pixels]
     std::size_t columns = 1;
-    std::vector<Panel> panels;    ///< row by row
-    std::size_t key_columns = 4;  ///< entries a line of the key, which is below the panels
+    std::vector<Panel> panels;  ///< row by row
 };
 
 /// Ticks at these values with the values as text, or 0, 1, 2 ... with these texts.

@@ -55,21 +55,21 @@ Size size_of(const std::vector<AxisTick>& ticks) {
 
 /// Room that an axis at the side takes, and one at the bottom.
 double side_room(const Axis& axis) {
-    const double labels = axis.ticks.empty() ? 48 : size_of(axis.ticks).width + 14;
-    return (axis.has_labels ? labels : 12) + (axis.title.empty() ? 0 : 26);
+    const double labels = axis.ticks.empty() ? 54 : size_of(axis.ticks).width + 22;
+    return (axis.has_labels ? labels : 12) + (axis.title.empty() ? 0 : 32);
 }
 double bottom_room(const Axis& axis) {
     const Size size = size_of(axis.ticks);
     const double turned = std::sin(axis.turned * 3.14159 / 180);
-    const double labels = axis.turned > 0 ? turned * size.width + 16 : size.height + 8;
-    return (axis.has_labels ? labels : 12) + (axis.title.empty() ? 0 : 26);
+    const double labels = axis.turned > 0 ? turned * size.width + 26 : size.height + 14;
+    return (axis.has_labels ? labels : 12) + (axis.title.empty() ? 0 : 36);
 }
 
 struct Box {
     double left = 0, right = 0, top = 0, bottom = 0;
 };
 
-constexpr double scale_room = 100;
+constexpr double scale_room = 125;
 
 /// Series with a title, each title once.
 std::vector<const Series*> key_entries(const Figure& figure) {
@@ -90,10 +90,18 @@ bool has_scale(const Figure& figure) {
                        [](const Panel& panel) { return panel.scale.has_value(); });
 }
 
+/// As many entries a line as fit.
+std::size_t key_columns(const Figure& figure) {
+    double longest = 1;
+    for (const Series* series : key_entries(figure)) {
+        longest = std::max(longest, size_of({{0, series->title}}).width);
+    }
+    return static_cast<std::size_t>(std::max(1.0, 0.95 * figure.width / (longest + 90)));
+}
+
 double key_height(const Figure& figure) {
-    const std::size_t entries = key_entries(figure).size();
-    const std::size_t lines = (entries + figure.key_columns - 1) / figure.key_columns;
-    return lines > 0 ? 22.0 * double(lines) + 14 : 0;
+    const std::size_t entries = key_entries(figure).size(), columns = key_columns(figure);
+    return entries > 0 ? 22.0 * double((entries + columns - 1) / columns) + 14 : 0;
 }
 
 /// The inner box of every panel: each column and row gets the room that its axes need, and what is
@@ -107,7 +115,7 @@ std::vector<Box> layout(const Figure& figure) {
         Box &column = rooms[i % columns], &row = rooms[columns + i / columns];
         column.left = std::max(column.left, side_room(panel.y));
         column.right = std::max(column.right, panel.right ? side_room(*panel.right) : 18);
-        row.top = std::max(row.top, panel.title.empty() ? 10.0 : 34.0);
+        row.top = std::max(row.top, panel.title.empty() ? 14.0 : 44.0);
         row.bottom = std::max(row.bottom, bottom_room(panel.x));
     }
     if (has_scale(figure)) rooms[columns - 1].right += scale_room;
@@ -277,7 +285,7 @@ std::string key_script(const Figure& figure) {
         "set title ''\nset xlabel ''\nset ylabel ''\nset y2label ''\nset xrange [0:1]\n"
         "set yrange [0:1]\nset size noratio\nset key noenhanced center center horizontal Left "
         "reverse maxcols " +
-        std::to_string(figure.key_columns) + " width 2 samplen 3\nplot -1 notitle";
+        std::to_string(key_columns(figure)) + " width 2 samplen 3\nplot -1 notitle";
     for (const Series* series : key_entries(figure)) script += ", " + key_entry(*series);
     return script + "\n";
 }
@@ -291,7 +299,7 @@ std::string script_of(const Figure& figure) {
                       ? fmt::format(
                             "set colorbox user origin screen {:.5f}, screen 0.3 size "
                             "screen {:.5f}, screen 0.45\n",
-                            1 - 0.9 * scale_room / figure.width, 18.0 / figure.width)
+                            1 - (scale_room - 10) / figure.width, 18.0 / figure.width)
                       : std::string("unset colorbox\n");
         script += margins(figure, boxes[i]) + script_of(figure.panels[i], fmt::format("p{}", i));
     }

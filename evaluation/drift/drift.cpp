@@ -150,7 +150,6 @@ Figure figure_of(const Table& table, const Plan& plan) {
         "in any update, as a part of the data's range, over all volumes and speeds.";
     figure.columns = 2;
     figure.panels = {density_panel(table, plan), rate_panel(table, plan)};
-    figure.key_columns = 6;
     return figure;
 }
 

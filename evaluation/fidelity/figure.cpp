@@ -52,7 +52,6 @@ Figure empty_figure(std::size_t columns) {
     figure.width = 1500;
     figure.height = 600;
     figure.columns = columns;
-    figure.key_columns = 3;
     return figure;
 }
 

@@ -130,7 +130,6 @@ Figure penetration_figure(const Table& table, const std::vector<PressingLine>& l
     figure.columns = std::min(lines.size(), most_columns);
     figure.width = figure.columns == 1 ? 1000 : 140 + 545 * int(figure.columns);
     figure.height = 900;
-    figure.key_columns = 5;
     figure.caption = fmt::format(
         "What the hand feels going straight in (solid) and out again (dashed), against its "
         "depth past the first surface. Above: the level felt, where there is contact; grey: the "

@@ -84,7 +84,6 @@ Figure performance_figure(const Table& table) {
         "the means that the paper gives for its haptic loop, on its machine. Circles: the median "
         "when all caches were emptied before the update.";
     figure.height = 900;
-    figure.key_columns = 8;
     figure.panels = {panel_of(table.where("method", "exact"), "exact"),
                      panel_of(table.where("method", "paper"), "the paper's method")};
     return figure;

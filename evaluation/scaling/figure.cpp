@@ -8,6 +8,8 @@
 #include <cmath>
 #include <string>
 
+#include "evaluation/scaling/report.hpp"
+
 namespace palpate::evaluation {
 namespace {
 
@@ -89,7 +91,6 @@ Figure growth_figure(const Table& table) {
     }
     figure.columns = 2;
     figure.height = figure.panels.size() > 2 ? 900 : 480;
-    figure.key_columns = 5;
     return figure;
 }
 
@@ -119,11 +120,6 @@ constexpr std::array<Curve, 4> memory_curves{
      {"dynamic: the proxy", dynamic_change, "state_bytes", 1},
      {"both: the samples", samples_look, "samples_bytes", 1}}};
 
-std::string label_time(double seconds) {
-    if (seconds < 1e-3) return fmt::format("{:.2g} µs", 1e6 * seconds);
-    return seconds < 1 ? fmt::format("{:.2g} ms", 1e3 * seconds) : fmt::format("{:.2g} s", seconds);
-}
-
 /// Lines through the balls, single marks for other volumes.
 void add_curve(Panel& panel, const Table& table, const Curve& curve, bool has_times) {
     Series balls{Draw::line_points, curve.title, curve.look, {}};
@@ -147,7 +143,7 @@ void add_curve(Panel& panel, const Table& table, const Curve& curve, bool has_ti
     }
     if (has_times && curve.is_named && !balls.rows.empty()) {
         Series time{Draw::text, "", {curve.look.colour}, {balls.rows.back()}};
-        time.labels = {label_time(balls.rows.back()[1])};
+        time.labels = {time_text(balls.rows.back()[1])};
         time.text.up = 0.9;
         panel.series.push_back(std::move(time));
     }
@@ -167,7 +163,6 @@ Figure explicit_figure(const Table& all) {
         "volume; single marks: other volumes.";
     figure.height = 640;
     figure.columns = 2;
-    figure.key_columns = 3;
     const std::vector<double> samples = table.numbers("samples");
     Panel time, memory;
     time.x = {.title = "size of the volume [samples]",
@@ -182,8 +177,7 @@ Figure explicit_figure(const Table& all) {
     time.title = "time until the new surface is felt";
     time.y = {.title = "time", .is_logarithmic = true, .low = 1e-7, .high = 100};
     for (double seconds = 1e-7; seconds < 20; seconds *= 10) {
-        time.y.ticks.push_back(
-            {seconds, seconds < 5e-7 ? std::string("100 ns") : label_time(1.0001 * seconds)});
+        time.y.ticks.push_back({seconds, time_text(1.0001 * seconds)});
     }
     memory.title = "memory that it takes";
     memory.y = {.title = "memory",

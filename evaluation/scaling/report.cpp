@@ -74,13 +74,13 @@ std::vector<Claim> scaling_claims(const Table& table, bool own_volumes) {
     return claims;
 }
 
-namespace {
-
 std::string time_text(double seconds) {
     if (seconds < 1e-6) return fmt::format("{:.0f} ns", 1e9 * seconds);
     if (seconds < 1e-3) return fmt::format("{:.3g} µs", 1e6 * seconds);
     return seconds < 1 ? fmt::format("{:.3g} ms", 1e3 * seconds) : fmt::format("{:.3g} s", seconds);
 }
+
+namespace {
 
 std::string span_text(const Extent& ns) {
     const auto low = fmt::format("{:.0f}", ns.smallest), high = fmt::format("{:.0f}", ns.largest);

@@ -19,6 +19,8 @@ inline constexpr UsualTouch usual;
 
 /// `own_volumes`: the experiment's, about which more is known than about a user's.
 std::vector<Claim> scaling_claims(const Table& table, bool own_volumes);
+/// A time with its unit, to three digits: 120 ns, 4.5 ms.
+std::string time_text(double seconds);
 std::string scaling_paragraph(const Table& table, bool own_volumes);
 
 }  // namespace palpate::evaluation

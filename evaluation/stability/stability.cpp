@@ -196,7 +196,6 @@ Figure profile_figure(const Table& table, const Plan& plan) {
         "which stills small limit cycles.";
     figure.height = 520;
     figure.columns = 2;
-    figure.key_columns = 6;
     for (const std::string part : {"profiles", "profiles without friction"}) {
         Panel panel;
         panel.title = part == "profiles" ? "as they are" : "without friction";

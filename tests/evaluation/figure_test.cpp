@@ -37,12 +37,20 @@ TEST(Figure, every_way_to_draw_a_series_is_drawn_with_its_title_in_the_key) {
     }
     figure.panels[1].title = "to the right";
     const std::string svg = svg_of(figure);
+    const auto count = [](const std::string& text, const char* what) {
+        std::size_t found = 0;
+        for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) {
+            ++found;
+        }
+        return found;
+    };
     for (const char* text : {"an area", "polygons", "boxes", "segments", "a line", "points", "both",
                              "a level", "some text", "to the right"}) {
         EXPECT_TRUE(contains(svg, text)) << text;
     }
-    const std::size_t first = svg.find("a level");
-    EXPECT_EQ(svg.find("a level", first + 1), std::string::npos);  // in the key once
+    figure.panels.pop_back();
+    figure.columns = 1;
+    EXPECT_EQ(count(svg, "a level"), count(svg_of(figure), "a level"));  // in the key once
 }
 
 TEST(Figure, a_map_has_a_scale_of_colours_and_its_texts) {

@@ -111,8 +111,11 @@ TEST(ExplicitApproach, extracts_the_surface_that_is_felt_on_every_type_and_an_ob
         scenes::Scene scene = scenes::make_volume("sphere", geometry, type);
         const Subject subject{"sphere", Field(std::move(scene.volume)), scene.isovalue, {}, ""};
         const auto trajectories = explore(subject, {.trajectories = 2, .trajectory_s = 0.5});
-        const auto segments = segments_of(subject, trajectories, 100);
+        auto segments = segments_of(subject, trajectories, 100);
         EXPECT_EQ(segments.size(), 100U);
+        // A hand that has only just touched may end between the two triangulations.
+        std::erase_if(segments, [](const Segment& s) { return (s.to - s.from).norm() < 0.5; });
+        EXPECT_GT(segments.size(), 90U);
         const ExplicitAnswer answer = explicit_cost(subject, segments, 1, [] {});
         ASSERT_EQ(answer.failure, "");
         const Difference difference = difference_of(subject, segments, answer.hits);

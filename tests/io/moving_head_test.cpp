@@ -1,5 +1,5 @@
-// A head that turns from frame to frame: the proxy under a surface that moves. Needs the data folder
-// beside the project; skipped without it.
+// A head that turns from frame to frame: the proxy under a surface that moves. Needs the data
+// folder beside the project; skipped without it.
 #include <gtest/gtest.h>
 
 #include <filesystem>
