@@ -61,8 +61,9 @@ void add_view(CLI::App& app, const Words& words) {
     CLI::App* command =
         app.add_subcommand("view", "Look at a volume while feeling it, in a window");
     command->footer(
-        "Without a VOLUME the window is empty: open a file there, or drop one on it. ? lists the "
-        "shortcuts.\n\nExample:\n  palpate view head.nrrd --device mouse");
+        "Without a VOLUME a CT of a head that comes with the program is shown; open or drop "
+        "another "
+        "file there. ? lists the shortcuts.\n\nExample:\n  palpate view head.nrrd --device mouse");
     options->add_to(*command);
     command->callback([options, words] {
         options->check();

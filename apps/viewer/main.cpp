@@ -14,6 +14,8 @@
 #include "apps/viewer/window/appearance.hpp"
 #include "apps/viewer/window/main_window.hpp"
 #include "apps/viewer/window/screenshot.hpp"
+#include "palpate/io/error.hpp"
+#include "palpate/io/sample_volume.hpp"
 
 namespace {
 
@@ -28,6 +30,19 @@ void on_signal(int number) {
 int fail(const std::string& text, int status) {
     std::fprintf(stderr, "palpate: %s\n", text.c_str());
     return status;
+}
+
+/// Without arguments the window begins with the sample volume, felt at the skin; empty where it is
+/// not installed.
+void begin_with_sample(app::ViewOptions& options) {
+    if (options.has_volume() || !options.session.empty() || !options.play.empty()) return;
+    try {
+        options.run.source.volume() = io::sample_volume_path().string();
+    } catch (const io::InputError&) {
+        return;
+    }
+    auto& isovalue = options.run.given.field.isovalue;
+    if (!isovalue) isovalue = io::sample_volume_skin;
 }
 
 void open(viewer::MainWindow& window, const app::ViewOptions& options) {
@@ -74,6 +89,7 @@ int main(int argc, char** argv) {
         app::refuse_empty_values(command, argc, argv);
         command.parse(argc, argv);
         options.check();
+        begin_with_sample(options);
     } catch (const CLI::Success& e) {
         return command.exit(e);
     } catch (const CLI::ParseError& e) {
