@@ -164,7 +164,7 @@ std::string script_of(const Axis& axis, const std::string& name) {
     }
     const auto end = [](double at) { return std::isnan(at) ? std::string("*") : number(at); };
     return fmt::format(
-        "{0} logscale {1}\nset {1}label {2} noenhanced\nset {1}range [{3}:{4}] noextend\n"
+        "{0} logscale {1}\nset {1}label {2} noenhanced\nset {1}range [{3}:{4}]\n"
         "set format {1} {5}\nset {1}tics {6} {7}\n",
         axis.is_logarithmic ? "set" : "unset", name, in_quotes(axis.title), end(axis.low),
         end(axis.high), in_quotes(axis.has_labels ? axis.format : ""), ticks,

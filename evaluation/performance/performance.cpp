@@ -51,6 +51,7 @@ std::vector<Case> cases_of(const Options& options) {
     std::string missing;
     for (const auto& [name, for_which] : wanted) {
         if (auto subject = real(options.data, name)) {
+            if (subject->name == "neuron") subject->name = "other-neuron";
             stand_in(std::move(*subject), for_which);
         } else {
             missing += (missing.empty() ? "" : ", ") + std::string(name);

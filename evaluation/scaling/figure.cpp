@@ -175,8 +175,8 @@ Figure explicit_figure(const Table& all) {
     }
     memory.x = time.x;
     time.title = "time until the new surface is felt";
-    time.y = {.title = "time", .is_logarithmic = true, .low = 1e-7, .high = 100};
-    for (double seconds = 1e-7; seconds < 20; seconds *= 10) {
+    time.y = {.title = "time", .is_logarithmic = true, .low = 1e-8, .high = 100};
+    for (double seconds = 1e-8; seconds < 20; seconds *= 10) {
         time.y.ticks.push_back({seconds, time_text(1.0001 * seconds)});
     }
     memory.title = "memory that it takes";
