@@ -191,7 +191,6 @@ TEST(Proxy, allocates_nothing_in_a_hundred_thousand_updates) {
             Hand hand(test.field.geometry(), 37);
             Proxy proxy;
             proxy.isovalue = test.isovalue;
-            int recovering = 0;
             const std::int64_t before = allocation_count();
             for (int i = 0; i < scaled(100000); ++i) {
                 // Every now and then the isovalue moves, so that recovery is among them.
@@ -200,8 +199,7 @@ TEST(Proxy, allocates_nothing_in_a_hundred_thousand_updates) {
                     proxy.isovalue = test.isovalue + off * test.field.range();
                 }
                 const ProxySettings settings{.friction = {i % 2 * 0.4, i % 2 * 0.2}};
-                const auto r = method(proxy, test.field, hand.next(), settings, {});
-                recovering += r.status == UpdateStatus::recovering;
+                method(proxy, test.field, hand.next(), settings, {});
             }
             ASSERT_EQ(allocation_count() - before, 0) << test.name;
         }

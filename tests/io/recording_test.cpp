@@ -220,7 +220,7 @@ TEST(Recording, a_damaged_one_is_an_input_error_that_names_the_file) {
     expect(refusal(with("recording 1", "recording 2")), "later version");
     expect(refusal(with("\"version\": ", "\"version\" ")), "not valid JSON");
     expect(refusal(with("\"version\"", "\"edition\"")), "'version' is missing");
-    expect(refusal(with("\"stiffness\": 0.5", "\"stiffness\": \"hard\"")), "'stiffness'");
+    expect(refusal(with("\"stiffness\": 0.5", "\"stiffness\": \"hard\"")), "'force.stiffness'");
     expect(refusal(with("\"range_count\": 2", "\"range_count\": 1000")), "range_count");
     expect(refusal(with("\"float32\"", "\"int5\"")), "sample type");
     expect(refusal(with("# command {", "# command [")), "is not valid");

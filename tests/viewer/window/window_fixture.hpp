@@ -43,6 +43,10 @@ class InWindow : public testing::Test {
         QSettings::setPath(QSettings::NativeFormat, QSettings::UserScope,
                            QString::fromStdString(scratch_.path().string()));
         QSettings().clear();
+        // A window of another test that was closed told the application to quit, and no dialog runs
+        // an event loop until one of the application's own has ended.
+        QTimer::singleShot(0, [] { QApplication::exit(0); });
+        QApplication::exec();
         open_window("mouse");
     }
     void TearDown() override {
