@@ -121,7 +121,9 @@ void check(const Command& command, const RendererSettings& settings, Solid solid
     check(changed);
 }
 
-void apply(Session& session, const Command& command) noexcept {
+// std::visit throws only for a variant without a value, and check() has visited this one.
+void apply(Session& session,  // NOLINT(bugprone-exception-escape)
+           const Command& command) noexcept {
     Renderer& renderer = session.renderer;
     RendererSettings& settings = renderer.settings;
     Field& field = renderer.field;

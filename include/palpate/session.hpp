@@ -133,7 +133,8 @@ void check(const command::Samples& samples, const Geometry& geometry);
 
 /// Carries out a command that passed check(). Never throws or allocates; frees the samples that it
 /// replaces unless somebody else holds them (Servo::send() does).
-void apply(Session& session, const Command& command) noexcept;
+void apply(Session& session,  // NOLINT(bugprone-exception-escape)
+           const Command& command) noexcept;
 
 /// Keeps the smaller of the session's device limits and these, and lowers the force settings as far
 /// as needed (stable()). True if that changed anything.
