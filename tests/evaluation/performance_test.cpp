@@ -40,7 +40,9 @@ TEST(Performance, same_seed_gives_the_same_table_but_for_the_times) {
 
 TEST(Performance, on_a_body_too_ragged_for_the_hand_there_is_a_note_and_no_claim) {
     Options options = quick_options();
-    options.subjects.push_back(synthetic("noise:32x32x32"));
+    // On larger noise the hand keeps to its targets for one seed in six, and which seeds these are
+    // depends on the last bits of the processor's sines.
+    options.subjects.push_back(synthetic("noise:4x4x4"));
     std::string notes;
     options.note = [&](const std::string& text) { notes += text; };
     EXPECT_EQ(performance(options).claims.size(), 1U);
