@@ -28,7 +28,7 @@ Data::Data(LoadedVolume loaded, const PlaybackSetup& playback)
 VolumeEditor& Data::editor() const {
     if (editor_) return *editor_;
     throw std::invalid_argument(
-        "a sequence cannot be edited: open one frame of it (--time-step N)");
+        "a sequence cannot be edited: open one frame of it by its time step");
 }
 
 Player& Data::player() const {

@@ -76,7 +76,7 @@ OfflineSummary render_offline(Renderer& renderer, const io::Trajectory& trajecto
     if (!place(renderer.proxy, renderer.field, first, renderer.proxy.isovalue)) {
         throw std::invalid_argument(
             "no free space was found at this isovalue: everything is solid; choose another "
-            "isovalue or --background");
+            "isovalue or background");
     }
     OfflineSummary summary;
     std::vector<std::int64_t> times;

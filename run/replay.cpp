@@ -85,7 +85,7 @@ Session recorded_session(const io::RecordingHead& head, const LoadedVolume& load
         now.crc32 != head.volume.crc32) {
         throw io::InputError(loaded.name +
                              ": is not the volume of the recording (its size, type "
-                             "or samples differ): name the right one with --volume");
+                             "or samples differ): name the right one");
     }
     try {
         RendererSettings settings = head.settings;

@@ -32,7 +32,7 @@ std::unique_ptr<Device> open_for(const Field& field, double isovalue, const Setu
     if (!(rate >= 250 && rate <= 8000)) {
         std::string text;
         io::append_number(text, rate);
-        throw std::invalid_argument("--rate " + text + ": a live session runs at 250 to 8000 Hz");
+        throw std::invalid_argument("rate " + text + " Hz: a live session runs at 250 to 8000 Hz");
     }
     return devices::open_device(setup.device, {field, isovalue, rate, [&](const DeviceInfo& info) {
                                                    return transform_for(field.geometry(), info,

@@ -18,15 +18,15 @@ std::optional<double> background_in(const Volume& volume, const FieldSetup& setu
 }
 
 /// The device's bit for a button; 0 for none.
-std::uint32_t bit_of(const ButtonSetup& setup, const char* option, int buttons) {
+std::uint32_t bit_of(const ButtonSetup& setup, const char* purpose, int buttons) {
     if (std::holds_alternative<std::monostate>(setup)) return 0;
     if (std::holds_alternative<UsualButton>(setup)) {
         return buttons == 0 ? 0 : buttons == 1 ? 1U : 2U;
     }
     const int number = std::get<Button>(setup).number;
-    const std::string what = option + (" " + std::to_string(number));
+    const std::string what = purpose + (" button " + std::to_string(number));
     if (number < 1 || number > 32) {
-        throw std::invalid_argument(what + ": a button's number from 1, or none");
+        throw std::invalid_argument(what + ": a button's number is 1 to 32");
     }
     if (number > buttons) {
         throw std::invalid_argument(what + ": the device has " + std::to_string(buttons) +
@@ -77,7 +77,7 @@ double isovalue_of(const LoadedVolume& loaded, const FieldSetup& setup) {
 RendererSettings render_settings(const RenderSetup& setup, const Field& field, double isovalue,
                                  const DeviceLimits& limits) {
     if (setup.friction && setup.method.method != &update_exact) {
-        throw std::invalid_argument("--friction is for --method exact; the others have none");
+        throw std::invalid_argument("friction is for the method exact; the others have none");
     }
     RendererSettings settings;
     settings.method = setup.method.method;
@@ -127,8 +127,8 @@ Session make_session(const Field& field, double isovalue, const DeviceInfo& info
     RendererSettings settings = render_settings(render, field, isovalue, info.limits);
     settings.transform = transform_for(field.geometry(), info, setup);
     Session session{make_renderer(field, isovalue, settings), {}};
-    session.settings.clutch_buttons = bit_of(setup.clutch, "--clutch", info.buttons);
-    session.settings.deadman_buttons = bit_of(setup.deadman, "--dead-man", info.buttons);
+    session.settings.clutch_buttons = bit_of(setup.clutch, "clutch", info.buttons);
+    session.settings.deadman_buttons = bit_of(setup.deadman, "dead-man", info.buttons);
     if (session.settings.clutch_buttons & session.settings.deadman_buttons) {
         throw std::invalid_argument("clutch and dead-man switch are the same button: name another");
     }

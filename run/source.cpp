@@ -53,14 +53,15 @@ LoadedVolume make_beating(const Source& source, const scenes::Scene& first) {
 LoadedVolume loaded_of(const SyntheticSource& synthetic, const Source& source,
                        const io::Progress&) {
     if (source.frame && !is_beating(synthetic.scene)) {
-        throw std::invalid_argument("--time-step is for sequences");
+        throw std::invalid_argument(name_of(source) + ": is no sequence, so it has no time steps");
     }
     const scenes::Scene scene = scenes::make_volume(synthetic.scene, synthetic.type);
     return is_beating(synthetic.scene) ? make_beating(source, scene) : loaded_from(scene, source);
 }
 
 LoadedVolume loaded_of(const LiveSource& live, const Source& source, const io::Progress&) {
-    if (source.smooth > 0) throw std::invalid_argument("--smooth is not for live sources");
+    if (source.smooth > 0)
+        throw std::invalid_argument(live.path + ": a live source cannot be smoothed");
     auto frames = std::make_shared<const io::LiveFrames>(live.path);
     const std::shared_ptr<const Samples> samples = frames->wait(longest_wait);
     if (!samples) {

@@ -63,12 +63,12 @@ FileSource with_layout(FileSource file, const Names& names) {
 SyntheticSource with_type(SyntheticSource synthetic, const Names& names) {
     if (names.contains("dims") || names.contains("spacing")) {
         throw std::invalid_argument(
-            "--dims and --spacing are for files; a synthetic volume's size is part of its name: "
+            "dims and spacing are for files; a synthetic volume's size is part of its name: "
             "synthetic:NAME:WxHxD");
     }
     const auto skip = io::number_from<std::uint64_t>(value_of(names, "skip")).value_or(0);
     if (names.contains("series") || skip != 0) {
-        throw std::invalid_argument("--series and --skip are for files");
+        throw std::invalid_argument("series and skip are for files");
     }
     const std::string type = value_of(names, "type");
     if (!type.empty()) synthetic.type = sample_type_from(type);

@@ -17,6 +17,8 @@ void add_replay(CLI::App& app);
 void add_extract(CLI::App& app);
 void add_render(CLI::App& app);
 void add_demo(CLI::App& app);
+void add_demo_sculpt(CLI::App& demo);
+void add_demo_beating(CLI::App& demo);
 void add_evaluate(CLI::App& app);
 
 /// Thrown by evaluate when all results are written: exit status 1.

@@ -1,29 +1,21 @@
 // palpate demo sculpt and palpate demo beating: data that change while a simulated hand feels them,
 // as an animation.
-#include "apps/palpate/demo_changing.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <memory>
 
-#include "apps/options/render_options.hpp"
-#include "apps/options/source_options.hpp"
 #include "apps/palpate/commands.hpp"
-#include "apps/palpate/demo_parts.hpp"
-#include "apps/palpate/offline_summary.hpp"
+#include "apps/palpate/demo_run.hpp"
+#include "apps/palpate/picture.hpp"
 #include "apps/palpate/progress.hpp"
 #include "apps/palpate/result_folder.hpp"
-#include "evaluation/html.hpp"
 #include "palpate/editor.hpp"
 #include "palpate/run/brush.hpp"
-#include "palpate/scenes/motions.hpp"
 #include "pictures/animation.hpp"
 #include "pictures/contact.hpp"
 #include "pictures/levels.hpp"
-#include "pictures/picture.hpp"
 #include "pictures/view.hpp"
 
 namespace palpate::app {
@@ -36,179 +28,87 @@ constexpr std::int64_t brush_interval = 4;
 /// [mm] Distance from which the hand of `beating` comes.
 constexpr double approach = 12;
 
-struct ChangingOptions {
-    SourceOptions source;
-    run::FieldSetup field;
-    RenderOptions render;
+struct ChangingOptions : DemoOptions {
     run::HandBrush brush;
-    std::string motion = "slide";
-    scenes::MotionSettings hand{.duration_s = 4, .depth_mm = 3};
     int beats = 4;
     int pictures = 24;
-    int picture_width = 480;  ///< [pixels]
-    std::string output;
+};
+
+/// Which moments the animation shows.
+struct Animation {
+    std::int64_t first = 0;  ///< tick of the first picture
+    double seconds_per_picture = 0.1;
+    std::optional<pictures::View> view = {};  ///< nothing: a view of the contact
 };
 
 /// A moment of which a picture is made.
-struct Image {
+struct Moment {
     Field field;
     io::TraceRow row;
 };
 
-struct ChangingDemo {
-    run::LoadedVolume loaded;
-    Field field;
-    double isovalue;
-    std::string what;  ///< in a sentence
-    io::Trajectory trajectory;
-    std::function<void(Renderer&, std::int64_t tick)> change;
-    std::int64_t first_image = 0;             ///< tick of the first picture
-    double seconds_per_picture = 0.1;         ///< of the animation
-    std::optional<pictures::View> view = {};  ///< nothing: a view of the contact
-    std::vector<io::TraceRow> rows = {};
-    std::vector<Image> images = {};
-    run::OfflineSummary summary = {};
-};
-
-/// Renders the motion while the data change.
-void feel(ChangingDemo& demo, const ChangingOptions& options, const fs::path& folder) {
-    Renderer renderer =
-        make_renderer(demo.field, demo.isovalue,
-                      run::offline_settings(options.render.setup(), demo.field, demo.isovalue));
-    write_trajectory(demo.trajectory, folder / "trajectory.csv");
-    io::TraceWriter trace(folder / "trace.csv");
-    const auto ticks = static_cast<std::int64_t>(demo.trajectory.time.size());
-    const std::int64_t span = ticks - demo.first_image;
-    const auto image_tick = [&](std::size_t i) {
-        return demo.first_image + span * static_cast<std::int64_t>(i) / options.pictures;
-    };
-    ProgressBar bar("feeling", options.source.quiet);
-    run::OfflineSinks sinks;
-    sinks.change = demo.change;
-    sinks.row = [&](const io::TraceRow& row) {
-        trace.add(row);
-        const auto tick = static_cast<std::int64_t>(demo.rows.size());
-        demo.rows.push_back(row);
-        const bool wanted = demo.images.size() < static_cast<std::size_t>(options.pictures);
-        if (wanted && tick >= image_tick(demo.images.size())) {
-            demo.images.push_back({renderer.field, row});
-        }
-    };
-    sinks.progress = [&](double fraction) { bar.at(fraction); };
-    demo.summary = run::render_offline(renderer, demo.trajectory, sinks);
-    trace.commit();
-    demo.field = renderer.field;
-}
-
-pictures::PictureScene picture_of(const ChangingDemo& demo, const Image& image, int width,
-                                  const Vec3& towards) {
-    pictures::PictureScene scene;
-    scene.width = width;
-    scene.height = std::max(width * 4 / 5, 16);
-    scene.title = demo.loaded.name;
-    pictures::add_levels(scene, image.field, std::array{demo.isovalue});
+pictures::PictureScene picture_of(const Demo& demo, const Moment& moment,
+                                  pictures::PictureScene scene, const pictures::View& view) {
     // Directed by the grid, not by the surface: that changes from picture to picture.
     pictures::PictureScene grid = scene;
-    const SampleBox box = whole_box(image.field.geometry());
-    grid.surfaces.clear();
+    const Geometry& geometry = moment.field.geometry();
+    const SampleBox box = whole_box(geometry);
     for (const Index3& corner : {box.low, box.high}) {
-        grid.balls.push_back(
-            {physical_from_index(image.field.geometry(), corner.cast<double>()), 1, {}, {}});
+        grid.balls.push_back({physical_from_index(geometry, corner.cast<double>()), 1, {}, {}});
     }
-    pictures::frame(
-        grid, demo.view.value_or(pictures::natural_view(image.field.geometry(), towards)), 1.3);
+    pictures::frame(grid, view, 1.3);
     scene.camera = grid.camera;
-    pictures::Contact contact{image.row.scp, image.row.hip, {}};
-    if (image.row.force.norm() > 0) contact.force = image.row.force;
+    pictures::add_levels(scene, moment.field, std::array{demo.isovalue});
+    pictures::Contact contact{moment.row.scp, moment.row.hip, {}};
+    if (moment.row.force.norm() > 0) contact.force = moment.row.force;
     pictures::add_contact(scene, contact);
     return scene;
 }
 
-/// The animation and the last of its pictures. Empty if it worked, else why there is none.
-std::string draw(const ChangingDemo& demo, const ChangingOptions& options, const fs::path& folder) {
+/// Writes the animation and the last of its pictures.
+void animate(const Demo& demo, const std::vector<Moment>& moments, const Animation& animation,
+             const ChangingOptions& options, const fs::path& folder) {
+    const Geometry& geometry = demo.field.geometry();
     Vec3 towards = Vec3::Zero();
-    for (const Image& image : demo.images) {
-        towards += image.row.scp - physical_centre(demo.field.geometry());
-    }
-    pictures::DrawOptions draw;
-    draw.waiting = [] { stop_if_interrupted(); };
+    for (const Moment& moment : moments) towards += moment.row.scp - physical_centre(geometry);
+    const pictures::View view = animation.view.value_or(pictures::natural_view(geometry, towards));
     std::vector<std::string> pngs;
     ProgressBar bar("drawing", options.source.quiet);
-    try {
-        for (const Image& image : demo.images) {
-            const auto scene = picture_of(demo, image, options.picture_width, towards);
-            pngs.push_back(pictures::png_of(scene, draw));
-            bar.at(static_cast<double>(pngs.size()) / static_cast<double>(demo.images.size()));
-        }
-    } catch (const io::OutputError& e) {
-        stop_if_interrupted();  // Ctrl-C ends the helper too, which is not its failure
-        return e.what();
+    for (const Moment& moment : moments) {
+        pngs.push_back(draw(picture_of(demo, moment, scene_of(demo, options), view)));
+        bar.at(static_cast<double>(pngs.size()) / static_cast<double>(moments.size()));
     }
-    io::PendingFile animation(folder / "animation.png");
-    animation.write(pictures::animation_of(pngs, demo.seconds_per_picture));
-    animation.commit();
-    io::PendingFile last(folder / "surface.png");
-    last.write(pngs.back());
-    last.commit();
-    return {};
+    write_file(folder / "animation.png",
+               pictures::animation_of(pngs, animation.seconds_per_picture));
+    write_file(folder / "surface.png", pngs.back());
 }
 
-void write_report(const ChangingDemo& demo, bool drawn, bool plotted, const fs::path& path) {
-    std::string html = fmt::format(
-        "<!DOCTYPE html>\n<html lang=\"en\"><meta charset=\"utf-8\"><title>Palpate demo</title>\n"
-        "<style>body{{font-family:sans-serif;max-width:60em;margin:2em auto}}img{{max-width:100%}}"
-        "</style>\n<h1>Palpate demo</h1>\n<p>{} Isovalue {:g} of <b>{}</b>.</p>\n<pre>{}</pre>\n",
-        evaluation::html_text(demo.what), demo.isovalue, evaluation::html_text(demo.loaded.name),
-        summary_text(demo.summary));
-    if (drawn) {
-        html +=
-            "<p><img src=\"animation.png\" alt=\"The surface while it changes\"><br>Blue: the "
-            "hand (HIP). Vermilion: the proxy (SCP). Green: the force.</p>\n";
-    }
-    if (plotted) {
-        html += "<p><img src=\"session.png\" alt=\"Depth, force and density over time\"></p>\n";
-    }
-    html +=
-        "<p>Data: <a href=\"trajectory.csv\">trajectory.csv</a> (the hand), <a "
-        "href=\"trace.csv\">trace.csv</a> (a row a tick).</p>\n</html>\n";
-    io::PendingFile file(path);
-    file.write(html);
-    file.commit();
-}
-
-/// Feels, draws and reports; `more` adds files of its own to the results.
-void run(ChangingDemo& demo, const ChangingOptions& options,
-         const std::function<void(const fs::path& folder)>& more = {}) {
-    ResultFolder results(options.output);
-    const fs::path& folder = results.part();
-    feel(demo, options, folder);
-    const std::string no_picture = draw(demo, options, folder);
-    if (!no_picture.empty() && !options.source.quiet) {
-        fmt::print(stderr, "palpate: note: {}\n", no_picture);
-    }
-    const bool plotted = plot_trace(folder, folder / "session.png", demo.rows.size()) &&
-                         plot_trace(folder, folder / "session.svg", demo.rows.size());
-    if (more) more(folder);
-    stop_if_interrupted();
-    write_report(demo, no_picture.empty(), plotted, folder / "report.html");
-    results.complete();
-    if (options.source.quiet) return;
-    fmt::print("{}\n{}", demo.what, summary_text(demo.summary));
-    if (!plotted) fmt::print("No figure over time: gnuplot is not installed.\n");
-    fmt::print("Results: {} (open report.html)\n", options.output);
+/// Feels, keeps the moments of the animation, draws and reports.
+void run_changing(Demo& demo, const Animation& animation, const ChangingOptions& options,
+                  const std::function<void(const fs::path& folder)>& more = {}) {
+    std::vector<Moment> moments;
+    const auto ticks = static_cast<std::int64_t>(demo.trajectory.time.size());
+    demo.after = [&](const Renderer& renderer, const io::TraceRow& row) {
+        const auto number = static_cast<std::int64_t>(moments.size());
+        const std::int64_t due =
+            animation.first + (ticks - animation.first) * number / options.pictures;
+        const auto tick = static_cast<std::int64_t>(demo.rows.size()) - 1;
+        if (number < options.pictures && tick >= due) moments.push_back({renderer.field, row});
+    };
+    run_demo(demo, options,
+             {"animation.png", "The surface while it changes",
+              "Blue: the hand (HIP). Vermilion: the proxy (SCP). Green: the force.",
+              [&](const fs::path& folder) { animate(demo, moments, animation, options, folder); }},
+             more);
 }
 
 void sculpt(const ChangingOptions& options) {
     run::check(options.brush);
-    run::LoadedVolume loaded = load_for_terminal(options.source);
-    const Field field = run::make_field(loaded.volume, options.field);
-    const double isovalue = suggested_isovalue(loaded, field, options.field);
-    ChangingDemo demo{std::move(loaded), field, isovalue, {}, {}, {}};
-    demo.trajectory =
-        trajectory_of(scenes::make_motion(options.motion, field, isovalue, options.hand));
-    demo.what =
-        fmt::format("A simulated hand ({}) with a brush that will {} {:g} mm about the proxy.",
-                    options.motion, name_of(options.brush.kind), options.brush.radius);
+    Demo demo = load_demo(options);
+    demo.trajectory = motion_of(demo, options);
+    demo.hand = fmt::format("A simulated hand ({}) with a brush ({}, {:g} mm)", options.motion,
+                            name_of(options.brush.kind), options.brush.radius);
+    const Field field = demo.field;
     Editor editor(field.shared_samples());
     std::optional<Vec3> from;
     const double dt = static_cast<double>(brush_interval) / options.hand.rate_hz;
@@ -225,10 +125,10 @@ void sculpt(const ChangingOptions& options) {
         field_will_change(renderer.proxy, renderer.field);
         renderer.field.use(editor.samples());
     };
-    demo.seconds_per_picture = options.hand.duration_s / options.pictures;
-    run(demo, options, [&](const fs::path& folder) {
-        io::write_volume(flattened(*editor.samples()), folder / "edited.nrrd");
-    });
+    run_changing(demo, {.seconds_per_picture = options.hand.duration_s / options.pictures}, options,
+                 [&](const fs::path& folder) {
+                     io::write_volume(flattened(*editor.samples()), folder / "edited.nrrd");
+                 });
 }
 
 /// Comes to the surface from outside, along x, rests some millimetres deep and stays there.
@@ -266,46 +166,46 @@ std::shared_ptr<const Samples> all_frames(const run::LoadedVolume& loaded, bool 
 }
 
 void beating(const ChangingOptions& options) {
-    run::LoadedVolume loaded = load_for_terminal(options.source);
-    if (loaded.sequence.count() < 2) {
-        throw std::invalid_argument(loaded.name + ": is no sequence: it has one frame only");
+    Demo demo = load_demo(options);
+    const io::Sequence& sequence = demo.loaded.sequence;
+    if (sequence.count() < 2) {
+        throw std::invalid_argument(demo.loaded.name + ": is no sequence: it has one frame only");
     }
-    const Field first = run::make_field(loaded.volume, options.field);
-    const double isovalue = suggested_isovalue(loaded, first, options.field);
-    const Field field(all_frames(loaded, options.source.quiet), first.solid(), first.background());
-    const double period = loaded.sequence.period;
-    const double begin = loaded.sequence.times.front();
+    demo.field = Field(all_frames(demo.loaded, options.source.quiet), demo.field.solid(),
+                       demo.field.background());
+    const double period = sequence.period;
     const double rate = options.hand.rate_hz;
-    ChangingDemo demo{std::move(loaded), field, isovalue, {}, {}, {}};
-    demo.trajectory =
-        resting_hand(field, isovalue, options.hand.depth_mm, options.beats * period, rate);
-    demo.what = fmt::format("A hand rests {:g} mm deep in a surface that goes round in {:g} s.",
+    demo.trajectory = resting_hand(demo.field, demo.isovalue, options.hand.depth_mm,
+                                   options.beats * period, rate);
+    demo.hand = fmt::format("A hand that rests {:g} mm deep in a surface of period {:g} s",
                             options.hand.depth_mm, period);
-    demo.change = [begin, rate](Renderer& renderer, std::int64_t tick) {
+    demo.change = [begin = sequence.times.front(), rate](Renderer& renderer, std::int64_t tick) {
         field_will_change(renderer.proxy, renderer.field);
         renderer.field.set_time(begin + static_cast<double>(tick) / rate);
     };
     const auto ticks = static_cast<std::int64_t>(demo.trajectory.time.size());
-    demo.first_image = ticks - static_cast<std::int64_t>(period * rate);
-    demo.seconds_per_picture = period / options.pictures;
-    demo.view = pictures::view_from(25, 15);  // the hand comes from the side
-    run(demo, options);
+    run_changing(demo,
+                 {.first = ticks - static_cast<std::int64_t>(period * rate),
+                  .seconds_per_picture = period / options.pictures,
+                  .view = pictures::view_from(25, 15)},  // the hand comes from the side
+                 options);
 }
 
-void add_options(CLI::App& command, ChangingOptions& options) {
-    options.source.add_to(command, true);
-    add_field_options(command, options.field);
-    options.render.add_to(command);
-    command.add_option("--depth", options.hand.depth_mm, "How deep the hand presses [mm]")
-        ->capture_default_str();
-    command.add_option("--pictures", options.pictures, "How many the animation has")
+/// A subcommand with the options that both share.
+CLI::App* add_changing(CLI::App& demo, const char* name, const char* what,
+                       const std::shared_ptr<ChangingOptions>& options,
+                       void (*run)(const ChangingOptions&)) {
+    options->picture_width = 480;
+    CLI::App* command = demo.add_subcommand(name, what);
+    add_demo_options(*command, *options);
+    command->add_option("--pictures", options->pictures, "How many pictures the animation has")
         ->check(CLI::Range(2, 240))
         ->capture_default_str();
-    command.add_option("--picture", options.picture_width, "Width of the pictures [pixels]")
-        ->check(CLI::Range(16, 8192))
-        ->capture_default_str();
-    command.add_option("-o,--output", options.output, "Folder for the results")
-        ->capture_default_str();
+    command->callback([options, run] {
+        options->hand.rate_hz = options->render.given.rate;
+        run(*options);
+    });
+    return command;
 }
 
 }  // namespace
@@ -314,22 +214,19 @@ void add_demo_sculpt(CLI::App& demo) {
     auto options = std::make_shared<ChangingOptions>();
     options->source.volume() = "synthetic:shepp-logan";
     options->output = "palpate-sculpt";
+    options->motion = "slide";
     options->brush.radius = 5;
     options->brush.rate = 6;  // slow enough to be felt
+    options->hand.duration_s = 4;
     options->hand.depth_mm = 4;
-    CLI::App* command =
-        demo.add_subcommand("sculpt", "A simulated hand carves what it feels; an animation");
+    CLI::App* command = add_changing(
+        demo, "sculpt", "A simulated hand carves what it feels; an animation", options, sculpt);
     command->footer("Example:\n  palpate demo sculpt lobster.nrrd --isovalue 35 --radius 4");
-    add_options(*command, *options);
-    add_motion_options(*command, options->motion, options->hand);
+    add_motion_options(*command, *options);
     command->add_option("--radius", options->brush.radius, "Radius of the brush [mm]")
         ->capture_default_str();
     command->add_option("--brush-rate", options->brush.rate, "How fast the brush works [1/s]")
         ->capture_default_str();
-    command->callback([options] {
-        options->hand.rate_hz = options->render.given.rate;
-        sculpt(*options);
-    });
 }
 
 void add_demo_beating(CLI::App& demo) {
@@ -337,17 +234,13 @@ void add_demo_beating(CLI::App& demo) {
     options->source.volume() = "synthetic:beating";
     options->output = "palpate-beating";
     options->hand.depth_mm = 5;
-    CLI::App* command = demo.add_subcommand(
-        "beating", "A hand rests on a surface that moves, of a sequence; an animation");
+    CLI::App* command = add_changing(
+        demo, "beating", "A hand rests on a surface that moves, of a sequence; an animation",
+        options, beating);
     command->footer("Example:\n  palpate demo beating heart.nii.gz --isovalue 120");
-    add_options(*command, *options);
-    command->add_option("--beats", options->beats, "How often the sequence goes round")
+    command->add_option("--beats", options->beats, "How often the sequence is played")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
-    command->callback([options] {
-        options->hand.rate_hz = options->render.given.rate;
-        beating(*options);
-    });
 }
 
 }  // namespace palpate::app

@@ -10,6 +10,7 @@
 #include "apps/options/source_options.hpp"
 #include "apps/palpate/commands.hpp"
 #include "apps/palpate/outputs.hpp"
+#include "apps/palpate/picture.hpp"
 #include "apps/palpate/progress.hpp"
 #include "io/number.hpp"
 #include "palpate/force.hpp"
@@ -19,7 +20,6 @@
 #include "palpate/proxy.hpp"
 #include "pictures/contact.hpp"
 #include "pictures/levels.hpp"
-#include "pictures/picture.hpp"
 #include "pictures/view.hpp"
 
 namespace palpate::app {
@@ -155,9 +155,8 @@ Drawing drawing_of(const RenderPictureOptions& options) {
     const io::Way way = options.path.empty() ? io::Way{} : io::read_way(options.path);
     Drawing drawing;
     pictures::PictureScene& scene = drawing.scene;
-    scene.width = size_from(options.size)[0];
-    scene.height = size_from(options.size)[1];
-    scene.title = std::filesystem::path(loaded.name).filename().string();
+    const auto [width, height] = size_from(options.size);
+    scene = scene_of(loaded, width, height);
     {
         ProgressBar bar("extracting", options.source.quiet);
         const int every =
@@ -186,14 +185,7 @@ void render(const RenderPictureOptions& options) {
     (void)size_from(options.size);
     io::PendingFile file(options.output);
     const Drawing drawing = drawing_of(options);
-    pictures::DrawOptions draw;
-    draw.waiting = [] { stop_if_interrupted(); };
-    try {
-        file.write(pictures::png_of(drawing.scene, draw));
-    } catch (const io::OutputError&) {
-        stop_if_interrupted();  // Ctrl-C reaches the helper as well, and its end may be seen first
-        throw;
-    }
+    file.write(draw(drawing.scene));
     stop_if_interrupted();
     file.commit();
     if (!options.source.quiet && !is_standard_output(options.output)) {
@@ -228,7 +220,7 @@ void add_render(CLI::App& app) {
     command->add_option("-k,--stiffness", options->stiffness, "Stiffness of the spring [N/mm]")
         ->check(CLI::NonNegativeNumber)
         ->capture_default_str();
-    command->add_option("--path", options->path, "Way to draw: a trace or a path of replay")
+    command->add_option("--path", options->path, "Path to draw: a trace or a path of replay")
         ->type_name("FILE");
     auto* view = command
                      ->add_option("--view", options->view,

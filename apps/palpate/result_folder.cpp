@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "palpate/io/error.hpp"
+#include "palpate/io/output.hpp"
 
 namespace palpate::app {
 
@@ -42,6 +42,12 @@ void ResultFolder::complete() {
         }
     }
     complete_ = true;
+}
+
+void write_file(const fs::path& path, std::string_view bytes) {
+    io::PendingFile file(path);
+    file.write(bytes);
+    file.commit();
 }
 
 }  // namespace palpate::app

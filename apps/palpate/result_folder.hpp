@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string_view>
 
 namespace palpate::app {
 
@@ -26,5 +27,8 @@ class ResultFolder {
     bool is_new_ = false;
     bool complete_ = false;
 };
+
+/// A file, whole or not at all. Throws io::OutputError.
+void write_file(const std::filesystem::path& path, std::string_view bytes);
 
 }  // namespace palpate::app

@@ -1,0 +1,195 @@
+// Renders a demo's motion and writes its files.
+#include "apps/palpate/demo_run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "apps/palpate/commands.hpp"
+#include "apps/palpate/offline_summary.hpp"
+#include "apps/palpate/picture.hpp"
+#include "apps/palpate/progress.hpp"
+#include "apps/palpate/result_folder.hpp"
+#include "evaluation/figure.hpp"
+#include "evaluation/html.hpp"
+#include "io/plot.hpp"
+
+namespace palpate::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The trajectory of the hand as a file that replay reads.
+void write_trajectory(const io::Trajectory& trajectory, const fs::path& path) {
+    std::string text = "t,x,y,z\n";
+    for (std::size_t i = 0; i < trajectory.time.size(); ++i) {
+        const Vec3& p = trajectory.position[i];
+        text += fmt::format("{},{},{},{}\n", trajectory.time[i], p[0], p[1], p[2]);
+    }
+    write_file(path, text);
+}
+
+/// Renders the motion; writes trajectory, trace and path to files.
+void feel(Demo& demo, const DemoOptions& options, const fs::path& folder) {
+    Renderer renderer =
+        make_renderer(demo.field, demo.isovalue,
+                      run::offline_settings(options.render.setup(), demo.field, demo.isovalue));
+    write_trajectory(demo.trajectory, folder / "trajectory.csv");
+    io::TraceWriter trace(folder / "trace.csv");
+    std::optional<io::PathWriter> path;
+    run::OfflineSinks sinks;
+    if (!demo.change) {
+        path.emplace(folder / "path.csv");
+        sinks.corner = [&](std::int64_t tick, const Vec3& p) { path->add(tick, p); };
+    }
+    sinks.change = demo.change;
+    demo.rows.reserve(demo.trajectory.time.size());
+    sinks.row = [&](const io::TraceRow& row) {
+        trace.add(row);
+        demo.rows.push_back(row);
+        if (demo.after) demo.after(renderer, row);
+    };
+    ProgressBar bar("feeling", options.source.quiet);
+    sinks.progress = [&](double fraction) { bar.at(fraction); };
+    demo.summary = run::render_offline(renderer, demo.trajectory, sinks);
+    trace.commit();
+    if (path) path->commit();
+}
+
+/// Depth, force and density over time.
+evaluation::Figure figure_of(const std::vector<io::TraceRow>& rows) {
+    using namespace evaluation;
+    constexpr std::size_t most_points = 20'000;  // gnuplot takes a minute for a million
+    Series depth{Draw::line, "", {colours::blue}}, force{Draw::line, "", {colours::vermilion}};
+    Series density{Draw::line, "density at the SCP", {colours::green}};
+    Series isovalue{Draw::line, "isovalue", {.colour = colours::black, .dash = Dash::dashed}};
+    for (std::size_t i = 0; i < rows.size(); i += 1 + rows.size() / most_points) {
+        const io::TraceRow& row = rows[i];
+        depth.rows.push_back({row.t, (row.scp - row.hip).norm()});
+        force.rows.push_back({row.t, row.force.norm()});
+        density.rows.push_back({row.t, row.density});
+        isovalue.rows.push_back({row.t, row.isovalue});
+    }
+    Figure figure;
+    figure.width = 1000;
+    figure.height = 750;
+    const auto add_panel = [&](const char* title, std::vector<Series> series) {
+        Panel& panel = figure.panels.emplace_back();
+        panel.y.title = title;
+        panel.series = std::move(series);
+    };
+    add_panel("depth |SCP - HIP| [mm]", {depth});
+    add_panel("force [N]", {force});
+    add_panel("density", {density, isovalue});
+    figure.panels.back().x.title = "time [s]";
+    return figure;
+}
+
+/// False where gnuplot is missing or fails.
+bool plot(const std::vector<io::TraceRow>& rows, const fs::path& folder) {
+    if (!io::can_plot()) return false;
+    const evaluation::Figure figure = figure_of(rows);
+    try {
+        for (const char* name : {"session.png", "session.svg"}) {
+            evaluation::draw(figure, folder / name);
+        }
+    } catch (const io::OutputError&) {
+        return false;
+    }
+    return true;
+}
+
+std::string image_html(const std::string& file, const std::string& shows,
+                       const std::string& legend) {
+    return fmt::format("<p><img src=\"{}\" alt=\"{}\">{}</p>\n", file, shows,
+                       legend.empty() ? "" : "<br>" + legend);
+}
+
+std::string report_html(const Demo& demo, const std::string& images) {
+    const Index3& size = demo.field.geometry().size;
+    const std::string path =
+        demo.change ? "" : ", <a href=\"path.csv\">path.csv</a> (the path of the SCP)";
+    return fmt::format(
+        "<!DOCTYPE html>\n<html lang=\"en\"><meta charset=\"utf-8\"><title>Palpate demo</title>\n"
+        "<style>body{{font-family:sans-serif;max-width:60em;margin:2em auto}}img{{max-width:100%}}"
+        "</style>\n<h1>Palpate demo</h1>\n"
+        "<p>{} felt the surface at isovalue {:g} of <b>{}</b> ({} x {} x {} samples of {}).</p>\n"
+        "<pre>{}</pre>\n{}"
+        "<p>Data: <a href=\"trajectory.csv\">trajectory.csv</a> (the hand), <a "
+        "href=\"trace.csv\">trace.csv</a> (a row a tick){}.</p>\n</html>\n",
+        demo.hand, demo.isovalue, evaluation::html_text(demo.loaded.name), size[0], size[1],
+        size[2], name_of(demo.loaded.volume.type()), summary_text(demo.summary), images, path);
+}
+
+}  // namespace
+
+void add_demo_options(CLI::App& command, DemoOptions& options) {
+    options.source.add_to(command, true);
+    add_field_options(command, options.field);
+    options.render.add_to(command);
+    command.add_option("--depth", options.hand.depth_mm, "How deep the hand presses [mm]")
+        ->capture_default_str();
+    command.add_option("--picture", options.picture_width, "Width of the picture [pixels]")
+        ->check(CLI::Range(16, 8192))
+        ->capture_default_str();
+    command.add_option("-o,--output", options.output, "Folder for the results")
+        ->capture_default_str();
+}
+
+void add_motion_options(CLI::App& command, DemoOptions& options) {
+    command.add_option("--motion", options.motion, "Motion of the hand")
+        ->check(CLI::IsMember(scenes::motion_names()))
+        ->capture_default_str();
+    command.add_option("--duration", options.hand.duration_s, "Length [s]")->capture_default_str();
+}
+
+Demo load_demo(const DemoOptions& options) {
+    run::LoadedVolume loaded = load_for_terminal(options.source);
+    const Field field = run::make_field(loaded.volume, options.field);
+    const double isovalue = suggested_isovalue(loaded, field, options.field);
+    return {std::move(loaded), field, isovalue};
+}
+
+io::Trajectory motion_of(const Demo& demo, const DemoOptions& options) {
+    io::Trajectory trajectory;
+    for (const scenes::HandSample& sample :
+         scenes::make_motion(options.motion, demo.field, demo.isovalue, options.hand)) {
+        trajectory.time.push_back(sample.t);
+        trajectory.position.push_back(sample.position);
+    }
+    return trajectory;
+}
+
+pictures::PictureScene scene_of(const Demo& demo, const DemoOptions& options) {
+    const int width = options.picture_width;
+    return scene_of(demo.loaded, width, std::max(width * 4 / 5, 16));
+}
+
+void run_demo(Demo& demo, const DemoOptions& options, const DemoPicture& picture,
+              const std::function<void(const fs::path& folder)>& more) {
+    const bool quiet = options.source.quiet;
+    ResultFolder results(options.output);
+    const fs::path& folder = results.part();
+    feel(demo, options, folder);
+    std::string images;
+    try {
+        picture.draw(folder);
+        images += image_html(picture.file, picture.shows, picture.legend);
+    } catch (const io::OutputError& e) {
+        if (!quiet) fmt::print(stderr, "palpate: note: {}\n", e.what());
+    }
+    const bool plotted = plot(demo.rows, folder);
+    if (plotted) images += image_html("session.png", "Depth, force and density over time", "");
+    if (more) more(folder);
+    stop_if_interrupted();
+    write_file(folder / "report.html", report_html(demo, images));
+    results.complete();
+    if (quiet) return;
+    fmt::print("{} felt {} at isovalue {:g}.\n{}", demo.hand, demo.loaded.name, demo.isovalue,
+               summary_text(demo.summary));
+    if (!plotted) fmt::print("No figure over time: gnuplot is not installed.\n");
+    fmt::print("Results: {} (open report.html)\n", options.output);
+}
+
+}  // namespace palpate::app

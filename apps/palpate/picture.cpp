@@ -1,0 +1,31 @@
+// Titles pictures, and draws them until Ctrl-C.
+#include "apps/palpate/picture.hpp"
+
+#include <filesystem>
+
+#include "apps/palpate/commands.hpp"
+#include "pictures/picture.hpp"
+
+namespace palpate::app {
+
+pictures::PictureScene scene_of(const run::LoadedVolume& loaded, int width, int height) {
+    const std::filesystem::path path(loaded.name);
+    pictures::PictureScene scene;
+    scene.width = width;
+    scene.height = height;
+    scene.title = (path.has_filename() ? path : path.parent_path()).filename().string();
+    return scene;
+}
+
+std::string draw(const pictures::PictureScene& scene) {
+    pictures::DrawOptions options;
+    options.waiting = [] { stop_if_interrupted(); };
+    try {
+        return pictures::png_of(scene, options);
+    } catch (const io::OutputError&) {
+        stop_if_interrupted();  // Ctrl-C reaches the helper as well, and its end may be seen first
+        throw;
+    }
+}
+
+}  // namespace palpate::app
