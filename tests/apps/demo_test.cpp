@@ -39,7 +39,7 @@ void expect_results(const std::filesystem::path& folder, std::size_t ticks) {
     }
 }
 
-TEST(Demo, LeavesItsResultsInAFolderItNames) {
+TEST(Demo, leaves_its_results_in_a_folder_that_it_names) {
     const ScratchFolder folder;
     const Outcome outcome = palpate(folder, quick);
     ASSERT_EQ(outcome.status, 0) << outcome.err;
@@ -54,7 +54,7 @@ TEST(Demo, LeavesItsResultsInAFolderItNames) {
     EXPECT_GT(felt, 50);
 }
 
-TEST(Demo, FeelsTheSampleVolumeIfNoneIsNamed) {
+TEST(Demo, feels_the_sample_volume_if_none_is_named) {
     const ScratchFolder folder;
     const Outcome outcome = palpate(folder, "demo --duration 1 --picture 150 -o head");
     ASSERT_EQ(outcome.status, 0) << outcome.err;
@@ -62,7 +62,7 @@ TEST(Demo, FeelsTheSampleVolumeIfNoneIsNamed) {
     expect_results(folder / "head", 1001);
 }
 
-TEST(Demo, FeelsARealVolumeAtALevelOfItsOwnChoice) {
+TEST(Demo, chooses_the_level_of_a_real_volume) {
     SKIP_WITHOUT("fuel_small.nrrd");
     const ScratchFolder folder;
     const Outcome outcome = palpate(
@@ -72,7 +72,7 @@ TEST(Demo, FeelsARealVolumeAtALevelOfItsOwnChoice) {
     expect_results(folder / "my <results> & 'more'", 1001);
 }
 
-TEST(Demo, ThePictureShowsTheSurfaceAndBothWays) {
+TEST(Demo, the_picture_shows_the_surface_and_the_paths_of_hand_and_proxy) {
     const ScratchFolder folder;
     ASSERT_EQ(palpate(folder,
                       "demo synthetic:sphere:20x20x20 --duration 2 --picture 150 --motion "
@@ -87,7 +87,7 @@ TEST(Demo, ThePictureShowsTheSurfaceAndBothWays) {
     EXPECT_GT(png.count(support::is_blue), 5U);
 }
 
-TEST(Demo, WithoutAPictureItSaysSoAndIsDoneAllTheSame) {
+TEST(Demo, says_so_if_the_picture_fails_and_leaves_the_other_results) {
     const ScratchFolder folder;
     ::setenv("PALPATE_PICTURE_HELPER", "/bin/false", 1);
     const Outcome outcome = palpate(folder, quick);
@@ -102,7 +102,7 @@ TEST(Demo, WithoutAPictureItSaysSoAndIsDoneAllTheSame) {
     EXPECT_TRUE(contains(report, "trace.csv"));
 }
 
-TEST(Demo, AnExistingFolderIsUsedAgainAndOtherFilesStay) {
+TEST(Demo, uses_an_existing_folder_and_keeps_other_files) {
     const ScratchFolder folder;
     std::filesystem::create_directory(folder / "out");
     support::put_bytes(folder / "out/mine.txt", "mine");
@@ -113,7 +113,7 @@ TEST(Demo, AnExistingFolderIsUsedAgainAndOtherFilesStay) {
     EXPECT_EQ(support::bytes_of(folder / "out/mine.txt"), "mine");
 }
 
-TEST(Demo, HasForcesAtAnyRate) {
+TEST(Demo, renders_forces_at_any_rate) {
     const ScratchFolder folder;
     ASSERT_EQ(palpate(folder, quick + "-o out -q --rate 20 -k 0.05").status, 0);
     double most = 0;
@@ -123,7 +123,7 @@ TEST(Demo, HasForcesAtAnyRate) {
     EXPECT_GT(most, 0.01);
 }
 
-TEST(Demo, AFolderThatCannotBeMadeIsAnError) {
+TEST(Demo, a_folder_that_cannot_be_made_is_an_error) {
     const ScratchFolder folder;
     support::put_bytes(folder / "file", "x");
     for (const std::string name : {"file", "file/inside", "/proc/palpate", "/dev/full/x"}) {
@@ -133,7 +133,7 @@ TEST(Demo, AFolderThatCannotBeMadeIsAnError) {
     EXPECT_EQ(folder.names(), std::vector<std::string>{"file"});
 }
 
-TEST(Demo, ReportsShowTheNameOfTheVolumeAsText) {
+TEST(Demo, reports_show_the_name_of_the_volume_as_text) {
     SKIP_WITHOUT("fuel_small.nrrd");
     const ScratchFolder folder;
     std::filesystem::copy(data_file("fuel_small.nrrd"), folder / "a<b>&c.nrrd");

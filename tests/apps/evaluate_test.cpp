@@ -9,7 +9,7 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-TEST(Evaluate, AnExperimentLeavesATableFiguresAndAText) {
+TEST(Evaluate, an_experiment_leaves_a_table_figures_and_a_text) {
     const ScratchFolder folder;
     const Outcome outcome = palpate(folder, "evaluate drift --quick --output found");
     ASSERT_EQ(outcome.status, 0) << outcome.err;
@@ -27,7 +27,7 @@ TEST(Evaluate, AnExperimentLeavesATableFiguresAndAText) {
     EXPECT_TRUE(table.starts_with("volume,method,speed_mm_s,rate_hz,turn,density,")) << table;
 }
 
-TEST(Evaluate, TheSameSeedGivesTheSameTable) {
+TEST(Evaluate, the_same_seed_gives_the_same_table) {
     const ScratchFolder folder;
     for (const std::string output : {"first", "second"}) {
         ASSERT_EQ(palpate(folder, "evaluate drift --quick -q -o " + output).status, 0);
@@ -36,7 +36,7 @@ TEST(Evaluate, TheSameSeedGivesTheSameTable) {
               support::bytes_of(folder / "second/drift.csv"));
 }
 
-TEST(Evaluate, TakesAVolumeOfTheUser) {
+TEST(Evaluate, runs_on_a_volume_of_the_user) {
     const ScratchFolder folder;
     const Outcome outcome =
         palpate(folder, "evaluate drift --quick --json --volume synthetic:torus:30x30x16@40%");
@@ -51,7 +51,7 @@ TEST(Evaluate, TakesAVolumeOfTheUser) {
 }
 
 /// The one test of every experiment through the program: the whole report.
-TEST(Evaluate, AllMakesOneReportThatNeedsNoOtherFile) {
+TEST(Evaluate, all_makes_one_report_that_needs_no_other_file) {
     const ScratchFolder folder;
     const Outcome outcome = palpate(folder, "evaluate all --quick --json -o found");
     ASSERT_EQ(outcome.status, 0) << outcome.out << outcome.err;
@@ -73,7 +73,7 @@ TEST(Evaluate, AllMakesOneReportThatNeedsNoOtherFile) {
     EXPECT_GE(embedded, 1U);
 }
 
-TEST(Evaluate, AllLeavesOutWhatCannotBeDoneOnTheUsersVolume) {
+TEST(Evaluate, all_leaves_out_what_cannot_be_done_on_the_users_volume) {
     const ScratchFolder folder;
     const Outcome outcome =
         palpate(folder, "evaluate all --quick -o found --volume synthetic:plane:24x24x24");
@@ -84,7 +84,7 @@ TEST(Evaluate, AllLeavesOutWhatCannotBeDoneOnTheUsersVolume) {
     EXPECT_TRUE(std::filesystem::exists(folder / "found/report.html"));
 }
 
-TEST(Evaluate, WhatCannotBeMeantIsRefused) {
+TEST(Evaluate, refuses_options_that_make_no_sense) {
     const ScratchFolder folder;
     expect_failure(palpate(folder, "evaluate"), 2, "EXPERIMENT");
     expect_failure(palpate(folder, "evaluate nothing"), 2, "drift");
@@ -97,14 +97,14 @@ TEST(Evaluate, WhatCannotBeMeantIsRefused) {
     EXPECT_EQ(folder.names(), Names{});
 }
 
-TEST(Evaluate, AFolderThatCannotBeWrittenIsRefusedBeforeAnyWork) {
+TEST(Evaluate, a_folder_that_cannot_be_written_is_refused_before_any_work) {
     const ScratchFolder folder;
     support::put_bytes(folder / "file", "");
     expect_failure(palpate(folder, "evaluate drift --output file"), 5, "file");
     EXPECT_EQ(folder.names(), Names{"file"});
 }
 
-TEST(Evaluate, WithoutGnuplotItSaysWhatToInstall) {
+TEST(Evaluate, says_what_to_install_where_gnuplot_is_missing) {
     const ScratchFolder folder;
     const std::string path = std::getenv("PATH");
     ASSERT_EQ(setenv("PATH", folder.path().c_str(), 1), 0);
@@ -114,7 +114,7 @@ TEST(Evaluate, WithoutGnuplotItSaysWhatToInstall) {
     EXPECT_EQ(folder.names(), Names{});
 }
 
-TEST(Evaluate, InterruptedItLeavesNothingHalfWritten) {
+TEST(Evaluate, leaves_nothing_half_written_when_interrupted) {
     const ScratchFolder folder;
     Running running(words_of("evaluate drift --output found"), folder.path());
     ASSERT_TRUE(comes_true([&] { return std::filesystem::exists(folder / "found"); }));

@@ -19,7 +19,7 @@ std::vector<std::string> examples() {
     return lines;
 }
 
-TEST(Reference, ItsExamplesWork) {
+TEST(Reference, every_example_of_the_command_line_page_works) {
     const ScratchFolder folder;
     const auto programs = std::filesystem::path(PALPATE_PROGRAM).parent_path();
     ASSERT_EQ(std::string(std::getenv("PATH")).empty(), false);
@@ -34,7 +34,7 @@ TEST(Reference, ItsExamplesWork) {
     }
 }
 
-TEST(Reference, NamesEveryOptionThereIs) {
+TEST(Reference, names_every_option_of_every_command) {
     const std::string reference = support::bytes_of(PALPATE_REFERENCE);
     const ScratchFolder folder;
     for (const std::string command :

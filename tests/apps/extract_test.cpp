@@ -45,7 +45,7 @@ SurfaceMesh read_ply(const std::filesystem::path& path) {
     return mesh;
 }
 
-TEST(Extract, ThePlyIsClosedAndEnclosesWhatTheSummarySays) {
+TEST(Extract, the_ply_is_closed_and_encloses_what_the_summary_says) {
     const ScratchFolder folder;
     for (const std::string volume : {"sphere:24x24x24", "noise:16x16x16", "torus:30x30x20",
                                      "noise:1x9x9", "sphere:9x9x9 --solid below"}) {
@@ -61,7 +61,7 @@ TEST(Extract, ThePlyIsClosedAndEnclosesWhatTheSummarySays) {
     }
 }
 
-TEST(Extract, EveryFormatHasTheSameTriangles) {
+TEST(Extract, every_format_has_the_same_triangles) {
     const ScratchFolder folder;
     std::size_t triangles = 0;
     for (const std::string name : {"a.ply", "a.stl", "a.obj", "a.vtp", "A.PLY"}) {
@@ -82,7 +82,7 @@ TEST(Extract, EveryFormatHasTheSameTriangles) {
     EXPECT_EQ(support::bytes_of(folder / "A.PLY"), support::bytes_of(folder / "a.ply"));
 }
 
-TEST(Extract, RefusesUnknownExtensionsBeforeTheWork) {
+TEST(Extract, refuses_unknown_extensions_before_the_work) {
     const ScratchFolder folder;
     for (const std::string name : {"a.foo", "a", "-", "a.ply.gz"}) {
         expect_failure(palpate(folder, "extract no-such-file.nrrd -i 5 -o " + name), 2,
@@ -91,7 +91,7 @@ TEST(Extract, RefusesUnknownExtensionsBeforeTheWork) {
     EXPECT_TRUE(folder.names().empty());
 }
 
-TEST(Extract, WhatCannotBeWrittenIsSaidAndNothingStays) {
+TEST(Extract, reports_what_cannot_be_written_and_leaves_nothing) {
     const ScratchFolder folder;
     std::filesystem::create_directory(folder / "folder.ply");
     std::filesystem::create_symlink("/dev/full", folder / "full.ply");
@@ -102,7 +102,7 @@ TEST(Extract, WhatCannotBeWrittenIsSaidAndNothingStays) {
     EXPECT_EQ(folder.names(), before);
 }
 
-TEST(Extract, AnIsovalueIsNeededForAFile) {
+TEST(Extract, an_isovalue_is_needed_for_a_file) {
     const ScratchFolder folder;
     support::put_bytes(folder / "v.raw", std::string("\0\1\2\3\4\5\6\7", 8));
     expect_failure(palpate(folder, "extract v.raw --dims 2x2x2 --type uint8 -o a.ply"), 2,

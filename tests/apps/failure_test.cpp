@@ -23,43 +23,43 @@ void expect_refused(const ScratchFolder& folder, const Words& volume, const std:
     EXPECT_TRUE(fs::is_empty(folder / "results"));
 }
 
-TEST(BadInput, AFileThatIsNotThere) {
+TEST(BadInput, a_file_that_is_not_there_is_named) {
     const ScratchFolder folder;
     expect_refused(folder, {"missing.nrrd"}, "does not exist");
 }
 
-TEST(BadInput, AnEmptyFile) {
+TEST(BadInput, an_empty_file_is_refused) {
     const ScratchFolder folder;
     put_bytes(folder / "empty.nrrd", "");
     expect_refused(folder, {"empty.nrrd"}, "is empty");
 }
 
-TEST(BadInput, TextThatCallsItselfNrrd) {
+TEST(BadInput, text_that_is_called_nrrd_is_refused) {
     const ScratchFolder folder;
     put_bytes(folder / "text.nrrd", "Dear reader,\nthis is a letter.\n");
     expect_refused(folder, {"text.nrrd"}, "is not a NRRD file");
 }
 
-TEST(BadInput, AnUnknownExtension) {
+TEST(BadInput, an_unknown_extension_is_refused) {
     const ScratchFolder folder;
     put_bytes(folder / "a.xyz", "samples");
     expect_refused(folder, {"a.xyz"}, "--dims");
 }
 
-TEST(BadInput, AFolderWithoutSlices) {
+TEST(BadInput, a_folder_without_slices_is_refused) {
     const ScratchFolder folder;
     fs::create_directory(folder / "holiday");
     put_bytes(folder / "holiday/a.txt", "x");
     expect_refused(folder, {"holiday"}, "no DICOM or TIFF slices");
 }
 
-TEST(BadInput, ARawFileOfAnotherSize) {
+TEST(BadInput, a_raw_file_of_another_size_is_refused) {
     const ScratchFolder folder;
     put_bytes(folder / "a.raw", std::string(26, 'x'));
     expect_refused(folder, words_of("a.raw --dims 3x3x3 --type uint8"), "has 26 bytes");
 }
 
-TEST(BadInput, FilesCutShort) {
+TEST(BadInput, files_that_are_cut_short_are_refused) {
     const std::string nrrd = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 4\nencoding: raw\n\n";
     const std::string mha =
         "ObjectType = Image\nNDims = 3\nDimSize = 4 4 4\nElementType = MET_UCHAR\n"
@@ -88,7 +88,7 @@ TEST(BadInput, FilesCutShort) {
     }
 }
 
-TEST(BadInput, AWrongSpacingOrSizeOfARawFileIsWrongUse) {
+TEST(BadInput, a_wrong_spacing_or_size_of_a_raw_file_is_wrong_use) {
     const ScratchFolder folder;
     put_bytes(folder / "a.raw", std::string(27, 'x'));
     const std::string raw = "info a.raw --type uint8 --dims ";
@@ -101,7 +101,7 @@ TEST(BadInput, AWrongSpacingOrSizeOfARawFileIsWrongUse) {
     EXPECT_EQ(palpate(folder, raw + "3x3x3").status, 0);
 }
 
-TEST(BadInput, ATrajectoryIsRefusedByTheLine) {
+TEST(BadInput, a_refused_trajectory_is_named_with_its_line) {
     const ScratchFolder folder;
     const std::pair<std::string, std::string> cases[] = {
         {"t,x,y,z\n0,1,2,3\n# note\n1,2,three,4\n", "line 4: 'three'"},
@@ -127,7 +127,7 @@ TEST(BadInput, ATrajectoryIsRefusedByTheLine) {
     EXPECT_EQ(folder.names(), std::vector<std::string>{"t.csv"});
 }
 
-TEST(BadOutput, StandardOutputThatIsClosedOrFullIsNoSuccess) {
+TEST(BadOutput, standard_output_that_is_closed_or_full_is_a_failure) {
     const ScratchFolder folder;
     put_trajectory(folder);
     for (const std::string line :
@@ -147,7 +147,7 @@ TEST(BadOutput, StandardOutputThatIsClosedOrFullIsNoSuccess) {
     EXPECT_EQ(io::read_trace(folder / "a.csv").size(), 6U);
 }
 
-TEST(BadOutput, AReaderThatHasGoneLeavesNoTemporaryFile) {
+TEST(BadOutput, a_reader_that_has_gone_leaves_no_temporary_file) {
     const ScratchFolder folder;
     put_trajectory(folder);
     ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
@@ -163,7 +163,7 @@ TEST(BadOutput, AReaderThatHasGoneLeavesNoTemporaryFile) {
     EXPECT_EQ(folder.names(), (std::vector<std::string>{"pipe", "t.csv"}));
 }
 
-TEST(BadOutput, PlacesThatCannotBeWrittenAreNamed) {
+TEST(BadOutput, names_places_that_cannot_be_written) {
     const ScratchFolder folder;
     put_trajectory(folder);
     fs::create_directory(folder / "folder");
@@ -199,7 +199,7 @@ bool has_part(const fs::path& folder) {
     return false;
 }
 
-TEST_P(Signal, InAReplayLeavesNoFile) {
+TEST_P(Signal, leaves_no_file_of_a_replay) {
     const ScratchFolder folder;
     std::string text = "t,x,y,z\n";
     for (int i = 0; i < 400'000; ++i) {
@@ -213,21 +213,21 @@ TEST_P(Signal, InAReplayLeavesNoFile) {
     expect_interrupted(replay, folder, {"t.csv"});
 }
 
-TEST_P(Signal, InAnExtractionLeavesNoFile) {
+TEST_P(Signal, leaves_no_file_of_an_extraction) {
     const ScratchFolder folder;
     Running extract(words_of("extract synthetic:noise:160x160x160 -o a.ply"), folder.path());
     ASSERT_TRUE(comes_true([&] { return extract.catches(GetParam()); }));
     expect_interrupted(extract, folder, {});
 }
 
-TEST_P(Signal, InADemoLeavesNoFolder) {
+TEST_P(Signal, leaves_no_folder_of_a_demo) {
     const ScratchFolder folder;
     Running demo(words_of("demo synthetic:sphere:24x24x24 --duration 100 -o out"), folder.path());
     ASSERT_TRUE(comes_true([&] { return has_part(folder / "out"); }));
     expect_interrupted(demo, folder, {});
 }
 
-TEST_P(Signal, WhileAFileIsReadEndsTheReaderAsWell) {
+TEST_P(Signal, ends_the_reader_too_while_a_file_is_read) {
     const ScratchFolder folder;
     put_bytes(folder / "a.nii", std::string(1000, 'x'));
     put_bytes(folder / "slow-reader", "#!/bin/sh\ntouch reading\nexec sleep 100\n");

@@ -14,7 +14,7 @@ json info(const ScratchFolder& folder, const Words& words) {
     return json::parse(outcome.out, nullptr, false);
 }
 
-TEST(Info, TellsSizeTypePlaceAndRangeOfASyntheticVolume) {
+TEST(Info, tells_size_type_origin_and_range_of_a_synthetic_volume) {
     const ScratchFolder folder;
     const json j = info(folder, {"synthetic:cylinder"});
     EXPECT_EQ(j["size"], json({100, 100, 30}));
@@ -30,7 +30,7 @@ TEST(Info, TellsSizeTypePlaceAndRangeOfASyntheticVolume) {
     EXPECT_EQ(sum, 100 * 100 * 30);
 }
 
-TEST(Info, SuggestsIsovaluesInsideTheRangeOfEveryScene) {
+TEST(Info, suggests_isovalues_inside_the_range_of_every_scene) {
     const ScratchFolder folder;
     for (const std::string name : {"cylinder", "sphere", "torus", "plane", "shell",
                                    "marschner-lobb", "shepp-logan", "noise"}) {
@@ -46,7 +46,7 @@ TEST(Info, SuggestsIsovaluesInsideTheRangeOfEveryScene) {
     }
 }
 
-TEST(Info, SuggestsTheMiddleForAMask) {
+TEST(Info, suggests_the_middle_for_a_mask) {
     const ScratchFolder folder;
     support::put_bytes(folder / "mask.raw", std::string("\0\0\1\1\1\0\0\1", 8));
     support::put_bytes(folder / "full.raw", std::string("\0\0\xFF\xFF\xFF\0\0\xFF", 8));
@@ -55,7 +55,7 @@ TEST(Info, SuggestsTheMiddleForAMask) {
     EXPECT_EQ(info(folder, Words{"full.raw"} + layout)["suggested_isovalues"], json({127.5}));
 }
 
-TEST(Info, HasNothingToSuggestForConstantData) {
+TEST(Info, has_nothing_to_suggest_for_constant_data) {
     const ScratchFolder folder;
     support::put_bytes(folder / "one.raw", std::string(8, '\7'));
     EXPECT_EQ(info(folder, words_of("one.raw --dims 2x2x2 --type uint8"))["suggested_isovalues"],
@@ -66,7 +66,7 @@ TEST(Info, HasNothingToSuggestForConstantData) {
     EXPECT_EQ(palpate(folder, "info synthetic:noise:1x1x1").status, 0);
 }
 
-TEST(Info, SaysTheSameAsTextForPeople) {
+TEST(Info, prints_the_same_facts_as_text) {
     const ScratchFolder folder;
     const Outcome text = palpate(folder, "info synthetic:cylinder");
     EXPECT_EQ(text.status, 0);
@@ -78,7 +78,7 @@ TEST(Info, SaysTheSameAsTextForPeople) {
     }
 }
 
-TEST(Info, NamesWithBlanksQuotesAndBytesThatAreNoTextAreFine) {
+TEST(Info, accepts_names_with_blanks_quotes_and_bytes_that_are_not_text) {
     const ScratchFolder folder;
     for (const std::string name : {"a b.raw", "it's \"q\".raw",
                                    "b\xFF"
@@ -101,7 +101,7 @@ struct Known {
 
 class RealVolume : public testing::TestWithParam<Known> {};
 
-TEST_P(RealVolume, HasTheValuesItsSourceGives) {
+TEST_P(RealVolume, has_the_values_that_its_source_gives) {
     const Known& known = GetParam();
     SKIP_WITHOUT(known.name);
     const ScratchFolder folder;
@@ -127,7 +127,7 @@ INSTANTIATE_TEST_SUITE_P(
         Known{"HeadMRVolume.mhd", {48, 62, 42}, "uint8", 0, 255, {4, 4, 4}, "L P S"},
         Known{"dicom_sphere", {86, 86, 63}, "uint16", 0, 3752, {2.23256, 2.23256, 2.2}, "P I R"}));
 
-TEST(Info, ReadsThePackedRawFileLikeTheNrrd) {
+TEST(Info, reads_the_packed_raw_file_like_the_nrrd) {
     SKIP_WITHOUT("lobster.nrrd");
     SKIP_WITHOUT("lobster_301x324x56_uint8.raw.gz");
     const ScratchFolder folder;
@@ -138,7 +138,7 @@ TEST(Info, ReadsThePackedRawFileLikeTheNrrd) {
     EXPECT_EQ(raw["spacing_mm"], nrrd["spacing_mm"]);
 }
 
-TEST(Info, NotesGoToStandardErrorAndQuietSilencesThem) {
+TEST(Info, notes_go_to_standard_error_and_quiet_silences_them) {
     SKIP_WITHOUT("fmri_headturn_4d.nrrd");
     const ScratchFolder folder;
     const std::string file = data_file("fmri_headturn_4d.nrrd").string();

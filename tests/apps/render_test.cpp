@@ -37,7 +37,7 @@ std::size_t different(const Png& a, const Png& b) {
     return count;
 }
 
-TEST(Render, APictureHasItsSizeTheSurfaceInTheMiddleAndPaperAround) {
+TEST(Render, a_picture_has_its_size_with_the_surface_in_the_middle_and_background_around) {
     const ScratchFolder folder;
     const Png png = picture_of(folder, render_ball);
     EXPECT_EQ(png.width, 200U);
@@ -53,7 +53,7 @@ TEST(Render, APictureHasItsSizeTheSurfaceInTheMiddleAndPaperAround) {
     EXPECT_EQ(folder.names(), std::vector<std::string>{"p.png"});
 }
 
-TEST(Render, ASecondLevelIsSeen) {
+TEST(Render, shows_a_second_level) {
     const ScratchFolder folder;
     const Png one = picture_of(folder, render_ball + "-i 180");
     const Png two = picture_of(folder, render_ball + "-i 180 -i 30");
@@ -62,7 +62,7 @@ TEST(Render, ASecondLevelIsSeen) {
     EXPECT_GT(different(outer, two), 2000U);
 }
 
-TEST(Render, TheSolidBelowALevelIsDrawnToo) {
+TEST(Render, the_solid_below_a_level_is_drawn_too) {
     const ScratchFolder folder;
     const Png hole = picture_of(folder,
                                 "render synthetic:shell:24x24x24 --solid below -i 50% "
@@ -70,7 +70,7 @@ TEST(Render, TheSolidBelowALevelIsDrawnToo) {
     EXPECT_GT(hole.count(is_bone), 1000U);
 }
 
-TEST(Render, AHandAloneGetsItsProxySpringAndForce) {
+TEST(Render, a_hand_alone_gets_its_proxy_spring_and_force) {
     const ScratchFolder folder;
     const Outcome outcome =
         palpate(folder, render_ball + "--hip 0,-5,0 --view front --azimuth 0 --stiffness 0.2");
@@ -93,14 +93,14 @@ TEST(Render, AHandAloneGetsItsProxySpringAndForce) {
     EXPECT_NEAR(force, 0.2 * std::hypot(x, y + 5, z - 0.5), 1e-3);
 }
 
-TEST(Render, AHandInFreeSpaceIsItsOwnProxy) {
+TEST(Render, a_hand_in_free_space_is_its_own_proxy) {
     const ScratchFolder folder;
     const Outcome outcome = palpate(folder, render_ball + "--hip 0,-30,0");
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_TRUE(contains(outcome.out, "SCP (0, -30, 0) mm, force 0 N")) << outcome.out;
 }
 
-TEST(Render, PointsForcesAndViewsAreTakenAsGiven) {
+TEST(Render, points_forces_and_views_are_taken_as_given) {
     const ScratchFolder folder;
     const std::string front = render_ball + "--view front ";
     const Png plain = picture_of(folder, front);
@@ -133,7 +133,7 @@ TEST(Render, PointsForcesAndViewsAreTakenAsGiven) {
     EXPECT_GT(different(lying, standing), 4000U);
 }
 
-TEST(Render, TheWayComesFromATraceOrAPath) {
+TEST(Render, draws_the_path_of_a_trace_or_a_path_file) {
     const ScratchFolder folder;
     put_trajectory(folder);
     ASSERT_EQ(palpate(folder,
@@ -155,7 +155,7 @@ TEST(Render, TheWayComesFromATraceOrAPath) {
     expect_failure(palpate(folder, left + "--path other.csv"), 3, "other.csv");
 }
 
-TEST(Render, GoesToStandardOutputAlone) {
+TEST(Render, writes_only_the_picture_to_standard_output) {
     const ScratchFolder folder;
     const Outcome outcome =
         palpate(folder, "render synthetic:sphere:16x16x16 --size 100x100 --output -");
@@ -164,7 +164,7 @@ TEST(Render, GoesToStandardOutputAlone) {
     EXPECT_TRUE(folder.names().empty());
 }
 
-TEST(Render, AnEmptyLevelIsWarnedAboutAndDone) {
+TEST(Render, warns_of_a_level_without_surface_and_draws_all_the_same) {
     const ScratchFolder folder;
     const Outcome outcome = palpate(folder, render_ball + "-i 300");
     EXPECT_EQ(outcome.status, 0);
@@ -173,7 +173,7 @@ TEST(Render, AnEmptyLevelIsWarnedAboutAndDone) {
               100U);  // the legend's
 }
 
-TEST(Render, WrongWordsAreRefused) {
+TEST(Render, refuses_wrong_options) {
     const ScratchFolder folder;
     const std::string start = "render synthetic:sphere:16x16x16 ";
     const auto refused = [&](const std::string& words, const std::string& reason) {
@@ -199,14 +199,14 @@ TEST(Render, WrongWordsAreRefused) {
     expect_failure(palpate(folder, "render nothing.nrrd -i 5 -o p.png"), 3, "nothing.nrrd");
 }
 
-TEST(Render, AHandWhereAllIsSolidIsRefused) {
+TEST(Render, a_hand_where_all_is_solid_is_refused) {
     const ScratchFolder folder;
     const Outcome outcome = palpate(folder, render_ball + "-i -5 --hip 0,0,0");
     EXPECT_EQ(outcome.status, 2);
     EXPECT_TRUE(contains(outcome.err, "all of space is solid")) << outcome.err;
 }
 
-TEST(Render, AFileNeedsItsLevel) {
+TEST(Render, a_file_needs_its_level) {
     SKIP_WITHOUT("fuel_small.nrrd");
     const ScratchFolder folder;
     const std::string file = "render " + data_file("fuel_small.nrrd").string();
@@ -214,7 +214,7 @@ TEST(Render, AFileNeedsItsLevel) {
     EXPECT_GT(picture_of(folder, file + " -i 30 --size 120x120 -o p.png").count(is_bone), 500U);
 }
 
-TEST(Render, OutputsThatCannotBeWrittenAreFoundOutFirst) {
+TEST(Render, refuses_outputs_that_cannot_be_written_before_the_work) {
     const ScratchFolder folder;
     support::put_bytes(folder / "slow", "#!/bin/sh\ntouch started\nexit 1\n");
     std::filesystem::permissions(folder / "slow", std::filesystem::perms::owner_all);
@@ -226,7 +226,7 @@ TEST(Render, OutputsThatCannotBeWrittenAreFoundOutFirst) {
                    "/dev/full");
 }
 
-TEST(Render, AHelperThatFailsIsOneLineAndStatus5) {
+TEST(Render, a_helper_that_fails_gives_one_line_and_status_5) {
     const ScratchFolder folder;
     support::put_bytes(folder / "crash", "#!/bin/sh\nkill -SEGV $$\n");
     std::filesystem::permissions(folder / "crash", std::filesystem::perms::owner_all);
@@ -242,7 +242,7 @@ TEST(Render, AHelperThatFailsIsOneLineAndStatus5) {
     fails("LIBGL_DRIVERS_PATH", "/nowhere", "install libegl1");
 }
 
-TEST(Render, CtrlCEndsTheHelperAndLeavesNothing) {
+TEST(Render, ctrl_c_ends_the_helper_and_leaves_nothing) {
     const ScratchFolder folder;
     support::put_bytes(folder / "slow", "#!/bin/sh\ntouch started\nexec sleep 100\n");
     std::filesystem::permissions(folder / "slow", std::filesystem::perms::owner_all);
@@ -256,7 +256,7 @@ TEST(Render, CtrlCEndsTheHelperAndLeavesNothing) {
     EXPECT_EQ(folder.names(), (std::vector<std::string>{"slow", "started"}));
 }
 
-TEST(Render, TheProgramItselfLoadsNoGraphics) {
+TEST(Render, the_program_itself_loads_no_graphics) {
     const ScratchFolder folder;
     const Outcome libraries =
         Running({PALPATE_PROGRAM}, folder.path(), Stdout::captured, "ldd").finish();

@@ -112,7 +112,7 @@ void put_motion(const ScratchFolder& folder, const Field& field, double isovalue
 
 class Path : public testing::TestWithParam<PathCase> {};
 
-TEST_P(Path, IsFreeAllAlongAndEndsOnTheSurface) {
+TEST_P(Path, is_free_all_along_and_ends_on_the_surface) {
     const PathCase& c = GetParam();
     const bool synthetic = c.volume.starts_with("synthetic:");
     if (!synthetic) SKIP_WITHOUT(c.volume);
@@ -144,7 +144,7 @@ INSTANTIATE_TEST_SUITE_P(
                     PathCase{"cthead_unc.nrrd", 500, "exact"},
                     PathCase{"cthead_unc.nrrd", 500, "paper"}));
 
-TEST(Path, StartsAtTheRecoveredPointOfAHandInsideTheBody) {
+TEST(Path, starts_at_the_recovered_point_of_a_hand_inside_the_body) {
     const ScratchFolder folder;
     support::put_bytes(folder / "t.csv", "t,x,y,z\n0,1,2,0.5\n0.001,1,2,0.5\n");
     const Outcome outcome = palpate(

@@ -48,7 +48,7 @@ void put_demo_trajectory(const ScratchFolder& folder) {
     std::filesystem::copy(folder / "demo/trajectory.csv", folder / "t.csv");
 }
 
-TEST(Replay, WritesTheColumnsOfTheContractOneRowPerInputRow) {
+TEST(Replay, writes_the_columns_of_the_contract_one_row_per_input_row) {
     const ScratchFolder folder;
     put_trajectory(folder);
     replay(folder);
@@ -63,7 +63,7 @@ TEST(Replay, WritesTheColumnsOfTheContractOneRowPerInputRow) {
     EXPECT_TRUE(contains(lines[4], ",constrained,"));
 }
 
-TEST(Replay, GivesTheHandBackBitForBit) {
+TEST(Replay, repeats_the_positions_of_the_hand_bit_for_bit) {
     const ScratchFolder folder;
     put_demo_trajectory(folder);
     const auto in = io::read_trajectory(folder / "t.csv");
@@ -85,7 +85,7 @@ TEST(Replay, GivesTheHandBackBitForBit) {
     for (std::size_t i = 0; i < out.size(); ++i) ASSERT_EQ(demo[i].scp, out[i].scp);
 }
 
-TEST(Replay, TwiceIsTheSameButForTheTimes) {
+TEST(Replay, gives_the_same_twice_but_for_the_times) {
     const ScratchFolder folder;
     put_demo_trajectory(folder);
     const auto once = replay(folder, "--path p.csv");
@@ -99,7 +99,7 @@ TEST(Replay, TwiceIsTheSameButForTheTimes) {
     EXPECT_TRUE(same_but_for_time(once, replay(folder)));
 }
 
-TEST(Replay, ForceIsStiffnessTimesDepthWithinTheLimitFromTheFirstTick) {
+TEST(Replay, force_is_stiffness_times_depth_within_the_limit_from_the_first_tick) {
     const ScratchFolder folder;
     put_demo_trajectory(folder);
     for (const auto& [options, stiffness, limit] :
@@ -123,7 +123,7 @@ TEST(Replay, ForceIsStiffnessTimesDepthWithinTheLimitFromTheFirstTick) {
     }
 }
 
-TEST(Replay, ARampIsThereWhenAskedFor) {
+TEST(Replay, ramps_the_force_if_asked_to) {
     const ScratchFolder folder;
     support::put_bytes(folder / "t.csv",
                        "t,x,y,z\n0,-20,0,0\n0.001,-6,0,0\n0.002,-6,0,0\n1,-6,0,0\n");
@@ -133,7 +133,7 @@ TEST(Replay, ARampIsThereWhenAskedFor) {
     EXPECT_EQ(soft[3].force, hard[3].force);
 }
 
-TEST(Replay, EveryMethodAndPenetrabilityGivesFiniteRows) {
+TEST(Replay, every_method_and_penetrability_gives_finite_rows) {
     const ScratchFolder folder;
     put_demo_trajectory(folder);
     for (const std::string method : {"exact", "paper", "gradient", "gradient-improved"}) {
@@ -150,7 +150,7 @@ TEST(Replay, EveryMethodAndPenetrabilityGivesFiniteRows) {
     }
 }
 
-TEST(Replay, APenetrableSurfaceGivesWayAtTheThreshold) {
+TEST(Replay, a_penetrable_surface_gives_way_at_the_threshold) {
     const ScratchFolder folder;
     put_demo_trajectory(folder);
     double deepest = 0;
@@ -164,7 +164,7 @@ TEST(Replay, APenetrableSurfaceGivesWayAtTheThreshold) {
     EXPECT_TRUE(other_level);
 }
 
-TEST(Replay, EveryFeelingOptionIsAcceptedWithTheOthers) {
+TEST(Replay, accepts_all_options_of_force_and_method_together) {
     const ScratchFolder folder;
     put_demo_trajectory(folder);
     const auto rows = replay(folder,
@@ -173,7 +173,7 @@ TEST(Replay, EveryFeelingOptionIsAcceptedWithTheOthers) {
     EXPECT_EQ(rows.size(), 1001U);
 }
 
-TEST(Replay, SolidBelowAndABackgroundTurnTheBodyInsideOut) {
+TEST(Replay, solid_below_and_a_background_turn_the_body_inside_out) {
     const ScratchFolder folder;
     support::put_bytes(folder / "t.csv",
                        "t,x,y,z\n0,0,0,0\n0.1,-6,0,0\n0.2,-11,0,0\n0.3,-30,0,0\n");
@@ -188,7 +188,7 @@ TEST(Replay, SolidBelowAndABackgroundTurnTheBodyInsideOut) {
     EXPECT_GT(walled[3].scp[0], -13);
 }
 
-TEST(Replay, IsovaluesInUnitsAndInPercentAreTheSame) {
+TEST(Replay, isovalues_in_units_and_in_percent_are_the_same) {
     const ScratchFolder folder;
     put_trajectory(folder);
     const auto info =
@@ -199,7 +199,7 @@ TEST(Replay, IsovaluesInUnitsAndInPercentAreTheSame) {
     EXPECT_TRUE(same_but_for_time(percent, replay(folder, "-i " + std::to_string(half))));
 }
 
-TEST(Replay, ReadsTablesAsPeopleWriteThem) {
+TEST(Replay, reads_trajectories_with_comments_blank_lines_and_further_columns) {
     const ScratchFolder folder;
     put_trajectory(folder);
     const auto plain = replay(folder);
@@ -214,7 +214,7 @@ TEST(Replay, ReadsTablesAsPeopleWriteThem) {
     }
 }
 
-TEST(Replay, AnyClockWillDo) {
+TEST(Replay, accepts_times_of_any_size_and_start) {
     const ScratchFolder folder;
     put_trajectory(folder);
     const auto plain = replay(folder);
@@ -239,7 +239,7 @@ TEST(Replay, AnyClockWillDo) {
     }
 }
 
-TEST(Replay, AVolumeOneVoxelThinIsFelt) {
+TEST(Replay, a_volume_one_voxel_thin_is_felt) {
     const ScratchFolder folder;
     support::put_bytes(folder / "t.csv", "t,x,y,z\n0,-5,0,0\n0.1,0,0,0\n");
     for (const std::string size : {"1x16x16", "16x1x16", "16x16x1", "1x1x16"}) {
@@ -250,7 +250,7 @@ TEST(Replay, AVolumeOneVoxelThinIsFelt) {
     }
 }
 
-TEST(Replay, TheSummaryIsJsonForScriptsAndSilentWhenQuiet) {
+TEST(Replay, the_summary_is_json_for_scripts_and_silent_when_quiet) {
     const ScratchFolder folder;
     put_trajectory(folder);
     const auto j = nlohmann::json::parse(palpate(folder, on_sphere + "--json").out);
@@ -261,7 +261,7 @@ TEST(Replay, TheSummaryIsJsonForScriptsAndSilentWhenQuiet) {
     EXPECT_TRUE(contains(palpate(folder, on_sphere).out, "ticks 6, in contact 1"));
 }
 
-TEST(Replay, ATableOnStandardOutputIsAlone) {
+TEST(Replay, prints_nothing_else_where_a_table_goes_to_standard_output) {
     const ScratchFolder folder;
     put_trajectory(folder);
     const std::string line = "replay synthetic:sphere:24x24x24 --trajectory t.csv ";
@@ -275,7 +275,7 @@ TEST(Replay, ATableOnStandardOutputIsAlone) {
     EXPECT_EQ(palpate(folder, line + "-o /dev/null --path /dev/null").status, 0);
 }
 
-TEST(Replay, AnInputIsNeverReplaced) {
+TEST(Replay, an_input_is_never_replaced) {
     const ScratchFolder folder;
     put_trajectory(folder);
     const std::string before = support::bytes_of(folder / "t.csv");
@@ -297,7 +297,7 @@ TEST(Replay, AnInputIsNeverReplaced) {
     EXPECT_EQ(support::bytes_of(folder / "t.csv"), before);
 }
 
-TEST(Replay, NamesMayHaveBlanksAndQuotes) {
+TEST(Replay, accepts_file_names_with_blanks_and_quotes) {
     const ScratchFolder folder;
     std::filesystem::create_directory(folder / "it's a \"folder\"");
     put_trajectory(folder, "it's a \"folder\"/my hand.csv");

@@ -47,7 +47,7 @@ class PressedSphere {
 
 class EndOfSession : public testing::TestWithParam<int> {};
 
-TEST_P(EndOfSession, LeavesNoForceOnTheDevice) {
+TEST_P(EndOfSession, leaves_no_force_on_the_device) {
     const ScratchFolder folder;
     MockService service;
     PressedSphere sphere(service);
@@ -63,7 +63,7 @@ TEST_P(EndOfSession, LeavesNoForceOnTheDevice) {
 INSTANTIATE_TEST_SUITE_P(Signals, EndOfSession,
                          testing::Values(SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGSEGV, SIGABRT));
 
-TEST(Touch, CannotBeSuspendedWithTheForceOn) {
+TEST(Touch, cannot_be_suspended_while_there_is_force) {
     const ScratchFolder folder;
     MockService service;
     PressedSphere sphere(service);
@@ -75,7 +75,7 @@ TEST(Touch, CannotBeSuspendedWithTheForceOn) {
     EXPECT_EQ(running.finish(SIGINT).status, 130);
 }
 
-TEST(Touch, AServiceThatGoesAwayWhilePressingIsWaitedForAndFeltAgain) {
+TEST(Touch, waits_for_a_service_that_goes_away_while_pressing_and_goes_on) {
     const ScratchFolder folder;
     MockService service;
     PressedSphere sphere(service);

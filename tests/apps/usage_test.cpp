@@ -6,7 +6,7 @@ namespace {
 
 constexpr const char* commands[] = {"info", "replay", "extract", "render", "demo"};
 
-TEST(Usage, EveryCommandHasHelpWithAnExample) {
+TEST(Usage, every_command_has_help_with_an_example) {
     const ScratchFolder folder;
     const Outcome all = palpate(folder, "--help");
     EXPECT_EQ(all.status, 0);
@@ -20,7 +20,7 @@ TEST(Usage, EveryCommandHasHelpWithAnExample) {
     }
 }
 
-TEST(Usage, EveryCommandTellsTheVersion) {
+TEST(Usage, every_command_prints_the_version) {
     const ScratchFolder folder;
     for (const std::string command : {"", "info ", "replay ", "extract ", "render ", "demo "}) {
         const Outcome version = palpate(folder, command + "--version");
@@ -35,7 +35,7 @@ struct Case {
 
 class WrongWords : public testing::TestWithParam<Case> {};
 
-TEST_P(WrongWords, AreRefusedInOneLineThatNamesThem) {
+TEST_P(WrongWords, are_refused_in_one_line_that_names_them) {
     const ScratchFolder folder;
     put_trajectory(folder);
     const auto before = folder.names();
@@ -72,7 +72,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"demo synthetic:noise --depth -1", "depth of 0 mm or more"},
                     Case{"extract synthetic:sphere -o a.ply -i 1 --solid left", "left"}));
 
-TEST(Usage, AnEmptyValueIsAMistakeAndNotAnOptionLeftOut) {
+TEST(Usage, refuses_an_empty_value_of_an_option) {
     const ScratchFolder folder;
     const std::string ball = "synthetic:sphere:8x8x8";
     for (const Words& words :
@@ -86,7 +86,7 @@ TEST(Usage, AnEmptyValueIsAMistakeAndNotAnOptionLeftOut) {
 
 class WrongSettings : public testing::TestWithParam<Case> {};
 
-TEST_P(WrongSettings, AreRefusedWithTheReasonAndLeaveNothing) {
+TEST_P(WrongSettings, are_refused_with_the_reason_and_leave_nothing) {
     const ScratchFolder folder;
     put_trajectory(folder);
     const auto before = folder.names();
@@ -124,7 +124,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"--magnet x,1", "two numbers"}, Case{"--damping 9", "physical damping"},
         Case{"--path q.csv", "--path"}, Case{"-o b.csv", "--output"}));
 
-TEST(Usage, OptionsOfSeveralValuesDoNotSwallowTheVolume) {
+TEST(Usage, options_that_may_be_repeated_leave_the_volume_alone) {
     const ScratchFolder folder;
     put_trajectory(folder);
     for (const std::string options :
@@ -136,7 +136,7 @@ TEST(Usage, OptionsOfSeveralValuesDoNotSwallowTheVolume) {
     }
 }
 
-TEST(Usage, AnIsovalueOutsideTheRangeIsWarnedAboutAndDone) {
+TEST(Usage, warns_of_an_isovalue_outside_the_range_and_goes_on) {
     const ScratchFolder folder;
     put_trajectory(folder);
     const Outcome feel = palpate(
@@ -151,7 +151,7 @@ TEST(Usage, AnIsovalueOutsideTheRangeIsWarnedAboutAndDone) {
     EXPECT_TRUE(contains(mesh.out, " 0 triangles"));
 }
 
-TEST(Usage, WhereAllOfSpaceIsSolidThereIsNoReplayAndNoFile) {
+TEST(Usage, refuses_a_replay_where_all_of_space_is_solid_and_leaves_no_file) {
     const ScratchFolder folder;
     put_trajectory(folder);
     for (const std::string command : {"replay synthetic:sphere:9x9x9 --trajectory t.csv -o a.csv",

@@ -52,7 +52,7 @@ TEST_F(WithViewer, wrong_words_are_told_before_a_window_opens) {
     expect_failure(palpate(folder_, "view --sesion a.json"), 2, "--sesion");
     expect_failure(palpate(folder_, "view synthetic:sphere:8x8x8 --session a.json"), 2,
                    "one of them");
-    expect_failure(palpate(folder_, "view --screenshot a.png"), 2, "of what?");
+    expect_failure(palpate(folder_, "view --screenshot a.png"), 2, "needs a VOLUME");
 }
 
 TEST(View, without_a_display_it_says_so_and_what_to_do) {

@@ -17,7 +17,7 @@ using support::put_bytes;
 
 const std::string ball = "synthetic:sphere:32x32x32";
 
-TEST(Touch, EditsAndSequencesAreRecordedAndMadeAgain) {
+TEST(Touch, recordings_of_edits_and_sequences_replay_bit_for_bit) {
     const ScratchFolder folder;
     put_bytes(folder / "c.txt",
               "0.2 brush carve 4 50\n0.8 brush off\n0.9 undo\n1.0 redo\n"
@@ -49,7 +49,7 @@ TEST(Touch, EditsAndSequencesAreRecordedAndMadeAgain) {
     EXPECT_EQ(again.status, 0) << again.err;
 }
 
-TEST(Touch, WhatIsSavedAsRawOrTiffIsOpenedAgainAsItIsSaid) {
+TEST(Touch, a_saved_raw_or_tiff_file_opens_with_the_options_that_it_names) {
     const ScratchFolder folder;
     Geometry geometry{Index3::Constant(8)};
     geometry.spacing = Vec3(0.5, 0.5, 2);
@@ -73,7 +73,7 @@ TEST(Touch, WhatIsSavedAsRawOrTiffIsOpenedAgainAsItIsSaid) {
               std::string(static_cast<const char*>(tiff.data()), tiff.bytes()));
 }
 
-TEST(Touch, ASeriesOfFilesIsPlayedAndOneFrameOfItIsTaken) {
+TEST(Touch, plays_a_numbered_series_and_opens_one_frame_of_it) {
     const ScratchFolder folder;
     for (const int number : {1, 2, 4}) {
         const Volume frame({Index3::Constant(12)},
@@ -97,7 +97,7 @@ TEST(Touch, ASeriesOfFilesIsPlayedAndOneFrameOfItIsTaken) {
                    "no time step 3");
 }
 
-TEST(Touch, SaysWhatDataCannotDo) {
+TEST(Touch, says_which_commands_the_data_do_not_allow) {
     const ScratchFolder folder;
     put_bytes(folder / "c.txt", "0.1 undo\n0.2 play 2\n0.3 quit\n");
     const Outcome still =
@@ -132,7 +132,7 @@ TEST(Touch, SaysWhatDataCannotDo) {
                    "no origin and no directions");
 }
 
-TEST(Touch, AVolumeThatCannotBeSavedIsStatus5AndTheSessionWentOn) {
+TEST(Touch, a_volume_that_cannot_be_saved_gives_status_5_and_the_session_goes_on) {
     const ScratchFolder folder;
     put_bytes(folder / "c.txt", "0.1 fill 1,1,1:4,4,4 9\n0.2 save no/such/folder.nrrd\n0.4 quit\n");
     const Outcome done = palpate(
@@ -142,7 +142,7 @@ TEST(Touch, AVolumeThatCannotBeSavedIsStatus5AndTheSessionWentOn) {
     EXPECT_EQ(palpate(folder, "replay r.csv --validate").status, 0);
 }
 
-TEST(Touch, FollowsWhatAnotherProgramPushes) {
+TEST(Touch, feels_frames_that_another_program_pushes) {
     const ScratchFolder folder;
     Geometry geometry;
     geometry.size = Index3::Constant(8);
@@ -177,7 +177,7 @@ TEST(Touch, FollowsWhatAnotherProgramPushes) {
     expect_failure(palpate(folder, "replay r.csv --validate"), 3, "from outside");
 }
 
-TEST(Demo, SculptCarvesWhatItFeelsAndShowsIt) {
+TEST(Demo, sculpt_carves_what_it_feels_and_shows_it) {
     const ScratchFolder folder;
     const Outcome done = palpate(folder,
                                  "demo sculpt synthetic:sphere:32x32x32 --duration 1 --pictures 3 "
@@ -194,7 +194,7 @@ TEST(Demo, SculptCarvesWhatItFeelsAndShowsIt) {
     EXPECT_GT(support::png_from(bytes_of(folder / "out" / "surface.png")).colours(), 20U);
 }
 
-TEST(Demo, BeatingFeelsEachBeat) {
+TEST(Demo, beating_feels_each_beat) {
     const ScratchFolder folder;
     const Outcome done = palpate(
         folder,
