@@ -13,8 +13,8 @@ namespace {
 void contact(benchmark::State& state, const Touch& touch) {
     Proxy proxy;
     place(proxy, touch.field, touch.path.front(), touch.isovalue);
-    Stroke stroke(touch.path);
-    const auto tick = [&] { update_exact(proxy, touch.field, stroke.next()); };
+    HandMotion hand(touch.path);
+    const auto tick = [&] { update_exact(proxy, touch.field, hand.next()); };
     for (std::size_t i = 0; i < touch.path.size(); ++i) tick();
     time_ticks(state, tick);
 }

@@ -20,8 +20,8 @@ struct Touch {
     HandPath path;
 };
 
-/// Way of the hand in a tick [mm, physical] at 5 cm/s and 1 kHz, where 1 mm of hand is so many
-/// voxels and a voxel is 1 mm.
+/// Distance that the hand moves in a tick [mm, physical] at 5 cm/s and 1 kHz, where 1 mm of hand is
+/// so many voxels and a voxel is 1 mm.
 constexpr double step_per_tick(double voxels_per_mm) {
     return 50.0 / 1000 * voxels_per_mm;
 }
@@ -39,7 +39,7 @@ Touch noise_touch(SampleType type, double voxels_per_mm);
 Touch ball_touch(int size, double voxels_per_mm);
 
 /// A half space that rises by one unit a voxel along (1, 0.37, 0.21), float32 of size^3, with its
-/// surface through the middle: all tetrahedra alike, so a straight way has a known number of them.
+/// surface through the middle: all tetrahedra alike, so a straight path has a known number of them.
 /// The path is left empty.
 Touch ramp_touch(int size);
 
@@ -48,10 +48,10 @@ Touch all_in_bricks(Touch touch);
 /// The same half way between two frames, both of them alike.
 Touch between_frames(Touch touch);
 
-/// Goes along a path forth and back for ever: every step is as long as the path's steps are.
-class Stroke {
+/// A hand that goes along a path and back, again and again, in the steps of the path.
+class HandMotion {
   public:
-    explicit Stroke(const HandPath& path) : path_(path) {}
+    explicit HandMotion(const HandPath& path) : path_(path) {}
 
     const Vec3& next() {
         if (at_ + 1 == path_.size()) step_ = -1;

@@ -64,10 +64,10 @@ void run(const Case& chosen, long updates) {
     Proxy proxy;
     proxy.isovalue = touch.isovalue;
     place(proxy, touch.field, touch.path.front(), touch.isovalue);
-    Stroke stroke(touch.path);
+    HandMotion hand(touch.path);
     std::uint64_t hash = 0xcbf29ce484222325U;
     for (long i = 0; i < updates; ++i) {
-        mix(hash, method(proxy, touch.field, stroke.next(), {}, {}).scp);
+        mix(hash, method(proxy, touch.field, hand.next(), {}, {}).scp);
     }
     std::printf("%-28s %ld updates, hash of the SCPs %016llx\n", chosen.name, updates,
                 static_cast<unsigned long long>(hash));

@@ -16,8 +16,8 @@ struct Point {
     double ns;
 };
 
-/// There and back again, each time on another way nearby, for a processor learns the branches of a
-/// way that it goes often. The median of 1024 updates, which time slices do not disturb.
+/// Back and forth, each time on another path nearby, because a processor learns the branches of a
+/// path that is repeated. The median of 1024 updates, which time slices do not disturb.
 Point time_ways(const Touch& touch, const Vec3& from, const Vec3& to, const Vec3& up) {
     const Vec3 side = up.cross(to - from).normalized();
     HandPath hips;

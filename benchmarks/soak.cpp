@@ -1,6 +1,6 @@
 // palpate_soak: the live loop for minutes, with a simulated hand, a viewer, commands and a
-// recording. Tells whether it keeps its time and its memory, and whether the recording gives the
-// same ticks again. How to run and read it: docs/results/soak.md.
+// recording. Reports whether timing and memory stay constant and whether the recording replays bit
+// for bit. How to run and read it: docs/results/soak.md.
 #include <fmt/format.h>
 #include <sys/resource.h>
 #include <unistd.h>

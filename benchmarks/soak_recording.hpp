@@ -1,4 +1,4 @@
-// palpate_soak reads its own recording: is it the same again, and what did its ticks cost?
+// Reads the recording of palpate_soak: whether it replays bit for bit, and what its ticks cost.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
-// palpate_soak_ruler: a loop that sleeps and wakes as the servo does and only multiplies. What it
-// takes longer than its median is the machine: interrupts that fall into a tick are counted as the
-// tick's own CPU time, and when they come depends on where in time the loop happens to lie.
+// palpate_soak_ruler: a loop that sleeps and wakes as the servo does and only multiplies. Whatever
+// it takes beyond its median is due to the machine: interrupts within a tick count as the tick's
+// own CPU time, and when they come depends on the phase of the loop.
 #include <fmt/format.h>
 #include <pthread.h>
 #include <sched.h>

@@ -29,12 +29,12 @@ void tick(benchmark::State& state, double depth, const RendererSettings& setting
     const Touch touch = cylinder_touch(SampleType::uint8, voxels_per_mm, depth);
     Renderer renderer = make_renderer(touch.field, touch.isovalue, settings);
     place(renderer.proxy, touch.field, touch.path.front(), touch.isovalue);
-    Stroke stroke(touch.path);
+    HandMotion hand(touch.path);
     std::int64_t ticks = 0;
     const auto one = [&] {
         DeviceState device;
         device.time = 1e-3 * static_cast<double>(++ticks);
-        device.position = device_from_physical(settings.transform, stroke.next());
+        device.position = device_from_physical(settings.transform, hand.next());
         benchmark::DoNotOptimize(render(renderer, device).force);
     };
     for (int i = 0; i < 10000; ++i) one();

@@ -33,7 +33,7 @@ void run_updates(benchmark::State& state, const Touch& touch, ProxyMethod method
                  double other_isovalue) {
     Proxy proxy;
     place(proxy, touch.field, touch.path.front(), touch.isovalue);
-    Stroke stroke(touch.path);
+    HandMotion hand(touch.path);
     std::int64_t updates = 0, tetrahedra = 0, constrained = 0;
     const auto tick = [&] {
         if (++updates & 1) {
@@ -41,7 +41,7 @@ void run_updates(benchmark::State& state, const Touch& touch, ProxyMethod method
         } else {
             proxy.isovalue = other_isovalue;
         }
-        const ProxyUpdate update = method(proxy, touch.field, stroke.next(), {}, {});
+        const ProxyUpdate update = method(proxy, touch.field, hand.next(), {}, {});
         tetrahedra += update.tetrahedra;
         constrained += update.mode == Mode::constrained;
     };

@@ -1,5 +1,5 @@
-// Whatever the Inverse Service says, line by line: a position that can be believed or a refusal, a
-// ready device only where all of its conditions were told, and an id that can stand in a command.
+// Any lines from the Inverse Service give a plausible position or a refusal, a ready device only
+// once all its conditions have been reported, and an id that is safe in a command.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>

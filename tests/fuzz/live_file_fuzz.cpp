@@ -1,4 +1,4 @@
-// Any bytes are a live source whose frames lie in the file, or a one-line InputError.
+// Any bytes give a live source whose frames lie within the file, or a one-line InputError.
 #include <sys/mman.h>
 #include <unistd.h>
 

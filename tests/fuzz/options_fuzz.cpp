@@ -1,6 +1,5 @@
-// Any text in the options that we parse ourselves (raw layout, spacing, level, synthetic volume) is
-// a value that keeps its promises or a std::invalid_argument. Four lines: dims, type, spacing,
-// level.
+// Any text in the options that we parse ourselves (raw layout, spacing, level, synthetic volume)
+// gives a valid value or a std::invalid_argument. Four lines: dims, type, spacing, level.
 #include <array>
 #include <cmath>
 #include <cstddef>

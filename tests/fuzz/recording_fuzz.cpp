@@ -1,4 +1,4 @@
-// Any text is a recording whose events can be rendered again, or a one-line InputError.
+// Any text gives a recording whose events can be rendered again, or a one-line InputError.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Runs every file of a folder through a fuzz target, without libFuzzer: what fuzzing found once is
-// tested by everybody.
+// Runs every file of a folder through a fuzz target, without libFuzzer, so that what fuzzing has
+// found is tested everywhere.
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>

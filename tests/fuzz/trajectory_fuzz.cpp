@@ -1,4 +1,4 @@
-// Any text is a trajectory that keeps its promises or a one-line InputError; the same for a trace.
+// Any text gives a valid trajectory or a one-line InputError; the same for a trace.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
