@@ -14,6 +14,10 @@
 
 namespace palpate::evaluation {
 
+/// Of the guarantees G1 and G2 (proxy.hpp), relative to the field's range: how far an SCP may be in
+/// the solid, and what counts as on the isosurface.
+inline constexpr double granted = 1e-9;
+
 /// What the user chose.
 struct Options {
     /// Seconds instead of minutes: fewer and smaller cases, but every claim is checked.

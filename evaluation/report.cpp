@@ -26,7 +26,20 @@ std::string file_name(const Report& report, const std::string& suffix) {
     return report.experiment.name + (suffix.empty() ? "" : "-" + suffix);
 }
 
+/// `no`: how a claim that does not hold is marked.
+Table claims_of(const Result& result, const char* no) {
+    Table table;
+    for (const Claim& claim : result.claims) {
+        table.add({{"claim", claim.statement},
+                   {"holds", claim.held ? "yes" : no},
+                   {"measured", claim.measured}});
+    }
+    return table;
+}
+
+/// Empty for an empty table.
 std::string markdown_from(const Table& table) {
+    if (table.rows().empty()) return {};
     std::string text, rule;
     const auto cell = [&](const std::string& content) { text += "| " + content + " "; };
     for (const std::string& column : table.columns()) {
@@ -47,7 +60,7 @@ std::string markdown_from(const Table& table) {
 std::string markdown_from(const Report& report) {
     std::string text = fmt::format("# {}: {}\n\n{}\n\n", report.experiment.name,
                                    report.experiment.title, report.result.paragraph);
-    if (!report.result.summary.rows().empty()) text += markdown_from(report.result.summary);
+    text += markdown_from(report.result.summary);
     for (const Figure& figure : report.result.figures) {
         text += fmt::format("![{0}]({1}.svg)\n\n{0}\n\n", figure.caption,
                             file_name(report, figure.suffix));
@@ -56,13 +69,9 @@ std::string markdown_from(const Report& report) {
         text += fmt::format("![{0}]({1}.png)\n\n{0}\n\n", picture.caption,
                             file_name(report, picture.suffix));
     }
-    if (!report.result.claims.empty()) text += "| claim | holds | measured |\n|---|---|---|\n";
-    for (const Claim& claim : report.result.claims) {
-        text += fmt::format("| {} | {} | {} |\n", claim.statement, claim.held ? "yes" : "**no**",
-                            claim.measured);
-    }
-    return text + fmt::format("\nAll numbers: [{0}.csv]({0}.csv). {1}.\n", report.experiment.name,
-                              report.circumstances);
+    return text + markdown_from(claims_of(report.result, "**no**")) +
+           fmt::format("All numbers: [{0}.csv]({0}.csv). {1}.\n", report.experiment.name,
+                       report.circumstances);
 }
 
 std::string base64(const std::string& bytes) {
@@ -100,27 +109,19 @@ std::string section(const Report& report, const fs::path& folder) {
     std::string html =
         fmt::format("<h2 id=\"{0}\">{0}: {1}</h2>\n<p>{2}</p>\n", report.experiment.name,
                     html_text(report.experiment.title), html_text(report.result.paragraph));
-    if (!report.result.summary.rows().empty()) html += html_from(report.result.summary);
+    html += html_from(report.result.summary);
     for (const Figure& figure : report.result.figures) {
         html += figure_html(folder / (file_name(report, figure.suffix) + ".svg"), figure.caption);
     }
     for (const Picture& picture : report.result.pictures) {
         html += figure_html(folder / (file_name(report, picture.suffix) + ".png"), picture.caption);
     }
-    if (!report.result.claims.empty()) {
-        html += "<table>\n<tr><th>claim</th><th>holds</th><th>measured</th></tr>\n";
-    }
-    for (const Claim& claim : report.result.claims) {
-        html +=
-            fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td></tr>\n", html_text(claim.statement),
-                        claim.held ? "yes" : "<strong>no</strong>", html_text(claim.measured));
-    }
-    if (!report.result.claims.empty()) html += "</table>\n";
-    return html + fmt::format(
-                      "<details><summary>All numbers ({} rows)</summary>\n{}</details>\n"
-                      "<p class=c>{}.</p>\n",
-                      report.result.table.rows().size(), html_from(report.result.table),
-                      html_text(report.circumstances));
+    return html + html_from(claims_of(report.result, "NO")) +
+           fmt::format(
+               "<details><summary>All numbers ({} rows)</summary>\n{}</details>\n"
+               "<p class=c>{}.</p>\n",
+               report.result.table.rows().size(), html_from(report.result.table),
+               html_text(report.circumstances));
 }
 
 }  // namespace

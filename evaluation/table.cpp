@@ -150,6 +150,7 @@ std::string csv_from(const Table& table) {
 }
 
 std::string html_from(const Table& table) {
+    if (table.rows().empty()) return {};
     std::string html = "<table>\n<tr>";
     for (const std::string& name : table.columns()) html += "<th>" + html_text(name) + "</th>";
     html += "</tr>\n";

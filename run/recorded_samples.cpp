@@ -21,11 +21,12 @@ RecordedSamples::RecordedSamples(std::shared_ptr<const Samples> start,
     : kept_{{0, std::move(start)}}, frame_(std::move(frame)) {}
 
 Command RecordedSamples::whole(const Command& recorded) {
-    const auto* samples = std::get_if<command::Samples>(&recorded);
-    if (!samples || samples->samples) return recorded;
-    command::Samples whole = *samples;
-    whole.samples = made(*samples);
-    return whole;
+    return std::visit(Overloaded{[&](command::Samples samples) -> Command {
+                                     if (!samples.samples) samples.samples = made(samples);
+                                     return samples;
+                                 },
+                                 [](const auto& other) -> Command { return other; }},
+                      recorded);
 }
 
 std::shared_ptr<const Samples> RecordedSamples::made(const command::Samples& recorded) {
@@ -34,24 +35,27 @@ std::shared_ptr<const Samples> RecordedSamples::made(const command::Samples& rec
         throw std::invalid_argument("the samples of version " + std::to_string(recorded.version) +
                                     " came from outside and are not in the recording");
     }
-    if (const auto* frames = std::get_if<FramesOf>(recorded.recipe.get())) {
-        return frames_of(*frames);
-    }
-    const auto& edit = std::get<EditOf>(*recorded.recipe);
+    return std::visit(
+        Overloaded{[&](const FramesOf& frames) { return frames_of(frames); },
+                   [&](const EditOf& edit) { return edit_of(edit, recorded.version); }},
+        *recorded.recipe);
+}
+
+std::shared_ptr<const Samples> RecordedSamples::edit_of(const EditOf& edit, std::uint64_t version) {
     const auto before = made_again(edit.version);
     if (!before) {
         throw std::invalid_argument("an edit of samples of version " +
                                     std::to_string(edit.version) +
                                     ", which are not in the recording");
     }
-    if (recorded.version == 0 || versions_.contains(recorded.version)) {
-        throw std::invalid_argument("the samples of version " + std::to_string(recorded.version) +
+    if (version == 0 || versions_.contains(version)) {
+        throw std::invalid_argument("the samples of version " + std::to_string(version) +
                                     " came about twice");
     }
     auto samples = edited(before, edit.edit).samples;
     const auto parent = versions_.find(edit.version);
-    versions_[recorded.version] = {edit, parent == versions_.end() ? 1 : parent->second.edits + 1};
-    remember(recorded.version, samples);
+    versions_[version] = {edit, parent == versions_.end() ? 1 : parent->second.edits + 1};
+    remember(version, samples);
     return samples;
 }
 

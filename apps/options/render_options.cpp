@@ -64,13 +64,15 @@ void RenderOptions::add_penetrability_to(CLI::App& command) {
                         : name == "threshold" ? Penetrability::threshold
                                               : Penetrability::ranges;
     };
-    command.add_option_function<std::string>("--penetrability", choose, "Pressing through")
+    command
+        .add_option_function<std::string>("--penetrability", choose,
+                                          "Where the surface gives way to pressing")
         ->check(CLI::IsMember({"off", "threshold", "ranges"}))
         ->default_str("off");
     command.add_option("--threshold", threshold, "Penetration threshold PT [device mm] (1)");
     command.add_option_function<std::string>(
         "--minimum", [this](const std::string& text) { minimum = io::level_from_text(text); },
-        "Least level felt (default: the isovalue)");
+        "threshold: least level felt (default: the isovalue)");
     // Without allow_extra_args(false) this would take VOLUME for one more range.
     command
         .add_option_function<std::vector<std::string>>(
@@ -78,7 +80,7 @@ void RenderOptions::add_penetrability_to(CLI::App& command) {
             [this](const std::vector<std::string>& texts) {
                 for (const std::string& text : texts) ranges.push_back(range_from(text));
             },
-            "Range of interest, LOW:HIGH; may be given again")
+            "ranges: levels that are felt, LOW:HIGH; may be given again")
         ->allow_extra_args(false)
         ->type_name("LOW:HIGH");
 }

@@ -68,14 +68,15 @@ void RunOptions::add_device_options(CLI::App& command) {
     command.add_option_function<std::string>(
         "--dead-man",
         [this](const std::string& text) { given.deadman = button_from("--dead-man", text); },
-        "Button without which there is no force (none)");
+        "Button that must be held for any force (none)");
 }
 
 void RunOptions::add_script_options(CLI::App& command) {
     command.add_option("--commands", commands,
                        "File of commands, a line each: SECONDS COMMAND, as in 1.5 isovalue 300");
     command
-        .add_option("--seconds", seconds, "End after so long (default: when the hand has finished)")
+        .add_option("--seconds", seconds,
+                    "End after this time [s] (default: when the hand has finished)")
         ->check(CLI::PositiveNumber);
     command.add_option("--brush", brush,
                        "Brush that follows the proxy from the start: 'KIND RADIUS [RATE [VALUE]]', "

@@ -21,13 +21,13 @@ void ViewOptions::add_to(CLI::App& command) {
 
 void ViewOptions::check() const {
     if (has_volume() && !session.empty()) {
-        throw std::invalid_argument("VOLUME and --session: one of them, please");
+        throw std::invalid_argument("VOLUME and --session: give only one of them");
     }
     if (!screenshot.empty() && !has_volume() && session.empty() && play.empty()) {
-        throw std::invalid_argument("--screenshot: of what? Name a VOLUME, --session or --play");
+        throw std::invalid_argument("--screenshot needs a VOLUME, --session or --play");
     }
     if (!play.empty() && !session.empty()) {
-        throw std::invalid_argument("--play and --session: one of them, please");
+        throw std::invalid_argument("--play and --session: give only one of them");
     }
 }
 

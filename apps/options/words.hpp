@@ -1,4 +1,4 @@
-// How a live session does, in single words: for a terminal's line and for the window.
+// Durations and force flags as text, for the terminal's line and the window.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Reads and carries out commands for edits and sequences.
+// Reads commands for edits and sequences.
 #include "apps/palpate/data_commands.hpp"
 
 #include <fmt/format.h>
@@ -14,169 +14,168 @@
 namespace palpate::app {
 namespace {
 
-double number(const std::string& word, const std::string& meant) {
-    if (word == "inf") return std::numeric_limits<double>::infinity();
-    const auto value = io::number_from<double>(word);
-    if (!value) wrong_words(meant);
+double number_in(const CommandWords& words, const std::string& text) {
+    if (text == "inf") return std::numeric_limits<double>::infinity();
+    const auto value = io::number_from<double>(text);
+    if (!value) words.refuse();
     return *value;
 }
 
-Vec3 point(const std::string& word, const std::string& meant) {
+Vec3 point_in(const CommandWords& words, const std::string& text) {
     Vec3 p;
     std::size_t begin = 0;
     for (int a = 0; a < 3; ++a) {
-        const std::size_t end = a < 2 ? word.find(',', begin) : word.size();
-        if (end == std::string::npos) wrong_words(meant);
-        p[a] = number(word.substr(begin, end - begin), meant);
+        const std::size_t end = a < 2 ? text.find(',', begin) : text.size();
+        if (end == std::string::npos) words.refuse();
+        p[a] = number_in(words, text.substr(begin, end - begin));
         begin = end + 1;
     }
     return p;
 }
 
-/// "A" or "A:B".
-std::array<Vec3, 2> two_points(const std::string& word, const std::string& meant) {
-    const std::size_t colon = word.find(':');
-    const Vec3 first = point(word.substr(0, colon), meant);
-    return {first, colon == std::string::npos ? first : point(word.substr(colon + 1), meant)};
+/// The word after the name: "A" or "A:B".
+std::array<Vec3, 2> two_points(const CommandWords& words) {
+    const std::string& text = words[1];
+    const std::size_t colon = text.find(':');
+    const Vec3 first = point_in(words, text.substr(0, colon));
+    return {first, colon == std::string::npos ? first : point_in(words, text.substr(colon + 1))};
 }
 
-DataRequest brush_request(const std::vector<std::string>& words, const Volume& volume) {
-    const std::string meant = "brush KIND RADIUS [RATE [VALUE]], or brush off,";
-    if (words.size() == 2 && words[1] == "off") return ask::SetBrush{};
-    if (words.size() < 3 || words.size() > 5) wrong_words(meant);
-    run::HandBrush brush;
-    brush.kind = brush_kind_from(words[1]);
-    brush.radius = number(words[2], meant);
-    if (words.size() > 3) brush.rate = number(words[3], meant);
-    if (words.size() > 4) brush.value = io::level_from_text(words[4], volume);
-    run::check(brush);
-    return ask::SetBrush{brush};
+/// A request that has nothing to say.
+template <class Change>
+DataRequest silent(Change change) {
+    return [change](run::Data& data, const Field&, double) {
+        change(data);
+        return std::string();
+    };
 }
 
-DataRequest touch_request(const std::vector<std::string>& words, const Volume& volume) {
-    const std::string meant = words[0] + " X,Y,Z[:X,Y,Z] RADIUS [VALUE]";
-    if (words.size() < 3 || words.size() > 4) wrong_words(meant);
-    ask::Touch touch;
-    touch.brush.kind = brush_kind_from(words[0]);
-    touch.brush.radius = number(words[2], meant);
-    if (words.size() > 3) touch.brush.value = io::level_from_text(words[3], volume);
-    run::check(touch.brush);
-    const auto [from, to] = two_points(words[1], meant);
-    touch.from = from;
-    touch.to = to;
-    return touch;
+DataRequest stroke(const CommandWords& words, const Volume& volume) {
+    words.expect(3, 4);
+    run::HandBrush hand;
+    hand.kind = brush_kind_from(words.name());
+    hand.radius = words.number(2);
+    if (words.count() > 3) hand.value = io::level_from_text(words[3], volume);
+    run::check(hand);
+    return [hand, ends = two_points(words)](run::Data& data, const Field& field, double isovalue) {
+        if (!std::isfinite(isovalue))
+            throw std::invalid_argument("no level is felt, so the brush has none to work at");
+        Brush brush = brush_for(hand.kind, field, isovalue, hand.radius);
+        if (hand.value) brush.value = *hand.value;
+        data.editor().apply(edit::Stroke{brush, ends[0], ends[1]});
+        return std::string();
+    };
 }
 
-DataRequest fill_request(const std::vector<std::string>& words, const Volume& volume) {
-    const std::string meant = "fill I,J,K[:I,J,K] VALUE";
-    if (words.size() != 3) wrong_words(meant);
-    const auto [low, high] = two_points(words[1], meant);
+DataRequest fill(const CommandWords& words, const Volume& volume) {
+    words.expect(3);
+    const auto [low, high] = two_points(words);
     const double most = std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff());
-    if (!(most <= 1 << 20)) wrong_words(meant);
+    if (!(most <= 1 << 20)) words.refuse();
     const SampleBox box{low.cwiseMin(high).cast<int>(), low.cwiseMax(high).cast<int>()};
-    return ask::Fill{{box, io::level_from_text(words[2], volume)}};
+    const edit::Fill fill{box, io::level_from_text(words[2], volume)};
+    return silent([fill](run::Data& data) { data.editor().apply(fill); });
 }
 
-DataRequest play_request(const std::vector<std::string>& words) {
-    if (words.size() > 2) wrong_words("play [SPEED]");
-    const double speed = words.size() > 1 ? number(words[1], "play [SPEED]") : 1;
-    if (!(std::abs(speed) <= 1000)) wrong_words("play [SPEED], at most 1000,");
-    return ask::Play{speed};
+DataRequest save(const CommandWords& words, const Volume& volume) {
+    const std::string path = words.expect(2)[1];
+    run::check_volume_name(path, volume.geometry());
+    return [path](run::Data& data, const Field&, double) { return data.save(path, {}); };
 }
 
-struct CarryOut {
-    run::Data& data;
-    const Field& field;
-    double isovalue;
+DataRequest seek(const CommandWords& words) {
+    const double time = words.expect(2).number(1);
+    if (!std::isfinite(time)) words.refuse();
+    return silent([time](run::Data& data) { data.player().seek(time); });
+}
 
-    std::string operator()(const ask::SetBrush& asked) const {
-        data.editor().set_brush(asked.brush);
-        return asked.brush ? fmt::format("brush: {}, {:g} mm", name_of(asked.brush->kind),
-                                         asked.brush->radius)
-                           : "brush: off";
-    }
-    std::string operator()(const ask::Touch& asked) const {
-        if (!std::isfinite(isovalue)) throw std::invalid_argument("no level is felt to shape");
-        Brush brush = brush_for(asked.brush.kind, field, isovalue, asked.brush.radius);
-        if (asked.brush.value) brush.value = *asked.brush.value;
-        data.editor().apply(edit::Stroke{brush, asked.from, asked.to});
-        return {};
-    }
-    std::string operator()(const ask::Fill& asked) const {
-        data.editor().apply(asked.fill);
-        return {};
-    }
-    std::string operator()(const ask::Undo&) const {
-        return data.editor().undo() ? "" : "there is nothing to undo";
-    }
-    std::string operator()(const ask::Redo&) const {
-        return data.editor().redo() ? "" : "there is nothing to redo";
-    }
-    std::string operator()(const ask::Save& asked) const { return data.save(asked.path, {}); }
-    std::string operator()(const ask::Play& asked) const {
-        data.player().play(asked.speed);
-        return {};
-    }
-    std::string operator()(const ask::Step& asked) const {
-        data.player().step(asked.frames);
-        return {};
-    }
-    std::string operator()(const ask::Seek& asked) const {
-        data.player().seek(asked.time);
-        return {};
-    }
-    std::string operator()(const ask::Loop& asked) const {
-        data.player().set_loop(asked.on);
-        return {};
-    }
-};
+/// The value after the name, at most `most` in size; without one 1.
+double one_or(const CommandWords& words, double most) {
+    const double value = words.expect(1, 2).count() > 1 ? words.number(1) : 1;
+    if (!(std::abs(value) <= most)) words.refuse();
+    return value;
+}
 
 }  // namespace
 
-void wrong_words(const std::string& meant) {
-    throw std::invalid_argument(meant + " is meant to be there");
+void CommandWords::refuse() const {
+    throw std::invalid_argument("expected: " + usage_);
 }
 
-std::optional<DataRequest> data_request(const std::vector<std::string>& words,
-                                        const Volume& volume) {
-    const std::string& name = words.at(0);
-    const bool alone = words.size() == 1;
-    if (name == "brush") return brush_request(words, volume);
+const CommandWords& CommandWords::expect(std::size_t least, std::size_t most) const {
+    if (count() < least || count() > most) refuse();
+    return *this;
+}
+
+double CommandWords::number(std::size_t at) const {
+    if (at >= count()) refuse();
+    return number_in(*this, words_[at]);
+}
+
+bool CommandWords::on_or_off() const {
+    if (count() != 2 || (words_[1] != "on" && words_[1] != "off")) refuse();
+    return words_[1] == "on";
+}
+
+std::optional<run::HandBrush> brush_from(const CommandWords& words, const Volume& volume) {
+    if (words.count() == 2 && words[1] == "off") return std::nullopt;
+    words.expect(3, 5);
+    run::HandBrush brush;
+    brush.kind = brush_kind_from(words[1]);
+    brush.radius = words.number(2);
+    if (words.count() > 3) brush.rate = words.number(3);
+    if (words.count() > 4) brush.value = io::level_from_text(words[4], volume);
+    run::check(brush);
+    return brush;
+}
+
+DataRequest set_brush(const std::optional<run::HandBrush>& brush) {
+    return [brush](run::Data& data, const Field&, double) {
+        data.editor().set_brush(brush);
+        return brush ? fmt::format("brush: {}, {:g} mm", name_of(brush->kind), brush->radius)
+                     : "brush: off";
+    };
+}
+
+DataRequest undo() {
+    return [](run::Data& data, const Field&, double) {
+        return data.editor().undo() ? "" : "there is nothing to undo";
+    };
+}
+
+DataRequest redo() {
+    return [](run::Data& data, const Field&, double) {
+        return data.editor().redo() ? "" : "there is nothing to redo";
+    };
+}
+
+DataRequest play(double speed) {
+    return silent([speed](run::Data& data) { data.player().play(speed); });
+}
+
+DataRequest step(int frames) {
+    return silent([frames](run::Data& data) { data.player().step(frames); });
+}
+
+DataRequest data_request(const CommandWords& words, const Volume& volume) {
+    const std::string& name = words.name();
+    const bool alone = words.count() == 1;
     if (name == "carve" || name == "add" || name == "smooth" || name == "paint") {
-        return touch_request(words, volume);
+        return stroke(words.as(name + " X,Y,Z[:X,Y,Z] RADIUS [VALUE]"), volume);
     }
-    if (name == "fill") return fill_request(words, volume);
-    if (name == "undo" && alone) return ask::Undo{};
-    if (name == "redo" && alone) return ask::Redo{};
-    if (name == "save") {
-        if (words.size() != 2) wrong_words("save FILE");
-        run::check_volume_name(words[1], volume.geometry());
-        return ask::Save{words[1]};
-    }
-    if (name == "play") return play_request(words);
-    if (name == "pause" && alone) return ask::Play{0};
-    if (name == "step") {
-        const double frames = alone ? 1 : number(words[1], "step [FRAMES]");
-        if (words.size() > 2 || !(std::abs(frames) <= 1e6)) wrong_words("step [FRAMES]");
-        return ask::Step{static_cast<int>(frames)};
-    }
-    if (name == "seek") {
-        if (words.size() != 2) wrong_words("seek SECONDS");
-        const double time = number(words[1], "seek SECONDS");
-        if (!std::isfinite(time)) wrong_words("seek SECONDS");
-        return ask::Seek{time};
-    }
+    if (name == "fill") return fill(words.as("fill I,J,K[:I,J,K] VALUE"), volume);
+    if (name == "undo" && alone) return undo();
+    if (name == "redo" && alone) return redo();
+    if (name == "save") return save(words.as("save FILE"), volume);
+    if (name == "play") return play(one_or(words.as("play [SPEED], at most 1000"), 1000));
+    if (name == "pause" && alone) return play(0);
+    if (name == "step") return step(static_cast<int>(one_or(words.as("step [FRAMES]"), 1e6)));
+    if (name == "seek") return seek(words.as("seek SECONDS"));
     if (name == "loop") {
-        if (words.size() != 2 || (words[1] != "on" && words[1] != "off"))
-            wrong_words("loop on|off");
-        return ask::Loop{words[1] == "on"};
+        const bool on = words.as("loop on|off").on_or_off();
+        return silent([on](run::Data& data) { data.player().set_loop(on); });
     }
-    return std::nullopt;
-}
-
-std::string carry_out(const DataRequest& request, run::Data& data, const Field& field,
-                      double isovalue) {
-    return std::visit(CarryOut{data, field, isovalue}, request);
+    return {};
 }
 
 }  // namespace palpate::app

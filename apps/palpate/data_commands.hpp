@@ -2,62 +2,56 @@
 // sequence.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "palpate/run/run.hpp"
 
 namespace palpate::app {
 
-/// Throws std::invalid_argument, saying which words were expected.
-[[noreturn]] void wrong_words(const std::string& meant);
+/// The words of one command. Whatever is not as expected throws std::invalid_argument with the
+/// usage, which says how the command is written.
+class CommandWords {
+  public:
+    CommandWords(std::vector<std::string> words, std::string usage)
+        : words_(std::move(words)), usage_(std::move(usage)) {}
+    /// The same words with another usage.
+    CommandWords as(std::string usage) const { return {words_, std::move(usage)}; }
 
-namespace ask {
-struct SetBrush {
-    std::optional<run::HandBrush> brush;  ///< nothing: off
-};
-/// One stroke of a brush, at the level felt when it is carried out.
-struct Touch {
-    run::HandBrush brush;  ///< its rate does not matter: the stroke is done at once
-    Vec3 from, to;         ///< [mm, physical]
-};
-struct Fill {
-    edit::Fill fill;
-};
-struct Undo {};
-struct Redo {};
-struct Save {
-    std::string path;
-};
-struct Play {
-    double speed;  ///< 0: pause
-};
-struct Step {
-    int frames;  ///< on, or back if negative
-};
-struct Seek {
-    double time;  ///< [s]
-};
-struct Loop {
-    bool on;
-};
-}  // namespace ask
-using DataRequest = std::variant<ask::SetBrush, ask::Touch, ask::Fill, ask::Undo, ask::Redo,
-                                 ask::Save, ask::Play, ask::Step, ask::Seek, ask::Loop>;
+    const std::string& name() const { return words_.at(0); }
+    std::size_t count() const { return words_.size(); }
+    const std::string& operator[](std::size_t at) const { return words_[at]; }
+    [[noreturn]] void refuse() const;
+    /// Refuses fewer or more words, the name included.
+    const CommandWords& expect(std::size_t least, std::size_t most) const;
+    const CommandWords& expect(std::size_t exactly) const { return expect(exactly, exactly); }
+    double number(std::size_t at) const;
+    bool on_or_off() const;
 
-/// `brush KIND RADIUS [RATE [VALUE]]`, `brush off`, `carve|add|smooth|paint X,Y,Z[:X,Y,Z] RADIUS
-/// [VALUE]`, `fill I,J,K[:I,J,K] VALUE`, `undo`, `redo`, `save FILE`, `play [SPEED]`, `pause`,
-/// `step [FRAMES]`, `seek SECONDS`, `loop on|off`. Nothing for other words; throws
-/// std::invalid_argument, saying what was expected.
-std::optional<DataRequest> data_request(const std::vector<std::string>& words,
-                                        const Volume& volume);
+  private:
+    std::vector<std::string> words_;
+    std::string usage_;
+};
 
-/// Carries out a request at the level `isovalue`, on the field felt; returns a sentence for the
-/// person who asked, or nothing. Throws std::invalid_argument for a request that the data cannot
-/// fulfil, io::OutputError and io::InputError. Any thread.
-std::string carry_out(const DataRequest& request, run::Data& data, const Field& field,
-                      double isovalue);
+/// Changes the data, at the level `isovalue` of the field felt; returns a sentence for the person
+/// who asked, or nothing. Throws std::invalid_argument for what the data cannot do,
+/// io::OutputError and io::InputError. Any thread.
+using DataRequest =
+    std::function<std::string(run::Data& data, const Field& field, double isovalue)>;
+
+/// `carve|add|smooth|paint X,Y,Z[:X,Y,Z] RADIUS [VALUE]`, `fill I,J,K[:I,J,K] VALUE`, `undo`,
+/// `redo`, `save FILE`, `play [SPEED]`, `pause`, `step [FRAMES]`, `seek SECONDS`, `loop on|off`.
+/// Empty for other words.
+DataRequest data_request(const CommandWords& words, const Volume& volume);
+
+/// `brush KIND RADIUS [RATE [VALUE]]`, or `brush off`, which is nothing.
+std::optional<run::HandBrush> brush_from(const CommandWords& words, const Volume& volume);
+DataRequest set_brush(const std::optional<run::HandBrush>& brush);
+DataRequest undo();
+DataRequest redo();
+DataRequest play(double speed);  ///< 0: pause
+DataRequest step(int frames);    ///< on, or back if negative
 
 }  // namespace palpate::app

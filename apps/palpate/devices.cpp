@@ -1,4 +1,4 @@
-// palpate devices: what was found, and why something was not.
+// palpate devices: lists the devices that were found, and why others were not.
 #include "palpate/devices/devices.hpp"
 
 #include <fmt/format.h>
@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/palpate/commands.hpp"
+#include "apps/palpate/outputs.hpp"
 
 namespace palpate::app {
 namespace {
@@ -26,17 +27,15 @@ void list_devices(bool json) {
                    device.found ? device.what : device.missing);
         if (!device.options.empty()) fmt::print("{:<15}     options: {}\n", "", device.options);
     }
-    if (json) {
-        fmt::print("{}\n", list.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
-    }
+    if (json) print_json(list);
 }
 
 }  // namespace
 
 void add_devices(CLI::App& app) {
     auto json = std::make_shared<bool>(false);
-    CLI::App* command =
-        app.add_subcommand("devices", "List the haptic devices that were found, and why not");
+    CLI::App* command = app.add_subcommand(
+        "devices", "List haptic devices: which were found, and why others were not");
     command->footer(
         "Looks for each kind of device: its library, its service, the device itself. Nothing is "
         "moved.\n\nExample:\n  palpate devices");

@@ -8,6 +8,7 @@
 
 #include "apps/options/source_options.hpp"
 #include "apps/palpate/commands.hpp"
+#include "apps/palpate/outputs.hpp"
 #include "apps/palpate/progress.hpp"
 #include "apps/palpate/result_folder.hpp"
 #include "evaluation/machine.hpp"
@@ -129,7 +130,7 @@ void evaluate(EvaluateOptions& options) {
         write_html(reports, options.output, results.part() / "report.html");
         results.complete();
     }
-    if (options.json) fmt::print("{}\n", json_from(reports).dump(2));
+    if (options.json) print_json(json_from(reports));
     if (!options.quiet && !options.json) {
         fmt::print("Results: {}{}\n", options.output,
                    options.name == "all" ? " (open report.html)" : "");
@@ -142,9 +143,9 @@ void evaluate(EvaluateOptions& options) {
 void add_evaluate(CLI::App& app) {
     auto options = std::make_shared<EvaluateOptions>();
     CLI::App* command = app.add_subcommand(
-        "evaluate", "Run the experiments: a table, figures and checked claims each");
+        "evaluate", "Run experiments; each gives a table, figures and checked claims");
     command->footer(
-        "all runs each of them and adds report.html, which needs no other file.\n"
+        "all runs every experiment and adds report.html, which needs no other file.\n"
         "Exit status 1: a claim does not hold.\n\n"
         "Examples:\n  palpate evaluate drift --output results\n"
         "  palpate evaluate fall-through --volume head.nrrd@500 --volume synthetic:torus\n"
@@ -156,7 +157,7 @@ void add_evaluate(CLI::App& app) {
         ->capture_default_str();
     command
         ->add_option("--volume", options->volumes,
-                     "Volume to do it on instead of the experiment's own (repeatable)")
+                     "Volume to use instead of the experiment's own; may be given again")
         ->type_name("VOLUME@ISOVALUE")
         ->allow_extra_args(false);
     command
@@ -168,7 +169,7 @@ void add_evaluate(CLI::App& app) {
     for (const auto& entry : baselines::methods()) methods.emplace_back(entry.name);
     command
         ->add_option("--method", options->experiment.method,
-                     "Proxy method, for an experiment that shows one")
+                     "Proxy method, for experiments that show one")
         ->check(CLI::IsMember(methods))
         ->capture_default_str();
     command->add_option("--seed", options->experiment.seed, "Seed of everything random")

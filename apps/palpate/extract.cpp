@@ -40,11 +40,10 @@ void extract(const ExtractOptions& options) {
     io::write_mesh(mesh, options.output);
     stop_if_interrupted();
     if (options.json) {
-        const nlohmann::ordered_json json{{"isovalue", isovalue},
-                                          {"vertices", mesh.vertices.size()},
-                                          {"triangles", mesh.triangles.size()},
-                                          {"enclosed_volume_mm3", enclosed_volume(mesh)}};
-        fmt::print("{}\n", json.dump(2));
+        print_json({{"isovalue", isovalue},
+                    {"vertices", mesh.vertices.size()},
+                    {"triangles", mesh.triangles.size()},
+                    {"enclosed_volume_mm3", enclosed_volume(mesh)}});
     } else if (!options.source.quiet) {
         fmt::print("{}: isovalue {}, {} vertices, {} triangles, encloses {:.6g} mm3\n",
                    options.output, isovalue, mesh.vertices.size(), mesh.triangles.size(),

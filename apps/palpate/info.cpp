@@ -1,4 +1,4 @@
-// palpate info: describes a volume and suggests levels to feel.
+// palpate info: describes a volume and suggests isovalues.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +9,7 @@
 
 #include "apps/options/source_options.hpp"
 #include "apps/palpate/commands.hpp"
+#include "apps/palpate/outputs.hpp"
 #include "apps/palpate/progress.hpp"
 #include "palpate/run/statistics.hpp"
 
@@ -70,11 +71,6 @@ nlohmann::ordered_json json_of(const run::LoadedVolume& loaded, const run::Histo
              {{"low", histogram.low}, {"high", histogram.high}, {"counts", histogram.counts}}},
             {"suggested_isovalues", suggested},
             {"notes", loaded.notes}};
-}
-
-/// A file's name need not be UTF-8; JSON must be.
-std::string json_text(const nlohmann::ordered_json& json) {
-    return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 void print_histogram(const run::Histogram& fine) {
@@ -139,7 +135,7 @@ void print_text(const run::LoadedVolume& loaded, const run::Histogram& histogram
 void add_info(CLI::App& app) {
     auto options = std::make_shared<SourceOptions>();
     auto json = std::make_shared<bool>(false);
-    CLI::App* command = app.add_subcommand("info", "Say what a volume is");
+    CLI::App* command = app.add_subcommand("info", "Describe a volume and suggest isovalues");
     command->footer(
         "Examples:\n  palpate info head.nrrd\n  palpate info dicom-folder --json\n"
         "  palpate info samples.raw --dims 256x256x113 --type uint16 --spacing 1,1,2");
@@ -154,7 +150,7 @@ void add_info(CLI::App& app) {
             suggested.insert(suggested.begin(), *own);
         }
         if (*json) {
-            fmt::print("{}\n", json_text(json_of(loaded, histogram, suggested)));
+            print_json(json_of(loaded, histogram, suggested));
         } else {
             print_text(loaded, histogram, suggested);
         }

@@ -1,4 +1,4 @@
-// Reads words and keys.
+// Reads the commands of scripts and keys.
 #include "apps/palpate/live_commands.hpp"
 
 #include <fmt/format.h>
@@ -12,46 +12,24 @@
 #include "palpate/io/level.hpp"
 
 namespace palpate::app {
-namespace {
-
-bool on_or_off(const std::vector<std::string>& words) {
-    if (words.size() != 2 || (words[1] != "on" && words[1] != "off")) {
-        wrong_words(words[0] + " on, or " + words[0] + " off,");
-    }
-    return words[1] == "on";
-}
-
-double number(const std::vector<std::string>& words, std::size_t at, const std::string& meant) {
-    const auto value = at < words.size() ? io::number_from<double>(words[at]) : std::nullopt;
-    if (!value) wrong_words(meant);
-    return *value;
-}
-
-void expect_words(const std::vector<std::string>& words, std::size_t count) {
-    if (words.size() != count) wrong_words(fmt::format("one value after '{}'", words[0]));
-}
-
-}  // namespace
 
 LiveCommands::LiveCommands(const Field& field, double isovalue, const RendererSettings& settings)
     : field_(field), isovalue_(isovalue), settings_(settings) {
     if (settings.penetrability.on) penetrability_ = settings.penetrability;
 }
 
-Penetrability LiveCommands::penetrability_from(const std::vector<std::string>& words) const {
-    const std::string mode = words.size() > 1 ? words[1] : "";
-    if (mode == "off" && words.size() == 2) return no_penetrability();
-    const double threshold =
-        number(words, 2, "penetrability off, threshold PT or ranges PT LOW:HIGH");
-    if (mode == "threshold" && words.size() <= 4) {
+Penetrability LiveCommands::penetrability_from(const CommandWords& words) const {
+    const std::string mode = words.expect(2, words.count())[1];
+    if (mode == "off" && words.count() == 2) return no_penetrability();
+    const double threshold = words.number(2);
+    if (mode == "threshold" && words.count() <= 4) {
         const double minimum =
-            words.size() == 4 ? io::level_from_text(words[3], field_.volume()) : isovalue_;
+            words.count() == 4 ? io::level_from_text(words[3], field_.volume()) : isovalue_;
         return penetrability_threshold(threshold, minimum, field_.solid());
     }
-    if (mode != "ranges")
-        wrong_words("penetrability off, threshold PT [MINIMUM] or ranges PT LOW:HIGH");
+    if (mode != "ranges") words.refuse();
     std::vector<DensityRange> ranges;
-    for (std::size_t i = 3; i < words.size(); ++i) {
+    for (std::size_t i = 3; i < words.count(); ++i) {
         const run::LevelRange range = range_from(words[i]);
         ranges.push_back(
             {io::level_in(field_.volume(), range.low), io::level_in(field_.volume(), range.high)});
@@ -59,62 +37,69 @@ Penetrability LiveCommands::penetrability_from(const std::vector<std::string>& w
     return penetrability_ranges(threshold, ranges, field_.solid());
 }
 
+/// A command that changes one setting.
+Command LiveCommands::setting_from(const CommandWords& words, RendererSettings& next) const {
+    const std::string& name = words.name();
+    ForceSettings& force = next.force;
+    double* const setting = name == "stiffness"   ? &force.stiffness
+                            : name == "damping"   ? &force.damping
+                            : name == "viscosity" ? &force.viscosity
+                                                  : nullptr;
+    if (setting) {
+        *setting = words.expect(2).number(1);
+        return force;
+    }
+    if (name == "friction") return next.proxy.friction = friction_from(name, words.expect(2)[1]);
+    if (name == "scale") return command::Scale{words.expect(2).number(1)};
+    throw std::invalid_argument(
+        "there is no command '" + name +
+        "'; there are isovalue, stiffness, damping, viscosity, friction, penetrability, forces, "
+        "freeze, clutch, scale, brush, carve, add, smooth, paint, fill, undo, redo, save, play, "
+        "pause, step, seek, loop, quit");
+}
+
+DataRequest LiveCommands::take_up(const std::optional<run::HandBrush>& brush) {
+    brush_ = brush;
+    if (brush) last_brush_ = brush;
+    return set_brush(brush);
+}
+
 Request LiveCommands::from_words(std::string_view line) {
     std::istringstream stream{std::string(line)};
-    std::vector<std::string> words;
-    for (std::string word; stream >> word;) words.push_back(word);
-    if (words.empty()) wrong_words("a command");
-    const std::string& name = words[0];
-    if (auto data = data_request(words, field_.volume())) {
-        if (const auto* set = std::get_if<ask::SetBrush>(&*data)) {
-            brush_ = set->brush;
-            if (brush_) last_brush_ = brush_;
-        }
-        return *data;
+    std::vector<std::string> all;
+    for (std::string word; stream >> word;) all.push_back(word);
+    const std::string name = all.empty() ? "" : all[0];
+    const CommandWords words(std::move(all), name.empty() ? "a command" : name + " VALUE");
+    words.expect(1, words.count());
+    if (name == "brush") {
+        return take_up(brush_from(words.as("brush KIND RADIUS [RATE [VALUE]], or brush off"),
+                                  field_.volume()));
     }
-    if (name == "quit" && words.size() == 1) return Quit{};
-    if (name == "forces") return command::Forces{on_or_off(words)};
-    if (name == "freeze") return command::Freeze{on_or_off(words)};
-    if (name == "clutch") return command::Clutch{on_or_off(words)};
+    if (auto data = data_request(words, field_.volume())) return data;
+    if (name == "quit" && words.count() == 1) return Quit{};
+    const CommandWords toggle = words.as(name + " on|off");
+    if (name == "forces") return command::Forces{toggle.on_or_off()};
+    if (name == "freeze") return command::Freeze{toggle.on_or_off()};
+    if (name == "clutch") return command::Clutch{toggle.on_or_off()};
     if (name == "penetrability") {
-        const Penetrability asked = penetrability_from(words);
+        const Penetrability asked = penetrability_from(
+            words.as("penetrability off, threshold PT [MINIMUM] or ranges PT LOW:HIGH"));
         if (asked.on) penetrability_ = asked;
         return Command(asked);
     }
-    RendererSettings next = settings_;
-    Command command;
     if (name == "isovalue") {
-        expect_words(words, 2);
-        isovalue_ = io::level_from_text(words[1], field_.volume());
+        isovalue_ = io::level_from_text(words.expect(2)[1], field_.volume());
         return command::Isovalue{isovalue_};
     }
-    if (name == "friction") {
-        expect_words(words, 2);
-        command = next.proxy.friction = friction_from(name, words[1]);
-    } else if (name == "scale") {
-        expect_words(words, 2);
-        command = command::Scale{number(words, 1, "scale FACTOR")};
-    } else if (name == "stiffness" || name == "damping" || name == "viscosity") {
-        expect_words(words, 2);
-        const double value = number(words, 1, "a number");
-        (name == "stiffness" ? next.force.stiffness
-         : name == "damping" ? next.force.damping
-                             : next.force.viscosity) = value;
-        command = next.force;
-    } else {
-        throw std::invalid_argument("there is no command '" + name +
-                                    "'; there are isovalue, stiffness, damping, viscosity, "
-                                    "friction, penetrability, forces, "
-                                    "freeze, clutch, scale, brush, carve, add, smooth, paint, "
-                                    "fill, undo, redo, save, play, pause, step, seek, loop, quit");
-    }
+    RendererSettings next = settings_;
+    const Command command = setting_from(words, next);
     check(command, settings_, field_.solid());
     settings_ = next;
     return command;
 }
 
 std::optional<Request> LiveCommands::from_key(char key, const Snapshot& now) {
-    const double step = 0.01 * (field_.volume().maximum() - field_.volume().minimum());
+    const double percent = 0.01 * (field_.volume().maximum() - field_.volume().minimum());
     const double isovalue = now.session.tick.proxy.isovalue;
     switch (key) {
         case ' ':
@@ -124,9 +109,9 @@ std::optional<Request> LiveCommands::from_key(char key, const Snapshot& now) {
         case 'c':
             return command::Clutch{!now.session.clutched};
         case '+':
-            return command::Isovalue{isovalue_ = isovalue + step};
+            return command::Isovalue{isovalue_ = isovalue + percent};
         case '-':
-            return command::Isovalue{isovalue_ = isovalue - step};
+            return command::Isovalue{isovalue_ = isovalue - percent};
         case '[':
             return command::Scale{now.session.transform.scale / 1.1};
         case ']':
@@ -137,20 +122,18 @@ std::optional<Request> LiveCommands::from_key(char key, const Snapshot& now) {
             return Command(
                 penetrability_.value_or(penetrability_threshold(1, isovalue, field_.solid())));
         case 'b':
-            brush_ = brush_
-                         ? std::nullopt
-                         : std::optional(last_brush_.value_or(run::usual_brush(field_.geometry())));
-            return DataRequest(ask::SetBrush{brush_});
+            if (brush_) return take_up(std::nullopt);
+            return take_up(last_brush_.value_or(run::usual_brush(field_.geometry())));
         case 'u':
-            return DataRequest(ask::Undo{});
+            return undo();
         case 'r':
-            return DataRequest(ask::Redo{});
+            return redo();
         case 'k':
-            return DataRequest(ask::Play{now.speed != 0 ? 0.0 : 1.0});
+            return play(now.speed != 0 ? 0 : 1);
         case ',':
-            return DataRequest(ask::Step{-1});
+            return step(-1);
         case '.':
-            return DataRequest(ask::Step{1});
+            return step(1);
         case 'q':
             return Quit{};
         case '?':

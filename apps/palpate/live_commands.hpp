@@ -1,7 +1,6 @@
 // Commands of people and scripts for a live run: words in a file, and keys.
 #pragma once
 
-#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -26,8 +25,8 @@ class LiveCommands {
     /// `isovalue 300`, `isovalue 53%`, `stiffness 0.5`, `damping 0.001`, `viscosity 0`,
     /// `friction 0.3,0.2`, `penetrability off`, `penetrability threshold PT [MINIMUM]`,
     /// `penetrability ranges PT LOW:HIGH ...`, `forces on|off`, `freeze on|off`, `clutch on|off`,
-    /// `scale 1.5`, `quit`; and those of data_request(). Throws std::invalid_argument, saying what
-    /// was expected.
+    /// `scale 1.5`, `quit`; and those of data_commands.hpp. Throws std::invalid_argument, saying
+    /// what was expected.
     Request from_words(std::string_view line);
 
     /// The request of a key; nothing for a key without a meaning. See key_help().
@@ -35,7 +34,9 @@ class LiveCommands {
     static std::string key_help();
 
   private:
-    Penetrability penetrability_from(const std::vector<std::string>& words) const;
+    Penetrability penetrability_from(const CommandWords& words) const;
+    Command setting_from(const CommandWords& words, RendererSettings& next) const;
+    DataRequest take_up(const std::optional<run::HandBrush>& brush);
 
     Field field_;
     double isovalue_;

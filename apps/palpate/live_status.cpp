@@ -1,4 +1,4 @@
-// Lateness is the machine's, compute time ours: told apart everywhere.
+// The status line and report. Compute time is ours, lateness the machine's.
 #include "apps/palpate/live_status.hpp"
 
 #include <fmt/format.h>
@@ -57,24 +57,23 @@ std::string report_text(const ServoReport& r, double seconds) {
     return text;
 }
 
-std::string report_json(const ServoReport& r, double seconds, const std::string& device) {
-    const nlohmann::ordered_json json{{"device", device},
-                                      {"seconds", seconds},
-                                      {"ticks", r.ticks},
-                                      {"missed", r.missed},
-                                      {"overruns", r.overruns},
-                                      {"unrecorded", r.unrecorded},
-                                      {"compute_ns", json_of(r.compute)},
-                                      {"lateness_ns", json_of(r.lateness)},
-                                      {"work_ns", json_of(r.work)},
-                                      {"period_ns", json_of(r.period)},
-                                      {"worst",
-                                       {{"tick", r.worst.tick},
-                                        {"lateness_ns", r.worst.lateness_ns},
-                                        {"work_ns", r.worst.work_ns},
-                                        {"compute_ns", r.worst.compute_ns},
-                                        {"cause", name_of(r.worst.cause)}}}};
-    return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+nlohmann::ordered_json report_json(const ServoReport& r, double seconds, const DeviceInfo& device) {
+    return {{"device", device.name + " (" + device.model + ")"},
+            {"seconds", seconds},
+            {"ticks", r.ticks},
+            {"missed", r.missed},
+            {"overruns", r.overruns},
+            {"unrecorded", r.unrecorded},
+            {"compute_ns", json_of(r.compute)},
+            {"lateness_ns", json_of(r.lateness)},
+            {"work_ns", json_of(r.work)},
+            {"period_ns", json_of(r.period)},
+            {"worst",
+             {{"tick", r.worst.tick},
+              {"lateness_ns", r.worst.lateness_ns},
+              {"work_ns", r.worst.work_ns},
+              {"compute_ns", r.worst.compute_ns},
+              {"cause", name_of(r.worst.cause)}}}};
 }
 
 }  // namespace palpate::app

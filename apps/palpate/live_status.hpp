@@ -1,7 +1,7 @@
-// How a live session does, in words: a line while it runs, a summary at the end.
+// The state of a live session as text: a line while it runs, a report at the end.
 #pragma once
 
-#include <optional>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "apps/options/words.hpp"
@@ -15,6 +15,7 @@ std::string status_line(const Snapshot& now, const ServoReport& report, std::siz
 
 /// Several lines for people; JSON, one object, for scripts. `seconds`: how long the session ran.
 std::string report_text(const ServoReport& report, double seconds);
-std::string report_json(const ServoReport& report, double seconds, const std::string& device);
+nlohmann::ordered_json report_json(const ServoReport& report, double seconds,
+                                   const DeviceInfo& device);
 
 }  // namespace palpate::app

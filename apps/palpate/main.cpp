@@ -76,8 +76,9 @@ int run(int argc, char** argv) {
     app.require_subcommand(1);
     app.footer(
         "First steps:\n"
-        "  palpate demo                             a simulated hand explores a built-in volume\n"
-        "  palpate info head.nrrd                   what a volume is, and which levels to feel\n"
+        "  palpate demo                             a simulated hand explores a CT of a head\n"
+        "  palpate info head.nrrd                   describes a volume and suggests levels to "
+        "feel\n"
         "  palpate COMMAND --help                   options and an example of each command");
     add_info(app);
     add_replay(app);

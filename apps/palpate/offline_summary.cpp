@@ -20,22 +20,21 @@ std::string summary_text(const run::OfflineSummary& s) {
         s.mean_ns, s.p50_ns, s.p99_ns, s.p999_ns, s.max_ns);
 }
 
-std::string summary_json(const run::OfflineSummary& s) {
-    const nlohmann::ordered_json json{{"ticks", s.ticks},
-                                      {"constrained", s.constrained},
-                                      {"out_of_budget", s.out_of_budget},
-                                      {"recovering", s.recovering},
-                                      {"refused", s.refused},
-                                      {"worst_surface_error", s.worst_surface_error},
-                                      {"largest_force_n", s.largest_force},
-                                      {"mean_tetrahedra", s.mean_tetrahedra},
-                                      {"update_ns",
-                                       {{"mean", s.mean_ns},
-                                        {"p50", s.p50_ns},
-                                        {"p99", s.p99_ns},
-                                        {"p99.9", s.p999_ns},
-                                        {"max", s.max_ns}}}};
-    return json.dump(2) + "\n";
+nlohmann::ordered_json summary_json(const run::OfflineSummary& s) {
+    return {{"ticks", s.ticks},
+            {"constrained", s.constrained},
+            {"out_of_budget", s.out_of_budget},
+            {"recovering", s.recovering},
+            {"refused", s.refused},
+            {"worst_surface_error", s.worst_surface_error},
+            {"largest_force_n", s.largest_force},
+            {"mean_tetrahedra", s.mean_tetrahedra},
+            {"update_ns",
+             {{"mean", s.mean_ns},
+              {"p50", s.p50_ns},
+              {"p99", s.p99_ns},
+              {"p99.9", s.p999_ns},
+              {"max", s.max_ns}}}};
 }
 
 }  // namespace palpate::app

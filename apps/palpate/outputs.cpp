@@ -1,7 +1,10 @@
-// Comparison of files by what they are, not by how they are written.
+// Compares files by identity, not by name; prints JSON.
 #include "apps/palpate/outputs.hpp"
 
+#include <fmt/format.h>
+
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 namespace palpate::app {
@@ -35,22 +38,22 @@ bool is_stream(const std::string& name) {
            (fs::exists(name, error) && !fs::is_regular_file(name, error));
 }
 
+void print_json(const nlohmann::ordered_json& json) {
+    fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+}
+
 void check_outputs(const std::vector<std::string>& inputs,
                    const std::vector<std::string>& outputs) {
     for (std::size_t i = 0; i < outputs.size(); ++i) {
         if (outputs[i].empty()) continue;
         for (const std::string& input : inputs) {
-            if (!input.empty() && same_file(outputs[i], input)) {
-                throw std::invalid_argument(outputs[i] +
-                                            " is an input and would be replaced: "
-                                            "choose another output");
-            }
+            if (input.empty() || !same_file(outputs[i], input)) continue;
+            throw std::invalid_argument(
+                outputs[i] + " is an input and would be replaced: choose another output");
         }
         for (std::size_t j = 0; j < i; ++j) {
-            if (!outputs[j].empty() && same_file(outputs[i], outputs[j])) {
-                throw std::invalid_argument("two outputs go to " + outputs[i] +
-                                            ": give each its own");
-            }
+            if (outputs[j].empty() || !same_file(outputs[i], outputs[j])) continue;
+            throw std::invalid_argument("two outputs go to " + outputs[i] + ": give each its own");
         }
     }
 }

@@ -1,6 +1,7 @@
-// Where results go: checks that hold before any work is done.
+// Where results go: checks before any work is done, and JSON on standard output.
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,9 @@ bool is_standard_output(const std::string& name);
 
 /// True for what is written directly, as it comes: standard output, a pipe, a device.
 bool is_stream(const std::string& name);
+
+/// Prints JSON, indented. What is not UTF-8, as the name of a file may be, is replaced.
+void print_json(const nlohmann::ordered_json& json);
 
 /// Throws std::invalid_argument if an output is one of the inputs, which it would replace, or two
 /// outputs are the same. Empty names are skipped; devices such as /dev/null may be shared.

@@ -1,4 +1,4 @@
-// The progress bar.
+// Draws the progress bar; loads volumes with one.
 #include "apps/palpate/progress.hpp"
 
 #include <fmt/format.h>

@@ -67,7 +67,7 @@ std::vector<double> levels_of(const RenderPictureOptions& options, const run::Lo
         const double level = io::level_from_text(text, loaded.volume);
         warn_of_isovalue(field, level);
         if (std::ranges::count(levels, level) > 0) {
-            throw std::invalid_argument("--isovalue " + text + ": is there twice");
+            throw std::invalid_argument("--isovalue " + text + ": given twice");
         }
         levels.push_back(level);
     }
@@ -98,7 +98,7 @@ pictures::Contact contact_of(const RenderPictureOptions& options, const Field& f
         contact.force = options.stiffness * (*contact.scp - *contact.hip);
     }
     if (contact.force && !contact.scp) {
-        throw std::invalid_argument("--force: where? Give --scp or --hip as well");
+        throw std::invalid_argument("--force needs a place: give --scp or --hip as well");
     }
     return contact;
 }
@@ -200,7 +200,7 @@ void add_render(CLI::App& app) {
     CLI::App* command =
         app.add_subcommand("render", "A picture of isosurfaces, hand and proxy; needs no display");
     command->footer(
-        "Points are physical (LPS, mm). A --hip alone gets the proxy that it has at the first "
+        "Points are physical (LPS, mm). With --hip alone, the proxy is computed at the first "
         "--isovalue.\n\nExamples:\n"
         "  palpate render head.nrrd --isovalue 500 --isovalue 1200 --output head.png\n"
         "  palpate render synthetic:torus --hip 0,-20,8 --zoom 3 --output contact.png");
@@ -224,7 +224,7 @@ void add_render(CLI::App& app) {
         ->type_name("FILE");
     auto* view = command
                      ->add_option("--view", options->view,
-                                  "Side of the body to look at (default: one that shows much)")
+                                  "Side of the body to look at (default: one that shows most)")
                      ->check(CLI::IsMember(pictures::view_names()));
     command
         ->add_option("--azimuth", options->azimuth,
@@ -235,7 +235,7 @@ void add_render(CLI::App& app) {
     command->add_option("--roll", options->roll, "Turn the picture clockwise [degrees]")
         ->check(CLI::Range(-360.0, 360.0))
         ->capture_default_str();
-    command->add_option("--zoom", options->zoom, "Enlarge, about the proxy where there is one")
+    command->add_option("--zoom", options->zoom, "Magnification, about the proxy if there is one")
         ->check(CLI::Range(0.1, 1000.0))
         ->capture_default_str();
     command->add_option("--size", options->size, "Size of the picture [pixels]")

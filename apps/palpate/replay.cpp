@@ -1,8 +1,10 @@
-// palpate replay: a recorded motion of the hand over a volume, off line, deterministic.
+// palpate replay: renders a recorded motion of the hand offline, always with the same result; or
+// validates a recording.
 #include <fmt/format.h>
 
 #include <limits>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "apps/options/render_options.hpp"
@@ -11,7 +13,7 @@
 #include "apps/palpate/offline_summary.hpp"
 #include "apps/palpate/outputs.hpp"
 #include "apps/palpate/progress.hpp"
-#include "apps/palpate/validate.hpp"
+#include "palpate/run/replay.hpp"
 
 namespace palpate::app {
 namespace {
@@ -24,6 +26,49 @@ struct ReplayOptions {
     bool json = false, validate = false;
     std::string recorded_volume;
 };
+
+/// Other reasons why a tick may differ; reads on to the end of the recording.
+std::string excuses(io::RecordingReader& reader) {
+    std::string words;
+    if (reader.head().version != PALPATE_VERSION) {
+        words +=
+            " (recorded with version " + reader.head().version + ", this is " PALPATE_VERSION ")";
+    }
+    while (reader.next()) {
+    }
+    if (reader.lost() > 0) {
+        words += fmt::format(" (the recording lost {} events while it was made)", reader.lost());
+    }
+    return words;
+}
+
+/// Renders every tick of a recording again and compares it bit for bit, update times excepted; an
+/// io::InputError tells the first difference. `volume` is used instead of the name in the recording
+/// where it is not empty.
+void validate(const std::string& recording, const std::string& volume, bool quiet) {
+    io::RecordingReader reader{std::filesystem::path(recording)};
+    const run::LoadedVolume loaded =
+        load_for_terminal(run::recorded_source(reader.head(), recording, volume), quiet);
+    run::Replay replay(reader, loaded, recording);
+    ProgressBar bar("validating", quiet);
+    while (const auto tick = replay.next()) {
+        if (const auto differs = run::difference(tick->recorded, tick->again)) {
+            throw io::InputError(
+                fmt::format("{}: tick {} (line {}, {} s) differs: {}: recorded {}, "
+                            "now {}{}",
+                            recording, tick->number, reader.line(), tick->recorded.tick.time,
+                            differs->part, differs->recorded, differs->again, excuses(reader)));
+        }
+        if (replay.ticks() % 1024 == 0) bar.at(reader.progress());
+    }
+    if (quiet) return;
+    fmt::print("{}: {} ticks and {} commands, rendered again, are the same bit for bit\n",
+               recording, replay.ticks(), replay.commands());
+    if (reader.lost() > 0) {
+        fmt::print("the recording lost {} events while it was made\n", reader.lost());
+    }
+    if (!reader.complete()) fmt::print("the recording was cut off before its end\n");
+}
 
 /// A recording says itself how it was felt.
 void refuse_other_options(const CLI::App& command) {
@@ -78,7 +123,7 @@ void replay(const ReplayOptions& options) {
     trace.commit();
     if (path && !path_first) path->commit();
     if (options.json) {
-        fmt::print("{}", summary_json(summary));
+        print_json(summary_json(summary));
     } else if (!options.source.quiet && !table_on_standard_output) {
         fmt::print("{}", summary_text(summary));
     }

@@ -1,12 +1,12 @@
-// Carries out one request after the other.
+// Carries out requests one after the other.
 #include "apps/palpate/request_queue.hpp"
 
 #include <stdexcept>
 #include <utility>
 
-namespace palpate::app {
+#include "palpate/io/error.hpp"
 
-RequestQueue::RequestQueue(const run::Run& run) : run_(run), thread_([this] { work(); }) {}
+namespace palpate::app {
 
 RequestQueue::~RequestQueue() {
     {
@@ -17,10 +17,10 @@ RequestQueue::~RequestQueue() {
     thread_.join();
 }
 
-void RequestQueue::put(const DataRequest& request, const Snapshot& now) {
+void RequestQueue::put(Work work) {
     {
         const std::scoped_lock lock(mutex_);
-        waiting_.push_back({request, now.session.tick.proxy.isovalue});
+        waiting_.push_back(std::move(work));
     }
     changed_.notify_all();
 }
@@ -40,25 +40,25 @@ std::string RequestQueue::unsaved() const {
     return unsaved_;
 }
 
-void RequestQueue::work() {
+void RequestQueue::run() {
     std::unique_lock lock(mutex_);
     while (true) {
         changed_.wait(lock, [&] { return stop_ || !waiting_.empty(); });
         if (stop_) return;
-        const Waiting next = std::move(waiting_.front());
+        const Work next = std::move(waiting_.front());
         waiting_.pop_front();
         busy_ = true;
         lock.unlock();
-        carry_out_one(next);
+        do_one(next);
         lock.lock();
         busy_ = false;
         changed_.notify_all();
     }
 }
 
-void RequestQueue::carry_out_one(const Waiting& waiting) {
+void RequestQueue::do_one(const Work& work) {
     try {
-        say(carry_out(waiting.request, run_.data(), run_.field_now(), waiting.isovalue), false);
+        say(work(), false);
     } catch (const io::OutputError& e) {
         say(std::string("palpate: ") + e.what(), true);
         const std::scoped_lock lock(mutex_);

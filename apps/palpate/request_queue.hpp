@@ -4,48 +4,45 @@
 
 #include <condition_variable>
 #include <deque>
+#include <functional>
 #include <mutex>
 #include <string>
 #include <thread>
 #include <vector>
 
-#include "apps/palpate/data_commands.hpp"
-
 namespace palpate::app {
+
+/// Returns a sentence for the person who asked, or nothing; what it throws is reported.
+using Work = std::function<std::string()>;
 
 class RequestQueue {
   public:
-    explicit RequestQueue(const run::Run& run);
-    /// Waits for the request under way and drops the others.
+    RequestQueue() : thread_([this] { run(); }) {}
+    /// Waits for the work under way and drops the rest.
     ~RequestQueue();
     RequestQueue(const RequestQueue&) = delete;
     RequestQueue& operator=(const RequestQueue&) = delete;
 
-    void put(const DataRequest& request, const Snapshot& now);
+    void put(Work work);
     struct Message {
         std::string text;
         bool is_problem;
     };
     /// Sentences for the person who asked, since the last call.
     std::vector<Message> messages();
-    /// Waits until all are done.
+    /// Waits until all is done.
     void finish();
     /// Why a volume could not be written; empty if all could.
     std::string unsaved() const;
 
   private:
-    struct Waiting {
-        DataRequest request;
-        double isovalue;  // felt when it was asked for
-    };
-    void work();
-    void carry_out_one(const Waiting& waiting);
+    void run();
+    void do_one(const Work& work);
     void say(const std::string& text, bool is_problem);
 
-    const run::Run& run_;
     mutable std::mutex mutex_;
     std::condition_variable changed_;
-    std::deque<Waiting> waiting_;
+    std::deque<Work> waiting_;
     std::vector<Message> messages_;
     std::string unsaved_;
     bool busy_ = false, stop_ = false;

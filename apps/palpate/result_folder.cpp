@@ -1,4 +1,4 @@
-// Made aside, renamed when complete.
+// Makes results in a hidden folder and renames them when complete.
 #include "apps/palpate/result_folder.hpp"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// The terminal's settings (termios), and poll.
+// Reads keys by termios and poll.
 #include "apps/palpate/terminal.hpp"
 
 #include <poll.h>

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <csignal>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "apps/options/run_options.hpp"
@@ -30,7 +31,6 @@ class Terminal {
     Terminal(run::Run& run, const RunOptions& options, std::vector<TimedRequest> requests,
              LiveCommands& commands)
         : run_(run),
-          queue_(run),
           device_name_(run.device().name),
           options_(options),
           requests_(std::move(requests)),
@@ -54,8 +54,7 @@ class Terminal {
         ++rounds_;
         print_messages();
         watch_device(now->session.device.status);
-        watch_recording();
-        watch_data();
+        watch_files();
         if (line_ && rounds_ % 20 == 0) {
             fmt::print(stderr, "\r\033[K{}",
                        status_line(*now, run_.report(), terminal_columns() - 1));
@@ -87,21 +86,20 @@ class Terminal {
     }
 
     bool obey(const Request& request, const Snapshot& now) {
-        if (std::holds_alternative<Quit>(request)) return false;
-        if (std::holds_alternative<Help>(request)) {
-            note(LiveCommands::key_help());
-            return true;
-        }
         try {
-            if (const auto* data = std::get_if<DataRequest>(&request)) {
-                queue_.put(*data, now);
-            } else {
-                run_.send(std::get<Command>(request));
-            }
+            std::visit(Overloaded{[](Quit) {}, [&](Help) { note(LiveCommands::key_help()); },
+                                  [&](const DataRequest& data) {
+                                      const double isovalue = now.session.tick.proxy.isovalue;
+                                      queue_.put([this, data, isovalue] {
+                                          return data(run_.data(), run_.field_now(), isovalue);
+                                      });
+                                  },
+                                  [&](const Command& command) { run_.send(command); }},
+                       request);
         } catch (const std::invalid_argument& e) {
             note(e.what());
         }
-        return true;
+        return !std::holds_alternative<Quit>(request);
     }
 
     /// Reports when the status of the device changes, or its problem.
@@ -123,19 +121,16 @@ class Terminal {
         }
     }
 
-    void watch_recording() {
-        if (!run_.recording() || recording_told_ || rounds_ % 50 != 0) return;
-        const std::string problem = run_.recording()->problem();
-        if (problem.empty()) return;
-        recording_told_ = true;
-        note("palpate: " + problem);
-    }
-
-    void watch_data() {
+    /// Reports problems of data and recording when they are new.
+    void watch_files() {
         if (rounds_ % 25 != 0) return;
-        const std::string problem = run_.data().problem();
-        if (std::exchange(data_problem_, problem) == problem || problem.empty()) return;
-        note("palpate: " + problem);
+        const auto tell = [&](std::string& told, const std::string& problem) {
+            if (std::exchange(told, problem) != problem && !problem.empty()) {
+                note("palpate: " + problem);
+            }
+        };
+        tell(data_problem_, run_.data().problem());
+        if (run_.recording()) tell(recording_problem_, run_.recording()->problem());
     }
 
     run::Run& run_;
@@ -147,9 +142,7 @@ class Terminal {
     LiveCommands& commands_;
     Keys keys_;
     std::optional<DeviceStatus> status_;
-    std::string problem_;  // of the device, as told
-    bool recording_told_ = false;
-    std::string data_problem_;
+    std::string problem_, data_problem_, recording_problem_;  // as told; the first the device's
     bool line_;
     int rounds_ = 0;
 };
@@ -167,17 +160,10 @@ void announce(const run::Run& run, const DeviceInfo& device) {
     for (const std::string& sentence : run.privileges()) fmt::print(stderr, "{}\n", sentence);
 }
 
-/// Takes up the brush of --brush.
-void take_up_brush(const RunOptions& options, LiveCommands& commands, run::Data& data) {
-    const Request request = commands.from_words("brush " + options.brush);
-    const auto& asked = std::get<ask::SetBrush>(std::get<DataRequest>(request));
-    data.editor().set_brush(asked.brush);
-}
-
 void print_report(const ServoReport& report, double seconds, const DeviceInfo& device,
                   const RunOptions& options) {
     if (options.json) {
-        fmt::print("{}", report_json(report, seconds, device.name + " (" + device.model + ")"));
+        print_json(report_json(report, seconds, device));
     } else if (!options.source.quiet) {
         fmt::print("{}", report_text(report, seconds));
     }
@@ -222,9 +208,8 @@ void finish_recording(run::Run& run, const RunOptions& options) {
 void require_no_mouse(const run::Setup& setup) {
     if (setup.device.name != "mouse") return;
     throw devices::DeviceError(
-        "device mouse: there is no window to move it in (--headless, --json, --seconds and "
-        "--commands have none, nor has a machine without a display); palpate devices lists "
-        "others");
+        "device mouse: there is no window to move it in: --headless, --json, --seconds and "
+        "--commands open none, nor does a machine without a display; palpate devices lists others");
 }
 
 void touch(const RunOptions& options) {
@@ -239,7 +224,10 @@ void touch(const RunOptions& options) {
     LiveCommands commands(run.field(), run.isovalue(), run.settings());
     std::vector<TimedRequest> requests;
     if (!options.commands.empty()) requests = read_commands(options.commands, commands);
-    if (!options.brush.empty()) take_up_brush(options, commands, *data);
+    if (!options.brush.empty()) {
+        const Request brush = commands.from_words("brush " + options.brush);
+        std::get<DataRequest>(brush)(*data, run.field(), run.isovalue());
+    }
     start_recording(run, options);
     const DeviceInfo device = run.device();
     // A program stopped in the middle could not let go of the forces. Ctrl-Z does nothing

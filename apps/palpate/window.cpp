@@ -39,7 +39,8 @@ void become_viewer(const Words& words) {
     const fs::path program = viewer_program();
     if (program.empty()) {
         throw std::invalid_argument(
-            "the viewer is not there: build with PALPATE_VIEWER=ON (package libvtk9-qt-dev), or "
+            "the viewer is not installed: build with PALPATE_VIEWER=ON (package libvtk9-qt-dev), "
+            "or "
             "feel without a window (palpate touch --headless)");
     }
     if (!has_display()) {

@@ -1,4 +1,4 @@
-// The way from the command line to the viewer, a program of its own.
+// Starts the viewer, a program of its own, from the command line.
 #pragma once
 
 #include <filesystem>

@@ -15,9 +15,6 @@
 namespace palpate::evaluation {
 namespace {
 
-/// Of G2 (proxy.hpp): what counts as on the isosurface, relative to the field's range.
-constexpr double granted = 1e-9;
-
 struct Plan {
     int turns;
     std::vector<double> speeds;  // [mm/s]

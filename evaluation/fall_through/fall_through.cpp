@@ -17,9 +17,6 @@
 namespace palpate::evaluation {
 namespace {
 
-/// Of G1 (proxy.hpp): how far an SCP may be in the solid, relative to the field's range.
-constexpr double granted = 1e-9;
-
 struct Plan {
     std::vector<double> thicknesses;  // [voxel]
     std::vector<double> speeds;       // [mm/s]

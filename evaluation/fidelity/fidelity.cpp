@@ -15,9 +15,6 @@
 namespace palpate::evaluation {
 namespace {
 
-/// Of G2 (proxy.hpp): what counts as on the isosurface, relative to the field's range.
-constexpr double granted = 1e-9;
-
 /// What was measured of the incumbent on this protocol, on the 8-bit ball; given, not run here.
 struct Incumbent {
     int grid;

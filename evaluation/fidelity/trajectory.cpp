@@ -34,6 +34,15 @@ struct Log {
     std::vector<double> angle, off_ideal, surface_error, turn, change, strength, update_us;
 };
 
+void sum_up(const Log& log, TrajectoryResult& result) {
+    result.angle = spread_of(log.angle);
+    result.off_ideal = spread_of(log.off_ideal);
+    result.surface_error = spread_of(log.surface_error);
+    result.turn = spread_of(log.turn);
+    result.jump = spread_of(log.change);
+    result.update_us = spread_of(log.update_us);
+}
+
 void compare(const Body& body, const ProxyUpdate& update, Log& log, std::vector<double>& angles) {
     const Subject& subject = body.subject;
     const Vec3 force = update.scp - update.hip;
@@ -108,12 +117,7 @@ TrajectoryResult follow(const Body& body, ProxyMethod method, int steps, double 
     }
     const double strength = spread_of(log.strength).mean;
     for (double& change : log.change) change /= strength;
-    result.angle = spread_of(log.angle);
-    result.off_ideal = spread_of(log.off_ideal);
-    result.surface_error = spread_of(log.surface_error);
-    result.turn = spread_of(log.turn);
-    result.jump = spread_of(log.change);
-    result.update_us = spread_of(log.update_us);
+    sum_up(log, result);
     result.contact_share = contacts / steps;
     result.step = path / steps;
     return result;
@@ -130,10 +134,7 @@ TrajectoryResult follow_nearest(const Body& body, int steps) {
         rest.scp = nearest_point(mesh, rest.hip);
         compare(body, rest, log, result.angles);
     }
-    result.angle = spread_of(log.angle);
-    result.off_ideal = spread_of(log.off_ideal);
-    result.surface_error = spread_of(log.surface_error);
-    result.turn = result.jump = result.update_us = spread_of({});
+    sum_up(log, result);
     result.contact_share = result.step = result.worst_deviation = std::nan("");
     return result;
 }

@@ -14,8 +14,6 @@
 namespace palpate::evaluation {
 namespace {
 
-/// Of G1 and G2 (proxy.hpp), relative to the field's range.
-constexpr double granted = 1e-9;
 /// Of k PT [N].
 constexpr double rounding = 1e-9;
 

@@ -1,5 +1,5 @@
 // Panels of the update's time, and of time and memory of both approaches against the volume's size.
-#include "evaluation/scaling/figure.hpp"
+#include "evaluation/scaling/report.hpp"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,6 @@
 #include <array>
 #include <cmath>
 #include <string>
-
-#include "evaluation/scaling/report.hpp"
 
 namespace palpate::evaluation {
 namespace {

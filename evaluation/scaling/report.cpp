@@ -12,8 +12,6 @@
 namespace palpate::evaluation {
 namespace {
 
-constexpr double granted = 1e-9;  // G2
-
 /// Smallest and largest of numbers that are not NaN; `largest` is less if there are none.
 struct Extent {
     double smallest = std::numeric_limits<double>::infinity();

@@ -1,4 +1,4 @@
-// Claims and paragraph of scaling.
+// Figures, claims and paragraph of scaling, from its table.
 #pragma once
 
 #include <string>
@@ -17,6 +17,9 @@ struct UsualTouch {
 };
 inline constexpr UsualTouch usual;
 
+/// What an update's time grows with, a panel for each part; and the explicit approach beside the
+/// dynamic one.
+std::vector<Figure> scaling_figures(const Table& table);
 /// `own_volumes`: the experiment's, about which more is known than about a user's.
 std::vector<Claim> scaling_claims(const Table& table, bool own_volumes);
 /// A time with its unit, to three digits: 120 ns, 4.5 ms.

@@ -10,7 +10,6 @@
 #include "evaluation/experiment.hpp"
 #include "evaluation/scaling/bodies.hpp"
 #include "evaluation/scaling/explicit.hpp"
-#include "evaluation/scaling/figure.hpp"
 #include "evaluation/scaling/report.hpp"
 #include "evaluation/timing.hpp"
 #include "palpate/renderer.hpp"
@@ -133,39 +132,27 @@ class Progress {
     std::size_t done_ = 0;
 };
 
+/// Speed and voxels per millimetre of the hand, each alone.
 void by_hand(const Plan& plan, const Options& options, Progress& progress, Table& table) {
-    const auto measure = [&](const char* part, const Subject& subject, double speed, double voxels,
-                             const std::vector<Trajectory>& trajectories) {
-        auto cells = cells_of(subject, part);
-        cells.emplace_back("speed_mm_s", speed);
-        cells.emplace_back("voxels_per_mm", voxels);
-        add_times(std::move(cells), subject, trajectories, plan.passes, table);
+    const auto measure = [&](const char* part, const Ball& shape, double speed, double voxels) {
+        const auto add = [&](const Subject& subject, const std::vector<Trajectory>& trajectories) {
+            auto cells = cells_of(subject, part);
+            cells.emplace_back("speed_mm_s", speed);
+            cells.emplace_back("voxels_per_mm", voxels);
+            add_times(std::move(cells), subject, trajectories, plan.passes, table);
+        };
+        progress.next();
+        for (const Subject& own : options.subjects) {
+            add(own, over(own, speed, voxels, plan.ticks, options.seed));
+        }
+        if (!options.subjects.empty()) return;
+        add(ball(shape), round(shape, usual.depth_mm * voxels, step_of(speed, voxels), plan.ticks));
     };
-    const Ball same;
-    const Subject body = ball(same);
-    for (const double speed : plan.speeds) {
-        progress.next();
-        for (const Subject& own : options.subjects) {
-            measure("speed", own, speed, usual.voxels_per_mm,
-                    over(own, speed, usual.voxels_per_mm, plan.ticks, options.seed));
-        }
-        if (!options.subjects.empty()) continue;
-        measure("speed", body, speed, usual.voxels_per_mm,
-                round(same, usual.depth_mm * usual.voxels_per_mm,
-                      step_of(speed, usual.voxels_per_mm), plan.ticks));
-    }
+    for (const double speed : plan.speeds) measure("speed", {}, speed, usual.voxels_per_mm);
     for (const double voxels : plan.voxels_per_mm) {
-        progress.next();
-        for (const Subject& own : options.subjects) {
-            measure("voxels-per-mm", own, usual.speed_mm_s, voxels,
-                    over(own, usual.speed_mm_s, voxels, plan.ticks, options.seed));
-        }
-        if (!options.subjects.empty()) continue;
         // The same ball of 20 mm in the hand, sampled ever more finely.
         const Ball shape{2 * static_cast<int>(23 * voxels + 6), 20 * voxels, 6 * voxels};
-        measure(
-            "voxels-per-mm", ball(shape), usual.speed_mm_s, voxels,
-            round(shape, usual.depth_mm * voxels, step_of(usual.speed_mm_s, voxels), plan.ticks));
+        measure("voxels-per-mm", shape, usual.speed_mm_s, voxels);
     }
 }
 
@@ -236,11 +223,14 @@ void compare(const Subject& subject, const std::vector<Trajectory>& trajectories
 }
 
 void by_approach(const Plan& plan, const Options& options, Progress& progress, Table& table) {
+    const auto compare_on = [&](const Subject& subject) {
+        compare(subject,
+                over(subject, usual.speed_mm_s, usual.voxels_per_mm, plan.ticks, options.seed),
+                plan.passes, options, progress, table);
+    };
     for (const Subject& own : options.subjects) {
         progress.next();
-        const auto trajectories =
-            over(own, usual.speed_mm_s, usual.voxels_per_mm, plan.ticks, options.seed);
-        compare(own, trajectories, plan.passes, options, progress, table);
+        compare_on(own);
     }
     if (!options.subjects.empty()) return;
     for (const int size : plan.explicit_sizes) {
@@ -255,15 +245,12 @@ void by_approach(const Plan& plan, const Options& options, Progress& progress, T
     }
     for (const char* name : plan.real) {
         progress.next();
-        const auto subject = real(options.data, name);
-        if (!subject) {
+        if (const auto subject = real(options.data, name)) {
+            compare_on(*subject);
+        } else {
             options.note(fmt::format(
                 "scaling: without {} (--data FOLDER says where the real volumes are)", name));
-            continue;
         }
-        compare(*subject,
-                over(*subject, usual.speed_mm_s, usual.voxels_per_mm, plan.ticks, options.seed),
-                plan.passes, options, progress, table);
     }
 }
 

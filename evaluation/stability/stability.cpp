@@ -15,8 +15,9 @@
 namespace palpate::evaluation {
 namespace {
 
-constexpr double seconds = 4;        ///< held for; the last second counts
-constexpr double least_step = 0.01;  ///< [mm] the least that an encoder step counts for
+constexpr double seconds = 4;            ///< held for; the last second counts
+constexpr double largest_stiffness = 3;  ///< [N/mm] that is tried
+constexpr double least_step = 0.01;      ///< [mm] the least that an encoder step counts for
 
 struct Case {
     std::string profile;
@@ -91,24 +92,11 @@ struct Plan {
     std::vector<std::string> profiles;
 };
 
-std::vector<double> stiffnesses(double step) {
-    std::vector<double> all;
-    for (int i = 1; i * step <= 3 + 1e-9; ++i) all.push_back(i * step);
-    return all;
-}
-
 Plan plan_of(bool quick) {
-    Plan plan;
-    plan.profiles = devices::profile_names();
-    if (quick) {
-        plan.rates = {250, 1000};
-        plan.encoders = {0, 0.1};
-        plan.stiffnesses = {0.5, 3};
-        return plan;
-    }
-    plan.rates = {250, 500, 1000, 2000, 4000};
-    plan.encoders = {0, 0.01, 0.03, 0.1};
-    plan.stiffnesses = stiffnesses(0.1);
+    if (quick) return {{250, 1000}, {0, 0.1}, {0.5, largest_stiffness}, devices::profile_names()};
+    Plan plan{{250, 500, 1000, 2000, 4000}, {0, 0.01, 0.03, 0.1}, {}, devices::profile_names()};
+    for (int i = 1; i < 30; ++i) plan.stiffnesses.push_back(0.1 * i);
+    plan.stiffnesses.push_back(largest_stiffness);
     return plan;
 }
 
@@ -240,7 +228,7 @@ Claim control_claim(const Table& table) {
         false, "not run"};
     const Table corner = table.where("part", "map")
                              .where("rate_hz", 250.0)
-                             .where("stiffness_N_mm", stiffnesses(0.1).back())
+                             .where("stiffness_N_mm", largest_stiffness)
                              .where("encoder_step_mm", 0.0);
     if (corner.rows().empty()) return claim;
     claim.held = corner.text(0, "at_rest") == "no";
@@ -280,22 +268,19 @@ Result stability(const Options& options) {
         options.subjects.empty() ? synthetic("sphere") : options.subjects.front();
     Result result;
     std::vector<std::pair<const char*, Case>> cases;
-    for (const double encoder : plan.encoders) {
+    const auto add = [&](const char* part, const std::string& profile, bool friction,
+                         double encoder) {
         for (const double rate : plan.rates) {
             for (const double k : plan.stiffnesses) {
-                cases.push_back({"map", {map_profile, false, encoder, rate, k}});
+                cases.push_back({part, {profile, friction, encoder, rate, k}});
             }
         }
-    }
+    };
+    for (const double encoder : plan.encoders) add("map", map_profile, false, encoder);
     for (const bool friction : {true, false}) {
         for (const std::string& name : plan.profiles) {
-            const double encoder = devices::profile(name).encoder_step;
-            for (const double rate : plan.rates) {
-                for (const double k : plan.stiffnesses) {
-                    cases.push_back({friction ? "profiles" : "profiles without friction",
-                                     {name, friction, encoder, rate, k}});
-                }
-            }
+            add(friction ? "profiles" : "profiles without friction", name, friction,
+                devices::profile(name).encoder_step);
         }
     }
     for (std::size_t i = 0; i < cases.size(); ++i) {

@@ -14,9 +14,6 @@
 namespace palpate::evaluation {
 namespace {
 
-/// Of G1 (proxy.hpp): how far an SCP may be in the solid, relative to the field's range.
-constexpr double granted = 1e-9;
-
 double excess_of_range(const Cut& cut, const Vec3& physical) {
     const Field& field = cut.subject.field;
     return field.sign() * (value_at(field, physical) - cut.subject.isovalue) / field.range();

@@ -40,6 +40,7 @@ class RecordedSamples {
 
     std::shared_ptr<const Samples> made(const command::Samples& recorded);
     std::shared_ptr<const Samples> frames_of(const FramesOf& frames);
+    std::shared_ptr<const Samples> edit_of(const EditOf& edit, std::uint64_t version);
     std::shared_ptr<const Samples> find(std::uint64_t version) const;
     std::shared_ptr<const Samples> made_again(std::uint64_t version);
     void remember(std::uint64_t version, const std::shared_ptr<const Samples>& samples);
