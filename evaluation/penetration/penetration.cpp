@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "evaluation/experiment.hpp"
@@ -97,7 +98,7 @@ Press press_of(const PressingLine& line, const std::string& function, const Pres
 template <class Value>
 std::size_t sum(const std::vector<Press>& presses, const std::string& function, Value value) {
     std::size_t all = 0;
-    for (const Press& s : presses) all += s.function == function ? value(s) : 0;
+    for (const Press& s : presses) all += s.function == function ? std::invoke(value, s) : 0;
     return all;
 }
 
@@ -106,7 +107,7 @@ template <class Value>
 double over(const std::vector<Press>& presses, const std::string& function, Value value) {
     double most = 0;
     for (const Press& s : presses) {
-        if (s.function == function) most = std::max(most, value(s));
+        if (s.function == function) most = std::max(most, std::invoke(value, s));
     }
     return most;
 }
@@ -114,7 +115,7 @@ double over(const std::vector<Press>& presses, const std::string& function, Valu
 Claim force_claim(const std::vector<Press>& presses, const std::string& function,
                   const PressingPlan& plan) {
     const double most = plan.stiffness * plan.threshold;
-    const double largest = over(presses, function, [](const Press& s) { return s.largest_force; });
+    const double largest = over(presses, function, &Press::largest_force);
     return {fmt::format("{}: the spring never pulls with more than k PT = {:g} N", function, most),
             largest <= most + rounding, fmt::format("largest {:.10g} N", largest)};
 }
@@ -122,20 +123,20 @@ Claim force_claim(const std::vector<Press>& presses, const std::string& function
 std::vector<Claim> claims_of(const std::vector<Press>& presses, const PressingPlan& plan) {
     std::vector<Claim> claims{force_claim(presses, "threshold", plan),
                               force_claim(presses, "ranges", plan)};
-    const auto contacts = [](const Press& s) { return s.contacts; };
-    const auto below = sum(presses, "threshold", [](const Press& s) { return s.below_minimum; });
-    claims.push_back(
-        {"threshold: no level on the free side of the minimum is ever felt", below == 0,
-         fmt::format("{} of {} ticks in contact", below, sum(presses, "threshold", contacts))});
-    const auto others = sum(presses, "ranges", [](const Press& s) { return s.out_of_ranges; });
-    claims.push_back(
-        {"ranges: only levels within the ranges are ever felt", others == 0,
-         fmt::format("{} of {} ticks in contact", others, sum(presses, "ranges", contacts))});
+    const auto below = sum(presses, "threshold", &Press::below_minimum);
+    claims.push_back({"threshold: no level on the free side of the minimum is ever felt",
+                      below == 0,
+                      fmt::format("{} of {} ticks in contact", below,
+                                  sum(presses, "threshold", &Press::contacts))});
+    const auto others = sum(presses, "ranges", &Press::out_of_ranges);
+    claims.push_back({"ranges: only levels within the ranges are ever felt", others == 0,
+                      fmt::format("{} of {} ticks in contact", others,
+                                  sum(presses, "ranges", &Press::contacts))});
     const double moved =
         over(presses, "off", [](const Press& s) { return s.highest_of_all - s.lowest_of_all; });
     claims.push_back(
         {"off: the isovalue never changes", moved == 0, fmt::format("spread {:g}", moved)});
-    const double inside = over(presses, "off", [](const Press& s) { return s.deepest_scp; });
+    const double inside = over(presses, "off", &Press::deepest_scp);
     claims.push_back(
         {fmt::format("off: the SCP never enters (to {:g} of the data's range)", granted),
          inside <= granted, fmt::format("largest excess {:.2g}", inside)});
