@@ -1,22 +1,17 @@
 // Sets up light and camera, renders opaque and transparent parts, and blends them.
 #include "pictures/helper/compositor.hpp"
 
-#include <vtkCallbackCommand.h>
 #include <vtkCamera.h>
 #include <vtkNew.h>
-#include <vtkOpenGLState.h>
 #include <vtkProperty.h>
 #include <vtkRenderer.h>
-#include <vtkUnsignedCharArray.h>
-#include <vtk_glew.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "pictures/helper/failure.hpp"
 #include "pictures/helper/layers.hpp"
 #include "pictures/helper/notes.hpp"
-#include "pictures/helper/window.hpp"
+#include "pictures/vtk/offscreen.hpp"
 #include "pictures/vtk/props.hpp"
 
 namespace palpate::pictures {
@@ -30,20 +25,12 @@ struct Size {
 
 enum class Blending { on, off };
 
-/// VTK switches blending on when it begins; as a callback of what begins after that.
-void stop_blending(vtkObject*, unsigned long, void* window, void*) {
-    static_cast<vtkOpenGLRenderWindow*>(window)->GetState()->vtkglDisable(GL_BLEND);
-}
-
 Layer drawn(const std::vector<vtkRenderer*>& renderers, const Size& size,
             Blending blending = Blending::on) {
-    const auto window = surfaceless_window(size.width, size.height);
-    vtkNew<vtkCallbackCommand> before;
-    before->SetCallback(stop_blending);
-    before->SetClientData(window);
-    if (blending == Blending::off) renderers[0]->AddObserver(vtkCommand::StartEvent, before);
+    const auto window = offscreen_window();
+    window->SetSize(size.width, size.height);
     window->SetMultiSamples(0);
-    window->SetAlphaBitPlanes(1);
+    if (blending == Blending::off) keep_alpha(*renderers[0], *window);
     int layers = 1;
     for (vtkRenderer* const renderer : renderers) {
         window->AddRenderer(renderer);
@@ -51,16 +38,7 @@ Layer drawn(const std::vector<vtkRenderer*>& renderers, const Size& size,
     }
     window->SetNumberOfLayers(layers);
     window->Render();
-    Layer layer;
-    vtkNew<vtkUnsignedCharArray> pixels;
-    const auto count = std::size_t(size.width) * std::size_t(size.height);
-    layer.depth.resize(count);
-    if (window->GetRGBACharPixelData(0, 0, size.width - 1, size.height - 1, 0, pixels, 0) != 1 ||
-        static_cast<std::size_t>(pixels->GetNumberOfValues()) != 4 * count ||
-        window->GetZbufferData(0, 0, size.width - 1, size.height - 1, layer.depth.data()) != 1) {
-        throw Failure("OpenGL did not give the picture back");
-    }
-    layer.rgba.assign(pixels->GetPointer(0), pixels->GetPointer(0) + 4 * count);
+    Layer layer = layer_of(*window);
     for (vtkRenderer* const renderer : renderers) window->RemoveRenderer(renderer);
     return layer;
 }

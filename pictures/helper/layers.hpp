@@ -4,13 +4,9 @@
 
 #include <vector>
 
-namespace palpate::pictures {
+#include "pictures/vtk/layer.hpp"
 
-/// Row by row from the bottom.
-struct Layer {
-    std::vector<unsigned char> rgba;  ///< sRGB; what alpha means is said where it is used
-    std::vector<float> depth;         ///< 0 near, 1 nothing
-};
+namespace palpate::pictures {
 
 /// Panes whose alpha is how dense they are, each where it is nearer than `picture`, the farther
 /// ones first.

@@ -19,8 +19,8 @@
 #include "io/helper/child.hpp"
 #include "io/helper/report.hpp"
 #include "pictures/helper/compositor.hpp"
+#include "pictures/helper/egl_context.hpp"
 #include "pictures/helper/failure.hpp"
-#include "pictures/helper/window.hpp"
 #include "pictures/wire.hpp"
 
 namespace palpate::pictures {

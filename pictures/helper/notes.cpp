@@ -2,7 +2,6 @@
 #include "pictures/helper/notes.hpp"
 
 #include <vtkActor2D.h>
-#include <vtkCamera.h>
 #include <vtkCellArray.h>
 #include <vtkNew.h>
 #include <vtkPoints.h>
@@ -13,7 +12,6 @@
 #include <vtkTextProperty.h>
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 
 #include "pictures/vtk/props.hpp"
@@ -22,6 +20,15 @@ namespace palpate::pictures {
 namespace {
 
 constexpr double ink = 0.13;  // grey of all writing
+
+void add_shape(vtkRenderer& renderer, vtkPolyData* shape, const Colour& colour) {
+    vtkNew<vtkPolyDataMapper2D> mapper;
+    mapper->SetInputData(shape);
+    vtkNew<vtkActor2D> actor;
+    actor->SetMapper(mapper);
+    actor->GetProperty()->SetColor(colour.red, colour.green, colour.blue);
+    renderer.AddActor2D(actor);
+}
 
 /// A filled rectangle.
 void add_box(vtkRenderer& renderer, double x, double y, double width, double height,
@@ -37,12 +44,7 @@ void add_box(vtkRenderer& renderer, double x, double y, double width, double hei
     vtkNew<vtkPolyData> data;
     data->SetPoints(points);
     data->SetPolys(polygons);
-    vtkNew<vtkPolyDataMapper2D> mapper;
-    mapper->SetInputData(data);
-    vtkNew<vtkActor2D> actor;
-    actor->SetMapper(mapper);
-    actor->GetProperty()->SetColor(colour.red, colour.green, colour.blue);
-    renderer.AddActor2D(actor);
+    add_shape(renderer, data, colour);
 }
 
 /// A square in a frame; beside each other, since what is drawn later does not cover.
@@ -117,34 +119,18 @@ void add_legend(vtkRenderer& renderer, const PictureScene& scene, double em, int
 void add_scale_bar(vtkRenderer& renderer, const PictureScene& scene, double em, int width,
                    int height) {
     const double pixels_per_mm = height / (2 * scene.camera.half_height);
-    const double length = round_length(0.22 * width / pixels_per_mm);
-    const double pixels = length * pixels_per_mm;
-    const double right = width - 1.3 * em, y = 1.1 * em, thick = std::max(1.0, 0.16 * em);
-    const Colour grey{ink, ink, ink};
-    add_box(renderer, right - pixels, y, pixels, thick, grey);
-    for (const double x : {right - pixels, right - thick}) {
-        add_box(renderer, x, y - 0.25 * em, thick, 0.5 * em + thick, grey);
-    }
-    add_text(renderer, in_millimetres(length),
-             {right - 0.5 * pixels, y + 1.05 * em, static_cast<int>(em), true});
+    const ScaleBar bar = scale_bar(width, pixels_per_mm, em, std::max(1.0, 0.16 * em));
+    add_shape(renderer, bar.shape, {ink, ink, ink});
+    add_text(renderer, bar.text, {bar.middle, 2.15 * em, static_cast<int>(em), true});
 }
 
 /// A cube whose faces say which side of the body they are, seen as the body is.
 vtkSmartPointer<vtkRenderer> orientation_of(const PictureScene& scene, int width, int height,
                                             int layer) {
-    auto renderer = vtkSmartPointer<vtkRenderer>::New();
     const double side = 0.17 * std::min(width, height);
+    auto renderer = orientation_view(layer);
     renderer->SetViewport(0, 0, side / width, side / height);
-    renderer->SetLayer(layer);
-    renderer->InteractiveOff();
-    renderer->AddActor(body_cube());
-    vtkCamera* const camera = renderer->GetActiveCamera();
-    camera->ParallelProjectionOn();
-    camera->SetFocalPoint(0, 0, 0);
-    camera->SetPosition(Vec3(5 * scene.camera.towards_viewer.normalized()).data());
-    camera->SetViewUp(Vec3(scene.camera.up).data());
-    camera->SetParallelScale(1.15);
-    renderer->ResetCameraClippingRange();
+    turn_orientation(*renderer, scene.camera.towards_viewer, scene.camera.up);
     return renderer;
 }
 

@@ -1,30 +1,19 @@
 // Makes the lights, the orientation cube and the scale bar.
 #include "pictures/vtk/props.hpp"
 
+#include <vtkAnnotatedCubeActor.h>
+#include <vtkCamera.h>
+#include <vtkCellArray.h>
 #include <vtkLight.h>
 #include <vtkNew.h>
+#include <vtkPoints.h>
 #include <vtkProperty.h>
 
 #include <cmath>
 #include <cstdio>
 
 namespace palpate::pictures {
-
-void light(vtkRenderer& renderer) {
-    struct Lamp {
-        double x, y, z, intensity;
-    };
-    renderer.AutomaticLightCreationOff();
-    for (const Lamp& lamp : {Lamp{-0.55, 0.75, 1, 0.78}, Lamp{0.9, -0.1, 0.6, 0.26},
-                             Lamp{0, 0, 1, 0.2}, Lamp{0.2, -1, 0.2, 0.12}}) {
-        vtkNew<vtkLight> l;
-        l->SetLightTypeToCameraLight();
-        l->SetPosition(lamp.x, lamp.y, lamp.z);
-        l->SetFocalPoint(0, 0, 0);
-        l->SetIntensity(lamp.intensity);
-        renderer.AddLight(l);
-    }
-}
+namespace {
 
 vtkSmartPointer<vtkAnnotatedCubeActor> body_cube() {
     auto cube = vtkSmartPointer<vtkAnnotatedCubeActor>::New();
@@ -53,6 +42,7 @@ vtkSmartPointer<vtkAnnotatedCubeActor> body_cube() {
     return cube;
 }
 
+/// 1, 2 or 5 times a power of ten: the greatest that is at most `most` (> 0).
 double round_length(double most) {
     const double power = std::pow(10, std::floor(std::log10(most)));
     for (const double digit : {5.0, 2.0}) {
@@ -61,6 +51,7 @@ double round_length(double most) {
     return power;
 }
 
+/// As people read it: "20 mm", "500 µm".
 std::string in_millimetres(double length) {
     char text[32];
     if (length >= 1) {
@@ -69,6 +60,68 @@ std::string in_millimetres(double length) {
         std::snprintf(text, sizeof text, "%g \xC2\xB5m", 1000 * length);
     }
     return text;
+}
+
+void add_box(vtkPoints& points, vtkCellArray& polygons, double x, double y, double width,
+             double height) {
+    const vtkIdType first = points.InsertNextPoint(x, y, 0);
+    points.InsertNextPoint(x + width, y, 0);
+    points.InsertNextPoint(x + width, y + height, 0);
+    points.InsertNextPoint(x, y + height, 0);
+    const vtkIdType corners[] = {first, first + 1, first + 2, first + 3};
+    polygons.InsertNextCell(4, corners);
+}
+
+}  // namespace
+
+void light(vtkRenderer& renderer) {
+    struct Lamp {
+        double x, y, z, intensity;
+    };
+    renderer.AutomaticLightCreationOff();
+    for (const Lamp& lamp : {Lamp{-0.55, 0.75, 1, 0.78}, Lamp{0.9, -0.1, 0.6, 0.26},
+                             Lamp{0, 0, 1, 0.2}, Lamp{0.2, -1, 0.2, 0.12}}) {
+        vtkNew<vtkLight> l;
+        l->SetLightTypeToCameraLight();
+        l->SetPosition(lamp.x, lamp.y, lamp.z);
+        l->SetFocalPoint(0, 0, 0);
+        l->SetIntensity(lamp.intensity);
+        renderer.AddLight(l);
+    }
+}
+
+vtkSmartPointer<vtkRenderer> orientation_view(int layer) {
+    auto view = vtkSmartPointer<vtkRenderer>::New();
+    view->SetLayer(layer);
+    view->InteractiveOff();
+    view->AddActor(body_cube());
+    return view;
+}
+
+void turn_orientation(vtkRenderer& view, const Vec3& towards_viewer, const Vec3& up) {
+    vtkCamera* const camera = view.GetActiveCamera();
+    camera->ParallelProjectionOn();
+    camera->SetFocalPoint(0, 0, 0);
+    camera->SetPosition(Vec3(5 * towards_viewer.normalized()).data());
+    camera->SetViewUp(Vec3(up).data());
+    camera->SetParallelScale(1.15);
+    camera->SetClippingRange(2, 8);
+}
+
+ScaleBar scale_bar(double width, double pixels_per_mm, double em, double thick) {
+    const double length = round_length(0.22 * width / pixels_per_mm);
+    const double pixels = length * pixels_per_mm;
+    const double right = width - 1.3 * em, y = 1.1 * em;
+    vtkNew<vtkPoints> points;
+    vtkNew<vtkCellArray> polygons;
+    add_box(*points, *polygons, right - pixels, y, pixels, thick);
+    for (const double x : {right - pixels, right - thick}) {
+        add_box(*points, *polygons, x, y - 0.25 * em, thick, 0.5 * em + thick);
+    }
+    auto shape = vtkSmartPointer<vtkPolyData>::New();
+    shape->SetPoints(points);
+    shape->SetPolys(polygons);
+    return {shape, in_millimetres(length), right - 0.5 * pixels};
 }
 
 }  // namespace palpate::pictures

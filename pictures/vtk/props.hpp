@@ -2,11 +2,13 @@
 // helper and the viewer's scene.
 #pragma once
 
-#include <vtkAnnotatedCubeActor.h>
+#include <vtkPolyData.h>
 #include <vtkRenderer.h>
 #include <vtkSmartPointer.h>
 
 #include <string>
+
+#include "palpate/volume.hpp"
 
 namespace palpate::pictures {
 
@@ -14,12 +16,19 @@ namespace palpate::pictures {
 /// They go with the camera.
 void light(vtkRenderer& renderer);
 
-/// A cube with the sides of the body on it (LPS): L, R, A, P, S, I.
-vtkSmartPointer<vtkAnnotatedCubeActor> body_cube();
+/// A cube with the sides of the body on it (LPS): L, R, A, P, S, I. Alone in a renderer, which
+/// shows it from a side with turn_orientation().
+vtkSmartPointer<vtkRenderer> orientation_view(int layer);
+void turn_orientation(vtkRenderer& view, const Vec3& towards_viewer, const Vec3& up);
 
-/// 1, 2 or 5 times a power of ten: the greatest that is at most `most` (> 0).
-double round_length(double most);
-/// A length [mm] as people read it: "20 mm", "500 µm".
-std::string in_millimetres(double length);
+/// A bar in the lower right corner of a picture, in pixels.
+struct ScaleBar {
+    vtkSmartPointer<vtkPolyData> shape;
+    std::string text;  ///< its length, as people read it
+    double middle;     ///< of the bar, to the right
+};
+/// At most about a fifth of the width: 1, 2 or 5 times a power of ten. `em`: height of the writing,
+/// `thick`: of the bar; its lower edge is at 1.1 em.
+ScaleBar scale_bar(double width, double pixels_per_mm, double em, double thick);
 
 }  // namespace palpate::pictures

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "apps/viewer/scene/sample_block.hpp"
+#include "apps/viewer/model/sample_block.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -36,8 +36,7 @@ bool same_picture(const RenderRequest& a, const RenderRequest& b) {
            a.height == b.height && a.pixel_ratio == b.pixel_ratio;
 }
 
-/// What is done with results that come from other threads: in the thread of `object`, and never if
-/// that is gone.
+/// Calls `work` on the thread of `object`, unless that was destroyed before.
 template <class Work>
 void hand_over(QObject* object, Work work) {
     QMetaObject::invokeMethod(object, std::move(work), Qt::QueuedConnection);
@@ -67,7 +66,7 @@ BackgroundRenderer::BackgroundRenderer()
 }
 
 BackgroundRenderer::~BackgroundRenderer() {
-    // At once, so that none waits for the other.
+    // All are cancelled before the first is waited for.
     extractor_.forget();
     if (fine_) fine_->give_up();
     if (quick_) quick_->give_up();

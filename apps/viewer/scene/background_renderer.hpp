@@ -1,4 +1,4 @@
-// Renders what stands still in the scene on threads of its own, and keeps the newest image. No
+// Renders the static part of the scene on threads of its own, and keeps the newest image. No
 // widget: input and display are in scene.hpp.
 #pragma once
 
@@ -23,7 +23,7 @@ class BackgroundRenderer : public QObject {
     ~BackgroundRenderer() override;
 
     void set_field(const Field& field, double isovalue);
-    /// As Scene has it.
+    /// As Scene::update_field().
     void update_field(const Field& field, const std::optional<SampleBox>& changed);
     void clear();
     void set_isovalue(double isovalue);

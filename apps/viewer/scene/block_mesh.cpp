@@ -8,7 +8,7 @@
 #include <array>
 #include <cmath>
 
-#include "apps/viewer/scene/sample_block.hpp"
+#include "apps/viewer/model/sample_block.hpp"
 #include "palpate/surface.hpp"
 #include "pictures/surface.hpp"
 

@@ -19,6 +19,7 @@
 
 #include "apps/viewer/scene/shapes.hpp"
 #include "pictures/vtk/material.hpp"
+#include "pictures/vtk/shapes.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -118,7 +119,7 @@ void Markers::add_faint_actors() {
 Markers::Twin Markers::twin_of(const Colour& colour, vtkSmartPointer<vtkPolyData> data) {
     const auto make = [] { return vtkSmartPointer<vtkActor>::New(); };
     Twin twin{make(), make(), make(), std::move(data)};
-    for (vtkActor* actor : {twin.solid.Get(), twin.depth.Get(), twin.faint.Get()}) {
+    for (vtkActor* actor : twin.actors()) {
         vtkNew<vtkPolyDataMapper> mapper;
         mapper->SetInputData(twin.data);
         mapper->ScalarVisibilityOff();
@@ -134,28 +135,27 @@ Markers::Twin Markers::twin_of(const Colour& colour, vtkSmartPointer<vtkPolyData
 }
 
 void Markers::set_visible(const Twin& twin, bool visible) {
-    twin.solid->SetVisibility(visible);
-    twin.depth->SetVisibility(visible);
-    twin.faint->SetVisibility(visible);
+    for (vtkActor* actor : twin.actors()) actor->SetVisibility(visible);
 }
 
 void Markers::show_probe(const Contact& contact, const Vec3& origin, double pixel) {
     const double radius = ball_radius_px * pixel;
     const Vec3 hip = contact.hip - origin, scp = contact.scp - origin;
     const bool apart = contact.hip != contact.scp;
-    for (const auto& actor : {hip_.solid, hip_.depth, hip_.faint}) place(*actor, hip, radius);
-    for (const auto& actor : {scp_.solid, scp_.depth, scp_.faint}) place(*actor, scp, radius);
+    for (vtkActor* actor : hip_.actors()) place(*actor, hip, radius);
+    for (vtkActor* actor : scp_.actors()) place(*actor, scp, radius);
     set_visible(hip_, true);
     set_visible(scp_, apart);
     const bool sprung = apart && (scp - hip).norm() > 2 * radius;
     set_visible(spring_, sprung);
-    if (sprung) put_spring(*spring_.data, hip, scp, 0.5 * radius);
+    if (sprung) spring_.data->ShallowCopy(pictures::spring(hip, scp, 0.5 * radius));
     const double newtons = contact.force.norm();
     set_visible(arrow_, newtons > 0);
     if (newtons > 0) {
         const double length =
             pixel * std::clamp(newton_px * newtons, shortest_arrow_px, longest_arrow_px);
-        put_arrow(*arrow_.data, scp, scp + length / newtons * contact.force, 0.35 * radius);
+        const Vec3 tip = scp + length / newtons * contact.force;
+        arrow_.data->ShallowCopy(pictures::arrow(scp, tip, 0.35 * radius));
     }
 }
 
@@ -180,11 +180,11 @@ void Markers::show(const std::optional<Contact>& contact, const Look& look, cons
     patches_.solid->SetVisibility(false);
     discs_.solid->SetVisibility(false);
     if (!contact) return;
-    for (const auto& actor : {edges_.solid, edges_.depth, edges_.faint}) {
+    for (vtkActor* actor : edges_.actors()) {
         actor->GetProperty()->SetColor(ink.red, ink.green, ink.blue);
         actor->GetProperty()->SetLineWidth(static_cast<float>(1.5 * pixel_ratio));
     }
-    for (const auto& actor : {normals_.solid, normals_.depth, normals_.faint}) {
+    for (vtkActor* actor : normals_.actors()) {
         actor->GetProperty()->SetLineWidth(static_cast<float>(2 * pixel_ratio));
     }
     if (look.contact) show_probe(*contact, origin, pixel);

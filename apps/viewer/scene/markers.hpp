@@ -7,6 +7,7 @@
 #include <vtkRenderer.h>
 #include <vtkSmartPointer.h>
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -16,7 +17,7 @@
 
 namespace palpate::viewer {
 
-/// What is drawn of a snapshot.
+/// The part of a snapshot that is drawn.
 struct Contact {
     Vec3 hip = Vec3::Zero(), scp = Vec3::Zero();  ///< [mm, physical]
     Vec3 force = Vec3::Zero();                    ///< [N] on the hand, physical axes
@@ -45,6 +46,8 @@ class Markers {
     struct Twin {
         vtkSmartPointer<vtkActor> solid, depth, faint;
         vtkSmartPointer<vtkPolyData> data;
+
+        std::array<vtkActor*, 3> actors() const { return {solid, depth, faint}; }
     };
     static Twin twin_of(const Colour& colour, vtkSmartPointer<vtkPolyData> data);
     void add_faint_actors();

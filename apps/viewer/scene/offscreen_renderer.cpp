@@ -4,53 +4,21 @@
 #include <vtkCallbackCommand.h>
 #include <vtkCamera.h>
 #include <vtkNew.h>
-#include <vtkOpenGLState.h>
 #include <vtkProperty.h>
-#include <vtkRendererCollection.h>
-#include <vtkUnsignedCharArray.h>
-#include <vtk_glew.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <stdexcept>
-#include <string>
 
-#include "apps/viewer/scene/sample_block.hpp"
+#include "apps/viewer/model/sample_block.hpp"
 #include "apps/viewer/scene/static_actors.hpp"
 #include "apps/viewer/scene/view_space.hpp"
 #include "pictures/vtk/material.hpp"
+#include "pictures/vtk/offscreen.hpp"
 #include "pictures/vtk/props.hpp"
 
 namespace palpate::viewer {
 namespace {
-
-/// A window that draws into memory. GLEW complains where there is no X display, which is no harm.
-class UnseenWindow : public vtkGenericOpenGLRenderWindow {
-  public:
-    // As vtkStandardNewMacro has it, whose semicolons a pedantic compiler refuses.
-    static UnseenWindow* New() {
-        auto* const made = new UnseenWindow;
-        made->InitializeObjectBase();
-        return made;
-    }
-    void OpenGLInitContext() override {
-        if (this->Initialized) return;
-        this->ContextCreationTime.Modified();
-        glewExperimental = GL_TRUE;
-        const GLenum result = glewInit();
-        if ((result != GLEW_OK && result != GLEW_ERROR_NO_GLX_DISPLAY) || !GLEW_VERSION_3_2) {
-            throw std::runtime_error("the 3-D view needs OpenGL 3.2 or newer");
-        }
-        this->GlewInitValid = true;
-        this->Initialized = true;
-    }
-};
-
-/// VTK switches blending on when it begins; as a callback of what begins after that.
-void stop_blending(vtkObject*, unsigned long, void* window, void*) {
-    static_cast<vtkOpenGLRenderWindow*>(window)->GetState()->vtkglDisable(GL_BLEND);
-}
 
 void check_abort(vtkObject* window, unsigned long, void* give_up, void*) {
     if (*static_cast<const std::atomic<bool>*>(give_up)) {
@@ -78,27 +46,16 @@ constexpr double moving_seconds = 0.06;  // what a moving picture of a volume ma
 
 OffscreenRenderer::OffscreenRenderer(const std::atomic<bool>& give_up, bool hardware)
     : give_up_(give_up),
-      window_(vtkSmartPointer<UnseenWindow>::New()),
+      window_(pictures::offscreen_window()),
       solid_(vtkSmartPointer<vtkRenderer>::New()),
       glass_(vtkSmartPointer<vtkRenderer>::New()),
       hardware_(hardware),
       surface_(give_up, hardware) {
-    window_->SetIsCurrent(true);
-    window_->SetIsDirect(1);
-    window_->SetSupportsOpenGL(1);
-    window_->SetOffScreenRendering(1);
-    window_->SetShowWindow(false);
-    window_->SetAlphaBitPlanes(1);
     glass_->SetBackground(0, 0, 0);
     glass_->SetBackgroundAlpha(0);
     glass_->SetActiveCamera(solid_->GetActiveCamera());
-    for (vtkRenderer* renderer : {solid_.Get(), glass_.Get()}) {
-        pictures::light(*renderer);
-    }
-    vtkNew<vtkCallbackCommand> before;
-    before->SetCallback(stop_blending);
-    before->SetClientData(window_);
-    glass_->AddObserver(vtkCommand::StartEvent, before);
+    pictures::keep_alpha(*glass_, *window_);
+    for (vtkRenderer* renderer : {solid_.Get(), glass_.Get()}) pictures::light(*renderer);
     vtkNew<vtkCallbackCommand> abort;
     abort->SetCallback(check_abort);
     abort->SetClientData(const_cast<std::atomic<bool>*>(&give_up_));
@@ -111,12 +68,12 @@ OffscreenRenderer::~OffscreenRenderer() {
 
 void OffscreenRenderer::show_surface(const RenderRequest& request) {
     const bool quick = request.moving && !hardware_;
-    surface_.show(quick ? MeshBlocks{request.surface.moving} : request.surface.blocks,
-                  [&](vtkActor* actor) {
-                      solid_->RemoveActor(actor);
-                      glass_->RemoveActor(actor);
-                      actor->ReleaseGraphicsResources(window_);
-                  });
+    for (const auto& gone :
+         surface_.show(quick ? MeshBlocks{request.surface.moving} : request.surface.blocks)) {
+        solid_->RemoveActor(gone);
+        glass_->RemoveActor(gone);
+        gone->ReleaseGraphicsResources(window_);
+    }
     const double opacity = std::clamp(request.look.surface_opacity, 0.0, 1.0);
     vtkRenderer& in = opacity < 1 ? *glass_ : *solid_;
     vtkRenderer& out = opacity < 1 ? *solid_ : *glass_;
@@ -216,7 +173,7 @@ void OffscreenRenderer::show(const RenderRequest& request) {
     if (!request.field) {
         solid_->RemoveAllViewProps();
         glass_->RemoveAllViewProps();
-        surface_.show({}, [](vtkActor*) {});
+        surface_.show({});
         slices_ = {};
         sliced_.reset();
         box_ = nullptr;
@@ -234,23 +191,14 @@ void OffscreenRenderer::show(const RenderRequest& request) {
            reach_of(geometry));
 }
 
-Layer OffscreenRenderer::layer_of(vtkRenderer& renderer, int width, int height) {
+/// Empty if it was cancelled.
+Layer OffscreenRenderer::layer_of(vtkRenderer& renderer) {
     window_->AddRenderer(&renderer);
     renew_aspect(renderer);
     window_->SetAbortRender(0);
     window_->Render();
-    Layer layer;
-    const int right = width - 1, top = height - 1;
-    const auto count = std::size_t(width) * std::size_t(height);
-    layer.depth.resize(count);
-    vtkNew<vtkUnsignedCharArray> pixels;
-    const bool read =
-        give_up_ || (window_->GetRGBACharPixelData(0, 0, right, top, 0, pixels, 0) == 1 &&
-                     static_cast<std::size_t>(pixels->GetNumberOfValues()) == 4 * count &&
-                     window_->GetZbufferData(0, 0, right, top, layer.depth.data()) == 1);
+    Layer layer = give_up_ ? Layer{} : pictures::layer_of(*window_);
     window_->RemoveRenderer(&renderer);
-    if (!read) throw std::runtime_error("OpenGL did not give the picture back");
-    if (!give_up_) layer.rgba.assign(pixels->GetPointer(0), pixels->GetPointer(0) + 4 * count);
     return layer;
 }
 
@@ -271,11 +219,11 @@ std::optional<RenderedImage> OffscreenRenderer::draw(const RenderRequest& reques
     image.reach = request.field ? reach_of(request.field->geometry()) : 1;
     image.moving = quick || cast_coarse_;
     image.hardware = hardware_;
-    image.solid = layer_of(*solid_, image.width, image.height);
+    image.solid = layer_of(*solid_);
     if (!give_up_ && request.field && request.look.surface && request.look.surface_opacity > 0 &&
         request.look.surface_opacity < 1) {
         window_->SetMultiSamples(0);
-        image.glass = layer_of(*glass_, image.width, image.height);
+        image.glass = layer_of(*glass_);
     }
     if (give_up_) return std::nullopt;
     image.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

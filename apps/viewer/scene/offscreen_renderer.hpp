@@ -38,7 +38,7 @@ class OffscreenRenderer {
     void show_box(const RenderRequest& request);
     void show_volume(const RenderRequest& request);
     const Volume& volume_of(const Field& field, bool coarse);
-    Layer layer_of(vtkRenderer& renderer, int width, int height);
+    Layer layer_of(vtkRenderer& renderer);
 
     const std::atomic<bool>& give_up_;
     vtkSmartPointer<vtkGenericOpenGLRenderWindow> window_;

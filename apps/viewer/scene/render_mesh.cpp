@@ -76,26 +76,6 @@ void add_triangles(const RenderMesh& mesh, const std::vector<std::int32_t>& clus
 
 }  // namespace
 
-RenderMesh render_mesh(const pictures::Surface& surface, const Vec3& origin) {
-    RenderMesh drawn;
-    drawn.positions.reserve(3 * surface.mesh.vertices.size());
-    for (const Vec3& v : surface.mesh.vertices) {
-        const Vector3f p = (v - origin).cast<float>();
-        drawn.positions.insert(drawn.positions.end(), {p[0], p[1], p[2]});
-    }
-    drawn.normals.reserve(3 * surface.normals.size());
-    for (const Vector3f& n : surface.normals) {
-        drawn.normals.insert(drawn.normals.end(), {n[0], n[1], n[2]});
-    }
-    drawn.triangles.reserve(3 * surface.mesh.triangles.size());
-    for (const auto& [a, b, c] : surface.mesh.triangles) {
-        drawn.triangles.insert(drawn.triangles.end(),
-                               {static_cast<std::int32_t>(a), static_cast<std::int32_t>(b),
-                                static_cast<std::int32_t>(c)});
-    }
-    return drawn;
-}
-
 double area_of(const RenderMesh& mesh) {
     double twice = 0;
     for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {

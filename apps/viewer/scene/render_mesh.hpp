@@ -6,8 +6,6 @@
 #include <span>
 #include <vector>
 
-#include "pictures/scene.hpp"
-
 namespace palpate::viewer {
 
 /// Arrays of a triangle mesh: 3 floats a vertex, 3 indices a triangle.
@@ -22,9 +20,6 @@ struct RenderMesh {
     std::size_t vertex_count() const { return positions.size() / 3; }
     std::size_t triangle_count() const { return triangles.size() / 3; }
 };
-
-/// A surface with a normal a vertex, its positions measured from `origin` [mm, physical].
-RenderMesh render_mesh(const pictures::Surface& surface, const Vec3& origin);
 
 /// The mesh with at most about `most_triangles` (some more for very few): vertices in one box of a
 /// grid that face the same way become one. The mesh itself if it is small enough. Its outline stays

@@ -4,16 +4,16 @@
 
 #include <memory>
 #include <optional>
-#include <vector>
 
 #include "apps/viewer/model/look.hpp"
 #include "apps/viewer/scene/surface_extractor.hpp"
 #include "palpate/field.hpp"
 #include "pictures/scene.hpp"
+#include "pictures/vtk/layer.hpp"
 
 namespace palpate::viewer {
 
-/// All that stands still while the hand moves, seen by one camera.
+/// The static part of the scene, which does not follow the hand, seen by one camera.
 struct RenderRequest {
     std::uint64_t number = 0;    ///< rising with every change
     std::optional<Field> field;  ///< nothing: an empty scene
@@ -28,11 +28,7 @@ struct RenderRequest {
     bool moving = false;        ///< quick rather than fine
 };
 
-/// An image with depths, row by row from the bottom; depths from 0, near, to 1.
-struct Layer {
-    std::vector<unsigned char> rgba;
-    std::vector<float> depth;
-};
+using pictures::Layer;
 
 /// What a render thread has drawn.
 struct RenderedImage {

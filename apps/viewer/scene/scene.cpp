@@ -50,7 +50,7 @@ struct Scene::Parts {
     BackgroundRenderer background;
     RenderRequest wanted;  // look, crosshair; changed() fills in the rest
     std::optional<Snapshot> snapshot;
-    bool outdated = true;  // the layers are not those of what was set last
+    bool outdated = true;  // something was set since the layers were drawn
 
     vtkNew<vtkGenericOpenGLRenderWindow> window;
     vtkNew<vtkRenderer> front, overlay;
@@ -80,7 +80,7 @@ Scene::Scene(QWidget* parent) : QVTKOpenGLNativeWidget(parent), parts_(std::make
     setFocusPolicy(Qt::StrongFocus);
     setMinimumSize(120, 90);
     setRenderWindow(parts_->window.Get());
-    // What mouse and keys do is said here alone.
+    // The widget handles mouse and keys itself.
     if (auto* const interactor = parts_->window->GetInteractor()) {
         interactor->SetInteractorStyle(nullptr);
     }
@@ -224,7 +224,7 @@ void Scene::refresh() {
 
 void Scene::lay_out() {
     const auto& shown = parts_->background.shown();
-    // The camera of what is shown: the probe stays where it is on the surface while that lags.
+    // The camera of the image shown: while that lags, the probe stays in place on the surface.
     const pictures::Camera& camera = shown ? shown->camera : camera_;
     const auto& field = parts_->background.field();
     const double ratio = devicePixelRatioF();

@@ -1,5 +1,5 @@
-// The 3-D view of a volume and of the hand that feels it. It only observes: setters say what it
-// shows, signals say what the user asks for with the mouse.
+// The 3-D view of a volume and of the hand that feels it. It only observes: setters choose what is
+// shown, signals report what the user does with the mouse.
 #pragma once
 
 #include <QVTKOpenGLNativeWidget.h>
@@ -17,14 +17,14 @@
 
 namespace palpate::viewer {
 
-/// Parallel projection. What stands still (surface, volume, slices, box) is painted on threads of
-/// its own, quickly while something changes and finely once it rests; the widget lays hand, proxy
-/// and force over the newest picture. Points are physical [mm].
+/// Parallel projection. The static part (surface, volume, slices, box) is rendered on threads of
+/// its own, quickly while something changes and finely after that; the widget draws hand, proxy and
+/// force over the newest image. Points are physical [mm].
 class Scene : public QVTKOpenGLNativeWidget {
     Q_OBJECT
   public:
     explicit Scene(QWidget* parent = nullptr);
-    /// Gives up what is under way; waits for threads, a moment.
+    /// Cancels all rendering and waits for the threads, a few milliseconds.
     ~Scene() override;
 
     /// New data, seen as a whole; the extraction of its surface starts. An isovalue that is not
@@ -99,7 +99,7 @@ class Scene : public QVTKOpenGLNativeWidget {
     std::unique_ptr<Parts> parts_;
     QTimer refresh_;
     pictures::Camera camera_;
-    bool fitted_ = true;  // the camera shows the whole volume, and goes on so when resized
+    bool fitted_ = true;  // the camera shows the whole volume, also after a change of size
     Hand hand_ = Hand::camera;
     Drag drag_ = Drag::none;
     QPointF drag_from_, drag_start_;

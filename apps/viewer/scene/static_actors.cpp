@@ -5,6 +5,7 @@
 #include <vtkFloatArray.h>
 #include <vtkImageData.h>
 #include <vtkNew.h>
+#include <vtkOutlineSource.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
@@ -15,7 +16,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apps/viewer/scene/sample_block.hpp"
+#include "apps/viewer/model/sample_block.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -102,24 +103,18 @@ std::array<vtkSmartPointer<vtkActor>, 3> slice_actors(const Field& field, const 
 
 vtkSmartPointer<vtkActor> box_actor(const Geometry& geometry) {
     const Vec3 middle = physical_centre(geometry);
-    vtkNew<vtkPoints> points;
-    vtkNew<vtkCellArray> lines;
-    for (int corner = 0; corner < 8; ++corner) {
-        const Vec3 index(corner & 1 ? geometry.size[0] - 1 : 0,
-                         corner & 2 ? geometry.size[1] - 1 : 0,
-                         corner & 4 ? geometry.size[2] - 1 : 0);
-        points->InsertNextPoint(Vec3(physical_from_index(geometry, index) - middle).data());
-        for (int axis = 0; axis < 3; ++axis) {
-            if (corner >> axis & 1) continue;
-            const vtkIdType ends[] = {corner, corner | 1 << axis};
-            lines->InsertNextCell(2, ends);
-        }
+    std::array<double, 24> corners{};
+    for (int c = 0; c < 8; ++c) {
+        const Index3 side(c & 1, c >> 1 & 1, c >> 2 & 1);
+        const Index3 index = side.cwiseProduct(geometry.size - Index3::Ones());
+        const Vec3 corner = physical_from_index(geometry, index.cast<double>()) - middle;
+        std::ranges::copy(corner, corners.begin() + 3 * c);
     }
-    vtkNew<vtkPolyData> data;
-    data->SetPoints(points);
-    data->SetLines(lines);
+    vtkNew<vtkOutlineSource> source;
+    source->SetBoxTypeToOriented();
+    source->SetCorners(corners.data());
     vtkNew<vtkPolyDataMapper> mapper;
-    mapper->SetInputData(data);
+    mapper->SetInputConnection(source->GetOutputPort());
     auto actor = vtkSmartPointer<vtkActor>::New();
     actor->SetMapper(mapper);
     actor->GetProperty()->LightingOff();

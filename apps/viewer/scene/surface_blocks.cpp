@@ -7,8 +7,8 @@
 #include <mutex>
 #include <thread>
 
+#include "apps/viewer/model/sample_block.hpp"
 #include "apps/viewer/scene/block_mesh.hpp"
-#include "apps/viewer/scene/sample_block.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -120,7 +120,7 @@ SurfaceBlocks::Outcome SurfaceBlocks::renew(const Field& field, double isovalue,
     return all ? Outcome::done : Outcome::interrupted;
 }
 
-/// Simplifies what is not, with the present grain. False if that has left too many.
+/// Simplifies the blocks that are outdated. False if there are still too many triangles.
 bool SurfaceBlocks::simplify(std::size_t most_triangles, double slack) {
     for_each_at_once(zeros_of(fresh_simple_), [&](std::size_t b) {
         simple_[b] = nullptr;

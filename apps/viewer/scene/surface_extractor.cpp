@@ -21,7 +21,7 @@ using namespace std::chrono_literals;
 constexpr std::size_t few_blocks = 64;
 // Without a large change for so long, finer surfaces are worth it.
 constexpr auto still = 150ms;
-// What a surface may take while large changes come one after the other [s].
+// The time for a surface while large changes come one after the other [s].
 constexpr double streaming_seconds = 0.04;
 constexpr std::size_t no_limit = std::numeric_limits<std::size_t>::max();
 
@@ -90,7 +90,7 @@ void SurfaceExtractor::run(const std::stop_token& stop) {
         {
             std::unique_lock lock(mutex_);
             if (!changed_.wait(lock, stop, [this] { return next_.has_value(); })) return;
-            // What was forgotten has left nothing to go on with.
+            // Requests were cancelled: the surface shown may be of other data.
             if (forgotten_) shown_.reset();
             Request request = *std::move(next_);
             next_.reset();
@@ -112,7 +112,7 @@ void SurfaceExtractor::run(const std::stop_token& stop) {
     }
 }
 
-/// What is there already of the surface that the request wants, and the steps that lead to it.
+/// Decides which parts of the present surfaces can be kept, and which steps follow.
 void SurfaceExtractor::take_up(Request request) {
     begun_ = Clock::now();
     const bool anew = request.anew || !shown_ || request.isovalue != request_->isovalue;
@@ -135,8 +135,8 @@ void SurfaceExtractor::take_up(Request request) {
     stream(steps);
 }
 
-/// A large change: its first picture is as coarse as can be had at once. What is finer is kept, to
-/// be brought up to date when there is time.
+/// A large change: the first surface is coarse enough to be shown at once. A finer one is kept and
+/// updated when there is time.
 void SurfaceExtractor::stream(const std::vector<int>& steps) {
     streaming_ = true;
     if (moving_step_ == 0) moving_step_ = steps.front();
@@ -183,7 +183,7 @@ bool SurfaceExtractor::make_first(const std::function<bool()>& go_on) {
     return true;
 }
 
-/// False if something newer is there; what was made of the step is kept.
+/// False if a newer request waits; the finished blocks of the step are kept.
 bool SurfaceExtractor::make_finer(const std::function<bool()>& go_on) {
     const int step = finer_ ? finer_->every() : steps_.front();
     if (!finer_) finer_.emplace(request_->field.geometry(), step);
@@ -228,7 +228,7 @@ void SurfaceExtractor::rest(const std::stop_token& stop) {
     changed_.wait_for(lock, stop, still, [this] { return waiting_ || forgotten_; });
 }
 
-/// As fine as it can be had in the time that there is.
+/// The finest step that fits into streaming_seconds.
 void SurfaceExtractor::adapt_step(double seconds) {
     const double p = shown_->every();
     if (seconds > 1.25 * streaming_seconds) {

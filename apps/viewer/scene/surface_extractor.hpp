@@ -59,7 +59,7 @@ class SurfaceExtractor {
     /// come.
     void update(std::uint64_t request, const Field& field, double isovalue,
                 const SampleBox& changed);
-    /// Drops all requests.
+    /// Cancels all requests.
     void forget();
 
   private:

@@ -1,22 +1,17 @@
 // Groups blocks of the surface into VTK actors.
 #include "apps/viewer/scene/surface_part.hpp"
 
-#include <vtkCellArray.h>
-#include <vtkFloatArray.h>
 #include <vtkNew.h>
-#include <vtkObjectFactory.h>
 #include <vtkOpenGLActor.h>
-#include <vtkPointData.h>
-#include <vtkPoints.h>
-#include <vtkPolyData.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
-#include <vtkTypeInt32Array.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "pictures/vtk/material.hpp"
+#include "pictures/vtk/shapes.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -24,9 +19,9 @@ namespace {
 /// So many are drawn at once, and so many more at most.
 constexpr std::size_t part_triangles = 50'000, most_part_triangles = 100'000;
 
-/// Not drawn any more once it was asked to give up. On software OpenGL it waits until it is drawn:
-/// what is given up is then no more than this part, and the window's own pictures, which the same
-/// software draws, come between two parts and not after them all.
+/// Is not drawn after cancellation. On software OpenGL it waits until it is drawn: then at most one
+/// part is drawn in vain, and the window's own pictures, which the same software draws, come
+/// between two parts and not after all of them.
 class InterruptibleActor : public vtkOpenGLActor {
   public:
     // As vtkStandardNewMacro has it, whose semicolons a pedantic compiler refuses.
@@ -48,37 +43,11 @@ class InterruptibleActor : public vtkOpenGLActor {
     std::shared_ptr<const RenderMesh> mesh;  // whose memory the mapper reads
 };
 
-vtkSmartPointer<vtkFloatArray> vectors(const std::vector<float>& values) {
-    auto array = vtkSmartPointer<vtkFloatArray>::New();
-    array->SetNumberOfComponents(3);
-    // VTK only reads them.
-    array->SetArray(const_cast<float*>(values.data()), static_cast<vtkIdType>(values.size()), 1);
-    return array;
-}
-
-vtkSmartPointer<vtkPolyData> polydata_of(const RenderMesh& mesh) {
-    vtkNew<vtkPoints> points;
-    points->SetData(vectors(mesh.positions));
-    const auto normals = vectors(mesh.normals);
-    normals->SetName("Normals");
-    vtkNew<vtkTypeInt32Array> connectivity;
-    connectivity->SetArray(const_cast<std::int32_t*>(mesh.triangles.data()),
-                           static_cast<vtkIdType>(mesh.triangles.size()), 1);
-    vtkNew<vtkCellArray> triangles;
-    triangles->Use32BitStorage();
-    triangles->SetData(3, connectivity);
-    auto data = vtkSmartPointer<vtkPolyData>::New();
-    data->SetPoints(points);
-    data->SetPolys(triangles);
-    data->GetPointData()->SetNormals(normals);
-    return data;
-}
-
 vtkSmartPointer<vtkActor> actor_of(std::shared_ptr<const RenderMesh> mesh,
                                    const std::atomic<bool>& give_up, bool waits) {
     auto actor = vtkSmartPointer<InterruptibleActor>::New();
     vtkNew<vtkPolyDataMapper> mapper;
-    mapper->SetInputData(polydata_of(*mesh));
+    mapper->SetInputData(pictures::mesh_of(mesh->positions, mesh->normals, mesh->triangles));
     mapper->ScalarVisibilityOff();
     mapper->StaticOn();
     actor->SetMapper(mapper);
@@ -109,11 +78,10 @@ void SurfacePart::divide() {
     }
 }
 
-std::vector<SurfacePart::Actor> SurfacePart::change_to(const MeshBlocks& blocks) {
-    std::vector<Actor> gone;
+std::vector<vtkSmartPointer<vtkActor>> SurfacePart::show(const MeshBlocks& blocks) {
+    std::vector<vtkSmartPointer<vtkActor>> gone;
     const auto drop = [&](Actor& actor) {
-        if (actor.actor) gone.push_back(actor);
-        actor.actor = nullptr;
+        if (actor.actor) gone.push_back(std::exchange(actor.actor, nullptr));
     };
     bool fits = blocks.size() == blocks_.size();
     for (Actor& actor : actors_) {

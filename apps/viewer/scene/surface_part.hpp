@@ -24,19 +24,12 @@ class SurfacePart {
     SurfacePart(const std::atomic<bool>& give_up, bool hardware)
         : give_up_(give_up), hardware_(hardware) {}
 
-    /// Goes on to other blocks. Actors whose blocks are the same stay; those that are no longer
-    /// wanted are handed to `gone`. If it is given up in the middle, the rest is made the next
-    /// time.
-    template <class Gone>
-    void show(const MeshBlocks& blocks, Gone gone) {
-        for (Actor& actor : change_to(blocks)) {
-            if (actor.actor) gone(actor.actor);
-        }
-    }
+    /// Shows other blocks. Actors whose blocks are the same stay; those that are no longer wanted
+    /// are returned. If it is cancelled in the middle, the rest is made the next time.
+    std::vector<vtkSmartPointer<vtkActor>> show(const MeshBlocks& blocks);
     const std::vector<Actor>& actors() const { return actors_; }
 
   private:
-    std::vector<Actor> change_to(const MeshBlocks& blocks);
     void divide();
 
     const std::atomic<bool>& give_up_;

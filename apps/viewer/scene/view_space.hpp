@@ -4,18 +4,39 @@
 
 #include <vtkCamera.h>
 
+#include <algorithm>
+
 #include "palpate/volume.hpp"
 #include "pictures/scene.hpp"
 
 namespace palpate::viewer {
 
-/// How far from the middle of the grid anything of it is [mm]; what is farther is not drawn.
-double reach_of(const Geometry& geometry);
+/// Radius about the middle of the grid [mm] outside of which nothing is drawn.
+inline double reach_of(const Geometry& geometry) {
+    const Vec3 extent = geometry.size.cast<double>().cwiseProduct(geometry.spacing);
+    // Twice the grid's own: a probe beside it is seen, too.
+    return std::max(1e-6, extent.norm());
+}
 
 /// Directs VTK's camera. `origin` is the middle of the grid [mm, physical].
-void direct(vtkCamera& camera, const pictures::Camera& wanted, const Vec3& origin, double reach);
+inline void direct(vtkCamera& camera, const pictures::Camera& wanted, const Vec3& origin,
+                   double reach) {
+    const Vec3 towards = wanted.towards_viewer.normalized();
+    const Vec3 focus = wanted.focus - origin;
+    // The clipping planes are the same for all that is seen along one direction, whatever the
+    // focus: depths do not change when a camera is panned.
+    const Vec3 foot = focus - towards.dot(focus) * towards;
+    camera.ParallelProjectionOn();
+    camera.SetFocalPoint(Vec3(foot).data());
+    camera.SetPosition(Vec3(foot + 1.05 * reach * towards).data());
+    camera.SetViewUp(Vec3(wanted.up).data());
+    camera.SetParallelScale(wanted.half_height);
+    camera.SetClippingRange(0.05 * reach, 2.05 * reach);
+}
 
-/// How far towards the viewer from `origin` what has this depth (0 near, 1 far) lies [mm].
-double height_of(double depth, double reach);
+/// The distance from `origin` towards the viewer [mm] of a point with this depth (0 near, 1 far).
+inline double height_of(double depth, double reach) {
+    return (1 - 2 * depth) * reach;
+}
 
 }  // namespace palpate::viewer

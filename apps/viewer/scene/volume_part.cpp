@@ -1,44 +1,29 @@
 // Sets up the volume mapper for graphics hardware or for the processor.
 #include "apps/viewer/scene/volume_part.hpp"
 
+#include <vtkAOSDataArrayTemplate.h>
 #include <vtkColorTransferFunction.h>
 #include <vtkFixedPointVolumeRayCastMapper.h>
-#include <vtkFloatArray.h>
 #include <vtkGPUVolumeRayCastMapper.h>
 #include <vtkImageData.h>
 #include <vtkMatrix4x4.h>
 #include <vtkNew.h>
 #include <vtkPiecewiseFunction.h>
 #include <vtkPointData.h>
-#include <vtkShortArray.h>
-#include <vtkUnsignedCharArray.h>
-#include <vtkUnsignedShortArray.h>
 #include <vtkVolumeProperty.h>
 
 namespace palpate::viewer {
 namespace {
 
-template <class Array, class T>
-vtkSmartPointer<vtkDataArray> array_of(const Volume& volume) {
-    auto array = vtkSmartPointer<Array>::New();
-    const auto samples = volume.samples<T>();
-    // VTK only reads them.
-    array->SetArray(const_cast<T*>(samples.data()), static_cast<vtkIdType>(samples.size()), 1);
-    return array;
-}
-
 vtkSmartPointer<vtkDataArray> samples_of(const Volume& volume) {
-    switch (volume.type()) {
-        case SampleType::uint8:
-            return array_of<vtkUnsignedCharArray, std::uint8_t>(volume);
-        case SampleType::int16:
-            return array_of<vtkShortArray, std::int16_t>(volume);
-        case SampleType::uint16:
-            return array_of<vtkUnsignedShortArray, std::uint16_t>(volume);
-        case SampleType::float32:
-            break;
-    }
-    return array_of<vtkFloatArray, float>(volume);
+    return with_type(volume.type(), [&](auto zero) -> vtkSmartPointer<vtkDataArray> {
+        using T = decltype(zero);
+        auto array = vtkSmartPointer<vtkAOSDataArrayTemplate<T>>::New();
+        const auto samples = volume.samples<T>();
+        // VTK only reads them.
+        array->SetArray(const_cast<T*>(samples.data()), static_cast<vtkIdType>(samples.size()), 1);
+        return array;
+    });
 }
 
 /// Spacing is the image's, direction (mirrored, too) and place are the prop's: mappers honour

@@ -51,13 +51,13 @@ struct Torus : ShownScene {
     }
 };
 
-TEST(SceneLooks, surface_with_probe_proxy_spring_and_force) {
+TEST(SceneLooks, show_a_surface_with_probe_proxy_spring_and_force) {
     Torus shown{Look()};
     shown.scene.show_snapshot(shown.pressed());
     expect_as_committed(shown.settled("look_contact"), "contact");
 }
 
-TEST(SceneLooks, glass_in_a_dark_window) {
+TEST(SceneLooks, show_glass_in_a_dark_window) {
     Look look;
     look.surface_opacity = 0.35;
     Torus shown(look);
@@ -68,7 +68,7 @@ TEST(SceneLooks, glass_in_a_dark_window) {
     expect_as_committed(shown.settled("look_glass"), "glass");
 }
 
-TEST(SceneLooks, volume_with_slices) {
+TEST(SceneLooks, show_a_volume_with_slices) {
     Look look;
     look.surface = false;
     look.volume = look.slices = true;
@@ -78,7 +78,7 @@ TEST(SceneLooks, volume_with_slices) {
     expect_as_committed(shown.settled("look_volume"), "volume");
 }
 
-TEST(SceneLooks, lattice_and_planes_round_the_proxy) {
+TEST(SceneLooks, show_lattice_and_planes_round_the_proxy) {
     Look look;
     look.surface_opacity = 0.4;
     look.tetrahedra = look.planes = true;

@@ -99,7 +99,7 @@ TEST(SceneMouse, double_click_recentres_on_the_surface_and_beside_it_does_nothin
     EXPECT_LT(focus[1], -5);
 }
 
-TEST(SceneMouse, left_drag_moves_the_probe_by_what_the_pointer_went) {
+TEST(SceneMouse, left_drag_moves_the_probe_as_far_as_the_pointer) {
     Hands hands;
     hands.scene.set_hand(Scene::Hand::probe);
     const Camera before = hands.scene.camera();
@@ -139,7 +139,7 @@ TEST(SceneMouse, with_the_probe_in_hand_the_camera_still_turns_pans_and_zooms) {
     EXPECT_EQ(hands.dragged, Vec3::Zero());
 }
 
-TEST(SceneMouse, camera_that_was_set_is_told_and_one_that_cannot_be_looked_through_is_refused) {
+TEST(SceneMouse, setting_a_camera_is_signalled_and_an_impossible_one_is_refused) {
     Hands hands;
     const Camera camera{Vec3(1, 2, 3), Vec3(1, 1, 0), Vec3(0, 0, 1), 12};
     hands.scene.set_camera(camera);

@@ -157,7 +157,7 @@ TEST(Scene, no_probe_is_shown_while_the_device_is_not_ready_or_contact_is_off) {
     EXPECT_EQ(blob(shown.settled(), is_blue).count, 0);
 }
 
-TEST(Scene, what_lies_behind_the_surface_shines_through_faintly) {
+TEST(Scene, markers_behind_the_surface_are_faintly_visible) {
     ShownScene shown;
     const Field field = ball();
     shown.scene.set_look(bare());

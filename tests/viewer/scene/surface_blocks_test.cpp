@@ -8,7 +8,7 @@
 #include <cmath>
 #include <map>
 
-#include "apps/viewer/scene/sample_block.hpp"
+#include "apps/viewer/model/sample_block.hpp"
 #include "palpate/edit.hpp"
 #include "palpate/scenes/volumes.hpp"
 #include "pictures/surface.hpp"
@@ -206,7 +206,7 @@ TEST(SurfaceBlocks, between_two_frames_are_those_of_the_samples_between_them) {
     }
 }
 
-TEST(SurfaceBlocks, stop_when_they_are_told_to_or_grow_too_large_and_go_on) {
+TEST(SurfaceBlocks, stop_on_request_or_when_too_large_and_continue_later) {
     const Field field = noise(support::grid(support::cube(80)));
     SurfaceBlocks blocks(field.geometry(), 1);
     std::atomic<int> asked{0};

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "palpate/scenes/volumes.hpp"
+#include "palpate/surface.hpp"
 #include "support/fields.hpp"
 
 namespace palpate::viewer {
@@ -51,7 +52,7 @@ Field ball(int edge) {
     return Field(scenes::ball(support::cube(edge)));
 }
 
-TEST(SurfaceExtractor, comes_coarse_first_and_then_as_the_proxy_meets_it) {
+TEST(SurfaceExtractor, is_coarse_first_and_then_as_the_proxy_meets_it) {
     Results results;
     SurfaceExtractor work(results.into());
     const Field field = ball(100);

@@ -1,8 +1,7 @@
 // Opens EGL at run time, so that a machine without it gets a readable message.
-#include "pictures/helper/window.hpp"
+#include "pictures/helper/egl_context.hpp"
 
 #include <dlfcn.h>
-#include <vtk_glew.h>
 
 #define EGL_NO_X11
 #include <EGL/egl.h>
@@ -56,30 +55,6 @@ EGLContext context_of(const Egl& egl, EGLDisplay display) {
     return create(display, configuration, EGL_NO_CONTEXT, version);
 }
 
-/// VTK asks GLEW for the functions of OpenGL, and GLEW, having found them all, complains that there
-/// is no X display. That is the one complaint that is expected here.
-class SurfacelessWindow : public vtkGenericOpenGLRenderWindow {
-  public:
-    // As vtkStandardNewMacro has it, whose semicolons a pedantic compiler refuses.
-    static SurfacelessWindow* New() {
-        auto* const made = new SurfacelessWindow;
-        made->InitializeObjectBase();
-        return made;
-    }
-    void OpenGLInitContext() override {
-        if (this->Initialized) return;
-        this->ContextCreationTime.Modified();
-        glewExperimental = GL_TRUE;
-        const GLenum result = glewInit();
-        if ((result != GLEW_OK && result != GLEW_ERROR_NO_GLX_DISPLAY) || !GLEW_VERSION_3_2) {
-            throw Failure(std::string("this machine's OpenGL is older than 3.2") + remedy);
-        }
-        this->GlewInitValid = true;
-        this->Initialized = true;
-        this->MaximumHardwareLineWidth = 1;  // our lines are tubes
-    }
-};
-
 }  // namespace
 
 void make_surfaceless_context() {
@@ -105,17 +80,6 @@ void make_surfaceless_context() {
                                          display, EGL_NO_SURFACE, EGL_NO_SURFACE, context)) {
         throw Failure(std::string("EGL gives no OpenGL 3.2 context") + remedy);
     }
-}
-
-vtkSmartPointer<vtkGenericOpenGLRenderWindow> surfaceless_window(int width, int height) {
-    auto window = vtkSmartPointer<SurfacelessWindow>::New();
-    window->SetSize(width, height);
-    window->SetIsCurrent(true);
-    window->SetIsDirect(1);
-    window->SetSupportsOpenGL(1);
-    window->SetOffScreenRendering(1);
-    window->SetShowWindow(false);
-    return window;
 }
 
 }  // namespace palpate::pictures

@@ -1,5 +1,5 @@
-// Copies a box of a field's samples into one array, edits and moment included; for the surface and
-// volume rendering. The cost depends on the box, not on the volume.
+// Copies a box of a field's samples into one array, edits and moment included; for surface, slices
+// and volume rendering. The cost depends on the box, not on the volume.
 #pragma once
 
 #include <vector>

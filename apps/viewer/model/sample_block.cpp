@@ -1,5 +1,5 @@
 // Copies rows of the frames, then the edited bricks over them.
-#include "apps/viewer/scene/sample_block.hpp"
+#include "apps/viewer/model/sample_block.hpp"
 
 #include <algorithm>
 #include <cmath>
