@@ -68,7 +68,7 @@ void cut_cell(Marching& march, const Face& near, const Face& far, double part) {
     for (std::size_t i = 0; i < 4; ++i) {
         const std::size_t j = (i + 1) % 4;
         march.triangle(middle, inner[i], inner[j]);
-        if (part == 0) continue;  // what stands on the face's edges is not cut
+        if (part == 0) continue;  // the tetrahedra at the face's edges are not cut
         const Corner side{0.5 * (base[i].u + base[j].u), 0.5 * (base[i].v + base[j].v),
                           0.25 * ((near[i] + near[j]) + (far[i] + far[j]))};
         const Corner side_i = between(base[i], side, in), side_j = between(base[j], side, in);
@@ -93,10 +93,6 @@ void cut_square(Marching& march, const Face& near, const Face& far, double part)
 }
 
 }  // namespace
-
-CellRange all_cells(const SliceSamples& samples) {
-    return {-1, -1, samples.width(), samples.height()};
-}
 
 void append_contour(const SliceSamples& samples, double isovalue, const CellRange& cells,
                     ContourDetail detail, std::vector<ContourPiece>& pieces) {

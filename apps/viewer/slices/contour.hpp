@@ -17,7 +17,6 @@ struct ContourPiece {
 struct CellRange {
     int u0 = -1, v0 = -1, u1 = 0, v1 = 0;
 };
-CellRange all_cells(const SliceSamples& samples);
 
 enum class ContourDetail : std::uint8_t {
     lattice,  ///< exactly where the proxy meets the surface

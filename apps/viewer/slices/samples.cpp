@@ -6,38 +6,12 @@
 #include <limits>
 #include <utility>
 
+#include "apps/viewer/model/sample_block.hpp"
+
 namespace palpate::viewer {
 namespace {
 
 constexpr int nowhere = std::numeric_limits<int>::min();
-
-/// Where the samples of a layer lie in memory.
-struct Strides {
-    std::ptrdiff_t first, along_u, along_v;
-};
-
-template <class T>
-void copy_layer(const void* data, const Strides& s, int width, int height, float* values) {
-    const T* const first = static_cast<const T*>(data) + s.first;
-    for (int v = 0; v < height; ++v) {
-        const T* sample = first + v * s.along_v;
-        float* const to = values + static_cast<std::ptrdiff_t>(v + 1) * (width + 2) + 1;
-        for (int u = 0; u < width; ++u, sample += s.along_u) to[u] = static_cast<float>(*sample);
-    }
-}
-
-template <class T>
-std::vector<double> spread_samples(const Volume& volume) {
-    constexpr std::size_t wanted = 100'000;
-    const auto samples = volume.samples<T>();
-    // A step that shares no factor with sizes as they are common: not always the same column.
-    std::size_t step = std::max<std::size_t>(1, samples.size() / wanted) | 1;
-    while (step > 1 && (step % 3 == 0 || step % 5 == 0 || step % 7 == 0)) step += 2;
-    std::vector<double> values;
-    values.reserve(samples.size() / step + 1);
-    for (std::size_t i = 0; i < samples.size(); i += step) values.push_back(double(samples[i]));
-    return values;
-}
 
 }  // namespace
 
@@ -76,45 +50,27 @@ void SliceSamples::load(Layer& layer, int number) const {
     layer.number = number;
     const std::size_t count =
         static_cast<std::size_t>(size_[0] + 2) * static_cast<std::size_t>(size_[1] + 2);
-    const Geometry& geometry = field_.geometry();
     layer.values.assign(count, static_cast<float>(field_.background()));
-    if (number < 0 || number >= geometry.size[plane_.axis]) return;
-    const Moment& moment = field_.moment();
-    if (field_.samples().bricks() || moment.weight > 0) return load_changed(layer);
-    const std::array<std::ptrdiff_t, 3> stride{
-        1, geometry.size[0], static_cast<std::ptrdiff_t>(geometry.size[0]) * geometry.size[1]};
-    const auto of = [&](int axis) { return stride[static_cast<std::size_t>(axis)]; };
-    Strides s{number * of(plane_.axis), of(plane_.right.axis), of(plane_.down.axis)};
-    if (plane_.right.flip) {
-        s.first += (size_[0] - 1) * s.along_u;
-        s.along_u = -s.along_u;
-    }
-    if (plane_.down.flip) {
-        s.first += (size_[1] - 1) * s.along_v;
-        s.along_v = -s.along_v;
-    }
-    const void* const data = field_.samples().frames()[moment.from].volume.data();
-    float* const to = layer.values.data();
-    with_type(field_.samples().type(),
-              [&](auto zero) { copy_layer<decltype(zero)>(data, s, size_[0], size_[1], to); });
-}
-
-/// Of edited samples, or between two frames: one by one.
-void SliceSamples::load_changed(Layer& layer) const {
-    const Geometry& geometry = field_.geometry();
-    Index3 at;
-    at[plane_.axis] = layer.number;
-    const auto along = [&](const ScreenAxis& screen, int i) {
-        at[screen.axis] = screen.flip ? geometry.size[screen.axis] - 1 - i : i;
+    Index3 low = Index3::Zero(), size = field_.geometry().size;
+    if (number < 0 || number >= size[plane_.axis]) return;
+    low[plane_.axis] = number;
+    size[plane_.axis] = 1;
+    const std::vector<float> samples = sample_block(field_, low, size);
+    const std::array<std::ptrdiff_t, 3> stride{1, size[0],
+                                               static_cast<std::ptrdiff_t>(size[0]) * size[1]};
+    const auto step = [&](const ScreenAxis& screen) {
+        return (screen.flip ? -1 : 1) * stride[static_cast<std::size_t>(screen.axis)];
     };
+    const std::ptrdiff_t along_u = step(plane_.right), along_v = step(plane_.down);
+    // Along a flipped axis the last sample comes first.
+    const float* const first = samples.data() -
+                               std::min<std::ptrdiff_t>(0, along_u) * (size_[0] - 1) -
+                               std::min<std::ptrdiff_t>(0, along_v) * (size_[1] - 1);
     for (int v = 0; v < size_[1]; ++v) {
-        along(plane_.down, v);
+        const float* const from = first + v * along_v;
         float* const to =
             layer.values.data() + static_cast<std::ptrdiff_t>(v + 1) * (size_[0] + 2) + 1;
-        for (int u = 0; u < size_[0]; ++u) {
-            along(plane_.right, u);
-            to[u] = static_cast<float>(field_.samples().sample(at, field_.moment()));
-        }
+        for (int u = 0; u < size_[0]; ++u) to[u] = from[u * along_u];
     }
 }
 
@@ -135,20 +91,6 @@ void SliceSamples::interpolate(int v, float* values) const {
 
 bool SliceSamples::in_data() const {
     return position_ >= -0.5 && position_ <= field_.geometry().size[plane_.axis] - 0.5;
-}
-
-GreyWindow usual_window(const Volume& volume) {
-    std::vector<double> values =
-        with_type(volume.type(), [&](auto zero) { return spread_samples<decltype(zero)>(volume); });
-    const auto percentile = [&](double part) {
-        const auto at = static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
-        std::nth_element(values.begin(), values.begin() + at, values.end());
-        return values[static_cast<std::size_t>(at)];
-    };
-    const GreyWindow window{percentile(0.01), percentile(0.99)};
-    // A mask, or a body in a great void.
-    if (window.high > window.low) return window;
-    return {volume.minimum(), volume.minimum() + volume.range()};
 }
 
 }  // namespace palpate::viewer

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <array>
-#include <optional>
 #include <vector>
 
 #include "apps/viewer/slices/plane.hpp"
@@ -23,7 +22,7 @@ class SliceSamples {
   public:
     SliceSamples(Field field, const SlicePlane& plane);
 
-    /// Goes on with another version of the same grid, at the same place.
+    /// Takes another version of the samples on the same grid; the position stays.
     void use(const Field& field);
     /// Goes to `position`, in layers along the grid axis from 0. Outside the grid all is
     /// background.
@@ -52,7 +51,6 @@ class SliceSamples {
 
   private:
     void load(Layer& layer, int number) const;
-    void load_changed(Layer& layer) const;
 
     Field field_;
     SlicePlane plane_;
@@ -61,11 +59,9 @@ class SliceSamples {
     std::array<Layer, 2> layers_;
 };
 
-/// Grey levels [data units] that show most of a volume: 1 in 100 samples is darker than `low`, 1 in
-/// 100 brighter than `high`. From a hundred thousand samples spread over it.
+/// Grey levels [data units] that are shown black and white.
 struct GreyWindow {
     double low = 0, high = 1;
 };
-GreyWindow usual_window(const Volume& volume);
 
 }  // namespace palpate::viewer

@@ -27,8 +27,8 @@ struct SliceSheet {
 void paint_crosshair(QPainter& painter, const SliceSheet& sheet, const QPointF& at);
 
 /// Hand (blue), proxy (vermilion), the spring between them and the force (green; a newton is an
-/// eighth of the widget's height). What lies off the slice is paler the farther it is, but never
-/// gone.
+/// eighth of the widget's height). Marks off the slice are paler the farther they are, but always
+/// visible.
 void paint_probe(QPainter& painter, const SliceSheet& sheet, const Snapshot& snapshot);
 
 /// Which side of the body is at each edge.

@@ -1,15 +1,21 @@
-// The slice pane: its data and how it is painted. Input is in slice_pane_events.cpp.
+// The slice pane: its data, how it is painted, and input by mouse and keys.
 #include "apps/viewer/slices/slice_pane.hpp"
 
+#include <QElapsedTimer>
 #include <QFontMetrics>
-#include <QPaintEvent>
+#include <QHelpEvent>
+#include <QKeyEvent>
+#include <QMouseEvent>
 #include <QPainter>
+#include <QToolTip>
+#include <QWheelEvent>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-#include "apps/viewer/slices/slice_content.hpp"
 #include "apps/viewer/slices/slice_marks.hpp"
+#include "apps/viewer/slices/slice_picture.hpp"
 #include "palpate/lattice.hpp"
 
 namespace palpate::viewer {
@@ -18,15 +24,37 @@ namespace {
 /// Times as long as a slice took to draw, the next one waits.
 constexpr qint64 rest = 3;
 
+constexpr double least_zoom = 0.2, most_zoom = 200;
+/// The narrowest window, as a part of the data's range.
+constexpr double narrowest = 1e-4;
+
+GreyWindow whole_range(const Field& field) {
+    const double low = field.volume().minimum();
+    return {low, low + field.volume().range()};
+}
+
 }  // namespace
+
+/// The data of a volume that the pane holds.
+struct SlicePane::Content {
+    SlicePlane plane;
+    SliceSamples samples;
+    std::optional<GreyWindow> usual;  ///< the first that was set
+    QImage picture;                   ///< grey levels and contour; null: to be made
+    std::optional<Field> newer;       ///< not yet in samples: another version of the same grid
+    QElapsedTimer made;               ///< since then
+    qint64 took_ms = 0;
+
+    Content(const Field& field, const SlicePlane& across) : plane(across), samples(field, across) {}
+};
 
 SlicePane::SlicePane(int axis, QWidget* parent) : QWidget(parent), axis_(axis) {
     setObjectName(QStringLiteral("slice%1").arg(axis));
-    setAccessibleName(tr("Slice"));
-    setWhatsThis(
-        tr("Wheel: next slice. Left: crosshair, or the probe where the mouse is the hand (Ctrl: "
-           "crosshair). Right drag: window (sideways) and level (up, down). Middle drag: move. "
-           "Ctrl+wheel: zoom. Double click: reset. Keys: arrows, Page Up and Down, +, -, Home."));
+    setAccessibleName("Slice");
+    setWhatsThis(QString(
+        "Wheel: next slice. Left: crosshair, or the probe where the mouse is the hand (Ctrl: "
+        "crosshair). Right drag: window (sideways) and level (up, down). Middle drag: move. "
+        "Ctrl+wheel: zoom. Double click: reset. Keys: arrows, Page Up and Down, +, -, Home."));
     setFocusPolicy(Qt::StrongFocus);
     setMouseTracking(true);
     setAttribute(Qt::WA_OpaquePaintEvent);
@@ -45,19 +73,18 @@ void SlicePane::set_field(const Field& field, double isovalue) {
     const bool same = content_ &&
                       content_->samples.field().volume().data() == field.volume().data() &&
                       geometry() == field.geometry();
-    const GreyWindow usual = same ? content_->usual : usual_window(field.volume());
-    const bool given = same && content_->usual_given;
-    content_ = std::make_unique<Content>(field, slice_plane(field.geometry(), axis_), usual);
-    content_->usual_given = given;
+    const auto usual = same ? content_->usual : std::nullopt;
+    content_ = std::make_unique<Content>(field, slice_plane(field.geometry(), axis_));
+    content_->usual = usual;
     isovalue_ = isovalue;
     if (!same) {
-        low_ = usual.low;
-        high_ = usual.high;
+        low_ = whole_range(field).low;
+        high_ = whole_range(field).high;
         crosshair_ = physical_centre(field.geometry());
         view_ = {};
         snapshot_.reset();
     }
-    setAccessibleName(tr("%1 slice").arg(title()));
+    setAccessibleName(QString("%1 slice").arg(title()));
     set_crosshair(crosshair_);
     picture_changed();
 }
@@ -74,7 +101,7 @@ void SlicePane::clear() {
     content_.reset();
     snapshot_.reset();
     drag_ = Drag::none;
-    setAccessibleName(tr("Slice"));
+    setAccessibleName("Slice");
     update();
 }
 
@@ -102,10 +129,7 @@ void SlicePane::show_snapshot(const std::optional<Snapshot>& snapshot) {
 
 void SlicePane::set_window(double low, double high) {
     if (!(low < high) || !std::isfinite(low) || !std::isfinite(high)) return;
-    if (content_ && !content_->usual_given) {
-        content_->usual = {low, high};
-        content_->usual_given = true;
-    }
+    if (content_ && !content_->usual) content_->usual = {low, high};
     use_window(low, high);
 }
 
@@ -139,11 +163,21 @@ QPointF SlicePane::pixel_of(const Vec3& physical) const {
     return SliceSheet{content_->plane, geometry(), where, 0, size()}.pixel(physical);
 }
 
+Vec3 SlicePane::physical_from_slice(const Vec3& slice) const {
+    return physical_from_index(geometry(), index_from_slice(content_->plane, geometry(), slice));
+}
+
+/// (u, v) as the nearest sample's if it lies outside the data.
+Vec3 SlicePane::in_data(Vec3 slice) const {
+    slice[0] = std::clamp(slice[0], 0.0, content_->samples.width() - 1.0);
+    slice[1] = std::clamp(slice[1], 0.0, content_->samples.height() - 1.0);
+    return slice;
+}
+
 Vec3 SlicePane::point_at(const QPointF& pixel) const {
     if (!content_) return Vec3::Zero();
     const QPointF at = map().sample(pixel);
-    return physical_from_index(
-        geometry(), index_from_slice(content_->plane, geometry(), Vec3(at.x(), at.y(), layer())));
+    return physical_from_slice({at.x(), at.y(), layer()});
 }
 
 QSize SlicePane::sizeHint() const {
@@ -188,7 +222,7 @@ void SlicePane::paintEvent(QPaintEvent*) {
     if (!content_) {
         painter.fillRect(rect(), palette().window());
         painter.setPen(palette().color(QPalette::Disabled, QPalette::WindowText));
-        painter.drawText(rect(), Qt::AlignCenter | Qt::TextWordWrap, tr("No volume"));
+        painter.drawText(rect(), Qt::AlignCenter | Qt::TextWordWrap, QString("No volume"));
         return;
     }
     const SliceMap where = map();
@@ -215,21 +249,216 @@ void SlicePane::paint_words(QPainter& painter) const {
     paint_corner(
         painter, size(), Qt::AlignLeft | Qt::AlignTop,
         {title(),
-         samples.in_data() ? tr("%1 / %2").arg(std::lround(samples.position()) + 1).arg(layers)
-                           : tr("outside the data"),
+         samples.in_data() ? QString("%1 / %2").arg(std::lround(samples.position()) + 1).arg(layers)
+                           : QString("outside the data"),
          QString::fromStdString(position_text(content_->plane, geometry(), middle))});
     // Short where the letter of the lower edge is, so that narrow panes have room for both.
-    paint_corner(
-        painter, size(), Qt::AlignRight | Qt::AlignBottom,
-        {tr("W %1").arg(high_ - low_, 0, 'g', 5), tr("L %1").arg(0.5 * (low_ + high_), 0, 'g', 5)});
+    paint_corner(painter, size(), Qt::AlignRight | Qt::AlignBottom,
+                 {QString("W %1").arg(high_ - low_, 0, 'g', 5),
+                  QString("L %1").arg(0.5 * (low_ + high_), 0, 'g', 5)});
     if (!pointer_) return;
     const Vec3 at = point_at(*pointer_);
     const Vec3 index = index_from_physical(geometry(), at);
     if (!(index.cwiseAbs().maxCoeff() <= farthest_index)) return;
     const auto mm = [](double x) { return QString::number(x, 'f', 1); };
     paint_corner(painter, size(), Qt::AlignLeft | Qt::AlignBottom,
-                 {tr("(%1, %2, %3) mm").arg(mm(at[0]), mm(at[1]), mm(at[2])),
+                 {QString("(%1, %2, %3) mm").arg(mm(at[0]), mm(at[1]), mm(at[2])),
                   QString::number(value_at(samples.field(), at), 'g', 6)});
+}
+
+bool SlicePane::event(QEvent* event) {
+    // A tip over the picture would hide it: only over the words in the corner.
+    if (event->type() == QEvent::ToolTip) {
+        const auto* const help = static_cast<QHelpEvent*>(event);
+        const int words = 5 * fontMetrics().height();
+        if (help->pos().x() < words && help->pos().y() < words) {
+            QToolTip::showText(help->globalPos(), whatsThis(), this);
+        } else {
+            QToolTip::hideText();
+            event->ignore();
+        }
+        return true;
+    }
+    return QWidget::event(event);
+}
+
+void SlicePane::choose(const Vec3& physical) {
+    set_crosshair(physical);
+    Q_EMIT crosshair_chosen(crosshair_);
+}
+
+/// The nearest point in the data.
+void SlicePane::choose_at(const QPointF& pixel) {
+    const QPointF at = map().sample(pixel);
+    choose(physical_from_slice(in_data({at.x(), at.y(), layer()})));
+}
+
+void SlicePane::aim_at(const QPointF& pixel) {
+    const QPointF at = map().sample(pixel);
+    Q_EMIT probe_aimed(physical_from_slice({at.x(), at.y(), drag_layer_}));
+}
+
+/// Whole layers, up towards the patient's left, back or head.
+double SlicePane::next_layer(double from, int steps) const {
+    if (geometry().direction(content_->plane.anatomical, axis_) < 0) steps = -steps;
+    constexpr double hair = 1e-6;
+    const double layer =
+        steps > 0 ? std::floor(from + hair) + steps : std::ceil(from - hair) + steps;
+    return std::clamp(layer, 0.0, geometry().size[axis_] - 1.0);
+}
+
+void SlicePane::step_slice(int steps) {
+    Vec3 index = index_from_physical(geometry(), crosshair_);
+    index[axis_] = next_layer(index[axis_], steps);
+    choose(physical_from_index(geometry(), index));
+}
+
+/// The point at the pixel stays there.
+void SlicePane::zoom_at(const QPointF& pixel, double factor) {
+    const double zoom = std::clamp(view_.zoom * factor, least_zoom, most_zoom);
+    const QPointF at = map().sample(pixel);
+    view_.zoom = zoom;
+    const SliceMap now = map();
+    view_.moved += (pixel - now.pixel(at.x(), at.y())) / now.per_mm;
+    picture_changed();
+}
+
+/// The pane's width is the data's range.
+void SlicePane::change_window(const QPointF& drag) {
+    const double range = content_->samples.field().volume().range();
+    const double per_pixel = range / std::max(width(), 100);
+    const double wide = std::max(high_ - low_ + drag.x() * per_pixel, narrowest * range);
+    const double level = std::clamp(0.5 * (low_ + high_) - drag.y() * per_pixel,
+                                    content_->samples.field().volume().minimum() - range,
+                                    content_->samples.field().volume().maximum() + range);
+    use_window(level - 0.5 * wide, level + 0.5 * wide);
+    Q_EMIT window_changed(low_, high_);
+}
+
+void SlicePane::reset() {
+    view_ = {};
+    const GreyWindow usual = content_->usual.value_or(whole_range(content_->samples.field()));
+    use_window(usual.low, usual.high);
+    picture_changed();
+    Q_EMIT window_changed(low_, high_);
+}
+
+void SlicePane::mousePressEvent(QMouseEvent* event) {
+    if (!content_ || drag_ != Drag::none) return;
+    drag_from_ = event->localPos();
+    if (event->button() == Qt::LeftButton) {
+        if (probe_ && !(event->modifiers() & Qt::ControlModifier)) {
+            drag_ = Drag::probe;
+            drag_layer_ = layer();
+            aim_at(event->localPos());
+        } else {
+            drag_ = Drag::crosshair;
+            choose_at(event->localPos());
+        }
+    } else if (event->button() == Qt::RightButton) {
+        drag_ = Drag::window;
+    } else if (event->button() == Qt::MiddleButton) {
+        drag_ = Drag::move;
+    } else {
+        event->ignore();
+    }
+}
+
+void SlicePane::mouseMoveEvent(QMouseEvent* event) {
+    if (!content_) return;
+    pointer_ = event->localPos();
+    const QPointF drag = event->localPos() - drag_from_;
+    drag_from_ = event->localPos();
+    switch (drag_) {
+        case Drag::crosshair:
+            choose_at(event->localPos());
+            break;
+        case Drag::probe:
+            aim_at(event->localPos());
+            break;
+        case Drag::window:
+            change_window(drag);
+            break;
+        case Drag::move:
+            view_.moved += drag / map().per_mm;
+            picture_changed();
+            break;
+        case Drag::none:
+            break;
+    }
+    update();
+}
+
+void SlicePane::mouseReleaseEvent(QMouseEvent* event) {
+    const bool left = drag_ == Drag::crosshair || drag_ == Drag::probe;
+    const Qt::MouseButton of_drag = left                    ? Qt::LeftButton
+                                    : drag_ == Drag::window ? Qt::RightButton
+                                                            : Qt::MiddleButton;
+    if (event->button() == of_drag) drag_ = Drag::none;
+}
+
+void SlicePane::mouseDoubleClickEvent(QMouseEvent*) {
+    if (content_) reset();
+}
+
+void SlicePane::wheelEvent(QWheelEvent* event) {
+    if (!content_) return;
+    event->accept();
+    const int turned = event->angleDelta().y();
+    if (event->modifiers() & Qt::ControlModifier) {
+        zoom_at(event->position(), std::pow(1.2, turned / 120.0));
+        return;
+    }
+    // Touch pads turn by less than a step at a time.
+    if (turned * wheel_ < 0) wheel_ = 0;
+    wheel_ += turned;
+    const int steps = wheel_ / 120;
+    wheel_ -= 120 * steps;
+    if (steps == 0) return;
+    if (drag_ == Drag::probe) {
+        drag_layer_ = next_layer(drag_layer_, steps);
+        aim_at(event->position());
+    } else {
+        step_slice(steps);
+    }
+}
+
+void SlicePane::keyPressEvent(QKeyEvent* event) {
+    if (!content_) return event->ignore();
+    const auto move = [&](double u, double v) {
+        const Vec3 index = index_from_physical(geometry(), crosshair_);
+        const Vec3 slice = slice_from_index(content_->plane, geometry(), index);
+        choose(physical_from_slice(in_data(slice + Vec3(u, v, 0))));
+    };
+    const QPointF middle = QRectF(rect()).center();
+    switch (event->key()) {
+        case Qt::Key_Left:
+            return move(-1, 0);
+        case Qt::Key_Right:
+            return move(1, 0);
+        case Qt::Key_Up:
+            return move(0, -1);
+        case Qt::Key_Down:
+            return move(0, 1);
+        case Qt::Key_PageUp:
+            return step_slice(1);
+        case Qt::Key_PageDown:
+            return step_slice(-1);
+        case Qt::Key_Plus:
+        case Qt::Key_Equal:
+            return zoom_at(middle, 1.2);
+        case Qt::Key_Minus:
+            return zoom_at(middle, 1 / 1.2);
+        case Qt::Key_Home:
+            return reset();
+        default:
+            event->ignore();
+    }
+}
+
+void SlicePane::leaveEvent(QEvent*) {
+    pointer_.reset();
+    update();
 }
 
 }  // namespace palpate::viewer

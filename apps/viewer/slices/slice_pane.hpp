@@ -43,8 +43,8 @@ class SlicePane : public QWidget {
     /// Hand, proxy, spring and force; nothing: none are shown. The slice stays where it is.
     void show_snapshot(const std::optional<Snapshot>& snapshot);
     /// Grey levels [data units]: up to `low` black, from `high` white. Unless low < high, nothing
-    /// happens. Those that are set first for a volume are its usual ones, until then 1 in 100
-    /// samples is black and 1 in 100 white.
+    /// happens. Those that are set first for a volume are its usual ones; until then the least
+    /// sample is black and the greatest white.
     void set_window(double low, double high);
     double window_low() const { return low_; }
     double window_high() const { return high_; }
@@ -86,6 +86,8 @@ class SlicePane : public QWidget {
     SliceMap map() const;
     double margin() const;
     double layer() const;
+    Vec3 physical_from_slice(const Vec3& slice) const;
+    Vec3 in_data(Vec3 slice) const;
     void picture_changed();
     void make_picture(const SliceMap& where);
     void choose(const Vec3& physical);

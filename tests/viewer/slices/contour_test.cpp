@@ -35,7 +35,8 @@ struct Cut {
         ContourDetail detail = ContourDetail::lattice)
         : field(test.field), plane(slice_plane(field.geometry(), axis)), samples(field, plane) {
         samples.go_to(position);
-        append_contour(samples, test.isovalue, all_cells(samples), detail, pieces);
+        append_contour(samples, test.isovalue, {-1, -1, samples.width(), samples.height()}, detail,
+                       pieces);
     }
     double value(double u, double v) const {
         const Vec3 index =

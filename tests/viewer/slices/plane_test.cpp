@@ -119,7 +119,7 @@ TEST(SlicePlane, any_orientation_gives_three_different_planes) {
     }
 }
 
-TEST(SlicePlane, position_is_told_towards_the_side_of_the_body_it_lies_on) {
+TEST(SlicePlane, the_position_names_the_side_of_the_body_it_lies_on) {
     const Geometry mirrored =
         grid({4, 5, 6}, Vec3::Ones(), Vec3::Zero(), columns(-left, back, -head));
     EXPECT_EQ(position_text(slice_plane(mirrored, 2), mirrored, {1, 2, 12.5}), "S 12.50 mm");

@@ -76,23 +76,5 @@ TEST(SliceSamples, beyond_the_last_layer_its_voxels_go_on) {
     }
 }
 
-TEST(UsualWindow, leaves_one_in_a_hundred_out_at_either_end) {
-    const Volume noise =
-        support::noise_volume<std::uint16_t>(support::grid({64, 64, 64}), 3, 0, 50000);
-    const GreyWindow window = usual_window(noise);
-    EXPECT_NEAR(window.low, 500, 60);
-    EXPECT_NEAR(window.high, 49500, 60);
-}
-
-TEST(UsualWindow, of_a_mask_or_a_constant_volume_is_one) {
-    const auto speck = support::volume_of<std::uint8_t>(
-        support::grid(support::cube(30)), [](const Index3& i) { return i.sum() == 0 ? 9 : 0; });
-    EXPECT_EQ(usual_window(speck).low, 0);
-    EXPECT_EQ(usual_window(speck).high, 9);
-    const auto flat =
-        support::volume_of<float>(support::grid(support::cube(4)), [](const Index3&) { return 5; });
-    EXPECT_LT(usual_window(flat).low, usual_window(flat).high);
-}
-
 }  // namespace
 }  // namespace palpate::viewer

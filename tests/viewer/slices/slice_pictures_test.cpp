@@ -46,7 +46,7 @@ struct ThreePanes {
     }
 };
 
-TEST(SlicePictures, ct_of_a_head) {
+TEST(SlicePictures, show_the_ct_of_a_head) {
     if (!there_is("cthead_unc.nrrd")) GTEST_SKIP() << "needs cthead_unc.nrrd";
     const Field field(real("cthead_unc.nrrd"));
     ThreePanes shown(field, 500, physical_centre(field.geometry()) + Vec3(30, -140, 20));
@@ -62,7 +62,7 @@ TEST(SlicePictures, ct_of_a_head) {
     keep_picture(*shown.panes[2], "slices_ct_head_zoomed");
 }
 
-TEST(SlicePictures, a_small_pane_under_the_pointer) {
+TEST(SlicePictures, show_a_small_pane_under_the_pointer) {
     if (!there_is("cthead_unc.nrrd")) GTEST_SKIP() << "needs cthead_unc.nrrd";
     SlicePane pane(2);
     pane.resize(240, 260);
@@ -75,7 +75,7 @@ TEST(SlicePictures, a_small_pane_under_the_pointer) {
     keep_picture(pane, "slices_small");
 }
 
-TEST(SlicePictures, lobster) {
+TEST(SlicePictures, show_a_lobster) {
     if (!there_is("lobster.nrrd")) GTEST_SKIP() << "needs lobster.nrrd";
     const Field field(real("lobster.nrrd"));
     ThreePanes shown(field, 40, physical_centre(field.geometry()) + Vec3(0, 0, 120));
@@ -100,7 +100,7 @@ TEST(SlicePictures, mirrored_and_aslant_grids_show_the_same_head_in_the_same_ori
     }
 }
 
-TEST(SlicePictures, empty_panes_and_focus_in_dark_and_light) {
+TEST(SlicePictures, show_empty_panes_and_focus_in_dark_and_light) {
     const QPalette before = QApplication::palette();
     for (const bool dark : {false, true}) {
         if (dark) {

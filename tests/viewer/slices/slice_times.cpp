@@ -60,7 +60,7 @@ void measure(const Field& field, int axis, int edge) {
     const viewer::SlicePlane plane = viewer::slice_plane(geometry, axis);
     const QSize size(edge, edge);
     const viewer::SliceMap map = viewer::slice_map(plane, geometry, {}, size, 16);
-    const viewer::GreyWindow window = viewer::usual_window(field.volume());
+    const viewer::GreyWindow window{field.volume().minimum(), field.volume().maximum()};
     viewer::SliceSamples samples(field, plane);
     const auto draw = [&](double position) {
         samples.go_to(position);
