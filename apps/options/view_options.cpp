@@ -1,6 +1,7 @@
 // Options of the viewer.
 #include "apps/options/view_options.hpp"
 
+#include <cstdio>
 #include <stdexcept>
 
 namespace palpate::app {
@@ -29,6 +30,19 @@ void ViewOptions::check() const {
     if (!play.empty() && !session.empty()) {
         throw std::invalid_argument("--play and --session: give only one of them");
     }
+    (void)window_size();
+}
+
+std::optional<std::array<int, 2>> ViewOptions::window_size() const {
+    if (size.empty()) return std::nullopt;
+    int width = 0, height = 0, end = 0;
+    const bool read = std::sscanf(size.c_str(), "%dx%d%n", &width, &height, &end) == 2;
+    if (!read || end != static_cast<int>(size.size()) || width < 320 || height < 240 ||
+        width > 16384 || height > 16384) {
+        throw std::invalid_argument("--window " + size +
+                                    ": WIDTHxHEIGHT in pixels, as in 1280x800, is meant");
+    }
+    return std::array{width, height};
 }
 
 }  // namespace palpate::app

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <array>
+#include <optional>
 #include <string>
 
 #include "apps/options/run_options.hpp"
@@ -21,6 +23,9 @@ struct ViewOptions {
     /// Once the command line has been read. Throws std::invalid_argument for options that exclude
     /// each other.
     void check() const;
+    /// Width and height of the window [pixels]; nothing: not given. Throws std::invalid_argument
+    /// for a size that is none.
+    std::optional<std::array<int, 2>> window_size() const;
     bool has_volume() const { return !run.source.name().empty(); }
 };
 

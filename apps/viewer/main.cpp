@@ -57,8 +57,7 @@ void open(viewer::MainWindow& window, const app::ViewOptions& options) {
 
 int show(QApplication& application, const app::ViewOptions& options) {
     viewer::MainWindow window({options.run.setup(), options.run.device, options.run.record});
-    const QSize size = viewer::window_size(options.size);
-    if (size.isValid()) window.resize(size);
+    if (const auto size = options.window_size()) window.resize((*size)[0], (*size)[1]);
     window.show();
     open(window, options);
     // A signal ends the window at once: forces go to zero, nobody is asked.

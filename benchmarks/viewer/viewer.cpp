@@ -16,6 +16,7 @@
 #include <thread>
 #include <vector>
 
+#include "apps/viewer/panel/look_controls.hpp"
 #include "apps/viewer/panel/panel.hpp"
 #include "apps/viewer/scene/scene.hpp"
 #include "apps/viewer/window/main_window.hpp"
@@ -94,7 +95,7 @@ ServoReport drawing(const Options& options, double& frame) {
     window.show();
     window.files().open_volume(run::source_named(options.volume));
     run_until([&] { return window.live() && window.settled(); });
-    Look look = window.panel().look();
+    Look look = window.panel().look_controls().look();
     look.volume = options.volume_rendering;
     look.surface = !options.volume_rendering;
     window.views().set_look(look);

@@ -13,23 +13,6 @@ constexpr std::size_t least_snapshots = 16;
 /// Part of the interval after which a snapshot is due: ticks come a little early or late.
 constexpr double punctual = 0.9;
 
-void join(Overview::Piece& piece, const Overview::Piece& other) {
-    if (other.empty) return;
-    if (piece.empty) {
-        piece = other;
-        return;
-    }
-    piece.least_force = std::min(piece.least_force, other.least_force);
-    piece.most_force = std::max(piece.most_force, other.most_force);
-    piece.contact = piece.contact || other.contact;
-    if (other.least_isovalue > other.most_isovalue) return;
-    const bool none = piece.least_isovalue > piece.most_isovalue;
-    piece.least_isovalue =
-        none ? other.least_isovalue : std::min(piece.least_isovalue, other.least_isovalue);
-    piece.most_isovalue =
-        none ? other.most_isovalue : std::max(piece.most_isovalue, other.most_isovalue);
-}
-
 Overview::Piece piece_of(const SessionTick& session) {
     Overview::Piece piece;
     const Tick& tick = session.tick;
@@ -43,6 +26,21 @@ Overview::Piece piece_of(const SessionTick& session) {
 }
 
 }  // namespace
+
+void Overview::Piece::add(const Piece& other) {
+    if (other.empty) return;
+    if (empty) {
+        *this = other;
+        return;
+    }
+    least_force = std::min(least_force, other.least_force);
+    most_force = std::max(most_force, other.most_force);
+    contact = contact || other.contact;
+    if (other.least_isovalue > other.most_isovalue) return;
+    const bool none = least_isovalue > most_isovalue;
+    least_isovalue = none ? other.least_isovalue : std::min(least_isovalue, other.least_isovalue);
+    most_isovalue = none ? other.most_isovalue : std::max(most_isovalue, other.most_isovalue);
+}
 
 Playback Playback::read(const std::filesystem::path& recording, const run::LoadedVolume& loaded,
                         const io::Progress& progress, std::size_t most_bytes) {
@@ -77,7 +75,7 @@ Playback Playback::read(const std::filesystem::path& recording, const run::Loade
     return playback;
 }
 
-/// Where there is no more room, drops every second snapshot.
+/// Drops every second snapshot when the memory is full.
 void Playback::keep(const Snapshot& snapshot, std::size_t most) {
     if (snapshots_.size() + 1 >= most) {
         std::size_t to = 0;
@@ -99,7 +97,7 @@ void Playback::survey(const SessionTick& tick) {
     while ((time - o.begin) / o.width >= static_cast<double>(Overview::most_pieces)) {
         for (std::size_t i = 0; 2 * i < o.pieces.size(); ++i) {
             Overview::Piece joined = o.pieces[2 * i];
-            if (2 * i + 1 < o.pieces.size()) join(joined, o.pieces[2 * i + 1]);
+            if (2 * i + 1 < o.pieces.size()) joined.add(o.pieces[2 * i + 1]);
             o.pieces[i] = joined;
         }
         o.pieces.resize((o.pieces.size() + 1) / 2);
@@ -107,7 +105,7 @@ void Playback::survey(const SessionTick& tick) {
     }
     const auto at = static_cast<std::size_t>((time - o.begin) / o.width);
     if (at >= o.pieces.size()) o.pieces.resize(at + 1);
-    join(o.pieces[at], piece_of(tick));
+    o.pieces[at].add(piece_of(tick));
 }
 
 void Playback::finish() {

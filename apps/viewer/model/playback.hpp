@@ -1,4 +1,4 @@
-// A recording to look at: hand, proxy and force by time. No servo, no device.
+// Playback of a recording: hand, proxy and force by time. No servo, no device.
 #pragma once
 
 #include <cstdint>
@@ -19,6 +19,9 @@ struct Overview {
         double least_isovalue = 1, most_isovalue = 0;
         bool contact = false;  ///< in some tick
         bool empty = true;     ///< no tick: the machine or the device was late
+
+        /// Becomes the summary of both.
+        void add(const Piece& other);
     };
     struct Interval {
         double from, to;  ///< [s]
@@ -32,9 +35,9 @@ struct Overview {
     static constexpr std::size_t most_pieces = 4096;
 };
 
-/// A recording, rendered again once; any moment of it can then be shown at once. Memory is bounded:
-/// it holds snapshots at least 4 ms apart, and fewer of them in a recording of more than about half
-/// an hour, so that they never take more than `most_bytes`.
+/// Renders a recording once, when it is read; then any moment of it can be shown at once. Memory is
+/// bounded: snapshots are at least 4 ms apart, and farther apart in a recording of more than about
+/// half an hour, so that they never take more than `most_bytes`.
 class Playback {
   public:
     static constexpr std::size_t usual_bytes = std::size_t{256} << 20;
@@ -50,7 +53,7 @@ class Playback {
     /// [s] of the first and the last tick, by the session's clock.
     double begin() const { return overview_.begin; }
     double end() const { return overview_.end; }
-    /// The last snapshot at or before `time`; the first for what is before it or no number.
+    /// The last snapshot at or before `time`; the first for a time before it or NaN.
     const Snapshot& at(double time) const;
     /// In the recording; snapshots are fewer.
     std::size_t ticks() const { return ticks_; }

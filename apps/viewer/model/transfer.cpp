@@ -1,4 +1,4 @@
-// Presets, and what lies between two control points.
+// Presets, and interpolation between control points.
 #include "apps/viewer/model/transfer.hpp"
 
 #include <fmt/format.h>
@@ -13,8 +13,8 @@
 namespace palpate::viewer {
 namespace {
 
-/// What presets stand on [data units]. `outer` and `inner` part the data into three classes: in CT
-/// of a head air, soft tissue and bone.
+/// The levels that presets refer to [data units]. `outer` and `inner` divide the data into three
+/// classes: in CT of a head air, soft tissue and bone.
 struct Levels {
     double low, outer, inner, high;  // low < outer < inner < high
     bool hounsfield;
@@ -25,7 +25,7 @@ bool looks_like_hounsfield(const Volume& volume) {
            volume.minimum() <= -500 && volume.maximum() > 0;
 }
 
-/// Whether a lies before b by more than what rounding could close again.
+/// Whether a is less than b by more than rounding errors.
 bool apart(double a, double b, double range) {
     return b - a > 1e-6 * range && b > a;
 }
@@ -51,11 +51,6 @@ Levels levels_of(const run::Histogram& histogram, const Volume& volume) {
     return {low, outer, inner, high, looks_like_hounsfield(volume)};
 }
 
-/// A point between two levels, `part` of the way.
-double between(double from, double to, double part) {
-    return from + part * (to - from);
-}
-
 using Points = std::vector<ControlPoint>;
 
 constexpr Colour black{0, 0, 0};
@@ -71,10 +66,10 @@ Points ct_bone(const Levels& l) {
                 {350, pictures::bone, 0.35}, {700, ivory, 0.75}, {2000, white, 0.9}};
     }
     return {{l.low, muscle, 0},
-            {between(l.outer, l.inner, 0.75), muscle, 0},
-            {between(l.outer, l.inner, 0.92), muscle, 0.06},
-            {between(l.inner, l.high, 0.05), pictures::bone, 0.4},
-            {between(l.inner, l.high, 0.4), ivory, 0.75},
+            {std::lerp(l.outer, l.inner, 0.75), muscle, 0},
+            {std::lerp(l.outer, l.inner, 0.92), muscle, 0.06},
+            {std::lerp(l.inner, l.high, 0.05), pictures::bone, 0.4},
+            {std::lerp(l.inner, l.high, 0.4), ivory, 0.75},
             {l.high, white, 0.9}};
 }
 
@@ -83,8 +78,8 @@ Points ct_skin(const Levels& l) {
         return {{-1024, skin, 0},  {-600, skin, 0},   {-350, skin, 0.35},
                 {-150, skin, 0.8}, {250, skin, 0.85}, {600, ivory, 0.95}};
     }
-    return {{l.low, skin, 0},      {between(l.low, l.outer, 0.6), skin, 0},
-            {l.outer, skin, 0.35}, {between(l.outer, l.inner, 0.3), skin, 0.8},
+    return {{l.low, skin, 0},      {std::lerp(l.low, l.outer, 0.6), skin, 0},
+            {l.outer, skin, 0.35}, {std::lerp(l.outer, l.inner, 0.3), skin, 0.8},
             {l.inner, skin, 0.85}, {l.high, ivory, 0.95}};
 }
 
@@ -100,17 +95,17 @@ Points ct_soft_tissue(const Levels& l) {
                 {1500, ivory, 0.6}};
     }
     return {{l.low, fat, 0},
-            {between(l.low, l.outer, 0.8), fat, 0},
-            {between(l.outer, l.inner, 0.1), fat, 0.04},
-            {between(l.outer, l.inner, 0.5), muscle, 0.22},
-            {between(l.outer, l.inner, 0.9), {0.85, 0.45, 0.36}, 0.3},
+            {std::lerp(l.low, l.outer, 0.8), fat, 0},
+            {std::lerp(l.outer, l.inner, 0.1), fat, 0.04},
+            {std::lerp(l.outer, l.inner, 0.5), muscle, 0.22},
+            {std::lerp(l.outer, l.inner, 0.9), {0.85, 0.45, 0.36}, 0.3},
             {l.high, ivory, 0.6}};
 }
 
 Points mr(const Levels& l) {
     return {{l.low, black, 0},
-            {between(l.low, l.outer, 0.7), {0.16, 0.10, 0.09}, 0},
-            {between(l.outer, l.inner, 0.3), {0.55, 0.40, 0.36}, 0.12},
+            {std::lerp(l.low, l.outer, 0.7), {0.16, 0.10, 0.09}, 0},
+            {std::lerp(l.outer, l.inner, 0.3), {0.55, 0.40, 0.36}, 0.12},
             {l.inner, {0.84, 0.74, 0.68}, 0.3},
             {l.high, white, 0.65}};
 }
@@ -118,8 +113,8 @@ Points mr(const Levels& l) {
 /// Fluorescence: light in the dark, the more the brighter.
 Points microscopy(const Levels& l) {
     return {{l.low, {0, 0.02, 0.10}, 0},
-            {between(l.low, l.outer, 0.6), {0, 0.12, 0.28}, 0},
-            {between(l.outer, l.inner, 0.2), {0.02, 0.48, 0.46}, 0.10},
+            {std::lerp(l.low, l.outer, 0.6), {0, 0.12, 0.28}, 0},
+            {std::lerp(l.outer, l.inner, 0.2), {0.02, 0.48, 0.46}, 0.10},
             {l.inner, {0.32, 0.82, 0.36}, 0.4},
             {l.high, {0.98, 0.98, 0.72}, 0.8}};
 }
@@ -141,17 +136,15 @@ constexpr std::array<Preset, 6> presets{{{"CT bone", &ct_bone},
 
 ControlPoint mixed(const ControlPoint& a, const ControlPoint& b, double level) {
     const double part = (level - a.level) / (b.level - a.level);
-    const auto mix = [part](double from, double to) {  // rounding must not lead beyond either
-        return std::clamp(between(from, to, part), std::min(from, to), std::max(from, to));
-    };
     return {level,
-            {mix(a.colour.red, b.colour.red), mix(a.colour.green, b.colour.green),
-             mix(a.colour.blue, b.colour.blue)},
-            mix(a.opacity, b.opacity)};
+            {std::lerp(a.colour.red, b.colour.red, part),
+             std::lerp(a.colour.green, b.colour.green, part),
+             std::lerp(a.colour.blue, b.colour.blue, part)},
+            std::lerp(a.opacity, b.opacity, part)};
 }
 
-/// The part of a function that lies over the data, so that every point can be seen and taken hold
-/// of in an editor; the same function there. Points that coincide for want of digits become one.
+/// The function restricted to the range of the data, so that an editor can show every point. Points
+/// that coincide after rounding become one.
 Points over_the_data(const Points& points, const Levels& l) {
     TransferFunction whole;
     for (const ControlPoint& point : points) {
@@ -167,15 +160,18 @@ Points over_the_data(const Points& points, const Levels& l) {
     return inside;
 }
 
+double middle_of(const run::Histogram& histogram, std::size_t bin) {
+    const auto bins = static_cast<double>(histogram.counts.size());
+    return std::lerp(histogram.low, histogram.high, (double(bin) + 0.5) / bins);
+}
+
 /// Share of the samples that lie above a level.
 double share_above(const run::Histogram& histogram, double level) {
-    const auto bins = static_cast<double>(histogram.counts.size());
     double above = 0;
     double all = 0;
     for (std::size_t i = 0; i < histogram.counts.size(); ++i) {
-        const double middle = between(histogram.low, histogram.high, (double(i) + 0.5) / bins);
         all += static_cast<double>(histogram.counts[i]);
-        if (middle > level) above += static_cast<double>(histogram.counts[i]);
+        if (middle_of(histogram, i) > level) above += static_cast<double>(histogram.counts[i]);
     }
     return all > 0 ? above / all : 0;
 }
@@ -183,11 +179,10 @@ double share_above(const run::Histogram& histogram, double level) {
 /// CT stored as Hounsfield units + 1000 or + 1024: most of what is not air is near water.
 bool looks_like_shifted_hounsfield(const run::Histogram& histogram, const Levels& l) {
     if (!histogram.whole_numbers || l.low < -1 || l.high < 1500 || l.high > 4200) return false;
-    const auto bins = static_cast<double>(histogram.counts.size());
     double peak = 0;
     std::int64_t most = -1;
     for (std::size_t i = 0; i < histogram.counts.size(); ++i) {
-        const double middle = between(histogram.low, histogram.high, (double(i) + 0.5) / bins);
+        const double middle = middle_of(histogram, i);
         if (middle <= l.outer || histogram.counts[i] <= most) continue;
         most = histogram.counts[i];
         peak = middle;
@@ -239,26 +234,6 @@ ControlPoint sampled(const TransferFunction& transfer, double level) {
     }
     point.level = level;
     return point;
-}
-
-void check(const TransferFunction& transfer) {
-    if (transfer.points.size() < 2) {
-        throw std::invalid_argument("a transfer function needs two points or more");
-    }
-    const auto unit = [](double x) { return x >= 0 && x <= 1; };
-    const ControlPoint* before = nullptr;
-    for (const ControlPoint& point : transfer.points) {
-        if (!std::isfinite(point.level) || (before && !(before->level < point.level))) {
-            throw std::invalid_argument(
-                "the levels of a transfer function must be finite and rise");
-        }
-        if (!unit(point.opacity) || !unit(point.colour.red) || !unit(point.colour.green) ||
-            !unit(point.colour.blue)) {
-            throw std::invalid_argument(
-                "the opacities and colours of a transfer function are 0 to 1");
-        }
-        before = &point;
-    }
 }
 
 }  // namespace palpate::viewer

@@ -24,12 +24,8 @@ TransferFunction preset(std::string_view name, const run::Histogram& histogram,
 /// the histogram.
 std::string suggested_preset(const run::Histogram& histogram, const Volume& volume);
 
-/// Colour and opacity at a level [data units]; beyond the outer points theirs. The function must
-/// pass check().
+/// Colour and opacity at a level [data units]; beyond the outer points theirs. The function
+/// must have points.
 ControlPoint sampled(const TransferFunction& transfer, double level);
-
-/// Throws std::invalid_argument, saying what is wrong, unless there are two or more points, their
-/// levels finite and strictly rising, opacities and colours within 0 to 1.
-void check(const TransferFunction& transfer);
 
 }  // namespace palpate::viewer

@@ -1,24 +1,23 @@
 // Connects the brush controls with the brush that is chosen.
 #include "apps/viewer/panel/brush_controls.hpp"
 
+#include <QBoxLayout>
 #include <QButtonGroup>
-#include <QFormLayout>
-#include <QHBoxLayout>
 #include <QLabel>
 #include <QLineEdit>
-#include <QSignalBlocker>
 #include <QToolButton>
-#include <QVBoxLayout>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include "apps/viewer/panel/layout.hpp"
+
 namespace palpate::viewer {
 namespace {
 
-constexpr double least_rate = 1, most_rate = 100, first_rate = 10;  // [1/s]
+constexpr double least_rate = 1, most_rate = 100;  // [1/s]
 
 struct Kind {
     BrushKind kind;
@@ -39,43 +38,26 @@ QString in_words(std::size_t steps) {
     return steps == 0 ? "none" : steps == 1 ? "one step" : QString("%1 steps").arg(steps);
 }
 
-/// A row of a form, and the label that names it.
-void add_row(QFormLayout& form, const QString& name, QWidget* field, const QString& tip) {
-    auto* label = new QLabel(name);
-    label->setToolTip(tip);
-    label->setBuddy(field);
-    field->setToolTip(tip);
-    form.addRow(label, field);
-}
-
-QWidget* row_of(std::initializer_list<QWidget*> widgets) {
-    auto* all = new QWidget;
-    auto* row = new QHBoxLayout(all);
-    row->setContentsMargins(0, 0, 0, 0);
-    for (QWidget* one : widgets) row->addWidget(one);
-    return all;
-}
-
 }  // namespace
 
-BrushControls::BrushControls(QWidget* parent)
-    : QWidget(parent),
-      rate_(first_rate),
-      body_(new QWidget),
+BrushControls::BrushControls()
+    : body_(new QWidget),
       reason_(new Note("brush_reason", Note::Kind::plain)),
-      on_(new QPushButton),
+      on_(named(new QPushButton, "brush",
+                "While it is on, the probe edits the samples where it is")),
       kinds_(new QButtonGroup(this)),
       radius_(new Quantity("brush_radius", "mm", 1, 25, 0, Quantity::Scale::factors)),
       hardness_(new Quantity("brush_hardness", "", 0, 1, 0.05)),
       rate_box_(
           new Quantity("brush_rate", "/s", least_rate, most_rate, 0, Quantity::Scale::factors)),
-      at_once_(new QCheckBox("At once")),
-      value_(new NumberBox),
-      automatic_(new QCheckBox("Automatic")),
-      undo_(new QPushButton),
-      redo_(new QPushButton),
-      save_(new QPushButton("Save as...")),
-      state_(new QLabel) {
+      at_once_(named(new QCheckBox("At once"), "brush_at_once")),
+      value_(named(new NumberBox, "brush_value")),
+      automatic_(named(new QCheckBox("Automatic"), "brush_automatic")),
+      undo_(named(new QPushButton, "undo")),
+      redo_(named(new QPushButton, "redo")),
+      save_(named(new QPushButton("Save as..."), "save_edits",
+                  "Writes the volume as it is now to a file")),
+      state_(named(new QLabel, "edit_state")) {
     setObjectName("brush_controls");
     build();
     connect_inputs();
@@ -84,14 +66,22 @@ BrushControls::BrushControls(QWidget* parent)
 }
 
 void BrushControls::build() {
-    on_->setObjectName("brush");
     on_->setCheckable(true);
-    on_->setToolTip("While it is on, the probe edits the samples where it is");
-    QFont bold = on_->font();
-    bold.setBold(true);
-    on_->setFont(bold);
+    make_bold(*on_);
     radius_->set_accessible_name("Radius of the brush");
     hardness_->set_accessible_name("Hardness of the brush");
+    rate_box_->set_accessible_name("Rate of the brush");
+    value_->setAccessibleName("Value of the brush");
+    value_->setStepType(QAbstractSpinBox::AdaptiveDecimalStepType);
+    value_->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
+    value_->setMinimumWidth(radius_->box().minimumWidth());
+    for (QPushButton* button : {undo_, redo_, save_}) {
+        button->setMinimumWidth(fontMetrics().horizontalAdvance("Undo (000)  "));
+    }
+    auto* rate = row_of({rate_box_, at_once_});
+    rate->setFocusProxy(rate_box_);
+    auto* value = row_of({value_, automatic_});
+    value->setFocusProxy(value_);
     auto* form = new QFormLayout;
     form->setVerticalSpacing(3);
     add_row(*form, "Radius", radius_,
@@ -99,21 +89,15 @@ void BrushControls::build() {
             "the grid");
     add_row(*form, "Hardness", hardness_,
             "1: an edge of two voxels; 0: an edge as wide as the brush");
-    add_row(*form, "Rate", make_rate(),
+    add_row(*form, "Rate", rate,
             "How fast the samples approach their final value [1/s]: 63 % of it after 1/rate s");
-    add_row(*form, "Value", make_value(),
+    add_row(*form, "Value", value,
             "What a whole touch leaves [data units]. Automatic: what fits the level that is felt");
-    auto* column = new QVBoxLayout(body_);
-    column->setContentsMargins(0, 0, 0, 0);
-    column->addWidget(on_);
-    column->addWidget(make_kinds());
+    auto* column = column_in(body_, {on_, make_kinds()});
     column->addLayout(form);
-    column->addWidget(make_history());
+    column->addWidget(row_of({undo_, redo_, save_}));
     column->addWidget(state_);
-    auto* all = new QVBoxLayout(this);
-    all->setContentsMargins(0, 0, 0, 0);
-    all->addWidget(reason_);
-    all->addWidget(body_);
+    column_in(this, {reason_, body_});
 }
 
 QWidget* BrushControls::make_kinds() {
@@ -121,48 +105,15 @@ QWidget* BrushControls::make_kinds() {
     all->setAccessibleName("Kind of brush");
     all->layout()->setSpacing(2);
     for (const Kind& kind : all_kinds) {
-        auto* button = new QToolButton;
-        button->setObjectName("brush_" + QString::fromStdString(std::string(name_of(kind.kind))));
+        const auto name = QString::fromStdString(std::string(name_of(kind.kind)));
+        auto* button = named(new QToolButton, "brush_" + name, kind.tip);
         button->setText(kind.text);
-        button->setToolTip(kind.tip);
         button->setCheckable(true);
         button->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
         kinds_->addButton(button, static_cast<int>(kind.kind));
         all->layout()->addWidget(button);
     }
     return all;
-}
-
-QWidget* BrushControls::make_rate() {
-    rate_box_->set_accessible_name("Rate of the brush");
-    at_once_->setObjectName("brush_at_once");
-    auto* row = row_of({rate_box_, at_once_});
-    row->setFocusProxy(rate_box_);
-    return row;
-}
-
-QWidget* BrushControls::make_value() {
-    value_->setObjectName("brush_value");
-    value_->setAccessibleName("Value of the brush");
-    value_->setStepType(QAbstractSpinBox::AdaptiveDecimalStepType);
-    value_->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
-    value_->setMinimumWidth(radius_->box().minimumWidth());
-    automatic_->setObjectName("brush_automatic");
-    auto* row = row_of({value_, automatic_});
-    row->setFocusProxy(value_);
-    return row;
-}
-
-QWidget* BrushControls::make_history() {
-    undo_->setObjectName("undo");
-    redo_->setObjectName("redo");
-    save_->setObjectName("save_edits");
-    save_->setToolTip("Writes the volume as it is now to a file");
-    state_->setObjectName("edit_state");
-    for (QPushButton* button : {undo_, redo_, save_}) {
-        button->setMinimumWidth(fontMetrics().horizontalAdvance("Undo (000)  "));
-    }
-    return row_of({undo_, redo_, save_});
 }
 
 void BrushControls::connect_inputs() {
@@ -192,34 +143,28 @@ void BrushControls::connect_inputs() {
 }
 
 void BrushControls::connect_numbers() {
-    connect(radius_, &Quantity::wanted, this, [this](double radius) {
-        if (radius >= radius_->low() && radius <= radius_->high()) {
-            return change([radius](BrushChoice& c) { c.radius = radius; });
-        }
-        refuse(QString("the brush's radius must be from %1 mm (a voxel) to %2 mm (a quarter of the "
-                       "grid), not %3 mm")
-                   .arg(radius_->low(), 0, 'g', 4)
-                   .arg(radius_->high(), 0, 'g', 4)
-                   .arg(radius, 0, 'g', 4));
-    });
-    connect(hardness_, &Quantity::wanted, this, [this](double hardness) {
-        if (hardness >= 0 && hardness <= 1) {
-            return change([hardness](BrushChoice& c) { c.hardness = hardness; });
-        }
-        refuse(QString("the brush's hardness must be from 0 to 1, not %1").arg(hardness));
-    });
-    connect(rate_box_, &Quantity::wanted, this, [this](double rate) {
-        if (rate >= least_rate && rate <= most_rate) {
-            return change([rate](BrushChoice& c) { c.rate = rate; });
-        }
-        refuse(QString("the brush's rate must be from %1 to %2 /s or at once, not %3 /s")
-                   .arg(least_rate)
-                   .arg(most_rate)
-                   .arg(rate));
-    });
+    const auto connect_quantity = [this](Quantity* quantity, double BrushChoice::*member,
+                                         const char* limits) {
+        connect(quantity, &Quantity::wanted, this, [this, quantity, member, limits](double value) {
+            if (value >= quantity->low() && value <= quantity->high()) {
+                return change([=](BrushChoice& c) { c.*member = value; });
+            }
+            show_choice();
+            const auto text = [](double number) { return QString::number(number, 'g', 4); };
+            Q_EMIT nonsense(
+                QString(limits).arg(text(quantity->low()), text(quantity->high()), text(value)));
+        });
+    };
+    connect_quantity(radius_, &BrushChoice::radius,
+                     "the brush's radius must be from %1 mm (a voxel) to %2 mm (a quarter of the "
+                     "grid), not %3 mm");
+    connect_quantity(hardness_, &BrushChoice::hardness,
+                     "the brush's hardness must be from %1 to %2, not %3");
+    connect_quantity(rate_box_, &BrushChoice::rate,
+                     "the brush's rate must be from %1 to %2 /s or at once, not %3 /s");
     // A typed number is not automatic any more, even if it is the same.
     const auto own = [this](double value) { change([value](BrushChoice& c) { c.value = value; }); };
-    connect(value_, QOverload<double>::of(&QDoubleSpinBox::valueChanged), this, own);
+    connect(value_, qOverload<double>(&NumberBox::valueChanged), this, own);
     connect(value_->findChild<QLineEdit*>(), &QLineEdit::textEdited, this, [this] {
         typed_ = value_->hasAcceptableInput();
         automatic_->setChecked(!typed_ && !choice_.value);
@@ -235,11 +180,6 @@ void BrushControls::change(const std::function<void(BrushChoice&)>& how) {
     const bool same = next == choice_;
     set_choice(next);
     if (!same) Q_EMIT changed(choice_);
-}
-
-void BrushControls::refuse(const QString& why) {
-    show_choice();
-    Q_EMIT nonsense(why);
 }
 
 void BrushControls::set_choice(const BrushChoice& choice) {
@@ -258,11 +198,8 @@ void BrushControls::show_choice() {
     on_->setChecked(on);
     on_->setText(on ? "Brush at the probe is ON" : "Brush at the probe is off");
     kinds_->button(static_cast<int>(choice_.kind))->setChecked(true);
-    for (auto* button : kinds_->buttons()) {  // bold, as dark palettes hardly show what is pressed
-        QFont words = font();
-        words.setBold(button->isChecked());
-        button->setFont(words);
-    }
+    // Bold: dark palettes hardly show which button is pressed.
+    for (auto* button : kinds_->buttons()) make_bold(*button, button->isChecked());
     radius_->set_value(choice_.radius);
     hardness_->set_value(choice_.hardness);
     const bool at_once = std::isinf(choice_.rate);

@@ -16,15 +16,13 @@ class QButtonGroup;
 
 namespace palpate::viewer {
 
-/// Typed values are remembered for each kind, as a value that carves cannot add. No
-/// setter emits anything. Object names of the controls: brush, brush_carve (_add, _smooth, _paint),
-/// brush_radius, brush_hardness, brush_rate, brush_at_once, brush_value, brush_automatic, undo,
-/// redo, save_edits.
+/// Remembers a typed value for each kind of brush, as a value that carves cannot add. Setters emit
+/// nothing.
 class BrushControls : public QWidget {
     Q_OBJECT
 
   public:
-    explicit BrushControls(QWidget* parent = nullptr);
+    BrushControls();
 
     /// The radius goes from the largest spacing of the grid to a quarter of the shortest side of
     /// the grid; a radius outside goes to the nearer end; choice() has the result.
@@ -55,20 +53,16 @@ class BrushControls : public QWidget {
   private:
     void build();
     QWidget* make_kinds();
-    QWidget* make_rate();
-    QWidget* make_value();
-    QWidget* make_history();
     void connect_inputs();
     void connect_numbers();
     void change(const std::function<void(BrushChoice&)>& how);
-    void refuse(const QString& why);
     void show_choice();
     double fitting() const;
 
     BrushChoice choice_;
     std::array<std::optional<double>, 4> values_;  // by kind
     double carve_fits_ = 0, add_fits_ = 0;
-    double rate_;         // [1/s] while it is not at once
+    double rate_ = 10;    // [1/s] while it is not at once
     bool typed_ = false;  // a whole number that does not count yet
     QWidget* body_;
     Note* reason_;

@@ -6,8 +6,7 @@
 
 namespace palpate::viewer {
 
-ColourButton::ColourButton(const QString& name, const QString& title, QWidget* parent)
-    : QPushButton(parent), title_(title) {
+ColourButton::ColourButton(const QString& name, const QString& title) {
     setObjectName(name);
     setAccessibleName(title);
     setToolTip(title);
@@ -24,7 +23,7 @@ void ColourButton::set_colour(const Colour& colour) {
 void ColourButton::choose() {
     auto* dialog = new QColorDialog(to_qt(colour_), this);
     dialog->setObjectName(objectName() + "_dialog");
-    dialog->setWindowTitle(title_);
+    dialog->setWindowTitle(accessibleName());
     dialog->setOption(QColorDialog::DontUseNativeDialog);
     dialog->setAttribute(Qt::WA_DeleteOnClose);
     const Colour before = colour_;

@@ -11,7 +11,7 @@ class ColourButton : public QPushButton {
     Q_OBJECT
 
   public:
-    explicit ColourButton(const QString& name, const QString& title, QWidget* parent = nullptr);
+    ColourButton(const QString& name, const QString& title);
 
     /// Shows a colour; emits nothing.
     void set_colour(const Colour& colour);
@@ -28,7 +28,6 @@ class ColourButton : public QPushButton {
     void paintEvent(QPaintEvent* event) override;
 
   private:
-    QString title_;
     Colour colour_;
 };
 

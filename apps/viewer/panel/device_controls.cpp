@@ -1,39 +1,43 @@
 // Lists devices and shows the state of the one in use.
 #include "apps/viewer/panel/device_controls.hpp"
 
-#include <QFormLayout>
 #include <QHBoxLayout>
 #include <QSignalBlocker>
-#include <QStandardItemModel>
-#include <QVBoxLayout>
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-#include "apps/viewer/panel/level_axis.hpp"
+#include "apps/viewer/panel/layout.hpp"
 #include "palpate/devices/options.hpp"
 
 namespace palpate::viewer {
 namespace {
 
-enum Role { name_role = Qt::UserRole, options_role, missing_role, found_role };
+struct StatusLook {
+    const char* words;
+    QColor colour;
+};
 
-QColor colour_for(DeviceStatus status) {
+StatusLook look_of(DeviceStatus status) {
+    const QColor green(0, 158, 115), orange(230, 159, 0), red(213, 60, 30), grey(140, 140, 140);
     switch (status) {
-        case DeviceStatus::ready:
-            return {0, 158, 115};
         case DeviceStatus::starting:
+            return {"connecting", orange};
+        case DeviceStatus::ready:
+            return {"ready", green};
         case DeviceStatus::uncalibrated:
+            return {"needs calibration", orange};
         case DeviceStatus::stale:
-            return {230, 159, 0};
+            return {"sends no new positions", orange};
         case DeviceStatus::lost:
+            return {"connection lost", red};
         case DeviceStatus::fault:
-            return {213, 60, 30};
+            return {"reports a fault", red};
         case DeviceStatus::finished:
             break;
     }
-    return {140, 140, 140};
+    return {"the hand has come to its end", grey};
 }
 
 QString length_text(const Vec3& size) {
@@ -45,63 +49,32 @@ QString length_text(const Vec3& size) {
 
 }  // namespace
 
-QString words_for(DeviceStatus status) {
-    switch (status) {
-        case DeviceStatus::starting:
-            return "connecting";
-        case DeviceStatus::ready:
-            return "ready";
-        case DeviceStatus::uncalibrated:
-            return "needs calibration";
-        case DeviceStatus::stale:
-            return "sends no new positions";
-        case DeviceStatus::lost:
-            return "connection lost";
-        case DeviceStatus::fault:
-            return "reports a fault";
-        case DeviceStatus::finished:
-            break;
-    }
-    return "the hand has come to its end";
-}
-
-DeviceControls::DeviceControls(QWidget* parent)
-    : QWidget(parent),
-      picker_(new QComboBox),
-      options_(new QLineEdit),
-      refresh_(new QPushButton("Look again")),
-      connect_(new QPushButton("Connect")),
+DeviceControls::DeviceControls()
+    : picker_(named(new QComboBox, "devices",
+                    "Devices; grey: not found, the tip says what was looked for")),
+      options_(named(new QLineEdit, "device_options")),
+      refresh_(named(new QPushButton("Look again"), "refresh_devices",
+                     "Look for devices again; takes about a second")),
+      connect_(named(new QPushButton("Connect"), "connect_device",
+                     "Go on with this device; forces ramp up anew")),
       missing_(new Note("device_missing", Note::Kind::plain)),
-      dot_(new QLabel),
-      state_(new QLabel),
-      model_(new QLabel),
-      workspace_(new QLabel),
+      dot_(named(new QLabel, "device_dot")),
+      state_(named(new QLabel, "device_state")),
+      model_(named(new QLabel, "device_model")),
+      workspace_(named(new QLabel, "device_workspace",
+                       "The box that the device reaches [mm of the hand], and its most force")),
       problem_(new Note("device_problem", Note::Kind::warning)),
-      scale_(new NumberBox) {
-    picker_->setObjectName("devices");
-    picker_->setToolTip("Devices; grey: not found, the tip says what was looked for");
+      scale_(named(new NumberBox, "scale",
+                   "Scale of the hand: mm in the volume for each mm of the hand. Changes about "
+                   "the proxy, so that neither it nor the force moves")) {
     picker_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
     picker_->setMinimumContentsLength(12);
     let_wheel_pass(*picker_);
-    refresh_->setObjectName("refresh_devices");
-    refresh_->setToolTip("Look for devices again; takes about a second");
-    options_->setObjectName("device_options");
     options_->setClearButtonEnabled(true);
-    connect_->setObjectName("connect_device");
-    connect_->setToolTip("Go on with this device; forces ramp up anew");
-    dot_->setObjectName("device_dot");
-    state_->setObjectName("device_state");
-    model_->setObjectName("device_model");
     model_->setWordWrap(true);
-    workspace_->setObjectName("device_workspace");
     workspace_->setWordWrap(true);
-    workspace_->setToolTip("The box that the device reaches [mm of the hand], and its most force");
-    scale_->setObjectName("scale");
     scale_->setSuffix(" mm/mm");
     scale_->setSingleStep(0.1);
-    scale_->setToolTip(
-        "Scale of the hand: mm in the volume for each mm of the hand. Changes about "
-        "the proxy, so that neither it nor the force moves");
     build();
     connect_inputs();
     set_devices({}, {});
@@ -124,50 +97,48 @@ void DeviceControls::build() {
     form->addRow("Model", model_);
     form->addRow("Reach", workspace_);
     form->addRow("Scale of the hand", scale_);
-    auto* column = new QVBoxLayout(this);
-    column->setContentsMargins(0, 0, 0, 0);
+    auto* column = column_in(this);
     column->addLayout(first);
     column->addLayout(second);
     column->addWidget(missing_);
+    column->addWidget(problem_);
     column->addLayout(form);
-    column->insertWidget(3, problem_);
 }
 
 void DeviceControls::connect_inputs() {
     connect(refresh_, &QPushButton::clicked, this, &DeviceControls::refresh_wanted);
     connect(connect_, &QPushButton::clicked, this, &DeviceControls::connect_device);
     connect(options_, &QLineEdit::returnPressed, this, &DeviceControls::connect_device);
-    connect(picker_, QOverload<int>::of(&QComboBox::currentIndexChanged), this,
+    connect(picker_, qOverload<int>(&QComboBox::currentIndexChanged), this,
             &DeviceControls::choose);
-    connect(scale_, QOverload<double>::of(&QDoubleSpinBox::valueChanged), this,
+    connect(scale_, qOverload<double>(&NumberBox::valueChanged), this,
             &DeviceControls::scale_wanted);
 }
 
 void DeviceControls::set_devices(const std::vector<devices::DeviceFinding>& findings,
                                  const QString& current) {
     current_ = current;
-    std::vector<devices::DeviceFinding> all = findings;
+    findings_ = findings;
     // These two exist on any machine, even before a search.
     for (const char* name : {"mouse", "simulated"}) {
-        const auto named = [&](const devices::DeviceFinding& f) { return f.name == name; };
-        if (std::ranges::none_of(all, named)) all.insert(all.begin(), {name, true, {}, {}, {}});
+        const auto same = [&](const devices::DeviceFinding& f) { return f.name == name; };
+        if (std::ranges::none_of(findings_, same)) {
+            findings_.insert(findings_.begin(), {name, true, {}, {}, {}});
+        }
     }
     const QSignalBlocker quiet(picker_);
     picker_->clear();
-    for (const devices::DeviceFinding& finding : all) {
+    for (const devices::DeviceFinding& finding : findings_) {
         const QString name = QString::fromStdString(finding.name);
         const QString what = QString::fromStdString(finding.what);
-        picker_->addItem(what.isEmpty() || !finding.found ? name : name + ": " + what, name);
-        const int row = picker_->count() - 1;
-        picker_->setItemData(row, QString::fromStdString(finding.options), options_role);
-        picker_->setItemData(row, QString::fromStdString(finding.missing), missing_role);
-        picker_->setItemData(row, finding.found, found_role);
+        const int row = picker_->count();
         if (finding.found) {
+            picker_->addItem(what.isEmpty() ? name : name + ": " + what, name);
             picker_->setItemData(row, what, Qt::ToolTipRole);
             continue;
         }
         // Grey but selectable: it may be at another address than the one searched.
-        picker_->setItemText(row, name + " (not found)");
+        picker_->addItem(name + " (not found)", name);
         picker_->setItemData(row, palette().brush(QPalette::Disabled, QPalette::Text),
                              Qt::ForegroundRole);
         picker_->setItemData(row, QString::fromStdString(finding.missing), Qt::ToolTipRole);
@@ -177,7 +148,7 @@ void DeviceControls::set_devices(const std::vector<devices::DeviceFinding>& find
 
 void DeviceControls::show_current() {
     const int colon = current_.indexOf(':');
-    const int row = picker_->findData(current_.left(colon), name_role);
+    const int row = picker_->findData(current_.left(colon));
     const QSignalBlocker quiet(picker_);
     picker_->setCurrentIndex(std::max(0, row));
     choose(picker_->currentIndex());
@@ -185,20 +156,20 @@ void DeviceControls::show_current() {
 }
 
 void DeviceControls::choose(int row) {
-    const QString options = picker_->itemData(row, options_role).toString();
+    const devices::DeviceFinding& finding = findings_[static_cast<std::size_t>(row)];
+    const QString options = QString::fromStdString(finding.options);
     options_->clear();
     options_->setPlaceholderText(options.isEmpty() ? "KEY=VALUE,..." : options);
     options_->setToolTip("Options, KEY=VALUE with commas between" +
                          (options.isEmpty() ? QString() : ":\n" + options));
-    const bool found = picker_->itemData(row, found_role).toBool();
-    missing_->say(found ? QString() : picker_->itemData(row, missing_role).toString());
+    missing_->say(finding.found ? QString() : QString::fromStdString(finding.missing));
     picker_->setToolTip(picker_->itemData(row, Qt::ToolTipRole).toString());
 }
 
 void DeviceControls::connect_device() {
     const QString options = options_->text().trimmed();
     const QString option =
-        picker_->currentData(name_role).toString() + (options.isEmpty() ? "" : ":" + options);
+        picker_->currentData().toString() + (options.isEmpty() ? "" : ":" + options);
     try {
         devices::parse_device(option.toStdString());
     } catch (const std::invalid_argument& error) {
@@ -211,10 +182,11 @@ void DeviceControls::connect_device() {
 void DeviceControls::show_status(DeviceStatus status) {
     if (status == status_ && !state_->text().isEmpty()) return;
     status_ = status;
-    state_->setText(words_for(status));
+    const StatusLook look = look_of(status);
+    state_->setText(look.words);
     dot_->setText(QString::fromUtf8("\u25CF"));
     QPalette colours = palette();
-    colours.setColor(QPalette::WindowText, colour_for(status));
+    colours.setColor(QPalette::WindowText, look.colour);
     dot_->setPalette(colours);
 }
 

@@ -15,14 +15,11 @@
 
 namespace palpate::viewer {
 
-/// A device's status as text.
-QString words_for(DeviceStatus status);
-
 class DeviceControls : public QWidget {
     Q_OBJECT
 
   public:
-    explicit DeviceControls(QWidget* parent = nullptr);
+    DeviceControls();
 
     /// The devices that were searched. `current` is the option of the device in use
     /// ("haply:port=10001").
@@ -56,6 +53,7 @@ class DeviceControls : public QWidget {
     Note* problem_;
     NumberBox* scale_;
     DeviceStatus status_ = DeviceStatus::starting;
+    std::vector<devices::DeviceFinding> findings_;  // by row
     QString current_;
 };
 

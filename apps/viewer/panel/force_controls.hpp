@@ -3,11 +3,10 @@
 
 #include <QWidget>
 
-#include "apps/viewer/panel/quantity.hpp"
-#include "palpate/force.hpp"
-#include "palpate/proxy.hpp"
+#include <vector>
 
-class QFormLayout;
+#include "apps/viewer/panel/quantity.hpp"
+#include "palpate/session.hpp"
 
 namespace palpate::viewer {
 
@@ -15,29 +14,28 @@ class ForceControls : public QWidget {
     Q_OBJECT
 
   public:
-    explicit ForceControls(QWidget* parent = nullptr);
+    ForceControls();
 
     /// Shows settings; the ends of the sliders are what these limits can render. Emits nothing.
     void set_settings(const ForceSettings& force, const Friction& friction,
                       const DeviceLimits& limits);
     void drop();
 
+    struct Settings {
+        ForceSettings force;
+        Friction friction;
+    };
+
   Q_SIGNALS:
-    /// The settings shown with one of them changed, valid or not.
-    void force_wanted(const palpate::ForceSettings& force);
-    void friction_wanted(const palpate::Friction& friction);
+    /// The ForceSettings or Friction that are shown with a number changed, valid or not.
+    void asked(const palpate::Command& command);
 
   private:
-    Quantity* row(QFormLayout& form, const QString& label, const QString& name, const QString& unit,
-                  double high, double step, const QString& tip);
-    void connect_force();
-    void set_ends();
+    void change(std::size_t number, double value);
+    void set_ends(const DeviceLimits& limits);
 
-    ForceSettings force_;
-    Friction friction_;
-    DeviceLimits limits_;
-    Quantity *stiffness_, *damping_, *viscosity_, *static_friction_, *dynamic_friction_,
-        *amplitude_, *wavelength_, *distance_, *peak_, *limit_;
+    Settings shown_;
+    std::vector<Quantity*> rows_;
 };
 
 }  // namespace palpate::viewer

@@ -1,6 +1,7 @@
 // Draws the force gauge.
 #include "apps/viewer/panel/force_gauge.hpp"
 
+#include <QMap>
 #include <QPainter>
 #include <QPainterPath>
 
@@ -15,16 +16,31 @@ namespace {
 
 constexpr Colour near_limit{0.835, 0.369, 0};
 
+/// The tooltip, with what `words` of app::force_words() mean.
+QString tip_for(const QString& words) {
+    static const QMap<QString, QString> meanings{
+        {"off", "Off: forces are switched off"},
+        {"recovering", "Recovering: the proxy is leaving the solid"},
+        {"no input", "No input: the device gives no reliable position"},
+        {"too late", "Too late: a tick took too long, its force was cancelled"},
+        {"waiting", "Waiting: forces begin when the hand is where they are small"},
+        {"ramp", "Ramp: from zero to full force after a start or pause"},
+        {"limit", "Limit: the computed force is larger than the limit"},
+        {"rate limit", "Rate limit: the force may not change faster"}};
+    const QString what = "Force on the hand [N] against the limit in use";
+    return meanings.contains(words) ? what + "\n" + meanings[words] : what;
+}
+
 }  // namespace
 
-ForceGauge::ForceGauge(QWidget* parent) : QWidget(parent) {
+ForceGauge::ForceGauge() {
     setObjectName("force_gauge");
     setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
-    setToolTip(explained({}));
+    setToolTip(tip_for({}));
 }
 
 void ForceGauge::set_force(double force, double limit, const QString& words) {
-    if (words != words_) setToolTip(explained(words));
+    if (words != words_) setToolTip(tip_for(words));
     // Called thirty times a second: repaints only where the change can be seen.
     const bool seen = words != words_ || limit != limit_ || std::abs(force - force_) > 0.002;
     if (!seen) return;
@@ -85,23 +101,6 @@ void ForceGauge::paintEvent(QPaintEvent*) {
     painter.restore();
     painter.setPen(QPen(palette().color(QPalette::Mid), 1));
     painter.drawPath(frame);
-}
-
-QString explained(const QString& words) {
-    const QString what = "Force on the hand [N] against the limit in use";
-    if (words == "off") return what + "\nOff: forces are switched off";
-    if (words == "recovering") {
-        return what + "\nRecovering: the proxy is on its way out of the solid";
-    }
-    if (words == "no input") return what + "\nNo input: the device gives no position to trust";
-    if (words == "too late") return what + "\nToo late: a tick took too long and was taken back";
-    if (words == "waiting") {
-        return what + "\nWaiting: forces begin when the hand is where they are small";
-    }
-    if (words == "ramp") return what + "\nRamp: from zero to full force after a start or pause";
-    if (words == "limit") return what + "\nLimit: more was wanted than may be given";
-    if (words == "rate limit") return what + "\nRate limit: the force may not change faster";
-    return what;
 }
 
 }  // namespace palpate::viewer

@@ -1,4 +1,4 @@
-// A gauge of the force against its limit: a bar, a number, and a text where the force is held back.
+// A gauge of the force against its limit: a bar, a number, and a text while the force is reduced.
 #pragma once
 
 #include <QString>
@@ -10,9 +10,9 @@ class ForceGauge : public QWidget {
     Q_OBJECT
 
   public:
-    explicit ForceGauge(QWidget* parent = nullptr);
+    ForceGauge();
 
-    /// [N]; `words` stand beside the number, empty where the force is simply rendered.
+    /// [N]; `words`, as app::force_words() has them, stand beside the number.
     void set_force(double force, double limit, const QString& words);
     void clear();
     double force() const { return force_; }
@@ -31,8 +31,5 @@ class ForceGauge : public QWidget {
     double force_ = 0, limit_ = 0;
     QString words_;
 };
-
-/// What a held-back force means, for a tooltip; empty for no words.
-QString explained(const QString& words);
 
 }  // namespace palpate::viewer

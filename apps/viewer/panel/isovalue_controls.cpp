@@ -3,11 +3,11 @@
 
 #include <QHBoxLayout>
 #include <QSignalBlocker>
-#include <QVBoxLayout>
 
 #include <algorithm>
 #include <cmath>
 
+#include "apps/viewer/panel/layout.hpp"
 #include "palpate/renderer.hpp"
 
 namespace palpate::viewer {
@@ -18,51 +18,48 @@ constexpr int snapshots_of_grace = 3;
 
 }  // namespace
 
-IsovalueControls::IsovalueControls(QWidget* parent)
-    : QWidget(parent),
-      chart_(new LevelChart),
-      slider_(new QSlider(Qt::Horizontal)),
-      box_(new NumberBox),
-      solid_(new QComboBox),
-      felt_(new QLabel),
+IsovalueControls::IsovalueControls()
+    : chart_(new LevelChart),
+      slider_(named(new QSlider(Qt::Horizontal), "isovalue_slider", "Isovalue [data units]")),
+      box_(named(new NumberBox, "isovalue_box",
+                 "Isovalue [data units]: the level whose surface is felt")),
+      solid_(named(new QComboBox, "solid",
+                   "Which side of the level is solid: bright bodies on dark, or airways and "
+                   "vessels dark on bright.\nThe session starts anew, with penetrability off.")),
+      felt_(named(new QLabel, "felt",
+                  "The level felt now [data units]; another than the isovalue while "
+                  "penetrability lets the hand through")),
       warning_(new Note("isovalue_warning", Note::Kind::warning)),
       overruled_(new Note("isovalue_overruled", Note::Kind::plain)),
       limiter_(this) {
-    slider_->setObjectName("isovalue_slider");
     slider_->setRange(0, places);
     slider_->setSingleStep(places / 500);
     slider_->setPageStep(places / 50);
-    slider_->setToolTip("Isovalue [data units]");
     slider_->setAccessibleName("Isovalue");
     let_wheel_pass(*slider_);
-    box_->setObjectName("isovalue_box");
-    box_->setToolTip("Isovalue [data units]: the level whose surface is felt");
     box_->setMinimumWidth(fontMetrics().horizontalAdvance("-0000.0000") +
                           2 * fontMetrics().height());
-    solid_->setObjectName("solid");
     solid_->addItems({"above is solid", "below is solid"});
-    solid_->setToolTip(
-        "Which side of the level is solid: bright bodies on dark, or airways and vessels dark on "
-        "bright.\nThe session starts anew, with penetrability off.");
     let_wheel_pass(*solid_);
-    felt_->setObjectName("felt");
-    felt_->setToolTip(
-        "The level felt now [data units]; another than the isovalue while "
-        "penetrability lets the hand through");
     auto* row = new QHBoxLayout;
     row->addWidget(box_);
     row->addWidget(solid_);
     row->addStretch(1);
     row->addWidget(felt_);
-    auto* column = new QVBoxLayout(this);
-    column->setContentsMargins(0, 0, 0, 0);
+    auto* column = column_in(this, {chart_, slider_});
     column->setSpacing(3);
-    column->addWidget(chart_);
-    column->addWidget(slider_);
     column->addLayout(row);
     column->addWidget(warning_);
     column->addWidget(overruled_);
     connect_inputs();
+}
+
+/// The data's axis along the slider.
+LevelAxis IsovalueControls::slider_axis() const {
+    LevelAxis axis = chart_->whole_axis();
+    axis.left = 0;
+    axis.right = places;
+    return axis;
 }
 
 void IsovalueControls::connect_inputs() {
@@ -70,19 +67,17 @@ void IsovalueControls::connect_inputs() {
     connect(chart_, &LevelChart::level_settled, &limiter_, &RateLimiter::flush);
     connect(slider_, &QSlider::sliderReleased, &limiter_, &RateLimiter::flush);
     connect(slider_, &QSlider::valueChanged, this, [this](int at) {
-        LevelAxis axis = chart_->whole_axis();
-        const double fine = std::min(chart_->fine_step(), axis.step());
-        axis.left = 0;
-        axis.right = places;
+        const double fine = std::min(chart_->fine_step(), chart_->whole_axis().step());
+        const LevelAxis axis = slider_axis();
         const double level = rounded_to(axis.level_of(at), fine);
         ask(std::clamp(level, axis.low, axis.high));
     });
-    connect(box_, QOverload<double>::of(&QDoubleSpinBox::valueChanged), this, [this](double level) {
-        place(level);
+    connect(box_, qOverload<double>(&NumberBox::valueChanged), this, [this](double level) {
+        set_isovalue(level);
         limiter_.drop();
         Q_EMIT wanted(level);
     });
-    connect(solid_, QOverload<int>::of(&QComboBox::activated), this,
+    connect(solid_, qOverload<int>(&QComboBox::activated), this,
             [this](int at) { Q_EMIT solid_wanted(at == 0 ? Solid::above : Solid::below); });
 }
 
@@ -102,10 +97,6 @@ void IsovalueControls::clear() {
     warning_->say({});
 }
 
-void IsovalueControls::set_isovalue(double isovalue) {
-    place(isovalue);
-}
-
 void IsovalueControls::set_solid(Solid solid) {
     solid_->setCurrentIndex(solid == Solid::above ? 0 : 1);
 }
@@ -119,25 +110,22 @@ void IsovalueControls::show_felt(double isovalue, bool penetrability_on) {
     differing_ = isovalue == isovalue_ ? 0 : differing_ + 1;
     const bool apart = penetrability_on || differing_ > snapshots_of_grace;
     chart_->set_felt(apart ? isovalue : std::nan(""));
-    const QString words = apart ? "felt " + level_text(isovalue) : QString();
+    const QString words = apart ? "felt " + number_text(isovalue) : QString();
     if (felt_->text() != words) felt_->setText(words);
 }
 
 void IsovalueControls::ask(double isovalue) {
-    place(isovalue);
+    set_isovalue(isovalue);
     limiter_.put([this, isovalue] { Q_EMIT wanted(isovalue); });
 }
 
-void IsovalueControls::place(double isovalue) {
+void IsovalueControls::set_isovalue(double isovalue) {
     isovalue_ = isovalue;
     chart_->set_level(isovalue);
     box_->show_value(isovalue);
     if (!slider_->isSliderDown()) {
         const QSignalBlocker quiet(slider_);
-        LevelAxis axis = chart_->whole_axis();
-        axis.left = 0;
-        axis.right = places;
-        slider_->setValue(static_cast<int>(std::lround(axis.x_of(isovalue))));
+        slider_->setValue(static_cast<int>(std::lround(slider_axis().x_of(isovalue))));
     }
     warning_->say(field_ ? QString::fromStdString(isovalue_warning(*field_, isovalue)) : QString());
 }

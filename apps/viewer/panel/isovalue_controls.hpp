@@ -18,7 +18,7 @@ class IsovalueControls : public QWidget {
     Q_OBJECT
 
   public:
-    explicit IsovalueControls(QWidget* parent = nullptr);
+    IsovalueControls();
 
     void set_data(const Field& field, const run::Histogram& histogram);
     void clear();
@@ -39,7 +39,7 @@ class IsovalueControls : public QWidget {
   private:
     void connect_inputs();
     void ask(double isovalue);
-    void place(double isovalue);
+    LevelAxis slider_axis() const;
 
     std::optional<Field> field_;
     LevelChart* chart_;

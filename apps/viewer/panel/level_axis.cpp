@@ -3,7 +3,6 @@
 
 #include <QPainter>
 #include <QPainterPath>
-#include <QString>
 #include <QWheelEvent>
 
 #include <algorithm>
@@ -112,11 +111,6 @@ void paint_histogram(QPainter& painter, const run::Histogram& histogram, const L
     bars.lineTo(plot.bottomRight());
     bars.closeSubpath();
     painter.fillPath(bars, colour);
-}
-
-QString level_text(double level) {
-    if (std::isinf(level)) return level > 0 ? "inf" : "-inf";
-    return QString::number(level == 0 ? 0.0 : level, 'g', 6);
 }
 
 bool is_dark(const QPalette& palette) {

@@ -20,8 +20,8 @@ struct LevelAxis {
 
     double x_of(double level) const;  ///< infinite levels at the ends
     double level_of(double x) const;  ///< not beyond the ends
-    /// The smallest step that can be told apart here, a power of ten: dragged levels are multiples
-    /// of it and so have short numbers.
+    /// A power of ten, at most what a pixel is: dragged levels are multiples of it, which makes
+    /// their numbers short.
     double step() const;
     /// The multiple of step() nearest to the level at x, not beyond the ends.
     double round_level_of(double x) const;
@@ -36,7 +36,7 @@ struct LevelView {
     /// `factor` > 1 shows less of the data in more detail; `about`, 0 to 1 of the whole, stays
     /// where it is as long as the ends allow.
     void zoom(double factor, double about);
-    /// Moves on by a part of what is seen.
+    /// Moves by a part of the visible range.
     void move(double part);
     /// Control and wheel zooms about the pointer, shift and wheel moves. False: neither is held.
     bool wheel(const QWheelEvent& event, const LevelAxis& whole);
@@ -51,9 +51,6 @@ LevelAxis axis_of(const run::Histogram& histogram, const QRectF& plot);
 /// Bars, their heights the logarithms of the counts, on the plot's lower edge.
 void paint_histogram(QPainter& painter, const run::Histogram& histogram, const LevelAxis& axis,
                      const QRectF& plot, const QColor& colour);
-
-/// A level with as few digits as it needs.
-QString level_text(double level);
 
 /// Whether the palette is dark.
 bool is_dark(const QPalette& palette);

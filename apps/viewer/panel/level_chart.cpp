@@ -1,23 +1,36 @@
-// Layout and input of the level chart. It is drawn in level_chart_paint.cpp.
+// Input and drawing of the level chart.
 #include "apps/viewer/panel/level_chart.hpp"
 
 #include <QContextMenuEvent>
 #include <QKeyEvent>
 #include <QMenu>
 #include <QMouseEvent>
+#include <QPainter>
+#include <QPainterPath>
 #include <QWheelEvent>
 
 #include <algorithm>
 #include <cmath>
+
+#include "apps/viewer/panel/colours.hpp"
+#include "apps/viewer/panel/number_box.hpp"
 
 namespace palpate::viewer {
 namespace {
 
 constexpr double reach = 5;  // [logical pixels] distance within which the pointer takes hold
 
+QPainterPath triangle(double x, double tip, double base, double half) {
+    QPainterPath path(QPointF(x, tip));
+    path.lineTo(x - half, base);
+    path.lineTo(x + half, base);
+    path.closeSubpath();
+    return path;
+}
+
 }  // namespace
 
-LevelChart::LevelChart(QWidget* parent) : QWidget(parent) {
+LevelChart::LevelChart() {
     setObjectName("level_chart");
     setFocusPolicy(Qt::StrongFocus);
     setMouseTracking(true);
@@ -110,7 +123,7 @@ QSize LevelChart::minimumSizeHint() const {
     return {static_cast<int>(8 * text_height()), static_cast<int>(8 * text_height())};
 }
 
-/// Shows what the pointer asks for at once; the owner may set another level.
+/// Shows the requested level at once; the owner may set another one.
 void LevelChart::ask_level(double level) {
     if (level == level_) return;
     level_ = level;
@@ -232,7 +245,7 @@ void LevelChart::contextMenuEvent(QContextMenuEvent* event) {
     menu->setAttribute(Qt::WA_DeleteOnClose);
     const DensityRange& range = bands_[static_cast<std::size_t>(band)];
     menu->addAction(
-        QString("Delete range %1 to %2").arg(level_text(range.low), level_text(range.high)), this,
+        QString("Delete range %1 to %2").arg(number_text(range.low), number_text(range.high)), this,
         [this, band] { Q_EMIT band_deleted(band); });
     menu->popup(event->globalPos());  // does not block the window
 }
@@ -288,6 +301,79 @@ void LevelChart::wheelEvent(QWheelEvent* event) {
     const int steps = wheel_ / 120;  // touch pads send parts of a step
     wheel_ -= 120 * steps;
     if (steps != 0) step_level(steps);
+}
+
+void LevelChart::paint_ticks(QPainter& painter, const LevelAxis& axis) const {
+    const QRectF p = plot();
+    const double half = 0.2 * text_height();
+    for (const double level : suggested_) {
+        const double x = axis.x_of(level);
+        painter.fillPath(triangle(x, p.top() - 1, p.top() - 2 * half, half),
+                         palette().color(QPalette::Text));
+        QColor faint = palette().color(QPalette::Text);
+        faint.setAlphaF(0.35);
+        painter.setPen(QPen(faint, 1, Qt::DotLine));
+        painter.drawLine(QPointF(x, p.top()), QPointF(x, p.bottom()));
+    }
+}
+
+/// The level asked for as a line with a grip, the level felt as a broken line with a drop below.
+void LevelChart::paint_markers(QPainter& painter, const LevelAxis& axis) const {
+    const QRectF p = plot();
+    if (!std::isnan(felt_)) {
+        const QColor colour = readable(to_qt(pictures::scp_colour), palette());
+        const double x = axis.x_of(felt_);
+        painter.setPen(QPen(colour, 2, Qt::DashLine));
+        painter.drawLine(QPointF(x, p.top()), QPointF(x, p.bottom()));
+        const double half = 0.28 * text_height();
+        painter.fillPath(triangle(x, p.bottom() - 1, p.bottom() + 1.6 * half, half), colour);
+    }
+    const QColor colour = palette().color(hasFocus() ? QPalette::Highlight : QPalette::Text);
+    const double x = axis.x_of(level_);
+    painter.setPen(QPen(colour, 2));
+    painter.drawLine(QPointF(x, p.top() - 1), QPointF(x, p.bottom()));
+    const double half = 0.3 * text_height();
+    painter.setPen(Qt::NoPen);
+    painter.setBrush(colour);
+    painter.drawRoundedRect(QRectF(x - half, p.top() - 1, 2 * half, 1.6 * half), 2, 2);
+}
+
+void LevelChart::paint_ends(QPainter& painter) const {
+    const QRectF p = plot();
+    const QRectF below(p.left(), strip().bottom() + 1, p.width(), text_height());
+    painter.setPen(palette().color(QPalette::PlaceholderText));
+    const LevelAxis a = axis();
+    painter.drawText(below, Qt::AlignLeft | Qt::AlignVCenter, number_text(a.low));
+    painter.drawText(below, Qt::AlignRight | Qt::AlignVCenter, number_text(a.high));
+    if (!std::isfinite(felt_) && !std::isnan(felt_)) {
+        painter.setPen(readable(to_qt(pictures::scp_colour), palette()));
+        painter.drawText(below, Qt::AlignHCenter | Qt::AlignVCenter, "nothing is felt here");
+    }
+}
+
+void LevelChart::paintEvent(QPaintEvent*) {
+    QPainter painter(this);
+    painter.setRenderHint(QPainter::Antialiasing);
+    const QRectF p = plot();
+    painter.fillRect(p, palette().color(QPalette::Base));
+    if (histogram_.counts.empty()) {
+        painter.setPen(palette().color(QPalette::PlaceholderText));
+        painter.drawText(p, Qt::AlignCenter, "no volume");
+        return;
+    }
+    const LevelAxis a = axis();
+    QColor bars = palette().color(QPalette::Text);
+    bars.setAlphaF(isEnabled() ? 0.42 : 0.2);
+    paint_histogram(painter, histogram_, a, p, bars);
+    Ranges bands = bands_;
+    if (drag_ == Drag::fresh) bands.push_back(fresh_);
+    paint_bands(painter, bands, a, p, strip(), chosen_);
+    paint_ticks(painter, a);
+    paint_markers(painter, a);
+    paint_ends(painter);
+    painter.setBrush(Qt::NoBrush);
+    painter.setPen(QPen(palette().color(hasFocus() ? QPalette::Highlight : QPalette::Mid), 1));
+    painter.drawRect(p);
 }
 
 }  // namespace palpate::viewer

@@ -19,7 +19,7 @@ class LevelChart : public QWidget {
     Q_OBJECT
 
   public:
-    explicit LevelChart(QWidget* parent = nullptr);
+    LevelChart();
 
     /// New data; `suggested` are levels that are worth feeling.
     void set_data(const run::Histogram& histogram, const std::vector<double>& suggested);
@@ -38,7 +38,7 @@ class LevelChart : public QWidget {
     void choose_band(int band);
     /// What an arrow key moves the level by [data units].
     double fine_step() const;
-    /// What is seen, and the whole of the data.
+    /// The visible range, and the whole of the data.
     LevelAxis axis() const;
     LevelAxis whole_axis() const;
     /// The strip in which bands are dragged [logical pixels].

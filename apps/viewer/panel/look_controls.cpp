@@ -4,28 +4,26 @@
 #include <QGridLayout>
 #include <QHBoxLayout>
 #include <QLabel>
-#include <QSignalBlocker>
-#include <QVBoxLayout>
 
-#include <cmath>
+#include <algorithm>
+
+#include "apps/viewer/panel/layout.hpp"
 
 namespace palpate::viewer {
 
-LookControls::LookControls(QWidget* parent)
-    : QWidget(parent),
-      surface_colour_(new ColourButton("surface_colour", "Colour of the isosurface")),
+LookControls::LookControls()
+    : surface_colour_(new ColourButton("surface_colour", "Colour of the isosurface")),
       point_colour_(new ColourButton("point_colour", "Colour of the chosen point")),
       surface_opacity_(new Quantity("surface_opacity", "", 0, 1, 0.05)),
-      preset_(new QComboBox),
+      preset_(named(new QComboBox, "preset",
+                    "Transfer functions made for these data; choose one again to undo changes")),
       editor_(new TransferEditor),
-      point_level_(new NumberBox),
-      point_opacity_(new NumberBox),
+      point_level_(named(new NumberBox, "point_level", "Level of the chosen point [data units]")),
+      point_opacity_(named(new NumberBox, "point_opacity",
+                           "Opacity of the chosen point, 0 to 1, of a layer as thick as the "
+                           "smallest spacing")),
       limiter_(this) {
-    auto* column = new QVBoxLayout(this);
-    column->setContentsMargins(0, 0, 0, 0);
-    column->addWidget(make_surface());
-    column->addWidget(make_volume());
-    column->addWidget(make_rest());
+    column_in(this, {make_surface(), make_volume(), make_rest()});
     connect(surface_colour_, &ColourButton::wanted, this, [this](const Colour& colour) {
         look_.surface_colour = colour;
         changed();
@@ -42,9 +40,7 @@ LookControls::LookControls(QWidget* parent)
 
 QCheckBox* LookControls::add_switch(const QString& name, const QString& text, const QString& tip,
                                     bool Look::*shown) {
-    auto* box = new QCheckBox(text);
-    box->setObjectName("show_" + name);
-    box->setToolTip(tip);
+    auto* box = named(new QCheckBox(text), "show_" + name, tip);
     switches_.push_back({box, shown});
     connect(box, &QCheckBox::clicked, this, [this, shown](bool on) {
         look_.*shown = on;
@@ -54,44 +50,32 @@ QCheckBox* LookControls::add_switch(const QString& name, const QString& text, co
 }
 
 QWidget* LookControls::make_surface() {
-    auto* all = new QWidget;
-    auto* row = new QHBoxLayout(all);
-    row->setContentsMargins(0, 0, 0, 0);
-    row->addWidget(add_switch("surface", "Surface", "The isosurface that is felt", &Look::surface));
-    row->addWidget(surface_colour_);
-    row->addWidget(surface_opacity_, 1);
     surface_opacity_->set_accessible_name("Opacity of the isosurface");
     surface_opacity_->setToolTip("Opacity of the isosurface, 0 to 1");
+    auto* surface = add_switch("surface", "Surface", "The isosurface that is felt", &Look::surface);
+    auto* all = new QWidget;
+    row_in(all, {surface, surface_colour_})->addWidget(surface_opacity_, 1);
     return all;
 }
 
 QWidget* LookControls::make_volume() {
-    auto* all = new QWidget;
-    auto* column = new QVBoxLayout(all);
-    column->setContentsMargins(0, 0, 0, 0);
-    preset_->setObjectName("preset");
-    preset_->setToolTip("Transfer functions made for these data; choose one again to undo changes");
     let_wheel_pass(*preset_);
     for (const std::string& name : preset_names()) preset_->addItem(QString::fromStdString(name));
-    auto* first = new QHBoxLayout;
-    first->addWidget(
-        add_switch("volume", "Volume", "Volume rendering by the transfer function", &Look::volume));
-    first->addWidget(
-        add_switch("shading", "Shading", "Light on the volume, by its gradients", &Look::shading));
-    first->addWidget(preset_, 1);
-    point_level_->setObjectName("point_level");
-    point_level_->setToolTip("Level of the chosen point [data units]");
-    point_opacity_->setObjectName("point_opacity");
     point_opacity_->setSingleStep(0.05);
-    point_opacity_->setToolTip(
-        "Opacity of the chosen point, 0 to 1, of a layer as thick as the "
-        "smallest spacing");
+    auto* volume = new QHBoxLayout;
+    volume->addWidget(
+        add_switch("volume", "Volume", "Volume rendering by the transfer function", &Look::volume));
+    volume->addWidget(
+        add_switch("shading", "Shading", "Light on the volume, by its gradients", &Look::shading));
+    volume->addWidget(preset_, 1);
     auto* point = new QHBoxLayout;
     point->addWidget(new QLabel("Point"));
     point->addWidget(point_level_, 1);
     point->addWidget(point_opacity_, 1);
     point->addWidget(point_colour_);
-    column->addLayout(first);
+    auto* all = new QWidget;
+    auto* column = column_in(all);
+    column->addLayout(volume);
     column->addWidget(editor_);
     column->addLayout(point);
     return all;
@@ -114,16 +98,12 @@ QWidget* LookControls::make_rest() {
         add_switch("orientation", "Orientation cube", "L, R, A, P, S, I: sides of the body",
                    &Look::orientation),
         add_switch("scale_bar", "Scale bar", "A length in the picture [mm]", &Look::scale_bar)};
-    int at = 0;
-    for (QCheckBox* box : boxes) {
-        grid->addWidget(box, at / 2, at % 2);
-        ++at;
-    }
+    for (int i = 0; i < 7; ++i) grid->addWidget(boxes[i], i / 2, i % 2);
     return all;
 }
 
 void LookControls::connect_transfer() {
-    connect(preset_, QOverload<int>::of(&QComboBox::activated), this, [this](int at) {
+    connect(preset_, qOverload<int>(&QComboBox::activated), this, [this](int at) {
         if (!volume_) return;
         const std::string name = preset_->itemText(at).toStdString();
         look_.transfer = preset(name, histogram_, *volume_);
@@ -147,10 +127,10 @@ void LookControls::connect_transfer() {
         editor_->change_chosen(point);
         show_point(chosen);
     };
-    connect(point_level_, QOverload<double>::of(&QDoubleSpinBox::valueChanged), this,
+    connect(point_level_, qOverload<double>(&NumberBox::valueChanged), this,
             [change](double level) { change([level](ControlPoint& p) { p.level = level; }); });
     connect(
-        point_opacity_, QOverload<double>::of(&QDoubleSpinBox::valueChanged), this,
+        point_opacity_, qOverload<double>(&NumberBox::valueChanged), this,
         [change](double opacity) { change([opacity](ControlPoint& p) { p.opacity = opacity; }); });
     connect(point_colour_, &ColourButton::wanted, this, [change](const Colour& colour) {
         change([&colour](ControlPoint& p) { p.colour = colour; });
@@ -191,8 +171,8 @@ void LookControls::show_preset() {
 
 void LookControls::show_point(int point) {
     const bool any = point >= 0;
-    for (QWidget* one : {static_cast<QWidget*>(point_level_), static_cast<QWidget*>(point_opacity_),
-                         static_cast<QWidget*>(point_colour_)}) {
+    for (QWidget* one :
+         std::initializer_list<QWidget*>{point_level_, point_opacity_, point_colour_}) {
         one->setEnabled(any);
     }
     if (!any) return;

@@ -18,7 +18,7 @@ class LookControls : public QWidget {
     Q_OBJECT
 
   public:
-    explicit LookControls(QWidget* parent = nullptr);
+    LookControls();
 
     /// The data for which presets are made.
     void set_data(const Volume& volume, const run::Histogram& histogram);

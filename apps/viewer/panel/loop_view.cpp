@@ -4,6 +4,7 @@
 #include <QGridLayout>
 
 #include "apps/options/words.hpp"
+#include "apps/viewer/panel/layout.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -12,49 +13,39 @@ QString time_text(std::int64_t ns) {
     return QString::fromStdString(app::duration_text(ns));
 }
 
-QLabel* label(const QString& text, const QString& name = {}) {
-    auto* made = new QLabel(text);
-    made->setObjectName(name);
-    return made;
-}
-
 }  // namespace
 
-LoopView::LoopView(QWidget* parent)
-    : QWidget(parent),
-      rate_(label({}, "loop_rate")),
-      missed_(label({}, "loop_missed")),
-      worst_(label({}, "loop_worst")) {
+LoopView::LoopView()
+    : rate_(named(new QLabel, "loop_rate", "Ticks a second, as measured [Hz]")),
+      missed_(named(new QLabel, "loop_missed",
+                    "Deadlines: ticks that did not happen at their time; and forces that were "
+                    "taken back because a tick took too long")),
+      worst_(named(new QLabel, "loop_worst")) {
     auto* grid = new QGridLayout(this);
     grid->setContentsMargins(0, 0, 0, 0);
     grid->setVerticalSpacing(2);
-    grid->addWidget(label("Rate"), 0, 0);
+    const char* heads[] = {"Rate", "Missed", "", "Lateness", "Compute", "Worst tick"};
+    for (int row = 0; row < 6; ++row) {
+        grid->addWidget(new QLabel(heads[row]), row, 0, row == 5 ? Qt::AlignTop : Qt::Alignment());
+    }
     grid->addWidget(rate_, 0, 1, 1, 4);
-    grid->addWidget(label("Missed"), 1, 0);
     grid->addWidget(missed_, 1, 1, 1, 4);
-    const char* heads[] = {"p50", "p99", "p99.9", "max"};
-    const char* names[] = {"p50", "p99", "p999", "max"};
-    grid->addWidget(label("Lateness"), 3, 0);
-    grid->addWidget(label("Compute"), 4, 0);
+    grid->addWidget(worst_, 5, 1, 1, 4);
+    worst_->setWordWrap(true);
+    const char* columns[] = {"p50", "p99", "p99.9", "max"};
     for (int i = 0; i < 4; ++i) {
+        const QString name = QString(columns[i]).remove('.');
         const auto at = static_cast<std::size_t>(i);
-        grid->addWidget(label(heads[i]), 2, i + 1);
-        lateness_[at] = label({}, QString("lateness_") + names[i]);
-        compute_[at] = label({}, QString("compute_") + names[i]);
+        lateness_[at] = named(new QLabel, "lateness_" + name);
+        compute_[at] = named(new QLabel, "compute_" + name);
+        grid->addWidget(new QLabel(columns[i]), 2, i + 1);
         grid->addWidget(lateness_[at], 3, i + 1);
         grid->addWidget(compute_[at], 4, i + 1);
         grid->setColumnStretch(i + 1, 1);
     }
-    grid->addWidget(label("Worst tick"), 5, 0, Qt::AlignTop);
-    grid->addWidget(worst_, 5, 1, 1, 4);
-    worst_->setWordWrap(true);
-    rate_->setToolTip("Ticks a second, as measured [Hz]");
-    missed_->setToolTip(
-        "Deadlines: ticks that did not happen at their time; and forces that were "
-        "taken back because a tick took too long");
     setToolTip(
-        "Lateness: how long after its time a tick began, the machine's doing.\n"
-        "Compute: processor time of a tick, ours.");
+        "Lateness: how late a tick began, caused by the rest of the machine.\n"
+        "Compute: processor time of a tick.");
     clear();
 }
 

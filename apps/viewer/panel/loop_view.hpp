@@ -11,10 +11,8 @@
 namespace palpate::viewer {
 
 class LoopView : public QWidget {
-    Q_OBJECT
-
   public:
-    explicit LoopView(QWidget* parent = nullptr);
+    LoopView();
     /// `rate` [Hz] as measured.
     void show_report(const ServoReport& report, double rate);
     void clear();

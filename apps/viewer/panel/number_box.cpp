@@ -31,12 +31,25 @@ void let_wheel_pass(QWidget& widget) {
     widget.installEventFilter(new WheelFilter(&widget));
 }
 
-NumberBox::NumberBox(QWidget* parent) : QDoubleSpinBox(parent) {
+QString number_text(double value, int digits) {
+    if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
+    return QString::number(value == 0 ? 0.0 : value, 'g', digits);
+}
+
+std::optional<double> number_from(const QString& text) {
+    if (text == "inf" || text == "+inf") return std::numeric_limits<double>::infinity();
+    if (text == "-inf") return -std::numeric_limits<double>::infinity();
+    bool valid = false;
+    const double number = QLocale::c().toDouble(text, &valid);
+    return valid && std::isfinite(number) ? std::optional(number) : std::nullopt;
+}
+
+NumberBox::NumberBox() {
     const double most = std::numeric_limits<double>::infinity();
     setRange(-most, most);
     setDecimals(323);  // the most there are: none is rounded away
     setKeyboardTracking(false);
-    setFocusPolicy(Qt::StrongFocus);
+    let_wheel_pass(*this);
     setCorrectionMode(QAbstractSpinBox::CorrectToPreviousValue);
     setLocale(QLocale::c());
 }
@@ -48,8 +61,7 @@ void NumberBox::show_value(double value) {
 }
 
 QString NumberBox::textFromValue(double value) const {
-    if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
-    return QString::number(value == 0 ? 0.0 : value, 'g', 7);
+    return number_text(value, 7);
 }
 
 QString NumberBox::bare(const QString& text) const {
@@ -62,19 +74,13 @@ double NumberBox::valueFromText(const QString& text) const {
     const QString number = bare(text);
     // The text may have fewer digits than the value, which focus alone must not change.
     if (number == textFromValue(value())) return value();
-    if (number == "inf" || number == "+inf") return std::numeric_limits<double>::infinity();
-    if (number == "-inf") return -std::numeric_limits<double>::infinity();
-    return QLocale::c().toDouble(number);
+    return number_from(number).value_or(0);
 }
 
 QValidator::State NumberBox::validate(QString& text, int&) const {
     const QString number = bare(text);
-    bool valid = false;
-    const double value = QLocale::c().toDouble(number, &valid);
-    if (valid && std::isfinite(value)) return QValidator::Acceptable;
-    if (infinite_ && (number == "inf" || number == "+inf" || number == "-inf")) {
-        return QValidator::Acceptable;
-    }
+    const std::optional<double> value = number_from(number);
+    if (value && (infinite_ || std::isfinite(*value))) return QValidator::Acceptable;
     for (const QChar c : number) {
         const bool letter = c == 'e' || c == 'E' || (infinite_ && QString("inf").contains(c));
         if (!c.isDigit() && !letter && !QString("+-.").contains(c)) return QValidator::Invalid;
@@ -84,14 +90,6 @@ QValidator::State NumberBox::validate(QString& text, int&) const {
 
 void NumberBox::fixup(QString& text) const {
     text = textFromValue(value()) + suffix();  // an incomplete number restores the old one
-}
-
-void NumberBox::wheelEvent(QWheelEvent* event) {
-    if (hasFocus()) {
-        QDoubleSpinBox::wheelEvent(event);
-    } else {
-        event->ignore();
-    }
 }
 
 }  // namespace palpate::viewer

@@ -3,7 +3,14 @@
 
 #include <QDoubleSpinBox>
 
+#include <optional>
+
 namespace palpate::viewer {
+
+/// A number with as few digits as it needs, at most `digits`; "inf" and "-inf" are numbers.
+QString number_text(double value, int digits = 6);
+/// Nothing for a text that is no number.
+std::optional<double> number_from(const QString& text);
 
 /// Shows up to seven significant digits but keeps the whole value. A typed value counts at Enter or
 /// when the focus leaves. The wheel scrolls the panel unless the box has the focus, so that
@@ -12,7 +19,7 @@ class NumberBox : public QDoubleSpinBox {
     Q_OBJECT
 
   public:
-    explicit NumberBox(QWidget* parent = nullptr);
+    NumberBox();
 
     /// Shows a value; emits nothing.
     void show_value(double value);
@@ -22,9 +29,6 @@ class NumberBox : public QDoubleSpinBox {
     double valueFromText(const QString& text) const override;
     QValidator::State validate(QString& text, int& position) const override;
     void fixup(QString& text) const override;
-
-  protected:
-    void wheelEvent(QWheelEvent* event) override;
 
   private:
     QString bare(const QString& text) const;

@@ -1,9 +1,6 @@
-// Turns what the user changes into commands, and shows what is in effect.
+// Turns changes by the user into commands, and shows the settings in effect.
 #include "apps/viewer/panel/panel.hpp"
 
-#include <QEvent>
-#include <QKeyEvent>
-#include <QScrollArea>
 #include <QVBoxLayout>
 
 #include <algorithm>
@@ -14,6 +11,7 @@
 #include "apps/viewer/panel/device_controls.hpp"
 #include "apps/viewer/panel/force_controls.hpp"
 #include "apps/viewer/panel/isovalue_controls.hpp"
+#include "apps/viewer/panel/layout.hpp"
 #include "apps/viewer/panel/look_controls.hpp"
 #include "apps/viewer/panel/loop_view.hpp"
 #include "apps/viewer/panel/penetrability_controls.hpp"
@@ -21,23 +19,6 @@
 #include "apps/viewer/panel/session_bar.hpp"
 
 namespace palpate::viewer {
-namespace {
-
-/// Return presses buttons: the space bar is the window's, for the forces.
-class ReturnPresses : public QObject {
-  public:
-    using QObject::QObject;
-    bool eventFilter(QObject* watched, QEvent* event) override {
-        if (event->type() != QEvent::KeyPress) return false;
-        const int key = static_cast<QKeyEvent*>(event)->key();
-        if (key != Qt::Key_Return && key != Qt::Key_Enter) return false;
-        static_cast<QAbstractButton*>(watched)->click();
-        return true;
-    }
-};
-
-}  // namespace
-
 Panel::Panel(QWidget* parent)
     : QWidget(parent),
       isovalue_(new IsovalueControls),
@@ -51,8 +32,7 @@ Panel::Panel(QWidget* parent)
     setObjectName("panel");
     build();
     connect_sections();
-    auto* presses = new ReturnPresses(this);
-    for (auto* button : findChildren<QAbstractButton*>()) button->installEventFilter(presses);
+    let_return_press_buttons(*this);
     clear();
 }
 
@@ -70,10 +50,9 @@ void Panel::build() {
     look_part_ = new Section("Look", "look_part", look_);
     auto* column = new QVBoxLayout(this);
     column->setContentsMargins(6, 6, 6, 6);
-    for (Section* part : {session_part_, isovalue_part_, penetrability_part_, edit_part_,
-                          force_part_, device_part_, loop_part_, look_part_}) {
-        column->addWidget(part);
-    }
+    sections_ = {session_part_, isovalue_part_, penetrability_part_, edit_part_,
+                 force_part_,   device_part_,   loop_part_,          look_part_};
+    for (Section* part : sections_) column->addWidget(part);
     column->addStretch(1);
 }
 
@@ -82,55 +61,39 @@ void Panel::connect_sections() {
             [this](double level) { ask(isovalue_part_, command::Isovalue{level}); });
     connect(isovalue_, &IsovalueControls::solid_wanted, this, [this](Solid solid) {
         if (solid == solid_) return;
-        asked_by_ = isovalue_part_;
-        before_ = now_;
-        isovalue_part_->say({});
+        begin_request(isovalue_part_);
         Q_EMIT solid_chosen(solid);
         isovalue_->set_solid(
             solid_);  // a session with the other side has been set by now, unless it failed
     });
     connect(penetrability_, &PenetrabilityControls::wanted, this, &Panel::ask_penetrability);
     connect(penetrability_, &PenetrabilityControls::nonsense, penetrability_part_, &Section::say);
-    connect(force_, &ForceControls::force_wanted, this,
-            [this](const ForceSettings& force) { ask(force_part_, force); });
-    connect(force_, &ForceControls::friction_wanted, this,
-            [this](const Friction& friction) { ask(force_part_, friction); });
+    connect(force_, &ForceControls::asked, this,
+            [this](const Command& command) { ask(force_part_, command); });
     connect(device_, &DeviceControls::scale_wanted, this,
             [this](double scale) { ask(device_part_, command::Scale{scale}); });
     connect(device_, &DeviceControls::nonsense, device_part_, &Section::say);
-    connect(device_, &DeviceControls::refresh_wanted, this, &Panel::devices_wanted);
     connect(device_, &DeviceControls::chosen, this, [this](const QString& option) {
-        asked_by_ = device_part_;
-        before_ = now_;
-        device_part_->say({});
+        begin_request(device_part_);
         Q_EMIT device_chosen(option);
     });
-    connect(bar_, &SessionBar::forces_wanted, this,
-            [this](bool on) { ask(session_part_, command::Forces{on}); });
-    connect(bar_, &SessionBar::freeze_wanted, this,
-            [this](bool on) { ask(session_part_, command::Freeze{on}); });
-    connect(bar_, &SessionBar::clutch_wanted, this,
-            [this](bool on) { ask(session_part_, command::Clutch{on}); });
-    connect(look_, &LookControls::look_changed, this, &Panel::look_changed);
+    connect(bar_, &SessionBar::asked, this,
+            [this](const Command& command) { ask(session_part_, command); });
     connect_edits();
 }
 
 void Panel::connect_edits() {
     connect(edit_, &BrushControls::changed, this, [this](const BrushChoice& brush) {
         if (!live_) return;
-        edit_part_->say({});
-        asked_by_ = edit_part_;
-        before_ = now_;
+        begin_request(edit_part_);
         now_.brush = brush;
         Q_EMIT brush_changed(brush);
     });
     connect(edit_, &BrushControls::nonsense, edit_part_, &Section::say);
-    // What is refused of these changes nothing that is shown here.
+    // A refusal of these changes nothing in the panel.
     const auto pass = [this](void (Panel::*signal)()) {
         return [this, signal] {
-            edit_part_->say({});
-            asked_by_ = edit_part_;
-            before_ = now_;
+            begin_request(edit_part_);
             Q_EMIT(this->*signal)();
         };
     };
@@ -147,14 +110,11 @@ void Panel::set_session(const Field& field, const run::Histogram& histogram, dou
     solid_ = field.solid();
     unedited_.emplace(field.volume(), field.solid(), field.background());
     edit_->set_grid(field.geometry());
-    edit_->reset();
-    edit_->set_history(0, 0, false);
-    edit_->set_reason({});
+    clear_edits();
     now_ = before_ = {settings, isovalue, false, false, edit_->choice()};
     asked_by_ = nullptr;
     last_.reset();
-    for (Section* part : {session_part_, isovalue_part_, penetrability_part_, edit_part_,
-                          force_part_, device_part_, loop_part_, look_part_}) {
+    for (Section* part : sections_) {
         part->say({});
         part->setEnabled(true);
     }
@@ -169,37 +129,35 @@ void Panel::set_session(const Field& field, const run::Histogram& histogram, dou
     show_effect();
 }
 
+void Panel::clear_edits() {
+    edit_->reset();
+    edit_->set_history(0, 0, false);
+    edit_->set_reason({});
+}
+
 void Panel::clear() {
     live_ = false;
     last_.reset();
     isovalue_->clear();
     penetrability_->drop();
     force_->drop();
-    edit_->reset();
-    edit_->set_history(0, 0, false);
-    edit_->set_reason({});
+    clear_edits();
     now_.brush = before_.brush = edit_->choice();
     unedited_.reset();
     bar_->clear();
     loop_->clear();
     device_->clear();
     look_->clear();
-    for (Section* part : {session_part_, isovalue_part_, penetrability_part_, edit_part_,
-                          force_part_, device_part_, loop_part_, look_part_}) {
+    for (Section* part : sections_) {
         part->say({});
         part->setEnabled(false);
     }
 }
 
 void Panel::set_observing(bool observing) {
-    for (Section* part : {session_part_, isovalue_part_, penetrability_part_, edit_part_,
-                          force_part_, device_part_}) {
-        part->setEnabled(!observing);
+    for (Section* part : sections_) {
+        if (part != loop_part_ && part != look_part_) part->setEnabled(!observing);
     }
-}
-
-void Panel::set_look(const Look& look) {
-    look_->set_look(look);
 }
 
 void Panel::set_brush(const BrushChoice& brush) {
@@ -211,27 +169,7 @@ const BrushChoice& Panel::brush() const {
     return edit_->choice();
 }
 
-void Panel::set_history(std::size_t undo_steps, std::size_t redo_steps, bool changed) {
-    edit_->set_history(undo_steps, redo_steps, changed);
-}
-
-void Panel::set_edit_reason(const QString& why) {
-    edit_->set_reason(why);
-}
-
-void Panel::toggle_forces() {
-    bar_->toggle_forces();
-}
-
-void Panel::toggle_brush() {
-    edit_->toggle();
-}
-
-const Look& Panel::look() const {
-    return look_->look();
-}
-
-/// Shows what is in effect, in every section that commands change.
+/// Shows the settings in effect in every section that commands change.
 void Panel::show_effect() {
     isovalue_->set_isovalue(now_.isovalue);
     isovalue_->set_solid(solid_);
@@ -243,7 +181,7 @@ void Panel::show_effect() {
     show_fitting();
 }
 
-/// What the brush does without a value of its own, at the level in effect.
+/// The automatic values of the brush at the level in effect.
 void Panel::show_fitting() {
     if (!unedited_) return;
     const auto fitting = [&](BrushKind kind) {
@@ -252,8 +190,34 @@ void Panel::show_fitting() {
     edit_->set_fitting(fitting(BrushKind::carve), fitting(BrushKind::add));
 }
 
-/// Asks for a command if it is one that the session can carry out; else says why not. Whoever hears
-/// `asked` may refuse it at once.
+/// Remembers the settings in effect: show_refused() goes back to them.
+void Panel::begin_request(Section* by) {
+    by->say({});
+    asked_by_ = by;
+    before_ = now_;
+}
+
+/// Expects that a command is carried out.
+void Panel::take(const Command& command) {
+    RendererSettings& settings = now_.settings;
+    std::visit(Overloaded{[&](const command::Isovalue& c) { now_.isovalue = c.isovalue; },
+                          [&](const ForceSettings& force) { settings.force = force; },
+                          [&](const Friction& friction) { settings.proxy.friction = friction; },
+                          [&](const Penetrability& given) { settings.penetrability = given; },
+                          [&](const command::Forces& forces) { settings.forces_on = forces.on; },
+                          [&](const command::Freeze& freeze) { now_.frozen = freeze.on; },
+                          [&](const command::Clutch& clutch) { now_.clutched = clutch.on; },
+                          [&](const command::Scale& c) { settings.transform.scale = c.scale; },
+                          [&](const DeviceTransform& transform) { settings.transform = transform; },
+                          [&](const DeviceLimits& limits) { settings.device = limits; },
+                          // Not shown in the panel.
+                          [](const command::Samples&) {}, [](const command::Moment&) {},
+                          [](const command::Speed&) {}},
+               command);
+}
+
+/// Asks for a command if it is one that the session can carry out; else says why not. It may be
+/// refused while `asked` is emitted.
 void Panel::ask(Section* by, const Command& command) {
     if (!live_) return;
     try {
@@ -262,27 +226,9 @@ void Panel::ask(Section* by, const Command& command) {
         refuse(by, QString::fromStdString(error.what()));
         return;
     }
-    by->say({});
-    asked_by_ = by;
+    begin_request(by);
     refused_ = false;
-    before_ = now_;
-    if (const auto* level = std::get_if<command::Isovalue>(&command)) {
-        now_.isovalue = level->isovalue;
-    } else if (const auto* force = std::get_if<ForceSettings>(&command)) {
-        now_.settings.force = *force;
-    } else if (const auto* friction = std::get_if<Friction>(&command)) {
-        now_.settings.proxy.friction = *friction;
-    } else if (const auto* penetrability = std::get_if<Penetrability>(&command)) {
-        now_.settings.penetrability = *penetrability;
-    } else if (const auto* forces = std::get_if<command::Forces>(&command)) {
-        now_.settings.forces_on = forces->on;
-    } else if (const auto* freeze = std::get_if<command::Freeze>(&command)) {
-        now_.frozen = freeze->on;
-    } else if (const auto* clutch = std::get_if<command::Clutch>(&command)) {
-        now_.clutched = clutch->on;
-    } else if (const auto* scale = std::get_if<command::Scale>(&command)) {
-        now_.settings.transform.scale = scale->scale;
-    }
+    take(command);
     Q_EMIT asked(command);
     if (!refused_ && live_) show_effect();
 }
@@ -298,8 +244,8 @@ void Panel::ask_penetrability(const PressThrough& next) {
     const bool ends = now_.settings.penetrability.on && !penetrability.on;
     ask(penetrability_part_, penetrability);
     if (!ends || refused_ || !last_) return;
-    // The session goes on with the level felt last, so the line goes there; past the last range
-    // nothing is felt, and what was asked for last holds again.
+    // The session keeps the level felt last, so the isovalue becomes that level. Past the last
+    // range nothing is felt: then the isovalue stays.
     const double felt = last_->session.tick.proxy.isovalue;
     ask(isovalue_part_, command::Isovalue{std::isfinite(felt) ? felt : now_.isovalue});
 }
@@ -342,11 +288,6 @@ void Panel::show_report(const ServoReport& report, double rate) {
 
 void Panel::show_device(const DeviceInfo& info, DeviceStatus status, const QString& problem) {
     if (live_) device_->show_device(info, status, problem);
-}
-
-void Panel::set_devices(const std::vector<devices::DeviceFinding>& findings,
-                        const QString& current_option) {
-    device_->set_devices(findings, current_option);
 }
 
 }  // namespace palpate::viewer

@@ -7,7 +7,6 @@
 #include <optional>
 #include <vector>
 
-#include "apps/viewer/model/look.hpp"
 #include "apps/viewer/panel/brush_choice.hpp"
 #include "palpate/devices/backend.hpp"
 #include "palpate/run/statistics.hpp"
@@ -43,47 +42,35 @@ class Panel : public QWidget {
     /// True: a recording is played; only the look can be set. Until
     /// the next set_session().
     void set_observing(bool observing);
-    void set_look(const Look& look);
-    const Look& look() const;
     void set_brush(const BrushChoice& brush);
     /// The radius is one that fits the grid.
     const BrushChoice& brush() const;
-    /// Steps that can be undone and redone, and whether there is something to save.
-    void set_history(std::size_t undo_steps, std::size_t redo_steps, bool changed);
-    /// One sentence why these samples cannot be edited (for example a sequence); empty: they can.
-    void set_edit_reason(const QString& why);
 
     /// About thirty times a second.
     void show_snapshot(const Snapshot& snapshot);
     /// About twice a second; `rate` [Hz] as measured.
     void show_report(const ServoReport& report, double rate);
-    /// `problem`: what is wrong with the device and what to do; empty where all is well.
+    /// `problem`: what is wrong with the device and what to do, or empty.
     void show_device(const DeviceInfo& info, DeviceStatus status, const QString& problem);
-    /// What the picker offers; `current_option` is the device in use ("haply:port=10001"), to which
-    /// it goes back when another is refused.
-    void set_devices(const std::vector<devices::DeviceFinding>& findings,
-                     const QString& current_option);
-    /// The last request was refused: says why beside it and shows what is in effect. May be called
-    /// while `asked` or another of the signals is being emitted, or later.
+    /// The last request was refused: shows why in its section, and the state before it. May be
+    /// called while `asked` or another signal is emitted, or later.
     void show_refused(const QString& why);
 
-    /// The settings in effect as far as the panel knows: as set, with what was asked for since.
+    /// The settings that were set, with all requests since that were not refused.
     const RendererSettings& settings() const { return now_.settings; }
     double isovalue() const { return now_.isovalue; }
 
-    /// As if the button was pressed: for the window's space bar.
-    void toggle_forces();
-    /// The same for the brush; nothing where there is nothing to edit.
-    void toggle_brush();
+    /// Sections that controllers connect to directly.
+    LookControls& look_controls() { return *look_; }
+    BrushControls& brush_controls() { return *edit_; }
+    DeviceControls& device_controls() { return *device_; }
 
   Q_SIGNALS:
     /// A command that has passed palpate::check for the session that is shown.
     void asked(const palpate::Command& command);
     void device_chosen(const QString& option);
-    void devices_wanted();
     void solid_chosen(palpate::Solid solid);
-    void look_changed(const palpate::viewer::Look& look);
-    /// May be answered by show_refused(): the choice before holds again.
+    /// After show_refused() the previous choice holds again.
     void brush_changed(const palpate::viewer::BrushChoice& brush);
     void undo_asked();
     void redo_asked();
@@ -100,6 +87,9 @@ class Panel : public QWidget {
     void build();
     void connect_sections();
     void connect_edits();
+    void clear_edits();
+    void begin_request(Section* by);
+    void take(const Command& command);
     void ask(Section* by, const Command& command);
     void ask_penetrability(const PressThrough& next);
     void refuse(Section* by, const QString& why);
@@ -116,10 +106,11 @@ class Panel : public QWidget {
     SessionBar* bar_;
     Section *session_part_, *isovalue_part_, *penetrability_part_, *edit_part_, *force_part_,
         *device_part_, *loop_part_, *look_part_;
+    std::vector<Section*> sections_;  // all of them, from top to bottom
 
     bool live_ = false;  // there is a session
     Solid solid_ = Solid::above;
-    Effect now_, before_;  // in effect; before the last thing that was asked for
+    Effect now_, before_;  // in effect; before the last request
     Section* asked_by_ = nullptr;
     bool refused_ = false;
     std::optional<Snapshot> last_;

@@ -1,13 +1,12 @@
 // Keeps modes, thresholds, table and bands of penetrability in step.
 #include "apps/viewer/panel/penetrability_controls.hpp"
 
-#include <QFormLayout>
 #include <QHBoxLayout>
 #include <QRadioButton>
-#include <QSignalBlocker>
-#include <QVBoxLayout>
 
 #include <algorithm>
+
+#include "apps/viewer/panel/layout.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -28,9 +27,8 @@ constexpr ModeText mode_texts[] = {
 
 }  // namespace
 
-PenetrabilityControls::PenetrabilityControls(LevelChart& chart, QWidget* parent)
-    : QWidget(parent),
-      chart_(&chart),
+PenetrabilityControls::PenetrabilityControls(LevelChart& chart)
+    : chart_(&chart),
       modes_(new QButtonGroup(this)),
       threshold_(new Quantity("threshold", "mm", 0, 5, 0.1)),
       minimum_row_(new QWidget),
@@ -38,77 +36,64 @@ PenetrabilityControls::PenetrabilityControls(LevelChart& chart, QWidget* parent)
       ranges_row_(new QWidget),
       table_(new RangeTable),
       limiter_(this) {
-    auto* row = new QHBoxLayout;
+    auto* modes = new QHBoxLayout;
     for (int i = 0; i < 3; ++i) {
-        auto* button = new QRadioButton(mode_texts[i].text);
-        button->setObjectName(mode_texts[i].name);
-        button->setToolTip(mode_texts[i].tip);
+        auto* button =
+            named(new QRadioButton(mode_texts[i].text), mode_texts[i].name, mode_texts[i].tip);
         modes_->addButton(button, i);
-        row->addWidget(button);
+        modes->addWidget(button);
     }
-    row->addStretch(1);
-    threshold_->setToolTip(
-        "PT, the penetration threshold [mm of the hand]: pulled further apart than this, hand and "
-        "proxy get the surface to give way. The spring never exceeds stiffness x PT.");
+    modes->addStretch(1);
     threshold_->box().set_infinite(true);
     threshold_->set_accessible_name("PT, penetration threshold");
+    auto* form = new QFormLayout;
+    add_row(*form, "PT", threshold_,
+            "PT, the penetration threshold [mm of the hand]: pulled further apart than this, hand "
+            "and proxy get the surface to give way. The spring never exceeds stiffness x PT.");
     minimum_->setObjectName("minimum");
     minimum_->set_infinite(true);
-    minimum_->setToolTip(
-        "The least level felt [data units] (the greatest, where below is solid); also by the end "
-        "of the band on the histogram");
     auto* minimum = new QFormLayout(minimum_row_);
     minimum->setContentsMargins(0, 0, 0, 0);
-    minimum->addRow("Minimum level", minimum_);
-    auto* add = new QPushButton("Add range");
-    add->setObjectName("add_range");
-    add->setToolTip("Another range of interest; or shift-drag on the histogram");
-    auto* remove = new QPushButton("Delete range");
-    remove->setObjectName("delete_range");
-    remove->setToolTip("Delete the chosen range");
+    add_row(*minimum, "Minimum level", minimum_,
+            "The least level felt [data units] (the greatest, where below is solid); also by the "
+            "end of the band on the histogram");
+    auto* add = named(new QPushButton("Add range"), "add_range",
+                      "Another range of interest; or shift-drag on the histogram");
+    auto* remove =
+        named(new QPushButton("Delete range"), "delete_range", "Delete the chosen range");
     auto* buttons = new QHBoxLayout;
     buttons->addWidget(add);
     buttons->addWidget(remove);
     buttons->addStretch(1);
-    auto* ranges = new QVBoxLayout(ranges_row_);
-    ranges->setContentsMargins(0, 0, 0, 0);
-    ranges->addWidget(table_);
-    ranges->addLayout(buttons);
-    auto* column = new QVBoxLayout(this);
-    column->setContentsMargins(0, 0, 0, 0);
-    auto* form = new QFormLayout;
-    form->addRow("PT", threshold_);
-    column->addLayout(row);
+    column_in(ranges_row_, {table_})->addLayout(buttons);
+    auto* column = column_in(this);
+    column->addLayout(modes);
     column->addLayout(form);
     column->addWidget(minimum_row_);
     column->addWidget(ranges_row_);
     connect(add, &QPushButton::clicked, this, [this] { add_range(room_for_a_range()); });
     connect(remove, &QPushButton::clicked, this, [this] { remove_range(table_->chosen()); });
-    connect_chart();
+    connect_inputs();
     show(shown_);
 }
 
-void PenetrabilityControls::connect_chart() {
-    connect(modes_, &QButtonGroup::idClicked, this, [this](int id) {
+void PenetrabilityControls::connect_inputs() {
+    const auto change = [this](auto set) {
         PressThrough next = shown_;
-        next.mode = static_cast<Mode>(id);
-        if (next.mode != shown_.mode) ask(next);
-    });
-    connect(threshold_, &Quantity::wanted, this, [this](double threshold) {
-        PressThrough next = shown_;
-        next.threshold = threshold;
+        set(next);
         ask(next);
+    };
+    connect(modes_, &QButtonGroup::idClicked, this, [this, change](int id) {
+        const auto mode = static_cast<Mode>(id);
+        if (mode != shown_.mode) change([mode](PressThrough& p) { p.mode = mode; });
     });
-    connect(minimum_, QOverload<double>::of(&QDoubleSpinBox::valueChanged), this,
-            [this](double level) {
-                PressThrough next = shown_;
-                next.minimum = level;
-                ask(next);
-            });
-    connect(table_, &RangeTable::edited, this, [this](int at, const DensityRange& range) {
-        PressThrough next = shown_;
-        next.ranges[static_cast<std::size_t>(at)] = range;
-        ask(next);
+    connect(threshold_, &Quantity::wanted, this, [change](double threshold) {
+        change([threshold](PressThrough& p) { p.threshold = threshold; });
+    });
+    connect(minimum_, qOverload<double>(&NumberBox::valueChanged), this,
+            [change](double level) { change([level](PressThrough& p) { p.minimum = level; }); });
+    connect(table_, &RangeTable::edited, this, [change](int row, const DensityRange& range) {
+        change([&](PressThrough& p) { p.ranges[static_cast<std::size_t>(row)] = range; });
     });
     connect(table_, &RangeTable::nonsense, this, &PenetrabilityControls::nonsense);
     connect(table_, &RangeTable::delete_wanted, this, &PenetrabilityControls::remove_range);
@@ -141,7 +126,7 @@ void PenetrabilityControls::set_session(const Penetrability& in_use, Solid solid
 }
 
 void PenetrabilityControls::set_in_use(const Penetrability& in_use) {
-    if (dragging_) return;  // overlapping bands stay apart until they are let go of
+    if (dragging_) return;  // overlapping bands are merged when the drag ends
     show(shown_from(in_use, solid_, shown_));
 }
 

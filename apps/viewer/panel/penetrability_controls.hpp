@@ -1,4 +1,4 @@
-// Controls of pressing through: off, past a threshold, or by ranges of interest, which are bands on
+// Controls of penetrability: off, past a threshold, or by ranges of interest, which are bands on
 // the level chart.
 #pragma once
 
@@ -20,7 +20,7 @@ class PenetrabilityControls : public QWidget {
 
   public:
     /// Shows and reads its bands on the chart, which it does not own.
-    explicit PenetrabilityControls(LevelChart& chart, QWidget* parent = nullptr);
+    explicit PenetrabilityControls(LevelChart& chart);
 
     /// A new session: modes that are not in use begin at this level and range [data units]. Emits
     /// nothing.
@@ -38,7 +38,7 @@ class PenetrabilityControls : public QWidget {
   private:
     void ask(const PressThrough& next);
     void show(const PressThrough& next);
-    void connect_chart();
+    void connect_inputs();
     void add_range(const DensityRange& range);
     void remove_range(int which);
     DensityRange room_for_a_range() const;

@@ -21,15 +21,14 @@ struct PressThrough {
 /// The core's setting. Throws std::invalid_argument as penetrability_threshold and _ranges do.
 Penetrability penetrability_of(const PressThrough& shown, Solid solid);
 
-/// How a setting is shown; what it leaves open stays as it was `before`.
+/// How a setting is shown; modes that it does not use keep their values from `before`.
 PressThrough shown_from(const Penetrability& penetrability, Solid solid, PressThrough before);
 
 /// The defaults for data of this range [data units]: a minimum at the level, and one range that
 /// begins there and spans a tenth of the data.
 PressThrough first_press_through(double isovalue, double low, double high, Solid solid);
 
-/// The bands on the chart, rising: the ranges, or all that lies past the minimum; none where it is
-/// off.
+/// The bands on the chart, rising: the ranges, or everything past the minimum; none in mode off.
 Ranges bands_of(const PressThrough& shown, Solid solid);
 /// The inverse: bands that were dragged become ranges or the minimum.
 PressThrough with_bands(PressThrough shown, const Ranges& bands, Solid solid);

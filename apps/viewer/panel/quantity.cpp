@@ -1,11 +1,13 @@
 // Keeps slider and number box in step.
 #include "apps/viewer/panel/quantity.hpp"
 
-#include <QHBoxLayout>
+#include <QBoxLayout>
 #include <QSignalBlocker>
 
 #include <algorithm>
 #include <cmath>
+
+#include "apps/viewer/panel/layout.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -15,22 +17,19 @@ constexpr int slider_places = 1000;  // of the slider
 }  // namespace
 
 Quantity::Quantity(const QString& name, const QString& unit, double low, double high, double step,
-                   Scale scale, QWidget* parent)
-    : QWidget(parent),
-      low_(low),
+                   Scale scale)
+    : low_(low),
       high_(high),
       scale_(scale),
-      slider_(new QSlider(Qt::Horizontal)),
-      box_(new NumberBox),
+      slider_(named(new QSlider(Qt::Horizontal), name + "_slider")),
+      box_(named(new NumberBox, name + "_box")),
       limiter_(this) {
     setObjectName(name);
-    slider_->setObjectName(name + "_slider");
     slider_->setRange(0, slider_places);
     slider_->setSingleStep(slider_places / 100);
     slider_->setPageStep(slider_places / 10);
     slider_->setMinimumWidth(3 * fontMetrics().height());
     let_wheel_pass(*slider_);
-    box_->setObjectName(name + "_box");
     box_->setSuffix(unit.isEmpty() ? QString() : " " + unit);
     if (scale == Scale::factors) {
         box_->setStepType(QAbstractSpinBox::AdaptiveDecimalStepType);
@@ -41,14 +40,11 @@ Quantity::Quantity(const QString& name, const QString& unit, double low, double 
     box_->setMinimumWidth(fontMetrics().horizontalAdvance("0.00000 N s/mm") +
                           2 * fontMetrics().height());
     box_->setMaximumWidth(box_->minimumWidth());
-    auto* row = new QHBoxLayout(this);
-    row->setContentsMargins(0, 0, 0, 0);
-    row->addWidget(slider_, 1);
-    row->addWidget(box_);
+    row_in(this, {slider_, box_})->setStretch(0, 1);
     setFocusProxy(box_);
     connect(slider_, &QSlider::valueChanged, this, [this](int place) { ask(value_at(place)); });
     connect(slider_, &QSlider::sliderReleased, &limiter_, &RateLimiter::flush);
-    connect(box_, QOverload<double>::of(&QDoubleSpinBox::valueChanged), this, [this](double value) {
+    connect(box_, qOverload<double>(&NumberBox::valueChanged), this, [this](double value) {
         value_ = value;
         place_slider();
         limiter_.drop();

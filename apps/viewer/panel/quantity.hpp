@@ -22,7 +22,7 @@ class Quantity : public QWidget {
     /// `unit` stands behind the number; the box steps by `step`, or by a few percent where the
     /// slider goes by factors.
     Quantity(const QString& name, const QString& unit, double low, double high, double step,
-             Scale scale = Scale::amounts, QWidget* parent = nullptr);
+             Scale scale = Scale::amounts);
 
     /// Shows a value; emits nothing.
     void set_value(double value);

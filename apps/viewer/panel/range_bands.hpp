@@ -1,5 +1,5 @@
-// Ranges of interest as bands on a level axis: which one the pointer is on, what a drag makes of
-// it, how they are drawn.
+// Ranges of interest as bands on a level axis: finding the one under the pointer, dragging,
+// drawing.
 #pragma once
 
 #include <QRectF>
@@ -22,7 +22,7 @@ struct BandGrip {
     Grip grip = Grip::none;
 };
 
-/// What a pointer at x drags: the nearest end within `reach` pixels, else the band under it.
+/// The part under a pointer at x: the nearest end within `reach` pixels, else the band itself.
 BandGrip band_at(const Ranges& ranges, const LevelAxis& axis, double x, double reach);
 
 /// A range after its dragged part has moved: an end to the level, at most as far as the other end;

@@ -6,26 +6,11 @@
 #include <QSignalBlocker>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
-#include <optional>
+
+#include "apps/viewer/panel/number_box.hpp"
 
 namespace palpate::viewer {
-namespace {
-
-std::optional<double> number_of(const QString& text) {
-    const QString bare = text.trimmed();
-    if (bare == "inf" || bare == "+inf") return std::numeric_limits<double>::infinity();
-    if (bare == "-inf") return -std::numeric_limits<double>::infinity();
-    bool valid = false;
-    const double number = QLocale::c().toDouble(bare, &valid);
-    if (!valid || !std::isfinite(number)) return std::nullopt;
-    return number;
-}
-
-}  // namespace
-
-RangeTable::RangeTable(QWidget* parent) : QTableWidget(0, 2, parent) {
+RangeTable::RangeTable() : QTableWidget(0, 2) {
     setObjectName("ranges");
     setHorizontalHeaderLabels({"from", "to"});
     horizontalHeader()->setSectionResizeMode(QHeaderView::Stretch);
@@ -42,7 +27,7 @@ RangeTable::RangeTable(QWidget* parent) : QTableWidget(0, 2, parent) {
 
 void RangeTable::write(int row) {
     const DensityRange& range = ranges_[static_cast<std::size_t>(row)];
-    const QString texts[] = {level_text(range.low), level_text(range.high)};
+    const QString texts[] = {number_text(range.low), number_text(range.high)};
     for (int column = 0; column < 2; ++column) {
         if (!item(row, column)) setItem(row, column, new QTableWidgetItem);
         item(row, column)->setText(texts[column]);
@@ -85,8 +70,8 @@ void RangeTable::read(int row, int column) {
     DensityRange range = ranges_[static_cast<std::size_t>(row)];
     double& end = column == 0 ? range.low : range.high;
     const QString text = item(row, column)->text();
-    if (text == level_text(end)) return;  // only looked at
-    if (const auto number = number_of(text)) {
+    if (text == number_text(end)) return;  // only looked at
+    if (const auto number = number_from(text.trimmed())) {
         end = *number;
         Q_EMIT edited(row, range);
         return;

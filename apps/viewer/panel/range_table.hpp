@@ -13,7 +13,7 @@ class RangeTable : public QTableWidget {
     Q_OBJECT
 
   public:
-    explicit RangeTable(QWidget* parent = nullptr);
+    RangeTable();
 
     /// Shows ranges; emits nothing.
     void set_ranges(const Ranges& ranges);

@@ -1,4 +1,4 @@
-// Limits how often a drag asks for something: at most 60 times a second, and the last always.
+// Limits the requests of a drag to 60 a second; the last is never lost.
 #pragma once
 
 #include <QElapsedTimer>
@@ -12,8 +12,6 @@ namespace palpate::viewer {
 /// The first request goes through at once; of those that follow within the interval the last goes
 /// through when the interval is over.
 class RateLimiter : public QObject {
-    Q_OBJECT
-
   public:
     /// `interval` [ms]: about 60 a second.
     explicit RateLimiter(QObject* parent, int interval = 16);

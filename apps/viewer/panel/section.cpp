@@ -1,14 +1,15 @@
 // Builds headings and notes of sections.
 #include "apps/viewer/panel/section.hpp"
 
+#include <QBoxLayout>
 #include <QEvent>
-#include <QVBoxLayout>
 
+#include "apps/viewer/panel/layout.hpp"
 #include "apps/viewer/panel/level_axis.hpp"
 
 namespace palpate::viewer {
 
-Note::Note(const QString& name, Kind kind, QWidget* parent) : QLabel(parent), kind_(kind) {
+Note::Note(const QString& name, Kind kind) : kind_(kind) {
     setObjectName(name);
     setTextFormat(Qt::PlainText);
     setWordWrap(true);
@@ -37,31 +38,21 @@ void Note::changeEvent(QEvent* event) {
     QLabel::changeEvent(event);
 }
 
-Section::Section(const QString& title, const QString& name, QWidget* content, bool open)
-    : heading_(new QToolButton),
+Section::Section(const QString& title, const QString& name, QWidget* content)
+    : heading_(named(new QToolButton, name + "_heading", "Fold this part away or back")),
       content_(content),
       message_(new Note(name + "_message", Note::Kind::warning)) {
     setObjectName(name);
-    heading_->setObjectName(name + "_heading");
     heading_->setText(title);
     heading_->setCheckable(true);
     heading_->setAutoRaise(true);
     heading_->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
     heading_->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
     heading_->setFocusPolicy(Qt::TabFocus);
-    heading_->setToolTip("Fold this part away or back");
-    QFont bold = heading_->font();
-    bold.setBold(true);
-    heading_->setFont(bold);
-    auto* column = new QVBoxLayout(this);
-    column->setContentsMargins(0, 0, 0, 0);
-    column->setSpacing(2);
-    column->addWidget(heading_);
-    column->addWidget(message_);
-    column->addWidget(content_);
+    make_bold(*heading_);
+    column_in(this, {heading_, message_, content_})->setSpacing(2);
     connect(heading_, &QToolButton::toggled, this, &Section::set_open);
-    heading_->setChecked(open);
-    set_open(open);
+    set_open(true);
 }
 
 void Section::set_open(bool open) {

@@ -1,4 +1,4 @@
-// A section of the panel under a heading that folds it, with a note on what was refused.
+// A section of the panel under a heading that folds it, with a note for refusals.
 #pragma once
 
 #include <QLabel>
@@ -9,11 +9,9 @@ namespace palpate::viewer {
 
 /// A line or more of text that wraps, and is not there while it is empty.
 class Note : public QLabel {
-    Q_OBJECT
-
   public:
     enum class Kind { plain, warning };
-    Note(const QString& name, Kind kind, QWidget* parent = nullptr);
+    Note(const QString& name, Kind kind);
     void say(const QString& text);
 
   protected:
@@ -29,9 +27,9 @@ class Section : public QWidget {
     Q_OBJECT
 
   public:
-    /// Takes the content over. `name` is that of the object; its heading is NAME_heading, its
-    /// message NAME_message.
-    Section(const QString& title, const QString& name, QWidget* content, bool open = true);
+    /// Takes ownership of the content. `name` is that of the object; its heading is NAME_heading,
+    /// its message NAME_message.
+    Section(const QString& title, const QString& name, QWidget* content);
 
     void set_open(bool open);
     bool is_open() const { return heading_->isChecked(); }

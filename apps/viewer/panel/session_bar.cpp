@@ -6,64 +6,48 @@
 #include <QVBoxLayout>
 
 #include "apps/options/words.hpp"
-#include "apps/viewer/panel/level_axis.hpp"
+#include "apps/viewer/panel/layout.hpp"
 
 namespace palpate::viewer {
-namespace {
 
-/// Snapshots come thirty times a second, a command is obeyed within a tick.
-constexpr int switch_grace = 3;
-
-}  // namespace
-
-SessionSwitch::SessionSwitch(const QString& name, const QString& on, const QString& off)
-    : on_(on), off_(off) {
-    setObjectName(name);
+SessionSwitch::SessionSwitch(const QString& on, const QString& off) : on_(on), off_(off) {
     setCheckable(true);
     setText(off_);
     connect(this, &QPushButton::clicked, this, [this](bool now) {
-        grace_ = switch_grace;
+        awaited_.begin();
         setText(now ? on_ : off_);
         Q_EMIT wanted(now);
     });
 }
 
 void SessionSwitch::show_state(bool on) {
-    if (on == isChecked()) {
-        grace_ = 0;
-    } else if (grace_ > 0) {
-        --grace_;
-    } else {
-        set_state(on);
-    }
+    const bool same = on == isChecked();
+    if (!awaited_.passes_over(same) && !same) set_state(on);
 }
 
 void SessionSwitch::set_state(bool on) {
-    grace_ = 0;
+    awaited_.end();
     setChecked(on);
     setText(on ? on_ : off_);
 }
 
-SessionBar::SessionBar(QWidget* parent)
-    : QWidget(parent),
-      forces_(new SessionSwitch("forces", "Forces are ON", "Forces are OFF")),
-      freeze_(new SessionSwitch("freeze", "Frozen", "Freeze")),
-      clutch_(new SessionSwitch("clutch", "Clutched", "Clutch")),
+SessionBar::SessionBar()
+    : forces_(named(new SessionSwitch("Forces are ON", "Forces are OFF"), "forces",
+                    "Forces on or off (space bar). Off: zero at once; on: they ramp up")),
+      freeze_(named(new SessionSwitch("Frozen", "Freeze"), "freeze",
+                    "Hand and proxy stand still for the session, forces are let go")),
+      clutch_(named(new SessionSwitch("Clutched", "Clutch"), "clutch",
+                    "The volume hangs on the hand, to put it elsewhere; forces are let go")),
       gauge_(new ForceGauge),
-      contact_(new QLabel) {
+      contact_(named(new QLabel, "contact",
+                     "Whether the proxy is on a surface, and how far it is from the hand [mm of "
+                     "the hand; mm in the volume]")) {
     setObjectName("session_bar");
-    forces_->setToolTip("Forces on or off (space bar). Off: zero at once; on: they ramp up");
-    freeze_->setToolTip("Hand and proxy stand still for the session, forces are let go");
-    clutch_->setToolTip("The volume hangs on the hand, to put it elsewhere; forces are let go");
     QFont big = forces_->font();
     big.setBold(true);
     big.setPointSizeF(1.25 * big.pointSizeF());
     forces_->setFont(big);
     forces_->setMinimumHeight(static_cast<int>(2.6 * fontMetrics().height()));
-    contact_->setObjectName("contact");
-    contact_->setToolTip(
-        "Whether the proxy is on a surface, and how far it is from the hand [mm of "
-        "the hand; mm in the volume]");
     contact_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Fixed);
     auto* switches = new QVBoxLayout;
     switches->setSpacing(2);
@@ -72,14 +56,16 @@ SessionBar::SessionBar(QWidget* parent)
     auto* row = new QHBoxLayout;
     row->addWidget(forces_, 1);
     row->addLayout(switches);
-    auto* column = new QVBoxLayout(this);
-    column->setContentsMargins(0, 0, 0, 0);
+    auto* column = column_in(this);
     column->addLayout(row);
     column->addWidget(gauge_);
     column->addWidget(contact_);
-    connect(forces_, &SessionSwitch::wanted, this, &SessionBar::forces_wanted);
-    connect(freeze_, &SessionSwitch::wanted, this, &SessionBar::freeze_wanted);
-    connect(clutch_, &SessionSwitch::wanted, this, &SessionBar::clutch_wanted);
+    connect(forces_, &SessionSwitch::wanted, this,
+            [this](bool on) { Q_EMIT asked(command::Forces{on}); });
+    connect(freeze_, &SessionSwitch::wanted, this,
+            [this](bool on) { Q_EMIT asked(command::Freeze{on}); });
+    connect(clutch_, &SessionSwitch::wanted, this,
+            [this](bool on) { Q_EMIT asked(command::Clutch{on}); });
     colour_forces();
 }
 

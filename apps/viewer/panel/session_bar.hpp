@@ -5,20 +5,21 @@
 #include <QPushButton>
 #include <QWidget>
 
+#include "apps/viewer/panel/awaited_change.hpp"
 #include "apps/viewer/panel/force_gauge.hpp"
 #include "palpate/servo.hpp"
 
 namespace palpate::viewer {
 
-/// A switch of the session: shows what the session tells; a click asks for the opposite.
+/// A switch of the session: shows the state of the session; a click asks for the opposite.
 class SessionSwitch : public QPushButton {
     Q_OBJECT
 
   public:
-    SessionSwitch(const QString& name, const QString& on, const QString& off);
-    /// What a snapshot says; one that was taken before the last click was obeyed is passed over.
+    SessionSwitch(const QString& on, const QString& off);
+    /// The state in a snapshot.
     void show_state(bool on);
-    /// What is so, whatever was clicked.
+    /// The state now, whatever was clicked.
     void set_state(bool on);
 
   Q_SIGNALS:
@@ -26,27 +27,24 @@ class SessionSwitch : public QPushButton {
 
   private:
     QString on_, off_;
-    int grace_ = 0;  // snapshots that may still disagree with the click
+    AwaitedChange awaited_;
 };
 
 class SessionBar : public QWidget {
     Q_OBJECT
 
   public:
-    explicit SessionBar(QWidget* parent = nullptr);
+    SessionBar();
 
     void set_session(const RendererSettings& settings);
     void show_snapshot(const Snapshot& now, double limit);
     void clear();
-    void toggle_forces() { forces_->click(); }
     void set_forces(bool on) { forces_->set_state(on); }
     void set_frozen(bool on) { freeze_->set_state(on); }
     void set_clutched(bool on) { clutch_->set_state(on); }
 
   Q_SIGNALS:
-    void forces_wanted(bool on);
-    void freeze_wanted(bool on);
-    void clutch_wanted(bool on);
+    void asked(const palpate::Command& command);
 
   protected:
     void changeEvent(QEvent* event) override;

@@ -1,10 +1,9 @@
-// Controls of the timeline: shows views in them, and emits what the user does with them.
+// Controls of the timeline: shows views, emits the actions of the user.
 #include "apps/viewer/panel/timeline.hpp"
 
+#include <QBoxLayout>
 #include <QCheckBox>
 #include <QEvent>
-#include <QHBoxLayout>
-#include <QKeyEvent>
 #include <QLabel>
 #include <QPainter>
 #include <QToolButton>
@@ -13,14 +12,12 @@
 #include <array>
 #include <cmath>
 
+#include "apps/viewer/panel/layout.hpp"
 #include "apps/viewer/panel/number_box.hpp"
 #include "apps/viewer/panel/timeline_track.hpp"
 
 namespace palpate::viewer {
 namespace {
-
-/// Views come thirty times a second, a command is obeyed within a tick.
-constexpr int views_of_grace = 3;
 
 constexpr std::array speed_steps{0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0};  // of the speed
 
@@ -44,11 +41,9 @@ class SpeedBox : public NumberBox {
 };
 
 QToolButton* make_button(const QString& name, const QString& accessible, const QString& tip) {
-    auto* button = new QToolButton;
-    button->setObjectName(name);
+    auto* button = named(new QToolButton, name, tip);
     button->setAutoRaise(true);
     button->setAccessibleName(accessible);
-    button->setToolTip(tip);
     return button;
 }
 
@@ -56,44 +51,34 @@ QToolButton* make_button(const QString& name, const QString& accessible, const Q
 
 Timeline::Timeline(QWidget* parent)
     : QWidget(parent),
-      back_(make_button("timeline_back", tr("Step back"), tr("To the frame before"))),
-      play_(make_button("timeline_play", tr("Play"), tr("Play"))),
-      forward_(make_button("timeline_forward", tr("Step forward"), tr("To the next frame"))),
+      back_(make_button("timeline_back", "Step back", "To the frame before")),
+      play_(make_button("timeline_play", "Play", "Play")),
+      forward_(make_button("timeline_forward", "Step forward", "To the next frame")),
       track_(new TimelineTrack),
-      text_(new QLabel),
-      speed_(new SpeedBox),
-      loop_(new QCheckBox(tr("&Loop"))),
+      text_(named(new QLabel, "timeline_time",
+                  "The time shown [s] or [minutes:seconds], and the frame there or the length")),
+      speed_(named(new SpeedBox, "timeline_speed", "Seconds played in a second, 0.1 to 10")),
+      loop_(named(new QCheckBox("&Loop"), "timeline_loop", "After the end it begins again")),
       limiter_(this) {
     setObjectName("timeline");
-    build();
-    connect_inputs();
-    show_playing(false);
-    show_icons();
-    show_possible();
-}
-
-void Timeline::build() {
-    auto* row = new QHBoxLayout(this);
+    auto* row = row_in(this, {back_, play_, forward_});
     row->setContentsMargins(6, 2, 6, 2);
-    for (QToolButton* button : {back_, play_, forward_}) row->addWidget(button);
     row->addWidget(track_, 1);
     row->addWidget(text_);
     row->addWidget(speed_);
     row->addWidget(loop_);
     back_->setAutoRepeat(true);
     forward_->setAutoRepeat(true);
-    text_->setObjectName("timeline_time");
-    text_->setToolTip(
-        tr("The time shown [s] or [minutes:seconds], and the frame there or the length"));
-    speed_->setObjectName("timeline_speed");
-    speed_->setAccessibleName(tr("Speed"));
-    speed_->setToolTip(tr("Seconds played in a second, 0.1 to 10"));
+    speed_->setAccessibleName("Speed");
     speed_->setSuffix(QString::fromUtf8("×"));
     speed_->show_value(play_speed_);
     speed_->setFixedWidth(fontMetrics().horizontalAdvance(QString::fromUtf8("0.0000×")) +
                           2 * fontMetrics().height());
-    loop_->setObjectName("timeline_loop");
-    loop_->setToolTip(tr("After the end it begins again"));
+    let_return_press_buttons(*this);
+    connect_inputs();
+    show_playing(false);
+    show_icons();
+    show_possible();
 }
 
 void Timeline::connect_inputs() {
@@ -104,17 +89,16 @@ void Timeline::connect_inputs() {
         show_playing(play);
         ask_speed(play ? play_speed_ : 0);
     });
-    connect(speed_, QOverload<double>::of(&QDoubleSpinBox::valueChanged), this,
-            [this](double speed) {
-                const double bounded = std::clamp(speed, speed_steps.front(), speed_steps.back());
-                speed_->show_value(bounded);
-                const double asked = std::copysign(bounded, play_speed_);
-                if (asked == play_speed_) return;
-                play_speed_ = asked;
-                if (playing_) ask_speed(asked);
-            });
+    connect(speed_, qOverload<double>(&NumberBox::valueChanged), this, [this](double speed) {
+        const double bounded = std::clamp(speed, speed_steps.front(), speed_steps.back());
+        speed_->show_value(bounded);
+        const double asked = std::copysign(bounded, play_speed_);
+        if (asked == play_speed_) return;
+        play_speed_ = asked;
+        if (playing_) ask_speed(asked);
+    });
     connect(loop_, &QCheckBox::clicked, this, [this](bool loop) {
-        loop_grace_ = views_of_grace;
+        awaited_loop_.begin();
         Q_EMIT loop_asked(loop);
     });
     connect(track_, &TimelineTrack::chosen, this, &Timeline::ask_moment);
@@ -144,13 +128,13 @@ void Timeline::step(int direction) {
 }
 
 void Timeline::ask_speed(double speed) {
-    speed_grace_ = views_of_grace;
+    awaited_speed_.begin();
     Q_EMIT speed_asked(speed);
 }
 
 void Timeline::ask_moment(double time) {
     asked_time_ = time;
-    time_grace_ = views_of_grace;
+    awaited_time_.begin();
     show_text();
     limiter_.put([this, time] { Q_EMIT moment_asked(time); });
 }
@@ -158,46 +142,27 @@ void Timeline::ask_moment(double time) {
 void Timeline::set_view(const TimelineView& view) {
     if (track_->set_view(view)) {
         limiter_.drop();  // a moment of the former sequence
-        time_grace_ = 0;
+        awaited_time_.end();
         show_possible();
     }
     show_speed(view.speed);
-    show_loop(view.loop);
+    if (!awaited_loop_.passes_over(view.loop == loop_->isChecked())) loop_->setChecked(view.loop);
     show_time(view.time);
 }
 
 void Timeline::show_speed(double speed) {
     const bool playing = speed != 0;
-    if (playing == playing_ && (!playing || speed == play_speed_)) {
-        speed_grace_ = 0;
-    } else if (speed_grace_ > 0) {
-        --speed_grace_;
-    } else {
-        if (playing) {
-            play_speed_ = speed;
-            speed_->show_value(std::abs(speed));
-        }
-        show_playing(playing);
+    const bool same = playing == playing_ && (!playing || speed == play_speed_);
+    if (awaited_speed_.passes_over(same) || same) return;
+    if (playing) {
+        play_speed_ = speed;
+        speed_->show_value(std::abs(speed));
     }
-}
-
-void Timeline::show_loop(bool loop) {
-    if (loop == loop_->isChecked()) {
-        loop_grace_ = 0;
-    } else if (loop_grace_ > 0) {
-        --loop_grace_;
-    } else {
-        loop_->setChecked(loop);
-    }
+    show_playing(playing);
 }
 
 void Timeline::show_time(double time) {
-    if (dragging()) return;
-    if (time_grace_ > 0 && time != asked_time_) {
-        --time_grace_;
-        return;
-    }
-    time_grace_ = 0;
+    if (dragging() || awaited_time_.passes_over(time == asked_time_)) return;
     track_->set_time(time);
     show_text();
 }
@@ -231,8 +196,8 @@ void Timeline::show_playing(bool playing) {
     if (playing == playing_ && !play_->icon().isNull()) return;
     playing_ = playing;
     play_->setIcon(icon(playing ? Shape::pause : Shape::play));
-    play_->setAccessibleName(playing ? tr("Pause") : tr("Play"));
-    play_->setToolTip(playing ? tr("Pause") : tr("Play"));
+    play_->setAccessibleName(playing ? "Pause" : "Play");
+    play_->setToolTip(play_->accessibleName());
 }
 
 void Timeline::show_icons() {
@@ -277,17 +242,6 @@ QIcon Timeline::icon(Shape shape) const {
 void Timeline::changeEvent(QEvent* event) {
     if (event->type() == QEvent::PaletteChange) show_icons();
     QWidget::changeEvent(event);
-}
-
-/// Return presses buttons: the space bar is the window's, for the forces.
-void Timeline::keyPressEvent(QKeyEvent* event) {
-    auto* button = qobject_cast<QAbstractButton*>(focusWidget());
-    const bool presses = event->key() == Qt::Key_Return || event->key() == Qt::Key_Enter;
-    if (presses && button && button->hasFocus()) {
-        button->click();
-    } else {
-        QWidget::keyPressEvent(event);
-    }
 }
 
 }  // namespace palpate::viewer

@@ -4,6 +4,7 @@
 #include <QIcon>
 #include <QWidget>
 
+#include "apps/viewer/panel/awaited_change.hpp"
 #include "apps/viewer/panel/rate_limiter.hpp"
 #include "apps/viewer/panel/timeline_view.hpp"
 
@@ -17,9 +18,7 @@ class NumberBox;
 class TimelineTrack;
 
 /// Has no clock: it shows the views that it is given, and emits what the user asks for. That is
-/// shown at once; up to three views taken before it was carried out are ignored. For a live source
-/// only the play button works. Object names: timeline, timeline_back, timeline_play,
-/// timeline_forward, timeline_track, timeline_time, timeline_speed, timeline_loop.
+/// shown at once (AwaitedChange). For a live source only the play button works.
 class Timeline : public QWidget {
     Q_OBJECT
 
@@ -47,15 +46,12 @@ class Timeline : public QWidget {
 
   protected:
     void changeEvent(QEvent* event) override;
-    void keyPressEvent(QKeyEvent* event) override;
 
   private:
     enum class Shape { play, pause, back, forward };
 
-    void build();
     void connect_inputs();
     void show_speed(double speed);
-    void show_loop(bool loop);
     void show_time(double time);
     void show_text();
     void show_playing(bool playing);
@@ -74,7 +70,7 @@ class Timeline : public QWidget {
     bool playing_ = false;
     double play_speed_ = 1;  // while it plays; below 0: backwards
     double asked_time_ = 0;
-    int speed_grace_ = 0, time_grace_ = 0, loop_grace_ = 0;  // views that may still disagree
+    AwaitedChange awaited_speed_, awaited_time_, awaited_loop_;
 };
 
 }  // namespace palpate::viewer

@@ -13,41 +13,19 @@
 #include <cmath>
 #include <limits>
 
-#include "pictures/scene.hpp"
+#include "apps/viewer/panel/colours.hpp"
 
 namespace palpate::viewer {
 namespace {
 
 constexpr double least_between_ticks = 3;  // pixels
 
-QColor qt_colour(const pictures::Colour& c, double opacity = 1) {
-    return QColor::fromRgbF(c.red, c.green, c.blue, opacity);
-}
-
-/// The range of force and isovalue in some pieces of a recording.
-struct PieceRange {
-    double least_force = std::numeric_limits<double>::infinity(), most_force = 0;
-    double least_isovalue = std::numeric_limits<double>::infinity();
-    double most_isovalue = -std::numeric_limits<double>::infinity();
-    bool empty = true;
-
-    void take(const Overview::Piece& piece) {
-        if (piece.empty) return;
-        empty = false;
-        least_force = std::min(least_force, piece.least_force);
-        most_force = std::max(most_force, piece.most_force);
-        if (piece.least_isovalue > piece.most_isovalue) return;
-        least_isovalue = std::min(least_isovalue, piece.least_isovalue);
-        most_isovalue = std::max(most_isovalue, piece.most_isovalue);
-    }
-};
-
 }  // namespace
 
-TimelineTrack::TimelineTrack(QWidget* parent) : QAbstractSlider(parent) {
+TimelineTrack::TimelineTrack() {
     setObjectName("timeline_track");
-    setAccessibleName(tr("Time [ms]"));
-    setAccessibleDescription(tr("Arrows go from frame to frame"));
+    setAccessibleName("Time [ms]");
+    setAccessibleDescription("Arrows go from frame to frame");
     setFocusPolicy(Qt::StrongFocus);
     setOrientation(Qt::Horizontal);
     setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
@@ -177,21 +155,22 @@ void TimelineTrack::paint_frames(QPainter& painter, const QRectF& box) const {
 /// One column of pixels at a time.
 void TimelineTrack::paint_overview(QPainter& painter, const QRectF& box) const {
     const Overview& overview = *view_.overview;
-    PieceRange whole;
-    for (const Overview::Piece& piece : overview.pieces) whole.take(piece);
+    Overview::Piece whole;
+    for (const Overview::Piece& piece : overview.pieces) whole.add(piece);
     if (whole.empty) return;
     const double level_range = whole.most_isovalue - whole.least_isovalue;
     const int columns = std::max(1, static_cast<int>(box.width() * devicePixelRatioF()));
     const double step = box.width() / columns;
     const auto count = static_cast<double>(overview.pieces.size());
     const double shown = length() > 0 ? length() / overview.width : 1;  // pieces
-    const QColor force = qt_colour(pictures::force_colour, 0.55);
+    QColor force = to_qt(pictures::force_colour);
+    force.setAlphaF(0.55);
     painter.setPen(Qt::NoPen);
     for (int c = 0; c < columns; ++c) {
         const auto first = static_cast<std::size_t>(std::min(shown * c / columns, count - 1));
         const auto last = static_cast<std::size_t>(std::min(shown * (c + 1) / columns, count - 1));
-        PieceRange column;
-        for (std::size_t i = first; i <= last; ++i) column.take(overview.pieces[i]);
+        Overview::Piece column;
+        for (std::size_t i = first; i <= last; ++i) column.add(overview.pieces[i]);
         if (column.empty) continue;
         const double x = box.left() + c * step;
         const auto fill = [&](double top, double bottom, const QColor& colour) {
@@ -222,7 +201,7 @@ void TimelineTrack::paintEvent(QPaintEvent*) {
         for (const Overview::Interval& contact : view_.overview->contacts) {
             const double from = x_of(contact.from), to = x_of(contact.to);
             painter.fillRect(QRectF(from, box.bottom() - bar, std::max(to - from, 1.0), bar),
-                             qt_colour(pictures::scp_colour));
+                             to_qt(pictures::scp_colour));
         }
     } else if (!view_.live) {
         paint_loaded(painter, box);

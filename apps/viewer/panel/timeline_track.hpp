@@ -15,7 +15,7 @@ class TimelineTrack : public QAbstractSlider {
     Q_OBJECT
 
   public:
-    explicit TimelineTrack(QWidget* parent = nullptr);
+    TimelineTrack();
 
     /// All but the time; emits nothing. True if times or frames are others than before.
     bool set_view(const TimelineView& view);

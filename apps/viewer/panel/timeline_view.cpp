@@ -1,7 +1,6 @@
 // Times, frames and texts of a timeline.
 #include "apps/viewer/panel/timeline_view.hpp"
 
-#include <QCoreApplication>
 #include <algorithm>
 #include <cmath>
 
@@ -13,10 +12,6 @@ double length(const TimelineView& view) {
 }
 
 constexpr double recording_step = 0.01;  // [s]
-
-QString translated(const char* text) {
-    return QCoreApplication::translate("Timeline", text);
-}
 
 /// Digits behind the point that tell one frame from the next, at least two.
 int digits_for(const TimelineView& view) {
@@ -87,24 +82,24 @@ QString text_at(const TimelineView& view, double time) {
     if (view.overview) {
         return clock_text(time - view.begin) + " / " + clock_text(view.end - view.begin);
     }
-    const QString seconds = translated("%1 s").arg(time, 0, 'f', digits_for(view));
-    if (view.live) return translated("%1, live").arg(seconds);
+    const QString seconds = QString("%1 s").arg(time, 0, 'f', digits_for(view));
+    if (view.live) return QString("%1, live").arg(seconds);
     const auto frame = frame_at(view, time);
     if (!frame) return {};
-    return translated("%1, frame %2 of %3").arg(seconds).arg(*frame + 1).arg(view.frames.size());
+    return QString("%1, frame %2 of %3").arg(seconds).arg(*frame + 1).arg(view.frames.size());
 }
 
 QString overview_text_at(const TimelineView& view, double time) {
     const Overview& overview = *view.overview;
-    QString words = translated("%1 s").arg(time - view.begin, 0, 'f', 3);
+    QString words = QString("%1 s").arg(time - view.begin, 0, 'f', 3);
     const auto at = static_cast<std::size_t>((time - view.begin) / overview.width);
     if (overview.pieces.empty()) return words;
     const Overview::Piece& piece = overview.pieces[std::min(at, overview.pieces.size() - 1)];
-    if (!piece.empty) words += translated("\nforce up to %1 N").arg(piece.most_force, 0, 'f', 2);
+    if (!piece.empty) words += QString("\nforce up to %1 N").arg(piece.most_force, 0, 'f', 2);
     if (!piece.empty && piece.least_isovalue <= piece.most_isovalue) {
-        words += translated("\nisovalue %1").arg(piece.most_isovalue, 0, 'g', 6);
+        words += QString("\nisovalue %1").arg(piece.most_isovalue, 0, 'g', 6);
     }
-    if (piece.contact) words += translated("\nin contact");
+    if (piece.contact) words += QString("\nin contact");
     return words;
 }
 

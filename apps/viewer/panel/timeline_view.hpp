@@ -5,23 +5,21 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "apps/viewer/model/playback.hpp"
+#include "palpate/run/player.hpp"
 
 namespace palpate::viewer {
 
-/// All times in seconds.
-struct TimelineView {
-    double begin = 0, end = 0;   ///< of a loop, the end is the begin again
-    std::vector<double> frames;  ///< their times, rising; none in a recording
-    double time = 0;             ///< the present; past the ends it wraps around in a loop
-    double speed = 0;            ///< seconds of it in a second; 0: paused
-    bool loop = false;
-    /// What is in memory; in a loop it may pass the end, or `loaded_to` lies below `loaded_from`.
-    /// NaN: nothing.
-    double loaded_from = 0, loaded_to = 0;
-    bool live = false;                         ///< a live source: it cannot be sought
+/// What is played, and where. In a loop `time` may lie past the ends and wraps around, and the
+/// stretch in memory may pass the end, or `loaded_to` lies below `loaded_from`; NaN: nothing is in
+/// memory. A recording has no frames.
+struct TimelineView : run::PlayState {
+    TimelineView() { loop = false; }
+    explicit TimelineView(run::PlayState play) : run::PlayState(std::move(play)) {}
+
     std::shared_ptr<const Overview> overview;  ///< of a recording; else null
 };
 

@@ -22,7 +22,7 @@ constexpr double radius = 5;       // [logical pixels] of a point
 
 }  // namespace
 
-TransferEditor::TransferEditor(QWidget* parent) : QWidget(parent) {
+TransferEditor::TransferEditor() {
     setObjectName("transfer_editor");
     setFocusPolicy(Qt::StrongFocus);
     setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);

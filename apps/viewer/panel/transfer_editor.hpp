@@ -16,7 +16,7 @@ class TransferEditor : public QWidget {
     Q_OBJECT
 
   public:
-    explicit TransferEditor(QWidget* parent = nullptr);
+    TransferEditor();
 
     void set_data(const run::Histogram& histogram);
     /// Shows a function (one without points: none); emits nothing.

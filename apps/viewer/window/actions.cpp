@@ -32,12 +32,6 @@ QAction* Actions::add(QMenu* menu, const char* name, const QString& text, const 
         std::move(possible));
 }
 
-void Actions::add_repeating(QMenu* menu, const char* name, const QString& text,
-                            const QKeySequence& key, std::function<void()> action,
-                            Condition possible) {
-    add(menu, name, text, key, std::move(action), std::move(possible))->setAutoRepeat(true);
-}
-
 QAction* Actions::find(const char* name) const {
     return window_->findChild<QAction*>(name);
 }

@@ -1,4 +1,4 @@
-// Actions of menus and shortcuts: each says itself when it is possible and whether it is on.
+// Actions of menus and shortcuts, each with the conditions that enable and check it.
 #pragma once
 
 #include <QKeySequence>
@@ -16,26 +16,22 @@ namespace palpate::viewer {
 class Messages;
 
 class Actions : public QObject {
-    Q_OBJECT
-
   public:
     using Condition = std::function<bool()>;
 
     /// Actions are children of `window`. What they throw is shown.
     Actions(QWidget* window, Messages& messages) : window_(window), messages_(messages) {}
 
-    /// `name` is the action's object name. Always possible without a condition.
+    /// `name` is the action's object name. Always possible without a condition. A key that is held
+    /// triggers it once; setAutoRepeat(true) on the result: again and again.
     QAction* add(QMenu* menu, const char* name, const QString& text, const QKeySequence& key,
                  std::function<void()> action, Condition possible = {});
-    /// The same; a key that is held repeats it.
-    void add_repeating(QMenu* menu, const char* name, const QString& text, const QKeySequence& key,
-                       std::function<void()> action, Condition possible = {});
     /// A switch: `action` gets the state that it is switched to.
     QAction* add_switch(QMenu* menu, const char* name, const QString& text, const QKeySequence& key,
                         std::function<void(bool)> action, Condition on, Condition possible = {});
     QAction* find(const char* name) const;
 
-    /// Brings all actions to what is possible and on now.
+    /// Updates which actions are enabled and checked.
     void refresh();
 
   private:

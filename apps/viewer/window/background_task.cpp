@@ -1,44 +1,71 @@
 // Watches a task: its thread wakes the window's thread, which looks how far it is.
 #include "apps/viewer/window/background_task.hpp"
 
-#include <QString>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QProgressBar>
+#include <QPushButton>
 #include <utility>
 
+#include "apps/viewer/panel/layout.hpp"
 #include "apps/viewer/window/messages.hpp"
 
 namespace palpate::viewer {
 
-void BackgroundTask::start(const QString& label, Work::Task task, std::function<void()> then) {
+void BackgroundTask::start(const QString& label, Worker::Task task, std::function<void()> then) {
     abandon();
     then_ = std::move(then);
     Q_EMIT began(label);
-    work_ = std::make_unique<Work>(std::move(task), [this] {
+    worker_ = std::make_unique<Worker>(std::move(task), [this] {
         QMetaObject::invokeMethod(
             this, [this] { look(); }, Qt::QueuedConnection);
     });
 }
 
 void BackgroundTask::look() {
-    if (!work_) return;
-    Q_EMIT progressed(work_->progress());
-    if (!work_->ended()) return;
-    const auto ended_work = std::move(work_);
+    if (!worker_) return;
+    Q_EMIT progressed(worker_->progress());
+    if (!worker_->ended()) return;
+    const auto ended_worker = std::move(worker_);
     const auto then = std::exchange(then_, nullptr);
     Q_EMIT ended();
     messages_.guarded([&] {
-        if (ended_work->finish()) then();
+        if (ended_worker->finish()) then();
     });
 }
 
 void BackgroundTask::cancel() {
-    if (work_) work_->cancel();
+    if (worker_) worker_->cancel();
 }
 
 void BackgroundTask::abandon() {
-    if (!work_) return;
-    work_.reset();
+    if (!worker_) return;
+    worker_.reset();
     then_ = nullptr;
     Q_EMIT ended();
+}
+
+QWidget* make_progress_strip(BackgroundTask& task) {
+    auto* label = new QLabel;
+    auto* bar = new QProgressBar;
+    bar->setRange(0, 100);
+    auto* cancel = named(new QPushButton("Cancel"), "cancel");
+    auto* strip = named(new QWidget, "progress");
+    auto* row = new QHBoxLayout(strip);
+    row->addWidget(label);
+    row->addWidget(bar, 1);
+    row->addWidget(cancel);
+    QObject::connect(cancel, &QPushButton::clicked, &task, &BackgroundTask::cancel);
+    QObject::connect(&task, &BackgroundTask::began, strip, [=](const QString& what) {
+        label->setText(what);
+        bar->setValue(0);
+        strip->show();
+    });
+    QObject::connect(&task, &BackgroundTask::progressed, strip,
+                     [bar](double fraction) { bar->setValue(static_cast<int>(100 * fraction)); });
+    QObject::connect(&task, &BackgroundTask::ended, strip, &QWidget::hide);
+    strip->hide();
+    return strip;
 }
 
 }  // namespace palpate::viewer

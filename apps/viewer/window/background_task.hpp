@@ -6,7 +6,9 @@
 #include <functional>
 #include <memory>
 
-#include "apps/viewer/model/work.hpp"
+#include "apps/viewer/model/worker.hpp"
+
+class QWidget;
 
 namespace palpate::viewer {
 
@@ -19,14 +21,14 @@ class BackgroundTask : public QObject {
   public:
     explicit BackgroundTask(Messages& messages) : messages_(messages) {}
 
-    /// Abandons the task before it. `then` runs on the window's thread once `task` is done, not if
+    /// Abandons the previous task. `then` runs on the window's thread once `task` is done, not if
     /// it was cancelled. What either throws is shown.
-    void start(const QString& label, Work::Task task, std::function<void()> then);
+    void start(const QString& label, Worker::Task task, std::function<void()> then);
     /// The task stops at its next progress.
     void cancel();
     /// Stops the task and waits for its thread.
     void abandon();
-    bool busy() const { return work_ != nullptr; }
+    bool busy() const { return worker_ != nullptr; }
 
   Q_SIGNALS:
     void began(const QString& label);
@@ -39,8 +41,11 @@ class BackgroundTask : public QObject {
     void look();
 
     Messages& messages_;
-    std::unique_ptr<Work> work_;
+    std::unique_ptr<Worker> worker_;
     std::function<void()> then_;
 };
+
+/// Shows the progress of a task, with a button to cancel it; hidden while there is none.
+QWidget* make_progress_strip(BackgroundTask& task);
 
 }  // namespace palpate::viewer

@@ -1,4 +1,4 @@
-// Replaces what is open, and tells the window's controllers.
+// Opens and closes runs and playbacks, and notifies the controllers.
 #include "apps/viewer/window/content.hpp"
 
 #include <utility>

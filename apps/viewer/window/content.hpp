@@ -21,7 +21,7 @@ class Content : public QObject {
     void start_run(std::shared_ptr<Opened> volume, const run::Setup& setup);
     void start_playback(std::shared_ptr<Opened> volume, Playback playback);
     void close();
-    /// As those of run::Run; what they throw leaves the run as it was.
+    /// As run::Run::use_device and use_field. If they throw, the run is unchanged.
     void use_device(const devices::DeviceChoice& device);
     void use_solid(Solid solid);
     /// Ends the run, forces are zero; emits nothing.

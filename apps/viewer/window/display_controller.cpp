@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "apps/viewer/model/transfer.hpp"
+#include "apps/viewer/panel/look_controls.hpp"
 #include "apps/viewer/panel/panel.hpp"
 #include "apps/viewer/scene/scene.hpp"
 #include "apps/viewer/window/content.hpp"
@@ -24,8 +25,7 @@ DisplayController::DisplayController(Content& content, Views& views, Panel& pane
         const io::RecordingHead& head = content_.playback()->head();
         show_volume(content_.playback()->field(), head.isovalue, head.settings.transform);
     });
-    connect(&panel, &Panel::look_changed, this,
-            [this](const Look& look) { views_.set_look(look); });
+    connect(&panel.look_controls(), &LookControls::look_changed, &views, &Views::set_look);
 }
 
 void DisplayController::clear() {
@@ -79,14 +79,14 @@ void DisplayController::hold() {
 }
 
 void DisplayController::set_look(const Look& look) {
-    panel_.set_look(look);
+    panel_.look_controls().set_look(look);
     views_.set_look(look);
 }
 
 void DisplayController::use_usual_look() {
     const Opened& opened = *content_.volume();
     const Volume& volume = opened.loaded.volume;
-    Look look = panel_.look();
+    Look look = panel_.look_controls().look();
     look.transfer = preset(suggested_preset(opened.histogram, volume), opened.histogram, volume);
     set_look(look);
 }
@@ -96,7 +96,7 @@ void DisplayController::look_from_hand(const DeviceTransform& transform) {
 }
 
 void DisplayController::save_view(SessionFile& session) const {
-    session.look = panel_.look();
+    session.look = panel_.look_controls().look();
     session.camera = views_.scene().camera();
     session.crosshair = views_.crosshair();
     session.follow = views_.follows();
@@ -107,7 +107,7 @@ void DisplayController::save_view(SessionFile& session) const {
 
 void DisplayController::restore_view(const SessionFile& session) {
     Look look = session.look;
-    if (look.transfer.points.empty()) look.transfer = panel_.look().transfer;
+    if (look.transfer.points.empty()) look.transfer = panel_.look_controls().look().transfer;
     set_look(look);
     if (session.window_low < session.window_high) {
         views_.set_window(session.window_low, session.window_high);

@@ -1,4 +1,4 @@
-// Brings what is felt or played to the scene, the slices and the look section of the panel.
+// Shows the live run or the playback in the scene, the slices and the look section of the panel.
 #pragma once
 
 #include <QObject>
@@ -14,21 +14,19 @@ class Panel;
 class Views;
 
 class DisplayController : public QObject {
-    Q_OBJECT
-
   public:
     DisplayController(Content& content, Views& views, Panel& panel);
 
     /// Shows the newest snapshot, and its data where they have changed. Returns it.
     std::optional<Snapshot> observe();
-    /// The snapshot shown stays as it is now, for a picture; the live run goes on.
+    /// Freezes the snapshot shown, for a picture; the live run goes on.
     void hold();
     /// The level of the surface in the scene; nothing if no volume is open.
     const std::optional<double>& isovalue() const { return isovalue_; }
     void set_look(const Look& look);
     /// The transfer function that the volume suggests.
     void use_usual_look();
-    /// The whole volume as the person sees it who holds the device.
+    /// The whole volume as seen by the person who holds the device.
     void look_from_hand(const DeviceTransform& transform);
 
     /// Writes to `session` how the volume is shown; shows it as `session` says.

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "apps/viewer/panel/brush_controls.hpp"
 #include "apps/viewer/panel/panel.hpp"
 #include "apps/viewer/window/content.hpp"
 #include "apps/viewer/window/file_dialogs.hpp"
@@ -35,8 +36,8 @@ EditController::EditController(Content& content, Panel& panel, Messages& message
 }
 
 void EditController::show() {
-    panel_.set_edit_reason(
-        content_.player() ? tr("A sequence cannot be edited: open one frame of it (--time-step).")
+    panel_.brush_controls().set_reason(
+        content_.player() ? "A sequence cannot be edited: open one frame of it (--time-step)."
                           : QString());
     use_brush(panel_.brush());
 }
@@ -52,16 +53,17 @@ void EditController::use_brush(const BrushChoice& brush) {
 }
 
 void EditController::undo() {
-    messages_.guarded([&] {
-        run::VolumeEditor* editor = content_.editor();
-        if (editor && !editor->undo()) messages_.show_done(tr("There is nothing to undo"));
-    });
+    step(&run::VolumeEditor::undo, "There is nothing to undo");
 }
 
 void EditController::redo() {
+    step(&run::VolumeEditor::redo, "There is nothing to redo");
+}
+
+void EditController::step(bool (run::VolumeEditor::*take)(), const char* if_none) {
     messages_.guarded([&] {
         run::VolumeEditor* editor = content_.editor();
-        if (editor && !editor->redo()) messages_.show_done(tr("There is nothing to redo"));
+        if (editor && !(editor->*take)()) messages_.show_done(if_none);
     });
 }
 
@@ -69,7 +71,7 @@ void EditController::observe() {
     const run::VolumeEditor* editor = content_.editor();
     if (!editor) return;
     const run::EditState state = editor->state();
-    panel_.set_history(state.undo_steps, state.redo_steps, state.changed);
+    panel_.brush_controls().set_history(state.undo_steps, state.redo_steps, state.changed);
     const QString problem = QString::fromStdString(state.problem);
     if (problem != std::exchange(problem_, problem) && !problem.isEmpty()) {
         messages_.show_done(problem);
@@ -85,7 +87,7 @@ void EditController::ask_save() {
     if (base.startsWith("synthetic:")) base = base.section(':', 1, 1);
     if (base.endsWith("." + suffix, Qt::CaseInsensitive)) base.chop(suffix.size() + 1);
     const QString path =
-        ask_save_name(window_, tr("Save the volume"), base + "-edited." + suffix, suffix);
+        ask_save_name(window_, "Save the volume", base + "-edited." + suffix, suffix);
     if (!path.isEmpty()) save(path);
 }
 
@@ -99,9 +101,9 @@ void EditController::save(const QString& path) {
     }
     const auto samples = field.shared_samples();
     const QString words = QString::fromStdString(io::opening_words(file, field.volume()));
-    messages_.show_done(tr("Saving %1").arg(path));
+    messages_.show_done(QString("Saving %1").arg(path));
     saving_.start(
-        tr("Saving %1").arg(path),
+        QString("Saving %1").arg(path),
         [file, samples, moment = field.moment()](const io::Progress& progress) {
             io::WriteOptions options;
             options.progress = progress;
@@ -109,18 +111,18 @@ void EditController::save(const QString& path) {
         },
         [this, path, words, samples] {
             if (run::VolumeEditor* editor = content_.editor()) editor->set_saved(samples);
-            messages_.show_done(tr("Saved %1").arg(path) + words);
+            messages_.show_done(QString("Saved %1").arg(path) + words);
         });
 }
 
 bool EditController::may_lose_edits() {
     if (saving()) {
-        messages_.show_done(tr("The volume is still being saved"));
+        messages_.show_done("The volume is still being saved");
         return false;
     }
     if (!unsaved()) return true;
-    QMessageBox box(QMessageBox::Question, tr("Palpate"),
-                    tr("The volume was edited, and not saved since. Lose the edits?"),
+    QMessageBox box(QMessageBox::Question, "Palpate",
+                    "The volume was edited, and not saved since. Lose the edits?",
                     QMessageBox::Discard | QMessageBox::Cancel, window_);
     box.setObjectName("lose_edits");
     box.setDefaultButton(QMessageBox::Cancel);

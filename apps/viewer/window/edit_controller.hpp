@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "apps/viewer/window/background_task.hpp"
+#include "palpate/run/volume_editor.hpp"
 #include "palpate/samples.hpp"
 
 class QWidget;
@@ -19,8 +20,6 @@ class Panel;
 struct BrushChoice;
 
 class EditController : public QObject {
-    Q_OBJECT
-
   public:
     /// Dialogs belong to `window`.
     EditController(Content& content, Panel& panel, Messages& messages, QWidget* window);
@@ -45,6 +44,7 @@ class EditController : public QObject {
 
   private:
     void show();
+    void step(bool (run::VolumeEditor::*take)(), const char* if_none);
 
     Content& content_;
     Panel& panel_;
@@ -54,7 +54,7 @@ class EditController : public QObject {
     QString problem_;
 };
 
-/// Writes edits to a file in the folder for temporary files, and tells on standard error where.
+/// Writes edits to a file in the folder for temporary files; prints its name on standard error.
 void rescue_edits(const Samples& samples);
 
 }  // namespace palpate::viewer

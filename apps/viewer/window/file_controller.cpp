@@ -34,14 +34,14 @@ FileController::FileController(Content& content, RunController& run,
 void FileController::load(const run::Source& source, Then then) {
     auto result = std::make_shared<std::shared_ptr<Opened>>();
     loader_.start(
-        tr("Reading %1").arg(short_name(QString::fromStdString(name_of(source)))),
+        QString("Reading %1").arg(short_name(QString::fromStdString(name_of(source)))),
         [result, source](const io::Progress& progress) {
             *result = std::make_shared<Opened>(open(source, progress));
         },
         [result, then = std::move(then)] { then(*result); });
 }
 
-/// As load(), but does not read again what is open already.
+/// As load(), but does not read a volume again that is open already.
 void FileController::load_or_reuse(const run::Source& source, Then then) {
     const std::shared_ptr<Opened> opened = content_.volume();
     if (!opened || run::to_names(opened->loaded.source) != run::to_names(source)) {
@@ -92,7 +92,7 @@ void FileController::open_recording(const QString& path) {
 void FileController::play(std::shared_ptr<Opened> opened, const QString& path) {
     auto result = std::make_shared<std::optional<Playback>>();
     loader_.start(
-        tr("Reading %1").arg(short_name(path)),
+        QString("Reading %1").arg(short_name(path)),
         [result, opened, path](const io::Progress& progress) {
             *result = Playback::read(path_of(path), opened->loaded, progress);
         },
@@ -141,7 +141,7 @@ void FileController::save_session(const QString& path) {
     if (!content_.volume()) return;
     write_session(path.toStdString(), session_now());
     remember_file(path);
-    messages_.show_done(tr("Saved %1").arg(path));
+    messages_.show_done(QString("Saved %1").arg(path));
 }
 
 void FileController::open_session(const QString& path) {
@@ -172,7 +172,7 @@ void FileController::feel_session(std::shared_ptr<Opened> opened, const SessionF
         const QString why = QString::fromStdString(app::failure_of(e).text);
         setup.device = run_.device();
         feel(opened, request);
-        messages_.show_done(tr("%1; felt through the device %2")
+        messages_.show_done(QString("%1; felt through the device %2")
                                 .arg(why, QString::fromStdString(run::text_of(setup.device))));
     }
     display_.use_usual_look();

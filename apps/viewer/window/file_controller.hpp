@@ -6,7 +6,6 @@
 #include <functional>
 #include <memory>
 
-#include "apps/viewer/model/run_request.hpp"
 #include "apps/viewer/model/session_file.hpp"
 #include "apps/viewer/window/background_task.hpp"
 
@@ -17,11 +16,10 @@ class DisplayController;
 class RecordingController;
 class RunController;
 struct Opened;
+struct RunRequest;
 
 /// Errors are shown; what was open then stays open, as long as the new file cannot be read.
 class FileController : public QObject {
-    Q_OBJECT
-
   public:
     FileController(Content& content, RunController& run, RecordingController& recordings,
                    DisplayController& display, Messages& messages);

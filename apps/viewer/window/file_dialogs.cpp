@@ -1,4 +1,4 @@
-// File dialogs, with what they remember from one run to the next.
+// File dialogs; folder and recent files are remembered from one start to the next.
 #include "apps/viewer/window/file_dialogs.hpp"
 
 #include <QDateTime>
@@ -26,15 +26,14 @@ bool is_synthetic(const QString& path) {
 
 QString ask_open_name(QWidget* window) {
     return QFileDialog::getOpenFileName(
-        window, QFileDialog::tr("Open a volume, a session or a recording"), last_folder(),
-        QFileDialog::tr(
-            "All that can be opened (*.nrrd *.nhdr *.mha *.mhd *.nii *.nii.gz *.dcm *.tif *.tiff "
-            "*.vti *.json *.csv);;All files (*)"));
+        window, "Open a volume, a session or a recording", last_folder(),
+
+        "All that can be opened (*.nrrd *.nhdr *.mha *.mhd *.nii *.nii.gz *.dcm *.tif *.tiff "
+        "*.vti *.json *.csv);;All files (*)");
 }
 
 QString ask_open_folder(QWidget* window) {
-    return QFileDialog::getExistingDirectory(window, QFileDialog::tr("Open a folder of slices"),
-                                             last_folder());
+    return QFileDialog::getExistingDirectory(window, "Open a folder of slices", last_folder());
 }
 
 QString ask_save_name(QWidget* window, const QString& title, const QString& name,
@@ -50,8 +49,8 @@ QString ask_save_name(QWidget* window, const QString& title, const QString& name
 }
 
 std::optional<run::Source> ask_open_raw(QWidget* window) {
-    const QString path = QFileDialog::getOpenFileName(
-        window, QFileDialog::tr("Open raw data"), last_folder(), QFileDialog::tr("All files (*)"));
+    const QString path =
+        QFileDialog::getOpenFileName(window, "Open raw data", last_folder(), "All files (*)");
     if (path.isEmpty()) return std::nullopt;
     RawDialog dialog(path, window);
     if (dialog.exec() != QDialog::Accepted) return std::nullopt;

@@ -1,7 +1,8 @@
-// Builds the window, and brings everything in it up to date 60 times a second.
+// Builds the window, and updates it 60 times a second.
 #include "apps/viewer/window/main_window.hpp"
 
 #include <QApplication>
+#include <QBoxLayout>
 #include <QBuffer>
 #include <QCloseEvent>
 #include <QDockWidget>
@@ -12,14 +13,13 @@
 #include <QScrollArea>
 #include <QSettings>
 #include <QStatusBar>
-#include <QVBoxLayout>
 
+#include "apps/viewer/panel/layout.hpp"
 #include "apps/viewer/panel/panel.hpp"
 #include "apps/viewer/panel/timeline.hpp"
 #include "apps/viewer/scene/scene.hpp"
 #include "apps/viewer/window/file_dialogs.hpp"
 #include "apps/viewer/window/menus.hpp"
-#include "apps/viewer/window/progress_strip.hpp"
 #include "apps/viewer/window/views.hpp"
 #include "palpate/io/output.hpp"
 
@@ -27,7 +27,7 @@ namespace palpate::viewer {
 namespace {
 
 constexpr int frame_ms = 16;
-// [frames] How often what changes slowly, or is slow to show, is looked at.
+// [frames] Intervals of updates that change slowly or take long.
 constexpr int panel_rounds = 2, device_rounds = 8, report_rounds = 32;
 constexpr int message_ms = 10'000;
 
@@ -65,32 +65,24 @@ MainWindow::~MainWindow() {
 
 void MainWindow::build() {
     auto* centre = new QWidget;
-    auto* layout = new QVBoxLayout(centre);
-    layout->setContentsMargins(0, 0, 0, 0);
+    auto* layout = column_in(centre, {views_, timeline_});
+    layout->setStretch(0, 1);
     layout->setSpacing(0);
-    layout->addWidget(views_, 1);
-    layout->addWidget(timeline_);
-    auto* progress = new ProgressStrip;
-    layout->addWidget(progress);
+    layout->addWidget(make_progress_strip(files_.loader()));
     setCentralWidget(centre);
-    BackgroundTask& loader = files_.loader();
-    connect(&loader, &BackgroundTask::began, progress, &ProgressStrip::begin);
-    connect(&loader, &BackgroundTask::progressed, progress, &ProgressStrip::at);
-    connect(&loader, &BackgroundTask::ended, progress, &ProgressStrip::end);
-    connect(progress, &ProgressStrip::cancelled, &loader, &BackgroundTask::cancel);
     auto* scroll = new QScrollArea;
     scroll->setWidget(panel_);
     scroll->setWidgetResizable(true);
     scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
     scroll->setMinimumWidth(panel_->minimumSizeHint().width() + 24);
-    auto* dock = new QDockWidget(tr("Feel and look"));
+    auto* dock = new QDockWidget("Feel and look");
     dock->setObjectName("dock");
     dock->setWidget(scroll);
     addDockWidget(Qt::RightDockWidgetArea, dock);
     panel_->clear();
     frame_time_->setObjectName("frames");
     statusBar()->addPermanentWidget(frame_time_);
-    statusBar()->showMessage(tr("Open a volume, or drop one here (Ctrl+O); ? lists the shortcuts"));
+    statusBar()->showMessage("Open a volume, or drop one here (Ctrl+O); ? lists the shortcuts");
 }
 
 void MainWindow::connect_parts() {
@@ -138,7 +130,7 @@ void MainWindow::tick() {
     run_.show_report();
     recordings_.check();
     const double seconds = views_->scene().frame_seconds();
-    frame_time_->setText(seconds > 0 ? tr("%1 ms a frame").arg(1e3 * seconds, 0, 'f', 0)
+    frame_time_->setText(seconds > 0 ? QString("%1 ms a frame").arg(1e3 * seconds, 0, 'f', 0)
                                      : QString());
 }
 
@@ -156,7 +148,7 @@ void MainWindow::save_picture(const QString& path, bool whole_window) {
     io::PendingFile file(path.toStdString());
     file.write({bytes.constData(), static_cast<std::size_t>(bytes.size())});
     file.commit();
-    messages_.show_done(tr("Saved %1").arg(path));
+    messages_.show_done(QString("Saved %1").arg(path));
 }
 
 void MainWindow::end() {

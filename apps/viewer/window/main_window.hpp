@@ -25,16 +25,13 @@ class Timeline;
 class Views;
 
 class MainWindow : public QMainWindow {
-    Q_OBJECT
-
   public:
     /// `request`: the command line's, for the runs to come. Opens
     /// nothing yet.
     explicit MainWindow(const RunRequest& request);
     /// Ends the live run: forces are zero.
     ~MainWindow() override;
-    /// The same, and ends the program. Unsaved edits go to a file in the folder for temporary
-    /// files, which is told on standard error.
+    /// The same, and ends the program. Unsaved edits are rescued: rescue_edits().
     void end();
 
     FileController& files() { return files_; }

@@ -1,4 +1,4 @@
-// Every menu entry with its key, what it does and when it is possible.
+// Every menu entry with its key, its action and the condition that enables it.
 #include "apps/viewer/window/menus.hpp"
 
 #include <QAction>
@@ -8,6 +8,7 @@
 #include <QMenuBar>
 #include <QToolBar>
 
+#include "apps/viewer/panel/brush_controls.hpp"
 #include "apps/viewer/panel/panel.hpp"
 #include "apps/viewer/panel/timeline.hpp"
 #include "apps/viewer/scene/scene.hpp"
@@ -21,10 +22,6 @@
 namespace palpate::viewer {
 namespace {
 
-QString menu_text(const char* text) {
-    return MainWindow::tr(text);
-}
-
 void fill_recent(QMenu& menu, MainWindow& window) {
     menu.clear();
     for (const QString& path : recent_files()) {
@@ -32,7 +29,7 @@ void fill_recent(QMenu& menu, MainWindow& window) {
             if (window.editing().may_lose_edits()) window.files().open_path(path);
         });
     }
-    if (menu.isEmpty()) menu.addAction(menu_text("nothing yet"))->setEnabled(false);
+    if (menu.isEmpty()) menu.addAction("nothing yet")->setEnabled(false);
 }
 
 void add_open_actions(MainWindow& window, Actions& actions, QMenu* menu) {
@@ -43,14 +40,14 @@ void add_open_actions(MainWindow& window, Actions& actions, QMenu* menu) {
             if (!path.isEmpty()) window.files().open_path(path);
         };
     };
-    actions.add(menu, "open", menu_text("&Open…"), QKeySequence::Open, open(ask_open_name));
-    actions.add(menu, "open_folder", menu_text("Open a &folder (DICOM, TIFF)…"),
-                QKeySequence("Ctrl+Shift+O"), open(ask_open_folder));
-    actions.add(menu, "open_raw", menu_text("Open ra&w data…"), {}, [&window] {
+    actions.add(menu, "open", "&Open…", QKeySequence::Open, open(ask_open_name));
+    actions.add(menu, "open_folder", "Open a &folder (DICOM, TIFF)…", QKeySequence("Ctrl+Shift+O"),
+                open(ask_open_folder));
+    actions.add(menu, "open_raw", "Open ra&w data…", {}, [&window] {
         if (!window.editing().may_lose_edits()) return;
         if (const auto options = ask_open_raw(&window)) window.files().open_volume(*options);
     });
-    QMenu* recent = menu->addMenu(menu_text("Open &recent"));
+    QMenu* recent = menu->addMenu("Open &recent");
     recent->setObjectName("recent");
     QObject::connect(recent, &QMenu::aboutToShow, &window,
                      [&window, recent] { fill_recent(*recent, window); });
@@ -59,67 +56,65 @@ void add_open_actions(MainWindow& window, Actions& actions, QMenu* menu) {
 void add_save_actions(MainWindow& window, Actions& actions, QMenu* menu) {
     const auto opened = [&window] { return window.content().volume() != nullptr; };
     actions.add(
-        menu, "save_session", menu_text("&Save the session…"), QKeySequence::Save,
+        menu, "save_session", "&Save the session…", QKeySequence::Save,
         [&window] {
-            const QString path =
-                ask_save_name(&window, menu_text("Save the session"), "session.json", "json");
+            const QString path = ask_save_name(&window, "Save the session", "session.json", "json");
             if (!path.isEmpty()) window.files().save_session(path);
         },
         opened);
     const auto picture = [&window](bool whole_window) {
-        const QString path = ask_save_name(&window, menu_text("Save a picture"),
-                                           "palpate-" + time_stamp() + ".png", "png");
+        const QString path =
+            ask_save_name(&window, "Save a picture", "palpate-" + time_stamp() + ".png", "png");
         if (!path.isEmpty()) window.save_picture(path, whole_window);
     };
     actions.add(
-        menu, "picture", menu_text("&Picture of the scene…"), QKeySequence("Ctrl+P"),
+        menu, "picture", "&Picture of the scene…", QKeySequence("Ctrl+P"),
         [picture] { picture(false); }, opened);
-    actions.add(menu, "window_picture", menu_text("Picture of the &window…"),
-                QKeySequence("Ctrl+Shift+P"), [picture] { picture(true); });
+    actions.add(menu, "window_picture", "Picture of the &window…", QKeySequence("Ctrl+Shift+P"),
+                [picture] { picture(true); });
 }
 
 void make_file_menu(MainWindow& window, Actions& actions) {
-    QMenu* file = window.menuBar()->addMenu(menu_text("&File"));
+    QMenu* file = window.menuBar()->addMenu("&File");
     add_open_actions(window, actions, file);
     file->addSeparator();
     add_save_actions(window, actions, file);
     file->addSeparator();
-    actions.add(file, "quit", menu_text("&Quit"), QKeySequence("Ctrl+Q"),
-                [&window] { window.close(); });
+    actions.add(file, "quit", "&Quit", QKeySequence("Ctrl+Q"), [&window] { window.close(); });
 }
 
 void add_recording_actions(MainWindow& window, Actions& actions, QMenu* menu) {
     const auto record = [&window, &actions](bool on) {
-        actions.refresh();  // the switch shows what is, not what was asked for
+        actions.refresh();  // the switch shows the present state until a name is chosen
         if (!on) return window.recordings().stop();
-        const QString path = ask_save_name(&window, menu_text("Record the session"),
+        const QString path = ask_save_name(&window, "Record the session",
                                            "session-" + time_stamp() + ".csv", "csv", false);
         if (!path.isEmpty()) window.recordings().start(path);
     };
     actions.add_switch(
-        menu, "record", menu_text("&Record…"), QKeySequence("Ctrl+R"), record,
+        menu, "record", "&Record…", QKeySequence("Ctrl+R"), record,
         [&window] { return window.recordings().recording(); },
         [&window] { return window.live() != nullptr; });
     actions.add(
-        menu, "leave_playback", menu_text("Leave the recording, &feel again"), QKeySequence("Esc"),
+        menu, "leave_playback", "Leave the recording, &feel again", QKeySequence("Esc"),
         [&window] { window.files().leave_playback(); },
         [&window] { return window.playback() != nullptr; });
 }
 
 void make_session_menu(MainWindow& window, Actions& actions) {
-    QMenu* menu = window.menuBar()->addMenu(menu_text("&Session"));
+    QMenu* menu = window.menuBar()->addMenu("&Session");
     const auto live = [&window] { return window.live() != nullptr; };
     const auto send = [&window](const Command& command) { window.run().send(command); };
     actions.add_switch(
-        menu, "forces", menu_text("&Forces on"), QKeySequence(Qt::Key_Space),
+        menu, "forces", "&Forces on", QKeySequence(Qt::Key_Space),
         [send](bool on) { send(command::Forces{on}); },
         [&window] { return window.live() && window.live()->settings().forces_on; }, live);
     actions.add_switch(
-        menu, "freeze", menu_text("Free&ze"), QKeySequence("F"),
+        menu, "freeze", "Free&ze", QKeySequence("F"),
         [send](bool on) { send(command::Freeze{on}); },
         [&window] { return window.live() && window.live()->frozen(); }, live);
     actions.add_switch(
-        menu, "clutch", menu_text("&Clutch: the volume follows the hand"), QKeySequence("C"),
+        menu, "clutch", "&Clutch: the volume follows the hand", QKeySequence("C"),
         [send](bool on) { send(command::Clutch{on}); },
         [&window] {
             const auto now = window.live() ? window.live()->snapshot() : std::nullopt;
@@ -127,7 +122,7 @@ void make_session_menu(MainWindow& window, Actions& actions) {
         },
         live);
     actions.add_switch(
-        menu, "pointer", menu_text("&Mouse moves the probe"), QKeySequence("H"),
+        menu, "pointer", "&Mouse moves the probe", QKeySequence("H"),
         [&window](bool on) { window.probe().set_pointing(on); },
         [&window] { return window.probe().pointing(); },
         [&window] { return window.probe().possible(); });
@@ -138,62 +133,65 @@ void make_session_menu(MainWindow& window, Actions& actions) {
     const auto scale = [&window](double factor) {
         return [&window, factor] { window.run().scale_hand(factor); };
     };
-    actions.add_repeating(menu, "level_up", menu_text("Isovalue &up by 1 %"), QKeySequence("+"),
-                          raise(1), live);
-    actions.add_repeating(menu, "level_down", menu_text("Isovalue &down by 1 %"), QKeySequence("-"),
-                          raise(-1), live);
-    actions.add(menu, "coarser", menu_text("Hand &larger in the volume"), QKeySequence("]"),
-                scale(1.1), live);
-    actions.add(menu, "finer", menu_text("Hand &smaller in the volume"), QKeySequence("["),
-                scale(1 / 1.1), live);
+    actions.add(menu, "level_up", "Isovalue &up by 1 %", QKeySequence("+"), raise(1), live)
+        ->setAutoRepeat(true);
+    actions.add(menu, "level_down", "Isovalue &down by 1 %", QKeySequence("-"), raise(-1), live)
+        ->setAutoRepeat(true);
+    actions.add(menu, "coarser", "Hand &larger in the volume", QKeySequence("]"), scale(1.1), live);
+    actions.add(menu, "finer", "Hand &smaller in the volume", QKeySequence("["), scale(1 / 1.1),
+                live);
     menu->addSeparator();
     add_recording_actions(window, actions, menu);
 }
 
 void make_data_menu(MainWindow& window, Actions& actions) {
-    QMenu* menu = window.menuBar()->addMenu(menu_text("&Data"));
+    QMenu* menu = window.menuBar()->addMenu("&Data");
     const auto editable = [&window] { return window.content().editor() != nullptr; };
     const auto playable = [&window] { return window.content().player() || window.playback(); };
     actions.add(
-        menu, "brush_action", menu_text("&Brush at the probe"), QKeySequence("B"),
-        [&window] { window.panel().toggle_brush(); }, editable);
-    actions.add_repeating(
-        menu, "undo_action", menu_text("&Undo"), QKeySequence::Undo,
-        [&window] { window.editing().undo(); }, editable);
-    actions.add_repeating(
-        menu, "redo_action", menu_text("&Redo"), QKeySequence("Ctrl+Shift+Z"),
-        [&window] { window.editing().redo(); }, editable);
+        menu, "brush_action", "&Brush at the probe", QKeySequence("B"),
+        [&window] { window.panel().brush_controls().toggle(); }, editable);
+    actions
+        .add(
+            menu, "undo_action", "&Undo", QKeySequence::Undo,
+            [&window] { window.editing().undo(); }, editable)
+        ->setAutoRepeat(true);
+    actions
+        .add(
+            menu, "redo_action", "&Redo", QKeySequence("Ctrl+Shift+Z"),
+            [&window] { window.editing().redo(); }, editable)
+        ->setAutoRepeat(true);
     actions.add(
-        menu, "save_volume", menu_text("&Save the volume…"), QKeySequence("Ctrl+Shift+S"),
+        menu, "save_volume", "&Save the volume…", QKeySequence("Ctrl+Shift+S"),
         [&window] { window.editing().ask_save(); }, [&window] { return window.live() != nullptr; });
     menu->addSeparator();
     actions.add(
-        menu, "play_sequence", menu_text("&Play the sequence, or pause it"), QKeySequence("K"),
+        menu, "play_sequence", "&Play the sequence, or pause it", QKeySequence("K"),
         [&window] { window.timeline().toggle_playing(); }, playable);
     const auto step = [&window](int frames) {
         return [&window, frames] { window.timeline().step(frames); };
     };
-    actions.add_repeating(menu, "frame_back", menu_text("A frame &back"), QKeySequence(","),
-                          step(-1), playable);
-    actions.add_repeating(menu, "frame_on", menu_text("A frame &on"), QKeySequence("."), step(1),
-                          playable);
+    actions.add(menu, "frame_back", "A frame &back", QKeySequence(","), step(-1), playable)
+        ->setAutoRepeat(true);
+    actions.add(menu, "frame_on", "A frame &on", QKeySequence("."), step(1), playable)
+        ->setAutoRepeat(true);
 }
 
 void add_camera_actions(MainWindow& window, Actions& actions, QMenu* menu) {
     actions.add(
-        menu, "whole", menu_text("&Whole volume"), QKeySequence("R"),
+        menu, "whole", "&Whole volume", QKeySequence("R"),
         [&window] { window.views().scene().reset_camera(); },
         [&window] { return window.content().volume() != nullptr; });
     const auto from_hand = [&window] {
         const auto now = window.live() ? window.live()->snapshot() : std::nullopt;
         if (now) window.display().look_from_hand(now->session.transform);
     };
-    actions.add(menu, "from_hand", menu_text("From the &hand"), QKeySequence("0"), from_hand,
+    actions.add(menu, "from_hand", "From the &hand", QKeySequence("0"), from_hand,
                 [&window] { return window.live() != nullptr; });
     int number = 0;
     for (const std::string& name : pictures::view_names()) {
         actions.add(menu, ("view_" + name).c_str(),
-                    menu_text("From the %1").arg(QString::fromStdString(name)),
+                    QString("From the %1").arg(QString::fromStdString(name)),
                     QKeySequence(QString::number(++number)), [&window, name] {
                         window.views().scene().look_from(pictures::view_named(name));
                     });
@@ -201,31 +199,31 @@ void add_camera_actions(MainWindow& window, Actions& actions, QMenu* menu) {
 }
 
 void make_view_menu(MainWindow& window, Actions& actions) {
-    QMenu* view = window.menuBar()->addMenu(menu_text("&View"));
+    QMenu* view = window.menuBar()->addMenu("&View");
     add_camera_actions(window, actions, view);
     view->addSeparator();
     Views& views = window.views();
     actions.add_switch(
-        view, "slices", menu_text("&Slices beside the scene"), QKeySequence("X"),
+        view, "slices", "&Slices beside the scene", QKeySequence("X"),
         [&views](bool on) { views.show_slices(on); }, [&views] { return views.slices_shown(); });
     QAction* follow = actions.add_switch(
-        view, "follow", menu_text("&Crosshair follows the probe"), QKeySequence("G"),
+        view, "follow", "&Crosshair follows the probe", QKeySequence("G"),
         [&views](bool on) { views.set_follow(on); }, [&views] { return views.follows(); });
     QObject::connect(&views, &Views::follow_changed, follow, &QAction::setChecked);
     auto* dock = window.findChild<QDockWidget*>("dock");
     dock->toggleViewAction()->setShortcut(QKeySequence("F9"));
     view->addAction(dock->toggleViewAction());
     actions.add_switch(
-        view, "full", menu_text("&Full screen"), QKeySequence("F11"),
+        view, "full", "&Full screen", QKeySequence("F11"),
         [&window](bool on) { on ? window.showFullScreen() : window.showNormal(); },
         [&window] { return window.isFullScreen(); });
-    QMenu* menu = view->addMenu(menu_text("&Appearance"));
-    const auto use = [](Appearance appearance) {
-        return [appearance] { set_appearance(appearance); };
+    QMenu* menu = view->addMenu("&Appearance");
+    const auto add = [&](const char* name, const QString& text, Appearance appearance) {
+        actions.add(menu, name, text, {}, [appearance] { set_appearance(appearance); });
     };
-    actions.add(menu, "system", menu_text("As the &system"), {}, use(Appearance::system));
-    actions.add(menu, "light", menu_text("&Light"), {}, use(Appearance::light));
-    actions.add(menu, "dark", menu_text("&Dark"), {}, use(Appearance::dark));
+    add("system", "As the &system", Appearance::system);
+    add("light", "&Light", Appearance::light);
+    add("dark", "&Dark", Appearance::dark);
 }
 
 }  // namespace
@@ -235,12 +233,12 @@ void make_menus(MainWindow& window, Actions& actions) {
     make_session_menu(window, actions);
     make_data_menu(window, actions);
     make_view_menu(window, actions);
-    QMenu* help = window.menuBar()->addMenu(menu_text("&Help"));
+    QMenu* help = window.menuBar()->addMenu("&Help");
     actions
-        .add(help, "shortcuts_action", menu_text("&Shortcuts"), QKeySequence("?"),
+        .add(help, "shortcuts_action", "&Shortcuts", QKeySequence("?"),
              [&window] { make_shortcuts_dialog(&window)->show(); })
         ->setShortcuts({QKeySequence("?"), QKeySequence("Shift+?"), QKeySequence::HelpContents});
-    QToolBar* bar = window.addToolBar(menu_text("Tools"));
+    QToolBar* bar = window.addToolBar("Tools");
     bar->setObjectName("tools");
     for (const char* name :
          {"open", "forces", "freeze", "record", "pointer", "whole", "from_hand"}) {

@@ -21,12 +21,11 @@ void Messages::show_problem(const QString& what, int status) {
     problem_ = what;
     problem_status_ = status;
     std::fprintf(stderr, "palpate: %s\n", what.toLocal8Bit().constData());
-    auto* box =
-        new QMessageBox(QMessageBox::Warning, tr("Palpate"), what, QMessageBox::Ok, window_);
+    auto* box = new QMessageBox(QMessageBox::Warning, "Palpate", what, QMessageBox::Ok, window_);
     box->setObjectName("problem");
     box->setTextInteractionFlags(Qt::TextSelectableByMouse);
     box->setAttribute(Qt::WA_DeleteOnClose);
-    box->open();  // the live run goes on behind it
+    box->open();  // does not block the live run
 }
 
 }  // namespace palpate::viewer

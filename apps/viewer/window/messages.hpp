@@ -1,5 +1,4 @@
-// Tells the user what went wrong, in a dialog and on standard error, and what was done, as a line
-// for the status bar.
+// Messages for the user: problems in a dialog and on standard error, results in the status bar.
 #pragma once
 
 #include <QObject>

@@ -1,5 +1,8 @@
-// The clock of a recording that is played: where it is, how fast it goes, whether it loops.
+// The clock of a recording that is played: its time, its speed, whether it loops.
 #pragma once
+
+#include <algorithm>
+#include <cmath>
 
 namespace palpate::viewer {
 
@@ -13,12 +16,25 @@ class PlaybackClock {
     double speed() const { return speed_; }
     bool loop() const { return loop_; }
     /// Seconds of the recording in a second; 0: pause. At the end it begins again.
-    void play(double speed);
+    void play(double speed) {
+        if (speed_ == 0 && speed != 0 && time_ >= end_) time_ = begin_;
+        speed_ = speed;
+    }
     /// Goes to a time; outside the recording, to its ends.
-    void seek(double time);
+    void seek(double time) { time_ = std::clamp(std::isnan(time) ? begin_ : time, begin_, end_); }
     void set_loop(bool loop) { loop_ = loop; }
     /// `seconds` have passed. At the end it pauses, unless it loops.
-    void advance(double seconds);
+    void advance(double seconds) {
+        const double to = time_ + speed_ * seconds, length = end_ - begin_;
+        if (to < end_ || speed_ == 0) {
+            time_ = to;
+        } else if (loop_ && length > 0) {
+            time_ = begin_ + std::fmod(to - begin_, length);
+        } else {
+            time_ = end_;
+            speed_ = 0;
+        }
+    }
 
   private:
     double begin_ = 0, end_ = 0, time_ = 0, speed_ = 0;

@@ -33,8 +33,8 @@ void ProbeController::set_pointing(bool probe) {
     if (!pointing_) return;
     views_.scene().setFocus();
     messages_.show_done(
-        tr("Drag to move the probe, turn the wheel to push it in; the right button turns the "
-           "view"));
+        "Drag to move the probe, turn the wheel to push it in; the right button turns the "
+        "view");
 }
 
 void ProbeController::move_by(const Vec3& by) {
@@ -66,17 +66,17 @@ void ProbeController::add_keys() {
         Vec3 step;
     };
     const Key keys[] = {
-        {tr("Nudge the probe to the left"), Qt::Key_Left, {-1, 0, 0}},
-        {tr("Nudge the probe to the right"), Qt::Key_Right, {1, 0, 0}},
-        {tr("Nudge the probe up"), Qt::Key_Up, {0, 1, 0}},
-        {tr("Nudge the probe down"), Qt::Key_Down, {0, -1, 0}},
-        {tr("Nudge the probe into the depth"), Qt::Key_PageUp, {0, 0, -1}},
-        {tr("Nudge the probe towards you"), Qt::Key_PageDown, {0, 0, 1}},
+        {"Nudge the probe to the left", Qt::Key_Left, {-1, 0, 0}},
+        {"Nudge the probe to the right", Qt::Key_Right, {1, 0, 0}},
+        {"Nudge the probe up", Qt::Key_Up, {0, 1, 0}},
+        {"Nudge the probe down", Qt::Key_Down, {0, -1, 0}},
+        {"Nudge the probe into the depth", Qt::Key_PageUp, {0, 0, -1}},
+        {"Nudge the probe towards you", Qt::Key_PageDown, {0, 0, 1}},
     };
     // Only where the scene has the focus: elsewhere arrows belong to sliders, numbers and slices.
     for (const Key& key : keys) {
         for (const bool far : {false, true}) {
-            auto* action = new QAction(far ? key.text + tr(" by ten voxels") : key.text, &views_);
+            auto* action = new QAction(far ? key.text + " by ten voxels" : key.text, &views_);
             action->setShortcut(QKeySequence(key.key + (far ? int(Qt::ShiftModifier) : 0)));
             action->setShortcutContext(Qt::WidgetShortcut);
             const Vec3 step = (far ? 10 : 1) * key.step;

@@ -6,25 +6,13 @@
 #include <QDoubleSpinBox>
 #include <QFileInfo>
 #include <QFormLayout>
-#include <QHBoxLayout>
 #include <QLabel>
 #include <QPushButton>
 #include <limits>
 
+#include "apps/viewer/panel/layout.hpp"
+
 namespace palpate::viewer {
-namespace {
-
-template <class Spin>
-QWidget* row_of(const std::array<Spin*, 3>& spins) {
-    auto* row = new QWidget;
-    auto* layout = new QHBoxLayout(row);
-    layout->setContentsMargins(0, 0, 0, 0);
-    for (Spin* spin : spins) layout->addWidget(spin);
-    return row;
-}
-
-}  // namespace
-
 RawDialog::RawDialog(const QString& path, QWidget* parent)
     : QDialog(parent),
       path_(path),
@@ -34,7 +22,7 @@ RawDialog::RawDialog(const QString& path, QWidget* parent)
       skip_(new QSpinBox),
       verdict_(new QLabel) {
     setObjectName("raw");
-    setWindowTitle(tr("Raw data: %1").arg(QFileInfo(path).fileName()));
+    setWindowTitle(QString("Raw data: %1").arg(QFileInfo(path).fileName()));
     const auto changed = [this] { judge(); };
     for (std::size_t a = 0; a < 3; ++a) {
         size_[a]->setRange(1, 65535);
@@ -54,10 +42,10 @@ RawDialog::RawDialog(const QString& path, QWidget* parent)
     connect(buttons, &QDialogButtonBox::accepted, this, &QDialog::accept);
     connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);
     auto* form = new QFormLayout(this);
-    form->addRow(tr("Samples (x runs fastest)"), row_of(size_));
-    form->addRow(tr("Sample type (little-endian)"), type_);
-    form->addRow(tr("Spacing [mm]"), row_of(spacing_));
-    form->addRow(tr("Bytes of header to skip"), skip_);
+    form->addRow("Samples (x runs fastest)", row_of({size_[0], size_[1], size_[2]}));
+    form->addRow("Sample type (little-endian)", type_);
+    form->addRow("Spacing [mm]", row_of({spacing_[0], spacing_[1], spacing_[2]}));
+    form->addRow("Bytes of header to skip", skip_);
     verdict_->setWordWrap(true);
     form->addRow(verdict_);
     form->addRow(buttons);
@@ -72,12 +60,12 @@ void RawDialog::judge() {
     const bool packed = path_.endsWith(".gz", Qt::CaseInsensitive);
     const auto have = static_cast<double>(QFileInfo(path_).size());
     accept_->setEnabled(packed || bytes <= have);
-    verdict_->setText(packed
-                          ? tr("These samples take %L1 bytes once unpacked.").arg(bytes, 0, 'f', 0)
-                      : bytes == have ? tr("These samples are just what the file holds.")
-                                      : tr("The file holds %L1 bytes, these samples take %L2.")
-                                            .arg(have, 0, 'f', 0)
-                                            .arg(bytes, 0, 'f', 0));
+    verdict_->setText(
+        packed ? QString("These samples take %L1 bytes once unpacked.").arg(bytes, 0, 'f', 0)
+        : bytes == have ? "These samples are just what the file holds."
+                        : QString("The file holds %L1 bytes, these samples take %L2.")
+                              .arg(have, 0, 'f', 0)
+                              .arg(bytes, 0, 'f', 0));
 }
 
 run::Source RawDialog::source() const {

@@ -1,4 +1,4 @@
-// What a file without a header holds, asked of the person who opens it.
+// A dialog that asks for the layout of a raw file: size, type, spacing, header to skip.
 #pragma once
 
 #include <QDialog>
@@ -13,10 +13,8 @@ class QSpinBox;
 
 namespace palpate::viewer {
 
-/// Tells while one types whether the file is long enough.
+/// Shows at every change whether the file is long enough.
 class RawDialog : public QDialog {
-    Q_OBJECT
-
   public:
     explicit RawDialog(const QString& path, QWidget* parent = nullptr);
     run::Source source() const;

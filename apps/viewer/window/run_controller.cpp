@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "apps/viewer/panel/device_controls.hpp"
 #include "apps/viewer/panel/panel.hpp"
 #include "apps/viewer/window/content.hpp"
 #include "apps/viewer/window/messages.hpp"
@@ -15,7 +16,8 @@ RunController::RunController(const RunRequest& request, Content& content, Panel&
     connect(&content, &Content::run_changed, this, &RunController::show_settings);
     connect(&panel, &Panel::asked, this, &RunController::send);
     connect(&panel, &Panel::device_chosen, this, &RunController::use_device);
-    connect(&panel, &Panel::devices_wanted, this, &RunController::find_devices);
+    connect(&panel.device_controls(), &DeviceControls::refresh_wanted, this,
+            &RunController::find_devices);
     connect(&panel, &Panel::solid_chosen, this, &RunController::use_solid);
     since_report_.start();
 }
@@ -29,8 +31,8 @@ RunRequest RunController::take_request() {
 
 void RunController::start(std::shared_ptr<Opened> volume, const run::Setup& setup) {
     content_.start_run(std::move(volume), setup);
-    QString words =
-        tr("Felt through the device %1").arg(QString::fromStdString(run::text_of(setup.device)));
+    QString words = QString("Felt through the device %1")
+                        .arg(QString::fromStdString(run::text_of(setup.device)));
     for (const std::string& sentence : content_.live()->privileges()) {
         words += "; " + QString::fromStdString(sentence);
     }
@@ -42,9 +44,8 @@ void RunController::start(std::shared_ptr<Opened> volume, const run::Setup& setu
 void RunController::send(const Command& command) {
     run::Run* live = content_.live();
     if (!live) {
-        panel_.show_refused(content_.playback()
-                                ? tr("A recording is played: nothing here changes it.")
-                                : tr("There is no volume to feel."));
+        panel_.show_refused(content_.playback() ? "A recording is played: nothing here changes it."
+                                                : "There is no volume to feel.");
         return;
     }
     try {
@@ -80,8 +81,7 @@ void RunController::find_devices() {
     if (search_.busy()) return;
     auto found = std::make_shared<std::vector<devices::DeviceFinding>>();
     search_.start(
-        tr("Looking for devices"),
-        [found](const io::Progress&) { *found = devices::find_devices(); },
+        "Looking for devices", [found](const io::Progress&) { *found = devices::find_devices(); },
         [this, found] {
             findings_ = *found;
             show_devices();
@@ -91,7 +91,7 @@ void RunController::find_devices() {
 void RunController::show_devices() {
     const devices::DeviceChoice& current =
         content_.live() ? content_.live()->setup().device : request_.setup.device;
-    panel_.set_devices(findings_, QString::fromStdString(run::text_of(current)));
+    panel_.device_controls().set_devices(findings_, QString::fromStdString(run::text_of(current)));
     status_.reset();
 }
 
@@ -108,7 +108,8 @@ void RunController::use_device(const QString& option) {
             const std::int64_t ticks = live->recording() ? live->recording()->ticks() : 0;
             content_.use_device(device);
             if (ticks > 0) {
-                messages_.show_done(tr("%1 ticks recorded, up to the other device").arg(ticks));
+                messages_.show_done(
+                    QString("%1 ticks recorded, up to the other device").arg(ticks));
             }
             Q_EMIT device_changed();
         }

@@ -8,9 +8,9 @@
 #include <optional>
 #include <vector>
 
-#include "apps/viewer/model/run_request.hpp"
 #include "apps/viewer/window/background_task.hpp"
 #include "palpate/devices/devices.hpp"
+#include "palpate/run/setup.hpp"
 #include "palpate/servo.hpp"
 
 namespace palpate::viewer {
@@ -19,6 +19,14 @@ class Content;
 class Messages;
 class Panel;
 struct Opened;
+
+/// Settings from the command line for the runs to come.
+struct RunRequest {
+    run::Setup setup;
+    /// The device of the command line: used instead of the one in a session file.
+    std::optional<devices::DeviceChoice> device;
+    std::string record;  ///< recording to write; empty: none
+};
 
 class RunController : public QObject {
     Q_OBJECT
@@ -36,9 +44,9 @@ class RunController : public QObject {
     /// Feels the volume. Throws as Content::start_run.
     void start(std::shared_ptr<Opened> volume, const run::Setup& setup);
 
-    /// What cannot be carried out is said in the panel.
+    /// A command that cannot be carried out is refused in the panel.
     void send(const Command& command);
-    /// Sends what can be sent of these; the panel shows what has become of them.
+    /// Sends those of the settings for which there are commands; the panel shows the result.
     void restore(const RendererSettings& settings);
     /// By so many percent of the data's range.
     void raise_isovalue(double percent);

@@ -2,7 +2,6 @@
 #include "apps/viewer/window/screenshot.hpp"
 
 #include <cstdio>
-#include <stdexcept>
 
 #include "apps/options/exit_status.hpp"
 #include "apps/viewer/window/main_window.hpp"
@@ -11,7 +10,7 @@ namespace palpate::viewer {
 namespace {
 
 constexpr int look_ms = 50;
-/// How many looks in a row must find nothing under way.
+/// How many checks in a row must find nothing in progress.
 constexpr int quiet_looks = 6;
 
 }  // namespace
@@ -41,7 +40,7 @@ bool Screenshot::reached() {
 
 void Screenshot::look() {
     if (!window_.messages().problem().isEmpty()) {
-        status_ = window_.messages().problem_status();  // the window has told why
+        status_ = window_.messages().problem_status();  // the window has shown why
         window_.close();
         return;
     }
@@ -56,18 +55,6 @@ void Screenshot::look() {
         status_ = failure.status;
     }
     window_.close();
-}
-
-QSize window_size(const std::string& text) {
-    if (text.empty()) return {};
-    int width = 0, height = 0, end = 0;
-    const bool read = std::sscanf(text.c_str(), "%dx%d%n", &width, &height, &end) == 2;
-    if (!read || end != static_cast<int>(text.size()) || width < 320 || height < 240 ||
-        width > 16384 || height > 16384) {
-        throw std::invalid_argument("--window " + text +
-                                    ": WIDTHxHEIGHT in pixels, as in 1280x800, is meant");
-    }
-    return {width, height};
 }
 
 }  // namespace palpate::viewer

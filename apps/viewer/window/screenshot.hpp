@@ -2,7 +2,6 @@
 #pragma once
 
 #include <QObject>
-#include <QSize>
 #include <QTimer>
 #include <string>
 
@@ -10,11 +9,9 @@ namespace palpate::viewer {
 
 class MainWindow;
 
-/// Waits until the session or recording has come to its time and the window has settled, writes the
+/// Waits until the run or recording has reached the time and the window has settled, writes the
 /// picture and closes the window.
 class Screenshot : public QObject {
-    Q_OBJECT
-
   public:
     /// `after` [s] of the session; of a recording, from its beginning.
     Screenshot(MainWindow& window, const QString& path, double after);
@@ -32,8 +29,5 @@ class Screenshot : public QObject {
     int quiet_ = 0, status_ = 0;
     QTimer timer_;
 };
-
-/// "1280x800" as a size; not valid for an empty text. Throws std::invalid_argument for another.
-QSize window_size(const std::string& text);
 
 }  // namespace palpate::viewer

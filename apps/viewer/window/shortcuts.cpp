@@ -16,20 +16,16 @@ QString row(const QString& keys, const QString& what) {
 }
 
 QString mouse_table() {
-    return "<h3>" + QDialog::tr("Mouse in the scene") + "</h3><table>" +
-           row(QDialog::tr("Left drag"), QDialog::tr("turn; with the mouse as device: move the "
-                                                     "probe in the plane of the view")) +
-           row(QDialog::tr("Wheel"), QDialog::tr("zoom; with the mouse as device: probe into the "
-                                                 "depth (Shift: finely; Ctrl: zoom)")) +
-           row(QDialog::tr("Right drag"),
-               QDialog::tr("zoom; with the mouse as device: turn (Shift or middle: pan)")) +
-           row(QDialog::tr("Double click"), QDialog::tr("centre there")) + "</table><h3>" +
-           QDialog::tr("Mouse in a slice") + "</h3><table>" +
-           row(QDialog::tr("Left"), QDialog::tr("crosshair; with the mouse as device: the probe "
-                                                "(Ctrl: crosshair)")) +
-           row(QDialog::tr("Wheel"), QDialog::tr("next slice (Ctrl: zoom)")) +
-           row(QDialog::tr("Right drag"), QDialog::tr("window and level")) +
-           row(QDialog::tr("Middle drag"), QDialog::tr("pan; double click resets")) + "</table>";
+    return "<h3>Mouse in the scene</h3><table>" +
+           row("Left drag",
+               "turn; with the mouse as device: move the probe in the plane of the view") +
+           row("Wheel",
+               "zoom; with the mouse as device: probe into the depth (Shift: finely; Ctrl: zoom)") +
+           row("Right drag", "zoom; with the mouse as device: turn (Shift or middle: pan)") +
+           row("Double click", "centre there") + "</table><h3>Mouse in a slice</h3><table>" +
+           row("Left", "crosshair; with the mouse as device: the probe (Ctrl: crosshair)") +
+           row("Wheel", "next slice (Ctrl: zoom)") + row("Right drag", "window and level") +
+           row("Middle drag", "pan; double click resets") + "</table>";
 }
 
 }  // namespace
@@ -38,8 +34,8 @@ QDialog* make_shortcuts_dialog(QWidget* window) {
     auto* dialog = new QDialog(window);
     dialog->setAttribute(Qt::WA_DeleteOnClose);
     dialog->setObjectName("shortcuts");
-    dialog->setWindowTitle(QDialog::tr("Shortcuts"));
-    QString text = "<h3>" + QDialog::tr("Keys") + "</h3><table>";
+    dialog->setWindowTitle("Shortcuts");
+    QString text = "<h3>Keys</h3><table>";
     for (const QAction* action : window->findChildren<QAction*>()) {
         if (action->shortcut().isEmpty()) continue;
         text += row(action->shortcut().toString(QKeySequence::NativeText),

@@ -1,5 +1,4 @@
-// What the user asks of the timeline goes to the player or the clock; where they are, to the
-// timeline.
+// Passes requests of the timeline to the player or the clock, and their state to the timeline.
 #include "apps/viewer/window/timeline_controller.hpp"
 
 #include <utility>
@@ -9,24 +8,6 @@
 #include "apps/viewer/window/messages.hpp"
 
 namespace palpate::viewer {
-namespace {
-
-TimelineView view_of(const run::PlayState& play) {
-    TimelineView view;
-    view.begin = play.begin;
-    view.end = play.end;
-    view.frames = play.frames;
-    view.time = play.time;
-    view.speed = play.speed;
-    view.loop = play.loop;
-    view.loaded_from = play.loaded_from;
-    view.loaded_to = play.loaded_to;
-    view.live = play.live;
-    return view;
-}
-
-}  // namespace
-
 TimelineController::TimelineController(Content& content, Timeline& timeline, Messages& messages)
     : content_(content), timeline_(timeline), messages_(messages) {
     connect_timeline();
@@ -61,7 +42,7 @@ void TimelineController::connect_timeline() {
 }
 
 TimelineView TimelineController::view() const {
-    if (const run::Player* player = content_.player()) return view_of(player->state());
+    if (const run::Player* player = content_.player()) return TimelineView(player->state());
     TimelineView view;
     if (const Playback* playback = content_.playback()) {
         view.begin = playback->begin();

@@ -9,10 +9,6 @@
 
 #include "apps/viewer/window/playback_clock.hpp"
 
-namespace palpate::app {
-class Player;
-}
-
 namespace palpate::viewer {
 
 class Content;
@@ -22,8 +18,6 @@ struct Overview;
 struct TimelineView;
 
 class TimelineController : public QObject {
-    Q_OBJECT
-
   public:
     TimelineController(Content& content, Timeline& timeline, Messages& messages);
 
@@ -31,7 +25,7 @@ class TimelineController : public QObject {
     void show_time(double time);
     /// Lets the recording go on by the time that has passed. Before a snapshot is shown.
     void advance();
-    /// Brings the timeline to the present; tells of frames that are missing.
+    /// Updates the timeline; reports missing frames.
     void observe();
 
   private:

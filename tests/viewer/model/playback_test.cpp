@@ -172,7 +172,7 @@ TEST(Playback, a_recording_that_was_cut_off_is_played_up_to_there) {
     expect_same(playback.at(1e9), recorded.ticks[playback.ticks() - 1]);
 }
 
-TEST(Playback, ticks_that_did_not_come_out_as_recorded_are_counted) {
+TEST(Playback, ticks_that_replay_differently_are_counted) {
     const Recorded recorded(500);
     std::string text = support::bytes_of(recorded.path);
     // The end of the last tick's line: another hand, another proxy.
@@ -199,7 +199,7 @@ TEST(Playback, times_that_stand_still_or_go_back_have_no_place_on_the_line) {
     EXPECT_EQ(playback.end(), 0.298);
 }
 
-TEST(Playback, what_cannot_be_played_is_an_input_error_that_names_the_file) {
+TEST(Playback, a_file_that_cannot_be_played_is_an_input_error_with_its_name) {
     const Recorded recorded(50);
     const std::string text = support::bytes_of(recorded.path);
     const auto words = [&](const std::string& bytes) {

@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "apps/viewer/model/playback.hpp"
-#include "apps/viewer/model/work.hpp"
+#include "apps/viewer/model/worker.hpp"
 #include "palpate/run/run.hpp"
 #include "palpate/surface.hpp"
 #include "support/eventually.hpp"
@@ -68,12 +68,12 @@ TEST(RunData, a_brush_works_while_all_others_look_record_and_save) {
         ChangingRun s("synthetic:sphere:32x32x32");
         s.live.record(folder / "r.csv");
         run::VolumeEditor& editor = s.live.data().editor();
-        std::unique_ptr<Work> saving;
+        std::unique_ptr<Worker> saving;
         with_observers(s.live, [&] {
             editor.set_brush(run::HandBrush{.radius = 2, .rate = 20});
             ASSERT_TRUE(comes_true([&] { return editor.state().version > 30; }));
             const auto samples = s.live.field_now().shared_samples();
-            saving = std::make_unique<Work>(
+            saving = std::make_unique<Worker>(
                 [&, samples](const io::Progress&) {
                     io::WriteOptions options;
                     options.helper = PALPATE_IO_HELPER_PROGRAM;

@@ -148,7 +148,7 @@ TEST(SessionFile, a_volume_below_its_folder_moves_with_it_and_others_stay_where_
     EXPECT_EQ(volume_of("elsewhere.nrrd"), std::filesystem::absolute("elsewhere.nrrd"));
 }
 
-TEST(SessionFile, what_is_wrong_is_said_in_one_line_with_file_and_member) {
+TEST(SessionFile, an_error_is_one_line_with_file_and_member) {
     const ScratchFolder folder;
     write_session(folder / "good.json", some_session());
     const Json good = Json::parse(bytes_of(folder / "good.json"));
@@ -193,7 +193,7 @@ TEST(SessionFile, what_is_wrong_is_said_in_one_line_with_file_and_member) {
     names("/follow", 1, "'follow'");
 }
 
-TEST(SessionFile, files_that_are_no_sessions_are_told_so) {
+TEST(SessionFile, files_that_are_no_sessions_are_refused) {
     const ScratchFolder folder;
     const auto words = [&](const std::string& text) {
         put_bytes(folder / "s.json", text);
@@ -208,7 +208,7 @@ TEST(SessionFile, files_that_are_no_sessions_are_told_so) {
     EXPECT_THROW(read_session(folder.path()), io::InputError);
 }
 
-TEST(SessionFile, however_it_is_damaged_it_is_read_or_refused_but_does_no_harm) {
+TEST(SessionFile, a_damaged_file_is_read_or_refused_without_harm) {
     const ScratchFolder folder;
     write_session(folder / "s.json", some_session());
     const std::string good = bytes_of(folder / "s.json");
@@ -253,7 +253,7 @@ TEST(SessionFile, however_it_is_damaged_it_is_read_or_refused_but_does_no_harm) 
     EXPECT_GT(read, 0);
 }
 
-TEST(SessionFile, what_cannot_be_kept_is_refused_before_anything_is_written) {
+TEST(SessionFile, invalid_values_are_refused_before_anything_is_written) {
     const ScratchFolder folder;
     put_bytes(folder / "s.json", "mine");
     const auto refused = [&](const auto& change) {

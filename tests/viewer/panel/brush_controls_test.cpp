@@ -40,7 +40,7 @@ class Brushes : public PanelFixture {
     std::vector<BrushChoice> choices;
 };
 
-TEST_F(Brushes, each_control_changes_its_part_of_the_choice_and_says_so_once) {
+TEST_F(Brushes, each_control_changes_its_part_of_the_choice_and_emits_once) {
     const BrushChoice start{BrushKind::add, 4, 0.5, 20, 900.0, false};
     struct Case {
         const char* name;
@@ -76,14 +76,14 @@ TEST_F(Brushes, each_control_changes_its_part_of_the_choice_and_says_so_once) {
     }
 }
 
-TEST_F(Brushes, setters_show_and_tell_nobody) {
+TEST_F(Brushes, setters_show_and_emit_nothing) {
     set();
     QSignalSpy undo(&panel, &Panel::undo_asked), redo(&panel, &Panel::redo_asked),
         save(&panel, &Panel::save_asked);
     panel.set_brush({BrushKind::smooth, 7, 0.3, 12, 100.0, true});
-    panel.set_history(3, 1, true);
-    panel.set_edit_reason("A sequence cannot be edited.");
-    panel.set_edit_reason({});
+    panel.brush_controls().set_history(3, 1, true);
+    panel.brush_controls().set_reason("A sequence cannot be edited.");
+    panel.brush_controls().set_reason({});
     EXPECT_TRUE(find<QToolButton>("brush_smooth")->isChecked());
     EXPECT_TRUE(find<QPushButton>("brush")->isChecked());
     EXPECT_EQ(find<NumberBox>("brush_radius_box")->value(), 7);
@@ -99,7 +99,7 @@ TEST_F(Brushes, setters_show_and_tell_nobody) {
     EXPECT_TRUE(commands.empty());
 }
 
-TEST_F(Brushes, a_kind_that_is_chosen_already_is_not_told_again) {
+TEST_F(Brushes, choosing_the_same_kind_again_emits_nothing) {
     edit({.kind = BrushKind::smooth});
     press("brush_smooth");
     EXPECT_TRUE(chosen().empty());
@@ -139,7 +139,7 @@ TEST_F(Brushes, the_radius_goes_from_a_voxel_to_a_quarter_of_the_grid_by_factors
     EXPECT_EQ(panel.brush(), asked.back());
 }
 
-TEST_F(Brushes, what_is_out_of_range_is_refused_with_the_reason_and_nothing_told) {
+TEST_F(Brushes, values_out_of_range_are_refused_with_the_reason) {
     const BrushChoice start{BrushKind::carve, 4, 0.5, 20, {}, false};
     edit(start);
     type("brush_radius_box", "500");
@@ -214,7 +214,7 @@ TEST_F(Brushes, undo_redo_and_save_ask_once_a_press_and_say_how_many_steps_there
     press("redo");
     EXPECT_EQ(undo.count() + redo.count(), 0) << "there is nothing to undo";
     EXPECT_EQ(find<QLabel>("edit_state")->text(), "Nothing was edited");
-    panel.set_history(12, 1, true);
+    panel.brush_controls().set_history(12, 1, true);
     EXPECT_EQ(find<QPushButton>("undo")->text(), "Undo (12)");
     EXPECT_EQ(find<QPushButton>("redo")->accessibleName(), "Redo, one step");
     EXPECT_EQ(find<QLabel>("edit_state")->text(), "There are edits that are not saved");
@@ -227,15 +227,15 @@ TEST_F(Brushes, undo_redo_and_save_ask_once_a_press_and_say_how_many_steps_there
     press("save_edits");
     EXPECT_EQ(save.count(), 1);
     EXPECT_EQ(undo.count(), 1);
-    panel.set_history(12, 1, false);
+    panel.brush_controls().set_history(12, 1, false);
     EXPECT_EQ(find<QLabel>("edit_state")->text(), "Nothing is left to save");
     EXPECT_TRUE(chosen().empty());
 }
 
 TEST_F(Brushes, a_sequence_cannot_be_edited_and_it_says_why) {
     edit({.on = true});
-    panel.set_history(2, 0, true);
-    panel.set_edit_reason("A sequence cannot be edited: open one frame of it.");
+    panel.brush_controls().set_history(2, 0, true);
+    panel.brush_controls().set_reason("A sequence cannot be edited: open one frame of it.");
     auto* why = find<QLabel>("brush_reason");
     EXPECT_EQ(why->text(), "A sequence cannot be edited: open one frame of it.");
     EXPECT_TRUE(why->isVisible());
@@ -245,16 +245,16 @@ TEST_F(Brushes, a_sequence_cannot_be_edited_and_it_says_why) {
     }
     EXPECT_FALSE(find<QPushButton>("brush")->isChecked());
     press("brush");
-    panel.toggle_brush();
+    panel.brush_controls().toggle();
     EXPECT_TRUE(chosen().empty());
-    panel.set_edit_reason({});
+    panel.brush_controls().set_reason({});
     EXPECT_FALSE(why->isVisible());
     EXPECT_TRUE(find<QPushButton>("brush")->isChecked()) << "as it was chosen";
 }
 
 TEST_F(Brushes, another_volume_begins_with_the_brush_off_and_a_radius_that_fits) {
     edit({BrushKind::carve, 7, 0.5, 20, -800.0, true});
-    panel.set_history(2, 1, true);
+    panel.brush_controls().set_history(2, 1, true);
     Geometry small;
     small.size = {12, 12, 12};
     const Field other(Volume(small, std::vector<std::uint8_t>(12 * 12 * 12, 9)));
@@ -275,24 +275,24 @@ TEST_F(Brushes, a_refused_choice_goes_back_and_says_why) {
     EXPECT_FALSE(find<QPushButton>("brush")->isChecked());
     EXPECT_EQ(message("edit_part"), "nothing to edit here");
     refuse_with.clear();
-    panel.toggle_brush();
+    panel.brush_controls().toggle();
     EXPECT_TRUE(panel.brush().on);
     EXPECT_EQ(message("edit_part"), "");
     EXPECT_EQ(chosen().size(), 2U);
 }
 
 TEST_F(Brushes, without_a_volume_or_while_looking_at_a_recording_nothing_can_be_edited) {
-    panel.toggle_brush();
+    panel.brush_controls().toggle();
     edit();
     panel.set_observing(true);
     press("brush");
-    panel.toggle_brush();
+    panel.brush_controls().toggle();
     panel.clear();
-    panel.toggle_brush();
+    panel.brush_controls().toggle();
     EXPECT_TRUE(chosen().empty());
 }
 
-TEST_F(Brushes, pictures_light_and_dark) {
+TEST_F(Brushes, are_drawn_in_light_and_dark) {
     const QPalette usual = QApplication::palette();
     const auto picture = [&](const QString& name) {
         settle();
@@ -302,13 +302,14 @@ TEST_F(Brushes, pictures_light_and_dark) {
         EXPECT_TRUE(image.save(QString(PALPATE_PICTURES) + "/" + name + scale + ".png"));
     };
     edit({.kind = BrushKind::add, .rate = 20, .on = true});
-    panel.set_history(12, 1, true);
+    panel.brush_controls().set_history(12, 1, true);
     picture("brush_light");
     QPalette dark(QColor(58, 58, 62), QColor(45, 45, 48));
     dark.setColor(QPalette::Base, QColor(28, 28, 30));
     QApplication::setPalette(dark);
     picture("brush_dark");
-    panel.set_edit_reason("A sequence cannot be edited: open one frame of it by its time step.");
+    panel.brush_controls().set_reason(
+        "A sequence cannot be edited: open one frame of it by its time step.");
     picture("brush_reason_dark");
     QApplication::setPalette(usual);
 }

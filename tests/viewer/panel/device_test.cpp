@@ -31,7 +31,7 @@ class Devices : public PanelFixture {
 
 TEST_F(Devices, the_device_in_use_is_shown_with_its_options) {
     set();
-    panel.set_devices(findings, "simulated:seed=7,depth=3");
+    panel.device_controls().set_devices(findings, "simulated:seed=7,depth=3");
     EXPECT_TRUE(picker()->currentText().startsWith("simulated"));
     EXPECT_EQ(find<QLineEdit>("device_options")->text(), "seed=7,depth=3");
     EXPECT_TRUE(chosen.empty());
@@ -39,7 +39,7 @@ TEST_F(Devices, the_device_in_use_is_shown_with_its_options) {
 
 TEST_F(Devices, connecting_asks_for_name_and_options) {
     set();
-    panel.set_devices(findings, "simulated");
+    panel.device_controls().set_devices(findings, "simulated");
     picker()->setFocus();
     QTest::keyClick(picker(), Qt::Key_Down);
     press("connect_device");
@@ -51,9 +51,9 @@ TEST_F(Devices, connecting_asks_for_name_and_options) {
     EXPECT_EQ(chosen, (QStringList{"mouse", "mouse:speed=300"}));
 }
 
-TEST_F(Devices, what_was_not_found_says_why_but_can_be_tried_elsewhere) {
+TEST_F(Devices, a_device_that_was_not_found_says_why_and_can_be_tried_elsewhere) {
     set();
-    panel.set_devices(findings, "simulated");
+    panel.device_controls().set_devices(findings, "simulated");
     const int haply = picker()->findText("haply", Qt::MatchStartsWith);
     ASSERT_GE(haply, 0);
     EXPECT_EQ(picker()->itemData(haply, Qt::ToolTipRole).toString(),
@@ -70,26 +70,26 @@ TEST_F(Devices, what_was_not_found_says_why_but_can_be_tried_elsewhere) {
 
 TEST_F(Devices, simulated_and_mouse_are_always_there) {
     set();
-    panel.set_devices({}, "");
+    panel.device_controls().set_devices({}, "");
     EXPECT_GE(picker()->findText("simulated", Qt::MatchStartsWith), 0);
     EXPECT_GE(picker()->findText("mouse", Qt::MatchStartsWith), 0);
-    panel.set_devices(findings, "mouse");
+    panel.device_controls().set_devices(findings, "mouse");
     EXPECT_EQ(picker()->count(), 3);
     EXPECT_TRUE(picker()->currentText().startsWith("mouse"));
 }
 
-TEST_F(Devices, options_that_are_none_are_refused_here) {
+TEST_F(Devices, invalid_options_are_refused_in_the_panel) {
     set();
-    panel.set_devices(findings, "mouse");
+    panel.device_controls().set_devices(findings, "mouse");
     QTest::keyClicks(find<QLineEdit>("device_options"), "speed=1,speed=2");
     press("connect_device");
     EXPECT_TRUE(chosen.empty());
     EXPECT_TRUE(message("device_part").contains("speed"));
 }
 
-TEST_F(Devices, a_device_that_cannot_be_had_leaves_the_old_one) {
+TEST_F(Devices, an_unavailable_device_leaves_the_old_one) {
     set();
-    panel.set_devices(findings, "simulated:seed=7");
+    panel.device_controls().set_devices(findings, "simulated:seed=7");
     picker()->setFocus();
     QTest::keyClick(picker(), Qt::Key_Down);
     refuse_with = "the mouse is gone";
@@ -100,14 +100,14 @@ TEST_F(Devices, a_device_that_cannot_be_had_leaves_the_old_one) {
     EXPECT_EQ(message("device_part"), "the mouse is gone");
 }
 
-TEST_F(Devices, looking_again_is_asked_for) {
+TEST_F(Devices, the_button_requests_a_new_search) {
     set();
-    QSignalSpy wanted(&panel, &Panel::devices_wanted);
+    QSignalSpy wanted(&panel.device_controls(), &DeviceControls::refresh_wanted);
     press("refresh_devices");
     EXPECT_EQ(wanted.count(), 1);
 }
 
-TEST_F(Devices, state_is_told_in_words_with_what_to_do) {
+TEST_F(Devices, the_device_state_is_shown_with_what_to_do) {
     set();
     DeviceInfo info = desktop_device();
     info.name = "haply";
@@ -131,7 +131,7 @@ TEST_F(Devices, state_is_told_in_words_with_what_to_do) {
     EXPECT_EQ(find<QLabel>("device_state")->text(), "connection lost");
 }
 
-TEST_F(Devices, the_scale_of_the_hand_is_asked_for_and_followed) {
+TEST_F(Devices, the_scale_of_the_hand_is_requested_and_followed) {
     set();
     type("scale", "2.5");
     ASSERT_EQ(of<command::Scale>().size(), 1U);
@@ -148,7 +148,7 @@ TEST_F(Devices, the_scale_of_the_hand_is_asked_for_and_followed) {
     EXPECT_EQ(of<command::Scale>().size(), 1U);
 }
 
-TEST_F(Devices, the_loops_figures_are_told_with_their_units) {
+TEST_F(Devices, the_loops_figures_are_shown_with_their_units) {
     set();
     ServoReport report;
     report.ticks = 5000;

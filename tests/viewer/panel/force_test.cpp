@@ -109,7 +109,7 @@ TEST_F(Forces, every_slider_end_can_be_rendered) {
     }
 }
 
-TEST_F(Forces, what_cannot_be_rendered_is_refused_with_the_reason_and_nothing_asked_for) {
+TEST_F(Forces, settings_that_cannot_be_rendered_are_refused_with_the_reason) {
     set(unusual());
     type("stiffness_box", "50");
     EXPECT_TRUE(message("force_part").contains("to be rendered stably"));
@@ -188,7 +188,7 @@ TEST_F(Forces, the_gauge_ends_at_the_devices_limit_where_that_is_less) {
     EXPECT_EQ(find<ForceGauge>("force_gauge")->limit(), 3.3);
 }
 
-TEST_F(Forces, the_pull_is_told_in_millimetres_of_hand_and_volume) {
+TEST_F(Forces, the_pull_is_shown_in_millimetres_of_hand_and_volume) {
     set();
     Snapshot now;
     now.session.tick.proxy.mode = Mode::constrained;
@@ -202,7 +202,7 @@ TEST_F(Forces, the_pull_is_told_in_millimetres_of_hand_and_volume) {
     EXPECT_TRUE(text.startsWith("In contact"));
 }
 
-TEST_F(Forces, switches_ask_for_the_opposite_and_show_what_snapshots_tell) {
+TEST_F(Forces, switches_request_the_opposite_and_show_the_state_in_snapshots) {
     set();
     auto* forces = find<QPushButton>("forces");
     EXPECT_TRUE(forces->isChecked());
@@ -219,11 +219,11 @@ TEST_F(Forces, switches_ask_for_the_opposite_and_show_what_snapshots_tell) {
     now.forces_on = true;  // somebody else switched them on
     panel.show_snapshot(now);
     EXPECT_TRUE(forces->isChecked());
-    panel.toggle_forces();
+    press("forces");
     EXPECT_EQ(of<command::Forces>().size(), 2U);
 }
 
-TEST_F(Forces, a_switch_that_is_never_obeyed_goes_back) {
+TEST_F(Forces, a_switch_without_effect_goes_back) {
     set();
     press("freeze");
     EXPECT_TRUE(of<command::Freeze>().back().on);

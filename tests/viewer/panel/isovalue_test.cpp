@@ -39,21 +39,22 @@ class Isovalue : public PanelFixture {
     }
 };
 
-TEST_F(Isovalue, a_session_is_shown_and_nothing_is_asked_for) {
+TEST_F(Isovalue, a_session_is_shown_and_nothing_is_emitted) {
     RendererSettings settings;
     settings.force.stiffness = 0.7;
     const DensityRange ranges[] = {{-400, 150}, {700, 1500}};
     settings.penetrability = penetrability_ranges(1.5, ranges);
     int looks = 0;
-    QObject::connect(&panel, &Panel::look_changed, [&](const Look&) { ++looks; });
+    QObject::connect(&panel.look_controls(), &LookControls::look_changed,
+                     [&](const Look&) { ++looks; });
     QSignalSpy device(&panel, &Panel::device_chosen);
     int sides = 0;
     QObject::connect(&panel, &Panel::solid_chosen, [&](Solid) { ++sides; });
     set(settings, 412.5);
     set(settings, 300, Solid::below);
     set({}, 412.5);
-    panel.set_look({});
-    panel.set_devices({}, "mouse");
+    panel.look_controls().set_look({});
+    panel.device_controls().set_devices({}, "mouse");
     panel.show_snapshot({});
     settle();
     EXPECT_TRUE(commands.empty());
@@ -74,7 +75,7 @@ TEST_F(Isovalue, dragging_the_line_asks_for_the_levels_under_the_pointer) {
     EXPECT_EQ(find<NumberBox>("isovalue_box")->value(), asked.back());
 }
 
-TEST_F(Isovalue, the_first_of_a_drag_goes_out_at_once_and_the_last_always) {
+TEST_F(Isovalue, the_first_level_of_a_drag_is_emitted_at_once_and_the_last_always) {
     set();
     drag(chart(), over(0), over(100), Qt::NoModifier, false);
     ASSERT_FALSE(commands.empty());  // without waiting
@@ -98,7 +99,7 @@ TEST(RateLimiter, passes_the_first_at_once_then_the_newest_and_forgets_what_is_d
     EXPECT_EQ(passed, (std::vector{0, 99}));
 }
 
-TEST(RateLimiter, what_is_held_back_comes_by_itself) {
+TEST(RateLimiter, a_held_request_passes_after_the_interval) {
     RateLimiter limiter(nullptr, 5);
     int passed = -1;
     for (int i = 0; i < 10; ++i) limiter.put([&passed, i] { passed = i; });
@@ -143,7 +144,7 @@ TEST_F(Isovalue, the_slider_covers_the_data_and_follows) {
                 1e-3);
 }
 
-TEST_F(Isovalue, a_typed_number_is_asked_for_as_it_is_also_beyond_the_data) {
+TEST_F(Isovalue, a_typed_number_is_requested_as_it_is_even_outside_the_data) {
     set();
     type("isovalue_box", "123.4567891");
     EXPECT_EQ(levels(), (std::vector<double>{123.4567891}));
@@ -156,7 +157,7 @@ TEST_F(Isovalue, a_typed_number_is_asked_for_as_it_is_also_beyond_the_data) {
     EXPECT_TRUE(find<QLabel>("isovalue_warning")->text().contains("nothing to feel"));
 }
 
-TEST_F(Isovalue, nonsense_is_not_taken) {
+TEST_F(Isovalue, a_text_that_is_no_number_is_not_accepted) {
     set();
     type("isovalue_box", "hello");
     type("isovalue_box", "-");
@@ -165,7 +166,7 @@ TEST_F(Isovalue, nonsense_is_not_taken) {
     EXPECT_EQ(find<NumberBox>("isovalue_box")->value(), 300);
 }
 
-TEST_F(Isovalue, random_numbers_survive_the_way_through_the_box) {
+TEST_F(Isovalue, random_numbers_come_back_from_the_box_unchanged) {
     set();
     std::mt19937_64 random(11);
     auto* box = find<NumberBox>("isovalue_box");
@@ -195,7 +196,7 @@ TEST_F(Isovalue, a_refused_level_goes_back_and_says_why) {
     EXPECT_EQ(panel.isovalue(), 800);
 }
 
-TEST_F(Isovalue, what_is_felt_is_a_second_marker_while_it_differs) {
+TEST_F(Isovalue, the_level_felt_is_a_second_marker_while_it_differs) {
     set();
     Snapshot now;
     now.session.tick.proxy.isovalue = 300;
@@ -212,7 +213,7 @@ TEST_F(Isovalue, what_is_felt_is_a_second_marker_while_it_differs) {
     EXPECT_EQ(find<QLabel>("felt")->text(), "felt inf");
 }
 
-TEST_F(Isovalue, the_other_side_is_asked_for_once) {
+TEST_F(Isovalue, choosing_the_other_side_is_emitted_once) {
     set();
     std::vector<Solid> chosen;
     QObject::connect(&panel, &Panel::solid_chosen, [&](Solid solid) { chosen.push_back(solid); });

@@ -99,7 +99,7 @@ TEST_F(WithLive, random_requests_by_mouse_and_keys_are_all_carried_out) {
     expect_agreement();
 }
 
-TEST_F(WithLive, what_is_switched_shows_in_the_sessions_own_snapshots) {
+TEST_F(WithLive, switches_show_in_the_sessions_own_snapshots) {
     press("forces");
     type("stiffness_box", "0.25");
     type("scale", "3");

@@ -14,6 +14,9 @@
 #include <random>
 #include <vector>
 
+#include "apps/viewer/panel/brush_controls.hpp"
+#include "apps/viewer/panel/device_controls.hpp"
+#include "apps/viewer/panel/look_controls.hpp"
 #include "apps/viewer/panel/panel.hpp"
 
 namespace palpate::viewer {

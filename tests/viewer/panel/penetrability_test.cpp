@@ -184,7 +184,7 @@ TEST_F(Pressing, where_below_is_solid_ranges_go_out_in_falling_order) {
     EXPECT_NO_THROW(check(last(), Solid::below));
 }
 
-TEST_F(Pressing, nonsense_is_refused_with_nothing_asked_for) {
+TEST_F(Pressing, invalid_settings_are_refused_and_emit_nothing) {
     set_ranges({{-400, 100}, {700, 1500}});
     type_cell(0, 0, "skin");
     EXPECT_TRUE(message("penetrability_part").contains("not a number"));
@@ -252,7 +252,7 @@ TEST_F(Pressing, a_refusal_shows_the_old_ranges_again) {
     EXPECT_TRUE(of<command::Isovalue>().empty());
 }
 
-TEST(PressThrough, settings_survive_the_way_through_the_panel) {
+TEST(PressThrough, settings_come_back_from_the_panel_unchanged) {
     std::mt19937_64 random(4);
     std::uniform_real_distribution<double> level(-1000, 1000);
     for (int round = 0; round < 2000; ++round) {

@@ -44,8 +44,8 @@ class Pictures : public PanelFixture {
         set(settings, 300, solid);
         Look look;
         look.transfer = preset("CT bone", histogram, field->volume());
-        panel.set_look(look);
-        panel.set_devices(
+        panel.look_controls().set_look(look);
+        panel.device_controls().set_devices(
             {{"simulated", true, "a haptic device and its hand, computed", "", "seed=1"},
              {"mouse", true, "pointer and keys", "", "speed=600 [mm/s]"},
              {"haply", false, "", "no Inverse Service at localhost:10001", "port=10001"}},
@@ -85,18 +85,18 @@ class Pictures : public PanelFixture {
     QPalette usual_;
 };
 
-TEST_F(Pictures, light) {
+TEST_F(Pictures, show_a_session_in_light_colours) {
     full();
     picture("panel_light");
 }
 
-TEST_F(Pictures, dark) {
+TEST_F(Pictures, show_a_session_in_dark_colours) {
     QApplication::setPalette(dark_palette());
     full();
     picture("panel_dark");
 }
 
-TEST_F(Pictures, narrow_with_a_threshold_and_refusals) {
+TEST_F(Pictures, show_a_narrow_panel_with_a_threshold_and_refusals) {
     full();
     press("penetrability_threshold");
     type("stiffness_box", "99");
@@ -122,7 +122,7 @@ TEST_F(Pictures, real_volumes_get_a_preset_that_shows_something) {
         look.volume = true;
         look.transfer =
             preset(suggested_preset(histogram, field->volume()), histogram, field->volume());
-        panel.set_look(look);
+        panel.look_controls().set_look(look);
         // Air is clear, the brightest is not.
         EXPECT_EQ(sampled(look.transfer, field->volume().minimum()).opacity, 0);
         EXPECT_GT(sampled(look.transfer, field->volume().maximum()).opacity, 0.3);
@@ -130,7 +130,7 @@ TEST_F(Pictures, real_volumes_get_a_preset_that_shows_something) {
     }
 }
 
-TEST_F(Pictures, without_a_volume) {
+TEST_F(Pictures, show_a_panel_without_a_volume) {
     picture("panel_empty");
 }
 

@@ -77,7 +77,7 @@ class ATimeline : public testing::Test {
     Timeline bar;
 };
 
-TEST_F(ATimeline, views_are_shown_and_tell_nobody) {
+TEST_F(ATimeline, views_are_shown_and_emit_nothing) {
     EXPECT_EQ(text(), "1.70 s, frame 3 of 6");
     TimelineView view = six();
     view.time = 1.6;
@@ -239,7 +239,7 @@ TEST_F(ATimeline, keys_go_by_frames_by_tenths_and_to_the_ends) {
     EXPECT_EQ(times.size(), 5U);
 }
 
-TEST_F(ATimeline, loop_and_return_on_a_button_are_told_once) {
+TEST_F(ATimeline, loop_and_return_on_a_button_are_emitted_once) {
     auto* loop = find<QCheckBox>("timeline_loop");
     loop->setFocus();
     QTest::keyClick(loop, Qt::Key_Space);
@@ -450,7 +450,7 @@ TEST_F(ATimeline, tab_goes_from_left_to_right_and_every_control_has_a_name_and_a
     EXPECT_EQ(visited, 6);
 }
 
-TEST_F(ATimeline, pictures_light_dark_and_live) {
+TEST_F(ATimeline, is_drawn_in_light_and_dark_and_live) {
     TimelineView view = six();
     view.loop = true;
     view.loaded_from = 3.2;

@@ -76,7 +76,7 @@ TEST_F(ChangingData, a_window_with_unsaved_edits_asks_before_it_closes) {
     EXPECT_TRUE(window_->close());
 }
 
-TEST_F(ChangingData, a_signal_ends_it_without_a_question_and_the_edits_are_kept) {
+TEST_F(ChangingData, a_signal_ends_it_without_a_question_and_rescues_the_edits) {
     feel("synthetic:sphere:48x48x48");
     carve();
     const auto carved = work().samples;

@@ -14,7 +14,7 @@ using Failures = InWindow;
 
 constexpr const char* sphere = "synthetic:sphere:40x40x40";
 
-TEST_F(Failures, a_device_that_cannot_be_had_is_told_wherever_it_is_asked_for) {
+TEST_F(Failures, an_unavailable_device_is_reported_wherever_it_is_requested) {
     feel(sphere);
     window_->recordings().start(scratch("a.csv"));
     ASSERT_TRUE(wait_until([&] { return window_->live()->recording()->ticks() > 50; }));
@@ -94,7 +94,7 @@ TEST_F(Failures, looking_for_devices_again_changes_neither_pointer_nor_device) {
     ASSERT_TRUE(pointer->isChecked());
     QTest::keyClick(window_.get(), Qt::Key_H);
     ASSERT_FALSE(pointer->isChecked());
-    Q_EMIT window_->panel().devices_wanted();
+    Q_EMIT window_->panel().device_controls().refresh_wanted();
     QTest::qWait(1500);
     EXPECT_FALSE(pointer->isChecked());
     EXPECT_NE(window_->live()->mouse(), nullptr);
@@ -107,7 +107,7 @@ TEST_F(Failures, a_key_that_is_held_switches_once) {
     EXPECT_TRUE(window_->findChild<QAction*>("level_up")->autoRepeat());
 }
 
-TEST_F(Failures, words_can_be_read_in_light_and_dark) {
+TEST_F(Failures, text_is_readable_in_light_and_dark) {
     const auto contrast = [](QPalette::ColorRole text, QPalette::ColorRole ground) {
         const QPalette palette = QApplication::palette();
         return std::abs(palette.color(text).lightness() - palette.color(ground).lightness());
@@ -125,7 +125,7 @@ TEST_F(Failures, words_can_be_read_in_light_and_dark) {
     }
 }
 
-TEST_F(Failures, the_servo_ends_before_what_takes_long_when_the_window_goes) {
+TEST_F(Failures, the_servo_ends_first_when_the_window_is_destroyed) {
     feel(sphere);
     window_->files().open_volume(run::source_named("synthetic:marschner-lobb:260x260x260"));
     QTest::qWait(50);

@@ -131,7 +131,7 @@ TEST_F(Window, a_session_is_recorded_and_played_back_with_the_timeline) {
     EXPECT_FALSE(window_->timeline().isVisible());
 }
 
-TEST_F(Window, what_cannot_be_opened_is_told_and_the_session_goes_on) {
+TEST_F(Window, a_file_that_cannot_be_opened_is_reported_and_the_session_continues) {
     feel(sphere);
     const run::Run* live = window_->live();
     window_->files().open_path(scratch("missing.nrrd"));
@@ -154,9 +154,9 @@ TEST_F(Window, a_session_file_brings_back_what_was_set) {
     Q_EMIT window_->panel().asked(force);
     Q_EMIT window_->panel().asked(command::Isovalue{100});
     window_->views().scene().look_from(pictures::view_named("left"));
-    Look look = window_->panel().look();
+    Look look = window_->panel().look_controls().look();
     look.surface_opacity = 0.5;
-    window_->panel().set_look(look);
+    window_->panel().look_controls().set_look(look);
     const pictures::Camera camera = window_->views().scene().camera();
     window_->files().save_session(scratch("day.json"));
     feel("synthetic:torus:32x32x16");
@@ -166,7 +166,7 @@ TEST_F(Window, a_session_file_brings_back_what_was_set) {
     })) << window_->messages().problem().toStdString();
     EXPECT_EQ(window_->live()->settings().force.stiffness, 0.31);
     EXPECT_EQ(window_->live()->isovalue(), 100);
-    EXPECT_EQ(window_->panel().look().surface_opacity, 0.5);
+    EXPECT_EQ(window_->panel().look_controls().look().surface_opacity, 0.5);
     EXPECT_LT((window_->views().scene().camera().towards_viewer - camera.towards_viewer).norm(),
               1e-9);
 }

@@ -11,6 +11,7 @@
 #include <QUrl>
 #include <fstream>
 
+#include "apps/options/view_options.hpp"
 #include "apps/viewer/window/raw_dialog.hpp"
 #include "apps/viewer/window/screenshot.hpp"
 #include "viewer/window/window_fixture.hpp"
@@ -146,10 +147,13 @@ TEST_F(Files, a_slice_puts_the_probe_where_it_is_clicked) {
 }
 
 TEST(WindowSize, is_read_or_refused) {
-    EXPECT_EQ(window_size("1280x800"), QSize(1280, 800));
-    EXPECT_FALSE(window_size("").isValid());
+    app::ViewOptions options;
+    EXPECT_FALSE(options.window_size());
+    options.size = "1280x800";
+    EXPECT_EQ(options.window_size(), (std::array{1280, 800}));
     for (const char* wrong : {"1280", "1280x", "x800", "1280x800x3", "10x10", "big"}) {
-        EXPECT_THROW((void)window_size(wrong), std::invalid_argument) << wrong;
+        options.size = wrong;
+        EXPECT_THROW((void)options.window_size(), std::invalid_argument) << wrong;
     }
 }
 

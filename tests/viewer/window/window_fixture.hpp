@@ -15,6 +15,9 @@
 #include <functional>
 #include <memory>
 
+#include "apps/viewer/panel/brush_controls.hpp"
+#include "apps/viewer/panel/device_controls.hpp"
+#include "apps/viewer/panel/look_controls.hpp"
 #include "apps/viewer/panel/panel.hpp"
 #include "apps/viewer/panel/timeline.hpp"
 #include "apps/viewer/scene/scene.hpp"

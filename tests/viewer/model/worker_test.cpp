@@ -1,5 +1,5 @@
-// Work in the background.
-#include "apps/viewer/model/work.hpp"
+// Tasks on a thread of their own.
+#include "apps/viewer/model/worker.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,28 +12,28 @@ namespace {
 
 using namespace std::chrono_literals;
 
-void wait_for(const Work& work) {
-    for (int i = 0; i < 20'000 && !work.ended(); ++i) std::this_thread::sleep_for(1ms);
-    ASSERT_TRUE(work.ended());
+void wait_for(const Worker& worker) {
+    for (int i = 0; i < 20'000 && !worker.ended(); ++i) std::this_thread::sleep_for(1ms);
+    ASSERT_TRUE(worker.ended());
 }
 
-TEST(Work, result_is_there_once_it_has_ended) {
+TEST(Worker, result_is_there_once_it_has_ended) {
     int result = 0;
-    Work work([&](const io::Progress&) { result = 7; }, [] {});
-    wait_for(work);
-    EXPECT_TRUE(work.finish());
+    Worker worker([&](const io::Progress&) { result = 7; }, [] {});
+    wait_for(worker);
+    EXPECT_TRUE(worker.finish());
     EXPECT_EQ(result, 7);
 }
 
-TEST(Work, what_the_task_throws_comes_out_of_finish) {
-    Work work([](const io::Progress&) { throw std::runtime_error("no such file"); }, [] {});
-    wait_for(work);
-    EXPECT_THROW((void)work.finish(), std::runtime_error);
+TEST(Worker, what_the_task_throws_comes_out_of_finish) {
+    Worker worker([](const io::Progress&) { throw std::runtime_error("no such file"); }, [] {});
+    wait_for(worker);
+    EXPECT_THROW((void)worker.finish(), std::runtime_error);
 }
 
-TEST(Work, cancelled_work_stops_at_its_next_progress_and_is_not_done) {
+TEST(Worker, a_cancelled_task_stops_at_its_next_progress_and_is_not_done) {
     std::atomic<bool> begun{false};
-    Work work(
+    Worker worker(
         [&](const io::Progress& progress) {
             for (;;) {
                 begun = true;
@@ -43,30 +43,30 @@ TEST(Work, cancelled_work_stops_at_its_next_progress_and_is_not_done) {
         },
         [] {});
     while (!begun) std::this_thread::sleep_for(1ms);
-    work.cancel();
-    wait_for(work);
-    EXPECT_FALSE(work.finish());
+    worker.cancel();
+    wait_for(worker);
+    EXPECT_FALSE(worker.finish());
 }
 
-TEST(Work, owner_is_woken_for_each_percent_at_most_and_at_the_end) {
+TEST(Worker, owner_is_woken_for_each_percent_at_most_and_at_the_end) {
     std::atomic<int> woken{0};
-    Work work(
+    Worker worker(
         [](const io::Progress& progress) {
             for (int i = 0; i <= 100'000; ++i) progress(i / 100'000.0);
         },
         [&] { ++woken; });
-    wait_for(work);
-    EXPECT_EQ(work.progress(), 1);
+    wait_for(worker);
+    EXPECT_EQ(worker.progress(), 1);
     // The last wake comes after ended() is seen.
     for (int i = 0; i < 1000 && woken < 50; ++i) std::this_thread::sleep_for(1ms);
     EXPECT_GE(woken, 50);
     EXPECT_LE(woken, 105);
 }
 
-TEST(Work, destroying_it_gives_the_work_up) {
+TEST(Worker, destroying_it_cancels_the_task) {
     std::atomic<int> turns{0};
     {
-        const Work work(
+        const Worker worker(
             [&](const io::Progress& progress) {
                 for (;; ++turns) {
                     progress(0);

@@ -1,0 +1,35 @@
+// Short ways to build what the sections of the panel have in common: named widgets, rows, columns
+// and form rows, without margins.
+#pragma once
+
+#include <QFormLayout>
+#include <QWidget>
+
+#include <initializer_list>
+
+class QBoxLayout;
+
+namespace palpate::viewer {
+
+/// Sets object name and tooltip; returns the widget.
+template <class Widget>
+Widget* named(Widget* widget, const QString& name, const QString& tip = {}) {
+    widget->setObjectName(name);
+    widget->setToolTip(tip);
+    return widget;
+}
+
+/// Lays widgets out in `owner`, side by side or one below the other. More can be added.
+QBoxLayout* row_in(QWidget* owner, std::initializer_list<QWidget*> widgets = {});
+QBoxLayout* column_in(QWidget* owner, std::initializer_list<QWidget*> widgets = {});
+/// A widget that holds these side by side.
+QWidget* row_of(std::initializer_list<QWidget*> widgets);
+/// A row of a form, whose label has the tip, too, and is the field's name for screen readers.
+void add_row(QFormLayout& form, const QString& label, QWidget* field, const QString& tip);
+
+void make_bold(QWidget& widget, bool bold = true);
+/// Return presses the buttons in `parent` that are there now: the space bar is the window's, for
+/// the forces.
+void let_return_press_buttons(QWidget& parent);
+
+}  // namespace palpate::viewer
