@@ -7,7 +7,6 @@
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
-#include <vtkPolyDataNormals.h>
 #include <vtkTubeFilter.h>
 #include <vtkTypeInt32Array.h>
 
@@ -45,34 +44,38 @@ vtkSmartPointer<vtkPolyData> polyline(const std::vector<Vec3>& path, double leas
     return data;
 }
 
-/// The head of an arrow: a cone turned round its axis.
+/// The head of an arrow.
 vtkSmartPointer<vtkPolyData> cone(const Vec3& base, const Vec3& tip, double radius) {
     constexpr int sides = 32;
     const Vec3 axis = (tip - base).normalized();
     const Vec3 u = axis.unitOrthogonal(), v = axis.cross(u);
     vtkNew<vtkPoints> points;
-    vtkNew<vtkCellArray> triangles;
-    points->InsertNextPoint(tip.data());
-    points->InsertNextPoint(base.data());
-    for (int i = 0; i < sides; ++i) {
-        const double angle = 2 * std::numbers::pi * i / sides;
-        points->InsertNextPoint(
-            Vec3(base + radius * (std::cos(angle) * u + std::sin(angle) * v)).data());
+    vtkNew<vtkFloatArray> normals;
+    normals->SetNumberOfComponents(3);
+    const auto add = [&](const Vec3& at, const Vec3& normal) {
+        points->InsertNextPoint(at.data());
+        normals->InsertNextTuple3(normal[0], normal[1], normal[2]);
+    };
+    vtkNew<vtkCellArray> polygons;
+    std::vector<vtkIdType> back;
+    for (vtkIdType i = 0; i < sides; ++i) {
+        const double angle = 2 * std::numbers::pi * static_cast<double>(i) / sides;
+        const Vec3 out = std::cos(angle) * u + std::sin(angle) * v;
+        const Vec3 side = (out + radius / (tip - base).norm() * axis).normalized();
+        add(base + radius * out, side);
+        add(tip, side);  // each side has a tip of its own, with its normal
+        add(base + radius * out, -axis);
+        const vtkIdType a = 3 * i, b = 3 * ((i + 1) % sides);
+        const vtkIdType quad[] = {a, b, b + 1, a + 1};
+        polygons->InsertNextCell(4, quad);
+        back.insert(back.begin(), a + 2);
     }
-    for (int i = 0; i < sides; ++i) {
-        const vtkIdType a = 2 + i, b = 2 + (i + 1) % sides;
-        const vtkIdType side[] = {0, a, b}, bottom[] = {1, b, a};
-        triangles->InsertNextCell(3, side);
-        triangles->InsertNextCell(3, bottom);
-    }
-    vtkNew<vtkPolyData> data;
+    polygons->InsertNextCell(sides, back.data());
+    auto data = vtkSmartPointer<vtkPolyData>::New();
     data->SetPoints(points);
-    data->SetPolys(triangles);
-    vtkNew<vtkPolyDataNormals> normals;
-    normals->SetInputData(data);
-    normals->SetFeatureAngle(80);
-    normals->Update();
-    return normals->GetOutput();
+    data->SetPolys(polygons);
+    data->GetPointData()->SetNormals(normals);
+    return data;
 }
 
 }  // namespace
