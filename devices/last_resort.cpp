@@ -1,5 +1,5 @@
-// Signal handlers that stop the device. A handler can reach a global only: this is the one writable
-// global of the devices.
+// Signal handlers that stop the device. A handler can reach globals only: these are the writable
+// globals of the devices.
 #include "palpate/devices/last_resort.hpp"
 
 #include <algorithm>
@@ -13,29 +13,62 @@
 namespace palpate::devices {
 namespace {
 
-constexpr std::array crashes{SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT};
+/// Faults of the program itself: handled whatever was set up before.
+constexpr std::array crashes{SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT, SIGTRAP, SIGSYS};
+/// What cannot be caught, and what does not end or suspend a program.
+constexpr std::array harmless{SIGKILL, SIGSTOP, SIGCHLD, SIGCONT, SIGURG, SIGWINCH};
 
 std::array<std::atomic<Device*>, LastResort::most> guarded{};
+/// Handlers that are waiting for a zero to be sent.
+std::atomic<int> letting_go{0};
 
 /// On a stack of its own, for the crash may be that of a stack that has run out (of the thread that
 /// made the LastResort; other threads have their guard page and no second stack).
 alignas(16) std::array<char, 64 * 1024> handler_stack;
 
-void on_crash(int number) {
-    bool stopped = false;
+void on_signal(int number) {
+    // A second signal, on another thread, must not end the program before the zero is sent.
+    bool wait = letting_go.fetch_add(1) > 0;
     for (std::atomic<Device*>& place : guarded) {
         Device* const device = place.exchange(nullptr);
         if (!device) continue;
         device->stop();
-        stopped = true;
+        wait = true;
     }
-    if (stopped) {
-        timespec wait{0, 25'000'000};
-        while (::nanosleep(&wait, &wait) != 0 && errno == EINTR) {
+    if (wait) {
+        timespec left{0, 25'000'000};
+        while (::nanosleep(&left, &left) != 0 && errno == EINTR) {
         }
     }
-    // The default action is restored (SA_RESETHAND): the crash continues.
+    letting_go.fetch_sub(1);
+    // The default action is restored (SA_RESETHAND): what the signal does goes on.
     ::raise(number);
+}
+
+bool has_handler(int number, void (*handler)(int)) {
+    struct sigaction now {};
+    return ::sigaction(number, nullptr, &now) == 0 && (now.sa_flags & SA_SIGINFO) == 0 &&
+           now.sa_handler == handler;
+}
+
+/// Every signal whose default action ends or suspends the program. What an application handles or
+/// ignores stays its own.
+void handle_signals() {
+    struct sigaction action {};
+    action.sa_handler = &on_signal;
+    action.sa_flags = SA_RESETHAND | SA_ONSTACK | SA_NODEFER;
+    for (int number = 1; number <= SIGRTMAX; ++number) {
+        if (std::ranges::count(harmless, number) > 0) continue;
+        if (std::ranges::count(crashes, number) > 0 || has_handler(number, SIG_DFL)) {
+            ::sigaction(number, &action, nullptr);  // fails for those that the C library keeps
+        }
+    }
+}
+
+void forget_signals() {
+    for (int number = 1; number <= SIGRTMAX; ++number) {
+        if (has_handler(number, &on_signal)) std::signal(number, SIG_DFL);
+    }
 }
 
 }  // namespace
@@ -56,17 +89,13 @@ LastResort::LastResort(Device& device) {
     stack.ss_sp = handler_stack.data();
     stack.ss_size = handler_stack.size();
     ::sigaltstack(&stack, nullptr);
-    struct sigaction action {};
-    action.sa_handler = &on_crash;
-    action.sa_flags = SA_RESETHAND | SA_ONSTACK | SA_NODEFER;
-    for (const int number : crashes) ::sigaction(number, &action, nullptr);
+    handle_signals();
 }
 
 LastResort::~LastResort() {
     guarded[place_].store(nullptr);
     const bool last = std::ranges::none_of(guarded, [](const auto& place) { return place.load(); });
-    if (!last) return;
-    for (const int number : crashes) std::signal(number, SIG_DFL);
+    if (last) forget_signals();
 }
 
 }  // namespace palpate::devices

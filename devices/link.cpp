@@ -6,6 +6,7 @@
 #include <sys/prctl.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace palpate::devices {
 
@@ -40,7 +41,9 @@ void Link::write(const Vec3& force) noexcept {
 
 void Link::report(const DeviceReading& reading) noexcept {
     last_ = reading;
-    reading_.put({reading, monotonic_ns()});
+    // An age below 0 would come to look fresh when time is added to it.
+    if (!(last_.age >= 0)) last_.age = std::numeric_limits<double>::quiet_NaN();
+    reading_.put({last_, monotonic_ns()});
 }
 
 void Link::report(DeviceStatus status) noexcept {

@@ -22,16 +22,17 @@ class FallingMass : public Device {
     // Both run on the servo thread: no waiting, no allocation, no exception.
     DeviceReading read(double time) noexcept override {
         for (; time_ < time; time_ += step) {
-            const double damping = 0.0025 * 1000 * speed_;        // N
-            speed_ += step * ((force_ - damping) / mass - 9.81);  // m/s
-            height_ += step * speed_ * 1000;                      // mm
+            const double force = stopped_ ? 0 : force_;          // N; whatever was written last
+            const double damping = 0.0025 * 1000 * speed_;       // N
+            speed_ += step * ((force - damping) / mass - 9.81);  // m/s
+            height_ += step * speed_ * 1000;                     // mm
         }
         DeviceReading reading;
         reading.position = {0, height_, 0};
         reading.status = DeviceStatus::ready;
         return reading;
     }
-    void write(const Vec3& force, double) noexcept override { force_ = stopped_ ? 0 : force[1]; }
+    void write(const Vec3& force, double) noexcept override { force_ = force[1]; }
     void stop() noexcept override { stopped_ = true; }
 
   private:

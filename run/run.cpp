@@ -177,10 +177,21 @@ Session Run::session_now() const {
     return session_from(now->session.tick.proxy.isovalue, now->session.transform, now->number);
 }
 
+DeviceFailure Run::device_failure() const {
+    return servo_ ? servo_->device_failure() : DeviceFailure::none;
+}
+
+std::string Run::device_problem() const {
+    const DeviceFailure failure = device_failure();
+    if (failure == DeviceFailure::none) return device_->problem();
+    return std::string(name_of(failure)) +
+           ": the session has ended and the force is zero; check the device, then start again";
+}
+
 void Run::send(const Command& command) {
     const std::int64_t after = last_tick();
     if (!servo_->send(command)) {
-        throw std::invalid_argument("too many commands at once: one was left out");
+        throw QueueFull("too many commands at once: one was left out");
     }
     while (!sent_.empty() && sent_.front().after + sure <= after) sent_.pop_front();
     sent_.push_back({after, command});

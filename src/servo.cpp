@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "servo/privileges.hpp"
+#include "servo/watched_device.hpp"
 
 namespace palpate {
 namespace {
@@ -18,7 +19,7 @@ constexpr std::int64_t second_ns = 1'000'000'000;
 constexpr int commands_per_tick = 16;
 /// From the start of the thread to its first tick [ns].
 constexpr std::int64_t settle_ns = 1'000'000;
-/// Interval at which start() checks whether the thread runs.
+/// Interval at which start() and stop() check what the thread does.
 constexpr auto poll = std::chrono::microseconds(100);
 
 std::int64_t now_ns(clockid_t clock) {
@@ -55,6 +56,18 @@ const char* name_of(TickCause cause) {
             return "the proxy update";
         case TickCause::other:
             return "the rest of the tick";
+    }
+    return "unknown";
+}
+
+const char* name_of(DeviceFailure failure) {
+    switch (failure) {
+        case DeviceFailure::none:
+            return "";
+        case DeviceFailure::threw:
+            return "a call of its driver failed with an exception";
+        case DeviceFailure::hung:
+            return "a call of its driver does not return";
     }
     return "unknown";
 }
@@ -106,7 +119,7 @@ struct Servo::Stamps {
 
 Servo::Servo(Session session, Device& device, const ServoSettings& settings)
     : session_(std::move(session)),
-      device_(device),
+      device_(std::make_unique<WatchedDevice>(device)),
       settings_(settings),
       solid_(session_.renderer.field.solid()),
       geometry_(session_.renderer.field.geometry()),
@@ -133,18 +146,37 @@ Servo::Servo(Session session, Device& device, const ServoSettings& settings)
 
 Servo::~Servo() {
     stop();
+    if (thread_.joinable()) thread_.join();
+    while (stops_.load(std::memory_order_acquire) > 0) std::this_thread::sleep_for(poll);
 }
 
 void Servo::start() {
-    if (thread_.joinable() || ready_) throw std::logic_error("a servo is started once");
-    thread_ = std::jthread([this] { run(); });
+    State idle = State::idle;
+    if (!state_.compare_exchange_strong(idle, State::running)) {
+        throw std::logic_error("a servo is started once");
+    }
+    try {
+        device_->watch(settings_.real_time ? std::min(settings_.priority + 1, 99) : 0);
+        thread_ = std::thread([this] { run(); });
+    } catch (...) {
+        state_.store(State::ended);
+        throw;
+    }
     // Polls, as this happens once and does not take long.
     while (!ready_.load(std::memory_order_acquire)) std::this_thread::sleep_for(poll);
 }
 
+/// Polls, too: the servo thread then need not wake those who wait, and nobody joins it but the
+/// destructor.
 void Servo::stop() noexcept {
+    stops_.fetch_add(1, std::memory_order_relaxed);
     stopping_.store(true, std::memory_order_release);
-    if (thread_.joinable()) thread_.join();
+    const bool is_servo_thread = std::this_thread::get_id() == thread_id_.load();
+    while (!is_servo_thread && state_.load(std::memory_order_acquire) == State::running &&
+           device_->failure() != DeviceFailure::hung) {
+        std::this_thread::sleep_for(poll);
+    }
+    stops_.fetch_sub(1, std::memory_order_release);  // the last that touches the servo
 }
 
 bool Servo::send(const Command& command) {
@@ -154,7 +186,10 @@ bool Servo::send(const Command& command) {
         hold(samples->samples);
         hold(samples->recipe);
     }
-    return commands_.push(command);
+    sent_.fetch_add(1, std::memory_order_relaxed);  // before the servo thread can count it
+    if (commands_.push(command)) return true;
+    sent_.fetch_sub(1, std::memory_order_relaxed);
+    return false;
 }
 
 /// Drops objects that nobody else holds any more, and holds this one: once, however often it is
@@ -180,12 +215,26 @@ ServoReport Servo::report() const noexcept {
     return report;
 }
 
+std::int64_t Servo::waiting() const noexcept {
+    // In this order: never below 0.
+    const std::int64_t obeyed = obeyed_.load(std::memory_order_acquire);
+    return sent_.load(std::memory_order_relaxed) - obeyed;
+}
+
+DeviceFailure Servo::device_failure() const noexcept {
+    return device_->failure();
+}
+
 const Session& Servo::session() const {
-    if (thread_.joinable()) throw std::logic_error("a running servo's session is its own");
+    if (state_.load(std::memory_order_acquire) == State::running) {
+        throw std::logic_error("a running servo's session is its own");
+    }
     return session_;
 }
 
 void Servo::run() noexcept {
+    thread_id_.store(std::this_thread::get_id());
+    device_->watch_this_thread();
     try {
         privileges_ = settings_.real_time ? ask_for_real_time(settings_.priority)
                                           : std::vector<std::string>{"real time: not asked for"};
@@ -194,11 +243,13 @@ void Servo::run() noexcept {
     ready_.store(true, std::memory_order_release);
     Clock clock{static_cast<std::int64_t>(static_cast<double>(second_ns) / settings_.rate), 0, 0};
     clock.zero = clock.due = monotonic_ns() + settle_ns;
-    while (!stopping_.load(std::memory_order_acquire)) {
+    while (!stopping_.load(std::memory_order_acquire) &&
+           device_->failure() == DeviceFailure::none) {
         sleep_until(clock.due);
         tick(clock);
     }
-    device_.write(Vec3::Zero(), 1e-9 * static_cast<double>(monotonic_ns() - clock.zero));
+    device_->write(Vec3::Zero(), 1e-9 * static_cast<double>(monotonic_ns() - clock.zero));
+    state_.store(State::ended, std::memory_order_release);
 }
 
 void Servo::tick(Clock& clock) noexcept {
@@ -209,8 +260,9 @@ void Servo::tick(Clock& clock) noexcept {
 
     obey();
     const std::int64_t before_read = monotonic_ns();
-    const DeviceReading reading = device_.read(time);
+    const DeviceReading reading = device_->read(time);
     const std::int64_t after_read = monotonic_ns();
+    if (device_->failure() != DeviceFailure::none) return show_failure();
     if (reading.limits) keep_device_limits(*reading.limits);
     SessionTick result = advance(session_, time, reading, &monotonic_ns);
     const std::int64_t before_write = monotonic_ns();
@@ -218,8 +270,9 @@ void Servo::tick(Clock& clock) noexcept {
         let_go(session_, result);
         add(overruns_, 1);
     }
-    device_.write(result.tick.force, time);
+    device_->write(result.tick.force, time);
     const std::int64_t after_write = monotonic_ns();
+    if (device_->failure() != DeviceFailure::none) return show_failure();
     publish(number, result);
     record(result);
 
@@ -256,6 +309,7 @@ void Servo::obey() noexcept {
         if (!command) return;
         apply(session_, *command);
         record(*command);
+        obeyed_.store(obeyed_.load(std::memory_order_relaxed) + 1, std::memory_order_release);
     }
 }
 
@@ -266,6 +320,15 @@ void Servo::keep_device_limits(const DeviceLimits& limits) noexcept {
 
 void Servo::record(const SessionEvent& event) noexcept {
     if (settings_.recorder && !settings_.recorder->push(event)) add(unrecorded_, 1);
+}
+
+/// Of the tick before. Uses nothing outside the servo: nobody waits for a thread that hangs, so it
+/// may be gone.
+void Servo::show_failure() noexcept {
+    Snapshot last = snapshot_.get().value_or(Snapshot{});
+    last.session.device.status = DeviceStatus::fault;
+    let_go(session_, last.session);
+    snapshot_.put(last);
 }
 
 void Servo::publish(std::int64_t number, const SessionTick& tick) noexcept {

@@ -13,9 +13,13 @@ enum ExitStatus {
     wrong_use = 2,
     bad_input = 3,
     no_device = 4,
-    bad_output = 5,
-    stopped = 130
+    bad_output = 5
 };
+/// Exit status after a signal that ended the program, as shells report it: 130 for SIGINT, 143 for
+/// SIGTERM.
+constexpr int status_of_signal(int signal) {
+    return 128 + signal;
+}
 
 struct Failure {
     ExitStatus status;

@@ -25,9 +25,10 @@ void add_evaluate(CLI::App& app);
 struct ClaimsDoNotHold {
     std::size_t count;
 };
-/// Thrown where Ctrl-C was seen: open files are dropped by unwinding (exit status 130).
+/// Thrown where a signal such as that of Ctrl-C was seen: open files are dropped by unwinding (exit
+/// status 128 + the signal's number).
 struct Interrupted {};
-/// True once SIGINT or SIGTERM has come.
+/// True once SIGINT, SIGTERM, SIGHUP or SIGQUIT has come.
 bool interrupted();
 /// Throws Interrupted if so.
 void stop_if_interrupted();

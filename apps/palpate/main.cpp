@@ -9,8 +9,8 @@
 #include <iostream>
 #include <string>
 
-#include "apps/options/empty_values.hpp"
 #include "apps/options/exit_status.hpp"
+#include "apps/options/impossible_values.hpp"
 #include "apps/palpate/commands.hpp"
 #include "apps/palpate/window.hpp"
 
@@ -96,7 +96,7 @@ int run(int argc, char** argv) {
         command->set_version_flag("--version", "palpate " PALPATE_VERSION);
     }
     try {
-        refuse_empty_values(app, argc, argv);
+        refuse_impossible_values(app, argc, argv);
         app.parse(argc, argv);
     } catch (const CLI::Success& e) {  // --help, --version
         (void)app.exit(e);
@@ -135,11 +135,12 @@ int main(int argc, char** argv) {
             std::to_string(broken.count) + " of the claims do not hold (see above)";
         return fail(text.c_str(), claims_broken);
     } catch (const Interrupted&) {
-        return fail("interrupted", stopped);
+        return fail("interrupted", status_of_signal(stop_signal));
     } catch (const std::exception& e) {
         const Failure failure = failure_of(e);
         // Ctrl-C reaches the helper process as well, and its end may be seen first.
-        if (failure.status == bad_input && interrupted()) return fail("interrupted", stopped);
+        if (failure.status == bad_input && interrupted())
+            return fail("interrupted", status_of_signal(stop_signal));
         if (std::ferror(stdout) != 0) return finish_output();
         return fail(failure.text.c_str(), failure.status);
     }

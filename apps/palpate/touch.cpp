@@ -44,12 +44,15 @@ class Terminal {
 
     /// One round, every 10 ms; false once the run is to end.
     bool update() {
+        if (run_.device_failure() != DeviceFailure::none) return false;
         const auto now = run_.snapshot();
         if (!now) return true;
         if (!obey_due(*now)) return false;
         if (const auto key = keys_.next()) {
             const auto request = commands_.from_key(*key, *now);
-            if (request && !obey(*request, *now)) return false;
+            const Obeyed obeyed = request ? obey(*request, *now) : Obeyed::yes;
+            if (obeyed == Obeyed::quit) return false;
+            if (obeyed == Obeyed::no_room) note("too many commands at once: one was left out");
         }
         ++rounds_;
         print_messages();
@@ -68,6 +71,7 @@ class Terminal {
     std::string finish() {
         if (!interrupted()) queue_.finish();
         print_messages();
+        tell_what_was_left_out();
         return queue_.unsaved();
     }
 
@@ -76,16 +80,28 @@ class Terminal {
         fmt::print(stderr, "{}{}\n", line_ ? "\r\033[K" : "", text);
     }
 
-    /// Carries out the requests that are due.
+    bool is_due(std::size_t i, const Snapshot& now) const {
+        return i < requests_.size() && requests_[i].time <= now.session.tick.time;
+    }
+
+    /// Carries out the requests that are due, as far as there is room: the others wait for the next
+    /// rounds, in their order. False for one to end.
     bool obey_due(const Snapshot& now) {
-        while (next_ < requests_.size() && requests_[next_].time <= now.session.tick.time) {
-            if (!obey(requests_[next_].request, now)) return false;
-            ++next_;
+        for (; is_due(next_, now); ++next_) {
+            const bool ends = std::holds_alternative<Quit>(requests_[next_].request);
+            if (ends && run_.waiting() > 0) return true;  // first what came before
+            const Obeyed obeyed = obey(requests_[next_].request, now);
+            if (obeyed == Obeyed::quit) return false;
+            if (obeyed == Obeyed::no_room) {
+                tell_that_some_wait(now);
+                return true;
+            }
         }
         return true;
     }
 
-    bool obey(const Request& request, const Snapshot& now) {
+    enum class Obeyed : std::uint8_t { yes, no_room, quit };
+    Obeyed obey(const Request& request, const Snapshot& now) {
         try {
             std::visit(Overloaded{[](Quit) {}, [&](Help) { note(LiveCommands::key_help()); },
                                   [&](const DataRequest& data) {
@@ -96,10 +112,34 @@ class Terminal {
                                   },
                                   [&](const Command& command) { run_.send(command); }},
                        request);
+        } catch (const run::QueueFull&) {
+            return Obeyed::no_room;
         } catch (const std::invalid_argument& e) {
             note(e.what());
         }
-        return !std::holds_alternative<Quit>(request);
+        return std::holds_alternative<Quit>(request) ? Obeyed::quit : Obeyed::yes;
+    }
+
+    /// Once, however many rounds they wait.
+    void tell_that_some_wait(const Snapshot& now) {
+        if (std::exchange(wait_told_, true)) return;
+        std::size_t end = next_;
+        while (is_due(end, now)) ++end;
+        note(
+            fmt::format("{} commands are due and more than fit into one tick: they are carried "
+                        "out in their order, late",
+                        static_cast<std::int64_t>(end - next_) + run_.waiting()));
+    }
+
+    /// After the end. Those that were not due yet were not to be carried out.
+    void tell_what_was_left_out() const {
+        std::int64_t count = run_.waiting();
+        const auto now = run_.snapshot();
+        const bool quits =
+            next_ < requests_.size() && std::holds_alternative<Quit>(requests_[next_].request);
+        for (std::size_t i = next_; now && !quits && is_due(i, *now); ++i) ++count;
+        if (count == 0) return;
+        note(fmt::format("{} commands that were due were not carried out before the end", count));
     }
 
     /// Reports when the status of the device changes, or its problem.
@@ -139,6 +179,7 @@ class Terminal {
     const RunOptions& options_;
     std::vector<TimedRequest> requests_;
     std::size_t next_ = 0;
+    bool wait_told_ = false;
     LiveCommands& commands_;
     Keys keys_;
     std::optional<DeviceStatus> status_;
@@ -230,9 +271,8 @@ void touch(const RunOptions& options) {
     }
     start_recording(run, options);
     const DeviceInfo device = run.device();
-    // A program stopped in the middle could not let go of the forces. Ctrl-Z does nothing
-    // meanwhile.
-    std::signal(SIGTSTP, SIG_IGN);
+    // A program that is suspended could not end the force: Ctrl-Z does nothing meanwhile.
+    for (const int s : {SIGTSTP, SIGTTIN, SIGTTOU}) std::signal(s, SIG_IGN);
     run.start();
     if (!options.source.quiet) announce(run, device);
     const auto begin = std::chrono::steady_clock::now();
@@ -249,6 +289,9 @@ void touch(const RunOptions& options) {
     save_at_end(*data, options);
     finish_recording(run, options);
     if (!unsaved.empty()) throw io::OutputError(unsaved);
+    if (run.device_failure() != DeviceFailure::none) {
+        throw devices::DeviceError("device " + device.name + ": " + run.device_problem());
+    }
     stop_if_interrupted();
 }
 

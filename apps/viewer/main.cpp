@@ -8,8 +8,8 @@
 #include <csignal>
 #include <cstdio>
 
-#include "apps/options/empty_values.hpp"
 #include "apps/options/exit_status.hpp"
+#include "apps/options/impossible_values.hpp"
 #include "apps/options/view_options.hpp"
 #include "apps/viewer/window/appearance.hpp"
 #include "apps/viewer/window/main_window.hpp"
@@ -72,7 +72,7 @@ int show(QApplication& application, const app::ViewOptions& options) {
             window, QString::fromStdString(options.screenshot), options.after);
     }
     const int status = application.exec();
-    if (stop_signal != 0) return fail("interrupted", app::stopped);
+    if (stop_signal != 0) return fail("interrupted", app::status_of_signal(stop_signal));
     if (screenshot && screenshot->status() != 0) return screenshot->status();
     return status != 0 ? status : window.recordings().exit_status();
 }
@@ -85,7 +85,7 @@ int main(int argc, char** argv) {
     app::ViewOptions options;
     options.add_to(command);
     try {
-        app::refuse_empty_values(command, argc, argv);
+        app::refuse_impossible_values(command, argc, argv);
         command.parse(argc, argv);
         options.check();
         begin_with_sample(options);
@@ -98,6 +98,8 @@ int main(int argc, char** argv) {
     }
     for (const int s : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) std::signal(s, on_signal);
     for (const int s : {SIGXFSZ, SIGPIPE}) std::signal(s, SIG_IGN);
+    // A program that is suspended could not end the force.
+    for (const int s : {SIGTSTP, SIGTTIN, SIGTTOU}) std::signal(s, SIG_IGN);
     // A window of its own for VTK's warnings would come between.
     vtkObject::GlobalWarningDisplayOff();
     QCoreApplication::setAttribute(Qt::AA_EnableHighDpiScaling);

@@ -283,7 +283,12 @@ std::string DhdDevice::problem() const {
         case DeviceStatus::starting:
             return "the device has not told a position yet";
         case DeviceStatus::stale:
-            return "the library takes too long: its last position is more than 20 ms old";
+            return std::string(
+                       "the library takes too long: its last position is more than 20 ms "
+                       "old; ") +
+                   (dhd_.set_watchdog ? "the device drops the last force by itself"
+                                      : "it may still hold the last force: if that lasts, switch "
+                                        "the device off");
         default:
             return {};
     }

@@ -16,7 +16,7 @@ using namespace std::chrono_literals;
 
 std::string usual_host() {
     const char* host = std::getenv("HAPLY_WS_HOST");
-    return host && *host ? host : "localhost";
+    return host && *host ? host : "127.0.0.1";  // not a name: it is found without a resolver
 }
 
 double usual_port() {
@@ -42,7 +42,7 @@ DeviceFinding find_haply() {
     DeviceFinding finding;
     finding.name = "haply";
     finding.options =
-        "host=localhost,port=10001,device=ID (the first),force_key=values "
+        "host=127.0.0.1,port=10001,device=ID (the first),force_key=values "
         "(values|vector),axes=xz-y,"
         "calibrated=ask (ask|assume),timeout=2";
     try {
@@ -82,7 +82,7 @@ std::unique_ptr<Device> open_haply(const DeviceChoice& choice, const DeviceScene
     haply::Address address = address_from(host, port);
     if (address.numeric.empty()) {
         throw DeviceError("device haply: no host '" + host +
-                          "': host=NAME is where Haply's Inverse Service runs, usually localhost");
+                          "': host=NAME is where Haply's Inverse Service runs, usually 127.0.0.1");
     }
     // A service that is just starting gets a second.
     const auto deadline = haply::Clock::now() + 1s;

@@ -5,7 +5,7 @@
 
 namespace palpate::devices {
 
-/// Asks at the usual address (HAPLY_WS_HOST, HAPLY_WS_PORT, otherwise localhost:10001); takes at
+/// Asks at the usual address (HAPLY_WS_HOST, HAPLY_WS_PORT, otherwise 127.0.0.1:10001); takes at
 /// most about 0.3 s. Never throws for what it finds.
 DeviceFinding find_haply();
 

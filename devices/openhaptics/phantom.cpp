@@ -230,7 +230,8 @@ std::string Phantom::problem() const {
             return "the driver's servo loop has not told a position yet";
         case DeviceStatus::stale:
             return "the driver's servo loop stands still or is too slow: its last position is more "
-                   "than 20 ms old";
+                   "than 20 ms old; it may still hold the last force, which nobody else can take "
+                   "away: if that lasts, switch the device off";
         default:
             return {};
     }

@@ -40,7 +40,7 @@ struct DeviceReading {
     Vec3 position = Vec3::Zero();         ///< [device mm]
     Mat3 orientation = Mat3::Identity();  ///< tool axes to device axes; identity if not known
     std::uint32_t buttons = 0;            ///< bit b is set while button b is held
-    double age = 0;                       ///< [s] since it was measured
+    double age = 0;                       ///< [s] since it was measured; below 0, NaN, inf: stale
     DeviceStatus status = DeviceStatus::starting;
     /// Limits of a device that learns them only when it connects, in every reading from then on;
     /// none: those that info() gave when the servo was made still hold.
@@ -73,15 +73,20 @@ class Device {
     virtual std::string problem() const { return {}; }
 
     /// Servo thread: neither waits, allocates nor throws. `time` [s] is the session's. Simulated
-    /// devices follow it; hardware devices measure ages by the machine's clock.
-    virtual DeviceReading read(double time) noexcept = 0;
+    /// devices follow it; hardware devices measure ages by the machine's clock. A servo ends its
+    /// session, with stop(), when this or write() throws or does not return within 10 ms
+    /// (DeviceFailure).
+    virtual DeviceReading read(double time) = 0;
     /// Servo thread, as above. A force [N, device axes] holds until the next one, but no longer
     /// than `longest_force`; then the device's own thread sets it to zero.
-    virtual void write(const Vec3& force, double time) noexcept = 0;
+    virtual void write(const Vec3& force, double time) = 0;
     static constexpr double longest_force = 0.02;  ///< [s]
 
-    /// Zero force from now on, for good. Any thread, and signal handlers: a program that crashes
-    /// calls it as a last resort.
+    /// Zero force from now on, for good, whatever write() is told later or at the same time. Any
+    /// thread, and signal handlers: a program that crashes calls it as a last resort. Also while
+    /// another thread is in read() or write() and does not come back, so it waits for nothing that
+    /// such a thread holds. A device whose force cannot be reached from a second thread says so in
+    /// problem() and its documentation.
     virtual void stop() noexcept = 0;
 };
 

@@ -40,6 +40,15 @@ enum class TickCause : std::uint8_t {
 };
 const char* name_of(TickCause cause);
 
+/// What a device has done that ended the session. Its force is zero from then on (Device::stop()).
+enum class DeviceFailure : std::uint8_t {
+    none,
+    threw,  ///< read() or write() threw an exception
+    hung,   ///< read() or write() did not return within 10 ms, though its thread could run
+};
+/// In words; empty for none.
+const char* name_of(DeviceFailure failure);
+
 /// The tick that took longest, lateness included.
 struct WorstTick {
     std::int64_t tick = -1;
@@ -76,7 +85,14 @@ struct Snapshot {
 Snapshot snapshot_of(const Session& session, const SessionTick& tick, std::int64_t number,
                      std::int64_t missed) noexcept;
 
+class WatchedDevice;
+
 /// A session that runs on a thread of its own. Not copied or moved, because threads refer to it.
+///
+/// A device that throws or hangs ends the session (DeviceFailure): a second thread, the watchdog,
+/// calls Device::stop() within 20 ms of the beginning of a call that hangs. The tick in which that
+/// happens is not recorded, and the device is not called any more. The last snapshot then shows a
+/// fault and no force.
 class Servo {
   public:
     /// Takes over the session; the device must outlive the servo. Nothing runs yet. The session
@@ -84,14 +100,17 @@ class Servo {
     /// where that changes it, a recording begins with the command that does. Throws
     /// std::invalid_argument for settings that cannot be run.
     Servo(Session session, Device& device, const ServoSettings& settings = {});
-    /// stop().
+    /// stop(), also while other threads are in stop(). Waits for a device call that hangs.
     ~Servo();
     Servo(const Servo&) = delete;
     Servo& operator=(const Servo&) = delete;
 
     /// Starts the thread, once. Throws std::system_error if the system gives none.
     void start();
-    /// Writes zero force and ends the thread; returns when it has ended.
+    /// Writes zero force and ends the thread; returns when it has ended. With a device call that
+    /// hangs it returns when the force was taken away; the thread ends when that call returns, and
+    /// touches nothing but the servo then. Any thread, any number of times; from the servo thread
+    /// (a device's read() or write()) it only asks for the end.
     void stop() noexcept;
 
     /// Checks a command and puts it in the queue; false if the queue is full. Throws
@@ -101,6 +120,10 @@ class Servo {
     /// The newest tick; nothing before the first. Any thread, never waits.
     std::optional<Snapshot> snapshot() const noexcept { return snapshot_.get(); }
     ServoReport report() const noexcept;
+    /// Commands that were sent and not carried out yet. Any thread, never waits.
+    std::int64_t waiting() const noexcept;
+    /// Other than none: the session has ended. Any thread, never waits.
+    DeviceFailure device_failure() const noexcept;
     /// The session after its last tick, for example to continue it in another servo. Throws
     /// std::logic_error while the thread runs.
     const Session& session() const;
@@ -113,6 +136,7 @@ class Servo {
   private:
     struct Clock;
     struct Stamps;
+    enum class State : std::uint8_t { idle, running, ended };
 
     void run() noexcept;
     void tick(Clock& clock) noexcept;
@@ -120,18 +144,22 @@ class Servo {
     void keep_device_limits(const DeviceLimits& limits) noexcept;
     void count(Clock& clock, std::int64_t number, const Stamps& stamps) noexcept;
     void record(const SessionEvent& event) noexcept;
+    void show_failure() noexcept;
     void publish(std::int64_t number, const SessionTick& tick) noexcept;
     void hold(const std::shared_ptr<const void>& sent);
 
     Session session_;
-    Device& device_;
+    const std::unique_ptr<WatchedDevice> device_;
     const ServoSettings settings_;
     RendererSettings start_;
     const Solid solid_;
     const Geometry geometry_;
     std::vector<std::string> privileges_;
-    std::jthread thread_;
+    std::thread thread_;
+    std::atomic<std::thread::id> thread_id_;
+    std::atomic<State> state_{State::idle};
     std::atomic<bool> ready_{false}, stopping_{false};
+    std::atomic<int> stops_{0};  // calls of stop() under way
 
     std::mutex held_mutex_;  // between threads that send; the servo thread never takes it
     std::vector<std::shared_ptr<const void>> held_;  // each object once
@@ -140,6 +168,7 @@ class Servo {
     Newest<WorstTick> worst_;
     LatencyHistogram period_, lateness_, work_, compute_;
     std::atomic<std::int64_t> ticks_{0}, missed_{0}, overruns_{0}, unrecorded_{0};
+    std::atomic<std::int64_t> sent_{0}, obeyed_{0};  // commands
 };
 
 }  // namespace palpate

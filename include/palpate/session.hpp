@@ -141,7 +141,8 @@ void apply(Session& session,  // NOLINT(bugprone-exception-escape)
 bool keep_within(Session& session, const DeviceLimits& limits) noexcept;
 
 /// One tick at a time [s] after the last. Never throws or allocates. No force for input that is not
-/// ready, older than the force settings' `stale_after`, not finite or not plausible.
+/// ready, older than the force settings' `stale_after` (or of an age below 0 or not finite), not
+/// finite or not plausible.
 /// DeviceReading::limits are the caller's to apply, as a command. The proxy update is timed where a
 /// clock is given (Tick::update_ns).
 SessionTick advance(Session& session, double time, const DeviceReading& reading,

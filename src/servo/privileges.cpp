@@ -20,9 +20,7 @@ void touch_stack() {
 }
 
 std::string ask_for_priority(int priority) {
-    sched_param parameter{};
-    parameter.sched_priority = priority;
-    const int error = pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameter);
+    const int error = take_priority(priority);
     if (error == 0) return "real-time priority: SCHED_FIFO " + std::to_string(priority);
     return std::string("real-time priority: not granted (") + std::strerror(error) +
            "); allow it with a line '@audio - rtprio 90' in /etc/security/limits.d and your user "
@@ -40,6 +38,12 @@ std::string ask_for_memory() {
 }
 
 }  // namespace
+
+int take_priority(int priority) noexcept {
+    sched_param parameter{};
+    parameter.sched_priority = priority;
+    return pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameter);
+}
 
 std::vector<std::string> ask_for_real_time(int priority) {
     // 1 ns for threads without SCHED_FIFO: by default they may be woken 50 us late to save power.

@@ -10,4 +10,7 @@ namespace palpate {
 /// timers. A sentence for each: what was granted, or what was not and what to set.
 std::vector<std::string> ask_for_real_time(int priority);
 
+/// Asks, for the calling thread, for SCHED_FIFO; 0 if it was granted, otherwise the error number.
+int take_priority(int priority) noexcept;
+
 }  // namespace palpate

@@ -184,7 +184,7 @@ class Signal : public testing::TestWithParam<int> {
     void expect_interrupted(Running& program, const ScratchFolder& folder,
                             const std::vector<std::string>& left) {
         const Outcome outcome = program.finish(GetParam());
-        expect_failure(outcome, 130, "interrupted");
+        expect_failure(outcome, 128 + GetParam(), "interrupted");
         // A killed reader is gone a moment later than its parent knows.
         EXPECT_TRUE(comes_true([&] { return !program.left_a_process(); }));
         EXPECT_EQ(folder.names(), left);

@@ -45,6 +45,14 @@ class PressedSphere {
     std::atomic<std::int64_t> asked_{0};
 };
 
+/// What the program handles itself: it completes its files. Everything else goes on as it would
+/// have without a session.
+int expected_status(int signal) {
+    const bool handled =
+        signal == SIGINT || signal == SIGTERM || signal == SIGHUP || signal == SIGQUIT;
+    return handled ? 128 + signal : 1000 + signal;
+}
+
 class EndOfSession : public testing::TestWithParam<int> {};
 
 TEST_P(EndOfSession, leaves_no_force_on_the_device) {
@@ -54,14 +62,15 @@ TEST_P(EndOfSession, leaves_no_force_on_the_device) {
     Running running(sphere.words() + Words{"--record", "r.csv"}, folder.path());
     ASSERT_TRUE(sphere.is_felt());
     const Outcome end = running.finish(GetParam());
-    const bool asked = GetParam() != SIGSEGV && GetParam() != SIGABRT;
-    EXPECT_EQ(end.status, asked ? 130 : 1000 + GetParam()) << end.err;
+    EXPECT_EQ(end.status, expected_status(GetParam())) << end.err;
     ASSERT_TRUE(comes_true([&] { return service.forces().back().isZero(0); }));
     EXPECT_EQ(palpate(folder, "replay r.csv --validate").status, 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Signals, EndOfSession,
-                         testing::Values(SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGSEGV, SIGABRT));
+                         testing::Values(SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGSEGV, SIGABRT,
+                                         SIGALRM, SIGUSR1, SIGUSR2, SIGXCPU, SIGVTALRM, SIGPROF,
+                                         SIGIO, SIGSYS, SIGTRAP, SIGPWR, SIGSTKFLT, 34, 64));
 
 TEST(Touch, cannot_be_suspended_while_there_is_force) {
     const ScratchFolder folder;
@@ -69,7 +78,7 @@ TEST(Touch, cannot_be_suspended_while_there_is_force) {
     PressedSphere sphere(service);
     Running running(sphere.words(), folder.path());
     ASSERT_TRUE(sphere.is_felt());
-    running.signal(SIGTSTP);
+    for (const int s : {SIGTSTP, SIGTTIN, SIGTTOU, SIGPIPE, SIGXFSZ}) running.signal(s);
     const auto messages = service.messages();
     EXPECT_TRUE(comes_true([&] { return service.messages() > messages + 200; }));
     EXPECT_EQ(running.finish(SIGINT).status, 130);

@@ -1,5 +1,6 @@
 // Live sessions from the command line: touch, record, devices, replay --validate. The simulated
 // hand is the device; time is real, so no test asserts how long a tick took.
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "apps/program.hpp"
@@ -105,6 +106,41 @@ TEST(Touch, carries_out_and_records_commands) {
     EXPECT_EQ(palpate(folder, "replay r.csv --validate").status, 0);
 }
 
+TEST(Touch, carries_out_in_order_all_commands_that_are_due_at_once) {
+    const ScratchFolder folder;
+    constexpr int count = 20'000;
+    std::string text;
+    for (int i = 0; i < count; ++i) text += "0.1 isovalue " + std::to_string(60 + i % 7) + "\n";
+    put_bytes(folder / "commands.txt", text + "0.1 isovalue 61\n0.1 quit\n");
+    const Outcome done = palpate(folder, "touch " + sphere +
+                                             " --device simulated:hand=press,loop=yes --commands "
+                                             "commands.txt --record r.csv");
+    EXPECT_EQ(done.status, 0) << done.err;
+    const Ticks ticks = ticks_of(folder / "r.csv");
+    EXPECT_EQ(ticks.commands, count + 1);
+    EXPECT_EQ(ticks.last.tick.proxy.isovalue, 61);
+    const std::size_t told = done.err.find("commands are due");
+    EXPECT_NE(told, std::string::npos) << done.err;
+    EXPECT_EQ(told, done.err.rfind("commands are due")) << done.err;
+    EXPECT_FALSE(contains(done.err, "left out")) << done.err;
+}
+
+TEST(Touch, counts_the_commands_that_the_end_left_no_time_for_in_one_line) {
+    const ScratchFolder folder;
+    std::string text;
+    for (int i = 0; i < 300'000; ++i) text += "0.1 isovalue 60\n";
+    put_bytes(folder / "commands.txt", text);
+    const Outcome done =
+        palpate(folder, "touch " + sphere + " --commands commands.txt --seconds 1 --record r.csv");
+    EXPECT_EQ(done.status, 0) << done.err;
+    const std::int64_t carried_out = ticks_of(folder / "r.csv").commands;
+    EXPECT_GT(carried_out, 1000);
+    EXPECT_TRUE(contains(done.err, std::to_string(300'000 - carried_out) +
+                                       " commands that were due were not carried out"))
+        << done.err;
+    EXPECT_LT(std::ranges::count(done.err, '\n'), 10) << done.err;
+}
+
 TEST(Touch, refuses_commands_that_it_does_not_understand_before_anything_runs) {
     const ScratchFolder folder;
     const auto refused = [&](const std::string& text, const std::string& reason) {
@@ -124,7 +160,7 @@ TEST(Touch, refuses_commands_that_it_does_not_understand_before_anything_runs) {
 }
 
 TEST(Touch, lets_go_and_completes_the_recording_when_interrupted) {
-    for (const int signal : {SIGINT, SIGTERM}) {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
         const ScratchFolder folder;
         Running running(words_of("record " + sphere + " -o r.csv"), folder.path());
         const auto begun = [&] {
@@ -133,7 +169,7 @@ TEST(Touch, lets_go_and_completes_the_recording_when_interrupted) {
         };
         EXPECT_TRUE(comes_true(begun));
         const Outcome stopped = running.finish(signal);
-        EXPECT_EQ(stopped.status, 130) << stopped.err;
+        EXPECT_EQ(stopped.status, 128 + signal) << stopped.err;
         EXPECT_TRUE(contains(stopped.err, "interrupted"));
         EXPECT_GT(ticks_of(folder / "r.csv").count, 10);
         EXPECT_FALSE(running.left_a_process());
@@ -180,6 +216,9 @@ TEST(Touch, refuses_options_that_make_no_sense) {
     wrong("--clutch x", "a button's number");
     wrong("--dead-man 1", "the device has 0 buttons");
     wrong("--seconds -1", "-1");
+    wrong("--seconds nan", "'nan' is not a number");
+    wrong("--seconds inf", "inf");
+    wrong("--playback -NaN", "'-NaN' is not a number");
     wrong("--stiffness 90", "to be rendered stably");
     expect_failure(palpate(folder, "touch none.nrrd"), 3, "none.nrrd");
     expect_failure(palpate(folder, "touch " + sphere + " --commands none.txt"), 3, "none.txt");

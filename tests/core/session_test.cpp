@@ -77,10 +77,24 @@ TEST(Session, input_that_is_not_good_gives_no_force_and_leaves_the_proxy) {
     }
     broken([](DeviceReading& r) { r.age = 0.0201; });
     broken([](DeviceReading& r) { r.age = not_a_number; });
+    broken([](DeviceReading& r) { r.age = -1e-9; });
+    broken([](DeviceReading& r) { r.age = -infinity; });
+    broken([](DeviceReading& r) { r.age = infinity; });
     broken([](DeviceReading& r) { r.position[1] = not_a_number; });
     broken([](DeviceReading& r) { r.position[2] = infinity; });
     broken([](DeviceReading& r) { r.position[0] = 1.1e4; });
     broken([](DeviceReading& r) { r.position[2] += 10.1; });  // 10.1 mm in a millisecond
+}
+
+TEST(Session, only_finite_ages_from_0_count_even_where_none_is_too_old) {
+    for (const double age : {-1e-9, -infinity, infinity, not_a_number, 0.0, 1e9}) {
+        Live live;
+        live.session.renderer.settings.force.stale_after = infinity;
+        live.rest_at(31);
+        live.reading.age = age;
+        live.next();
+        EXPECT_EQ(live.force() > 0.4, age >= 0 && age < infinity) << age;
+    }
 }
 
 TEST(Session, a_place_that_was_too_far_counts_once_the_hand_could_have_come_there) {

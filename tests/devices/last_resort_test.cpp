@@ -3,7 +3,9 @@
 #include "palpate/devices/last_resort.hpp"
 
 #include <gtest/gtest.h>
+#include <pthread.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -120,7 +122,95 @@ TEST(LastResort, lets_go_at_every_kind_of_crash) {
     expect_let_go(SIGBUS, [] { std::raise(SIGBUS); });
     expect_let_go(SIGILL, [] { std::raise(SIGILL); });
     expect_let_go(SIGFPE, [] { std::raise(SIGFPE); });
+    expect_let_go(SIGTRAP, [] { std::raise(SIGTRAP); });
+    expect_let_go(SIGSYS, [] { std::raise(SIGSYS); });
     expect_let_go(SIGABRT, [] { std::abort(); });
+}
+
+/// Comes to the process, not to a thread, and is over when the process is.
+template <int number>
+void expect_let_go_at() {
+    expect_let_go(number, [] {
+        ::kill(::getpid(), number);
+        std::this_thread::sleep_for(10s);
+    });
+}
+
+TEST(LastResort, lets_go_at_every_signal_that_ends_a_program) {
+    expect_let_go_at<SIGHUP>();
+    expect_let_go_at<SIGINT>();
+    expect_let_go_at<SIGQUIT>();
+    expect_let_go_at<SIGTERM>();
+    expect_let_go_at<SIGPIPE>();
+    expect_let_go_at<SIGALRM>();
+    expect_let_go_at<SIGVTALRM>();
+    expect_let_go_at<SIGPROF>();
+    expect_let_go_at<SIGUSR1>();
+    expect_let_go_at<SIGUSR2>();
+    expect_let_go_at<SIGXCPU>();
+    expect_let_go_at<SIGXFSZ>();
+    expect_let_go_at<SIGIO>();
+    expect_let_go_at<SIGPWR>();
+    expect_let_go_at<SIGSTKFLT>();
+    expect_let_go_at<34>();  // the first and the last of the real-time signals
+    expect_let_go_at<64>();
+}
+
+TEST(LastResort, lets_go_when_the_processor_time_is_used_up) {
+    expect_let_go(SIGXCPU, [] {
+        const rlimit one_second{1, 10};
+        ::setrlimit(RLIMIT_CPU, &one_second);
+        for (;;) {
+        }
+    });
+}
+
+TEST(LastResort, lets_go_when_a_real_time_thread_takes_too_long) {
+    const auto [status, sent] = crashed(true, [] {
+        const rlimit tenth{100'000, 10'000'000};
+        sched_param parameter{};
+        parameter.sched_priority = 1;
+        ::setrlimit(RLIMIT_RTTIME, &tenth);
+        if (::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &parameter) != 0) ::_exit(77);
+        for (;;) {
+        }
+    });
+    if (WIFEXITED(status) && WEXITSTATUS(status) == 77) {
+        GTEST_SKIP() << "SCHED_FIFO is not granted here";
+    }
+    EXPECT_TRUE(WIFSIGNALED(status)) << status;
+    EXPECT_EQ(WTERMSIG(status), SIGXCPU);
+    EXPECT_EQ(sent, 0);
+}
+
+TEST(LastResort, two_signals_at_once_wait_for_the_zero_as_one_does) {
+    for (int round = 0; round < 10; ++round) {
+        const auto [status, sent] = crashed(true, [] {
+            std::array<std::jthread, 4> threads;
+            const std::array numbers{SIGUSR1, SIGALRM, SIGTERM, SIGIO};
+            for (std::size_t i = 0; i < threads.size(); ++i) {
+                threads[i] = std::jthread([number = numbers[i]] { std::raise(number); });
+            }
+        });
+        EXPECT_TRUE(WIFSIGNALED(status)) << status;
+        EXPECT_EQ(sent, 0);
+    }
+}
+
+TEST(LastResort, leaves_signals_alone_that_the_application_handles_or_ignores) {
+    const auto usr1 = std::signal(SIGUSR1, [](int) {});
+    const auto usr2 = std::signal(SIGUSR2, SIG_IGN);
+    std::atomic<double> sent;
+    Motor motor(sent);
+    {
+        const LastResort last_resort(motor);
+        std::raise(SIGUSR1);
+        std::raise(SIGUSR2);
+        motor.write({0, 0, 2}, 0);
+    }
+    EXPECT_NE(std::signal(SIGUSR1, usr1), SIG_DFL);
+    EXPECT_EQ(std::signal(SIGUSR2, usr2), SIG_IGN);
+    EXPECT_EQ(std::signal(SIGALRM, SIG_DFL), SIG_DFL);  // as it was before
 }
 
 // Not inlined, and not turned into a loop: it is the stack that has to run out.

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cmath>
 #include <limits>
 #include <thread>
 
@@ -41,6 +42,18 @@ TEST(Link, a_reading_that_was_old_when_it_came_is_stale) {
     reading.age = 0.0201;
     link.report(reading);
     EXPECT_EQ(link.read().status, DeviceStatus::stale);
+}
+
+TEST(Link, a_reading_whose_age_is_no_finite_number_from_0_never_looks_fresh) {
+    Link link;
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    for (const double age : {-1e-3, -infinity, infinity, std::nan("")}) {
+        DeviceReading reading = ready_at(1);
+        reading.age = age;
+        link.report(reading);
+        std::this_thread::sleep_for(5ms);  // -1 ms and 5 ms must not make 4 ms
+        EXPECT_EQ(link.read().status, DeviceStatus::stale) << age;
+    }
 }
 
 TEST(Link, a_reading_goes_stale_and_keeps_its_position) {

@@ -24,15 +24,17 @@ class ScriptedDevice : public Device {
         return script_(time);
     }
     void write(const Vec3& force, double) noexcept override {
-        for (std::size_t a = 0; a < 3; ++a)
-            force_[a].store(stopped_ ? 0 : force[static_cast<int>(a)]);
+        for (std::size_t a = 0; a < 3; ++a) force_[a].store(force[static_cast<int>(a)]);
         const double most = most_.load();
         if (force.norm() > most) most_.store(force.norm());
         writes_.fetch_add(1);
     }
     void stop() noexcept override { stopped_ = true; }
 
-    Vec3 force() const { return {force_[0].load(), force_[1].load(), force_[2].load()}; }
+    Vec3 force() const {
+        if (stopped_) return Vec3::Zero();
+        return {force_[0].load(), force_[1].load(), force_[2].load()};
+    }
     double largest_force() const { return most_.load(); }
     std::int64_t reads() const { return reads_.load(); }
     std::int64_t writes() const { return writes_.load(); }

@@ -1,4 +1,4 @@
-// Sends zero force to a device when the program crashes.
+// Sends zero force to a device when a signal ends the program.
 #pragma once
 
 #include <cstddef>
@@ -7,13 +7,18 @@
 
 namespace palpate::devices {
 
-/// While one exists, a crash of the program (SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT, and with it
-/// an exception that nobody catches) calls device.stop(), leaves the device's own thread 25 ms to
-/// send the zero, and then lets the crash go on as it would have: the same signal, the same core
-/// file. What ends a program without asking (SIGKILL, loss of power) is left to the device, and so
-/// is a crash of the very thread that talks to it, in a vendor's driver say, for nobody is left to
-/// send the zero: see docs/devices for what each does then. One for each device, up to `most` at
-/// once; more throw std::logic_error.
+/// While one exists, a signal that ends or suspends the program calls device.stop(), leaves the
+/// device's own thread 25 ms to send the zero, and then does what it would have done: the same exit
+/// status, the same core file. These are the crashes (SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGTRAP,
+/// SIGSYS, SIGABRT and with it an exception that nobody catches), whatever handled them before, and
+/// all others whose default action ends or suspends a program (SIGTERM, SIGALRM, SIGUSR1, SIGXCPU,
+/// SIGTSTP, real-time signals, ...), unless the application handles or ignores them: a handler of
+/// its own has to end the session. After a suspension the device stays without force.
+///
+/// SIGKILL, SIGSTOP and loss of power are left to the device, and so is a crash of the very thread
+/// that talks to it, in a vendor's driver for example, because no other thread can send the zero:
+/// docs/devices says what each device does then. One for each device, up to `most` at once; more
+/// throw std::logic_error.
 class LastResort {
   public:
     static constexpr std::size_t most = 8;

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,12 @@ namespace palpate::run {
 /// What a recording says about a session that is about to begin.
 io::RecordingHead recording_head(const Session& session, const DeviceInfo& device,
                                  const Source& source, const RenderSetup& setup);
+
+/// No room for a command: those before it are still to be carried out.
+class QueueFull : public std::invalid_argument {
+  public:
+    using std::invalid_argument::invalid_argument;
+};
 
 /// Snapshots come out, commands go in. One thread owns it; data() may be used by any.
 class Run {
@@ -47,16 +54,20 @@ class Run {
     const Setup& setup() const { return setup_; }
     DeviceInfo device() const { return device_->info(); }
     /// What is wrong with the device and what to do; usually empty.
-    std::string device_problem() const { return device_->problem(); }
+    std::string device_problem() const;
     /// The device, if it is a mouse that the application moves; else null.
     devices::Mouse* mouse() const { return mouse_; }
 
     // From start() on:
     /// What the system granted of real time, and what not.
     const std::vector<std::string>& privileges() const { return servo_->privileges(); }
-    /// Throws std::invalid_argument, saying what is wrong, for a command that cannot be carried out
-    /// or comes too fast.
+    /// Throws std::invalid_argument, saying what is wrong, for a command that cannot be carried
+    /// out; QueueFull for one that comes too fast.
     void send(const Command& command);
+    /// Commands that were sent and not carried out yet.
+    std::int64_t waiting() const { return servo_->waiting(); }
+    /// Other than none: the device has failed, its force is zero and the session has ended.
+    DeviceFailure device_failure() const;
     std::optional<Snapshot> snapshot() const { return servo_->snapshot(); }
     ServoReport report() const { return servo_->report(); }
 

@@ -185,6 +185,15 @@ TEST_F(HaplyTest, a_service_elsewhere_is_found_by_the_environment) {
     unsetenv("HAPLY_WS_PORT");
 }
 
+TEST_F(HaplyTest, the_usual_service_is_looked_for_without_a_resolver) {
+    setenv("HAPLY_WS_PORT", std::to_string(service.port()).c_str(), 1);
+    EXPECT_NE(find_haply().what.find("127.0.0.1:"), std::string::npos) << find_haply().missing;
+    unsetenv("HAPLY_WS_PORT");
+    EXPECT_NE(find_haply().options.find("host=127.0.0.1"), std::string::npos);
+    EXPECT_EQ(haply::look_up("localhost", 1).numeric,
+              (std::vector<std::string>{"127.0.0.1", "::1"}));
+}
+
 TEST_F(HaplyTest, what_opening_needs_is_said) {
     EXPECT_NE(refusal("axes=xzy").find("axes=xzy"), std::string::npos);
     EXPECT_NE(refusal("force_key=force").find("values, vector"), std::string::npos);
