@@ -1,5 +1,5 @@
-// Tells a call that hangs: the watchdog sees it under way at three looks in a row, and the machine
-// has not kept its thread from running meanwhile. Linux.
+// Tells a call that hangs: the watchdog sees it under way at three looks in a row, between which
+// its thread has waited or computed and not been kept from running by the machine. Linux.
 #include "servo/watched_device.hpp"
 
 #include <fcntl.h>
@@ -23,10 +23,8 @@ constexpr std::uint64_t has_thrown = has_hung - 1;
 
 /// A call is given up at the third look that sees it: 10 to 15 ms after it began. What is left of
 /// Device::longest_force is for a watchdog that is woken late, and for the device's own thread.
-constexpr auto between_looks = std::chrono::milliseconds(5);
-constexpr int looks_to_give_up = 3;
-/// CPU time in between [ns] from which on a thread counts as running.
-constexpr std::int64_t running_ns = 500'000;
+constexpr std::chrono::nanoseconds between_looks = std::chrono::milliseconds(5);
+constexpr std::int64_t longest_call_ns = 7'500'000;  // between the looks that see it
 
 std::int64_t cpu_ns(clockid_t clock) noexcept {
     timespec time{};
@@ -110,24 +108,20 @@ DeviceFailure WatchedDevice::failure() const noexcept {
 
 void WatchedDevice::look_after() noexcept {
     std::uint64_t seen = 0;
-    int looks = 0;
-    std::int64_t cpu = 0;
+    std::int64_t cpu = 0, spent = 0;  // [ns] by the thread: in all, and in the call
     while (!done_.load()) {
         std::this_thread::sleep_for(between_looks);
         std::uint64_t count = calls_.load(std::memory_order_acquire);
         if (count >= has_thrown) return;
-        if (count % 2 == 0) {
-            looks = 0;
-            continue;
-        }
+        if (count % 2 == 0) continue;
         const std::int64_t cpu_before = std::exchange(cpu, cpu_ns(thread_clock_));
         if (std::exchange(seen, count) != count) {
-            looks = 1;
+            spent = 0;
             continue;
         }
-        // A thread that could run but does not is the machine's doing, and goes on later.
-        if (is_runnable(thread_id_) && cpu - cpu_before < running_ns) continue;
-        if (++looks < looks_to_give_up) continue;
+        // A thread that could run but gets no processor does not hang: the machine is to blame.
+        spent += is_runnable(thread_id_) ? cpu - cpu_before : between_looks.count();
+        if (spent < longest_call_ns) continue;
         if (calls_.compare_exchange_strong(count, has_hung)) device_.stop();
     }
 }

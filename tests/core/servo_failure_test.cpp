@@ -118,9 +118,8 @@ TEST_P(ServoFailure, takes_the_force_away_and_ends_the_session_not_the_program) 
     EXPECT_STRNE(name_of(expected), "");
     servo.stop();  // returns, whatever the device does
     device.wake();
-    ASSERT_TRUE(comes_true([&] {
-        return servo.snapshot()->session.device.status == DeviceStatus::fault;
-    }));
+    ASSERT_TRUE(
+        comes_true([&] { return servo.snapshot()->session.device.status == DeviceStatus::fault; }));
     EXPECT_TRUE(servo.snapshot()->session.tick.force.isZero(0));
     const auto has_ended = [&] {
         try {
@@ -219,8 +218,7 @@ TEST(ServoFailure, a_call_that_waits_for_a_processor_does_not_hang) {
     ASSERT_TRUE(comes_true([&] { return over.load(); }));
     const std::int64_t then = servo.report().ticks;
     EXPECT_TRUE(comes_true([&] {
-        return servo.report().ticks > then + 100 ||
-               servo.device_failure() != DeviceFailure::none;
+        return servo.report().ticks > then + 100 || servo.device_failure() != DeviceFailure::none;
     }));
     EXPECT_EQ(servo.device_failure(), DeviceFailure::none);
 }

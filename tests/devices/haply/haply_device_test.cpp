@@ -2,6 +2,7 @@
 #include <cstdlib>
 
 #include "devices/haply/haply_fixture.hpp"
+#include "devices/haply/socket.hpp"
 
 namespace palpate::devices {
 namespace {
@@ -190,7 +191,7 @@ TEST_F(HaplyTest, the_usual_service_is_looked_for_without_a_resolver) {
     EXPECT_NE(find_haply().what.find("127.0.0.1:"), std::string::npos) << find_haply().missing;
     unsetenv("HAPLY_WS_PORT");
     EXPECT_NE(find_haply().options.find("host=127.0.0.1"), std::string::npos);
-    EXPECT_EQ(haply::look_up("localhost", 1).numeric,
+    EXPECT_EQ(palpate::devices::haply::look_up("localhost", 1).numeric,
               (std::vector<std::string>{"127.0.0.1", "::1"}));
 }
 
