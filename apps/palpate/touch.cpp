@@ -25,6 +25,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
+/// What became of a request.
+enum class Obeyed : std::uint8_t { yes, no_room, quit };
+
 /// The terminal of a run: commands from a file, keys, the status line.
 class Terminal {
   public:
@@ -100,18 +103,20 @@ class Terminal {
         return true;
     }
 
-    enum class Obeyed : std::uint8_t { yes, no_room, quit };
     Obeyed obey(const Request& request, const Snapshot& now) {
+        const Overloaded carry_out{
+            [](Quit) {},
+            [&](Help) { note(LiveCommands::key_help()); },
+            [&](const DataRequest& data) {
+                const double isovalue = now.session.tick.proxy.isovalue;
+                queue_.put([this, data, isovalue] {
+                    return data(run_.data(), run_.field_now(), isovalue);
+                });
+            },
+            [&](const Command& command) { run_.send(command); },
+        };
         try {
-            std::visit(Overloaded{[](Quit) {}, [&](Help) { note(LiveCommands::key_help()); },
-                                  [&](const DataRequest& data) {
-                                      const double isovalue = now.session.tick.proxy.isovalue;
-                                      queue_.put([this, data, isovalue] {
-                                          return data(run_.data(), run_.field_now(), isovalue);
-                                      });
-                                  },
-                                  [&](const Command& command) { run_.send(command); }},
-                       request);
+            std::visit(carry_out, request);
         } catch (const run::QueueFull&) {
             return Obeyed::no_room;
         } catch (const std::invalid_argument& e) {
@@ -125,10 +130,9 @@ class Terminal {
         if (std::exchange(wait_told_, true)) return;
         std::size_t end = next_;
         while (is_due(end, now)) ++end;
-        note(
-            fmt::format("{} commands are due and more than fit into one tick: they are carried "
-                        "out in their order, late",
-                        static_cast<std::int64_t>(end - next_) + run_.waiting()));
+        const std::int64_t count = static_cast<std::int64_t>(end - next_) + run_.waiting();
+        note(fmt::format(
+            "{} commands are due, more than fit into one tick: carried out in order, late", count));
     }
 
     /// After the end. Those that were not due yet were not to be carried out.
