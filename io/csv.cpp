@@ -2,11 +2,7 @@
 #include "palpate/io/csv.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstdio>
-#include <memory>
-#include <system_error>
 
 #include "io/number.hpp"
 
@@ -37,33 +33,6 @@ std::string quoted(std::string_view text) {
     std::string shown = "'";
     for (const char c : text.substr(0, longest)) shown += c >= ' ' && c <= '~' ? c : '?';
     return shown + (text.size() > longest ? "...'" : "'");
-}
-
-std::string read_text(const std::filesystem::path& path) {
-    std::error_code error;
-    if (std::filesystem::is_directory(path, error)) {
-        throw InputError(path.string() + ": is a folder: name a file in it");
-    }
-    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
-                                                               std::fclose);
-    if (!file) {
-        throw InputError(path.string() + ": cannot be opened: " + reason(errno) +
-                         ": check the name and your permission to read it");
-    }
-    std::string text;
-    constexpr std::size_t block = std::size_t{1} << 20;
-    for (;;) {
-        const std::size_t before = text.size();
-        text.resize(before + block);
-        const std::size_t count = std::fread(text.data() + before, 1, block, file.get());
-        text.resize(before + count);
-        if (count == block) continue;
-        if (std::ferror(file.get())) {
-            throw InputError(path.string() + ": cannot be read: " + reason(errno) +
-                             ": check the disk it is on");
-        }
-        return text;
-    }
 }
 
 std::string_view whole_lines(std::string_view text) {

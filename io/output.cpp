@@ -2,12 +2,17 @@
 #include "palpate/io/output.hpp"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <cerrno>
+#include <csignal>
+#include <cstdio>
 #include <system_error>
+
+#include "io/number.hpp"
 
 namespace palpate::io {
 namespace {
@@ -46,6 +51,35 @@ std::filesystem::path followed(const std::filesystem::path& path) {
     return error ? path : end;
 }
 
+std::filesystem::path folder_of(const std::filesystem::path& file) {
+    return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+}
+
+/// The process in ".palpate-PID-N.part"; 0 for another name.
+pid_t process_of(const std::string& name) {
+    constexpr std::string_view begin = ".palpate-", end = ".part";
+    if (!name.starts_with(begin) || !name.ends_with(end)) return 0;
+    const auto dash = name.find('-', begin.size());
+    if (dash == std::string::npos) return 0;
+    return number_from<pid_t>(std::string_view(name).substr(begin.size(), dash - begin.size()))
+        .value_or(0);
+}
+
+/// Removes the unfinished files of processes that are dead. A living one keeps a lock on its file,
+/// so that one in another container or on another machine counts as living, too.
+void remove_leftovers(const std::filesystem::path& folder) {
+    std::error_code error;
+    for (std::filesystem::directory_iterator entry(folder, error), end; entry != end && !error;
+         entry.increment(error)) {
+        const pid_t process = process_of(entry->path().filename().string());
+        if (process <= 0 || ::kill(process, 0) == 0 || errno != ESRCH) continue;
+        const int file = ::open(entry->path().c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
+        if (file < 0) continue;
+        if (::flock(file, LOCK_EX | LOCK_NB) == 0) ::unlink(entry->path().c_str());
+        ::close(file);
+    }
+}
+
 /// File systems without fsync say so; that is no loss of data.
 bool synchronise(int descriptor) {
     return ::fsync(descriptor) == 0 || errno == EINVAL || errno == ENOTSUP || errno == ENOSYS;
@@ -80,8 +114,7 @@ PendingFile::PendingFile(const std::filesystem::path& target) : target_(followed
 
 void PendingFile::open_temporary() {
     static std::atomic<unsigned> count = 0;
-    auto folder = target_.parent_path();
-    if (folder.empty()) folder = ".";
+    const auto folder = folder_of(target_);
     std::error_code error;
     if (!std::filesystem::is_directory(folder, error)) {
         if (error && error != std::errc::no_such_file_or_directory) {
@@ -92,6 +125,7 @@ void PendingFile::open_temporary() {
                  : "cannot be written: the folder " + folder.string() +
                        " does not exist: create it first");
     }
+    remove_leftovers(folder);
     // The mode that a plain open would give, or that of the file it replaces.
     struct stat old {};
     const bool replaces = ::stat(target_.c_str(), &old) == 0;
@@ -105,6 +139,7 @@ void PendingFile::open_temporary() {
         temporary_.clear();
         fail("cannot be written: " + because(problem));
     }
+    (void)::flock(descriptor_, LOCK_EX | LOCK_NB);  // for remove_leftovers() of other processes
     if (replaces && ::fchmod(descriptor_, old.st_mode & 07777) != 0) {
         const int problem = errno;
         fail("cannot be given the mode of the file it replaces: " + because(problem));
@@ -148,26 +183,66 @@ void PendingFile::flush() {
     buffer_.clear();
 }
 
-void PendingFile::commit() {
+/// To the disk, and closed: all that can fail for lack of space.
+void PendingFile::complete() {
     if (descriptor_ < 0) throw OutputError(target_.string() + ": is closed already");
     flush();
-    const bool direct = temporary_.empty();
-    if (!direct && !synchronise(descriptor_)) fail("could not be written: " + because(errno));
+    if (!temporary_.empty() && !synchronise(descriptor_)) {
+        fail("could not be written: " + because(errno));
+    }
     const int closing = descriptor_;
     descriptor_ = -1;
     if (::close(closing) != 0 && errno != EINTR) fail("could not be written: " + because(errno));
-    if (direct) return;
-    if (::rename(temporary_.c_str(), target_.c_str()) != 0) {
-        fail("could not be put in place: " + because(errno));
+}
+
+/// Not for good: what the target held before is kept under the temporary name.
+void PendingFile::put_in_place(bool for_good) {
+    if (temporary_.empty()) return;
+    const char* const from = temporary_.c_str();
+    const char* const to = target_.c_str();
+    in_place_ = true;
+    if (!for_good && ::renameat2(AT_FDCWD, from, AT_FDCWD, to, RENAME_EXCHANGE) == 0) return;
+    if (::rename(from, to) != 0) {
+        const int problem = errno;
+        in_place_ = false;
+        fail("could not be put in place: " + because(problem));
     }
     temporary_.clear();
+}
+
+void PendingFile::take_back() noexcept {
+    if (!in_place_) return discard();
+    if (temporary_.empty()) {
+        ::unlink(target_.c_str());
+    } else {
+        ::rename(temporary_.c_str(), target_.c_str());
+        temporary_.clear();
+    }
+}
+
+void PendingFile::keep() noexcept {
+    discard();  // what was there before
+    if (!in_place_) return;
     // So that the name survives a power cut, too; the data is complete in any case.
-    auto folder = target_.parent_path();
-    if (folder.empty()) folder = ".";
-    const int parent = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    const int parent = ::open(folder_of(target_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (parent < 0) return;
     synchronise(parent);
     ::close(parent);
+}
+
+void PendingFile::commit_together(const std::vector<PendingFile*>& files) {
+    try {
+        for (PendingFile* file : files) file->complete();
+        for (PendingFile* file : files) file->put_in_place(file == files.back());
+    } catch (const OutputError&) {
+        for (PendingFile* file : files) file->take_back();
+        throw;
+    }
+    for (PendingFile* file : files) file->keep();
+}
+
+void PendingFile::commit() {
+    commit_together({this});
 }
 
 }  // namespace palpate::io

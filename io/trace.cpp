@@ -75,8 +75,8 @@ std::vector<TraceRow> read_trace(const std::filesystem::path& path) {
     return parse_trace(read_text(path), path.string());
 }
 
-Way read_way(const std::filesystem::path& path) {
-    const std::string text = read_text(path);
+Way read_way(const std::filesystem::path& path, const Waiting& waiting) {
+    const std::string text = read_text(path, waiting);
     CsvReader rows(text, path.string());
     const auto columns = [&](const std::string& before) {
         return std::array{rows.column(before + "x"), rows.column(before + "y"),

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "apps/options/render_options.hpp"
+#include "apps/palpate/commands.hpp"
 #include "io/number.hpp"
 #include "palpate/io/csv.hpp"
 #include "palpate/io/level.hpp"
@@ -150,7 +151,7 @@ std::string LiveCommands::key_help() {
 }
 
 std::vector<TimedRequest> read_commands(const std::string& path, LiveCommands& commands) {
-    std::istringstream lines(io::read_text(path));
+    std::istringstream lines(io::read_text(path, stop_if_interrupted));
     std::vector<TimedRequest> requests;
     std::size_t number = 0;
     for (std::string line; std::getline(lines, line);) {

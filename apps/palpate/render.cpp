@@ -152,7 +152,8 @@ Drawing drawing_of(const RenderPictureOptions& options) {
     const Field field = run::make_field(loaded.volume, options.field);
     const std::vector<double> levels = levels_of(options, loaded, field);
     const pictures::Contact contact = contact_of(options, field, levels.front());
-    const io::Way way = options.path.empty() ? io::Way{} : io::read_way(options.path);
+    const io::Way way =
+        options.path.empty() ? io::Way{} : io::read_way(options.path, stop_if_interrupted);
     Drawing drawing;
     pictures::PictureScene& scene = drawing.scene;
     const auto [width, height] = size_from(options.size);

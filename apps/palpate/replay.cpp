@@ -6,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <vector>
 
 #include "apps/options/render_options.hpp"
 #include "apps/options/source_options.hpp"
@@ -13,6 +14,8 @@
 #include "apps/palpate/offline_summary.hpp"
 #include "apps/palpate/outputs.hpp"
 #include "apps/palpate/progress.hpp"
+#include "palpate/io/csv.hpp"
+#include "palpate/io/trace.hpp"
 #include "palpate/run/replay.hpp"
 
 namespace palpate::app {
@@ -46,7 +49,7 @@ std::string excuses(io::RecordingReader& reader) {
 /// io::InputError tells the first difference. `volume` is used instead of the name in the recording
 /// where it is not empty.
 void validate(const std::string& recording, const std::string& volume, bool quiet) {
-    io::RecordingReader reader{std::filesystem::path(recording)};
+    io::RecordingReader reader(io::read_text(recording, stop_if_interrupted), recording);
     const run::LoadedVolume loaded =
         load_for_terminal(run::recorded_source(reader.head(), recording, volume), quiet);
     run::Replay replay(reader, loaded, recording);
@@ -100,7 +103,8 @@ void replay(const ReplayOptions& options) {
         throw std::invalid_argument(
             "--json and a table would both go to standard output: give the table a file");
     }
-    const io::Trajectory trajectory = io::read_trajectory(options.trajectory);
+    const io::Trajectory trajectory = io::parse_trajectory(
+        io::read_text(options.trajectory, stop_if_interrupted), options.trajectory);
     const run::LoadedVolume loaded = load_for_terminal(options.source);
     const Field field = run::make_field(loaded.volume, options.field);
     const double isovalue = required_isovalue(loaded, field, options.field);
@@ -117,11 +121,9 @@ void replay(const ReplayOptions& options) {
     sinks.progress = [&](double fraction) { bar.at(fraction); };
     const run::OfflineSummary summary = run::render_offline(renderer, trajectory, sinks);
     stop_if_interrupted();
-    // A stream may fail, a rename hardly: first the stream, so that no file stays if it does.
-    const bool path_first = path && is_stream(options.path);
-    if (path_first) path->commit();
-    trace.commit();
-    if (path && !path_first) path->commit();
+    std::vector<io::PendingFile*> files{&trace.file()};
+    if (path) files.push_back(&path->file());
+    io::PendingFile::commit_together(files);
     if (options.json) {
         print_json(summary_json(summary));
     } else if (!options.source.quiet && !table_on_standard_output) {

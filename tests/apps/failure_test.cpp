@@ -163,6 +163,65 @@ TEST(BadOutput, a_reader_that_has_gone_leaves_no_temporary_file) {
     EXPECT_EQ(folder.names(), (std::vector<std::string>{"pipe", "t.csv"}));
 }
 
+TEST(BadInput, without_an_end_is_refused) {
+    const ScratchFolder folder;
+    put_trajectory(folder);
+    const std::string replay = "replay synthetic:sphere:24x24x24 -o a.csv --trajectory ";
+    expect_failure(palpate(folder, replay + "/dev/zero"), 3, "/dev/zero: line 1 is longer");
+    const std::string touch = "touch synthetic:sphere:24x24x24 --seconds 1 ";
+    expect_failure(palpate(folder, touch + "--commands /dev/zero"), 3, "/dev/zero: line 1");
+    expect_failure(palpate(folder, touch + "--device recorded:file=/dev/zero"), 3, "line 1");
+    expect_failure(palpate(folder, "replay --validate /dev/zero"), 3, "/dev/zero: line 1");
+    EXPECT_EQ(folder.names(), std::vector<std::string>{"t.csv"});
+}
+
+class Wait : public testing::TestWithParam<const char*> {};
+
+TEST_P(Wait, for_a_pipe_without_a_writer_ends_with_a_signal) {
+    const ScratchFolder folder;
+    ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+    put_trajectory(folder);
+    for (const int signal : {SIGTERM, SIGINT, SIGHUP}) {
+        Running program(words_of(GetParam()), folder.path());
+        ASSERT_TRUE(comes_true([&] { return program.catches(signal); }));
+        std::this_thread::sleep_for(std::chrono::milliseconds(300));  // it waits by then
+        const auto start = std::chrono::steady_clock::now();
+        const Outcome outcome = program.finish(signal);
+        EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
+        EXPECT_GE(outcome.status, 128) << outcome.err;
+        EXPECT_LT(outcome.status, 160) << outcome.err;
+        EXPECT_TRUE(contains(outcome.err, "interrupted")) << outcome.err;
+        EXPECT_EQ(folder.names(), (std::vector<std::string>{"pipe", "t.csv"}));
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    , Wait,
+    testing::Values("replay synthetic:sphere:24x24x24 -o a.csv --trajectory pipe",
+                    "replay --validate pipe",
+                    "touch synthetic:sphere:24x24x24 --seconds 1 --commands pipe",
+                    "touch synthetic:sphere:24x24x24 --seconds 1 --device recorded:file=pipe",
+                    "render synthetic:sphere:24x24x24 -o a.png --path pipe"));
+
+TEST(BadOutput, on_a_disk_that_is_full_for_the_path_leaves_no_trace) {
+    const ScratchFolder folder;
+    put_trajectory(folder);
+    put_bytes(folder / "a.csv", "old");
+    // One row a tick, but many corners: within the limit of 2 KiB a file the trace fits, the path
+    // does not.
+    put_bytes(folder / "t.csv", "t,x,y,z\n0,-20,0.1,0.2\n0.001,-5,0.1,0.2\n0.002,5,9,0.2\n");
+    const Outcome outcome =
+        Running({"-c",
+                 "ulimit -f 2; exec \"$0\" replay synthetic:sphere:64x64x64 --trajectory t.csv -o "
+                 "a.csv --path p.csv",
+                 PALPATE_PROGRAM},
+                folder.path(), Stdout::captured, "/bin/bash")
+            .finish();
+    expect_failure(outcome, 5, "p.csv: could not be written: File too large");
+    EXPECT_EQ(folder.names(), (std::vector<std::string>{"a.csv", "t.csv"}));
+    EXPECT_EQ(support::bytes_of(folder / "a.csv"), "old");
+}
+
 TEST(BadOutput, names_places_that_cannot_be_written) {
     const ScratchFolder folder;
     put_trajectory(folder);

@@ -141,6 +141,15 @@ TEST(Touch, counts_the_commands_that_the_end_left_no_time_for_in_one_line) {
     EXPECT_LT(std::ranges::count(done.err, '\n'), 10) << done.err;
 }
 
+TEST(Touch, takes_commands_with_a_byte_order_mark_and_the_line_ends_of_windows) {
+    const ScratchFolder folder;
+    put_bytes(folder / "c.txt",
+              "\xEF\xBB\xBF"
+              "0 freeze on\r\n0.1 quit\r\n");
+    const Outcome done = palpate(folder, "touch " + sphere + " --commands c.txt");
+    EXPECT_EQ(done.status, 0) << done.err;
+}
+
 TEST(Touch, refuses_commands_that_it_does_not_understand_before_anything_runs) {
     const ScratchFolder folder;
     const auto refused = [&](const std::string& text, const std::string& reason) {

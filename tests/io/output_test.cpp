@@ -4,10 +4,13 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <thread>
 
+#include "support/eventually.hpp"
 #include "support/scratch_folder.hpp"
 
 using namespace palpate::io;
@@ -132,20 +135,88 @@ TEST(Output, to_a_full_disk_is_an_error_and_leaves_the_device_alone) {
     EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
 }
 
+/// Limits how large a file may grow while it lives: a full disk, as far as writers can tell.
+class SmallDisk {
+  public:
+    explicit SmallDisk(rlim_t bytes) : old_action_(std::signal(SIGXFSZ, SIG_IGN)) {
+        ::getrlimit(RLIMIT_FSIZE, &old_);
+        const rlimit small{bytes, old_.rlim_max};
+        ::setrlimit(RLIMIT_FSIZE, &small);
+    }
+    ~SmallDisk() {
+        ::setrlimit(RLIMIT_FSIZE, &old_);
+        std::signal(SIGXFSZ, old_action_);
+    }
+    SmallDisk(const SmallDisk&) = delete;
+    SmallDisk& operator=(const SmallDisk&) = delete;
+
+  private:
+    rlimit old_{};
+    void (*old_action_)(int);
+};
+
+TEST(Output, of_several_files_appears_together_or_not_at_all) {
+    const ScratchFolder folder;
+    put_bytes(folder / "a.csv", "old");
+    const auto commit_with = [&](std::size_t bytes_of_the_second, bool blocked) {
+        PendingFile first(folder / "a.csv"), second(folder / "b.csv"), third(folder / "c.csv");
+        first.write("new");
+        second.write(std::string(bytes_of_the_second, 'x'));
+        third.write("third");
+        if (blocked) std::filesystem::create_directory(folder / "c.csv");
+        PendingFile::commit_together({&first, &second, &third});
+    };
+    const auto expect_nothing_new = [&](const Names& names) {
+        EXPECT_EQ(bytes_of(folder / "a.csv"), "old");
+        EXPECT_EQ(folder.names(), names);
+    };
+    {
+        const SmallDisk disk(1000);
+        EXPECT_TRUE(contains(message_of<OutputError>([&] { commit_with(2000, false); }),
+                             "b.csv: could not be written: File too large"));
+    }
+    expect_nothing_new({"a.csv"});
+    EXPECT_TRUE(contains(message_of<OutputError>([&] { commit_with(1, true); }),
+                         "c.csv: could not be put in place"));
+    expect_nothing_new({"a.csv", "c.csv"});
+    std::filesystem::remove(folder / "c.csv");
+    commit_with(1, false);
+    EXPECT_EQ(bytes_of(folder / "a.csv"), "new");
+    EXPECT_EQ(folder.names(), (Names{"a.csv", "b.csv", "c.csv"}));
+}
+
+TEST(Output, of_a_killed_process_is_removed_by_the_next_and_of_a_living_one_stays) {
+    const ScratchFolder folder;
+    const auto begin_a_file = [&] {
+        const pid_t child = ::fork();
+        if (child == 0) {
+            PendingFile file(folder / "a.csv");
+            ::pause();
+        }
+        EXPECT_TRUE(comes_true([&] { return !folder.names().empty(); }));
+        return child;
+    };
+    const pid_t child = begin_a_file();
+    const Names unfinished = folder.names();
+    ASSERT_EQ(unfinished.size(), 1U);
+    { PendingFile file(folder / "b.csv"); }
+    EXPECT_EQ(folder.names(), unfinished);
+    ::kill(child, SIGKILL);
+    ::waitpid(child, nullptr, 0);
+    EXPECT_EQ(folder.names(), unfinished);
+    put_bytes(folder / ".palpate-notes.part", "of somebody else");
+    { PendingFile file(folder / "b.csv"); }
+    EXPECT_EQ(folder.names(), Names{".palpate-notes.part"});
+}
+
 TEST(Output, past_the_limit_of_a_file_is_an_error_and_leaves_nothing_behind) {
     const ScratchFolder folder;
-    rlimit old{};
-    ::getrlimit(RLIMIT_FSIZE, &old);
-    const auto old_action = std::signal(SIGXFSZ, SIG_IGN);
-    const rlimit small{1 << 20, old.rlim_max};
-    ::setrlimit(RLIMIT_FSIZE, &small);
+    const SmallDisk disk(1 << 20);
     const std::string message = message_of<OutputError>([&] {
         PendingFile file(folder / "a.bin");
         for (int i = 0; i < 100; ++i) file.write(std::string(100'000, 'x'));
         file.commit();
     });
-    ::setrlimit(RLIMIT_FSIZE, &old);
-    std::signal(SIGXFSZ, old_action);
     EXPECT_TRUE(contains(message, "File too large")) << message;
     EXPECT_TRUE(folder.names().empty());
 }

@@ -14,8 +14,15 @@
 
 namespace palpate::io {
 
-/// The whole of a text file. Throws InputError.
-std::string read_text(const std::filesystem::path& path);
+/// Called at least ten times a second while a pipe or a device has nothing to read. Throw to end
+/// the wait.
+using Waiting = std::function<void()>;
+
+/// The whole text of a file, a pipe or a device, without a byte order mark. Throws InputError, also
+/// for a line of more than 16 MiB, a file of more than 4 GiB or a stream of more than 1 GiB.
+/// Without `waiting`, a signal that the program handles ends the wait for a stream, and so do 10 s
+/// in which nothing came; both are InputErrors.
+std::string read_text(const std::filesystem::path& path, const Waiting& waiting = {});
 
 /// The text without a last line that lacks its line end (a file cut off while it was written).
 std::string_view whole_lines(std::string_view text);

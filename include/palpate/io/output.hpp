@@ -6,15 +6,18 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "palpate/io/error.hpp"
 
 namespace palpate::io {
 
-/// A file being written. Without commit() the target stays unchanged and nothing is left behind.
-/// A target that exists and is not a regular file (/dev/stdout, a pipe, /dev/full) and "-", the
-/// standard output, are written directly instead: they cannot be replaced, and their reader is
-/// waiting. A symbolic link is followed. Everything here throws OutputError.
+/// A file being written: `.palpate-PID-N.part` beside the target. What processes that were killed
+/// have left of this kind in the folder is removed when a file is opened. Without commit() the
+/// target stays unchanged and nothing is left behind. A target that exists and is not a regular
+/// file (/dev/stdout, a pipe, /dev/full) and "-", the standard output, are written directly
+/// instead: they cannot be replaced, and their reader is waiting. A symbolic link is followed.
+/// Everything here throws OutputError.
 class PendingFile {
   public:
     /// Opens the temporary file, so what cannot be written is known before the work is done.
@@ -27,15 +30,24 @@ class PendingFile {
     void write(std::string_view bytes);
     /// Flushes to the disk and puts the file in its target's place. Nothing can be written after.
     void commit();
+    /// The same for several outputs of one run: all appear, or none. On an error, what a target
+    /// held before is there again, except what went to a stream (and on file systems that cannot
+    /// exchange two names). Every file is closed then.
+    static void commit_together(const std::vector<PendingFile*>& files);
 
   private:
     void open_temporary();
     void flush();
+    void complete();
+    void put_in_place(bool for_good);
+    void take_back() noexcept;
+    void keep() noexcept;
     [[noreturn]] void fail(const std::string& problem);
     void discard() noexcept;
 
     std::filesystem::path target_;
     std::filesystem::path temporary_;  // empty where the target is written directly
+    bool in_place_ = false;            // temporary_ then holds what the target held before, if any
     int descriptor_ = -1;
     std::string buffer_;
 };

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "palpate/io/csv.hpp"
 #include "palpate/io/error.hpp"
 #include "palpate/io/output.hpp"
 #include "palpate/renderer.hpp"
@@ -37,6 +38,8 @@ class TraceWriter {
                          const std::vector<std::string>& comments = {});
     void add(const TraceRow& row);
     void commit() { file_.commit(); }
+    /// For PendingFile::commit_together().
+    PendingFile& file() { return file_; }
 
   private:
     PendingFile file_;
@@ -51,6 +54,8 @@ class PathWriter {
     /// The corners of a tick in order, its end included.
     void add(std::int64_t tick, const Vec3& corner);
     void commit() { file_.commit(); }
+    /// For PendingFile::commit_together().
+    PendingFile& file() { return file_; }
 
   private:
     PendingFile file_;
@@ -70,7 +75,7 @@ struct Way {
     std::vector<bool> constrained;  ///< of each `scp`; true throughout for a path file
 };
 /// From a trace, or from a path (columns x, y, z). Throws InputError, also for points that are not
-/// finite.
-Way read_way(const std::filesystem::path& path);
+/// finite. `waiting`: as for read_text().
+Way read_way(const std::filesystem::path& path, const Waiting& waiting = {});
 
 }  // namespace palpate::io

@@ -1,0 +1,94 @@
+// Text from files, pipes and devices: every wait ends, and so does every stream.
+#include <gtest/gtest.h>
+#include <pthread.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <thread>
+
+#include "palpate/io/csv.hpp"
+#include "support/scratch_folder.hpp"
+
+using namespace palpate::io;
+using namespace palpate::support;
+
+namespace {
+
+using namespace std::chrono_literals;
+
+struct Cancelled {};
+
+std::string refusal_of_text(const std::filesystem::path& path) {
+    const std::string message = message_of<InputError>([&] { (void)read_text(path); });
+    EXPECT_TRUE(message.starts_with(path.string() + ": ")) << message;
+    EXPECT_FALSE(contains(message, "\n")) << message;
+    return message;
+}
+
+}  // namespace
+
+TEST(Text, from_a_device_without_end_stops_at_the_longest_line) {
+    EXPECT_TRUE(contains(refusal_of_text("/dev/zero"), "line 1 is longer than 16 MiB"));
+}
+
+TEST(Text, with_a_line_that_is_too_long_names_the_line) {
+    const ScratchFolder folder;
+    put_bytes(folder / "a.csv", "t,x\n\n" + std::string(17 << 20, '1') + "\n2,3\n");
+    EXPECT_TRUE(contains(refusal_of_text(folder / "a.csv"), "line 3 is longer"));
+    std::string fits;  // longer than that, but in lines that are not
+    for (int i = 0; i < 3; ++i) fits += std::string(15 << 20, '1') + "\n";
+    put_bytes(folder / "a.csv", fits);
+    EXPECT_EQ(read_text(folder / "a.csv"), fits);
+}
+
+TEST(Text, larger_than_the_limit_is_refused_before_it_is_read) {
+    const ScratchFolder folder;
+    put_bytes(folder / "a.csv", "t,x\n");
+    std::filesystem::resize_file(folder / "a.csv", std::uintmax_t{1} << 40);  // a hole
+    EXPECT_TRUE(contains(refusal_of_text(folder / "a.csv"), "up to 4 GiB"));
+}
+
+TEST(Text, of_a_pipe_without_a_writer_is_waited_for_until_the_caller_cancels) {
+    const ScratchFolder folder;
+    ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+    int calls = 0;
+    EXPECT_THROW((void)read_text(folder / "pipe",
+                                 [&] {
+                                     if (++calls == 3) throw Cancelled();
+                                 }),
+                 Cancelled);
+}
+
+TEST(Text, without_a_caller_to_ask_a_signal_ends_the_wait) {
+    const ScratchFolder folder;
+    ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+    const auto before = std::signal(SIGUSR1, [](int) {});  // restarts what it interrupts
+    const pthread_t reader = ::pthread_self();
+    std::thread sender([&] {
+        std::this_thread::sleep_for(200ms);
+        ::pthread_kill(reader, SIGUSR1);
+    });
+    const auto start = std::chrono::steady_clock::now();
+    EXPECT_TRUE(contains(refusal_of_text(folder / "pipe"), "interrupted"));
+    EXPECT_LT(std::chrono::steady_clock::now() - start, 8s);
+    sender.join();
+    std::signal(SIGUSR1, before);
+}
+
+TEST(Text, comes_whole_through_a_pipe_whose_writer_takes_its_time) {
+    const ScratchFolder folder;
+    ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+    std::thread writer([&] {
+        std::this_thread::sleep_for(100ms);
+        std::ofstream pipe(folder / "pipe", std::ios::binary);
+        for (int i = 0; i < 3; ++i) {
+            pipe << "\xEF\xBB\xBF" << i << '\n' << std::flush;
+            std::this_thread::sleep_for(100ms);
+        }
+    });
+    // Only the mark at the beginning is one.
+    EXPECT_EQ(read_text(folder / "pipe"), "0\n\xEF\xBB\xBF""1\n\xEF\xBB\xBF""2\n");
+    writer.join();
+}
