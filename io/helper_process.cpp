@@ -5,16 +5,20 @@
 #include <poll.h>
 #include <spawn.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cctype>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <system_error>
 
+#include "io/helper/library_words.hpp"
 #include "io/helper/protocol.hpp"
 #include "io/helper_folders.hpp"
 
@@ -153,6 +157,14 @@ pid_t spawn(const fs::path& program, const HelperJob& job, const Descriptor& rep
     return errno == 0 ? pid : 0;
 }
 
+/// The system then ends it with SIGXCPU, whatever a library in it does.
+void limit_processor_time(pid_t pid, double seconds) {
+    rlimit limit{};
+    if (seconds <= 0 || prlimit(pid, RLIMIT_CPU, nullptr, &limit) != 0) return;
+    limit.rlim_cur = std::min(limit.rlim_max, static_cast<rlim_t>(std::ceil(seconds)));
+    prlimit(pid, RLIMIT_CPU, &limit, nullptr);
+}
+
 /// Reads the helper's messages until it closes both pipes.
 class Listener {
   public:
@@ -197,16 +209,19 @@ class Listener {
     }
 
     void take_lines() {
-        for (std::size_t end; (end = pending_.find('\n')) != std::string::npos;) {
-            const auto line = nlohmann::json::parse(
-                pending_.begin(), pending_.begin() + static_cast<long>(end), nullptr, false);
-            pending_.erase(0, end + 1);
+        std::size_t begin = 0;
+        for (std::size_t end; (end = pending_.find('\n', begin)) != std::string::npos;) {
+            const auto line =
+                nlohmann::json::parse(pending_.begin() + static_cast<long>(begin),
+                                      pending_.begin() + static_cast<long>(end), nullptr, false);
+            begin = end + 1;
             if (!line.is_object()) continue;
             fraction_ = line.value("progress", fraction_);
             doing_ = line.value("doing", doing_);
             error_ = line.value("error", error_);
             if (line.contains("done")) done_ = line["done"];
         }
+        pending_.erase(0, begin);
         if (pending_.size() > 1 << 20) pending_.clear();  // not our helper
     }
 
@@ -223,19 +238,27 @@ std::string last_words(const std::string& text) {
     const auto end = text.find_last_not_of(" \t\r\n");
     if (end == std::string::npos) return {};
     const auto begin = text.find_last_of('\n', end);
-    std::string line = text.substr(begin == std::string::npos ? 0 : begin + 1);
-    line.resize(line.find_last_not_of(" \t\r\n") + 1);
-    if (line.size() > 160) line = line.substr(0, 157) + "...";
-    return " (" + line + ")";
+    const std::string line =
+        library_words(text.substr(begin == std::string::npos ? 0 : begin + 1), 160);
+    return line.empty() ? "" : " (" + line + ")";
 }
 
-std::string failure_of(const HelperProgram& program, const Listener& said, int status) {
+std::string seconds_text(double seconds) {
+    return std::to_string(std::lround(std::ceil(seconds))) + " s";
+}
+
+std::string failure_of(const HelperJob& job, const Listener& said, int status) {
+    const HelperProgram& program = job.program;
     if (!said.error().empty()) return said.error();
     if (WIFEXITED(status) && WEXITSTATUS(status) == 0 && said.done().is_object()) return {};
     const std::string where = said.doing().empty() ? "" : " at " + said.doing();
     if (WIFSIGNALED(status)) {
         const int s = WTERMSIG(status);
         if (s == SIGINT || s == SIGTERM || s == SIGHUP) return "interrupted";
+        if (s == SIGXCPU) {
+            return "it took more than " + seconds_text(job.processor_limit_s) +
+                   " of processor time" + where + ": " + program.too_slow;
+        }
         if (s == SIGKILL) {
             return "the helper process was killed" + where + ": most likely out of memory; " +
                    program.out_of_memory;
@@ -295,16 +318,15 @@ HelperResult run_helper(const HelperJob& job) {
         return {{}, "cannot run '" + path.string() + "' (" + std::strerror(errno) + ")" + remedy};
     }
     Child child(pid);
+    limit_processor_time(pid, job.processor_limit_s);
     // Only the helper may hold write ends; otherwise the end of its output would not be seen.
     report.write_end.close_now();
     errors.write_end.close_now();
     Listener listener(job, report.read_end, errors.read_end);
     if (!listener.listen()) {
-        return {{},
-                "no answer after " + std::to_string(static_cast<int>(job.time_limit_s)) +
-                    " s: " + helper.too_slow};
+        return {{}, "no answer after " + seconds_text(job.time_limit_s) + ": " + helper.too_slow};
     }
-    return {listener.done(), failure_of(helper, listener, child.wait())};
+    return {listener.done(), failure_of(job, listener, child.wait())};
 }
 
 }  // namespace palpate::io

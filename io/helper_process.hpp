@@ -55,6 +55,7 @@ struct HelperJob {
     const Descriptor* memory = nullptr;
     std::function<void(double)> progress;
     double time_limit_s = 0;
+    double processor_limit_s = 0;  ///< [s] of its processor time, rounded up; 0: no limit
 };
 
 struct HelperResult {

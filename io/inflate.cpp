@@ -69,7 +69,7 @@ class Inflater {
         const std::size_t made = out_.size() - state_.avail_out;
         total_ += made;
         if (total_ > at_most_) {
-            throw DamagedStream("the compressed data unpacks to more than the header says");
+            throw OversizedStream("the compressed data unpacks to more than the header says");
         }
         if (sink_ && made > 0) sink_({out_.data(), made});
         ended_ = status == Z_STREAM_END;
@@ -105,12 +105,28 @@ std::uint64_t inflate_checked(const std::filesystem::path& file, const StreamPla
     return inflater.finish();
 }
 
-std::uint64_t inflate_checked(std::span<const std::byte> stream, const ByteSink& sink) {
-    Inflater inflater(sink, UINT64_MAX);
+std::uint64_t inflate_checked(std::span<const std::byte> stream, std::uint64_t at_most) {
+    const ByteSink nobody;
+    Inflater inflater(nobody, at_most);
     for (std::size_t at = 0; at < stream.size(); at += chunk_bytes) {
         inflater.feed(stream.subspan(at, std::min(chunk_bytes, stream.size() - at)));
     }
     return inflater.finish();
+}
+
+std::vector<std::byte> inflate_start(const std::filesystem::path& file, std::size_t bytes) {
+    struct Enough {};
+    std::vector<std::byte> start;
+    const ByteSink keep = [&](std::span<const std::byte> chunk) {
+        const std::size_t take = std::min(chunk.size(), bytes - start.size());
+        start.insert(start.end(), chunk.begin(), chunk.begin() + static_cast<std::ptrdiff_t>(take));
+        if (start.size() == bytes) throw Enough();
+    };
+    try {
+        inflate_checked(file, {}, keep);
+    } catch (const Enough&) {  // the rest of the stream is for later
+    }
+    return start;
 }
 
 bool is_gzip(const std::filesystem::path& file) {

@@ -8,6 +8,7 @@
 #include <functional>
 #include <span>
 #include <stdexcept>
+#include <vector>
 
 namespace palpate::io {
 
@@ -15,6 +16,12 @@ namespace palpate::io {
 class DamagedStream : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;
+};
+
+/// One that unpacks to more than StreamPlace::at_most.
+class OversizedStream : public DamagedStream {
+  public:
+    using DamagedStream::DamagedStream;
 };
 
 /// Where a compressed stream lies in a file.
@@ -31,8 +38,11 @@ using ByteSink = std::function<void(std::span<const std::byte>)>;
 std::uint64_t inflate_checked(const std::filesystem::path& file, const StreamPlace& place,
                               const ByteSink& sink);
 
-/// The same for a stream in memory.
-std::uint64_t inflate_checked(std::span<const std::byte> stream, const ByteSink& sink);
+/// The same for a stream in memory, of at most so many unpacked bytes; it only checks.
+std::uint64_t inflate_checked(std::span<const std::byte> stream, std::uint64_t at_most);
+
+/// The first `bytes` of what is unpacked, or all if there are fewer. Throws DamagedStream.
+std::vector<std::byte> inflate_start(const std::filesystem::path& file, std::size_t bytes);
 
 /// True for a file that starts with gzip's two magic bytes.
 bool is_gzip(const std::filesystem::path& file);

@@ -75,6 +75,19 @@ void check_size(const std::filesystem::path& path, const RawLayout& raw, std::ui
                      std::to_string(expected) + "; correct --dims or --type");
 }
 
+/// Returns how many bytes there are; stops soon after the first one that is too many.
+std::uint64_t unpack(const std::filesystem::path& path, const RawLayout& raw,
+                     std::uint64_t expected, Filler& fill) {
+    try {
+        return inflate_checked(path, {0, UINT64_MAX, expected + 4096}, std::ref(fill));
+    } catch (const OversizedStream&) {
+        throw InputError(path.string() + ": unpacks to more than the " + std::to_string(expected) +
+                         " bytes that " + layout_text(raw) + " needs; correct --dims or --type");
+    } catch (const DamagedStream& e) {
+        throw InputError(path.string() + ": " + e.what() + "; copy or download it again");
+    }
+}
+
 /// Bytes from the first of the file to the last sample; refuses layouts that make no sense.
 std::uint64_t expected_bytes(const std::filesystem::path& path, const RawLayout& raw,
                              std::uint64_t limit) {
@@ -113,13 +126,7 @@ VolumeFile read_raw(const std::filesystem::path& path, const ReadOptions& option
     const auto samples = allocate(bytes);
     Filler fill(samples.get(), bytes, raw.skip, options.progress);
     if (packed) {
-        std::uint64_t found = 0;
-        try {
-            found = inflate_checked(path, {}, std::ref(fill));
-        } catch (const DamagedStream& e) {
-            throw InputError(path.string() + ": " + e.what() + "; copy or download it again");
-        }
-        check_size(path, raw, expected, found, true);
+        check_size(path, raw, expected, unpack(path, raw, expected, fill), true);
     } else {
         read_plain(path, fill);
     }

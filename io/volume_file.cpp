@@ -25,12 +25,35 @@ constexpr HelperProgram io_helper{
     "palpate-io-helper", "the format's library",
     "the file is damaged or not what its name says; export it again",
     "close other programs or use a smaller volume",
-    "the file is damaged or very large; raise the time limit or check it"};
+    "files of its size take less; it is most likely damaged: export it again"};
 
 std::uint64_t machine_memory() {
     return static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) *
            static_cast<std::uint64_t>(sysconf(_SC_PAGE_SIZE));
 }
+
+/// Bytes of a file, or of all files in a folder.
+double bytes_in(const fs::path& path) {
+    std::error_code error;
+    if (!fs::is_directory(path, error)) return static_cast<double>(fs::file_size(path, error));
+    double bytes = 0;
+    for (fs::directory_iterator entry(path, error), end; entry != end && !error;
+         entry.increment(error)) {
+        std::error_code of_entry;
+        const auto size = entry->file_size(of_entry);
+        if (!of_entry) bytes += static_cast<double>(size);
+    }
+    return bytes;
+}
+
+/// Enough for any sound file on a slow machine: compressed files take the longest, less than a
+/// tenth of this.
+struct TimeLimits {
+    double wall_s, processor_s;
+    TimeLimits(double asked_s, double bytes)
+        : wall_s(asked_s > 0 ? asked_s : 600 + 2e-6 * bytes),
+          processor_s(asked_s > 0 ? asked_s : 120 + 2e-6 * bytes) {}
+};
 
 /// Checks a path without knowing the file's format.
 void check_readable(const fs::path& path) {
@@ -91,9 +114,11 @@ VolumeFile read_volume(const fs::path& path, const ReadOptions& options) {
     if (options.spacing) request["spacing"] = json_from(*options.spacing);
     try {
         const Descriptor samples = shared_memory();
+        const TimeLimits limits(options.time_limit_s, bytes_in(path));
         const HelperJob job{
-            io_helper, options.helper,   {"read", path.string(), line_from(request)},
-            &samples,  options.progress, options.time_limit_s};
+            io_helper,         options.helper,   {"read", path.string(), line_from(request)},
+            &samples,          options.progress, limits.wall_s,
+            limits.processor_s};
         const HelperResult result = run_helper(job);
         if (!result.failure.empty()) throw InputError(path.string() + ": " + result.failure);
         return volume_from(result.done, samples);
@@ -155,13 +180,15 @@ void write_volume(const Volume& volume, const fs::path& path, const WriteOptions
     try {
         const Descriptor samples = shared_memory(volume.bytes());
         std::memcpy(map_shared(samples, volume.bytes()).get(), volume.data(), volume.bytes());
+        const TimeLimits limits(options.time_limit_s, static_cast<double>(volume.bytes()));
         const HelperJob job{
             io_helper,
             options.helper,
             {"write", path.string(), line_from(request), workshop.folder().string()},
             &samples,
             options.progress,
-            options.time_limit_s};
+            limits.wall_s,
+            limits.processor_s};
         const HelperResult result = run_helper(job);
         if (!result.failure.empty()) throw OutputError(path.string() + ": " + result.failure);
     } catch (const std::system_error& e) {

@@ -9,10 +9,12 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <fstream>
 #include <limits>
 #include <map>
 
 #include "io/finite.hpp"
+#include "io/helper/child.hpp"
 #include "io/helper/protocol.hpp"
 #include "io/helper/report.hpp"
 
@@ -148,13 +150,56 @@ void take_step(const Request& request, std::int64_t steps, const FrameTimes& tim
                            " (0 to " + std::to_string(steps - 1) + ") was taken");
 }
 
-void finish(Result& result, const Request& request, std::span<std::byte> samples) {
-    if (request.spacing) result.geometry.spacing = *request.spacing;
+MemoryBound::MemoryBound([[maybe_unused]] std::uint64_t more) {
+    rlimit limit{};
+    getrlimit(RLIMIT_DATA, &limit);
+    before_ = limit.rlim_cur;
+#ifndef PALPATE_SANITIZED
+    // The sixth number of statm: pages of data and stack.
+    std::ifstream statm("/proc/self/statm");
+    std::uint64_t pages = 0;
+    for (int i = 0; i < 6; ++i) statm >> pages;
+    const auto now = pages * static_cast<std::uint64_t>(sysconf(_SC_PAGE_SIZE));
+    if (!statm || more > UINT64_MAX / 4) return;
+    limit.rlim_cur = std::min<rlim_t>(before_, now + more + (rlim_t{64} << 20));
+    setrlimit(RLIMIT_DATA, &limit);
+#endif
+}
+
+MemoryBound::~MemoryBound() {
+    rlimit limit{};
+    getrlimit(RLIMIT_DATA, &limit);
+    limit.rlim_cur = before_;
+    setrlimit(RLIMIT_DATA, &limit);
+}
+
+void check_spacing(double spacing, const std::string& where) {
+    if (spacing >= least_length && spacing <= greatest_length) return;
+    throw Failure("its " + where + " gives a spacing of " + text_of(spacing) +
+                  " mm; correct it, spacings are above 0 (1e-9 to 1e9 mm)");
+}
+
+void check_coordinate(double coordinate, const std::string& where) {
+    if (std::abs(coordinate) <= greatest_length) return;
+    throw Failure("its " + where + " gives a position of " + text_of(coordinate) +
+                  " mm; correct it, positions are within 1e9 mm of the origin");
+}
+
+void check_geometry(const Geometry& geometry) {
     try {
-        check(result.geometry);
+        check(geometry);
     } catch (const std::invalid_argument& e) {
         throw Failure(e.what());
     }
+    for (int i = 0; i < 3; ++i) {
+        check_spacing(geometry.spacing[i], "grid");
+        check_coordinate(geometry.origin[i], "grid");
+    }
+}
+
+void finish(Result& result, const Request& request, std::span<std::byte> samples) {
+    if (request.spacing) result.geometry.spacing = *request.spacing;
+    check_geometry(result.geometry);
     if (result.type != SampleType::float32) return;
     const std::span<float> floats{reinterpret_cast<float*>(samples.data()),
                                   samples.size() / sizeof(float)};

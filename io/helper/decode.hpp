@@ -109,6 +109,29 @@ int checked_time_step(const Request& request, std::int64_t steps);
 /// The same for a format with times: enters the step, the times and a note into the result.
 void take_step(const Request& request, std::int64_t steps, const FrameTimes& times, Result& result);
 
+/// What lengths and positions may be [mm], far beyond what is scanned. Libraries compute with them;
+/// one of theirs never returns from a matrix of 3e38.
+constexpr double least_length = 1e-9, greatest_length = 1e9;
+/// Refuses a spacing that is not within these; `where` names what gave it.
+void check_spacing(double spacing, const std::string& where);
+/// Refuses a coordinate that is not finite or farther from 0 than greatest_length.
+void check_coordinate(double coordinate, const std::string& where);
+/// All of a grid: check() and these two. Throws Failure.
+void check_geometry(const Geometry& geometry);
+
+/// While it lives, this process may allocate so many bytes more than it has (and 64 MiB), so that a
+/// library that asks for much more than a file's samples need gets std::bad_alloc.
+class MemoryBound {
+  public:
+    explicit MemoryBound(std::uint64_t more);
+    ~MemoryBound();
+    MemoryBound(const MemoryBound&) = delete;
+    MemoryBound& operator=(const MemoryBound&) = delete;
+
+  private:
+    std::uint64_t before_ = 0;
+};
+
 /// Geometry and finite samples; the requested spacing is put in. Throws Failure.
 void finish(Result& result, const Request& request, std::span<std::byte> samples);
 

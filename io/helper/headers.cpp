@@ -64,10 +64,4 @@ std::int64_t whole_number_in(const std::string& text, const std::string& field, 
     return static_cast<std::int64_t>(numbers[0]);
 }
 
-void check_spacing(double spacing, const std::string& field) {
-    if (std::isfinite(spacing) && spacing > 0) return;
-    throw Failure("its header field '" + field + "' gives a spacing of " + text_of(spacing) +
-                  " mm; correct the header, spacings are above 0");
-}
-
 }  // namespace palpate::io

@@ -68,7 +68,5 @@ std::vector<double> numbers_in(const std::string& text, const std::string& field
 std::vector<std::int64_t> sizes_in(const std::string& text, const std::string& field);
 /// The same for a field of one whole number of at least `least`.
 std::int64_t whole_number_in(const std::string& text, const std::string& field, double least);
-/// Refuses a spacing that is not a finite number above 0.
-void check_spacing(double spacing, const std::string& field);
 
 }  // namespace palpate::io

@@ -11,6 +11,7 @@
 #include <new>
 
 #include "io/helper/child.hpp"
+#include "io/helper/library_words.hpp"
 #include "io/helper/protocol.hpp"
 #include "io/helper/readers.hpp"
 #include "io/helper/report.hpp"
@@ -111,7 +112,7 @@ class Workshop {
         remember(unfinished_folder, folder);
         // SIGPIPE: a dying caller's pipes close before its death is announced (PR_SET_PDEATHSIG),
         // and a report between the two would end this process with its file left behind.
-        for (const int s : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) signal(s, clean_up_and_go);
+        for (const int s : {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGXCPU}) signal(s, clean_up_and_go);
     }
 
     void open() const {
@@ -152,7 +153,7 @@ nlohmann::json run_write(const fs::path& path, const nlohmann::json& asked,
     const Geometry geometry = geometry_from(asked.at("geometry"));
     const SampleType type = sample_type_from(asked.at("type").get<std::string>());
     const bool compress = asked.at("compress").get<bool>();
-    check(geometry);
+    check_geometry(geometry);
     const auto bytes = static_cast<std::size_t>(sample_count(geometry)) * size_of(type);
     limit_this_process(asked, std::max<std::uint64_t>(4 * bytes, 1 << 30));
     void* const samples = mmap(nullptr, bytes, PROT_READ, MAP_SHARED, samples_descriptor, 0);
@@ -169,21 +170,6 @@ nlohmann::json run_write(const fs::path& path, const nlohmann::json& asked,
     }
     workshop.move_out();
     return nlohmann::json::object();
-}
-
-/// A library's message as one line.
-std::string one_line(std::string text) {
-    std::string line;
-    for (const char c : text) {
-        const bool blank = c == '\n' || c == '\r' || c == '\t' || c == ' ';
-        if (!blank) line += c;
-        if (blank && !line.empty() && line.back() != ' ') line += ' ';
-    }
-    const auto colon = line.find("): ");  // "itk::ERROR: NrrdImageIO(0x55..): what is wrong"
-    if (line.rfind("itk::ERROR", 0) == 0 || line.find("itk::ERROR") != std::string::npos) {
-        if (colon != std::string::npos) line = line.substr(colon + 3);
-    }
-    return trimmed(line).substr(0, 300);
 }
 
 int run(int argc, char** argv) {
@@ -203,9 +189,10 @@ int run(int argc, char** argv) {
     } catch (const std::bad_alloc&) {
         report({{"error", "not enough memory; crop or downsample the volume"}});
     } catch (const std::exception& e) {
-        report({{"error", "the format's library refused it (" + one_line(e.what()) + "); " +
-                              (reading ? "it is damaged or of a kind that is not read"
-                                       : "is the disk full?")}});
+        report(
+            {{"error", "the format's library refused it (" + library_words(e.what(), 300) + "); " +
+                           (reading ? "it is damaged or of a kind that is not read"
+                                    : "is the disk full?")}});
     }
     return 1;
 }

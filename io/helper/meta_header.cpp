@@ -116,8 +116,8 @@ void read_geometry(const HeaderFields& fields, VolumeHeader& header) {
     for (std::size_t a = 0; a < std::min<std::size_t>(3, axes); ++a) {
         const auto i = static_cast<Eigen::Index>(a);
         g.size[i] = static_cast<int>(header.sizes[a]);
-        if (!size.empty()) check_spacing(size[a], "elementsize");
-        if (!spacing.empty()) check_spacing(spacing[a], "elementspacing");
+        if (!size.empty()) check_spacing(size[a], "header field 'elementsize'");
+        if (!spacing.empty()) check_spacing(spacing[a], "header field 'elementspacing'");
         if (!spacing.empty()) g.spacing[i] = spacing[a];
         if (!origin.empty()) g.origin[i] = origin[a];
         for (std::size_t b = 0; !turn.empty() && b < std::min<std::size_t>(3, axes); ++b) {

@@ -15,6 +15,7 @@ namespace palpate::io {
 namespace {
 
 constexpr std::size_t header_bytes = 348;
+constexpr std::uint64_t extra_allowed = 4096;
 
 /// The header's bytes, and numbers from them.
 struct Header {
@@ -34,41 +35,37 @@ struct Header {
     }
 };
 
-struct Unpacked {
+Header read_header(const std::filesystem::path& path) {
     Header header;
-    std::uint64_t bytes = 0;  ///< of the whole file, unpacked
-};
-
-/// One pass over the file: the checksum, the length and the header.
-Unpacked unpack(const Request& request) {
-    Unpacked file;
-    std::size_t have = 0;
-    const ByteSink keep_header = [&](std::span<const std::byte> chunk) {
-        const std::size_t take = std::min(chunk.size(), header_bytes - have);
-        std::copy_n(chunk.begin(), take,
-                    file.header.bytes.begin() + static_cast<std::ptrdiff_t>(have));
-        have += take;
-    };
-    if (is_gzip(request.path)) {
+    std::vector<std::byte> start;
+    if (is_gzip(path)) {
         try {
-            file.bytes = inflate_checked(
-                request.path, {0, UINT64_MAX, std::max<std::uint64_t>(request.memory_limit, 1)},
-                keep_header);
+            start = inflate_start(path, header_bytes);
         } catch (const DamagedStream& e) {
             throw Failure(std::string(e.what()) + "; copy or download it again");
         }
     } else {
-        std::ifstream in(request.path, std::ios::binary);
-        std::array<std::byte, header_bytes> start{};
+        start.resize(header_bytes);
+        std::ifstream in(path, std::ios::binary);
         in.read(reinterpret_cast<char*>(start.data()), header_bytes);
-        keep_header({start.data(), static_cast<std::size_t>(in.gcount())});
-        file.bytes = std::filesystem::file_size(request.path);
+        start.resize(static_cast<std::size_t>(in.gcount()));
     }
-    if (have < header_bytes) {
-        throw Failure("is too short for a NIfTI header (" + std::to_string(have) +
+    if (start.size() < header_bytes) {
+        throw Failure("is too short for a NIfTI header (" + std::to_string(start.size()) +
                       " bytes); copy or download it again");
     }
-    return file;
+    std::copy(start.begin(), start.end(), header.bytes.begin());
+    return header;
+}
+
+/// Bytes of the whole file, unpacked up to its checksum, or up to the first one that is too many.
+std::uint64_t unpacked_bytes(const std::filesystem::path& path, std::uint64_t at_most) {
+    if (!is_gzip(path)) return std::filesystem::file_size(path);
+    try {
+        return inflate_checked(path, {0, UINT64_MAX, at_most}, {});
+    } catch (const DamagedStream& e) {
+        throw Failure(std::string(e.what()) + "; copy or download it again");
+    }
 }
 
 void check_kind(Header& header) {
@@ -117,11 +114,45 @@ FrameTimes times_of(const Header& header, std::vector<std::string>& notes) {
                        unit == units.end() ? "no time" : unit->second, notes);
 }
 
+/// The numbers that ITK decomposes into spacing and directions.
+void check_placement(const Header& header, std::vector<std::string>& notes) {
+    for (const std::size_t axis : {1U, 2U, 3U}) {  // also of axes that are one sample thick
+        const auto spacing = header.number<float>(76 + 4 * axis);
+        if (std::abs(spacing) <= greatest_length) continue;
+        throw Failure("its header field 'pixdim' has the number " + text_of(double{spacing}) +
+                      "; correct the header");
+    }
+    if (header.number<std::int16_t>(252) > 0) {
+        for (const std::size_t at : {256U, 260U, 264U}) {
+            if (std::abs(header.number<float>(at)) <= 1.01F) continue;
+            throw Failure("its header field 'quatern' is no rotation; correct the header");
+        }
+        for (const std::size_t at : {268U, 272U, 276U}) {
+            check_coordinate(header.number<float>(at), "header field 'qoffset'");
+        }
+    }
+    if (header.number<std::int16_t>(254) <= 0) return;
+    const auto entry = [&](std::size_t row, std::size_t column) {
+        return static_cast<double>(header.number<float>(280 + 16 * row + 4 * column));
+    };
+    for (std::size_t row = 0; row < 3; ++row)
+        check_coordinate(entry(row, 3), "header field 'srow'");
+    for (std::size_t column = 0; column < 3; ++column) {
+        const double length = std::hypot(entry(0, column), entry(1, column), entry(2, column));
+        const bool measures = header.number<std::int16_t>(42 + 2 * column) > 1;
+        if (measures || length != 0) check_spacing(length, "header field 'srow'");
+        const double spacing = header.number<float>(80 + 4 * column);
+        if (!measures || std::abs(length - spacing) <= 0.01 * spacing) continue;
+        notes.push_back("its header gives two spacings along axis " + std::to_string(column + 1) +
+                        ": " + text_of(spacing) + " mm (pixdim) was taken, not " + text_of(length) +
+                        " mm (srow)");
+    }
+}
+
 }  // namespace
 
 HeaderFacts check_nifti(const Request& request) {
-    Unpacked file = unpack(request);
-    Header& header = file.header;
+    Header header = read_header(request.path);
     check_kind(header);
     HeaderFacts facts;
     facts.stored = stored_from(header.number<std::int16_t>(70));
@@ -136,20 +167,22 @@ HeaderFacts check_nifti(const Request& request) {
         const auto size = header.number<std::int16_t>(40 + 2 * a);
         facts.sizes.push_back(size);
         const auto spacing = header.number<float>(76 + 4 * a);
-        if (a <= 3 && size > 1) check_spacing(spacing, "pixdim");
+        if (a <= 3 && size > 1) check_spacing(spacing, "header field 'pixdim'");
     }
-    const std::uint64_t bytes =
-        checked_bytes(facts.sizes, size_of(facts.stored), file.bytes, request);
+    check_placement(header, facts.notes);
+    const std::uint64_t bytes = checked_bytes(facts.sizes, size_of(facts.stored),
+                                              std::filesystem::file_size(request.path), request);
     const float offset = header.number<float>(108);
     if (!(offset >= 348 && offset < 1e9F)) {
         throw Failure("its header puts the samples at byte " + text_of(double{offset}) +
                       "; the header is damaged");
     }
-    const auto start = std::min(static_cast<std::uint64_t>(offset), file.bytes);
-    // The stream is checked already: what is left is to compare sizes.
-    if (file.bytes - start < bytes || file.bytes - start > bytes + 4096) {
+    const auto first = static_cast<std::uint64_t>(offset);
+    const std::uint64_t all = unpacked_bytes(request.path, first + bytes + extra_allowed);
+    const std::uint64_t start = std::min(first, all);
+    if (all - start < bytes || all - start > bytes + extra_allowed) {
         throw Failure("its header asks for " + std::to_string(bytes) +
-                      " bytes of samples, there are " + std::to_string(file.bytes - start) +
+                      " bytes of samples, there are " + std::to_string(all - start) +
                       "; it is cut off or its header is wrong: copy it again");
     }
     while (facts.sizes.size() > 3 && facts.sizes.back() == 1) facts.sizes.pop_back();

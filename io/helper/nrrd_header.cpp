@@ -289,7 +289,7 @@ void read_directions(const HeaderFields& fields, const Space& space, std::vector
         const std::vector<double> numbers = next_vector(text, at, field);
         double square = 0;
         for (const double n : numbers) square += n * n;
-        check_spacing(std::sqrt(square), field);
+        check_spacing(std::sqrt(square), "header field '" + field + "'");
         axis.direction = vector_in(numbers, space, field);
     }
     if (fields.has(field)) check_count(count, axes.size(), field);
@@ -405,7 +405,7 @@ Geometry geometry_of(const HeaderFields& fields, const Space& space,
         }
         if (fields.has("spacings") && space.dimension == 0) {
             g.spacing[i] = axis.spacing.value_or(std::nan(""));
-            check_spacing(g.spacing[i], "spacings");
+            check_spacing(g.spacing[i], "header field 'spacings'");
         }
         if (axis.direction) {
             g.spacing[i] = axis.direction->norm();

@@ -89,7 +89,9 @@ void check_deflate(TIFF* tiff, const fs::path& file, std::uint32_t piece, bool t
                                : TIFFReadRawStrip(tiff, piece, raw.data(), size);
     if (got != size) fail_damaged(file);
     try {
-        inflate_checked(raw, {});
+        const auto most =
+            static_cast<std::uint64_t>(tiled ? TIFFTileSize64(tiff) : TIFFStripSize64(tiff));
+        inflate_checked(raw, most + 4096);
     } catch (const DamagedStream& e) {
         throw Failure(quoted(file) + ": " + e.what() + "; copy it again");
     }

@@ -14,9 +14,12 @@
 #include <vtkXMLImageDataWriter.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <iterator>
 
+#include "io/helper/headers.hpp"
+#include "io/helper/library_words.hpp"
 #include "io/helper/readers.hpp"
 #include "io/helper/vtk_type.hpp"
 
@@ -38,8 +41,7 @@ class ErrorKeeper : public vtkOutputWindow {
         // "ERROR: In file, line n\nvtkClass (0x...): what is wrong\n"
         const std::string all = trimmed(text);
         const auto colon = all.find("): ");
-        first_ = trimmed(colon == std::string::npos ? all : all.substr(colon + 3));
-        first_ = first_.substr(0, std::min<std::size_t>(first_.find('\n'), 160));
+        first_ = library_words(colon == std::string::npos ? all : all.substr(colon + 3), 160);
     }
     std::string first_;
 };
@@ -51,6 +53,30 @@ vtkStandardNewMacro(ErrorKeeper)
                   "); copy it again or export it again");
 }
 
+/// The numbers of an attribute in the file's first bytes; none if it is not there.
+std::vector<double> attribute(const std::string& head, const std::string& name) {
+    const auto at = head.find(" " + name + "=");
+    if (at == std::string::npos || at + name.size() + 2 >= head.size()) return {};
+    const auto begin = at + name.size() + 3;
+    const auto end = head.find(head[begin - 1], begin);
+    if (end == std::string::npos) return {};
+    return numbers_in(head.substr(begin, end - begin), name);
+}
+
+/// VTK inverts the matrix that these make.
+void check_placement(const std::string& head) {
+    for (const double spacing : attribute(head, "Spacing")) {
+        if (spacing != 0) check_spacing(spacing, "Spacing");  // 0: of one sample, replaced later
+    }
+    for (const double coordinate : attribute(head, "Origin"))
+        check_coordinate(coordinate, "Origin");
+    for (const double cosine : attribute(head, "Direction")) {
+        if (std::abs(cosine) <= 1.01) continue;
+        throw Failure("its Direction has the number " + text_of(cosine) +
+                      ", which is no direction cosine; correct it");
+    }
+}
+
 /// Checks the first and the last tag, because VTK accepts raw data that are cut off.
 void check_ends(const Request& request) {
     std::ifstream in(request.path, std::ios::binary);
@@ -60,6 +86,7 @@ void check_ends(const Request& request) {
     if (text.find("<VTKFile") == std::string::npos || text.find("ImageData") == std::string::npos) {
         throw Failure("is not a VTI file (no VTKFile of type ImageData in it); check its name");
     }
+    check_placement(text);
     const auto size = static_cast<std::streamoff>(std::filesystem::file_size(request.path));
     in.clear();
     in.seekg(std::max<std::streamoff>(0, size - 256));

@@ -17,6 +17,7 @@
 #include <string>
 
 #include "io/helper/child.hpp"
+#include "io/helper/library_words.hpp"
 #include "io/helper/report.hpp"
 #include "pictures/helper/compositor.hpp"
 #include "pictures/helper/egl_context.hpp"
@@ -119,7 +120,9 @@ json draw(const json& asked) {
     vtkOutputWindow::SetInstance(complaints);
     make_surfaceless_context();
     const auto pixels = pixels_of(scene, meshes);
-    if (!complaints->first().empty()) throw Failure("VTK complains: " + complaints->first());
+    if (!complaints->first().empty()) {
+        throw Failure("VTK complains: " + io::library_words(complaints->first(), 160));
+    }
     return handed_back(png_from(pixels, scene.width, scene.height), memory.size());
 }
 
@@ -137,7 +140,7 @@ int run(int argc, char** argv) {
     } catch (const std::bad_alloc&) {
         io::report({{"error", "not enough memory; draw a smaller picture of a smaller volume"}});
     } catch (const std::exception& e) {
-        io::report({{"error", e.what()}});
+        io::report({{"error", io::library_words(e.what(), 300)}});
     }
     return 1;
 }

@@ -92,6 +92,34 @@ TEST_F(HelperProcess, a_hang_ends_at_the_time_limit) {
     }
 }
 
+TEST_F(HelperProcess, one_that_computes_for_ever_ends_at_the_limit_of_its_processor_time) {
+    ReadOptions options = with_script(folder_, "while :; do :; done");
+    options.time_limit_s = 1;
+    const std::string message = refusal(file_, options);
+    EXPECT_TRUE(one_line_about(message, file_)) << message;
+    // On a busy machine the limit of the time on the wall comes first.
+    EXPECT_TRUE(contains(message, "it took more than 1 s of processor time") ||
+                contains(message, "no answer after 1 s"))
+        << message;
+    EXPECT_FALSE(has_children());
+    // Without being asked for, there is a limit by the size of the file, as the child sees it.
+    const std::string limit =
+        refusal_with("sleep 0.5; grep 'Max cpu time' /proc/self/limits >&2; kill -ABRT $$");
+    EXPECT_TRUE(contains(limit, "Max cpu time 121")) << limit;
+    const std::string ended = refusal_with("echo '{\"doing\":\"slice7.dcm\"}' >&4; kill -XCPU $$");
+    EXPECT_TRUE(contains(ended, "took more than 121 s of processor time at slice7.dcm")) << ended;
+}
+
+TEST_F(HelperProcess, words_of_a_library_come_without_its_sources_and_pointers) {
+    const std::string message = refusal_with(
+        "echo 'palpate-io-helper: /build/gdcm-3.0/Source/gdcmFoo.cxx:12: bool Foo::bar(int): "
+        "Assertion (0x55d0c8a2b010) failed, see /usr/src/itk/a.h' >&2; kill -ABRT $$");
+    EXPECT_TRUE(contains(message, "bool Foo::bar(int): Assertion failed, see")) << message;
+    for (const char* inside : {"/build", "cxx", "0x55", "/usr/src"}) {
+        EXPECT_FALSE(contains(message, inside)) << message;
+    }
+}
+
 TEST_F(HelperProcess, a_missing_helper_is_said) {
     ReadOptions options;
     options.helper = folder_ / "nothing";

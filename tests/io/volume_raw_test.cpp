@@ -13,12 +13,6 @@ std::string raw_bytes(const Volume& volume) {
     return {static_cast<const char*>(volume.data()), volume.bytes()};
 }
 
-void put_gzip(const std::filesystem::path& path, const std::string& bytes) {
-    gzFile file = gzopen(path.c_str(), "wb6");
-    gzwrite(file, bytes.data(), static_cast<unsigned>(bytes.size()));
-    gzclose(file);
-}
-
 ReadOptions options_for(const Volume& volume, std::uint64_t skip = 0) {
     ReadOptions options;
     options.raw = RawLayout{volume.geometry().size, volume.type(), volume.geometry().spacing, skip};

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <zlib.h>
 
 #include <Eigen/Geometry>
 #include <cstring>
@@ -76,6 +77,12 @@ inline std::string all_notes(const VolumeFile& file) {
     std::string text;
     for (const auto& note : file.notes) text += note + "\n";
     return text;
+}
+
+inline void put_gzip(const std::filesystem::path& path, const std::string& bytes) {
+    gzFile file = gzopen(path.c_str(), "wb6");
+    gzwrite(file, bytes.data(), static_cast<unsigned>(bytes.size()));
+    gzclose(file);
 }
 
 /// Little-endian bytes of a number.

@@ -43,8 +43,9 @@ struct ReadOptions {
     std::filesystem::path helper;
     /// Most memory the samples may take [bytes]; 0: what this machine has.
     std::uint64_t memory_limit_bytes = 0;
-    /// The helper is ended after this long [s].
-    double time_limit_s = 600;
+    /// The helper is ended after this long [s], and after as much processor time. 0: by the size of
+    /// the file or folder, 600 s (120 s of processor time) and 2 s for each MB.
+    double time_limit_s = 0;
 };
 
 /// A volume, and notes on how it was read.
@@ -71,7 +72,7 @@ struct WriteOptions {
     bool compress = false;
     Progress progress;
     std::filesystem::path helper;  ///< as in ReadOptions
-    double time_limit_s = 600;     ///< as in ReadOptions
+    double time_limit_s = 0;       ///< as in ReadOptions, by the size of the samples
 };
 
 /// Writes one of written_extensions() (io/written_formats.hpp). The file appears under its name
