@@ -1,24 +1,37 @@
-// Checks the structure of a DICOM file before GDCM reads it: GDCM reads a cut-off file as a
-// complete one and allocates whatever a damaged length says.
+// Checks a DICOM file before GDCM reads it: GDCM reads a cut-off file as a complete one, allocates
+// whatever a damaged length says, and believes Rows and Columns more than the compressed image.
 #pragma once
-
-#include <optional>
 
 #include "io/helper/decode.hpp"
 
 namespace palpate::io {
 
-/// What the walk found.
+/// What the walk through the file found.
 struct DicomExtent {
-    std::string sop_class;                    ///< from the file's meta information
-    std::optional<std::uint64_t> pixel_data;  ///< bytes, if there are any and not compressed
+    std::string sop_class;  ///< from the file's meta information
+    std::int64_t rows = 0, columns = 0;
+    std::int64_t frames = 1;
+    std::int64_t components = 1;  ///< values a pixel
+    std::int64_t bits = 16;       ///< allocated for a value
+    bool deflated = false;        ///< the data set as a whole
+    std::string compression;      ///< "JPEG 2000", "deflate", ...; empty if there is none
+    std::vector<std::string> notes;
+
+    /// Bytes of all frames, not compressed.
+    std::uint64_t bytes() const;
 };
 
-/// Throws Failure if an element reaches beyond the end of the file, compressed pixel data have no
-/// end, or there is no class of object at the start.
+/// Throws Failure, which names the file, if
+/// - an element reaches beyond the end of the file, or there is no class of object at the start,
+/// - there are fewer bytes of pixels than rows, columns, frames and bits ask for, or many more,
+/// - a compressed image has another size, no end, or is not there for every frame,
+/// - the deflated data are damaged, or unpack to more than the header declares.
 DicomExtent check_dicom(const std::filesystem::path& file);
 
 /// True for classes of objects that are known to have no image: reports, plans, the folder's index.
 bool has_no_image(const std::string& sop_class);
+
+/// A deflated file, unpacked, as bytes of a file in explicit little endian.
+std::vector<std::byte> inflated_dicom(const std::filesystem::path& file);
 
 }  // namespace palpate::io

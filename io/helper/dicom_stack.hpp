@@ -9,13 +9,16 @@ namespace palpate::io {
 /// What the header of one slice says.
 struct DicomSlice {
     std::filesystem::path file;
-    std::string series_uid, description, modality;
+    std::string series_uid, instance_uid, description, modality;
     int rows = 0, columns = 0, frames = 1;
     int instance = 0, acquisition = 0;
     std::optional<Vec3> position;     ///< [mm, LPS] centre of the first pixel
     std::optional<Vec3> row, column;  ///< unit vectors along a row and along a column
     std::optional<Vec3> pixel;        ///< [mm] between columns, between rows, 0
     double thickness = 0;             ///< [mm] between slices or of one; 0 if not given
+    bool deflated = false;            ///< the file as a whole
+    std::string compression;          ///< "JPEG 2000", "deflate", ...; empty if there is none
+    std::vector<std::string> notes;   ///< on the file
 };
 
 /// Slices that belong together: one series UID, one size, one orientation.

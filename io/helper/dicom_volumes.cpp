@@ -1,177 +1,21 @@
-// Reads DICOM with GDCM, and samples through ITK, which applies slope and intercept: headers, then
-// the slices of one series, then the grid that dicom_stack.hpp has planned.
-#include <gdcmReader.h>
-#include <gdcmStringFilter.h>
-#include <itkGDCMImageIO.h>
-
+// Reads DICOM: headers, then the slices of one series, then the grid that dicom_stack.hpp has
+// planned.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <iterator>
+#include <map>
 #include <set>
 
-#include "io/helper/dicom_check.hpp"
+#include "io/helper/dicom_library.hpp"
 #include "io/helper/dicom_stack.hpp"
-#include "io/helper/headers.hpp"
 #include "io/helper/readers.hpp"
 
 namespace palpate::io {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// The strings of one header.
-class Tags {
-  public:
-    explicit Tags(const fs::path& file) {
-        reader_.SetFileName(file.c_str());
-        if (!reader_.ReadUpToTag(gdcm::Tag(0x7fe0, 0x0010), {})) {
-            throw Failure(quoted(file) +
-                          " is no DICOM file or is damaged in its header; copy it again");
-        }
-        strings_.SetFile(reader_.GetFile());
-    }
-    std::string text(std::uint16_t group, std::uint16_t element) {
-        std::string value = strings_.ToString(gdcm::Tag(group, element));
-        value.resize(strnlen(value.c_str(), value.size()));  // values are padded with 0
-        return trimmed(value);
-    }
-    std::vector<double> numbers(std::uint16_t group, std::uint16_t element) {
-        std::string value = text(group, element);
-        std::replace(value.begin(), value.end(), '\\', ' ');
-        return numbers_in(value, "DICOM tag");
-    }
-    double number(std::uint16_t group, std::uint16_t element, double otherwise) {
-        const auto all = numbers(group, element);
-        return all.empty() || !(std::abs(all[0]) < 1e9) ? otherwise : all[0];
-    }
-
-  private:
-    gdcm::Reader reader_;
-    gdcm::StringFilter strings_;
-};
-
-/// As many bytes as rows, columns and bits ask for?
-void check_pixels(const DicomSlice& s, const DicomExtent& extent, Tags& tags) {
-    if (!extent.pixel_data) return;  // compressed: the decoder counts
-    const double needed = static_cast<double>(s.rows) * s.columns * s.frames *
-                          tags.number(0x0028, 0x0002, 1) * tags.number(0x0028, 0x0100, 16) / 8;
-    if (static_cast<double>(*extent.pixel_data) >= needed) return;
-    throw Failure(quoted(s.file) + " has " + std::to_string(*extent.pixel_data) +
-                  " bytes of samples, its header asks for " + text_of(needed) +
-                  "; it is damaged: copy or export it again");
-}
-
-DicomSlice slice_from(const fs::path& file) {
-    const DicomExtent extent = check_dicom(file);
-    Tags tags(file);
-    DicomSlice s;
-    s.file = file;
-    s.series_uid = tags.text(0x0020, 0x000e);
-    s.description = tags.text(0x0008, 0x103e);
-    s.modality = tags.text(0x0008, 0x0060);
-    s.rows = static_cast<int>(tags.number(0x0028, 0x0010, 0));
-    s.columns = static_cast<int>(tags.number(0x0028, 0x0011, 0));
-    s.frames = static_cast<int>(tags.number(0x0028, 0x0008, 1));
-    s.instance = static_cast<int>(tags.number(0x0020, 0x0013, 0));
-    s.acquisition = static_cast<int>(tags.number(0x0020, 0x0012, 0));
-    const auto position = tags.numbers(0x0020, 0x0032);
-    if (position.size() == 3) s.position = Vec3(position[0], position[1], position[2]);
-    const auto axes = tags.numbers(0x0020, 0x0037);
-    if (axes.size() == 6) {
-        s.row = Vec3(axes[0], axes[1], axes[2]);
-        s.column = Vec3(axes[3], axes[4], axes[5]);
-    }
-    auto pixel = tags.numbers(0x0028, 0x0030);
-    if (pixel.size() != 2) pixel = tags.numbers(0x0018, 0x1164);
-    if (pixel.size() == 2) {
-        check_spacing(pixel[0], "PixelSpacing");
-        check_spacing(pixel[1], "PixelSpacing");
-        s.pixel = Vec3(pixel[1], pixel[0], 0);  // DICOM gives the distance between rows first
-    }
-    s.thickness = tags.number(0x0018, 0x0088, 0);
-    if (!(s.thickness > 0)) s.thickness = tags.number(0x0018, 0x0050, 0);
-    if (s.rows < 1 || s.columns < 1) {
-        // Reports, plans and the folder's index have no rows; an image that has none is cut off.
-        if (has_no_image(extent.sop_class)) return s;
-        throw Failure(quoted(file) +
-                      " gives no size of its image; it is cut off or damaged: copy "
-                      "or export it again");
-    }
-    // Siemens packs a whole volume into one flat image, side by side.
-    if (tags.text(0x0008, 0x0008).find("MOSAIC") != std::string::npos) {
-        throw Failure(quoted(file) +
-                      " is a mosaic of slices; convert it to NIfTI (dcm2niix) and give that file");
-    }
-    check_pixels(s, extent, tags);
-    return s;
-}
-
-Stored stored_from(itk::IOComponentEnum type) {
-    switch (type) {
-        case itk::IOComponentEnum::UCHAR:
-            return Stored::uint8;
-        case itk::IOComponentEnum::CHAR:
-            return Stored::int8;
-        case itk::IOComponentEnum::USHORT:
-            return Stored::uint16;
-        case itk::IOComponentEnum::SHORT:
-            return Stored::int16;
-        case itk::IOComponentEnum::UINT:
-            return Stored::uint32;
-        case itk::IOComponentEnum::INT:
-            return Stored::int32;
-        case itk::IOComponentEnum::FLOAT:
-            return Stored::float32;
-        case itk::IOComponentEnum::DOUBLE:
-            return Stored::float64;
-        default:
-            throw Failure("its sample type is not read; export it again");
-    }
-}
-
-struct Decoded {
-    Stored stored = Stored::uint8;
-    std::vector<std::byte> samples;
-    Geometry geometry;  ///< as ITK sees it; used for a file with several frames only
-};
-
-Decoded decode(const DicomSlice& slice, const Request& request) {
-    say_doing(slice.file.filename().string());
-    const auto io = itk::GDCMImageIO::New();
-    io->SetFileName(slice.file.string());
-    io->ReadImageInformation();
-    if (io->GetNumberOfComponents() != 1) {
-        throw Failure(quoted(slice.file) + " has colours; give a series with one value a sample");
-    }
-    Decoded decoded;
-    decoded.stored = stored_from(io->GetComponentType());
-    Geometry& g = decoded.geometry;
-    g.size = Index3::Ones();
-    itk::ImageIORegion region(io->GetNumberOfDimensions());
-    std::vector<std::int64_t> sizes;
-    for (unsigned a = 0; a < io->GetNumberOfDimensions(); ++a) {
-        region.SetSize(a, io->GetDimensions(a));
-        sizes.push_back(static_cast<std::int64_t>(io->GetDimensions(a)));
-        if (a > 2) continue;
-        const auto i = static_cast<Eigen::Index>(a);
-        g.size[i] = static_cast<int>(io->GetDimensions(a));
-        g.spacing[i] = io->GetSpacing(a);
-        g.origin[i] = io->GetOrigin(a);
-        const auto axis = io->GetDirection(a);
-        for (unsigned r = 0; r < std::min<std::size_t>(3, axis.size()); ++r) {
-            g.direction(static_cast<Eigen::Index>(r), i) = axis[r];
-        }
-    }
-    if (g.size[0] != slice.columns || g.size[1] != slice.rows || sizes.size() > 3) {
-        throw Failure(quoted(slice.file) + " contradicts itself about its size; copy it again");
-    }
-    decoded.samples.resize(
-        checked_bytes(sizes, size_of(decoded.stored), fs::file_size(slice.file), request));
-    io->SetIORegion(region);
-    io->Read(decoded.samples.data());
-    return decoded;
-}
 
 /// The type for all slices together: Hounsfield units and the like come as 32-bit integers.
 SampleType common_type(const std::vector<Decoded>& slices, std::vector<std::string>& notes) {
@@ -246,15 +90,55 @@ void fill(const Stack& stack, const std::vector<std::vector<std::byte>>& slices,
     }
 }
 
+/// One note for all files whose decoders warned.
+class DecoderWarnings {
+  public:
+    void take(const Decoded& decoded, const DicomSlice& slice) {
+        if (decoded.decoder_said.empty()) return;
+        if (files_++ == 0) first_ = quoted(slice.file) + " (" + decoded.decoder_said + ")";
+    }
+    void note(std::vector<std::string>& notes) const {
+        if (files_ == 0) return;
+        const std::string more = files_ == 1 ? "" : " and " + std::to_string(files_ - 1) + " more";
+        notes.push_back("the decoder warned of damage in " + first_ + more +
+                        ": do not trust what is felt there");
+    }
+
+  private:
+    std::size_t files_ = 0;
+    std::string first_;
+};
+
+/// What is to be said of the files of a series, each thing once.
+void note_files(const std::vector<DicomSlice>& slices, std::vector<std::string>& notes) {
+    std::set<std::string> said;
+    for (const DicomSlice& slice : slices) {
+        std::vector<std::string> all = slice.notes;
+        if (!slice.compression.empty()) {
+            all.push_back("its samples are compressed (" + slice.compression +
+                          ") without a checksum: damage within them may not be noticed");
+        }
+        for (std::string& note : all) {
+            if (said.insert(note).second) notes.push_back(std::move(note));
+        }
+    }
+}
+
 /// A file with several frames: ITK's geometry, since the frames' own positions lie deep in it.
-Result read_frames(const DicomSlice& slice, const Request& request) {
+Result read_frames(const DicomSlice& slice, const Request& request,
+                   const std::vector<std::string>& notes) {
     Result result;
+    result.notes = notes;
     result.format = "DICOM, several frames in one file";
     std::vector<Decoded> all;
     all.push_back(decode(slice, request));
     checked_time_step(request, 1);
     result.geometry = all[0].geometry;
     result.type = common_type(all, result.notes);
+    note_files({slice}, result.notes);
+    DecoderWarnings warnings;
+    warnings.take(all[0], slice);
+    warnings.note(result.notes);
     result.notes.emplace_back("the positions of its frames were not checked for gaps or tilt");
     const auto count = static_cast<std::size_t>(sample_count(result.geometry));
     const auto samples = shared_samples(count * size_of(result.type));
@@ -263,15 +147,53 @@ Result read_frames(const DicomSlice& slice, const Request& request) {
     return result;
 }
 
-Result read_series(const DicomSeries& series, const Request& request) {
-    if (series.slices.front().frames > 1) {
-        if (series.slices.size() == 1) return read_frames(series.slices.front(), request);
-        throw Failure("it has several files with several frames each; give one of these files");
+std::string bytes_of(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// Without files that are copies of others, byte by byte; one of each stays. A slice with the same
+/// identity but other bytes stays too, to be refused where the slices are placed.
+DicomSeries without_copies(DicomSeries series, std::vector<std::string>& notes) {
+    std::multimap<std::string, fs::path> seen;
+    const auto is_copy = [&](const DicomSlice& slice) {
+        if (slice.instance_uid.empty()) return false;
+        const auto same = seen.equal_range(slice.instance_uid);
+        const bool copy = std::any_of(same.first, same.second, [&](const auto& other) {
+            return fs::file_size(other.second) == fs::file_size(slice.file) &&
+                   bytes_of(other.second) == bytes_of(slice.file);
+        });
+        if (!copy) seen.emplace(slice.instance_uid, slice.file);
+        return copy;
+    };
+    const std::size_t all = series.slices.size();
+    std::erase_if(series.slices, is_copy);
+    const std::size_t copies = all - series.slices.size();
+    if (copies > 0) {
+        notes.push_back(std::to_string(copies) + " of its " + std::to_string(all) +
+                        " files are copies of others in the folder: they were left out");
+    }
+    return series;
+}
+
+Result read_series(const DicomSeries& given, const Request& request) {
+    std::vector<std::string> notes;
+    const DicomSeries series = without_copies(given, notes);
+    const bool frames = std::any_of(series.slices.begin(), series.slices.end(),
+                                    [](const DicomSlice& s) { return s.frames > 1; });
+    if (frames) {
+        if (series.slices.size() == 1) return read_frames(series.slices.front(), request, notes);
+        throw Failure(
+            "it has several files, some with several frames each; give one of these files");
     }
     Stack stack = stack_slices(series, request);
     std::vector<Decoded> decoded;
+    std::vector<DicomSlice> taken;
+    DecoderWarnings warnings;
     for (const PlacedSlice& p : stack.slices) {
-        decoded.push_back(decode(series.slices[p.slice], request));
+        taken.push_back(series.slices[p.slice]);
+        decoded.push_back(decode(taken.back(), request));
+        warnings.take(decoded.back(), taken.back());
         say_progress(0.1 + 0.8 * static_cast<double>(decoded.size()) /
                                static_cast<double>(stack.slices.size()));
     }
@@ -279,7 +201,10 @@ Result read_series(const DicomSeries& series, const Request& request) {
     result.format = stack.slices.size() > 1 ? "DICOM series" : "DICOM, one slice";
     result.geometry = stack.geometry;
     result.time_steps = stack.time_steps;
-    result.notes = stack.notes;
+    result.notes = notes;
+    result.notes.insert(result.notes.end(), stack.notes.begin(), stack.notes.end());
+    note_files(taken, result.notes);
+    warnings.note(result.notes);
     result.type = common_type(decoded, result.notes);
     const DicomSlice& one = series.slices.front();
     const auto pixels = static_cast<std::size_t>(one.columns) * static_cast<std::size_t>(one.rows);
@@ -332,6 +257,7 @@ Result read_dicom_folder(const Request& request) {
     std::vector<DicomSlice> slices;
     for (const fs::path& file : files) {
         say_doing(file.filename().string());
+        say_progress(0.1 * static_cast<double>(slices.size()) / static_cast<double>(files.size()));
         DicomSlice slice = slice_from(file);
         if (slice.rows > 0 && slice.columns > 0) slices.push_back(std::move(slice));
     }

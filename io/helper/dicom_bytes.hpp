@@ -1,0 +1,54 @@
+// The bytes of a DICOM file for our own checks: mapped, or unpacked as far as they are asked for
+// where the data set is deflated.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <memory>
+
+#include "io/helper/decode.hpp"
+
+namespace palpate::io {
+
+class DicomBytes {
+  public:
+    /// Throws Failure if the file cannot be read.
+    explicit DicomBytes(const std::filesystem::path& file);
+    ~DicomBytes();
+    DicomBytes(const DicomBytes&) = delete;
+    DicomBytes& operator=(const DicomBytes&) = delete;
+
+    /// From byte `at` on the file is deflated. Its compressed data have no checksum.
+    void deflated_from(std::uint64_t at);
+    /// From here on, numbers are big-endian.
+    void set_swapped() { swapped_ = true; }
+
+    /// Whether there are bytes up to `end`. Throws DamagedStream.
+    bool reaches(std::uint64_t end);
+    /// A number of a place that reaches() has found.
+    template <class T>
+    T number(std::uint64_t at) const {
+        std::array<std::byte, sizeof(T)> raw;
+        std::copy_n(data() + at, sizeof(T), raw.begin());
+        if (swapped_) std::reverse(raw.begin(), raw.end());
+        return std::bit_cast<T>(raw);
+    }
+    /// Bytes of a place that reaches() has found, valid until the next reaches().
+    std::span<const std::byte> view(std::uint64_t at, std::uint64_t length) const {
+        return {data() + at, length};
+    }
+    /// All bytes that reaches() has gone through.
+    std::span<const std::byte> unpacked() const { return unpacked_; }
+
+  private:
+    struct Inflating;
+    const std::byte* data() const { return inflating_ ? unpacked_.data() : mapped_.data(); }
+
+    std::span<const std::byte> mapped_;
+    std::unique_ptr<Inflating> inflating_;
+    std::vector<std::byte> unpacked_;
+    bool swapped_ = false;
+};
+
+}  // namespace palpate::io

@@ -1,0 +1,113 @@
+// Checks of pixel data (PS3.5 chapter 8, annex A.4); see the header.
+#include "io/helper/dicom_pixels.hpp"
+
+#include <algorithm>
+
+#include "io/helper/code_stream.hpp"
+
+namespace palpate::io {
+namespace {
+
+[[noreturn]] void fail(const std::filesystem::path& file, const std::string& what) {
+    throw Failure(quoted(file) + " " + what + "; it is damaged: copy or export it again");
+}
+
+/// Empty for a syntax without compression, or with one that we know nothing of.
+std::string compression_of(const std::string& syntax) {
+    const std::string family = "1.2.840.10008.1.2.";
+    if (syntax.rfind(family, 0) != 0) return {};
+    const std::string rest = syntax.substr(family.size());
+    if (rest == "5") return "RLE";
+    if (rest == "4.80" || rest == "4.81") return "JPEG-LS";
+    if (rest.rfind("4.9", 0) == 0 || rest.rfind("4.20", 0) == 0) return "JPEG 2000";
+    if (rest.rfind("4.10", 0) == 0) return "video";
+    return rest.rfind("4.", 0) == 0 ? "JPEG" : "";
+}
+
+/// The fragments of each frame joined.
+std::vector<std::vector<std::byte>> frames_of(const DicomBytes& bytes, const DicomPixels& pixels,
+                                              std::size_t frames, bool one_each) {
+    std::vector<std::vector<std::byte>> all;
+    for (std::size_t i = 1; i < pixels.fragments.size(); ++i) {
+        const auto fragment = bytes.view(pixels.fragments[i].at, pixels.fragments[i].length);
+        const bool next = all.empty() || one_each || pixels.fragments.size() == frames + 1 ||
+                          begins_code_stream(fragment);
+        if (next) all.emplace_back();
+        all.back().insert(all.back().end(), fragment.begin(), fragment.end());
+    }
+    return all;
+}
+
+std::string size_text(std::int64_t columns, std::int64_t rows, std::int64_t components,
+                      std::int64_t bits) {
+    return std::to_string(columns) + "x" + std::to_string(rows) + " pixels" +
+           (components == 1 ? "" : " of " + std::to_string(components) + " values") + ", " +
+           std::to_string(bits) + " bits";
+}
+
+void check_code_stream(const std::filesystem::path& file, std::span<const std::byte> stream,
+                       const std::string& name, const DicomExtent& declared) {
+    const auto size = code_stream_size(stream);
+    if (!size) fail(file, "has a " + name + " image without a size that can be read");
+    const auto sample_bytes = [](std::int64_t bits) { return (bits + 7) / 8; };
+    if (size->columns != declared.columns || size->rows != declared.rows ||
+        size->components != declared.components ||
+        sample_bytes(size->bits) != sample_bytes(declared.bits)) {
+        fail(file, "has a " + name + " image of " +
+                       size_text(size->columns, size->rows, size->components, size->bits) +
+                       ", its header says " +
+                       size_text(declared.columns, declared.rows, declared.components,
+                                 declared.bits));
+    }
+    if (!ends_code_stream(stream)) fail(file, "has a " + name + " image that is cut off");
+}
+
+}  // namespace
+
+std::optional<std::string> check_plain_pixels(const std::filesystem::path& file, std::uint64_t bytes,
+                                              const DicomExtent& declared) {
+    const std::uint64_t needed = declared.bytes();
+    const std::string numbers = "has " + std::to_string(bytes) +
+                                " bytes of samples, its header asks for " + std::to_string(needed);
+    // A row more, and it is the number of rows that is wrong.
+    const std::uint64_t row = needed / static_cast<std::uint64_t>(declared.rows * declared.frames);
+    if (bytes < needed || bytes - needed >= std::max<std::uint64_t>(row, 2)) fail(file, numbers);
+    if (bytes - needed <= 1) return std::nullopt;  // padding to an even length
+    return "there are " + std::to_string(bytes - needed) +
+           " bytes more of samples in a file than its header asks for; they were ignored";
+}
+
+std::string check_compressed_pixels(const std::filesystem::path& file, const std::string& syntax,
+                                    const DicomBytes& bytes, const DicomPixels& pixels,
+                                    const DicomExtent& declared) {
+    const std::string name = compression_of(syntax);
+    if (name.empty()) {
+        fail(file, "has compressed samples, but its transfer syntax '" + syntax + "' names no compression that is read");
+    }
+    if (name == "video") {
+        throw Failure(quoted(file) + " is a video; export it as a series of images");
+    }
+    const auto wanted = static_cast<std::size_t>(declared.frames);
+    const auto frames = frames_of(bytes, pixels, wanted, name == "RLE");
+    if (frames.size() != wanted) {
+        fail(file, "has " + std::to_string(frames.size()) + " compressed images, its header says " +
+                       std::to_string(wanted));
+    }
+    for (const auto& frame : frames) {
+        if (name != "RLE") {
+            check_code_stream(file, frame, name, declared);
+            continue;
+        }
+        const auto segments = static_cast<std::size_t>(declared.components * declared.bits / 8);
+        const auto pixels_each = static_cast<std::uint64_t>(declared.columns * declared.rows);
+        if (!is_rle_frame(frame, segments, pixels_each)) {
+            fail(file, "has an RLE image that does not have the " +
+                           size_text(declared.columns, declared.rows, declared.components,
+                                     declared.bits) +
+                           " that its header says");
+        }
+    }
+    return name;
+}
+
+}  // namespace palpate::io

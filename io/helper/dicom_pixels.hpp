@@ -1,0 +1,29 @@
+// Compares the pixels of a DICOM file with the size that its header declares, before a decoder does
+// or does not.
+#pragma once
+
+#include "io/helper/dicom_bytes.hpp"
+#include "io/helper/dicom_check.hpp"
+
+namespace palpate::io {
+
+/// Where the pixels lie.
+struct DicomPixels {
+    bool found = false;
+    std::optional<std::uint64_t> plain;  ///< bytes, if they are not compressed
+    struct Fragment {
+        std::uint64_t at, length;
+    };
+    std::vector<Fragment> fragments;  ///< of compressed ones; the first is a table of the frames
+};
+
+/// Bytes that are not compressed; a note if there are a few more than declared. Throws Failure.
+std::optional<std::string> check_plain_pixels(const std::filesystem::path& file, std::uint64_t bytes,
+                                              const DicomExtent& declared);
+
+/// Every frame's own size and end; returns the name of the compression. Throws Failure.
+std::string check_compressed_pixels(const std::filesystem::path& file, const std::string& syntax,
+                                    const DicomBytes& bytes, const DicomPixels& pixels,
+                                    const DicomExtent& declared);
+
+}  // namespace palpate::io
