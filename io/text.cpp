@@ -98,8 +98,8 @@ class TextSource {
                  " is longer than 16 MiB: this is no table, or its line ends are missing");
         }
         if (first_end == std::string::npos) return;
-        lines_ += static_cast<std::size_t>(std::count(
-            text_.begin() + static_cast<std::ptrdiff_t>(first_end), text_.end(), '\n'));
+        lines_ += static_cast<std::size_t>(
+            std::count(text_.begin() + static_cast<std::ptrdiff_t>(first_end), text_.end(), '\n'));
         line_begin_ = text_.rfind('\n') + 1;
     }
 

@@ -63,8 +63,8 @@ std::optional<CodeStreamSize> jpeg_2000_size(const Numbers& numbers, std::size_t
         }
     }
     return CodeStreamSize{std::int64_t{numbers.at(siz + 4, 4)} - numbers.at(siz + 12, 4),
-                          std::int64_t{numbers.at(siz + 8, 4)} - numbers.at(siz + 16, 4), components,
-                          static_cast<int>(numbers.at(siz + 38, 1) & 0x7f) + 1};
+                          std::int64_t{numbers.at(siz + 8, 4)} - numbers.at(siz + 16, 4),
+                          components, static_cast<int>(numbers.at(siz + 38, 1) & 0x7f) + 1};
 }
 
 /// Bytes that a PackBits segment unpacks to; stops above `at_most`.

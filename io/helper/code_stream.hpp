@@ -19,15 +19,15 @@ struct CodeStreamSize {
 /// True for the first bytes of a code stream.
 bool begins_code_stream(std::span<const std::byte> bytes);
 
-/// From the frame header of JPEG and JPEG-LS (SOF, ITU-T T.81 B.2.2, T.87 C.2.2) or the SIZ marker of
-/// JPEG 2000 (T.800 A.5.1; also inside a JP2 file); nothing if there is none.
+/// From the frame header of JPEG and JPEG-LS (SOF, ITU-T T.81 B.2.2, T.87 C.2.2) or the SIZ marker
+/// of JPEG 2000 (T.800 A.5.1; also inside a JP2 file); nothing if there is none.
 std::optional<CodeStreamSize> code_stream_size(std::span<const std::byte> stream);
 
 /// Whether it ends with the marker for that (EOI, EOC), but for padding with zeros.
 bool ends_code_stream(std::span<const std::byte> stream);
 
-/// Whether a frame in DICOM's RLE (PS3.5 annex G) has this many segments of this many bytes each: no
-/// less, and no more but for padding.
+/// Whether a frame in DICOM's RLE (PS3.5 annex G) has this many segments of this many bytes each:
+/// no less, and no more but for padding.
 bool is_rle_frame(std::span<const std::byte> frame, std::size_t segments, std::uint64_t bytes);
 
 }  // namespace palpate::io

@@ -1,4 +1,5 @@
-// Reads headers with GDCM, and samples through ITK, which applies slope and intercept; see the header.
+// Reads headers with GDCM, and samples through ITK, which applies slope and intercept; see the
+// header.
 #include "io/helper/dicom_library.hpp"
 
 #include <fcntl.h>
@@ -247,6 +248,7 @@ Decoded decode(const DicomSlice& slice, const Request& request) {
             " needs far more memory to unpack than its samples do; it is damaged: copy or "
             "export it again");
     }
+    if (words) decoded.decoder_said = words->said();
     return decoded;
 }
 

@@ -53,19 +53,19 @@ void check_code_stream(const std::filesystem::path& file, std::span<const std::b
     if (size->columns != declared.columns || size->rows != declared.rows ||
         size->components != declared.components ||
         sample_bytes(size->bits) != sample_bytes(declared.bits)) {
-        fail(file, "has a " + name + " image of " +
-                       size_text(size->columns, size->rows, size->components, size->bits) +
-                       ", its header says " +
-                       size_text(declared.columns, declared.rows, declared.components,
-                                 declared.bits));
+        fail(file,
+             "has a " + name + " image of " +
+                 size_text(size->columns, size->rows, size->components, size->bits) +
+                 ", its header says " +
+                 size_text(declared.columns, declared.rows, declared.components, declared.bits));
     }
     if (!ends_code_stream(stream)) fail(file, "has a " + name + " image that is cut off");
 }
 
 }  // namespace
 
-std::optional<std::string> check_plain_pixels(const std::filesystem::path& file, std::uint64_t bytes,
-                                              const DicomExtent& declared) {
+std::optional<std::string> check_plain_pixels(const std::filesystem::path& file,
+                                              std::uint64_t bytes, const DicomExtent& declared) {
     const std::uint64_t needed = declared.bytes();
     const std::string numbers = "has " + std::to_string(bytes) +
                                 " bytes of samples, its header asks for " + std::to_string(needed);
@@ -82,7 +82,8 @@ std::string check_compressed_pixels(const std::filesystem::path& file, const std
                                     const DicomExtent& declared) {
     const std::string name = compression_of(syntax);
     if (name.empty()) {
-        fail(file, "has compressed samples, but its transfer syntax '" + syntax + "' names no compression that is read");
+        fail(file, "has compressed samples, but its transfer syntax '" + syntax +
+                       "' names no compression that is read");
     }
     if (name == "video") {
         throw Failure(quoted(file) + " is a video; export it as a series of images");

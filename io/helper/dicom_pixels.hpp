@@ -18,8 +18,8 @@ struct DicomPixels {
 };
 
 /// Bytes that are not compressed; a note if there are a few more than declared. Throws Failure.
-std::optional<std::string> check_plain_pixels(const std::filesystem::path& file, std::uint64_t bytes,
-                                              const DicomExtent& declared);
+std::optional<std::string> check_plain_pixels(const std::filesystem::path& file,
+                                              std::uint64_t bytes, const DicomExtent& declared);
 
 /// Every frame's own size and end; returns the name of the compression. Throws Failure.
 std::string check_compressed_pixels(const std::filesystem::path& file, const std::string& syntax,

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <map>
 #include <set>
@@ -155,16 +156,15 @@ std::string bytes_of(const fs::path& file) {
 /// Without files that are copies of others, byte by byte; one of each stays. A slice with the same
 /// identity but other bytes stays too, to be refused where the slices are placed.
 DicomSeries without_copies(DicomSeries series, std::vector<std::string>& notes) {
-    std::multimap<std::string, fs::path> seen;
+    std::map<std::string, int> count;
+    for (const DicomSlice& slice : series.slices) ++count[slice.instance_uid];
+    std::map<std::pair<std::string, std::size_t>, fs::path> seen;  // by identity and hash
     const auto is_copy = [&](const DicomSlice& slice) {
-        if (slice.instance_uid.empty()) return false;
-        const auto same = seen.equal_range(slice.instance_uid);
-        const bool copy = std::any_of(same.first, same.second, [&](const auto& other) {
-            return fs::file_size(other.second) == fs::file_size(slice.file) &&
-                   bytes_of(other.second) == bytes_of(slice.file);
-        });
-        if (!copy) seen.emplace(slice.instance_uid, slice.file);
-        return copy;
+        if (slice.instance_uid.empty() || count[slice.instance_uid] == 1) return false;
+        const std::string bytes = bytes_of(slice.file);
+        const auto [first, is_new] =
+            seen.try_emplace({slice.instance_uid, std::hash<std::string>()(bytes)}, slice.file);
+        return !is_new && bytes_of(first->second) == bytes;
     };
     const std::size_t all = series.slices.size();
     std::erase_if(series.slices, is_copy);

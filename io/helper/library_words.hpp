@@ -15,7 +15,8 @@ inline bool names_source(std::string_view word) {
         for (auto at = word.find(extension); at != std::string_view::npos;
              at = word.find(extension, at + 1)) {
             const auto after = at + extension.size();
-            if (after == word.size() || std::string_view(":,;()'\"").find(word[after]) != std::string_view::npos) {
+            if (after == word.size() ||
+                std::string_view(":,;()'\"").find(word[after]) != std::string_view::npos) {
                 return true;
             }
         }
@@ -26,8 +27,8 @@ inline bool names_source(std::string_view word) {
 /// Without "(0x55d0c8a2b010)", with or without brackets.
 inline std::string without_pointers(std::string word) {
     for (std::size_t at; (at = word.find("0x")) != std::string::npos;) {
-        const auto after = std::min(word.find_first_not_of("0123456789abcdefABCDEF", at + 2),
-                                    word.size());
+        const auto after =
+            std::min(word.find_first_not_of("0123456789abcdefABCDEF", at + 2), word.size());
         const bool bracketed =
             at > 0 && word[at - 1] == '(' && after < word.size() && word[after] == ')';
         word.erase(at - bracketed, after - at + 2 * bracketed);

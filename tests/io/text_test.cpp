@@ -89,6 +89,9 @@ TEST(Text, comes_whole_through_a_pipe_whose_writer_takes_its_time) {
         }
     });
     // Only the mark at the beginning is one.
-    EXPECT_EQ(read_text(folder / "pipe"), "0\n\xEF\xBB\xBF""1\n\xEF\xBB\xBF""2\n");
+    EXPECT_EQ(read_text(folder / "pipe"),
+              "0\n\xEF\xBB\xBF"
+              "1\n\xEF\xBB\xBF"
+              "2\n");
     writer.join();
 }

@@ -76,9 +76,8 @@ TEST(hostile_file, every_other_length_of_a_nifti_header_has_bounds_too) {
     const ScratchFolder folder;
     for (const std::size_t at : {80U, 84U, 88U, 256U, 260U, 264U, 268U, 272U, 276U}) {
         for (const float bad : {huge, -huge, infinite, not_a_number}) {
-            refusal_of_bytes(folder / "a.nii", nifti([&](std::string& header) {
-                                 put_at(header, at, little(bad));
-                             }));
+            refusal_of_bytes(folder / "a.nii",
+                             nifti([&](std::string& header) { put_at(header, at, little(bad)); }));
         }
     }
 }
@@ -91,12 +90,11 @@ TEST(hostile_file, lengths_beyond_sense_are_refused_in_every_format) {
         const std::string nrrd = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 3 4\n";
         refusal_of_bytes(folder / "a.nrrd",
                          nrrd + "spacings: 1 " + n + " 1\nencoding: raw\n\n" + data);
-        refusal_of_bytes(folder / "a.nrrd",
-                         nrrd + "space: LPS\nspace directions: (1,0,0) (0," + n +
-                             ",0) (0,0,1)\nencoding: raw\n\n" + data);
+        refusal_of_bytes(folder / "a.nrrd", nrrd + "space: LPS\nspace directions: (1,0,0) (0," + n +
+                                                ",0) (0,0,1)\nencoding: raw\n\n" + data);
         const std::string meta = "NDims = 3\nDimSize = 2 3 4\nElementType = MET_UCHAR\n";
-        refusal_of_bytes(folder / "a.mha", meta + "ElementSpacing = 1 " + n +
-                                               " 1\nElementDataFile = LOCAL\n" + data);
+        refusal_of_bytes(folder / "a.mha",
+                         meta + "ElementSpacing = 1 " + n + " 1\nElementDataFile = LOCAL\n" + data);
         const auto vti = [&](const std::string& where) {
             return "<VTKFile type=\"ImageData\" version=\"0.1\" "
                    "byte_order=\"LittleEndian\">\n<ImageData WholeExtent=\"0 1 0 0 0 0\" " +
@@ -110,8 +108,8 @@ TEST(hostile_file, lengths_beyond_sense_are_refused_in_every_format) {
         if (n == "1e-300") continue;  // a fine position
         refusal_of_bytes(folder / "a.vti", vti("Origin=\"" + n + " 1 1\""));
         refusal_of_bytes(folder / "a.vti", vti("Direction='" + n + " 0 0 0 1 0 0 0 1'"));
-        refusal_of_bytes(folder / "a.mha", meta + "Offset = 1 " + n +
-                                               " 1\nElementDataFile = LOCAL\n" + data);
+        refusal_of_bytes(folder / "a.mha",
+                         meta + "Offset = 1 " + n + " 1\nElementDataFile = LOCAL\n" + data);
     }
 }
 
@@ -148,7 +146,7 @@ TEST(hostile_file, a_gzip_bomb_is_unpacked_up_to_the_declared_size_only) {
 /// A TIFF page of 4x3 bytes in one deflate strip, which is given.
 std::string tiff_with_strip(const std::string& strip) {
     std::string bytes = "II" + little<std::uint16_t>(42) + little<std::uint32_t>(8);
-    const std::uint32_t fields[][2] = {{256, 4}, {257, 3}, {258, 8},   {259, 8}, {262, 1},
+    const std::uint32_t fields[][2] = {{256, 4}, {257, 3}, {258, 8}, {259, 8}, {262, 1},
                                        {273, 0}, {277, 1}, {278, 3}, {279, 0}};
     bytes += little(static_cast<std::uint16_t>(std::size(fields)));
     const std::size_t strip_at = 8 + 2 + 12 * std::size(fields) + 4;

@@ -1,5 +1,5 @@
-// Compressed DICOM: what the header declares is what the compressed image has, or the file is refused;
-// no damage costs more memory than the declared size explains.
+// Compressed DICOM: what the header declares is what the compressed image has, or the file is
+// refused; no damage costs more memory than the declared size explains.
 #include <sys/resource.h>
 #include <zlib.h>
 
@@ -172,7 +172,8 @@ TEST(deflated_dicom, is_read_exactly_and_the_missing_checksum_is_said) {
     ASSERT_EQ(file.volume.geometry().size, Index3(40, 24, 1));
     EXPECT_EQ(file.volume.geometry().spacing, Vec3(0.25, 0.5, 2.5));
     for (int i = 0; i < 960; ++i) {
-        ASSERT_EQ(file.volume.sample({i % 40, i / 40, 0}), slice.pixels[static_cast<std::size_t>(i)]);
+        ASSERT_EQ(file.volume.sample({i % 40, i / 40, 0}),
+                  slice.pixels[static_cast<std::size_t>(i)]);
     }
     EXPECT_TRUE(contains(all_notes(file), "(deflate) without a checksum")) << all_notes(file);
 }
@@ -202,7 +203,8 @@ TEST(deflated_dicom, damage_and_bombs_cost_no_more_memory_than_is_declared) {
     for (int i = 0; i < 60; ++i) {
         std::string bytes = whole;
         const std::size_t begin = dicom_start(slice, "1.2.840.10008.1.2.1.99").size();
-        const std::size_t at = begin + (i < 30 ? random() % 400 : random() % (whole.size() - begin));
+        const std::size_t at =
+            begin + (i < 30 ? random() % 400 : random() % (whole.size() - begin));
         bytes[at] = static_cast<char>(bytes[at] ^ (1 << random() % 8));
         put_bytes(folder / "a.dcm", bytes);
         try {
@@ -217,9 +219,9 @@ TEST(deflated_dicom, damage_and_bombs_cost_no_more_memory_than_is_declared) {
     const std::string start = dicom_start(slice, "1.2.840.10008.1.2.1.99");
     DicomBytes element;
     element.long_value(9, 0x1001, "OB", "");
-    put_bytes(folder / "a.dcm", start + deflated(element.bytes().substr(0, 8) +
-                                                     little(std::uint32_t{1} << 30),
-                                                 std::size_t{1} << 30));
+    put_bytes(folder / "a.dcm",
+              start + deflated(element.bytes().substr(0, 8) + little(std::uint32_t{1} << 30),
+                               std::size_t{1} << 30));
     EXPECT_TRUE(contains(refusal(folder / "a.dcm"), "unpack to more than its header asks for"));
     std::string data_set = dicom_data_set(smooth_slice());
     data_set.resize(data_set.size() - 2 * 40 * 24 - 4);
