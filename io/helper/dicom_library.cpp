@@ -1,7 +1,5 @@
 // Reads headers with GDCM, and samples through ITK, which applies slope and intercept; see the
 // header.
-#include "io/helper/dicom_library.hpp"
-
 #include <fcntl.h>
 #include <gdcmReader.h>
 #include <gdcmStringFilter.h>
@@ -17,6 +15,7 @@
 #include <optional>
 
 #include "io/helper/dicom_check.hpp"
+#include "io/helper/dicom_library.hpp"
 #include "io/helper/headers.hpp"
 #include "io/helper/library_words.hpp"
 
