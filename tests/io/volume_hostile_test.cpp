@@ -58,18 +58,18 @@ TEST(hostile_file, a_nifti_transform_without_bounds_never_reaches_the_library) {
         }
     }
     // What is within the bounds is read; ITK takes the spacing from the field for it.
-    const auto notes_with = [&](float spacing) {
+    const auto notes_with = [&](float spacing, std::int16_t qform) {
         put_bytes(folder / "a.nii", nifti([&](std::string& header) {
                       put_at(header, 80, little(spacing) + little(3.0F) + little(4.0F));
-                      put_at(header, 252, little<std::int16_t>(0) + little<std::int16_t>(1));
+                      put_at(header, 252, little(qform) + little<std::int16_t>(1));
                       put_at(header, 280, transform(2, 3, 4, 5));
                   }));
         const VolumeFile file = read_volume(folder / "a.nii");
         EXPECT_EQ(file.volume.geometry().spacing, Vec3(spacing, 3, 4));
         return all_notes(file);
     };
-    EXPECT_EQ(notes_with(2), "");
-    EXPECT_TRUE(contains(notes_with(1), "two spacings along axis 1"));
+    EXPECT_EQ(notes_with(2, 0), "");
+    EXPECT_TRUE(contains(notes_with(1, 1), "two spacings along axis 1"));
 }
 
 TEST(hostile_file, every_other_length_of_a_nifti_header_has_bounds_too) {
