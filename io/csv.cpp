@@ -60,6 +60,7 @@ bool CsvReader::next_line() {
             if (comments_) comments_(text.substr(1));
             continue;
         }
+        row_ = text;
         split(text, cells_);
         return true;
     }

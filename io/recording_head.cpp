@@ -49,6 +49,11 @@ VolumeIdentity volume_from_json(const Json& json) {
 
 }  // namespace
 
+std::uint32_t checksum_with(std::string_view line, std::uint32_t before) {
+    const auto* bytes = reinterpret_cast<const Bytef*>(line.data());
+    return static_cast<std::uint32_t>(::crc32_z(before, bytes, line.size()));
+}
+
 VolumeIdentity identify(const Volume& volume, std::map<std::string, std::string> options) {
     const auto* bytes = static_cast<const Bytef*>(volume.data());
     const auto crc = ::crc32_z(::crc32_z(0, nullptr, 0), bytes, volume.bytes());

@@ -8,8 +8,13 @@
 namespace palpate::io {
 namespace {
 
+struct Head {
+    int format = 0;
+    RecordingHead head;
+};
+
 /// The comment lines before the table: the mark with the format's number, then JSON.
-RecordingHead read_head(const std::string& comments, const std::string& name) {
+Head read_head(const std::string& comments, const std::string& name) {
     const auto fail = [&](const std::string& problem) -> void {
         throw InputError(name + ": " + problem);
     };
@@ -17,7 +22,7 @@ RecordingHead read_head(const std::string& comments, const std::string& name) {
     const std::string_view first(comments.data(), std::min(first_end, comments.size()));
     if (!first.starts_with(recording_mark)) {
         fail("is no recording: its first line is not '#" + std::string(recording_mark) +
-             "1'; record one with palpate touch --record");
+             std::to_string(recording_format) + "'; record one with palpate touch --record");
     }
     const auto format = number_from<int>(first.substr(recording_mark.size()));
     if (!format || *format < 1) fail("the format of the recording is not a number");
@@ -26,7 +31,7 @@ RecordingHead read_head(const std::string& comments, const std::string& name) {
              ", made by a later version: use that");
     }
     try {
-        return head_from_json(Json::parse(comments.substr(first.size())));
+        return {*format, head_from_json(Json::parse(comments.substr(first.size())))};
     } catch (const Json::exception&) {
         fail("the head is not valid JSON: the file was changed or cut off");
     } catch (const std::invalid_argument& e) {
@@ -44,14 +49,17 @@ struct RecordingReader::Rows {
     std::deque<SessionEvent> waiting;
     bool complete = false;
     std::int64_t lost = 0;
+    std::int64_t ticks = 0;      // so far
+    std::uint32_t checksum = 0;  // of the events so far
     CsvReader csv;
     TraceColumns trace;
     VectorColumns position;
     std::size_t status, force_flags, device_status, buttons, age, frozen, clutched;
     std::optional<std::size_t> moment, samples;  // recordings of fixed samples may lack them
+    std::optional<std::size_t> number, crc32;    // those of format 1 do
     std::array<std::size_t, 9> tool;
 
-    Rows(std::string whole, std::string called)
+    Rows(std::string whole, std::string called, int format)
         : text(std::move(whole)),
           name(std::move(called)),
           csv(whole_lines(text), name, [this](std::string_view comment) { on_comment(comment); }),
@@ -66,6 +74,10 @@ struct RecordingReader::Rows {
           clutched(csv.column("clutched")) {
         if (csv.has_column("moment")) moment = csv.column("moment");
         if (csv.has_column("samples")) samples = csv.column("samples");
+        if (format > 1) {
+            number = csv.column("tick");
+            crc32 = csv.column("crc32");
+        }
         in_head = false;
         std::size_t i = 0;
         for (const char r : {'x', 'y', 'z'}) {
@@ -77,6 +89,8 @@ struct RecordingReader::Rows {
     void on_comment(std::string_view comment) {
         if (in_head) return;
         if (comment.starts_with(command_mark)) {
+            require_before_end();
+            checksum = checksum_with(comment, checksum_with("#", checksum));
             try {
                 waiting.emplace_back(
                     command_from_json(Json::parse(comment.substr(command_mark.size()))));
@@ -84,9 +98,51 @@ struct RecordingReader::Rows {
                 csv.fail("the command " + quoted(comment) + " is not valid");
             }
         } else if (comment.starts_with(end_mark)) {
-            const Json end = Json::parse(comment.substr(end_mark.size()), nullptr, false);
-            complete = end.is_object();
-            if (complete) lost = end.value("lost", std::int64_t{0});
+            require_before_end();
+            on_end(Json::parse(comment.substr(end_mark.size()), nullptr, false));
+        }
+    }
+
+    void require_before_end() const {
+        if (complete) csv.fail("there is more after the end of the recording: remove it");
+    }
+
+    /// The last line: how many ticks there were, and the checksum of all events.
+    void on_end(const Json& end) {
+        const auto count = [&](const char* member) {
+            const auto value = end.is_object() ? end.find(member) : end.end();
+            if (value == end.end() || !value->is_number_integer()) {
+                csv.fail(std::string("the last line has no whole number '") + member + "'");
+            }
+            return value->get<std::int64_t>();
+        };
+        if (const std::int64_t recorded = count("ticks"); recorded != ticks) {
+            csv.fail(std::to_string(recorded) + " ticks were recorded, there are " +
+                     std::to_string(ticks) + changed);
+        }
+        if (crc32 && count("crc32") != std::int64_t{checksum}) {
+            csv.fail(std::string("the checksum of all events does not fit") + changed);
+        }
+        lost = count("lost");
+        complete = true;
+    }
+
+    static constexpr const char* changed =
+        ": ticks or commands were removed, added, moved or changed since it was recorded: use the "
+        "original file";
+
+    /// That this row follows the one before, and nothing between them is missing.
+    void check_order() {
+        require_before_end();
+        if (number && csv.integer(*number) != ticks) {
+            csv.fail("tick " + std::to_string(ticks) + " is expected, there is tick " +
+                     std::string(csv.cell(*number)) + changed);
+        }
+        ++ticks;
+        if (!crc32) return;
+        checksum = checksum_with(csv.row().substr(0, csv.row().rfind(',')), checksum);
+        if (csv.integer(*crc32) != std::int64_t{checksum}) {
+            csv.fail(std::string("the checksum of the events up to here does not fit") + changed);
         }
     }
 
@@ -104,7 +160,8 @@ struct RecordingReader::Rows {
         SessionTick result;
         Tick& tick = result.tick;
         tick.time = row.t;
-        tick.proxy = {static_cast<UpdateStatus>(code(status, 3)),
+        tick.proxy = {static_cast<UpdateStatus>(
+                          code(status, static_cast<std::int64_t>(UpdateStatus::refused))),
                       row.constrained ? Mode::constrained : Mode::free,
                       row.hip,
                       row.scp,
@@ -150,14 +207,16 @@ RecordingReader::RecordingReader(std::string text, const std::string& name) {
         if (!head.starts_with(recording_mark)) read_head(head, name);
         throw;
     }
-    head_ = read_head(head, name);
-    rows_ = std::make_unique<Rows>(std::move(text), name);
+    const auto [format, parsed] = read_head(head, name);
+    head_ = parsed;
+    rows_ = std::make_unique<Rows>(std::move(text), name, format);
 }
 
 RecordingReader::~RecordingReader() = default;
 
 std::optional<SessionEvent> RecordingReader::next() {
     if (rows_->waiting.empty() && rows_->csv.next()) {
+        rows_->check_order();
         rows_->waiting.emplace_back(rows_->tick());
     }
     if (rows_->waiting.empty()) return std::nullopt;
@@ -177,6 +236,10 @@ double RecordingReader::progress() const {
 
 bool RecordingReader::complete() const {
     return rows_->complete;
+}
+
+bool RecordingReader::has_checksums() const {
+    return rows_->crc32.has_value();
 }
 
 std::int64_t RecordingReader::lost() const {

@@ -22,9 +22,10 @@ constexpr std::size_t most_buffered = std::size_t{1} << 20;
 constexpr std::string_view session_columns =
     ",status,force_flags,device_status,device_x,device_y,device_z,buttons,age,"
     "tool_xx,tool_xy,tool_xz,tool_yx,tool_yy,tool_yz,tool_zx,tool_zy,tool_zz,frozen,clutched,"
-    "moment,samples";
+    "moment,samples,tick,crc32";
 
-void append_tick(std::string& text, const SessionTick& tick) {
+/// The cells of a tick that the session gave, without the end of the line.
+void append_session(std::string& text, const SessionTick& tick) {
     append_row(text, trace_row(tick.tick));
     append_cell(text, static_cast<std::int64_t>(tick.tick.proxy.status));
     append_cell(text, static_cast<std::int64_t>(tick.tick.force_flags));
@@ -37,7 +38,6 @@ void append_tick(std::string& text, const SessionTick& tick) {
     append_cell(text, static_cast<std::int64_t>(tick.clutched));
     append_cell(text, tick.moment);
     append_cell(text, static_cast<std::int64_t>(tick.version));
-    text += '\n';
 }
 
 std::string head_text(const RecordingHead& head) {
@@ -109,7 +109,7 @@ void RecordingWriter::finish(std::int64_t lost) {
     if (syncer_.joinable()) syncer_.join();
     buffer_ += "#";
     buffer_ += end_mark;
-    buffer_ += Json{{"ticks", ticks()}, {"lost", lost}}.dump() + "\n";
+    buffer_ += Json{{"ticks", ticks()}, {"lost", lost}, {"crc32", checksum_}}.dump() + "\n";
     flush();
     (void)::fdatasync(descriptor_);
     close();
@@ -139,16 +139,27 @@ void RecordingWriter::sync() {
 
 void RecordingWriter::drain() {
     while (const auto event = queue_.pop()) {
-        if (const auto* tick = std::get_if<SessionTick>(&*event)) {
-            append_tick(buffer_, *tick);
-            ticks_.fetch_add(1, std::memory_order_relaxed);
-        } else {
-            buffer_ += "#";
-            buffer_ += command_mark;
-            buffer_ += to_json(std::get<Command>(*event)).dump() + "\n";
-        }
+        std::visit([this](const auto& one) { append(one); }, *event);
         if (buffer_.size() > most_buffered) flush();
     }
+}
+
+void RecordingWriter::append(const SessionTick& tick) {
+    const std::size_t begin = buffer_.size();
+    append_session(buffer_, tick);
+    append_cell(buffer_, ticks_.fetch_add(1, std::memory_order_relaxed));
+    checksum_ = checksum_with(std::string_view(buffer_).substr(begin), checksum_);
+    append_cell(buffer_, std::int64_t{checksum_});
+    buffer_ += '\n';
+}
+
+void RecordingWriter::append(const Command& command) {
+    const std::size_t begin = buffer_.size();
+    buffer_ += "#";
+    buffer_ += command_mark;
+    buffer_ += to_json(command).dump();
+    checksum_ = checksum_with(std::string_view(buffer_).substr(begin), checksum_);
+    buffer_ += '\n';
 }
 
 void RecordingWriter::flush() {

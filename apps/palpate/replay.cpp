@@ -70,7 +70,15 @@ void validate(const std::string& recording, const std::string& volume, bool quie
     if (reader.lost() > 0) {
         fmt::print("the recording lost {} events while it was made\n", reader.lost());
     }
-    if (!reader.complete()) fmt::print("the recording was cut off before its end\n");
+    if (!reader.complete()) {
+        fmt::print("the recording was cut off before its end: what came after tick {} is missing\n",
+                   replay.ticks() - 1);
+    }
+    if (!reader.has_checksums()) {
+        fmt::print(
+            "it was made by an earlier version, without checksums: whether something was removed "
+            "from it cannot be known\n");
+    }
 }
 
 /// A recording says itself how it was felt.

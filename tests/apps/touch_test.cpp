@@ -5,6 +5,7 @@
 
 #include "apps/program.hpp"
 #include "palpate/io/recording.hpp"
+#include "support/recordings.hpp"
 
 namespace palpate::app::test {
 namespace {
@@ -290,6 +291,8 @@ struct Recorded {
     }
 };
 
+using support::as_format_1, support::first_row;
+
 TEST(Validate, names_the_tick_that_differs) {
     Recorded recorded;
     const auto line = recorded.text.find("\n0.2");  // some tick after 0.2 s
@@ -299,8 +302,45 @@ TEST(Validate, names_the_tick_that_differs) {
     EXPECT_TRUE(contains(stiffer.err, "differs: force")) << stiffer.err;
     const auto moved = recorded.validate_with(",free,", ",constrained,", line);
     EXPECT_EQ(moved.status, 3);
-    EXPECT_TRUE(contains(moved.err, "differs: mode")) << moved.err;
-    EXPECT_TRUE(contains(moved.err, "tick ")) << moved.err;
+    EXPECT_TRUE(contains(moved.err, "since it was recorded")) << moved.err;
+    recorded.text = as_format_1(recorded.text);
+    const auto older = recorded.validate_with(",free,", ",constrained,", first_row(recorded.text));
+    EXPECT_EQ(older.status, 3);
+    EXPECT_TRUE(contains(older.err, "differs: mode")) << older.err;
+    EXPECT_TRUE(contains(older.err, "tick ")) << older.err;
+}
+
+TEST(Validate, notices_each_tick_that_is_missing) {
+    Recorded recorded;
+    const std::string original = recorded.text;
+    std::size_t row = first_row(original);
+    for (int removed = 0; removed < 5; ++removed) {
+        for (int i = 0; i < 100; ++i) row = original.find('\n', row) + 1;
+        recorded.text = original;
+        recorded.text.erase(row, original.find('\n', row) + 1 - row);
+        const auto valid = recorded.validate_with("\"lost\":0", "\"lost\":0");
+        EXPECT_EQ(valid.status, 3) << valid.out;
+        EXPECT_TRUE(contains(valid.err, "is expected, there is tick")) << valid.err;
+        EXPECT_TRUE(is_one_line(valid.err)) << valid.err;
+    }
+}
+
+TEST(Validate, says_what_an_old_recording_and_one_that_was_cut_off_cannot_tell) {
+    Recorded recorded;
+    const std::string original = recorded.text;
+    const auto whole = palpate(recorded.folder, "replay r.csv --validate");
+    EXPECT_EQ(whole.status, 0);
+    EXPECT_FALSE(contains(whole.out, "cut off"));
+    EXPECT_FALSE(contains(whole.out, "cannot be known"));
+    recorded.text = as_format_1(original);
+    const auto old = recorded.validate_with("recording 1", "recording 1");
+    EXPECT_EQ(old.status, 0) << old.err;
+    EXPECT_TRUE(contains(old.out, "the same bit for bit"));
+    EXPECT_TRUE(contains(old.out, "cannot be known")) << old.out;
+    recorded.text = original.substr(0, original.size() / 2);
+    const auto cut = recorded.validate_with("recording 2", "recording 2");
+    EXPECT_EQ(cut.status, 0) << cut.err;
+    EXPECT_TRUE(contains(cut.out, "cut off before its end")) << cut.out;
 }
 
 TEST(Validate, a_device_that_sent_implausible_readings_replays_bit_for_bit) {

@@ -10,10 +10,13 @@
 #include <csignal>
 #include <fstream>
 #include <limits>
+#include <sstream>
+#include <string>
 #include <thread>
 
 #include "support/press.hpp"
 #include "support/random.hpp"
+#include "support/recordings.hpp"
 #include "support/scratch_folder.hpp"
 
 using namespace palpate;
@@ -217,7 +220,7 @@ TEST(Recording, a_damaged_one_is_an_input_error_that_names_the_file) {
     };
     expect(refusal(""), "is no recording");
     expect(refusal("t,x,y,z\n0,1,2,3\n"), "is no recording");
-    expect(refusal(with("recording 1", "recording 2")), "later version");
+    expect(refusal(with("recording 2", "recording 3")), "later version");
     expect(refusal(with("\"version\": ", "\"version\" ")), "not valid JSON");
     expect(refusal(with("\"version\"", "\"edition\"")), "'version' is missing");
     expect(refusal(with("\"stiffness\": 0.5", "\"stiffness\": \"hard\"")), "'force.stiffness'");
@@ -225,6 +228,112 @@ TEST(Recording, a_damaged_one_is_an_input_error_that_names_the_file) {
     expect(refusal(with("\"float32\"", "\"int5\"")), "sample type");
     expect(refusal(with("# command {", "# command [")), "is not valid");
     expect(refusal(with("device_status", "device_state")), "device_status");
+}
+
+std::vector<std::string> lines_from(const std::string& text, std::size_t begin) {
+    std::vector<std::string> lines;
+    std::istringstream rest(text.substr(begin));
+    for (std::string line; std::getline(rest, line);) lines.push_back(line + '\n');
+    return lines;
+}
+
+std::string joined(const std::string& head, const std::vector<std::string>& lines) {
+    std::string text = head;
+    for (const std::string& line : lines) text += line;
+    return text;
+}
+
+/// The message of a refusal; empty if all of it is read.
+std::string why_refused(const std::string& text) {
+    try {
+        io::RecordingReader reader(text, "r.csv");
+        read_all(reader);
+    } catch (const io::InputError& e) {
+        return e.what();
+    }
+    return {};
+}
+
+TEST(Recording, without_one_of_its_ticks_or_commands_it_is_refused) {
+    const ScratchFolder folder;
+    const std::string text = written(random_events(200), folder / "r.csv");
+    const std::size_t begin = first_row(text);
+    const std::string head = text.substr(0, begin);
+    const std::vector<std::string> lines = lines_from(text, begin);
+    ASSERT_EQ(lines.size(), 201U);
+    EXPECT_EQ(why_refused(text), "");
+    for (std::size_t i = 0; i + 1 < lines.size(); ++i) {
+        std::vector<std::string> fewer = lines;
+        fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(i));
+        EXPECT_TRUE(contains(why_refused(joined(head, fewer)), "since it was recorded"))
+            << lines[i];
+        // As if it was cut off as well. A command that nothing follows has left no trace.
+        fewer.pop_back();
+        const bool last = std::ranges::all_of(
+            fewer.begin() + static_cast<std::ptrdiff_t>(i), fewer.end(),
+            [](const std::string& line) { return line.starts_with("# command"); });
+        EXPECT_EQ(contains(why_refused(joined(head, fewer)), "since it was recorded"), !last)
+            << lines[i];
+    }
+}
+
+TEST(Recording, with_events_moved_repeated_or_changed_in_one_digit_it_is_refused) {
+    const ScratchFolder folder;
+    const std::string text = written(random_events(100), folder / "r.csv");
+    const std::size_t begin = first_row(text);
+    const std::string head = text.substr(0, begin);
+    const std::vector<std::string> lines = lines_from(text, begin);
+    for (std::size_t i = 0; i + 2 < lines.size(); ++i) {
+        std::vector<std::string> other = lines;
+        std::swap(other[i], other[i + 1]);
+        EXPECT_NE(why_refused(joined(head, other)), "") << lines[i];
+        other = lines;
+        other.insert(other.begin() + static_cast<std::ptrdiff_t>(i), lines[i]);
+        EXPECT_NE(why_refused(joined(head, other)), "") << lines[i];
+    }
+    Random random(8);
+    int digits = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const auto end = static_cast<int>(text.find("# end ") - begin);
+        const std::size_t at = begin + static_cast<std::size_t>(random.below(end));
+        if (text[at] < '0' || text[at] > '9') continue;
+        std::string other = text;
+        other[at] = text[at] == '9' ? '0' : static_cast<char>(text[at] + 1);
+        EXPECT_NE(why_refused(other), "") << text.substr(at - 9, 20);
+        ++digits;
+    }
+    EXPECT_GT(digits, 1000);
+    EXPECT_NE(why_refused(text + lines[1]), "") << "goes on after its end";
+}
+
+TEST(Recording, with_other_notes_and_line_ends_of_another_system_it_is_whole) {
+    const ScratchFolder folder;
+    const std::string text = written(random_events(40), folder / "r.csv");
+    std::string noted = text;
+    noted.insert(first_row(text), "# a note\n\n");
+    EXPECT_EQ(why_refused(noted), "");
+    std::string windows;
+    for (const char c : text) windows += c == '\n' ? std::string("\r\n") : std::string(1, c);
+    EXPECT_EQ(why_refused(windows), "");
+}
+
+TEST(Recording, one_of_format_1_is_read_and_says_that_it_has_no_checksums) {
+    const ScratchFolder folder;
+    const std::string text = written(random_events(100), folder / "r.csv");
+    const std::string old = as_format_1(text);
+    io::RecordingReader now(text, "r.csv");
+    EXPECT_TRUE(now.has_checksums());
+    io::RecordingReader reader(old, "old.csv");
+    EXPECT_FALSE(reader.has_checksums());
+    EXPECT_EQ(read_all(reader).size(), 100U);
+    EXPECT_TRUE(reader.complete());
+    // The count in its last line is all that tells.
+    const std::size_t row = old.find("\n0.", first_row(old)) + 1;
+    std::string fewer = old;
+    fewer.erase(row, old.find('\n', row) + 1 - row);
+    EXPECT_TRUE(contains(why_refused(fewer), "ticks were recorded, there are"));
+    fewer.erase(fewer.find("# end "));
+    EXPECT_EQ(why_refused(fewer), "");
 }
 
 TEST(Recording, never_replaces_a_file) {

@@ -46,6 +46,8 @@ class CsvReader {
     std::size_t line() const { return line_; }
     std::size_t bytes_left() const { return rest_.size(); }
     std::string_view cell(std::size_t column) const { return cells_[column]; }
+    /// The text of the row, without blanks at its ends.
+    std::string_view row() const { return row_; }
     /// The cell as a number, NaN and infinity included.
     double number(std::size_t column) const;
     /// The cell as a number that is finite.
@@ -62,6 +64,7 @@ class CsvReader {
     std::string_view rest_;
     std::string name_;
     std::size_t line_ = 0;
+    std::string_view row_;
     std::vector<std::string_view> header_;
     std::vector<std::string_view> cells_;
 };

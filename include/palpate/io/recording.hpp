@@ -75,6 +75,8 @@ class RecordingWriter {
     void run();
     void sync();
     void drain();
+    void append(const SessionTick& tick);
+    void append(const Command& command);
     void flush();
     void close();
 
@@ -82,7 +84,8 @@ class RecordingWriter {
     int descriptor_ = -1;
     Queue<SessionEvent> queue_;
     std::string buffer_;
-    std::int64_t written_ = 0;  // bytes that are whole lines on the disk
+    std::uint32_t checksum_ = 0;  // of all events so far
+    std::int64_t written_ = 0;    // bytes that are whole lines on the disk
     bool seekable_ = false;
     std::atomic<std::int64_t> ticks_{0};
     std::atomic<bool> done_{false};
@@ -91,7 +94,8 @@ class RecordingWriter {
     std::jthread thread_, syncer_;
 };
 
-/// Reads a recording event by event. A last line that is not whole is left out.
+/// Reads a recording event by event. A last line that is not whole is left out. Ticks and commands
+/// that were removed, added, moved or changed since the recording was made are an InputError.
 class RecordingReader {
   public:
     /// Throws InputError: no recording, a later format, a head that is not valid.
@@ -109,6 +113,9 @@ class RecordingReader {
     double progress() const;
     /// After the last event: the recording was finished, not cut off.
     bool complete() const;
+    /// Ticks are numbered and carry a checksum of all events up to them. Without (format 1), only
+    /// ticks missing from a complete recording are noticed.
+    bool has_checksums() const;
     /// After the last event: events that the recording lost while it was made.
     std::int64_t lost() const;
 
