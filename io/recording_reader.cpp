@@ -161,7 +161,7 @@ struct RecordingReader::Rows {
         Tick& tick = result.tick;
         tick.time = row.t;
         tick.proxy = {static_cast<UpdateStatus>(
-                          code(status, static_cast<std::int64_t>(UpdateStatus::refused))),
+                          code(status, static_cast<std::int64_t>(UpdateStatus::not_finite))),
                       row.constrained ? Mode::constrained : Mode::free,
                       row.hip,
                       row.scp,

@@ -40,7 +40,8 @@ void add_to_summary(OfflineSummary& summary, const Tick& tick, double range) {
     ++summary.ticks;
     summary.out_of_budget += tick.proxy.status == UpdateStatus::out_of_budget;
     summary.recovering += tick.proxy.status == UpdateStatus::recovering;
-    summary.refused += tick.proxy.status == UpdateStatus::refused;
+    summary.refused +=
+        tick.proxy.status == UpdateStatus::refused || tick.proxy.status == UpdateStatus::not_finite;
     summary.mean_tetrahedra += tick.proxy.tetrahedra;
     summary.mean_ns += static_cast<double>(tick.update_ns);
     summary.largest_force = std::max(summary.largest_force, tick.force.norm());

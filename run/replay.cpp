@@ -124,13 +124,19 @@ Replay::Replay(io::RecordingReader& reader, const LoadedVolume& loaded, std::str
     : reader_(reader),
       recording_(std::move(recording)),
       session_(recorded_session(reader.head(), loaded, recording_)),
+      start_(session_.renderer.settings),
       samples_(session_.renderer.field.shared_samples(), frames_of(loaded)) {}
 
 void Replay::carry_out(const Command& recorded) {
     try {
         const Command command = samples_.whole(recorded);
-        check(command, session_.renderer.settings, session_.renderer.field.solid());
-        apply(session_, command);
+        if (const auto* limits = std::get_if<DeviceLimits>(&command)) {
+            keep_within(session_, *limits);  // a device may have declared any
+        } else {
+            // As the servo did: against the settings of the start.
+            const Field& field = session_.renderer.field;
+            apply(session_, CheckedCommand(command, start_, field.solid(), field.geometry()));
+        }
     } catch (const std::invalid_argument& e) {
         throw io::InputError(recording_ + ", before tick " + std::to_string(ticks_) +
                              ": a command that cannot be carried out: " + e.what());

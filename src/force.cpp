@@ -25,10 +25,14 @@ std::string text_of(double value) {
     return text.data();
 }
 
-void require(bool good, const char* setting, double value, const std::string& wanted) {
-    if (good) return;
+[[noreturn]] void refuse(const char* setting, double value, const std::string& wanted) {
     throw std::invalid_argument(std::string(setting) + " = " + text_of(value) + ": must be " +
                                 wanted);
+}
+
+/// Builds no text, so allocates nothing, if all is well.
+void require(bool good, const char* setting, double value, const char* wanted) {
+    if (!good) refuse(setting, value, wanted);
 }
 
 void require_not_negative(const char* setting, double value) {
@@ -152,16 +156,21 @@ void check(const ForceSettings& s, const DeviceLimits& limits) {
     require(s.start_below >= 0, "force to start below [N]", s.start_below,
             "at least 0 (inf: start at any)");
     const double damping = s.damping + s.viscosity;
-    require(damping < limits.physical_damping, "damping + viscosity [N s/mm]", damping,
+    if (!(damping < limits.physical_damping)) {
+        refuse(
+            "damping + viscosity [N s/mm]", damping,
             "below the physical damping of device and hand, " + text_of(limits.physical_damping));
+    }
     const double most = greatest_stiffness(limits, damping);
-    require(
-        s.stiffness <= most, "stiffness [N/mm]", s.stiffness,
-        "at most " + text_of(most) + " at " + text_of(limits.rate) + " Hz to be rendered stably");
+    if (!(s.stiffness <= most)) {
+        refuse("stiffness [N/mm]", s.stiffness,
+               "at most " + text_of(most) + " at " + text_of(limits.rate) +
+                   " Hz to be rendered stably");
+    }
     // 4 peak / distance is the magnet's own stiffness where it is steepest.
-    if (s.magnet.distance > 0) {
-        require(4 * s.magnet.peak <= most * s.magnet.distance, "magnet peak [N]", s.magnet.peak,
-                "at most " + text_of(most * s.magnet.distance / 4) + " over this distance");
+    if (s.magnet.distance > 0 && !(4 * s.magnet.peak <= most * s.magnet.distance)) {
+        refuse("magnet peak [N]", s.magnet.peak,
+               "at most " + text_of(most * s.magnet.distance / 4) + " over this distance");
     }
 }
 

@@ -71,7 +71,8 @@ Incident incident_tetrahedra(const LatticePoint& point) {
 
 double value_at(const Field& field, const LatticePoint& point) {
     const auto& tetrahedron = point.tetrahedron;
-    return piece_of(tetrahedron, field.cell(tetrahedron.cell))(point.folded);
+    const LinearPiece piece = piece_of(tetrahedron, field.cell(tetrahedron.cell));
+    return field.with_offset(piece(point.folded));
 }
 
 double value_at(const Field& field, const Vec3& physical) {

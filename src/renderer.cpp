@@ -2,12 +2,18 @@
 #include "palpate/renderer.hpp"
 
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "proxy/update.hpp"
 
 namespace palpate {
 namespace {
+
+/// Scales [physical mm per device mm] and translations [mm] beyond these have no use, and double's
+/// range has to hold what follows from them.
+constexpr double most_scale = 1e30;
+constexpr double farthest_translation = 1e60;
 
 /// Step budget of the magnet's search for a surface.
 constexpr int magnet_budget = 512;
@@ -29,7 +35,7 @@ ForceInput force_input(const Renderer& renderer, const DeviceState& device, cons
     input.time = device.time;
     input.enabled = renderer.settings.forces_on && device.armed;
     input.released = device.released;
-    input.valid = at.status != UpdateStatus::refused && at.status != UpdateStatus::recovering;
+    input.valid = at.status == UpdateStatus::done || at.status == UpdateStatus::out_of_budget;
     input.constrained = at.mode == Mode::constrained;
     input.hand = device.position;
     input.pull = to_device * (at.scp - at.hip) / transform.scale;
@@ -75,19 +81,31 @@ void check(const RendererSettings& s) {
     if (s.proxy.step_budget < 1) throw std::invalid_argument("the step budget must be at least 1");
     const Mat3 r = s.transform.rotation.transpose() * s.transform.rotation - Mat3::Identity();
     // maxCoeff() alone may pass over a NaN.
-    if (!r.allFinite() || r.cwiseAbs().maxCoeff() >= 1e-6 || !s.transform.translation.allFinite()) {
-        throw std::invalid_argument(
-            "device transform: rotation must be orthonormal, translation finite");
+    if (!r.allFinite() || r.cwiseAbs().maxCoeff() >= 1e-6) {
+        throw std::invalid_argument("device transform: rotation must be orthonormal");
     }
-    if (!(s.transform.scale > 0) || !std::isfinite(s.transform.scale)) {
-        throw std::invalid_argument("device transform: scale must be finite and above 0");
+    const Vec3& translation = s.transform.translation;
+    if (!translation.allFinite() || translation.cwiseAbs().maxCoeff() > farthest_translation) {
+        throw std::invalid_argument("device transform: translation must be within 1e60 mm");
+    }
+    if (!(s.transform.scale >= 1 / most_scale && s.transform.scale <= most_scale)) {
+        throw std::invalid_argument(
+            "device transform: scale must be finite and above 0, from 1e-30 to 1e30");
+    }
+}
+
+void check_isovalue(double isovalue, Solid solid) {
+    const double s = solid == Solid::above ? 1 : -1;
+    if (!(s * isovalue > -std::numeric_limits<double>::infinity())) {
+        throw std::invalid_argument(
+            "the isovalue is not a number, or infinite so that all of space is solid");
     }
 }
 
 Renderer make_renderer(Field field, double isovalue, const RendererSettings& settings) {
     check(settings);
     check(settings.penetrability, field.solid());
-    if (std::isnan(isovalue)) throw std::invalid_argument("the isovalue is not a number");
+    check_isovalue(isovalue, field.solid());
     Renderer renderer{std::move(field), settings, {}, {}};
     renderer.proxy.isovalue = isovalue;
     return renderer;
@@ -114,10 +132,15 @@ Tick render(Renderer& renderer, const DeviceState& device, StepObserver observer
     Tick tick;
     tick.time = device.time;
     const std::int64_t begin = clock ? clock() : 0;
+    const Proxy before = renderer.proxy;
     tick.proxy = device.valid ? settings.method(renderer.proxy, renderer.field, hip, settings.proxy,
                                                 observer)
                               // The position is not trusted: nothing moves.
                               : refuse_update(renderer.proxy, renderer.field, hip);
+    if (!is_finite(renderer.proxy)) {
+        renderer.proxy = before;
+        tick.proxy = refuse_update(before, renderer.field, hip, UpdateStatus::not_finite);
+    }
     tick.update_ns = clock ? clock() - begin : 0;
     apply_penetrability(settings.penetrability, renderer.field, 1 / settings.transform.scale,
                         renderer.proxy, tick.proxy, observer);
@@ -125,6 +148,7 @@ Tick render(Renderer& renderer, const DeviceState& device, StepObserver observer
                                            force_input(renderer, device, tick.proxy));
     tick.force = force.force;
     tick.force_flags = force.flags;
+    if (tick.proxy.status == UpdateStatus::not_finite) tick.force_flags |= force_not_finite;
     return tick;
 }
 

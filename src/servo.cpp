@@ -180,14 +180,13 @@ void Servo::stop() noexcept {
 }
 
 bool Servo::send(const Command& command) {
-    check(command, start_, solid_);
+    const CheckedCommand checked(command, start_, solid_, geometry_);
     if (const auto* samples = std::get_if<command::Samples>(&command)) {  // all others own nothing
-        check(*samples, geometry_);
         hold(samples->samples);
         hold(samples->recipe);
     }
     sent_.fetch_add(1, std::memory_order_relaxed);  // before the servo thread can count it
-    if (commands_.push(command)) return true;
+    if (commands_.push(checked)) return true;
     sent_.fetch_sub(1, std::memory_order_relaxed);
     return false;
 }
@@ -305,10 +304,10 @@ void Servo::count(Clock& clock, std::int64_t number, const Stamps& stamps) noexc
 
 void Servo::obey() noexcept {
     for (int i = 0; i < commands_per_tick; ++i) {
-        const std::optional<Command> command = commands_.pop();
-        if (!command) return;
-        apply(session_, *command);
-        record(*command);
+        const std::optional<CheckedCommand> checked = commands_.pop();
+        if (!checked) return;
+        apply(session_, *checked);
+        record(checked->command());
         obeyed_.store(obeyed_.load(std::memory_order_relaxed) + 1, std::memory_order_release);
     }
 }

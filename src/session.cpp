@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace palpate {
 namespace {
@@ -72,13 +73,6 @@ void play(Session& session, double time) {
 
 }  // namespace
 
-void check(const command::Samples& to, const Geometry& geometry) {
-    if (!to.samples) throw std::invalid_argument("no samples are given");
-    if (!(to.samples->geometry() == geometry)) {
-        throw std::invalid_argument("the samples do not lie on the grid of those that are felt");
-    }
-}
-
 void check(const SessionSettings& s) {
     if (!(s.fastest_hand > 0)) {
         throw std::invalid_argument("the fastest hand [mm/s] must be above 0 (inf: any)");
@@ -88,20 +82,21 @@ void check(const SessionSettings& s) {
     }
 }
 
-void check(const Command& command, const RendererSettings& settings, Solid solid) {
+void check(const Command& command, const RendererSettings& settings, Solid solid,
+           const Geometry& geometry) {
     RendererSettings changed = settings;
     const Overloaded check_one{
-        [](const command::Isovalue& to) {
-            if (std::isnan(to.isovalue)) {
-                throw std::invalid_argument("the isovalue is not a number");
-            }
-        },
+        [&](const command::Isovalue& to) { check_isovalue(to.isovalue, solid); },
         [](const command::Freeze&) {},
         [](const command::Clutch&) {},
         [](const command::Forces&) {},
         [&](const command::Scale& to) { changed.transform.scale = to.scale; },
-        [](const command::Samples& to) {
+        [&](const command::Samples& to) {
             if (!to.samples) throw std::invalid_argument("no samples are given");
+            if (!(to.samples->geometry() == geometry)) {
+                throw std::invalid_argument(
+                    "the samples do not lie on the grid of those that are felt");
+            }
         },
         [](const command::Moment& to) {
             if (!std::isfinite(to.time)) throw std::invalid_argument("the time is not finite");
@@ -121,9 +116,21 @@ void check(const Command& command, const RendererSettings& settings, Solid solid
     check(changed);
 }
 
+CheckedCommand::CheckedCommand(Command command, const RendererSettings& settings, Solid solid,
+                               const Geometry& geometry)
+    : command_(std::move(command)) {
+    check(command_, settings, solid, geometry);
+}
+
+void apply(Session& session, const Command& command) {
+    const Renderer& renderer = session.renderer;
+    apply(session, CheckedCommand(command, renderer.settings, renderer.field.solid(),
+                                  renderer.field.geometry()));
+}
+
 // std::visit throws only for a variant without a value, and check() has visited this one.
 void apply(Session& session,  // NOLINT(bugprone-exception-escape)
-           const Command& command) noexcept {
+           const CheckedCommand& checked) noexcept {
     Renderer& renderer = session.renderer;
     RendererSettings& settings = renderer.settings;
     Field& field = renderer.field;
@@ -160,7 +167,7 @@ void apply(Session& session,  // NOLINT(bugprone-exception-escape)
         },
         [&](const DeviceLimits& to) { keep_within(session, to); },
     };
-    std::visit(apply_one, command);
+    std::visit(apply_one, checked.command());
 }
 
 bool keep_within(Session& session, const DeviceLimits& limits) noexcept {

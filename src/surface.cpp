@@ -155,7 +155,7 @@ class Extraction {
     Extraction(const Field& field, double isovalue, const SampleBox& box,
                std::uint64_t max_vertices, SurfaceMesh& mesh)
         : field_(field),
-          isovalue_(isovalue),
+          isovalue_(isovalue - field.offset()),
           max_vertices_(max_vertices),
           mesh_(mesh),
           low_(box.low),
@@ -259,7 +259,7 @@ class Extraction {
     }
 
     const Field& field_;
-    double isovalue_;
+    double isovalue_;  // less the field's offset, like its cells
     std::uint64_t max_vertices_;
     SurfaceMesh& mesh_;
     Index3 low_, cells_;

@@ -94,7 +94,7 @@ Request LiveCommands::from_words(std::string_view line) {
     }
     RendererSettings next = settings_;
     const Command command = setting_from(words, next);
-    check(command, settings_, field_.solid());
+    check(command, settings_, field_.solid(), field_.geometry());
     settings_ = next;
     return command;
 }

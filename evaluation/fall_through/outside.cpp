@@ -91,7 +91,7 @@ double Outside::excess_at(const Index3& corner) const {
         sum += f[static_cast<std::size_t>(c)];
         ++count;
     }
-    return field_.sign() * (sum / count - isovalue_);
+    return field_.sign() * (field_.with_offset(sum / count) - isovalue_);
 }
 
 void Outside::flood(const std::function<void()>& alive) {

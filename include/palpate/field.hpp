@@ -14,7 +14,7 @@ namespace palpate {
 /// bright.
 enum class Solid : std::uint8_t { above, below };
 
-/// The eight samples at the corners of a cell, in the data's units.
+/// The eight samples at the corners of a cell, in the data's units, less the field's offset.
 /// Corner c has x offset (c & 1), y offset (c >> 1 & 1), z offset (c >> 2 & 1).
 using CellSamples = std::array<double, 8>;
 
@@ -23,7 +23,7 @@ class Field {
   public:
     /// `background` is the density outside the grid. Its default is the data's minimum, or the
     /// maximum where `solid` is below, so that bodies cut off by the border are closed there.
-    /// Throws std::invalid_argument for a background that is not finite.
+    /// Throws std::invalid_argument for a background that is not finite or beyond float32's range.
     explicit Field(Volume volume, Solid solid = Solid::above,
                    std::optional<double> background = std::nullopt);
     /// The same for changing data; a sequence begins at its first moment. Not null.
@@ -54,10 +54,16 @@ class Field {
     /// How far sign * (f - isovalue) may exceed 0 by rounding before a point counts as solid [data
     /// units]: a thousandth of the tolerance of G1 and G2 (proxy.hpp).
     double tolerance() const { return tolerance_; }
+    /// What cell() takes from every sample [data units]: 0, unless the data lie so far from zero
+    /// that doubles have too few digits left for their range (docs/proxy.md, "Domain").
+    double offset() const { return offset_; }
+    /// A density computed from cell(), offset included.
+    double with_offset(double density) const { return offset_ == 0 ? density : density + offset_; }
     /// 1 / spacing [voxel/mm].
     const Vec3& voxels_per_mm() const { return voxels_per_mm_; }
 
-    /// The samples of the cell whose lowest corner is `cell` (index space); any cell in space.
+    /// The samples of the cell whose lowest corner is `cell` (index space), less offset(); any cell
+    /// in space.
     CellSamples cell(const Index3& cell) const {
         return with_type(type_, [&](auto zero) { return cell_of<decltype(zero)>(cell); });
     }
@@ -74,6 +80,7 @@ class Field {
     template <class T>
     CellSamples cell_of(const Index3& cell) const;
     CellSamples other_cell(const Index3& cell) const;
+    CellSamples absolute_cell(const Index3& cell) const;
     void look() noexcept;
 
     std::shared_ptr<const Samples> samples_;
@@ -85,10 +92,11 @@ class Field {
     double background_ = 0;
     double range_ = 1;
     double tolerance_ = 0;
+    double offset_ = 0;
     Vec3 voxels_per_mm_;
     double sign_ = 1;
     Index3 size_;
-    Index3 plain_;  // cells along each axis that lie in one piece at data_; none if samples change
+    Index3 plain_;  // cells along each axis that lie at data_ as they are felt; none if they change
     SampleType type_ = SampleType::uint8;
     Solid solid_ = Solid::above;
 };

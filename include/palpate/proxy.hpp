@@ -17,8 +17,13 @@ enum class UpdateStatus : std::uint8_t {
     done,           ///< the SCP is where the method puts it
     out_of_budget,  ///< step budget used up: the SCP is valid, the next update continues from it
     recovering,     ///< the SCP is still inside the solid: render no force
-    refused,        ///< HIP not finite or absurdly far (1e9 voxels): nothing was changed
+    refused,        ///< HIP not finite or farther than `farthest_hip`: nothing was changed
+    not_finite,     ///< the SCP would be NaN or infinite: nothing was changed, render no force
 };
+
+/// Farthest HIP outside the grid [voxel] that an update accepts. The rounding error of a step grows
+/// with its target's distance: up to here G1 and G2 hold (docs/proxy.md, "Domain").
+inline constexpr double farthest_hip = 1e5;
 
 /// The state between updates. Set `isovalue` freely between two updates.
 struct Proxy {

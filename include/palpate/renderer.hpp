@@ -64,8 +64,11 @@ struct Tick {
 /// Whether several ranges of interest are in the order of the field's solid side is left to
 /// check(Penetrability, Solid), which make_renderer() calls as well.
 void check(const RendererSettings& settings);
-/// A renderer ready for its first tick. Throws std::invalid_argument for an isovalue that is NaN or
-/// settings that do not pass check().
+/// Throws std::invalid_argument for an isovalue that is NaN, or infinite so that all of space is
+/// solid. The other infinity leaves all of space free.
+void check_isovalue(double isovalue, Solid solid);
+/// A renderer ready for its first tick. Throws std::invalid_argument for an isovalue or settings
+/// that do not pass their check.
 Renderer make_renderer(Field field, double isovalue, const RendererSettings& settings = {});
 /// A warning if nothing can be felt at this level (it lies outside the data's range), or if the
 /// background is solid at it, and with that all of space outside the data; else empty.

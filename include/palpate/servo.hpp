@@ -163,7 +163,7 @@ class Servo {
 
     std::mutex held_mutex_;  // between threads that send; the servo thread never takes it
     std::vector<std::shared_ptr<const void>> held_;  // each object once
-    Queue<Command> commands_;
+    Queue<CheckedCommand> commands_;
     Newest<Snapshot> snapshot_;
     Newest<WorstTick> worst_;
     LatencyHistogram period_, lateness_, work_, compute_;

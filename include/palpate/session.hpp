@@ -126,15 +126,32 @@ struct SessionTick {
 /// Throws std::invalid_argument for settings out of range.
 void check(const SessionSettings& settings);
 /// Throws std::invalid_argument, saying what is wrong, for a command that a session with these
-/// settings cannot carry out.
-void check(const Command& command, const RendererSettings& settings, Solid solid);
-/// Throws std::invalid_argument for samples that are null or do not lie on the session's grid.
-void check(const command::Samples& samples, const Geometry& geometry);
+/// settings, this solid side and this grid cannot carry out.
+void check(const Command& command, const RendererSettings& settings, Solid solid,
+           const Geometry& geometry);
 
-/// Carries out a command that passed check(). Never throws or allocates; frees the samples that it
-/// replaces unless somebody else holds them (Servo::send() does).
+/// A command that passed check(). A session carries out no other, so nothing that is not finite or
+/// out of range can enter between two ticks.
+class CheckedCommand {
+  public:
+    /// Throws as check().
+    CheckedCommand(Command command, const RendererSettings& settings, Solid solid,
+                   const Geometry& geometry);
+    /// Switches the forces off, which every session can.
+    CheckedCommand() = default;
+
+    const Command& command() const { return command_; }
+
+  private:
+    Command command_ = command::Forces{false};
+};
+
+/// Carries out a command. Never throws or allocates; frees the samples that it replaces unless
+/// somebody else holds them (Servo::send() does).
 void apply(Session& session,  // NOLINT(bugprone-exception-escape)
-           const Command& command) noexcept;
+           const CheckedCommand& command) noexcept;
+/// The same for a command that is checked here. Throws as check(); then nothing has changed.
+void apply(Session& session, const Command& command);
 
 /// Keeps the smaller of the session's device limits and these, and lowers the force settings as far
 /// as needed (stable()). True if that changed anything.

@@ -33,7 +33,7 @@ bool place(Proxy& proxy, const Field& field, const Vec3& hip, double isovalue,
     const Vec3 size = field.geometry().size.cast<double>();
     const int patience = 1000 + static_cast<int>(size.norm());
     const Vec3 target = index_from_physical(field.geometry(), hip);
-    if (!accepts(proxy, target)) return false;
+    if (!accepts(proxy, field, target)) return false;
     const LatticePoint start = locate(target);
     for (int i = 0; i < patience; ++i) {
         const Update update(proxy, field, target, {}, observer);
@@ -45,7 +45,7 @@ bool place(Proxy& proxy, const Field& field, const Vec3& hip, double isovalue,
                       update.recovering ? Rest::recovering
                       : stayed          ? Rest::at_target
                                         : Rest::on_surface);
-        if (!update.recovering) return true;
+        if (!update.recovering) return proxy.placed;
     }
     return false;
 }
@@ -60,7 +60,7 @@ RayHit cast_ray(const Field& field, double isovalue, const Vec3& from, const Vec
         !(target.cwiseAbs().maxCoeff() <= farthest_index)) {
         return ray;
     }
-    Site site(field, isovalue, field.sign(), locate(start));
+    Site site(field, isovalue - field.offset(), field.sign(), locate(start));
     Progress progress{geometry, {}, target, step_budget};
     ray.hit = site.excess() > 0 ||
               walk(site, progress.folded_to_target(site), progress) == WalkEnd::surface;

@@ -35,6 +35,10 @@ Descent steepest_descent(const Site& site) {
     return best;
 }
 
+/// Far more than crosses any tetrahedron, so it changes no step; but where the isovalue lies
+/// absurdly far from the data, the quotient would overflow.
+constexpr double most_of_step = 1e100;
+
 /// Descends until out (true), stuck on a plateau or in a local minimum, or out of budget.
 bool descend_out(Site& site, Progress& progress) {
     const double tolerance = site.field.tolerance();
@@ -47,7 +51,8 @@ bool descend_out(Site& site, Progress& progress) {
         site.enter(descent.tetrahedron);
         const Vec3 per_mm = fold_lengths(descent.tetrahedron, site.field.voxels_per_mm());
         // Along the step the excess falls by slope^2 per unit: it is zero at excess / slope^2.
-        const Vec3 step = descent.step_mm.cwiseProduct(per_mm) * (excess / descent.slope_squared);
+        const double share = std::min(excess / descent.slope_squared, most_of_step);
+        const Vec3 step = descent.step_mm.cwiseProduct(per_mm) * share;
         slide(site, step, walls_at(site.point.folded), descent.walls, progress);
         progress.report(StepKind::recover, site);
     }

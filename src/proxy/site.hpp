@@ -9,8 +9,8 @@
 
 namespace palpate {
 
-/// A lattice point with the samples of its cell and the linear field of its tetrahedron. Its
-/// excess, sign * (f - isovalue), is > 0 in the solid.
+/// A lattice point with the samples of its cell and the linear field of its tetrahedron, both less
+/// the field's offset, like the isovalue. Its excess, sign * (f - isovalue), is > 0 in the solid.
 struct Site {
     Site(const Field& f, double level, double s, const LatticePoint& at)
         : field(f),
@@ -27,8 +27,9 @@ struct Site {
     CellSamples samples;
     LinearPiece piece;
 
-    double density() const { return piece(point.folded); }
-    double excess() const { return sign * (density() - isovalue); }
+    /// As it is felt, offset included [data units].
+    double density() const { return field.with_offset(piece(point.folded)); }
+    double excess() const { return sign * (piece(point.folded) - isovalue); }
     /// Rate of the excess along a folded direction.
     double slope(const Vec3& folded) const { return sign * dot(piece.gradient, folded); }
     /// Gradient of the excess [data units / voxel], folded, in an incident tetrahedron.

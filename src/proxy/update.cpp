@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "proxy/cone.hpp"
 
@@ -47,9 +48,10 @@ bool push_ahead(Site& site, Progress& progress, const Vec3& start_index, const V
 
 }  // namespace
 
-ProxyUpdate refuse_update(const Proxy& proxy, const Field& field, const Vec3& hip) {
+ProxyUpdate refuse_update(const Proxy& proxy, const Field& field, const Vec3& hip,
+                          UpdateStatus why) {
     ProxyUpdate result;
-    result.status = UpdateStatus::refused;
+    result.status = why;
     result.mode = proxy.mode;
     result.hip = hip;
     result.scp = proxy.scp_physical;
@@ -58,8 +60,21 @@ ProxyUpdate refuse_update(const Proxy& proxy, const Field& field, const Vec3& hi
     return result;
 }
 
-bool accepts(const Proxy& proxy, const Vec3& hip_index) {
-    return hip_index.cwiseAbs().maxCoeff() <= farthest_index && !std::isnan(proxy.isovalue);
+bool is_finite(const Proxy& proxy) {
+    const Vec3& folded = proxy.scp.folded;
+    const Vec3& physical = proxy.scp_physical;
+    // NaN or infinite if one of them is.
+    const double sum = folded[0] + folded[1] + folded[2] + physical[0] + physical[1] + physical[2];
+    return sum - sum == 0;
+}
+
+bool accepts(const Proxy& proxy, const Field& field, const Vec3& hip_index) {
+    const Index3& size = field.geometry().size;
+    const auto near = [&](int a) {
+        return hip_index[a] >= -farthest_hip && hip_index[a] <= size[a] + farthest_hip;
+    };
+    return near(0) && near(1) && near(2) &&
+           field.sign() * proxy.isovalue > -std::numeric_limits<double>::infinity();
 }
 
 namespace {
@@ -74,10 +89,9 @@ const LatticePoint& start_of(Proxy& proxy, const Vec3& hip_index) {
 
 Update::Update(Proxy& proxy, const Field& field, const Vec3& hip_index,
                const ProxySettings& settings, StepObserver observer)
-    : site(field, proxy.isovalue, field.sign(), start_of(proxy, hip_index)),
+    : site(field, proxy.isovalue - field.offset(), field.sign(), start_of(proxy, hip_index)),
       progress{field.geometry(), observer, hip_index, settings.step_budget} {
     if (!proxy.placed) progress.report(StepKind::place, site);
-    proxy.placed = true;
     if (!(site.excess() > field.tolerance())) {
         proxy.recovery_reach = 0;
         return;
@@ -91,6 +105,9 @@ Update::Update(Proxy& proxy, const Field& field, const Vec3& hip_index,
 
 ProxyUpdate finish_update(Proxy& proxy, const Update& update, const Vec3& hip, Rest rest) {
     const Site& site = update.site;
+    const double sum = site.point.folded[0] + site.point.folded[1] + site.point.folded[2];
+    if (!(sum - sum == 0)) return refuse_update(proxy, site.field, hip, UpdateStatus::not_finite);
+    proxy.placed = true;
     proxy.scp = site.point;
     if (rest != Rest::recovering) proxy.ahead.setZero();
     proxy.scp_physical = rest == Rest::at_target

@@ -6,10 +6,14 @@
 
 namespace palpate {
 
-/// False for a HIP (index space) that is not finite or absurdly far.
-bool accepts(const Proxy& proxy, const Vec3& hip_index);
-/// The result for such a HIP: nothing changed.
-ProxyUpdate refuse_update(const Proxy& proxy, const Field& field, const Vec3& hip);
+/// False for a HIP (index space) that is not finite or too far from the grid (farthest_hip), and
+/// for an isovalue that is NaN or at which all of space is solid.
+bool accepts(const Proxy& proxy, const Field& field, const Vec3& hip_index);
+/// The result of an update that changed nothing.
+ProxyUpdate refuse_update(const Proxy& proxy, const Field& field, const Vec3& hip,
+                          UpdateStatus why = UpdateStatus::refused);
+/// False if the SCP is NaN or infinite.
+bool is_finite(const Proxy& proxy);
 
 /// The state of a running update. The constructor places the proxy if necessary and brings it out
 /// of the solid, unless `recovering` says that it is still inside.

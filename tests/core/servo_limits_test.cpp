@@ -45,12 +45,16 @@ struct Recorded {
 
     /// Renders the ticks again from `begin`, which has to give the same bits.
     Recorded(Queue<SessionEvent>& queue, Session begin) {
+        const RendererSettings start = begin.renderer.settings;
+        const Field field = begin.renderer.field;
         while (const auto event = queue.pop()) {
             if (const auto* command = std::get_if<Command>(&*event)) {
-                apply(begin, *command);
                 if (const auto* to = std::get_if<DeviceLimits>(command)) {
+                    keep_within(begin, *to);
                     if (limits.empty()) ticks_before_limits = ticks.size();
                     limits.push_back(*to);
+                } else {
+                    apply(begin, CheckedCommand(*command, start, field.solid(), field.geometry()));
                 }
                 continue;
             }

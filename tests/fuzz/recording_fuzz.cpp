@@ -33,7 +33,6 @@ void play(palpate::io::RecordingReader& reader) {
             head.session};
         while (const auto event = reader.next()) {
             if (const auto* command = std::get_if<Command>(&*event)) {
-                check(*command, session.renderer.settings, head.solid);
                 apply(session, *command);
                 continue;
             }

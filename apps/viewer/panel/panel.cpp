@@ -221,7 +221,7 @@ void Panel::take(const Command& command) {
 void Panel::ask(Section* by, const Command& command) {
     if (!live_) return;
     try {
-        palpate::check(command, now_.settings, solid_);
+        palpate::check(command, now_.settings, solid_, unedited_->geometry());
     } catch (const std::invalid_argument& error) {
         refuse(by, QString::fromStdString(error.what()));
         return;

@@ -44,7 +44,7 @@ std::vector<LocalTetrahedron> local_tetrahedra(const Field& field, const Lattice
             const auto [d, s, e] = folded_corners[c];
             const Vec3 folded(d, s, e);
             local.corners[c] = physical_from_index(g, index_of({tetrahedron, folded}));
-            above[c] = piece(folded) - isovalue;
+            above[c] = piece(folded) - (isovalue - field.offset());
         }
         local.patch = patch_of(local.corners, above);
         const Vec3 gradient =

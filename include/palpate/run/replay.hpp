@@ -57,6 +57,7 @@ class Replay {
     io::RecordingReader& reader_;
     std::string recording_;
     Session session_;
+    RendererSettings start_;
     RecordedSamples samples_;
     std::int64_t ticks_ = 0, commands_ = 0;
 };

@@ -1,0 +1,290 @@
+// Session: whatever value a command carries, on whatever data, the state stays finite and the
+// session goes on; what is not finite is refused at one gate.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <set>
+#include <stdexcept>
+#include <type_traits>
+
+#include "palpate/session.hpp"
+#include "support/constants.hpp"
+#include "support/fields.hpp"
+
+using namespace palpate;
+using namespace palpate::support;
+
+namespace {
+
+using Limits = std::numeric_limits<double>;
+
+constexpr double extremes[] = {infinity,
+                               -infinity,
+                               not_a_number,
+                               1e300,
+                               -1e300,
+                               Limits::max(),
+                               Limits::lowest(),
+                               Limits::min(),
+                               -Limits::min(),
+                               Limits::denorm_min(),
+                               -Limits::denorm_min(),
+                               1e38,
+                               -1e38,
+                               1e30,
+                               1e-30,
+                               1,
+                               0,
+                               -0.0};
+
+/// Density = unit * z, so that level 30 lies at z = 30: ordinary, at the small and at the large end
+/// of float32.
+Field ramp_of(double unit, Solid solid) {
+    const double sign = solid == Solid::above ? 1 : -1;
+    return Field(
+        volume_of<float>(grid({9, 9, 101}), [&](const Index3& i) { return sign * unit * i[2]; }),
+        solid);
+}
+constexpr double units[] = {1, std::numeric_limits<float>::denorm_min(), 3e36};
+
+/// Every command with `value` wherever it has a number.
+std::vector<Command> commands_with(double value, const Field& field) {
+    std::vector<Command> commands{command::Isovalue{value}, command::Freeze{true},
+                                  command::Clutch{true},    command::Forces{false},
+                                  command::Scale{value},    command::Samples{},
+                                  command::Moment{value},   command::Speed{value},
+                                  Friction{value, value},   Friction{value, 0}};
+    commands.emplace_back(command::Samples{field.shared_samples(), 1});
+    for (double ForceSettings::*member :
+         {&ForceSettings::stiffness, &ForceSettings::damping, &ForceSettings::viscosity,
+          &ForceSettings::limit, &ForceSettings::rate_limit, &ForceSettings::ramp,
+          &ForceSettings::stale_after, &ForceSettings::start_below}) {
+        ForceSettings force;
+        force.*member = value;
+        commands.emplace_back(force);
+    }
+    ForceSettings force;
+    force.magnet = {value, 0.1};
+    commands.emplace_back(force);
+    force.magnet = {0.1, value};
+    commands.emplace_back(force);
+    force.magnet = {};
+    force.texture = {value, 1};
+    commands.emplace_back(force);
+    force.texture = {0.01, value};
+    commands.emplace_back(force);
+    for (const DensityRange range : {DensityRange{value, infinity}, DensityRange{-infinity, value},
+                                     DensityRange{value, value}, DensityRange{0, value}}) {
+        for (const double threshold : {0.5, value}) {
+            Penetrability p;
+            p.on = true;
+            p.threshold = threshold;
+            p.range_count = 1;
+            p.ranges[0] = range;
+            commands.emplace_back(p);
+        }
+    }
+    DeviceTransform transform;
+    transform.scale = value;
+    commands.emplace_back(transform);
+    for (int a = 0; a < 3; ++a) {
+        transform = {};
+        transform.translation[a] = value;
+        commands.emplace_back(transform);
+        transform = {};
+        transform.rotation(a, a) = value;
+        commands.emplace_back(transform);
+    }
+    for (double DeviceLimits::*member :
+         {&DeviceLimits::maximum_force, &DeviceLimits::rate, &DeviceLimits::physical_damping}) {
+        DeviceLimits limits;
+        limits.*member = value;
+        commands.emplace_back(limits);
+    }
+    return commands;
+}
+
+bool is_finite(const Session& s) {
+    const Renderer& r = s.renderer;
+    const DeviceTransform& t = r.settings.transform;
+    return r.proxy.scp.folded.allFinite() && r.proxy.scp_physical.allFinite() &&
+           r.proxy.ahead.allFinite() && std::isfinite(r.proxy.recovery_reach) &&
+           !std::isnan(r.proxy.isovalue) && r.force.force.allFinite() &&
+           r.force.velocity.allFinite() && r.force.hand.allFinite() && t.rotation.allFinite() &&
+           t.translation.allFinite() && std::isfinite(t.scale) && std::isfinite(r.field.time()) &&
+           s.hand.allFinite() && s.held_hip.allFinite() && s.held_tool.allFinite();
+}
+
+/// A hand that presses into level 30, moves in and out, and turns.
+struct Presser {
+    Session session;
+    double time = 0;
+    SessionTick last{};
+
+    Presser(const Field& field, double isovalue) : session{make_renderer(field, isovalue), {}} {}
+    /// False if a tick left something that is not finite.
+    bool press(double depth, int ticks) {
+        for (int i = 0; i < ticks; ++i) {
+            DeviceReading reading;
+            reading.status = DeviceStatus::ready;
+            const double swing = 0.3 * std::sin(0.1 * i);
+            reading.position = Vec3(4.2 + swing, 3.9, depth + swing);
+            last = advance(session, time += period, reading);
+            if (!is_finite(session) || !last.tick.force.allFinite() ||
+                !last.tick.proxy.scp.allFinite() || last.tick.force.norm() > 3.3 + 1e-12) {
+                return false;
+            }
+        }
+        return true;
+    }
+    /// Takes back whatever a command may have changed, but for the device's limits, which only
+    /// fall.
+    void restore(const Field& field, double isovalue) {
+        apply(session, command::Isovalue{isovalue});
+        apply(session, command::Freeze{false});
+        apply(session, command::Clutch{false});
+        apply(session, command::Forces{true});
+        apply(session, command::Samples{field.shared_samples(), 0});
+        apply(session, command::Speed{0});
+        apply(session, Friction{});
+        apply(session, no_penetrability());
+        apply(session, DeviceTransform{});
+        session.renderer.settings.device = {};
+        apply(session, ForceSettings{});
+    }
+};
+
+}  // namespace
+
+TEST(SessionExtremes, no_command_with_any_value_leaves_what_is_not_finite_or_lasts) {
+    std::set<std::size_t> accepted_kinds, refused_kinds;
+    for (const double unit : units) {
+        for (const Solid solid : {Solid::above, Solid::below}) {
+            const Field field = ramp_of(unit, solid);
+            const double isovalue = (solid == Solid::above ? 30 : -30) * unit;
+            for (const double value : extremes) {
+                for (const Command& command : commands_with(value, field)) {
+                    SCOPED_TRACE(testing::Message() << "unit " << unit << ", value " << value
+                                                    << ", command " << command.index());
+                    Presser presser(field, isovalue);
+                    ASSERT_TRUE(presser.press(31, 20));
+                    try {
+                        apply(presser.session, command);
+                        accepted_kinds.insert(command.index());
+                    } catch (const std::invalid_argument&) {
+                        refused_kinds.insert(command.index());
+                    }
+                    ASSERT_TRUE(presser.press(31, 40));
+                    presser.restore(field, isovalue);
+                    ASSERT_TRUE(presser.press(28, 40));
+                    ASSERT_TRUE(presser.press(31, 300));
+                    ASSERT_EQ(presser.last.tick.proxy.status, UpdateStatus::done);
+                    ASSERT_EQ(presser.last.tick.proxy.mode, Mode::constrained);
+                    ASSERT_GT(presser.last.tick.force.norm(), 0.1);
+                }
+            }
+        }
+    }
+    // Every kind of command was carried out, and every kind that has a number was refused, too.
+    EXPECT_EQ(accepted_kinds.size(), std::variant_size_v<Command>);
+    EXPECT_EQ(refused_kinds.size(), std::variant_size_v<Command> - 3);
+}
+
+TEST(SessionExtremes, an_isovalue_at_which_nothing_can_be_free_is_refused_wherever_it_enters) {
+    for (const Solid solid : {Solid::above, Solid::below}) {
+        const double sign = solid == Solid::above ? 1 : -1;
+        const Field field = ramp_of(1, solid);
+        for (const double value : {-sign * infinity, not_a_number}) {
+            EXPECT_THROW(make_renderer(field, value), std::invalid_argument);
+            Presser presser(field, 30 * sign);
+            EXPECT_THROW(apply(presser.session, command::Isovalue{value}), std::invalid_argument);
+            EXPECT_EQ(presser.session.renderer.proxy.isovalue, 30 * sign);
+        }
+        // At the other infinity all is free.
+        Presser presser(field, 30 * sign);
+        apply(presser.session, command::Isovalue{sign * infinity});
+        ASSERT_TRUE(presser.press(31, 300));
+        EXPECT_EQ(presser.last.tick.proxy.mode, Mode::free);
+        EXPECT_EQ(presser.last.tick.force, Vec3(0, 0, 0));
+    }
+}
+
+TEST(SessionExtremes, only_checked_commands_are_carried_out_without_a_check) {
+    static_assert(!std::is_convertible_v<Command, CheckedCommand>);
+    static_assert(!std::is_constructible_v<CheckedCommand, Command>);
+    Presser presser(ramp_of(1, Solid::above), 30);
+    static_assert(noexcept(apply(presser.session, CheckedCommand{})));
+    const RendererSettings settings;
+    const Geometry& geometry = presser.session.renderer.field.geometry();
+    EXPECT_THROW(CheckedCommand(command::Scale{-1}, settings, Solid::above, geometry),
+                 std::invalid_argument);
+    ASSERT_TRUE(presser.press(31, 300));
+    EXPECT_GT(presser.last.tick.force.norm(), 0.1);
+    apply(presser.session, CheckedCommand{});
+    ASSERT_TRUE(presser.press(31, 1));
+    EXPECT_EQ(presser.last.tick.force, Vec3(0, 0, 0));
+}
+
+TEST(SessionExtremes, an_update_that_is_not_finite_is_taken_back_and_says_so) {
+    Presser presser(ramp_of(1, Solid::above), 30);
+    ASSERT_TRUE(presser.press(31, 300));
+    const Vec3 scp = presser.session.renderer.proxy.scp_physical;
+    presser.session.renderer.settings.method = [](Proxy& proxy, const Field&, const Vec3& hip,
+                                                  const ProxySettings&, StepObserver) {
+        proxy.scp.folded[1] = not_a_number;
+        proxy.scp_physical[2] = infinity;
+        proxy.mode = Mode::free;
+        ProxyUpdate update;
+        update.hip = hip;
+        update.scp = proxy.scp_physical;
+        return update;
+    };
+    ASSERT_TRUE(presser.press(31, 5));
+    EXPECT_EQ(presser.last.tick.proxy.status, UpdateStatus::not_finite);
+    EXPECT_EQ(presser.last.tick.proxy.scp, scp);
+    EXPECT_EQ(presser.last.tick.proxy.mode, Mode::constrained);
+    EXPECT_EQ(presser.last.tick.force, Vec3(0, 0, 0));
+    EXPECT_TRUE(presser.last.tick.force_flags & force_not_finite);
+    presser.session.renderer.settings.method = &update_exact;
+    ASSERT_TRUE(presser.press(31, 300));
+    EXPECT_EQ(presser.last.tick.proxy.status, UpdateStatus::done);
+    EXPECT_GT(presser.last.tick.force.norm(), 0.1);
+}
+
+TEST(SessionExtremes, updates_stay_finite_at_any_isovalue_on_any_data) {
+    for (const double unit : units) {
+        for (const Solid solid : {Solid::above, Solid::below}) {
+            const double sign = solid == Solid::above ? 1 : -1;
+            const Volume volume = ramp_of(unit, solid).volume();
+            for (const double background : extremes) {
+                if (!(std::abs(background) <= std::numeric_limits<float>::max())) {
+                    EXPECT_THROW(Field(volume, solid, background), std::invalid_argument);
+                    continue;
+                }
+                const Field field(volume, solid, background);
+                for (const double isovalue : extremes) {
+                    for (const ProxyMethod method : {&update_exact, &update_paper}) {
+                        Random random(2);
+                        Proxy proxy;
+                        proxy.isovalue = sign * 30 * unit;
+                        for (int i = 0; i < 60; ++i) {
+                            if (i % 20 == 10) proxy.isovalue = isovalue;
+                            if (i % 20 == 0) proxy.isovalue = sign * 30 * unit;
+                            const Vec3 hip = random.point(-3, 40);
+                            const ProxyUpdate r = method(proxy, field, hip, {}, {});
+                            ASSERT_TRUE(r.scp.allFinite() && proxy.scp.folded.allFinite() &&
+                                        proxy.scp_physical.allFinite())
+                                << "unit " << unit << " background " << background << " isovalue "
+                                << isovalue;
+                            // At once where all of space is solid or nothing tells.
+                            if (!(sign * proxy.isovalue > -infinity)) {
+                                ASSERT_EQ(r.status, UpdateStatus::refused);
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
