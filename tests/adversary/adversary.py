@@ -1,0 +1,113 @@
+#!/usr/bin/env python3
+"""Attacks the program from outside, as an adversary would: with data, hands, files, services, signals and
+disks that nobody wishes it. It shares no code with the program. Every round has a seed of its own; what is
+found is printed with the words that do it again, and its files are kept.
+
+    adversary.py --program build/dev/apps/palpate/palpate --seconds 60
+    adversary.py --program ... --only readers --seed 4711 --rounds 1      one round again
+"""
+
+import argparse
+import collections
+import importlib
+import random
+import shutil
+import sys
+import tempfile
+import time
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+from program import Finding, Program  # noqa: E402
+
+ATTACKS = ("proxies", "readers", "texts", "recordings", "services", "signals", "outputs")
+
+
+def one_round(name, program, seed, keep):
+    """A round of an attack. Returns its counts and what it found, if anything."""
+    counts = collections.Counter(rounds=1)
+    folder = Path(tempfile.mkdtemp(prefix=f"palpate-adversary-{name}-"))
+    found = None
+    try:
+        importlib.import_module(name).one(program, random.Random(f"{name} {seed}"), folder, counts)
+    except Finding as finding:
+        found = f"{name} --seed {seed}: {finding}"
+        if keep:
+            kept = Path(keep) / f"{name}-{seed}"
+            shutil.rmtree(kept, ignore_errors=True)
+            shutil.copytree(folder, kept, symlinks=True, ignore=only_files)
+            found += f"\n  files: {kept}"
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+    return counts, found
+
+
+def only_files(folder, names):
+    """Pipes and sockets cannot be copied."""
+    paths = [Path(folder) / name for name in names]
+    return [p.name for p in paths if not (p.is_file() or p.is_dir())]
+
+
+def attack(name, program, options, deadline):
+    """Rounds of one attack until the deadline, several at a time. Returns counts and findings."""
+    total, found, seed = collections.Counter(), [], options.seed
+    with ThreadPoolExecutor(options.jobs) as pool:
+        running = set()
+        more = lambda: (time.monotonic() < deadline and seed - options.seed < options.rounds
+                        and not (found and options.until_found))
+        while running or more():
+            while len(running) < options.jobs and more():
+                running.add(pool.submit(one_round, name, program, seed, options.keep))
+                seed += 1
+            for done in [r for r in running if r.done()]:
+                running.discard(done)
+                counts, what = done.result()
+                total += counts
+                if what:
+                    found.append(what)
+                    print(f"FOUND {what}", flush=True)
+            time.sleep(0.005)
+    return total, found
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("--program", required=True, help="palpate, built")
+    parser.add_argument("--seconds", type=float, default=60, help="for all attacks together")
+    parser.add_argument("--rounds", type=int, default=10**9, help="most rounds of each attack")
+    parser.add_argument("--seed", type=int, default=1, help="of the first round")
+    parser.add_argument("--only", default="", help=f"attacks, comma between: {', '.join(ATTACKS)}")
+    parser.add_argument("--until-found", action="store_true", help="begin no round after a finding")
+    parser.add_argument("--keep", help="folder for the files of what is found")
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--slower", type=float, default=1.0, help="factor on all time limits")
+    parser.add_argument("--counts", help="CSV to write the counts to")
+    options = parser.parse_args()
+    sys.setswitchinterval(0.0005)  # stand-ins for services answer while others compute
+    names = options.only.split(",") if options.only else ATTACKS
+    unknown = set(names) - set(ATTACKS)
+    if unknown:
+        parser.error(f"no attack {', '.join(sorted(unknown))}")
+    program = Program(options.program, options.slower)
+    findings, rows = [], []
+    for i, name in enumerate(names):
+        begun = time.monotonic()
+        left = options.seconds * (i + 1) / len(names) - sum(row[2] for row in rows)
+        counts, found = attack(name, program, options, begun + left)
+        findings += found
+        rows.append((name, counts, time.monotonic() - begun, len(found)))
+        print(f"{name}: {dict(counts)}, {len(found)} found, {rows[-1][2]:.0f} s", flush=True)
+    if options.counts:
+        with open(options.counts, "w") as file:
+            file.write("attack,what,count\n")
+            for name, counts, seconds, found in rows:
+                for what, count in [*sorted(counts.items()), ("seconds", round(seconds)), ("found", found)]:
+                    file.write(f"{name},{what},{count}\n")
+    print(f"{program.runs} runs of the program, {len(findings)} findings")
+    return 1 if findings else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
