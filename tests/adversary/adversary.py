@@ -12,6 +12,7 @@ import collections
 import importlib
 import random
 import shutil
+import subprocess
 import sys
 import tempfile
 import time
@@ -22,7 +23,8 @@ sys.dont_write_bytecode = True
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 from program import Finding, Program  # noqa: E402
 
-ATTACKS = ("proxies", "readers", "texts", "recordings", "services", "signals", "outputs")
+ATTACKS = ("proxies", "readers", "texts", "recordings", "services", "signals", "outputs",
+           "sessions")
 
 
 def one_round(name, program, seed, keep):
@@ -56,7 +58,7 @@ def attack(name, program, options, deadline):
     with ThreadPoolExecutor(options.jobs) as pool:
         running = set()
         more = lambda: (time.monotonic() < deadline and seed - options.seed < options.rounds
-                        and not (found and options.until_found))
+                        and len(found) < options.most_findings)
         while running or more():
             while len(running) < options.jobs and more():
                 running.add(pool.submit(one_round, name, program, seed, options.keep))
@@ -79,9 +81,10 @@ def main():
     parser.add_argument("--rounds", type=int, default=10**9, help="most rounds of each attack")
     parser.add_argument("--seed", type=int, default=1, help="of the first round")
     parser.add_argument("--only", default="", help=f"attacks, comma between: {', '.join(ATTACKS)}")
-    parser.add_argument("--until-found", action="store_true", help="begin no round after a finding")
+    parser.add_argument("--most-findings", type=int, default=20, help="of an attack; then it ends")
     parser.add_argument("--keep", help="folder for the files of what is found")
     parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--load", type=int, default=0, help="processes that only compute, beside the attacks")
     parser.add_argument("--slower", type=float, default=1.0, help="factor on all time limits")
     parser.add_argument("--counts", help="CSV to write the counts to")
     options = parser.parse_args()
@@ -91,6 +94,16 @@ def main():
     if unknown:
         parser.error(f"no attack {', '.join(sorted(unknown))}")
     program = Program(options.program, options.slower)
+    burners = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(options.load)]
+    try:
+        return report(names, program, options)
+    finally:
+        for burner in burners:
+            burner.kill()
+
+
+def report(names, program, options):
+    """Runs the attacks, prints what came of each, and says whether anything was found."""
     findings, rows = [], []
     for i, name in enumerate(names):
         begun = time.monotonic()

@@ -16,8 +16,8 @@ from pathlib import Path
 STATUSES = {0, 1, 2, 3, 4, 5}
 INTERRUPTED = {signal.SIGINT: 130, signal.SIGTERM: 143, signal.SIGHUP: 129, signal.SIGQUIT: 131}
 # What a message never shows: a library's source files, pointers, mangled names.
-INTERNAL = re.compile(r"[\w/.+-]+\.(?:cxx|cpp|cc|hxx|hpp|h|txx):?\d*|\b0x[0-9a-f]{5,}\b|\b_ZN\w+"
-                      r"|std::|terminate called")
+INTERNAL = re.compile(r"[\w/.+-]+\.(?:cxx|cpp|cc|hxx|hpp|txx)\b|[\w/.+-]+\.h:\d|\b0x[0-9a-f]{5,}\b"
+                      r"|\b_ZN\w+|std::|terminate called")
 LEFT_BEHIND = re.compile(r"\.palpate-|\.part$|^core(\.\d+)?$")
 
 

@@ -1,5 +1,6 @@
-"""Attack with signals: each that a program can catch, at any moment of a live session. The device has no
-force afterwards, the exit status names the signal, and the recording is whole."""
+"""Attack with signals: each that a program can catch, at any moment of a live session in which commands and
+edits arrive all the time. The device has no force afterwards, the exit status names the signal, and the
+recording validates. With both cores loaded for half an hour this is the soak of docs/safety.md."""
 
 import signal
 import time
@@ -16,11 +17,33 @@ HARMLESS = [signal.SIGCHLD, signal.SIGURG, signal.SIGWINCH, signal.SIGCONT, sign
             signal.SIGTTOU, signal.SIGPIPE]
 
 
+COMMANDS = ("isovalue {percent}%", "stiffness {k}", "damping 0.0005", "viscosity 0.0002", "friction 0.5,0.3",
+            "friction 0,0", "penetrability off", "penetrability threshold {k}", "forces off", "forces on",
+            "freeze on", "freeze off", "clutch on", "clutch off", "scale {factor}", "brush carve 3 20",
+            "brush add 2 20", "brush smooth 3 20", "brush off", "carve {at} 3", "add {at} 2", "smooth {at} 4",
+            "fill 1,1,1:4,4,4 {percent}", "undo", "redo")
+
+
+def commands(random):
+    """Half of the sessions are left alone, so that forces last; the others get one command in 20 ms."""
+    if random.random() < 0.5:
+        return ""
+    lines = []
+    for i in range(500):
+        line = random.choice(COMMANDS)
+        at = ",".join(str(random.randint(-8, 8)) for _ in range(3))
+        lines.append(f"{i / 50} " + line.format(percent=random.randint(20, 80), at=at,
+                                                k=random.choice(("0.1", "0.3", "0.5")),
+                                                factor=random.choice(("0.8", "1", "1.25"))))
+    return "\n".join(lines) + "\n"
+
+
 def one(program, random, folder, counts):
     service = Service(random, lambda s, n: s.good())
-    process = program.start(touch(service.port, "--record", "r.csv"), folder)
-    felt = wait_for_force(service, process, 8)
-    time.sleep(random.uniform(0, 0.3))
+    (folder / "c.txt").write_text(commands(random))
+    process = program.start(touch(service.port, "--record", "r.csv", "--commands", "c.txt"), folder)
+    felt = wait_for_force(service, process, 4)
+    time.sleep(random.choice((0, 0.1, 0.3, 2)) * random.random())
     which = random.choice(ENDING)
     for _ in range(random.choice((0, 0, 3))):
         process.send_signal(random.choice(HARMLESS))
