@@ -34,7 +34,7 @@ FAULTS = {
         "words = ['20' if w == '4.0' else '1' if w == '0.5' else w for w in words]\nsys.exit(real(words))",
     ("signals", "no signal is passed on", "does not end|status"):
         "import signal\nfor s in range(1, 32):\n  if s not in (9, 19): signal.signal(s, signal.SIG_IGN)\n"
-        "p = subprocess.Popen([%(program)r, *words], start_new_session=True)\n"
+        "p = subprocess.Popen([%(program)r, *words])\n"
         "time.sleep(60); p.kill(); sys.exit(0)",
     ("outputs", "a temporary file stays", "left behind|took away"):
         "s = real(words)\nopen('.palpate-1-0.part', 'w').close()\nsys.exit(s)",
