@@ -1,6 +1,6 @@
-// Any bytes are the header and the samples of a volume, or a failure of one line: our own readers and
-// checks of NRRD, MetaImage, NIfTI and DICOM, which run before any library. The first byte chooses the
-// format. volume_header_mutator.cpp makes inputs whose sizes and checksums are right.
+// Any bytes are the header and the samples of a volume, or a failure of one line: our own readers
+// and checks of NRRD, MetaImage, NIfTI and DICOM, which run before any library. The first byte
+// chooses the format. volume_header_mutator.cpp makes inputs whose sizes and checksums are right.
 #include <sys/mman.h>
 #include <unistd.h>
 

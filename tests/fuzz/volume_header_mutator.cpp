@@ -1,6 +1,6 @@
-// Mutates volumes so that what a reader checks first stays right: a compressed stream is unpacked, changed
-// and packed again with its checksum; the samples get the length that the header declares; an element of a
-// DICOM file gets the length of its value.
+// Mutates volumes so that what a reader checks first stays right: a compressed stream is unpacked,
+// changed and packed again with its checksum; the samples get the length that the header declares;
+// an element of a DICOM file gets the length of its value.
 #include <zlib.h>
 
 #include <algorithm>
@@ -21,7 +21,9 @@ using Random = std::minstd_rand;
 
 constexpr std::size_t most_unpacked = 1 << 16;
 
-bool one_in(Random& random, unsigned n) { return random() % n == 0; }
+bool one_in(Random& random, unsigned n) {
+    return random() % n == 0;
+}
 
 void mutate(Bytes& bytes, std::size_t room) {
     const std::size_t size = bytes.size();
@@ -47,7 +49,8 @@ std::optional<Bytes> unpacked(const Bytes& packed) {
 
 Bytes packed(const Bytes& bytes, bool gzip) {
     z_stream stream{};
-    if (deflateInit2(&stream, 6, Z_DEFLATED, gzip ? 31 : 15, 8, Z_DEFAULT_STRATEGY) != Z_OK) return {};
+    if (deflateInit2(&stream, 6, Z_DEFLATED, gzip ? 31 : 15, 8, Z_DEFAULT_STRATEGY) != Z_OK)
+        return {};
     Bytes out(bytes.size() + bytes.size() / 100 + 64);
     stream.next_in = const_cast<std::uint8_t*>(bytes.data());
     stream.avail_in = static_cast<uInt>(bytes.size());
@@ -63,7 +66,8 @@ Bytes packed(const Bytes& bytes, bool gzip) {
 std::optional<std::size_t> declared_samples(const std::string& header, const std::string& field) {
     const std::size_t at = header.find(field);
     if (at == std::string::npos) return {};
-    std::istringstream line(header.substr(at + field.size(), header.find('\n', at) - at - field.size()));
+    std::istringstream line(
+        header.substr(at + field.size(), header.find('\n', at) - at - field.size()));
     line.ignore(3, ' ');
     std::size_t product = 1;
     for (std::int64_t size = 0; line >> size;) {
@@ -75,8 +79,8 @@ std::optional<std::size_t> declared_samples(const std::string& header, const std
 }
 
 /// A text header and its samples: either is changed, then the samples get the declared length.
-void mutate_text_volume(Bytes& bytes, Random& random, const std::string& end, const std::string& field,
-                        std::size_t room) {
+void mutate_text_volume(Bytes& bytes, Random& random, const std::string& end,
+                        const std::string& field, std::size_t room) {
     const auto split = std::search(bytes.begin(), bytes.end(), end.begin(), end.end());
     if (split == bytes.end()) return mutate(bytes, room);
     Bytes header(bytes.begin(), split + std::ptrdiff_t(end.size()));
@@ -95,7 +99,8 @@ void mutate_text_volume(Bytes& bytes, Random& random, const std::string& end, co
     bytes.insert(bytes.end(), samples.begin(), samples.end());
 }
 
-/// The value of one element, and its length with it. Explicit VR, little-endian, before any sequence.
+/// The value of one element, and its length with it. Explicit VR, little-endian, before any
+/// sequence.
 void mutate_dicom(Bytes& bytes, Random& random, std::size_t room) {
     struct Element {
         std::size_t value, length, length_at;
@@ -103,8 +108,10 @@ void mutate_dicom(Bytes& bytes, Random& random, std::size_t room) {
     };
     std::vector<Element> elements;
     for (std::size_t at = 132; at + 12 <= bytes.size();) {
-        const std::string kind(bytes.begin() + std::ptrdiff_t(at) + 4, bytes.begin() + std::ptrdiff_t(at) + 6);
-        const bool is_long = kind == "OB" || kind == "OW" || kind == "SQ" || kind == "UN" || kind == "UT";
+        const std::string kind(bytes.begin() + std::ptrdiff_t(at) + 4,
+                               bytes.begin() + std::ptrdiff_t(at) + 6);
+        const bool is_long =
+            kind == "OB" || kind == "OW" || kind == "SQ" || kind == "UN" || kind == "UT";
         std::uint32_t length = 0;
         std::memcpy(&length, &bytes[at + (is_long ? 8 : 6)], is_long ? 4 : 2);
         const std::size_t value = at + (is_long ? 12 : 8);
@@ -135,8 +142,8 @@ void mutate_nifti(Bytes& bytes, std::size_t room) {
 
 }  // namespace
 
-extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t most,
-                                               unsigned seed) {
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
+                                               std::size_t most, unsigned seed) {
     if (size < 2) return LLVMFuzzerMutate(data, size, most);
     Random random(seed + 1);
     Bytes bytes(data + 1, data + size);
