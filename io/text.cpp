@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t block_bytes = std::size_t{1} << 20;
 constexpr std::size_t longest_line = std::size_t{16} << 20;
 constexpr std::uint64_t largest_file = std::uint64_t{4} << 30;
-constexpr std::uint64_t largest_stream = std::uint64_t{1} << 30;
+constexpr std::uint64_t largest_stream = std::uint64_t{256} << 20;
 constexpr int poll_ms = 50;
 constexpr std::chrono::seconds patience{10};
 
@@ -81,7 +81,7 @@ class TextSource {
 
     void check_total(std::uint64_t bytes) const {
         if (is_stream_ && bytes > largest_stream) {
-            fail("more than 1 GiB of text came: write it to a file and give that");
+            fail("more than 256 MiB of text came: write it to a file and give that");
         }
         if (bytes > largest_file) {
             fail("has " + std::to_string(bytes) +
@@ -91,6 +91,9 @@ class TextSource {
 
     void check_length(std::size_t before) {
         check_total(text_.size());
+        if (text_.find('\0', before) != std::string::npos) {
+            fail("is not a text file: check its name");
+        }
         const auto first_end = text_.find('\n', before);
         const std::size_t first = first_end == std::string::npos ? text_.size() : first_end;
         if (first - line_begin_ > longest_line) {

@@ -26,6 +26,7 @@ class Service:
         self.last_good = 0.0
         self.problems = []
         self.connections = 0
+        self.misbehaved = False  # in the last connection
         self.begun = time.monotonic()
         self.closing = False
         self.listener = socket.create_server(("127.0.0.1", 0))
@@ -48,6 +49,7 @@ class Service:
             except OSError:
                 continue
             self.connections += 1
+            self.misbehaved = False
             try:
                 connection.settimeout(0.2)
                 connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)

@@ -29,12 +29,6 @@ RUNS = (
     (["extract", "synthetic:noise:16x16x16", "--output", "s.ply"], {"s.ply"}),
     (["extract", "synthetic:noise:16x16x16", "--output", "s.obj"], {"s.obj"}),
     (["extract", "synthetic:noise:16x16x16", "--output", "s.vtp"], {"s.vtp"}),
-    (["touch", "synthetic:sphere:16x16x16", "--headless", "--normal-priority", "--seconds", "0.2", "--save",
-      "v.nrrd"], {"v.nrrd"}),
-    (["touch", "synthetic:sphere:16x16x16", "--headless", "--normal-priority", "--seconds", "0.2", "--save",
-      "v.nii.gz"], {"v.nii.gz"}),
-    (["touch", "synthetic:sphere:16x16x16", "--headless", "--normal-priority", "--seconds", "0.2", "--save",
-      "v.mha"], {"v.mha"}),
 )
 
 

@@ -29,8 +29,9 @@ std::string refusal_of_text(const std::filesystem::path& path) {
 
 }  // namespace
 
-TEST(Text, from_a_device_without_end_stops_at_the_longest_line) {
-    EXPECT_TRUE(contains(refusal_of_text("/dev/zero"), "line 1 is longer than 16 MiB"));
+TEST(Text, from_a_device_without_end_is_refused_where_it_is_no_text) {
+    EXPECT_TRUE(contains(refusal_of_text("/dev/zero"), "is not a text file"));
+    EXPECT_TRUE(contains(refusal_of_text("/dev/urandom"), "is not a text file"));
 }
 
 TEST(Text, with_a_line_that_is_too_long_names_the_line) {

@@ -37,7 +37,7 @@ DeviceReading slide(double time) {
     return ready_at({20 + 9 * std::sin(11 * time), 20 + 9 * std::sin(7 * time), 36});
 }
 
-Session session_of(const std::shared_ptr<const Samples>& samples) {
+Session session_on(const std::shared_ptr<const Samples>& samples) {
     return {make_renderer(Field(samples, Solid::above, 0.0), 30), {}};
 }
 
@@ -45,7 +45,7 @@ TEST(ChangingServo, an_edit_that_was_sent_is_felt_within_two_ticks) {
     ScriptedDevice device(&slide);
     Queue<SessionEvent> recorder(1 << 16);
     const auto begin = plain_ramp();
-    Servo servo(session_of(begin), device, {.recorder = &recorder});
+    Servo servo(session_on(begin), device, {.recorder = &recorder});
     servo.start();
     std::map<std::uint64_t, std::int64_t> latest;  // tick by which a version must be felt
     std::map<std::uint64_t, double> shifts;
@@ -82,7 +82,7 @@ TEST(ChangingServo, a_tick_sees_one_version_and_lies_on_its_surface) {
     ScriptedDevice device(&slide);
     Queue<SessionEvent> recorder(1 << 17);
     const auto begin = plain_ramp();
-    Servo servo(session_of(begin), device, {.rate = 4000, .recorder = &recorder});
+    Servo servo(session_on(begin), device, {.rate = 4000, .recorder = &recorder});
     std::vector<std::shared_ptr<const Samples>> versions{begin};
     for (int i = 1; i < 8; ++i) versions.push_back(edited_ramp(begin, i * 0.5));
     std::atomic<bool> done{false};
@@ -128,7 +128,7 @@ TEST(ChangingServo, a_tick_sees_one_version_and_lies_on_its_surface) {
 
 TEST(ChangingServo, versions_are_freed_once_it_has_gone_on) {
     ScriptedDevice device(&slide);
-    Servo servo(session_of(plain_ramp()), device);
+    Servo servo(session_on(plain_ramp()), device);
     servo.start();
     const auto base = plain_ramp();
     std::vector<std::weak_ptr<const Samples>> sent;
@@ -154,7 +154,7 @@ TEST(ChangingServo, versions_are_freed_once_it_has_gone_on) {
 
 TEST(ChangingServo, versions_that_were_sent_many_times_are_freed_too) {
     ScriptedDevice device(&slide);
-    Servo servo(session_of(plain_ramp()), device, {.rate = 4000});
+    Servo servo(session_on(plain_ramp()), device, {.rate = 4000});
     servo.start();
     std::weak_ptr<const Samples> gone[2];
     {
@@ -181,7 +181,7 @@ TEST(ChangingServo, versions_that_were_sent_many_times_are_freed_too) {
 
 TEST(ChangingServo, samples_on_another_grid_are_refused) {
     ScriptedDevice device(&slide);
-    Servo servo(session_of(plain_ramp()), device);
+    Servo servo(session_on(plain_ramp()), device);
     EXPECT_THROW(servo.send(command::Samples{}), std::invalid_argument);
     EXPECT_THROW(
         servo.send(command::Samples{samples_of(noise_of(SampleType::float32, grid(cube(3)), 1))}),
@@ -191,7 +191,7 @@ TEST(ChangingServo, samples_on_another_grid_are_refused) {
 TEST(ChangingServo, what_was_recorded_of_changing_samples_gives_the_same_ticks_again) {
     ScriptedDevice device(&slide);
     Queue<SessionEvent> recorder(1 << 17);
-    const Session begin = session_of(plain_ramp());
+    const Session begin = session_on(plain_ramp());
     Servo servo(begin, device, {.rate = 4000, .recorder = &recorder});
     Editor editor(begin.renderer.field.shared_samples());
     const auto sequence = std::make_shared<const Samples>(
