@@ -167,11 +167,11 @@ TEST(BadInput, without_an_end_is_refused) {
     const ScratchFolder folder;
     put_trajectory(folder);
     const std::string replay = "replay synthetic:sphere:24x24x24 -o a.csv --trajectory ";
-    expect_failure(palpate(folder, replay + "/dev/zero"), 3, "/dev/zero: line 1 is longer");
+    expect_failure(palpate(folder, replay + "/dev/zero"), 3, "/dev/zero: is not a text file");
     const std::string touch = "touch synthetic:sphere:24x24x24 --seconds 1 ";
-    expect_failure(palpate(folder, touch + "--commands /dev/zero"), 3, "/dev/zero: line 1");
-    expect_failure(palpate(folder, touch + "--device recorded:file=/dev/zero"), 3, "line 1");
-    expect_failure(palpate(folder, "replay --validate /dev/zero"), 3, "/dev/zero: line 1");
+    expect_failure(palpate(folder, touch + "--commands /dev/zero"), 3, "/dev/zero: is not a text");
+    expect_failure(palpate(folder, touch + "--device recorded:file=/dev/zero"), 3, "is not a text");
+    expect_failure(palpate(folder, "replay --validate /dev/zero"), 3, "/dev/zero: is not a text");
     EXPECT_EQ(folder.names(), std::vector<std::string>{"t.csv"});
 }
 
