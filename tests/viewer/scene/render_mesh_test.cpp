@@ -42,7 +42,7 @@ Vec3 normal(const RenderMesh& mesh, std::int32_t i) {
 }
 
 /// A ball of radius 0.35 * 40 mm, seen from `origin`.
-RenderMesh ball(const Vec3& origin = Vec3::Zero()) {
+RenderMesh ball_mesh(const Vec3& origin = Vec3::Zero()) {
     const Field field(scenes::ball(support::cube(40), 0.35, 1.4, SampleType::float32));
     return render_mesh(pictures::shaded_surface(field, 0.5).surface, origin);
 }
@@ -59,7 +59,7 @@ double volume_of(const RenderMesh& mesh) {
 }
 
 TEST(RenderMesh, simplified_is_small_and_still_the_same_ball) {
-    const RenderMesh mesh = ball();
+    const RenderMesh mesh = ball_mesh();
     ASSERT_GT(mesh.triangle_count(), 20'000U);
     for (const std::size_t most : {10'000U, 3'000U, 1'000U}) {
         const RenderMesh simple = simplified(mesh, most);
@@ -76,7 +76,7 @@ TEST(RenderMesh, simplified_is_small_and_still_the_same_ball) {
 }
 
 TEST(RenderMesh, that_is_small_enough_stays_as_it_is) {
-    const RenderMesh mesh = ball();
+    const RenderMesh mesh = ball_mesh();
     EXPECT_EQ(simplified(mesh, mesh.triangle_count()).triangles, mesh.triangles);
 }
 
@@ -108,8 +108,8 @@ TEST(RenderMesh, two_sides_of_a_thin_sheet_stay_two) {
 }
 
 TEST(RenderMesh, blocks_that_are_joined_are_all_of_them) {
-    const auto one = std::make_shared<const RenderMesh>(ball());
-    const auto other = std::make_shared<const RenderMesh>(ball(Vec3(50, 0, 0)));
+    const auto one = std::make_shared<const RenderMesh>(ball_mesh());
+    const auto other = std::make_shared<const RenderMesh>(ball_mesh(Vec3(50, 0, 0)));
     const MeshBlocks blocks{nullptr, one, nullptr, other};
     EXPECT_EQ(triangle_count(blocks), 2 * one->triangle_count());
     const auto all = joined(blocks);
