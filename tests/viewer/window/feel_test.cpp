@@ -14,10 +14,10 @@ namespace {
 
 using Window = InWindow;
 
-constexpr const char* sphere = "synthetic:sphere:48x48x48";
+constexpr const char* large_sphere = "synthetic:sphere:48x48x48";
 
 TEST_F(Window, a_file_is_opened_through_the_dialog_by_keys) {
-    const Volume ball = run::load(run::source_named(sphere)).volume;
+    const Volume ball = run::load(run::source_named(large_sphere)).volume;
     io::write_volume(ball, scratch_.path() / "ball.nrrd");
     type_in_dialog(Qt::Key_O, scratch("ball.nrrd"));
     ASSERT_TRUE(wait_until([&] { return window_->live() != nullptr; }));
@@ -27,7 +27,7 @@ TEST_F(Window, a_file_is_opened_through_the_dialog_by_keys) {
 }
 
 TEST_F(Window, pressing_with_the_mouse_makes_force_and_letting_go_ends_it) {
-    feel(sphere);
+    feel(large_sphere);
     EXPECT_EQ(force(), 0);
     press_until_force();
     save("pressed");
@@ -37,7 +37,7 @@ TEST_F(Window, pressing_with_the_mouse_makes_force_and_letting_go_ends_it) {
 }
 
 TEST_F(Window, dragging_in_the_scene_moves_the_probe_in_the_plane_of_the_view) {
-    feel(sphere);
+    feel(large_sphere);
     const Vec3 before = now().session.tick.proxy.hip;
     Scene& scene = window_->views().scene();
     const QPoint centre = scene.rect().center();
@@ -54,7 +54,7 @@ TEST_F(Window, dragging_in_the_scene_moves_the_probe_in_the_plane_of_the_view) {
 }
 
 TEST_F(Window, keys_nudge_the_probe_by_a_voxel_in_the_view) {
-    feel(sphere);
+    feel(large_sphere);
     const Vec3 before = now().session.tick.proxy.hip;
     window_->views().scene().setFocus();
     QTest::keyClick(&window_->views().scene(), Qt::Key_Right);
@@ -65,7 +65,7 @@ TEST_F(Window, keys_nudge_the_probe_by_a_voxel_in_the_view) {
 }
 
 TEST_F(Window, dragging_the_slider_changes_the_level_that_is_felt_and_seen) {
-    feel(sphere);
+    feel(large_sphere);
     auto& slider = part<QSlider>("isovalue_slider");
     const double before = window_->live()->isovalue();
     const int x = slider.width() / 2, y = slider.height() / 2;
@@ -77,7 +77,7 @@ TEST_F(Window, dragging_the_slider_changes_the_level_that_is_felt_and_seen) {
 }
 
 TEST_F(Window, space_switches_the_forces_off_and_on) {
-    feel(sphere);
+    feel(large_sphere);
     press_until_force();
     QTest::keyClick(window_.get(), Qt::Key_Space);
     ASSERT_TRUE(wait_until([&] { return !now().forces_on && force() == 0; }));
@@ -88,7 +88,7 @@ TEST_F(Window, space_switches_the_forces_off_and_on) {
 }
 
 TEST_F(Window, freeze_holds_hand_and_proxy) {
-    feel(sphere);
+    feel(large_sphere);
     QTest::keyClick(window_.get(), Qt::Key_F);
     ASSERT_TRUE(wait_until([&] { return now().session.frozen; }));
     const Vec3 before = now().session.tick.proxy.hip;
@@ -98,7 +98,7 @@ TEST_F(Window, freeze_holds_hand_and_proxy) {
 }
 
 TEST_F(Window, a_session_is_recorded_and_played_back_with_the_timeline) {
-    feel(sphere);
+    feel(large_sphere);
     const QString file = scratch("session.csv");
     type_in_dialog(Qt::Key_R, scratch("session"));  // the dialog adds the extension
     ASSERT_NE(window_->live()->recording(), nullptr);
@@ -132,7 +132,7 @@ TEST_F(Window, a_session_is_recorded_and_played_back_with_the_timeline) {
 }
 
 TEST_F(Window, a_file_that_cannot_be_opened_is_reported_and_the_session_continues) {
-    feel(sphere);
+    feel(large_sphere);
     const run::Run* live = window_->live();
     window_->files().open_path(scratch("missing.nrrd"));
     ASSERT_TRUE(wait_until([&] { return !window_->messages().problem().isEmpty(); }));
@@ -148,7 +148,7 @@ TEST_F(Window, a_file_that_cannot_be_opened_is_reported_and_the_session_continue
 }
 
 TEST_F(Window, a_session_file_brings_back_what_was_set) {
-    feel(sphere);
+    feel(large_sphere);
     ForceSettings force = window_->live()->settings().force;
     force.stiffness = 0.31;
     Q_EMIT window_->panel().asked(force);
@@ -172,7 +172,7 @@ TEST_F(Window, a_session_file_brings_back_what_was_set) {
 }
 
 TEST_F(Window, another_device_takes_over_with_what_was_set) {
-    feel(sphere);
+    feel(large_sphere);
     Q_EMIT window_->panel().asked(command::Isovalue{90});
     Q_EMIT window_->panel().device_chosen("simulated:hand=press");
     ASSERT_NE(window_->live(), nullptr);
@@ -185,7 +185,7 @@ TEST_F(Window, another_device_takes_over_with_what_was_set) {
 }
 
 TEST_F(Window, control_q_ends_the_window_and_the_session) {
-    feel(sphere);
+    feel(large_sphere);
     QTest::keyClick(window_.get(), Qt::Key_Q, Qt::ControlModifier);
     EXPECT_FALSE(window_->isVisible());
     window_.reset();
