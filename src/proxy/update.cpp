@@ -69,9 +69,10 @@ bool is_finite(const Proxy& proxy) {
 }
 
 bool accepts(const Proxy& proxy, const Field& field, const Vec3& hip_index) {
-    const Index3& size = field.geometry().size;
     const auto near = [&](int a) {
-        return hip_index[a] >= -farthest_hip && hip_index[a] <= size[a] + farthest_hip;
+        // Mostly the first comparison is enough: the grid begins at 0.
+        return std::abs(hip_index[a]) <= farthest_hip ||
+               (hip_index[a] > 0 && hip_index[a] <= field.geometry().size[a] + farthest_hip);
     };
     return near(0) && near(1) && near(2) &&
            field.sign() * proxy.isovalue > -std::numeric_limits<double>::infinity();
