@@ -118,13 +118,13 @@ struct Servo::Stamps {
 };
 
 Servo::Servo(Session session, Device& device, const ServoSettings& settings)
-    : session_(std::move(session)),
+    : commands_(settings.command_room),
+      session_(std::move(session)),
       device_(std::make_unique<WatchedDevice>(device)),
       settings_(settings),
-      solid_(session_.renderer.field.solid()),
       geometry_(session_.renderer.field.geometry()),
-      held_{session_.renderer.field.shared_samples()},
-      commands_(settings.command_room) {
+      solid_(session_.renderer.field.solid()),
+      held_{session_.renderer.field.shared_samples()} {
     // What no device can render is refused, not lowered.
     check(session_.renderer.settings);
     keep_device_limits(device.info().limits);

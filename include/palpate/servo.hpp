@@ -148,24 +148,25 @@ class Servo {
     void publish(std::int64_t number, const SessionTick& tick) noexcept;
     void hold(const std::shared_ptr<const void>& sent);
 
+    // These begin on cache lines of their own; placed first, they waste no space.
+    Queue<CheckedCommand> commands_;
+    Newest<Snapshot> snapshot_;
+    Newest<WorstTick> worst_;
     Session session_;
     const std::unique_ptr<WatchedDevice> device_;
     const ServoSettings settings_;
     RendererSettings start_;
-    const Solid solid_;
     const Geometry geometry_;
     std::vector<std::string> privileges_;
     std::thread thread_;
     std::atomic<std::thread::id> thread_id_;
+    const Solid solid_;
     std::atomic<State> state_{State::idle};
     std::atomic<bool> ready_{false}, stopping_{false};
     std::atomic<int> stops_{0};  // calls of stop() under way
 
     std::mutex held_mutex_;  // between threads that send; the servo thread never takes it
     std::vector<std::shared_ptr<const void>> held_;  // each object once
-    Queue<CheckedCommand> commands_;
-    Newest<Snapshot> snapshot_;
-    Newest<WorstTick> worst_;
     LatencyHistogram period_, lateness_, work_, compute_;
     std::atomic<std::int64_t> ticks_{0}, missed_{0}, overruns_{0}, unrecorded_{0};
     std::atomic<std::int64_t> sent_{0}, obeyed_{0};  // commands
