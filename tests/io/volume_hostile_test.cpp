@@ -42,6 +42,19 @@ std::string transform(float xx, float yy, float zz, float shift) {
            little(0.0F) + little(shift) + little(0.0F) + little(0.0F) + little(zz) + little(shift);
 }
 
+TEST(hostile_file, a_header_that_says_much_is_quoted_in_short) {
+    const ScratchFolder folder;
+    for (const char* blank : {"", "\x1b", "\r"}) {
+        const std::string much = std::string(70'000, 'x') + blank + 'x';
+        const std::string message = refusal_of_bytes(
+            folder / "a.nrrd", "NRRD0004\ntype: uint8\ndimension: 3\nspace: " + much +
+                                   "\nsizes: 1 1 1\nencoding: raw\n\n\x01");
+        EXPECT_LT(message.size(), 1000);
+        EXPECT_TRUE(contains(message, "'space'")) << message;
+        EXPECT_TRUE(contains(message, "correct the header")) << message;
+    }
+}
+
 TEST(hostile_file, a_nifti_transform_without_bounds_never_reaches_the_library) {
     const ScratchFolder folder;
     const auto with_transform = [&](const std::string& numbers) {
