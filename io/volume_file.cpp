@@ -78,6 +78,13 @@ void check_readable(const fs::path& path) {
     }
 }
 
+/// What the helper says about the file; it may quote its header.
+std::vector<std::string> notes_of(const nlohmann::json& done) {
+    auto notes = done.at("notes").get<std::vector<std::string>>();
+    for (std::string& note : notes) note = one_line(std::move(note));
+    return notes;
+}
+
 VolumeFile volume_from(const nlohmann::json& done, const Descriptor& samples) {
     const Geometry geometry = geometry_from(done.at("geometry"));
     const SampleType type = sample_type_from(done.at("type").get<std::string>());
@@ -90,7 +97,7 @@ VolumeFile volume_from(const nlohmann::json& done, const Descriptor& samples) {
     return {Volume(geometry, type, map_shared(samples, bytes), bytes),
             done.at("format").get<std::string>(),
             done.at("time_steps").get<int>(),
-            done.at("notes").get<std::vector<std::string>>(),
+            notes_of(done),
             done.value("frame_interval", 0.0),
             done.value("first_time", 0.0)};
 }
