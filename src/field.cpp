@@ -89,6 +89,22 @@ CellSamples Field::other_cell(const Index3& cell) const {
     return samples;
 }
 
+Neighbours Field::other_around(const Index3& at) const {
+    Neighbours samples;
+    // By the eight cells that meet at the sample: they know bricks, moments and the background.
+    for (unsigned octant = 0; octant < 8; ++octant) {
+        const Index3 side(octant & 1, octant >> 1 & 1, octant >> 2 & 1);
+        const CellSamples cell = other_cell(at - Index3::Ones() + side);
+        for (unsigned corner = 0; corner < 8; ++corner) {
+            const int x = side[0] + static_cast<int>(corner & 1);
+            const int y = side[1] + static_cast<int>(corner >> 1 & 1);
+            const int z = side[2] + static_cast<int>(corner >> 2 & 1);
+            samples[x + 3 * y + 9 * z] = cell[corner];
+        }
+    }
+    return samples;
+}
+
 CellSamples Field::absolute_cell(const Index3& cell) const {
     const bool inside =
         (cell.array() >= 0).all() && (cell.array() < (size_ - Index3::Ones()).array()).all();

@@ -1,6 +1,7 @@
 // Stage 3, field: samples continued over all of space, and which side of a level is solid.
-// All later stages read samples through Field::cell(), eight at a time. They do not know how
-// samples are stored, nor whether they were edited or interpolated between two frames.
+// All later stages read samples through Field::cell(), eight at a time, or Field::around(), 27 at a
+// time. They do not know how samples are stored, nor whether they were edited or interpolated
+// between two frames.
 #pragma once
 
 #include <array>
@@ -17,6 +18,9 @@ enum class Solid : std::uint8_t { above, below };
 /// The eight samples at the corners of a cell, in the data's units, less the field's offset.
 /// Corner c has x offset (c & 1), y offset (c >> 1 & 1), z offset (c >> 2 & 1).
 using CellSamples = std::array<double, 8>;
+/// A sample and its 26 neighbours, in the data's units, less the field's offset. The neighbour at
+/// (x, y, z), each -1, 0 or 1, has place 13 + x + 3 y + 9 z.
+using Neighbours = std::array<double, 27>;
 
 /// What is felt: samples at one moment and their solid side. A small value; copies share samples.
 class Field {
@@ -67,6 +71,10 @@ class Field {
     CellSamples cell(const Index3& cell) const {
         return with_type(type_, [&](auto zero) { return cell_of<decltype(zero)>(cell); });
     }
+    /// The sample `at` (index space) with its neighbours, less offset(); any sample in space.
+    Neighbours around(const Index3& at) const {
+        return with_type(type_, [&](auto zero) { return around_of<decltype(zero)>(at); });
+    }
     /// True where all eight samples of `cell` are background.
     bool is_background(const Index3& cell) const {
         // One unsigned comparison an axis covers both ends, here and in cell_of().
@@ -75,11 +83,21 @@ class Field {
         };
         return beyond(0) || beyond(1) || beyond(2);
     }
+    /// True where the sample `at` and all its neighbours are background.
+    bool is_background_around(const Index3& at) const {
+        const auto beyond = [&](int a) {
+            return static_cast<unsigned>(at[a] + 1) > static_cast<unsigned>(size_[a] + 1);
+        };
+        return beyond(0) || beyond(1) || beyond(2);
+    }
 
   private:
     template <class T>
     CellSamples cell_of(const Index3& cell) const;
+    template <class T>
+    Neighbours around_of(const Index3& at) const;
     CellSamples other_cell(const Index3& cell) const;
+    Neighbours other_around(const Index3& at) const;
     CellSamples absolute_cell(const Index3& cell) const;
     void look() noexcept;
 
@@ -112,6 +130,22 @@ inline CellSamples Field::cell_of(const Index3& cell) const {
     const T* q = p + slice_;
     return {double(p[0]), double(p[1]), double(p[row_]), double(p[row_ + 1]),
             double(q[0]), double(q[1]), double(q[row_]), double(q[row_ + 1])};
+}
+
+template <class T>
+inline Neighbours Field::around_of(const Index3& at) const {
+    // The lowest and the highest of the eight cells that meet at the sample.
+    const auto is_plain = [&](int a) { return at[a] > 0 && at[a] < plain_[a]; };
+    if (!(is_plain(0) && is_plain(1) && is_plain(2))) return other_around(at);
+    const T* p = static_cast<const T*>(data_) + (at[0] + at[1] * row_ + at[2] * slice_);
+    Neighbours samples;
+    double* out = samples.data();
+    for (std::ptrdiff_t z : {-slice_, std::ptrdiff_t{0}, slice_}) {
+        for (std::ptrdiff_t y : {z - row_, z, z + row_}) {
+            for (int x = -1; x <= 1; ++x) *out++ = double(p[y + x]);
+        }
+    }
+    return samples;
 }
 
 }  // namespace palpate

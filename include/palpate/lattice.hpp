@@ -83,6 +83,10 @@ Vec3 fold_lengths(const Tetrahedron& tetrahedron, const Vec3& lengths);
 /// The linear field of a tetrahedron, from the samples of its cell.
 LinearPiece piece_of(const Tetrahedron& tetrahedron, const CellSamples& samples);
 
+/// The scalar product, with its sums in this order everywhere.
+inline double dot(const Vec3& a, const Vec3& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 /// True if `wall` is in a mask of walls (bit w stands for wall w).
 constexpr bool has(unsigned walls, unsigned wall) {
     return walls >> wall & 1;

@@ -15,6 +15,7 @@
 #include "palpate/edit.hpp"
 #include "palpate/editor.hpp"
 #include "palpate/lattice.hpp"
+#include "palpate/cubic.hpp"
 #include "palpate/proxy.hpp"
 #include "palpate/penetrability.hpp"
 #include "palpate/force.hpp"

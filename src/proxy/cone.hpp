@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "palpate/volume.hpp"
+#include "palpate/lattice.hpp"
 
 namespace palpate {
 
@@ -20,10 +20,6 @@ struct ConeProjection {
     Vec3 point = Vec3::Zero();          ///< the point of the cone nearest to h
     std::array<int, 2> active{-1, -1};  ///< half-spaces on whose border it was put
 };
-
-inline double dot(const Vec3& a, const Vec3& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 /// The projection of h. In three dimensions it lies in the interior, on one border, on the line of
 /// two, or at the apex: each candidate is tried, the longest feasible one is the projection (for a

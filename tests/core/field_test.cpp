@@ -48,6 +48,25 @@ TYPED_TEST(FieldOf, gives_the_eight_samples_of_every_cell_and_background_outside
     }
 }
 
+TYPED_TEST(FieldOf, gives_every_sample_with_its_neighbours_and_background_outside) {
+    const Volume volume = noise_volume<TypeParam>(grid({5, 4, 3}), 81, 10, 200);
+    const Field field(volume, Solid::above, 7.0);
+    for (int n = 0; n < 13 * 12 * 11; ++n) {
+        const Index3 at(n % 13 - 4, n / 13 % 12 - 4, n / (13 * 12) - 4);
+        const Neighbours samples = field.around(at);
+        bool all_background = true;
+        for (int i = 0; i < 27; ++i) {
+            const Index3 there = at + Index3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+            ASSERT_EQ(samples[static_cast<std::size_t>(i)], paper_sample(field, there));
+            all_background &=
+                (there.array() < 0).any() || (there.array() >= field.geometry().size.array()).any();
+        }
+        ASSERT_EQ(field.is_background_around(at), all_background) << at.transpose();
+    }
+    EXPECT_TRUE(field.is_background_around(Index3(1'000'000'000, 0, 0)));
+    EXPECT_TRUE(field.is_background_around(Index3::Constant(-1'000'000'000)));
+}
+
 TEST(Field, background_is_the_minimum_or_for_solid_below_the_maximum_or_what_is_given) {
     const Volume volume = noise_volume<std::int16_t>(grid({5, 4, 3}), 82, -1000, 1000);
     EXPECT_EQ(Field(volume).background(), volume.minimum());

@@ -46,6 +46,7 @@ TEST(Samples, a_field_of_edited_bricks_is_the_field_of_the_same_samples_in_one_p
         for_each_sample(padded, [&](const Index3& at) {
             const Index3 cell = at - Index3::Constant(2);
             ASSERT_EQ(bricks.cell(cell), plain.cell(cell)) << cell.transpose();
+            ASSERT_EQ(bricks.around(cell), plain.around(cell)) << cell.transpose();
             ++cells;
         });
         const Volume& first = after.samples->volume();
