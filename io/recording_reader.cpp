@@ -55,8 +55,8 @@ struct RecordingReader::Rows {
     TraceColumns trace;
     VectorColumns position;
     std::size_t status, force_flags, device_status, buttons, age, frozen, clutched;
-    std::optional<std::size_t> moment, samples;  // recordings of fixed samples may lack them
-    std::optional<std::size_t> number, crc32;    // those of format 1 do
+    std::optional<std::size_t> moment, samples;  // of format 1, fixed samples may lack them
+    std::optional<std::size_t> number, crc32;    // format 1 does
     std::array<std::size_t, 9> tool;
 
     Rows(std::string whole, std::string called, int format)
@@ -72,8 +72,9 @@ struct RecordingReader::Rows {
           age(csv.column("age")),
           frozen(csv.column("frozen")),
           clutched(csv.column("clutched")) {
-        if (csv.has_column("moment")) moment = csv.column("moment");
-        if (csv.has_column("samples")) samples = csv.column("samples");
+        // A misspelt one must not count as one that is not there.
+        if (format > 1 || csv.has_column("moment")) moment = csv.column("moment");
+        if (format > 1 || csv.has_column("samples")) samples = csv.column("samples");
         if (format > 1) {
             number = csv.column("tick");
             crc32 = csv.column("crc32");

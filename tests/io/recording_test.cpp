@@ -306,6 +306,17 @@ TEST(Recording, with_events_moved_repeated_or_changed_in_one_digit_it_is_refused
     EXPECT_NE(why_refused(text + lines[1]), "") << "goes on after its end";
 }
 
+TEST(Recording, with_a_misspelt_column_it_is_refused) {
+    const ScratchFolder folder;
+    const std::string text = written(random_events(20), folder / "r.csv");
+    const std::size_t header = text.find("\nt,") + 1;
+    for (std::size_t at = header; text[at] != '\n'; ++at) {
+        std::string other = text;
+        other[at] ^= 1;
+        EXPECT_NE(why_refused(other), "") << other.substr(header, at - header + 1);
+    }
+}
+
 TEST(Recording, with_other_notes_and_line_ends_of_another_system_it_is_whole) {
     const ScratchFolder folder;
     const std::string text = written(random_events(40), folder / "r.csv");
