@@ -36,7 +36,7 @@ void on_signal(int number) {
         wait = true;
     }
     if (wait) {
-        timespec left{0, 25'000'000};
+        timespec left{0, 100'000'000};
         while (::nanosleep(&left, &left) != 0 && errno == EINTR) {
         }
     }

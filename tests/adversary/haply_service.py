@@ -67,7 +67,10 @@ class Service:
             if message is None:
                 return
             self.keep_force(message)
-            self.answer(connection, n)
+            try:
+                self.answer(connection, n)
+            except OSError:
+                pass  # the program has ended; what it sent last may still have to be read
             n += 1
 
     def shake_hands(self, connection):

@@ -8,12 +8,13 @@
 namespace palpate::devices {
 
 /// While one exists, a signal that ends or suspends the program calls device.stop(), leaves the
-/// device's own thread 25 ms to send the zero, and then does what it would have done: the same exit
-/// status, the same core file. These are the crashes (SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGTRAP,
-/// SIGSYS, SIGABRT and with it an exception that nobody catches), whatever handled them before, and
-/// all others whose default action ends or suspends a program (SIGTERM, SIGALRM, SIGUSR1, SIGXCPU,
-/// SIGTSTP, real-time signals, ...), unless the application handles or ignores them: a handler of
-/// its own has to end the session. After a suspension the device stays without force.
+/// device's own thread 100 ms to send the zero, and then does what it would have done: the same
+/// exit status, the same core file. These are the crashes (SIGSEGV, SIGBUS, SIGILL, SIGFPE,
+/// SIGTRAP, SIGSYS, SIGABRT and with it an exception that nobody catches), whatever handled them
+/// before, and all others whose default action ends or suspends a program (SIGTERM, SIGALRM,
+/// SIGUSR1, SIGXCPU, SIGTSTP, real-time signals, ...), unless the application handles or ignores
+/// them: a handler of its own has to end the session. After a suspension the device stays without
+/// force.
 ///
 /// SIGKILL, SIGSTOP and loss of power are left to the device, and so is a crash of the very thread
 /// that talks to it, in a vendor's driver for example, because no other thread can send the zero:
