@@ -2,17 +2,14 @@
 #include "palpate/io/output.hpp"
 
 #include <fcntl.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <cerrno>
-#include <csignal>
 #include <cstdio>
 #include <system_error>
 
-#include "io/number.hpp"
+#include "io/leftovers.hpp"
 
 namespace palpate::io {
 namespace {
@@ -55,31 +52,6 @@ std::filesystem::path folder_of(const std::filesystem::path& file) {
     return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
 }
 
-/// The process in ".palpate-PID-N.part"; 0 for another name.
-pid_t process_of(const std::string& name) {
-    constexpr std::string_view begin = ".palpate-", end = ".part";
-    if (!name.starts_with(begin) || !name.ends_with(end)) return 0;
-    const auto dash = name.find('-', begin.size());
-    if (dash == std::string::npos) return 0;
-    return number_from<pid_t>(std::string_view(name).substr(begin.size(), dash - begin.size()))
-        .value_or(0);
-}
-
-/// Removes the unfinished files of processes that are dead. A living one keeps a lock on its file,
-/// so that one in another container or on another machine counts as living, too.
-void remove_leftovers(const std::filesystem::path& folder) {
-    std::error_code error;
-    for (std::filesystem::directory_iterator entry(folder, error), end; entry != end && !error;
-         entry.increment(error)) {
-        const pid_t process = process_of(entry->path().filename().string());
-        if (process <= 0 || ::kill(process, 0) == 0 || errno != ESRCH) continue;
-        const int file = ::open(entry->path().c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
-        if (file < 0) continue;
-        if (::flock(file, LOCK_EX | LOCK_NB) == 0) ::unlink(entry->path().c_str());
-        ::close(file);
-    }
-}
-
 /// File systems without fsync say so; that is no loss of data.
 bool synchronise(int descriptor) {
     return ::fsync(descriptor) == 0 || errno == EINVAL || errno == ENOTSUP || errno == ENOSYS;
@@ -113,7 +85,6 @@ PendingFile::PendingFile(const std::filesystem::path& target) : target_(followed
 }
 
 void PendingFile::open_temporary() {
-    static std::atomic<unsigned> count = 0;
     const auto folder = folder_of(target_);
     std::error_code error;
     if (!std::filesystem::is_directory(folder, error)) {
@@ -130,8 +101,7 @@ void PendingFile::open_temporary() {
     struct stat old {};
     const bool replaces = ::stat(target_.c_str(), &old) == 0;
     do {
-        temporary_ = folder / (".palpate-" + std::to_string(::getpid()) + "-" +
-                               std::to_string(count++) + ".part");
+        temporary_ = temporary_in(folder);
         descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     } while (descriptor_ < 0 && errno == EEXIST);
     if (descriptor_ < 0) {
@@ -139,7 +109,7 @@ void PendingFile::open_temporary() {
         temporary_.clear();
         fail("cannot be written: " + because(problem));
     }
-    (void)::flock(descriptor_, LOCK_EX | LOCK_NB);  // for remove_leftovers() of other processes
+    lock_ = lock_temporary(temporary_);
     if (replaces && ::fchmod(descriptor_, old.st_mode & 07777) != 0) {
         const int problem = errno;
         fail("cannot be given the mode of the file it replaces: " + because(problem));
@@ -155,6 +125,8 @@ void PendingFile::discard() noexcept {
     descriptor_ = -1;
     if (!temporary_.empty()) ::unlink(temporary_.c_str());
     temporary_.clear();
+    if (lock_ >= 0) ::close(lock_);
+    lock_ = -1;
 }
 
 void PendingFile::fail(const std::string& problem) {

@@ -6,13 +6,13 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cstring>
 #include <fstream>
 #include <system_error>
 
 #include "io/helper/protocol.hpp"
 #include "io/helper_process.hpp"
+#include "io/leftovers.hpp"
 #include "io/raw_file.hpp"
 #include "palpate/io/written_formats.hpp"
 
@@ -147,10 +147,7 @@ namespace {
 class Workshop {
   public:
     explicit Workshop(const fs::path& output) {
-        static std::atomic<unsigned> count{0};
         const fs::path parent = output.has_parent_path() ? output.parent_path() : fs::path(".");
-        folder_ = parent / (".palpate-" + std::to_string(getpid()) + "-" +
-                            std::to_string(count.fetch_add(1)));
         std::error_code error;
         if (!fs::is_directory(parent, error)) {
             throw OutputError(output.string() + ": its folder does not exist; create it first");
@@ -158,7 +155,8 @@ class Workshop {
         if (fs::is_directory(output, error)) {
             throw OutputError(output.string() + ": is a folder; give a file name");
         }
-        fs::remove_all(folder_, error);  // of a process with our number that was killed
+        remove_leftovers(parent);
+        folder_ = temporary_in(parent);
     }
     ~Workshop() {
         std::error_code error;

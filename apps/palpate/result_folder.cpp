@@ -1,9 +1,9 @@
 // Makes results in a hidden folder and renames them when complete.
 #include "apps/palpate/result_folder.hpp"
 
-#include <fmt/format.h>
 #include <unistd.h>
 
+#include "io/leftovers.hpp"
 #include "palpate/io/output.hpp"
 
 namespace palpate::app {
@@ -17,18 +17,21 @@ ResultFolder::ResultFolder(const fs::path& folder) : folder_(folder) {
         throw io::OutputError("'" + folder.string() +
                               "': this folder could not be made: choose another with --output");
     }
-    part_ = folder_ / fmt::format(".palpate-{}.part", ::getpid());
+    io::remove_leftovers(folder_);
+    part_ = io::temporary_in(folder_);
     if (!fs::create_directory(part_, error) && error) {
         if (is_new_) fs::remove(folder_, error);
         throw io::OutputError(folder.string() + ": nothing can be written in this folder (" +
                               error.message() + "): choose another with --output");
     }
+    lock_ = io::lock_temporary(part_);
 }
 
 ResultFolder::~ResultFolder() {
     std::error_code ignored;
     fs::remove_all(part_, ignored);
     if (is_new_ && !complete_) fs::remove(folder_, ignored);
+    if (lock_ >= 0) ::close(lock_);
 }
 
 void ResultFolder::complete() {

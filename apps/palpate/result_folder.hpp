@@ -7,7 +7,8 @@
 namespace palpate::app {
 
 /// The results are made in a hidden folder inside the one asked for and appear there together: an
-/// interrupted command leaves nothing that could be taken for results.
+/// interrupted command leaves nothing that could be taken for results. What a killed one has left
+/// in this folder goes when the next one begins there.
 class ResultFolder {
   public:
     /// Makes both folders. Throws io::OutputError if nothing can be written there.
@@ -26,6 +27,7 @@ class ResultFolder {
     std::filesystem::path folder_, part_;
     bool is_new_ = false;
     bool complete_ = false;
+    int lock_ = -1;  // on part_, see io/leftovers.hpp
 };
 
 /// A file, whole or not at all. Throws io::OutputError.

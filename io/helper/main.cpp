@@ -15,6 +15,7 @@
 #include "io/helper/protocol.hpp"
 #include "io/helper/readers.hpp"
 #include "io/helper/report.hpp"
+#include "io/leftovers.hpp"
 #include "palpate/io/written_formats.hpp"
 
 namespace palpate::io {
@@ -122,6 +123,7 @@ class Workshop {
             throw Failure("cannot be written there (" + error.message() +
                           "); choose another folder");
         }
+        (void)lock_temporary(folder_);  // until this process ends
     }
     const fs::path& inside() const { return inside_; }
 

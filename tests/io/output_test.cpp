@@ -1,15 +1,19 @@
 // Output is whole or not there.
 #include "palpate/io/output.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
+#include <functional>
 #include <thread>
 
+#include "io/leftovers.hpp"
 #include "support/eventually.hpp"
 #include "support/scratch_folder.hpp"
 
@@ -185,28 +189,135 @@ TEST(Output, of_several_files_appears_together_or_not_at_all) {
     EXPECT_EQ(folder.names(), (Names{"a.csv", "b.csv", "c.csv"}));
 }
 
+/// What another run does that writes in the folder: a process of its own, which looks for leftovers
+/// once.
+void write_in_another_process(const ScratchFolder& folder,
+                              const std::function<void()>& between = {}) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+        { PendingFile file(folder / "b.csv"); }
+        if (between) between();
+        { PendingFile file(folder / "b.csv"); }
+        ::_exit(0);
+    }
+    int status = 1;
+    ::waitpid(child, &status, 0);
+    EXPECT_EQ(status, 0);
+}
+
+/// The number of a process that has ended, as a word.
+std::string dead_process() {
+    const pid_t child = ::fork();
+    if (child == 0) ::_exit(0);
+    ::waitpid(child, nullptr, 0);
+    return std::to_string(child);
+}
+
 TEST(Output, of_a_killed_process_is_removed_by_the_next_and_of_a_living_one_stays) {
     const ScratchFolder folder;
-    const auto begin_a_file = [&] {
-        const pid_t child = ::fork();
-        if (child == 0) {
-            PendingFile file(folder / "a.csv");
-            ::pause();
-        }
-        EXPECT_TRUE(comes_true([&] { return !folder.names().empty(); }));
-        return child;
-    };
-    const pid_t child = begin_a_file();
+    const pid_t child = ::fork();
+    if (child == 0) {
+        PendingFile file(folder / "a.csv");
+        ::pause();
+    }
+    EXPECT_TRUE(comes_true([&] { return !folder.names().empty(); }));
     const Names unfinished = folder.names();
     ASSERT_EQ(unfinished.size(), 1U);
-    { PendingFile file(folder / "b.csv"); }
+    write_in_another_process(folder);
     EXPECT_EQ(folder.names(), unfinished);
     ::kill(child, SIGKILL);
     ::waitpid(child, nullptr, 0);
     EXPECT_EQ(folder.names(), unfinished);
     put_bytes(folder / ".palpate-notes.part", "of somebody else");
-    { PendingFile file(folder / "b.csv"); }
+    write_in_another_process(folder);
     EXPECT_EQ(folder.names(), Names{".palpate-notes.part"});
+}
+
+TEST(Output, folders_of_killed_processes_are_removed_with_all_that_is_in_them) {
+    const ScratchFolder folder, elsewhere;
+    put_bytes(elsewhere / "precious", "kept");
+    const std::string dead = ".palpate-" + dead_process();
+    for (const std::string& name : {dead + "-0.part", dead + "-12", dead + ".part"}) {
+        std::filesystem::create_directories(folder / (name + "/inner"));
+        put_bytes(folder / (name + "/inner/half.raw"), "half");
+        std::filesystem::create_directory_symlink(elsewhere.path(), folder / (name + "/link"));
+    }
+    put_bytes(folder / "results.csv", "of a run that ended");
+    write_in_another_process(folder);
+    EXPECT_EQ(folder.names(), Names{"results.csv"});
+    EXPECT_EQ(bytes_of(elsewhere / "precious"), "kept");
+}
+
+TEST(Output, what_only_resembles_a_leftover_stays) {
+    const ScratchFolder folder, elsewhere;
+    put_bytes(elsewhere / "precious", "kept");
+    const std::string dead = ".palpate-" + dead_process();
+    Names names{dead,
+                dead + "-",
+                dead + "-1.part~",
+                dead + "-x.part",
+                dead + "-1-2.part",
+                dead + ".p",
+                "x" + dead,
+                dead + "x.part",
+                dead + "-+1",
+                dead + "-1.part.part",
+                ".palpate--1",
+                ".palpate-0.part",
+                ".palpate-" + std::to_string(::getpid()) + "-9.part"};
+    for (const std::string& name : names) std::filesystem::create_directory(folder / name);
+    const auto add = [&](const std::string& end) {
+        names.push_back(dead + end);
+        return folder / names.back();
+    };
+    std::filesystem::create_directory_symlink(elsewhere.path(), add("-1.part"));
+    std::filesystem::create_symlink(elsewhere / "precious", add("-2.part"));
+    ASSERT_EQ(::mkfifo(add("-3.part").c_str(), 0600), 0);
+    if (::geteuid() == 0) {  // nobody else can give files away
+        const auto of_somebody = add("-4.part");
+        std::filesystem::create_directory(of_somebody);
+        ASSERT_EQ(::chown(of_somebody.c_str(), 65534, 65534), 0);
+    }
+    const auto in_use = add("-5.part");  // by a process that cannot be seen from here
+    std::filesystem::create_directory(in_use);
+    const int lock = lock_temporary(in_use);
+    write_in_another_process(folder);
+    ::close(lock);
+    std::sort(names.begin(), names.end());
+    EXPECT_EQ(folder.names(), names);
+    EXPECT_EQ(bytes_of(elsewhere / "precious"), "kept");
+}
+
+TEST(Output, a_process_looks_for_leftovers_once_in_a_folder) {
+    const ScratchFolder folder;
+    const std::string name = ".palpate-" + dead_process() + "-0.part";
+    write_in_another_process(folder, [&] { put_bytes(folder / name, "half"); });
+    EXPECT_EQ(folder.names(), Names{name});
+    write_in_another_process(folder);
+    EXPECT_EQ(folder.names(), Names{});
+}
+
+TEST(Output, that_waits_for_the_others_of_its_run_is_still_locked) {
+    const ScratchFolder folder;
+    ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+    std::string received;
+    bool locked = false;
+    std::thread reader([&] {
+        std::ifstream pipe(folder / "pipe");
+        received += static_cast<char>(pipe.get());  // the first output is complete by now
+        const int temporary = ::open((folder / folder.names().at(0)).c_str(), O_RDONLY);
+        locked = temporary >= 0 && ::flock(temporary, LOCK_EX | LOCK_NB) != 0;
+        ::close(temporary);
+        received.append(std::istreambuf_iterator<char>(pipe), {});
+    });
+    PendingFile second(folder / "pipe"), first(folder / "a.csv");
+    first.write("x");
+    second.write(std::string(500'000, 'x'));  // more than a pipe holds
+    PendingFile::commit_together({&first, &second});
+    reader.join();
+    EXPECT_EQ(received.size(), 500'000U);
+    EXPECT_TRUE(locked);
+    EXPECT_EQ(folder.names(), (Names{"a.csv", "pipe"}));
 }
 
 TEST(Output, past_the_limit_of_a_file_is_an_error_and_leaves_nothing_behind) {

@@ -212,6 +212,20 @@ TEST_F(HelperProcess, ends_with_its_caller_and_takes_its_unfinished_file_along) 
     FAIL() << "something is left: " << folder_.names().front();
 }
 
+TEST_F(HelperProcess, what_it_left_when_it_was_killed_goes_with_the_next_volume_written_there) {
+    const pid_t dead = fork();
+    if (dead == 0) _exit(0);
+    waitpid(dead, nullptr, 0);
+    const ScratchFolder folder;
+    const auto left = folder / (".palpate-" + std::to_string(dead) + "-0.part");
+    std::filesystem::create_directory(left);
+    put_bytes(left / "big.raw", "half");
+    std::mt19937 random(35);
+    write_volume(random_volume<std::uint8_t>(random, random_geometry(random, true, false)),
+                 folder / "b.nrrd");
+    EXPECT_EQ(folder.names(), std::vector<std::string>{"b.nrrd"});
+}
+
 TEST_F(HelperProcess, ctrl_c_at_any_moment_of_writing_leaves_the_whole_file_or_nothing) {
     Geometry g;
     g.size = Index3(200, 200, 100);

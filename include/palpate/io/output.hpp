@@ -13,7 +13,8 @@
 namespace palpate::io {
 
 /// A file being written: `.palpate-PID-N.part` beside the target. What processes that were killed
-/// have left of this kind in the folder is removed when a file is opened. Without commit() the
+/// have left of this kind in the folder, files and folders, is removed when a process opens its
+/// first file there. Without commit() the
 /// target stays unchanged and nothing is left behind. A target that exists and is not a regular
 /// file (/dev/stdout, a pipe, /dev/full) and "-", the standard output, are written directly
 /// instead: they cannot be replaced, and their reader is waiting. A symbolic link is followed.
@@ -49,6 +50,7 @@ class PendingFile {
     std::filesystem::path temporary_;  // empty where the target is written directly
     bool in_place_ = false;            // temporary_ then holds what the target held before, if any
     int descriptor_ = -1;
+    int lock_ = -1;  // until it is in place: other processes leave the temporary file alone
     std::string buffer_;
 };
 

@@ -1,0 +1,30 @@
+// Temporary files and folders beside outputs: how they are called, how other processes see that
+// they are in use, and how those of killed processes go. POSIX. Private to io/ and programs.
+#pragma once
+
+#include <fcntl.h>
+#include <sys/file.h>
+
+#include <filesystem>
+
+namespace palpate::io {
+
+/// A path in `folder` for a temporary file or folder of this process, `.palpate-PID-N.part`, at
+/// which there is nothing.
+std::filesystem::path temporary_in(const std::filesystem::path& folder);
+
+/// Locks what this process has created as long as the descriptor returned is open: then a process
+/// in another container or on another machine does not take it for a leftover. Below 0 where there
+/// are no locks; nothing else depends on it.
+inline int lock_temporary(const std::filesystem::path& path) {
+    const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
+    if (descriptor >= 0) (void)::flock(descriptor, LOCK_EX | LOCK_NB);
+    return descriptor;
+}
+
+/// Removes what processes that were killed have left in `folder`: files and folders that have a
+/// temporary name, belong to this user, are no symbolic links, and whose process neither lives nor
+/// holds their lock. Looks into a folder once for each process; nothing is an error.
+void remove_leftovers(const std::filesystem::path& folder);
+
+}  // namespace palpate::io
