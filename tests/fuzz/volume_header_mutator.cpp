@@ -3,33 +3,17 @@
 // an element of a DICOM file gets the length of its value.
 #include <zlib.h>
 
-#include <algorithm>
-#include <cstdint>
 #include <cstring>
 #include <optional>
-#include <random>
 #include <sstream>
-#include <string>
-#include <vector>
 
-extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t most);
+#include "fuzz/mutation.hpp"
 
 namespace {
 
-using Bytes = std::vector<std::uint8_t>;
-using Random = std::minstd_rand;
+using namespace palpate::fuzz;
 
 constexpr std::size_t most_unpacked = 1 << 16;
-
-bool one_in(Random& random, unsigned n) {
-    return random() % n == 0;
-}
-
-void mutate(Bytes& bytes, std::size_t room) {
-    const std::size_t size = bytes.size();
-    bytes.resize(std::max<std::size_t>(size + room, 1));
-    bytes.resize(LLVMFuzzerMutate(bytes.data(), size, bytes.size()));
-}
 
 /// What a gzip or zlib stream holds, if it is one and not long.
 std::optional<Bytes> unpacked(const Bytes& packed) {
