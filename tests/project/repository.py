@@ -3,8 +3,8 @@
 import sys
 from pathlib import Path
 
-FOLDERS = ("include src baselines scenes io devices run pictures evaluation apps tests benchmarks "
-           "examples data cmake docs scripts .ci").split()
+FOLDERS = ("include src baselines scenes filters io devices run pictures evaluation apps tests "
+           "benchmarks examples data cmake docs scripts .ci").split()
 CPP = (".cpp", ".hpp")
 
 

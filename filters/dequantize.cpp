@@ -1,0 +1,145 @@
+// Dequantization: which rounds, on which threads.
+#include "palpate/filters/dequantize.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "filters/round.hpp"
+#include "filters/sites.hpp"
+
+namespace palpate::filters {
+namespace {
+
+/// A hair less than half a level, so that no sample of a mask comes to lie on its surface.
+constexpr double half_level = 127.0 / 256;
+/// The coarsest steps that are chosen. A mask does not tell how far it is straight.
+constexpr int usual_coarsest = 16, mask_step = 4;
+/// A step is chosen if it bends half of the surfaces by no more than this [levels].
+constexpr double chosen_bend = 0.5, enough = 0.5;
+/// From this bend on a coarse step moves a sample less, from twice of it on not at all [levels].
+constexpr double most_bend = 0.5, most_bend_of_mask = 0.05;
+/// Samples in a task: some 50 us of work.
+constexpr int grain = 16384;
+
+bool is_mask(const Volume& volume, double level) {
+    return volume.range() <= 1.5 * level;
+}
+
+/// The coarsest step over which a good part of the surfaces is straight to within the rounding; so
+/// about as long as the terraces are wide.
+int coarsest_for(const Volume& volume, double level) {
+    if (is_mask(volume, level)) return mask_step;
+    for (int step = usual_coarsest; step > 1; step /= 2) {
+        double all = 0, straight = 0;
+        for_sites(volume, 3e4, [&](const Index3& at) {
+            const double slope = slope_at(volume, at);
+            if (slope == 0) return;
+            all += slope;
+            const Smooth smooth = smooth_at(volume, at, step);
+            const bool bent = std::abs(smooth.mean - smooth.twice) > chosen_bend * level;
+            if (!bent) straight += slope;
+        });
+        if (straight >= enough * all && all > 0) return step;
+    }
+    return 1;
+}
+
+int rounds_of(int step, int finest) {
+    if (step == 1) return finest;
+    if (step == 2) return 20;
+    if (step == 4) return 10;
+    return step == 8 ? 4 : 2;
+}
+
+std::vector<int> steps_from(int coarsest) {
+    std::vector<int> steps;
+    for (int step = coarsest; step >= 1; step /= 2) steps.push_back(step);
+    return steps;
+}
+
+void check(const DequantizeOptions& options) {
+    if (options.rounds < 1 || options.rounds > most_rounds) {
+        throw std::invalid_argument("dequantizing takes 1 to " + std::to_string(most_rounds) +
+                                    " rounds, not " + std::to_string(options.rounds));
+    }
+    const int coarsest = options.coarsest.value_or(1);
+    if (coarsest < 1 || coarsest > greatest_step || (coarsest & (coarsest - 1)) != 0) {
+        throw std::invalid_argument(
+            "the coarsest step of dequantizing is a power of two from 1 to " +
+            std::to_string(greatest_step) + ", not " + std::to_string(coarsest));
+    }
+    if (options.level && !(*options.level > 0 && *options.level < 1e30)) {
+        throw std::invalid_argument("the distance between levels must be a number above 0");
+    }
+    if (options.threads < 0) throw std::invalid_argument("a number of threads is 0 or more");
+}
+
+/// Rows of slices of `width` samples, on the threads of an arena or, if they are few, on this one.
+ForRows for_rows(tbb::task_arena& arena, int width) {
+    const int rows = std::max(1, grain / width);
+    return [&arena, rows](int count, const std::function<void(int, int)>& work) {
+        if (count <= rows || arena.max_concurrency() == 1) return work(0, count);
+        arena.execute([&] {
+            tbb::parallel_for(
+                tbb::blocked_range<int>(0, count, std::size_t(rows)),
+                [&](const tbb::blocked_range<int>& range) { work(range.begin(), range.end()); },
+                tbb::simple_partitioner());
+        });
+    };
+}
+
+std::vector<float> float_samples(const Volume& volume) {
+    std::vector<float> samples(std::size_t(sample_count(volume.geometry())));
+    with_type(volume.type(), [&](auto zero) {
+        const auto own = volume.samples<decltype(zero)>();
+        std::transform(own.begin(), own.end(), samples.begin(),
+                       [](auto value) { return static_cast<float>(value); });
+    });
+    return samples;
+}
+
+}  // namespace
+
+Volume dequantized(const Volume& volume, const DequantizeOptions& options) {
+    check(options);
+    const std::optional<double> level = options.level ? options.level : level_of(volume);
+    if (!level) {
+        if (volume.type() == SampleType::float32) return volume;
+        return {volume.geometry(), float_samples(volume)};
+    }
+    const std::vector<int> steps =
+        steps_from(options.coarsest ? *options.coarsest : coarsest_for(volume, *level));
+    const double bend = is_mask(volume, *level) ? most_bend_of_mask : most_bend;
+    double all = 0, done = 0;  // slices
+    for (const int step : steps) all += rounds_of(step, options.rounds);
+    all *= volume.geometry().size[2];
+
+    std::vector<float> state = float_samples(volume);
+    const int cores = tbb::info::default_concurrency();  // of more, oneTBB would complain
+    tbb::task_arena arena(options.threads == 0 ? cores : std::min(options.threads, cores));
+    const ForRows rows = for_rows(arena, volume.geometry().size[0]);
+    for (const int step : steps) {
+        const RoundSettings settings{
+            .step = step,
+            .half = float(half_level * *level),
+            .straight = step == 1 ? std::numeric_limits<float>::infinity() : float(bend * *level)};
+        for (int round = 0; round < rounds_of(step, options.rounds); ++round) {
+            run_round(volume, state, settings, rows, [&] {
+                done += 1;
+                if (options.progress) options.progress(done / all);
+            });
+        }
+    }
+    return {volume.geometry(), std::move(state)};
+}
+
+}  // namespace palpate::filters

@@ -1,0 +1,103 @@
+// The levels that samples lie on, and what rounding to them does to surfaces.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <type_traits>
+#include <unordered_set>
+#include <vector>
+
+#include "filters/sites.hpp"
+#include "palpate/filters/dequantize.hpp"
+
+namespace palpate::filters {
+namespace {
+
+constexpr std::size_t most_levels = 65536;
+
+/// The values that occur, ascending; empty if there are more than most_levels.
+template <class T>
+std::vector<double> values_of(std::span<const T> samples) {
+    std::vector<double> values;
+    if constexpr (std::is_integral_v<T>) {
+        constexpr int lowest = std::numeric_limits<T>::lowest();
+        std::vector<bool> occurs(std::size_t(std::numeric_limits<T>::max() - lowest) + 1);
+        for (const T s : samples) occurs[std::size_t(s - lowest)] = true;
+        for (std::size_t i = 0; i < occurs.size(); ++i) {
+            if (occurs[i]) values.push_back(double(i) + lowest);
+        }
+    } else {
+        std::unordered_set<T> found;
+        T last = samples[0];
+        found.insert(last);
+        for (const T s : samples) {
+            if (s == last) continue;
+            last = s;
+            found.insert(s);
+            if (found.size() > most_levels) return {};
+        }
+        values.assign(found.begin(), found.end());
+        std::ranges::sort(values);
+    }
+    return values;
+}
+
+std::vector<double> values_of(const Volume& volume) {
+    return with_type(volume.type(),
+                     [&](auto zero) { return values_of(volume.samples<decltype(zero)>()); });
+}
+
+/// Are these gaps whole numbers of the smallest? Rounding to float disturbs them a little, and
+/// large ones more than a fiftieth of the smallest, so only small ones can tell.
+bool on_levels(const std::vector<double>& values, double smallest) {
+    for (std::size_t i = 1; i < values.size(); ++i) {
+        const double count = (values[i] - values[i - 1]) / smallest;
+        if (count < 8 && std::abs(count - std::round(count)) > 0.02) return false;
+    }
+    return true;
+}
+
+/// Mean tilt of normals by rounding where a sample is one level above its neighbour [degrees].
+constexpr double tilt_at_slope_1 = 12.6;
+/// Where a sample is so many levels above its neighbour, rounding tilts by two degrees: not felt.
+constexpr double steepest = 6;
+
+}  // namespace
+
+std::optional<double> level_of(const Volume& volume) {
+    const std::vector<double> values = values_of(volume);
+    if (values.size() < 2) return std::nullopt;
+    double smallest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 1; i < values.size(); ++i) {
+        smallest = std::min(smallest, values[i] - values[i - 1]);
+    }
+    if (volume.type() == SampleType::float32 && !on_levels(values, smallest)) return std::nullopt;
+    return smallest;
+}
+
+std::optional<Terraces> terraces_of(const Volume& volume) {
+    const std::optional<double> level = level_of(volume);
+    if (!level) return std::nullopt;
+    Terraces terraces;
+    terraces.level = *level;
+    terraces.mask = volume.range() <= 1.5 * *level;
+    if (terraces.mask) return terraces;
+    double all = 0, stepped = 0, tilt = 0;
+    for_sites(volume, 2e5, [&](const Index3& at) {
+        const double slope = slope_at(volume, at) / *level;
+        all += slope;
+        if (slope == 0 || slope > steepest) return;
+        const Smooth smooth = smooth_at(volume, at, 1);
+        const double expected = 2 * smooth.mean - smooth.twice;
+        if (std::abs(volume.sample(at) - expected) > 0.5 * *level) return;
+        stepped += slope;
+        tilt += slope * tilt_at_slope_1 / std::max(slope, 0.25);
+    });
+    if (stepped > 0) {
+        terraces.share = stepped / all;
+        terraces.tilt = tilt / stepped;
+    }
+    return terraces;
+}
+
+}  // namespace palpate::filters

@@ -1,0 +1,23 @@
+// Samples spread over a volume, and how the data run there.
+#pragma once
+
+#include <functional>
+
+#include "palpate/volume.hpp"
+
+namespace palpate::filters {
+
+/// Calls work for up to about `most` samples, at even distances, none on the border.
+void for_sites(const Volume& volume, double most, const std::function<void(const Index3&)>& work);
+
+/// Slope over four samples, so that a terrace or two is no plateau [data units a sample].
+double slope_at(const Volume& volume, const Index3& at);
+
+struct Smooth {
+    double mean;   ///< b, the binomial mean of the 27 neighbours `step` apart [data units]
+    double twice;  ///< Bb
+};
+/// As dequantized() has them. Samples beyond the border count as those on it.
+Smooth smooth_at(const Volume& volume, const Index3& at, int step);
+
+}  // namespace palpate::filters

@@ -1,0 +1,71 @@
+// Dequantization: gives integer data and masks back what rounding took from them. Uses the core;
+// the library works in parallel with oneTBB. See docs/dequantize.md.
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "palpate/volume.hpp"
+
+namespace palpate::filters {
+
+/// The distance between the levels that the samples lie on [data units]: the smallest gap between
+/// two values that occur. 1 for most integer data, 255 for a mask of 0 and 255, 257 for 8 bits
+/// stretched to 16. Nothing for constant data, and for float samples that do not lie on levels:
+/// more than 65536 values, or gaps that are no multiples of the smallest to 1 % of it. One pass
+/// over the samples.
+std::optional<double> level_of(const Volume& volume);
+
+/// The most that the coarsest step may be [samples].
+inline constexpr int greatest_step = 32;
+/// The most rounds of step 1.
+inline constexpr int most_rounds = 1000;
+
+/// What rounding does to the surfaces of a volume.
+struct Terraces {
+    double level = 1;   ///< distance between levels [data units]
+    bool mask = false;  ///< two values only: every surface is made of stair steps
+    /// The part of the surfaces, of all isovalues together, that are terraces: gentle slopes on
+    /// which the samples stray from a smooth field by no more than rounding explains. 0 to 1.
+    double share = 0;
+    /// How far the normals of that part turn from the smooth field's, as a mean [degrees]. A slope
+    /// of g levels a sample gives 12.6 / g (measured on balls, docs/dequantize.md).
+    double tilt = 0;
+
+    /// Worth dequantizing.
+    bool wide() const { return mask || share >= 0.5; }
+};
+/// From up to 200,000 samples. Nothing where data have no levels.
+std::optional<Terraces> terraces_of(const Volume& volume);
+
+struct DequantizeOptions {
+    /// Rounds of step 1, 1 to most_rounds; coarser steps have their own number. More rounds flatten
+    /// the stair steps of masks further, and change little else.
+    int rounds = 40;
+    /// The coarsest step [samples], a power of two up to greatest_step. Without it, the largest up
+    /// to 16 over which half of the surfaces are straight to within the rounding; for masks 4.
+    std::optional<int> coarsest = std::nullopt;
+    /// The distance between levels [data units], > 0; without it level_of() the volume.
+    std::optional<double> level = std::nullopt;
+    /// Threads at most, and no more than there are cores; 0: as many. The result is the same, bit for bit.
+    int threads = 0;
+    /// Called from the calling thread with the part done, 0 to 1, many times a second. If it
+    /// throws, the work stops and the exception reaches the caller: throw to cancel.
+    std::function<void(double fraction)> progress = {};
+};
+
+/// The smoothest samples from which rounding makes the volume's own, as float32: no sample moves by
+/// more than half a level, or beyond the volume's range. Samples beyond the border count as those
+/// on it. Where data have no levels (level_of()), the samples stay what they are.
+///
+/// A round of step s, from the coarsest to 1: b = B u, with B the binomial (1 2 1)/4 along each
+/// axis over neighbours s apart; u = 2b - Bb, kept within half a level of the volume's sample. 2B -
+/// B^2 (Kaiser and Hamming 1977, "twicing" after Tukey) keeps quadratics, so curved surfaces stay
+/// where they are. The box is that of Whitaker 2000, "Reducing aliasing artifacts in iso-surfaces
+/// of binary volumes", for any number of levels.
+///
+/// Takes 4 bytes a sample besides the volume, and nine slices. Throws std::invalid_argument for
+/// options out of range, std::bad_alloc.
+Volume dequantized(const Volume& volume, const DequantizeOptions& options = {});
+
+}  // namespace palpate::filters
