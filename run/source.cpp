@@ -3,6 +3,7 @@
 
 #include <stdexcept>
 
+#include "palpate/filters/dequantize.hpp"
 #include "palpate/scenes/beating.hpp"
 #include "palpate/scenes/volumes.hpp"
 
@@ -60,8 +61,10 @@ LoadedVolume loaded_of(const SyntheticSource& synthetic, const Source& source,
 }
 
 LoadedVolume loaded_of(const LiveSource& live, const Source& source, const io::Progress&) {
-    if (source.smooth > 0)
-        throw std::invalid_argument(live.path + ": a live source cannot be smoothed");
+    if (source.smooth > 0 || source.dequantize > 0) {
+        throw std::invalid_argument(live.path +
+                                    ": a live source cannot be smoothed or dequantized");
+    }
     auto frames = std::make_shared<const io::LiveFrames>(live.path);
     const std::shared_ptr<const Samples> samples = frames->wait(longest_wait);
     if (!samples) {
@@ -115,18 +118,56 @@ LoadedVolume loaded_of(const FileSource& file, const Source& source, const io::P
     return loaded;
 }
 
+/// What is done to every frame before anything else sees it.
+class Preparation {
+  public:
+    explicit Preparation(const Source& source)
+        : dequantize_(source.dequantize), smooth_(source.smooth) {}
+
+    bool any() const { return dequantize_ != 0 || smooth_ != 0; }
+
+    Volume operator()(const Volume& volume, const io::Progress& progress) const {
+        if (dequantize_ == 0) return smoothed(volume, smooth_);
+        filters::DequantizeOptions options;
+        options.rounds = dequantize_;
+        options.progress = progress;
+        return smoothed(filters::dequantized(volume, options), smooth_);
+    }
+
+    /// The progress of reading, if that is the first part of the work, and that of the rest.
+    io::Progress reading(const io::Progress& progress) const { return part(progress, 0, reading_); }
+    io::Progress preparing(const io::Progress& progress) const {
+        return part(progress, dequantize_ != 0 ? reading_ : 1, 1);
+    }
+
+  private:
+    static io::Progress part(const io::Progress& progress, double from, double to) {
+        if (!progress) return {};
+        return [&progress, from, to](double done) { progress(from + (to - from) * done); };
+    }
+
+    int dequantize_, smooth_;
+    double reading_ = dequantize_ != 0 ? 0.2 : 1;  ///< of the time
+};
+
 }  // namespace
 
 LoadedVolume load(const Source& source, const io::Progress& progress) {
+    const Preparation prepare(source);
     LoadedVolume loaded = std::visit(
-        [&](const auto& from) { return loaded_of(from, source, progress); }, source.from);
-    if (source.smooth == 0) return loaded;
-    loaded.volume = smoothed(loaded.volume, source.smooth);
+        [&](const auto& from) { return loaded_of(from, source, prepare.reading(progress)); },
+        source.from);
+    if (!prepare.any()) return loaded;
+    if (source.dequantize > 0 && !filters::level_of(loaded.volume)) {
+        loaded.notes.emplace_back(
+            "its samples do not lie on levels, so there is no rounding to undo");
+    }
+    loaded.volume = prepare(loaded.volume, prepare.preparing(progress));
     if (loaded.sequence.count() == 0) return loaded;
     loaded.sequence.type = loaded.volume.type();
-    loaded.sequence.reader = [read = std::move(loaded.sequence.reader), passes = source.smooth](
+    loaded.sequence.reader = [read = std::move(loaded.sequence.reader), prepare](
                                  int frame, const io::Progress& each) {
-        return smoothed(read(frame, each), passes);
+        return prepare(read(frame, prepare.reading(each)), prepare.preparing(each));
     };
     return loaded;
 }

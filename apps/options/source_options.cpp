@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "io/number.hpp"
+#include "palpate/filters/dequantize.hpp"
 #include "palpate/renderer.hpp"
 
 namespace palpate::app {
@@ -45,6 +46,13 @@ void SourceOptions::add_to(CLI::App& command, bool optional) {
                     "Smooth the samples so many times (3x3x3 binomial), against the steps of 8-bit "
                     "data; they become float32")
         ->check(CLI::Range(0, 64));
+    // A flag, so that the word after it stays the volume.
+    command
+        .add_flag("--dequantize{" + std::to_string(filters::DequantizeOptions{}.rounds) + "}",
+                  dequantize,
+                  "Give back what rounding to levels took, against terraces and the stair steps of "
+                  "masks: --dequantize or --dequantize=ROUNDS; samples become float32")
+        ->check(CLI::Range(0, filters::most_rounds));
     command.add_flag("-q,--quiet", quiet, "No progress, no notes");
 }
 
@@ -58,6 +66,7 @@ run::Source SourceOptions::source() const {
     source.frame = frame;
     source.frame_interval = frame_interval;
     source.smooth = smooth;
+    source.dequantize = dequantize;
     return source;
 }
 

@@ -11,6 +11,7 @@
 #include "apps/palpate/commands.hpp"
 #include "apps/palpate/outputs.hpp"
 #include "apps/palpate/progress.hpp"
+#include "palpate/filters/dequantize.hpp"
 #include "palpate/run/statistics.hpp"
 
 namespace palpate::app {
@@ -45,8 +46,30 @@ std::string size_text(std::size_t bytes) {
     return b < 1e6 ? fmt::format("{:.1f} kB", b / 1e3) : fmt::format("{:.1f} MB", b / 1e6);
 }
 
+/// Why the volume is worth dequantizing; empty if it is not.
+std::string reason_to_dequantize(const std::optional<filters::Terraces>& terraces) {
+    if (!terraces || !terraces->wide()) return {};
+    if (terraces->mask) return "the samples have two values, so surfaces are stair steps";
+    return fmt::format(
+        "rounding to levels of {:g} makes terraces of {:.0f}% of the surfaces and "
+        "tilts them by {:.0f} degrees",
+        terraces->level, 100 * terraces->share, terraces->tilt);
+}
+
+nlohmann::ordered_json json_of(const std::optional<filters::Terraces>& terraces) {
+    if (!terraces) return nullptr;
+    const std::string reason = reason_to_dequantize(terraces);
+    nlohmann::ordered_json json{{"level", terraces->level},
+                                {"mask", terraces->mask},
+                                {"share", terraces->share},
+                                {"tilt_degrees", terraces->tilt}};
+    if (!reason.empty()) json["suggestion"] = "--dequantize: " + reason;
+    return json;
+}
+
 nlohmann::ordered_json json_of(const run::LoadedVolume& loaded, const run::Histogram& histogram,
-                               const std::vector<double>& suggested) {
+                               const std::vector<double>& suggested,
+                               const std::optional<filters::Terraces>& terraces) {
     const Volume& volume = loaded.volume;
     const Geometry& g = volume.geometry();
     const auto list = [](const auto& v) { return nlohmann::json::array({v[0], v[1], v[2]}); };
@@ -70,6 +93,7 @@ nlohmann::ordered_json json_of(const run::LoadedVolume& loaded, const run::Histo
             {"histogram",
              {{"low", histogram.low}, {"high", histogram.high}, {"counts", histogram.counts}}},
             {"suggested_isovalues", suggested},
+            {"terraces", json_of(terraces)},
             {"notes", loaded.notes}};
 }
 
@@ -97,7 +121,8 @@ void print_histogram(const run::Histogram& fine) {
 }
 
 void print_text(const run::LoadedVolume& loaded, const run::Histogram& histogram,
-                const std::vector<double>& suggested) {
+                const std::vector<double>& suggested,
+                const std::optional<filters::Terraces>& terraces) {
     const Volume& volume = loaded.volume;
     const Geometry& g = volume.geometry();
     const Vec3 extent = g.size.cast<double>().cwiseProduct(g.spacing);
@@ -127,6 +152,8 @@ void print_text(const run::LoadedVolume& loaded, const run::Histogram& histogram
     }
     fmt::print("isovalues    {}\n",
                levels.empty() ? "none: the data are constant" : "try " + levels);
+    const std::string reason = reason_to_dequantize(terraces);
+    if (!reason.empty()) fmt::print("terraces     try --dequantize: {}\n", reason);
     print_histogram(histogram);
 }
 
@@ -149,10 +176,11 @@ void add_info(CLI::App& app) {
         if (own && *own > loaded.volume.minimum() && *own < loaded.volume.maximum()) {
             suggested.insert(suggested.begin(), *own);
         }
+        const std::optional<filters::Terraces> terraces = filters::terraces_of(loaded.volume);
         if (*json) {
-            print_json(json_of(loaded, histogram, suggested));
+            print_json(json_of(loaded, histogram, suggested, terraces));
         } else {
-            print_text(loaded, histogram, suggested);
+            print_text(loaded, histogram, suggested, terraces);
         }
     });
 }

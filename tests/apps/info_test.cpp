@@ -55,6 +55,38 @@ TEST(Info, suggests_the_middle_for_a_mask) {
     EXPECT_EQ(info(folder, Words{"full.raw"} + layout)["suggested_isovalues"], json({127.5}));
 }
 
+TEST(Info, suggests_to_dequantize_where_terraces_are_wide_and_says_why) {
+    const ScratchFolder folder;
+    const json ball = info(folder, words_of("synthetic:torus:48x48x24 --type uint8"))["terraces"];
+    EXPECT_EQ(ball["level"], 1);
+    EXPECT_TRUE(contains(ball["suggestion"], "--dequantize: rounding to levels of 1")) << ball;
+    EXPECT_TRUE(contains(palpate(folder, "info synthetic:torus:48x48x24 --type uint8").out,
+                         "terraces     try --dequantize: rounding"));
+    support::put_bytes(folder / "mask.raw", std::string("\0\0\1\1\1\0\0\1", 8));
+    const json mask = info(folder, words_of("mask.raw --dims 2x2x2 --type uint8"))["terraces"];
+    EXPECT_TRUE(contains(mask["suggestion"], "stair steps")) << mask;
+    EXPECT_FALSE(
+        info(folder, words_of("synthetic:noise:20x20x20 --type uint8"))["terraces"].contains(
+            "suggestion"));
+    EXPECT_TRUE(
+        info(folder, words_of("synthetic:noise:42x42x42 --type float32"))["terraces"].is_null());
+}
+
+TEST(Info, describes_the_volume_once_it_is_dequantized) {
+    const ScratchFolder folder;
+    const Words words = words_of("--dequantize=3 synthetic:torus:20x20x10 --type uint8");
+    EXPECT_EQ(info(folder, words)["type"], "float32");
+    // The word after the option is the volume.
+    EXPECT_EQ(info(folder, words_of("--dequantize synthetic:torus:20x20x10"))["size"],
+              json({20, 20, 10}));
+    for (const std::string wrong : {"--dequantize=-1", "--dequantize=1001", "--dequantize=x",
+                                    "--dequantize=1.5", "--dequantize="}) {
+        const Outcome outcome = palpate(folder, Words{"info", "synthetic:torus", wrong});
+        EXPECT_EQ(outcome.status, 2) << wrong;
+        EXPECT_TRUE(contains(outcome.err, "--dequantize")) << outcome.err;
+    }
+}
+
 TEST(Info, has_nothing_to_suggest_for_constant_data) {
     const ScratchFolder folder;
     support::put_bytes(folder / "one.raw", std::string(8, '\7'));

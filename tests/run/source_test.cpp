@@ -1,0 +1,82 @@
+// Sources: what is done to samples once they are read, and that names keep it.
+#include "palpate/run/source.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "palpate/filters/dequantize.hpp"
+
+namespace palpate::run {
+namespace {
+
+Source dequantized_source(const std::string& name, int rounds) {
+    Source source = source_named(name);
+    std::get<SyntheticSource>(source.from).type = SampleType::uint8;
+    source.dequantize = rounds;
+    return source;
+}
+
+Volume dequantized_here(const Volume& volume, int rounds) {
+    filters::DequantizeOptions options;
+    options.rounds = rounds;
+    return filters::dequantized(volume, options);
+}
+
+bool same_samples(const Volume& a, const Volume& b) {
+    return std::ranges::equal(a.samples<float>(), b.samples<float>());
+}
+
+TEST(Source, is_dequantized_and_then_smoothed) {
+    const Volume plain = load(dequantized_source("synthetic:sphere:16x16x16", 0)).volume;
+    Source source = dequantized_source("synthetic:sphere:16x16x16", 3);
+    EXPECT_TRUE(same_samples(load(source).volume, dequantized_here(plain, 3)));
+    source.smooth = 2;
+    EXPECT_TRUE(same_samples(load(source).volume, smoothed(dequantized_here(plain, 3), 2)));
+}
+
+TEST(Source, is_dequantized_frame_by_frame) {
+    const LoadedVolume plain = load(dequantized_source("synthetic:beating:12x12x12", 0));
+    const LoadedVolume loaded = load(dequantized_source("synthetic:beating:12x12x12", 2));
+    EXPECT_EQ(loaded.sequence.type, SampleType::float32);
+    for (const int frame : {0, 3}) {
+        EXPECT_TRUE(same_samples(io::read_frame(loaded.sequence, frame),
+                                 dequantized_here(io::read_frame(plain.sequence, frame), 2)));
+    }
+}
+
+TEST(Source, tells_the_progress_of_reading_and_of_dequantizing_in_one) {
+    double last = 0;
+    (void)load(dequantized_source("synthetic:sphere:16x16x16", 3), [&](double part) {
+        EXPECT_GE(part, last);
+        last = part;
+    });
+    EXPECT_NEAR(last, 1, 1e-9);
+}
+
+TEST(Source, says_that_data_without_levels_have_no_rounding_to_undo) {
+    Source source = source_named("synthetic:noise:41x41x41");
+    std::get<SyntheticSource>(source.from).type = SampleType::float32;
+    source.dequantize = 2;
+    const LoadedVolume loaded = load(source);
+    ASSERT_EQ(loaded.notes.size(), 1U);
+    EXPECT_NE(loaded.notes[0].find("levels"), std::string::npos);
+}
+
+TEST(Source, keeps_dequantize_in_its_names) {
+    Source source = source_named("head.nrrd");
+    EXPECT_FALSE(to_names(source).contains("dequantize"));
+    source.dequantize = 60;
+    EXPECT_EQ(source_from(to_names(source)).dequantize, 60);
+}
+
+TEST(Source, refuses_rounds_out_of_range_and_a_live_source) {
+    EXPECT_THROW(load(dequantized_source("synthetic:sphere:8x8x8", -1)), std::invalid_argument);
+    EXPECT_THROW(load(dequantized_source("synthetic:sphere:8x8x8", 1001)), std::invalid_argument);
+    Source live = source_named("live:frames.shm");
+    live.dequantize = 1;
+    EXPECT_THROW(load(live), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace palpate::run
