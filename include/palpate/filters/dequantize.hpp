@@ -47,7 +47,8 @@ struct DequantizeOptions {
     std::optional<int> coarsest = std::nullopt;
     /// The distance between levels [data units], > 0; without it level_of() the volume.
     std::optional<double> level = std::nullopt;
-    /// Threads at most, and no more than there are cores; 0: as many. The result is the same, bit for bit.
+    /// Threads at most, and no more than there are cores; 0: as many. The result is the same, bit
+    /// for bit.
     int threads = 0;
     /// Called from the calling thread with the part done, 0 to 1, many times a second. If it
     /// throws, the work stops and the exception reaches the caller: throw to cancel.
