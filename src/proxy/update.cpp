@@ -10,6 +10,15 @@
 namespace palpate {
 namespace {
 
+double sum_of(const Vec3& v) {
+    return v[0] + v[1] + v[2];
+}
+
+/// False for a sum of which a term is NaN or infinite.
+bool is_finite(double sum) {
+    return sum - sum == 0;
+}
+
 /// If the HIP is free and nearer to the start than the point that recovery found, the proxy goes to
 /// the HIP. Distances in mm.
 void prefer_free_hip(Site& site, Progress& progress, const Vec3& start_index) {
@@ -61,11 +70,8 @@ ProxyUpdate refuse_update(const Proxy& proxy, const Field& field, const Vec3& hi
 }
 
 bool is_finite(const Proxy& proxy) {
-    const Vec3& folded = proxy.scp.folded;
     const Vec3& physical = proxy.scp_physical;
-    // NaN or infinite if one of them is.
-    const double sum = folded[0] + folded[1] + folded[2] + physical[0] + physical[1] + physical[2];
-    return sum - sum == 0;
+    return is_finite(sum_of(proxy.scp.folded) + physical[0] + physical[1] + physical[2]);
 }
 
 bool accepts(const Proxy& proxy, const Field& field, const Vec3& hip_index) {
@@ -106,8 +112,9 @@ Update::Update(Proxy& proxy, const Field& field, const Vec3& hip_index,
 
 ProxyUpdate finish_update(Proxy& proxy, const Update& update, const Vec3& hip, Rest rest) {
     const Site& site = update.site;
-    const double sum = site.point.folded[0] + site.point.folded[1] + site.point.folded[2];
-    if (!(sum - sum == 0)) return refuse_update(proxy, site.field, hip, UpdateStatus::not_finite);
+    if (!is_finite(sum_of(site.point.folded))) {
+        return refuse_update(proxy, site.field, hip, UpdateStatus::not_finite);
+    }
     proxy.placed = true;
     proxy.scp = site.point;
     if (rest != Rest::recovering) proxy.ahead.setZero();

@@ -19,7 +19,8 @@ namespace palpate::io {
 using Waiting = std::function<void()>;
 
 /// The whole text of a file, a pipe or a device, without a byte order mark. Throws InputError, also
-/// for a line of more than 16 MiB, a file of more than 4 GiB or a stream of more than 1 GiB.
+/// for a zero byte, a line of more than 16 MiB, a file of more than 4 GiB or a stream of more than
+/// 256 MiB.
 /// Without `waiting`, a signal that the program handles ends the wait for a stream, and so do 10 s
 /// in which nothing came; both are InputErrors.
 std::string read_text(const std::filesystem::path& path, const Waiting& waiting = {});
