@@ -11,14 +11,6 @@ function(palpate_target name)
   endif()
   if(PALPATE_WERROR)
     target_compile_options(${name} PRIVATE -Werror)
-    if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-      # These depend on what gcc happens to inline, so a new source could turn them on in its
-      # neighbours: shown, but no reason to fail.
-      foreach(warning maybe-uninitialized array-bounds stringop-overflow stringop-overread
-                      free-nonheap-object dangling-pointer use-after-free nonnull)
-        target_compile_options(${name} PRIVATE -Wno-error=${warning})
-      endforeach()
-    endif()
   endif()
   if(PALPATE_SANITIZE)
     target_compile_options(${name} PRIVATE -fsanitize=${PALPATE_SANITIZE} -fno-omit-frame-pointer
