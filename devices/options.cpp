@@ -21,7 +21,7 @@ DeviceChoice parse_device(std::string_view text) {
     DeviceChoice choice;
     const auto colon = text.find(':');
     choice.name = text.substr(0, colon);
-    if (choice.name.empty()) throw std::invalid_argument("--device: a name is needed");
+    if (choice.name.empty()) throw std::invalid_argument("a device needs a name");
     std::string_view rest = colon == std::string_view::npos ? "" : text.substr(colon + 1);
     while (!rest.empty()) {
         const auto comma = rest.find(',');

@@ -56,7 +56,7 @@ Subject subject_from(const std::string& text) {
     const std::string level = at == std::string::npos ? "" : text.substr(at + 1);
     const bool is_synthetic = where.starts_with(synthetic_prefix);
     if (level.empty() && !is_synthetic) {
-        throw std::invalid_argument("--volume " + text +
+        throw std::invalid_argument("volume " + text +
                                     ": which level is felt? Put it behind an @, as in " + text +
                                     "@300 or " + text + "@53%");
     }

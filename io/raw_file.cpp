@@ -72,7 +72,7 @@ void check_size(const std::filesystem::path& path, const RawLayout& raw, std::ui
     if (found == expected) return;
     throw InputError(path.string() + ": " + (unpacked ? "unpacks to " : "has ") +
                      std::to_string(found) + " bytes, but " + layout_text(raw) + " needs " +
-                     std::to_string(expected) + "; correct --dims or --type");
+                     std::to_string(expected) + "; correct its dims or type");
 }
 
 /// Returns how many bytes there are; stops soon after the first one that is too many.
@@ -82,7 +82,7 @@ std::uint64_t unpack(const std::filesystem::path& path, const RawLayout& raw,
         return inflate_checked(path, {0, UINT64_MAX, expected + 4096}, std::ref(fill));
     } catch (const OversizedStream&) {
         throw InputError(path.string() + ": unpacks to more than the " + std::to_string(expected) +
-                         " bytes that " + layout_text(raw) + " needs; correct --dims or --type");
+                         " bytes that " + layout_text(raw) + " needs; correct its dims or type");
     } catch (const DamagedStream& e) {
         throw InputError(path.string() + ": " + e.what() + "; copy or download it again");
     }
@@ -103,7 +103,7 @@ std::uint64_t expected_bytes(const std::filesystem::path& path, const RawLayout&
     const double bytes = samples * static_cast<double>(size_of(raw.type));
     if (bytes > static_cast<double>(limit)) {
         throw InputError(path.string() + ": " + layout_text(raw) +
-                         " needs more memory than there is; correct --dims or use a machine with "
+                         " needs more memory than there is; correct its dims or use a machine with "
                          "more memory");
     }
     return raw.skip + static_cast<std::uint64_t>(sample_count(geometry)) * size_of(raw.type);
@@ -135,7 +135,7 @@ VolumeFile read_raw(const std::filesystem::path& path, const ReadOptions& option
         const auto count =
             replace_non_finite({reinterpret_cast<float*>(samples.get()), bytes / sizeof(float)});
         if (count == bytes / sizeof(float)) {
-            throw InputError(path.string() + ": no sample is a finite number; check --type");
+            throw InputError(path.string() + ": no sample is a finite number; check its type");
         }
         if (count > 0) notes.push_back(non_finite_note(count));
     }

@@ -27,9 +27,9 @@ Vec3 three_numbers_from(std::string_view text, char separator, std::string_view 
 }
 
 Vec3 spacing_from(std::string_view text) {
-    const Vec3 spacing = three_numbers_from(text, ',', "--spacing");
+    const Vec3 spacing = three_numbers_from(text, ',', "spacing");
     if ((spacing.array() > 0).all()) return spacing;
-    throw std::invalid_argument("--spacing " + std::string(text) +
+    throw std::invalid_argument("spacing " + std::string(text) +
                                 ": every spacing must be above 0 mm");
 }
 
@@ -37,12 +37,12 @@ RawLayout raw_layout_from(std::string_view dims, std::string_view type, std::str
                           std::uint64_t skip) {
     if (dims.empty() || type.empty()) {
         throw std::invalid_argument(
-            "a raw volume needs both --dims WxHxD and --type uint8|int16|uint16|float32");
+            "a raw volume needs both dims (WxHxD) and type (uint8, int16, uint16 or float32)");
     }
-    const Vec3 size = three_numbers_from(dims, 'x', "--dims");
+    const Vec3 size = three_numbers_from(dims, 'x', "dims");
     for (int a = 0; a < 3; ++a) {
         if (size[a] < 1 || size[a] > 1 << 20 || size[a] != std::floor(size[a])) {
-            throw std::invalid_argument("--dims " + std::string(dims) +
+            throw std::invalid_argument("dims " + std::string(dims) +
                                         ": three whole numbers from 1 to 1048576, as in "
                                         "256x256x113");
         }
@@ -64,8 +64,8 @@ std::string opening_words(const std::filesystem::path& saved, const Volume& volu
         if (a > 0) spacing += ",";
         append_number(spacing, geometry.spacing[a]);
     }
-    return " (open it with --dims " + dims + " --type " + std::string(name_of(volume.type())) +
-           " --spacing " + spacing + ")";
+    return " (open it with dims " + dims + ", type " + std::string(name_of(volume.type())) +
+           ", spacing " + spacing + ")";
 }
 
 }  // namespace palpate::io

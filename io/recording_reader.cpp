@@ -22,7 +22,7 @@ Head read_head(const std::string& comments, const std::string& name) {
     const std::string_view first(comments.data(), std::min(first_end, comments.size()));
     if (!first.starts_with(recording_mark)) {
         fail("is no recording: its first line is not '#" + std::string(recording_mark) +
-             std::to_string(recording_format) + "'; record one with palpate touch --record");
+             std::to_string(recording_format) + "'; give one that a live session has recorded");
     }
     const auto format = number_from<int>(first.substr(recording_mark.size()));
     if (!format || *format < 1) fail("the format of the recording is not a number");

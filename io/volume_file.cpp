@@ -110,7 +110,7 @@ VolumeFile read_volume(const fs::path& path, const ReadOptions& options) {
     if (limited.memory_limit_bytes == 0) limited.memory_limit_bytes = machine_memory();
     if (options.raw) {
         if (fs::is_directory(path)) {
-            throw InputError(path.string() + ": is a folder; --dims and --type are for one file");
+            throw InputError(path.string() + ": is a folder; dims and type are for one file");
         }
         return read_raw(path, limited);
     }

@@ -88,7 +88,7 @@ std::vector<Subject> subjects_of(const Options& options) {
     if (auto lobster = real(options.data, "lobster")) {
         subjects.push_back(std::move(*lobster));
     } else {
-        options.note("drift: without the lobster (--data FOLDER says where lobster.nrrd is)");
+        options.note("drift: without the lobster (no data folder with lobster.nrrd)");
     }
     return subjects;
 }

@@ -258,7 +258,7 @@ std::string paragraph_of(const Table& table, int steps) {
         "a hand goes round it 0.03 below the surface on a tilted great circle in {} steps. Angle "
         "between the force and the direction that a perfect force would have, mean and p99 in "
         "degrees.{} How much of it is the linear pieces' shows where the samples are not rounded: "
-        "their facets leave {} on average. One pass of smoothing (--smooth 1) over the 8-bit "
+        "their facets leave {} on average. One pass of smoothing over the 8-bit "
         "samples brings exact to: grid {}; the incumbent's are without smoothing. The SCP is off "
         "the true "
         "sphere by {:.2g} voxels on average where nothing is rounded, and by {:.2g} in 8 bits; "

@@ -89,7 +89,7 @@ std::vector<PressingLine> pressing_lines(const std::vector<Subject>& subjects,
         if (auto head = real(data, "ct-head")) {
             lines.push_back(ct_head(std::move(*head)));
         } else {
-            note("penetration: without the CT head (--data FOLDER says where cthead_unc.nrrd is)");
+            note("penetration: without the CT head (no data folder with cthead_unc.nrrd)");
         }
     }
     lines.push_back(shepp_logan(quick));

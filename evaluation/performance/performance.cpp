@@ -58,7 +58,7 @@ std::vector<Case> cases_of(const Options& options) {
     }
     if (!missing.empty()) {
         options.note("performance: without " + missing +
-                     " (--data FOLDER says where the real volumes are)");
+                     " (not in the data folder, or there is none)");
     }
     return cases;
 }

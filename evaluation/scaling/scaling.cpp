@@ -249,7 +249,7 @@ void by_approach(const Plan& plan, const Options& options, Progress& progress, T
             compare_on(*subject);
         } else {
             options.note(fmt::format(
-                "scaling: without {} (--data FOLDER says where the real volumes are)", name));
+                "scaling: without {} (not in the data folder, or there is none)", name));
         }
     }
 }

@@ -214,7 +214,7 @@ const DicomSeries& choose_series(const std::vector<DicomSeries>& all, const std:
     std::string text = chosen.empty()     ? "has " + std::to_string(all.size()) + " DICOM series"
                        : matching.empty() ? "has no DICOM series '" + chosen + "'"
                                           : "has several DICOM series '" + chosen + "'";
-    text += "; choose one with --series NUMBER (or its UID):";
+    text += "; choose one by its number or UID:";
     for (std::size_t i = 0; i < all.size(); ++i) {
         const DicomSeries& s = all[i];
         const DicomSlice& one = s.slices.front();

@@ -80,7 +80,7 @@ Result read(const Request& request) {
     }
     throw Failure(
         "has no extension of a known format (nrrd, nhdr, mha, mhd, nii, nii.gz, dcm, tif, vti); if "
-        "it holds nothing but samples, give --dims WxHxD and --type");
+        "it holds nothing but samples, give its dims and type");
 }
 
 nlohmann::json run_read(const fs::path& path, const nlohmann::json& asked) {

@@ -207,7 +207,7 @@ Result read_slices(const std::vector<Slice>& slices, const Request& request) {
     } else if (!request.spacing) {
         result.notes.emplace_back(
             "it does not tell the distance between slices (as ImageJ would): a spacing of 1 mm was "
-            "taken along every axis; give --spacing X,Y,Z");
+            "taken along every axis; give the spacing");
     }
     checked_time_step(request, 1);
     finish(result, request, samples);

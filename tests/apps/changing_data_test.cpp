@@ -61,9 +61,11 @@ TEST(Touch, a_saved_raw_or_tiff_file_opens_with_the_options_that_it_names) {
                                  "touch a.tif --isovalue 300 --device simulated:hand=hold "
                                  "--commands c.txt --save b.raw");
     ASSERT_EQ(done.status, 0) << done.err;
-    const std::string how = "--dims 8x8x8 --type uint16 --spacing 0.5,0.5,2";
-    EXPECT_TRUE(contains(done.out, "saved b.raw (open it with " + how + ")")) << done.out;
-    const Outcome raw = palpate(folder, "info b.raw " + how);
+    EXPECT_TRUE(
+        contains(done.out, "saved b.raw (open it with dims 8x8x8, type uint16, spacing 0.5,0.5,2)"))
+        << done.out;
+    const Outcome raw =
+        palpate(folder, "info b.raw --dims 8x8x8 --type uint16 --spacing 0.5,0.5,2");
     EXPECT_EQ(raw.status, 0) << raw.err;
     const Volume tiff = io::read_volume(folder / "b.tif").volume;
     EXPECT_EQ(tiff.sample({2, 2, 2}), 9);

@@ -119,7 +119,7 @@ TEST(read_volume, says_what_is_wrong_with_a_path) {
     std::filesystem::create_directory(folder / "inner");
     EXPECT_TRUE(contains(refusal(folder.path()), "give one of the folders in it"));
     put_bytes(folder / "volume.xyz", "something");
-    EXPECT_TRUE(contains(refusal(folder / "volume.xyz"), "--dims"));
+    EXPECT_TRUE(contains(refusal(folder / "volume.xyz"), "dims"));
     std::filesystem::create_symlink("circle", folder / "circle");
     EXPECT_TRUE(one_line_about(refusal(folder / "circle"), folder / "circle"));
 }

@@ -54,9 +54,9 @@ TEST(raw_file, what_is_written_is_read_again_with_the_words_that_were_said) {
         options.progress = [&](double fraction) { part = fraction; };
         write_volume(volume, folder / "a.raw", options);
         EXPECT_EQ(part, 1);
-        EXPECT_EQ(opening_words("a.raw", volume), " (open it with --dims 61x40x300 --type " +
+        EXPECT_EQ(opening_words("a.raw", volume), " (open it with dims 61x40x300, type " +
                                                       std::string(name_of(type)) +
-                                                      " --spacing 0.1,1,2.5)");
+                                                      ", spacing 0.1,1,2.5)");
         ReadOptions read;
         read.raw = raw_layout_from("61x40x300", name_of(type), "0.1,1,2.5", 0);
         const VolumeFile file = read_volume(folder / "a.raw", read);

@@ -15,13 +15,13 @@ Vec3 three_numbers_from(std::string_view text, char separator, std::string_view 
 Vec3 spacing_from(std::string_view text);
 
 /// `dims` "WxHxD", `type` a sample type's name, `spacing` as above or empty for 1 mm, `skip` in
-/// bytes. Throws std::invalid_argument, naming the option, unless the three make a geometry that
+/// bytes. Throws std::invalid_argument, naming the setting, unless the three make a geometry that
 /// check() accepts.
 RawLayout raw_layout_from(std::string_view dims, std::string_view type, std::string_view spacing,
                           std::uint64_t skip);
 
 /// Text to print after the name of a saved volume: for .raw how to open it again,
-/// " (open it with --dims 256x256x113 --type uint16 --spacing 1,1,2)"; for others empty.
+/// " (open it with dims 256x256x113, type uint16, spacing 1,1,2)"; for others empty.
 std::string opening_words(const std::filesystem::path& saved, const Volume& volume);
 
 }  // namespace palpate::io
