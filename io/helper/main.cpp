@@ -177,26 +177,19 @@ nlohmann::json run_write(const fs::path& path, const nlohmann::json& asked,
 int run(int argc, char** argv) {
     const bool reading = argc == 4 && std::strcmp(argv[1], "read") == 0;
     const bool writing = argc == 5 && std::strcmp(argv[1], "write") == 0;
-    if (!reading && !writing) {
-        std::fputs("palpate-io-helper is started by palpate; there is nothing to do by hand\n",
-                   stderr);
-        return 2;
-    }
-    try {
+    const auto work = [&] {
         const auto asked = nlohmann::json::parse(argv[3]);
-        report({{"done", reading ? run_read(argv[2], asked) : run_write(argv[2], asked, argv[4])}});
-        return 0;
-    } catch (const Failure& e) {
-        report({{"error", e.what()}});
-    } catch (const std::bad_alloc&) {
-        report({{"error", "not enough memory; crop or downsample the volume"}});
-    } catch (const std::exception& e) {
-        report(
-            {{"error", "the format's library refused it (" + library_words(e.what(), 300) + "); " +
-                           (reading ? "it is damaged or of a kind that is not read"
-                                    : "is the disk full?")}});
-    }
-    return 1;
+        return reading ? run_read(argv[2], asked) : run_write(argv[2], asked, argv[4]);
+    };
+    const auto words_of = [&](const std::exception& e) -> std::string {
+        if (dynamic_cast<const Failure*>(&e)) return e.what();
+        if (dynamic_cast<const std::bad_alloc*>(&e)) {
+            return "not enough memory; crop or downsample the volume";
+        }
+        return "the format's library refused it (" + library_words(e.what(), 300) + "); " +
+               (reading ? "it is damaged or of a kind that is not read" : "is the disk full?");
+    };
+    return helper_status("palpate-io-helper", reading || writing, work, words_of);
 }
 
 }  // namespace

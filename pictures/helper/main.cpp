@@ -126,23 +126,18 @@ json draw(const json& asked) {
     return handed_back(png_from(pixels, scene.width, scene.height), memory.size());
 }
 
+std::string words_of(const std::exception& e) {
+    if (dynamic_cast<const Failure*>(&e)) return e.what();
+    if (dynamic_cast<const std::bad_alloc*>(&e)) {
+        return "not enough memory; draw a smaller picture of a smaller volume";
+    }
+    return io::library_words(e.what(), 300);
+}
+
 int run(int argc, char** argv) {
-    if (argc != 3 || std::strcmp(argv[1], "draw") != 0) {
-        std::fputs("palpate-picture-helper is started by palpate; there is nothing to do by hand\n",
-                   stderr);
-        return 2;
-    }
-    try {
-        io::report({{"done", draw(json::parse(argv[2]))}});
-        return 0;
-    } catch (const Failure& e) {
-        io::report({{"error", e.what()}});
-    } catch (const std::bad_alloc&) {
-        io::report({{"error", "not enough memory; draw a smaller picture of a smaller volume"}});
-    } catch (const std::exception& e) {
-        io::report({{"error", io::library_words(e.what(), 300)}});
-    }
-    return 1;
+    const bool understood = argc == 3 && std::strcmp(argv[1], "draw") == 0;
+    const auto work = [&] { return draw(json::parse(argv[2])); };
+    return io::helper_status("palpate-picture-helper", understood, work, words_of);
 }
 
 }  // namespace

@@ -19,7 +19,6 @@
 #include <array>
 #include <atomic>
 #include <chrono>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
@@ -139,8 +138,6 @@ class Embree {
         rtcSetDeviceMemoryMonitorFunction(device_, count, &bytes_);
     }
     ~Embree() { rtcReleaseDevice(device_); }
-    Embree(const Embree&) = delete;
-    Embree& operator=(const Embree&) = delete;
 
     RTCDevice device() const { return device_; }
     double bytes() const { return static_cast<double>(bytes_.load()); }
@@ -303,24 +300,19 @@ ExplicitCost extract(const ExplicitRequest& request) {
     return cost;
 }
 
+std::string words_of(const std::exception& e) {
+    const bool memory = dynamic_cast<const std::bad_alloc*>(&e) != nullptr;
+    return memory ? "not enough memory for the whole isosurface; use a smaller volume" : e.what();
+}
+
 int run(int argc, char** argv) {
-    if (argc != 3 || std::strcmp(argv[1], "extract") != 0) {
-        std::fputs(
-            "palpate-explicit-helper is started by palpate; there is nothing to do by hand\n",
-            stderr);
-        return 2;
-    }
-    try {
+    const bool understood = argc == 3 && std::strcmp(argv[1], "extract") == 0;
+    const auto work = [&] {
         const auto asked = nlohmann::json::parse(argv[2]);
         io::go_with_caller(asked.at("caller").get<pid_t>());
-        io::report({{"done", nlohmann::json(extract(request_from(asked)))}});
-        return 0;
-    } catch (const std::bad_alloc&) {
-        io::report({{"error", "not enough memory for the whole isosurface; use a smaller volume"}});
-    } catch (const std::exception& e) {
-        io::report({{"error", e.what()}});
-    }
-    return 1;
+        return nlohmann::json(extract(request_from(asked)));
+    };
+    return io::helper_status("palpate-explicit-helper", understood, work, words_of);
 }
 
 }  // namespace
