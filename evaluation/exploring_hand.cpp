@@ -198,16 +198,11 @@ Behaviour behaviour_of(const Subject& subject, const std::vector<Trajectory>& tr
                        double rate_hz) {
     double path = 0;
     std::size_t ticks = 0, constrained = 0;
-    for (const Trajectory& trajectory : trajectories) {
-        Proxy proxy;
-        place(proxy, subject.field, trajectory.front(), subject.isovalue);
-        for (std::size_t i = 1; i < trajectory.size(); ++i) {
-            path += (trajectory[i] - trajectory[i - 1]).norm();
-            constrained +=
-                update_exact(proxy, subject.field, trajectory[i]).mode == Mode::constrained;
-            ++ticks;
-        }
-    }
+    follow(subject, trajectories, [&](Proxy& proxy, const Trajectory& hand, std::size_t i) {
+        path += (hand[i] - hand[i - 1]).norm();
+        constrained += update_exact(proxy, subject.field, hand[i]).mode == Mode::constrained;
+        ++ticks;
+    });
     return {path * rate_hz / double(ticks), double(constrained) / double(ticks)};
 }
 

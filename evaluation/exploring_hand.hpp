@@ -13,6 +13,17 @@ namespace palpate::evaluation {
 /// Where the hand is in each tick [mm, physical]; the first place is free space.
 using Trajectory = std::vector<Vec3>;
 
+/// Calls step(proxy, trajectory, i) for each tick i of each trajectory, with a proxy that was
+/// placed where the trajectory starts.
+template <class Step>
+void follow(const Subject& subject, const std::vector<Trajectory>& trajectories, Step&& step) {
+    for (const Trajectory& trajectory : trajectories) {
+        Proxy proxy;
+        place(proxy, subject.field, trajectory.front(), subject.isovalue);
+        for (std::size_t i = 1; i < trajectory.size(); ++i) step(proxy, trajectory, i);
+    }
+}
+
 /// Speeds and lengths are of the hand in physical space: those at the device times the scale of
 /// the DeviceTransform.
 struct ExploringHand {

@@ -113,6 +113,10 @@ struct Panel {
     bool has_grid = true;
     bool is_to_scale = false;  ///< x and y have the same unit length
     double height = 1;         ///< of its row, relative to the others
+
+    /// Adds a series on top of the others.
+    Series& add(Draw draw, std::string title, const Look& look, Rows rows);
+    Series& add_level(double y, std::string title, const Look& look);
 };
 
 struct Figure {
@@ -123,17 +127,15 @@ struct Figure {
     std::vector<Panel> panels;  ///< row by row
 };
 
-/// Ticks at these values with the values as text, or 0, 1, 2 ... with these texts.
+/// Ticks at these values with the values as text.
 std::vector<AxisTick> ticks_at(const std::vector<double>& values);
-std::vector<AxisTick> ticks_named(const std::vector<std::string>& names);
+/// An axis with these texts at 0, 1, 2 ..., and half a unit more at both ends.
+Axis axis_named(const std::vector<std::string>& names);
 
 /// The `number`-th look of lines with markers, from 0; colours and markers differ.
 Look look_of(std::size_t number);
 /// Of a method, the same in every figure.
 Look look_of_method(std::string_view method);
-
-/// A horizontal line at y.
-Series level_line(double y, std::string title, Look look);
 
 /// Draws it as an SVG or a PNG, by the extension. Throws io::OutputError.
 void draw(const Figure& figure, const std::filesystem::path& path);

@@ -315,10 +315,10 @@ std::vector<AxisTick> ticks_at(const std::vector<double>& values) {
     return ticks;
 }
 
-std::vector<AxisTick> ticks_named(const std::vector<std::string>& names) {
-    std::vector<AxisTick> ticks;
-    for (const std::string& name : names) ticks.push_back({double(ticks.size()), name});
-    return ticks;
+Axis axis_named(const std::vector<std::string>& names) {
+    Axis axis{.low = -0.5, .high = double(names.size()) - 0.5};
+    for (const std::string& name : names) axis.ticks.push_back({double(axis.ticks.size()), name});
+    return axis;
 }
 
 Look look_of(std::size_t number) {
@@ -340,8 +340,12 @@ Look look_of_method(std::string_view method) {
     return look_of(static_cast<std::size_t>(found - all.begin()));
 }
 
-Series level_line(double y, std::string title, Look look) {
-    return {Draw::level, std::move(title), std::move(look), {{y}}, {}, {}, false};
+Series& Panel::add(Draw draw, std::string name, const Look& look, Rows rows) {
+    return series.emplace_back(Series{draw, std::move(name), look, std::move(rows)});
+}
+
+Series& Panel::add_level(double at, std::string name, const Look& look) {
+    return add(Draw::level, std::move(name), look, {{at}});
 }
 
 void draw(const Figure& figure, const std::filesystem::path& path) {

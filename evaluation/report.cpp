@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <cstdint>
 #include <fstream>
 #include <iterator>
@@ -16,14 +15,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void write_text(const std::string& text, const fs::path& path) {
-    io::PendingFile file(path);
-    file.write(text);
-    file.commit();
-}
-
 std::string file_name(const Report& report, const std::string& suffix) {
     return report.experiment.name + (suffix.empty() ? "" : "-" + suffix);
+}
+
+/// Calls f(file name, caption) for all figures, as SVG, and pictures.
+template <class F>
+void for_images(const Report& report, F&& f) {
+    for (const Figure& figure : report.result.figures) {
+        f(file_name(report, figure.suffix) + ".svg", figure.caption);
+    }
+    for (const Picture& picture : report.result.pictures) {
+        f(file_name(report, picture.suffix) + ".png", picture.caption);
+    }
 }
 
 /// `no`: how a claim that does not hold is marked.
@@ -61,14 +65,9 @@ std::string markdown_from(const Report& report) {
     std::string text = fmt::format("# {}: {}\n\n{}\n\n", report.experiment.name,
                                    report.experiment.title, report.result.paragraph);
     text += markdown_from(report.result.summary);
-    for (const Figure& figure : report.result.figures) {
-        text += fmt::format("![{0}]({1}.svg)\n\n{0}\n\n", figure.caption,
-                            file_name(report, figure.suffix));
-    }
-    for (const Picture& picture : report.result.pictures) {
-        text += fmt::format("![{0}]({1}.png)\n\n{0}\n\n", picture.caption,
-                            file_name(report, picture.suffix));
-    }
+    for_images(report, [&](const std::string& file, const std::string& caption) {
+        text += fmt::format("![{0}]({1})\n\n{0}\n\n", caption, file);
+    });
     return text + markdown_from(claims_of(report.result, "**no**")) +
            fmt::format("All numbers: [{0}.csv]({0}.csv). {1}.\n", report.experiment.name,
                        report.circumstances);
@@ -100,22 +99,16 @@ std::string embedded(const fs::path& file) {
                        base64(bytes));
 }
 
-std::string figure_html(const fs::path& file, const std::string& caption) {
-    return fmt::format("<figure><img src=\"{}\" alt=\"{}\"><figcaption>{}</figcaption></figure>\n",
-                       embedded(file), html_text(caption), html_text(caption));
-}
-
 std::string section(const Report& report, const fs::path& folder) {
     std::string html =
         fmt::format("<h2 id=\"{0}\">{0}: {1}</h2>\n<p>{2}</p>\n", report.experiment.name,
                     html_text(report.experiment.title), html_text(report.result.paragraph));
     html += html_from(report.result.summary);
-    for (const Figure& figure : report.result.figures) {
-        html += figure_html(folder / (file_name(report, figure.suffix) + ".svg"), figure.caption);
-    }
-    for (const Picture& picture : report.result.pictures) {
-        html += figure_html(folder / (file_name(report, picture.suffix) + ".png"), picture.caption);
-    }
+    for_images(report, [&](const std::string& file, const std::string& caption) {
+        html += fmt::format(
+            "<figure><img src=\"{0}\" alt=\"{1}\"><figcaption>{1}</figcaption></figure>\n",
+            embedded(folder / file), html_text(caption));
+    });
     return html + html_from(claims_of(report.result, "NO")) +
            fmt::format(
                "<details><summary>All numbers ({} rows)</summary>\n{}</details>\n"
@@ -130,15 +123,15 @@ void write_files(const Report& report, const fs::path& folder) {
     const auto path = [&](const std::string& suffix, const char* extension) {
         return folder / (file_name(report, suffix) + extension);
     };
-    write_text(csv_from(report.result.table), path("", ".csv"));
+    io::write_file(path("", ".csv"), csv_from(report.result.table));
     for (const Figure& figure : report.result.figures) {
         draw(figure, path(figure.suffix, ".svg"));
         draw(figure, path(figure.suffix, ".png"));
     }
     for (const Picture& picture : report.result.pictures) {
-        write_text(picture.png, path(picture.suffix, ".png"));
+        io::write_file(path(picture.suffix, ".png"), picture.png);
     }
-    write_text(markdown_from(report), path("", ".md"));
+    io::write_file(path("", ".md"), markdown_from(report));
 }
 
 void write_html(const std::vector<Report>& reports, const fs::path& folder, const fs::path& page) {
@@ -159,7 +152,7 @@ void write_html(const std::vector<Report>& reports, const fs::path& folder, cons
     }
     html += "</ul>\n";
     for (const Report& report : reports) html += section(report, folder);
-    write_text(html + "</html>\n", page);
+    io::write_file(page, html + "</html>\n");
 }
 
 }  // namespace palpate::evaluation

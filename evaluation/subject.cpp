@@ -37,7 +37,7 @@ Subject synthetic(const std::string& specification, std::optional<double> isoval
                   std::optional<SampleType> type) {
     scenes::Scene scene = scenes::make_volume(specification, type);
     return {scene.name, Field(std::move(scene.volume)), isovalue.value_or(scene.isovalue),
-            std::move(scene.exact), ""};
+            std::move(scene.exact)};
 }
 
 std::optional<Subject> real(const std::filesystem::path& data, std::string_view name) {
@@ -45,7 +45,7 @@ std::optional<Subject> real(const std::filesystem::path& data, std::string_view 
         if (name != known.name) continue;
         const auto path = data / known.file;
         if (data.empty() || !std::filesystem::exists(path)) return {};
-        return Subject{known.name, Field(io::read_volume(path).volume), known.isovalue, {}, ""};
+        return Subject{known.name, Field(io::read_volume(path).volume), known.isovalue};
     }
     throw std::logic_error("no real volume is known as " + std::string(name));
 }
@@ -62,10 +62,7 @@ Subject subject_from(const std::string& text) {
     }
     Subject subject = is_synthetic ? synthetic(where)
                                    : Subject{std::filesystem::path(where).stem().string(),
-                                             Field(io::read_volume(where).volume),
-                                             0,
-                                             {},
-                                             ""};
+                                             Field(io::read_volume(where).volume)};
     if (!level.empty()) subject.isovalue = io::level_from_text(level, subject.field.volume());
     return subject;
 }

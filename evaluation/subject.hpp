@@ -17,8 +17,8 @@ struct Subject {
     Field field;
     double isovalue = 0;  ///< [data units]
     /// The analytic density [data units] at a physical point [mm]; empty where there is none.
-    std::function<double(const Vec3& physical)> exact;
-    std::string note;  ///< what it stands for, if it stands in for another
+    std::function<double(const Vec3& physical)> exact = {};
+    std::string note = {};  ///< what it stands for, if it stands in for another
 };
 
 /// "synthetic:NAME[:WxHxD]" or a file or folder, "@ISOVALUE" behind it: "head.nrrd@500",

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 
 #include "evaluation/table.hpp"
 
@@ -25,11 +24,9 @@ struct Timed {
     /// start is not timed.
     template <class Update>
     void follow(Update&& update) const {
-        for (const Trajectory& trajectory : trajectories) {
-            Proxy proxy;
-            place(proxy, subject.field, trajectory.front(), subject.isovalue);
-            for (std::size_t i = 1; i < trajectory.size(); ++i) update(proxy, trajectory[i]);
-        }
+        evaluation::follow(
+            subject, trajectories,
+            [&](Proxy& proxy, const Trajectory& hand, std::size_t i) { update(proxy, hand[i]); });
     }
     ProxyUpdate update(Proxy& proxy, const Vec3& hip) const {
         return method(proxy, subject.field, hip, {}, {});

@@ -217,4 +217,10 @@ void PendingFile::commit() {
     commit_together({this});
 }
 
+void write_file(const std::filesystem::path& path, std::string_view bytes) {
+    PendingFile file(path);
+    file.write(bytes);
+    file.commit();
+}
+
 }  // namespace palpate::io

@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
-#include <limits>
 
 #include "evaluation/experiment.hpp"
 #include "evaluation/ring.hpp"
@@ -109,11 +107,11 @@ Panel density_panel(const Table& table, const Plan& plan) {
                             .where("speed_mm_s", plan.shown_speed)
                             .where("rate_hz", plan.shown_rate);
     for (const auto& method : baselines::methods()) {
-        panel.series.push_back({Draw::line_points, method.name, look_of_method(method.name),
-                                shown.where("method", method.name).rows_of({"turn", "density"})});
+        panel.add(Draw::line_points, method.name, look_of_method(method.name),
+                  shown.where("method", method.name).rows_of({"turn", "density"}));
     }
-    panel.series.push_back(level_line(shown.number(0, "isovalue"), "isovalue",
-                                      {.colour = colours::grey, .dash = Dash::dashed}));
+    panel.add_level(shown.number(0, "isovalue"), "isovalue",
+                    {.colour = colours::grey, .dash = Dash::dashed});
     return panel;
 }
 
@@ -133,10 +131,9 @@ Panel rate_panel(const Table& table, const Plan& plan) {
             const double worst = worst_of(table.where("rate_hz", rate), method.name);
             rows.push_back({rate, std::max(worst, 1e-17)});  // a logarithm has no zero
         }
-        panel.series.push_back({Draw::line_points, method.name, look_of_method(method.name), rows});
+        panel.add(Draw::line_points, method.name, look_of_method(method.name), rows);
     }
-    panel.series.push_back(
-        level_line(granted, "tolerance (G2)", {.colour = colours::grey, .dash = Dash::dotted}));
+    panel.add_level(granted, "tolerance (G2)", {.colour = colours::grey, .dash = Dash::dotted});
     return panel;
 }
 

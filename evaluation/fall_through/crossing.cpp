@@ -2,7 +2,6 @@
 #include "evaluation/fall_through/crossing.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <stdexcept>
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <numeric>
 #include <thread>
 
@@ -88,15 +87,15 @@ struct Shares {
     double crossings = 0, inside = 0, pressed = 0, inside_pressed = 0, unfelt = 0, ticks = 0;
     double worst = 0;
 
-    void add(const Passage& passage) {
-        crossings += 1;
-        inside += passage.inside;
-        pressed += passage.pressed;
-        inside_pressed += passage.inside_pressed;
-        unfelt += !passage.felt;
-        ticks += passage.ticks;
-        worst = std::max(worst, passage.worst);
-    }
+    Shares() = default;
+    explicit Shares(const Passage& p)
+        : crossings(1),
+          inside(p.inside),
+          pressed(p.pressed),
+          inside_pressed(p.inside_pressed),
+          unfelt(!p.felt),
+          ticks(p.ticks),
+          worst(p.worst) {}
     void add(const Shares& other) {
         crossings += other.crossings;
         inside += other.inside;
@@ -127,8 +126,8 @@ Shares go_through(const Wall& wall, const Case& c, scenes::Random& random,
             for (std::size_t t = 0; t < threads; ++t) {
                 running.emplace_back([&, t] {
                     for (std::size_t i = first + t; i < last; i += threads) {
-                        parts[t].add(cross(wall.subject, wall.outside, wall.crossings[i],
-                                           c.method.method, step, phases[i]));
+                        parts[t].add(Shares(cross(wall.subject, wall.outside, wall.crossings[i],
+                                                  c.method.method, step, phases[i])));
                     }
                 });
             }
@@ -200,11 +199,6 @@ double least(const Table& table, const std::string& method, const std::string& c
     return smallest(table.where("method", method).numbers(column), 1);
 }
 
-double crossings_of(const Table& table, const std::string& method) {
-    const auto counts = table.where("method", method).numbers("crossings");
-    return std::accumulate(counts.begin(), counts.end(), 0.0);
-}
-
 /// Whether nothing inside any of the walls can be reached, by the flood from outside.
 bool are_closed(const std::vector<Row>& rows) {
     return std::all_of(rows.begin(), rows.end(), [](const Row& row) {
@@ -219,11 +213,12 @@ bool are_closed(const std::vector<Row>& rows) {
 std::vector<Claim> claims_of(const Table& table, const std::vector<Row>& rows, bool own_walls) {
     std::vector<Claim> claims;
     for (const char* method : {"exact", "paper"}) {
+        const auto counts = table.where("method", method).numbers("crossings");
+        const double crossings = std::accumulate(counts.begin(), counts.end(), 0.0);
         const double inside = most(table, method, "inside_share");
-        claims.push_back({fmt::format("{} never ends inside, in any of the crossings", method),
-                          inside == 0,
-                          fmt::format("largest share {:g} over {:.0f} crossings", inside,
-                                      crossings_of(table, method))});
+        claims.push_back(
+            {fmt::format("{} never ends inside, in any of the crossings", method), inside == 0,
+             fmt::format("largest share {:g} over {:.0f} crossings", inside, crossings)});
         const double worst = most(table, method, "worst_excess_of_range");
         claims.push_back({fmt::format("{} is never in the solid by more than {:g} of the data's "
                                       "range, in any tick",

@@ -13,7 +13,8 @@ namespace {
 
 /// The axes of all panels.
 struct Axes {
-    std::vector<double> steps;       // [mm] of the hand in a tick, rising
+    std::vector<double> steps;  // [mm] of the hand in a tick, rising
+    std::vector<std::string> step_names;
     std::vector<std::string> names;  // of thicknesses or of the user's volumes
     std::vector<Cell> walls;         // the same, as `column` of the table holds them
     const char* column;
@@ -34,6 +35,7 @@ struct Axes {
         steps = table.distinct_numbers("step_mm");
         std::sort(steps.begin(), steps.end());
         steps.erase(std::unique(steps.begin(), steps.end(), is_same), steps.end());
+        for (const double step : steps) step_names.push_back(fmt::format("{:g}", step));
     }
 
     static bool is_same(double a, double b) { return std::abs(a - b) < 1e-9 * (a + b); }
@@ -88,17 +90,12 @@ Figure map(const Table& table, const char* column, const std::string& suffix,
         const bool is_left = figure.panels.size() % 2 == 0, is_top = figure.panels.size() < 2;
         panel.title = method.name;
         panel.scale = ColourScale{what + " [% of crossings]", 0, 100, false};
-        panel.x.low = -0.5;
-        panel.x.high = double(axes.steps.size()) - 0.5;
+        panel.x = axis_named(axes.step_names);
         panel.x.turned = 90;
         panel.x.has_labels = !is_top;
-        panel.y.low = double(axes.names.size()) - 0.5;
-        panel.y.high = -0.5;
-        panel.y.ticks = ticks_named(axes.names);
+        panel.y = axis_named(axes.names);
+        std::swap(panel.y.low, panel.y.high);
         panel.y.has_labels = is_left;
-        for (std::size_t i = 0; i < axes.steps.size(); ++i) {
-            panel.x.ticks.push_back({double(i), fmt::format("{:g}", axes.steps[i])});
-        }
         if (is_left)
             panel.y.title = axes.has_thickness ? "thickness of the wall [voxel]" : "volume";
         if (!is_top) {

@@ -88,11 +88,8 @@ Subject closed_shell(Enclosed enclosed, double thickness) {
     fill_surface(voxels);
     for (int i = 1; i < layers; ++i) fill_layer_inside(voxels);
     Volume volume(scenes::centred(Index3::Constant(samples)), std::move(voxels.sample));
-    return {enclosed == Enclosed::box ? "box" : "ball",
-            Field(std::move(volume)),
-            full * (1 - 0.5 * (thickness - layers + 1)),
-            {},
-            ""};
+    return {enclosed == Enclosed::box ? "box" : "ball", Field(std::move(volume)),
+            full * (1 - 0.5 * (thickness - layers + 1))};
 }
 
 }  // namespace palpate::evaluation

@@ -33,6 +33,15 @@ Subject scene(const std::string& specification, Samples samples) {
     return with_samples(synthetic(specification, {}, stored(samples)), samples);
 }
 
+Body body_of(Subject subject, const char* trajectory, Samples samples, int grid) {
+    Body body(std::move(subject));
+    body.trajectory = trajectory;
+    body.samples = name_of(samples);
+    body.grid = grid;
+    body.depth = depth * grid;
+    return body;
+}
+
 /// No plane of the grid, and no diagonal either.
 Mat3 tilted() {
     return Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
@@ -40,11 +49,7 @@ Mat3 tilted() {
 
 Body ball(int grid, Samples samples, const char* trajectory,
           std::function<Vec3(double)> direction) {
-    Body body(protocol_ball(grid, samples));
-    body.trajectory = trajectory;
-    body.samples = name_of(samples);
-    body.grid = grid;
-    body.depth = depth * grid;
+    Body body = body_of(protocol_ball(grid, samples), trajectory, samples, grid);
     body.hand = [=](double part) { return Vec3((radius - depth) * grid * direction(part)); };
     body.start = 1.5 * body.hand(0);
     body.ideal = [](const Vec3& hand) { return Vec3(hand.normalized()); };
@@ -76,9 +81,7 @@ Subject protocol_ball(int grid, Samples samples) {
     const double full = samples == Samples::float32 ? 1 : 255;
     Subject subject{"ball",
                     Field(scenes::ball(Index3::Constant(grid), radius, slope, stored(samples))),
-                    0.5 * full,
-                    {},
-                    ""};
+                    0.5 * full};
     subject.exact = [=](const Vec3& p) {
         return full * std::clamp(0.5 + slope * (radius - p.norm() / grid), 0.0, 1.0);
     };
@@ -97,11 +100,8 @@ Body ball_by_spiral(int grid, Samples samples) {
 }
 
 Body torus_by_helix(int grid, Samples samples) {
-    Body body(scene(fmt::format("torus:{}x{}x{}", grid, grid, grid / 2), samples));
-    body.trajectory = "helix";
-    body.samples = name_of(samples);
-    body.grid = grid;
-    body.depth = depth * grid;
+    Body body = body_of(scene(fmt::format("torus:{0}x{0}x{1}", grid, grid / 2), samples), "helix",
+                        samples, grid);
     // As docs/scenes.md has them: a ring of 0.3 of the box, and at level 0.4 a tube of 0.12.
     const double ring = 0.3 * grid, tube = 0.12 * grid;
     const auto at = [=](double part, double from_ring) {
@@ -120,10 +120,8 @@ Body torus_by_helix(int grid, Samples samples) {
 }
 
 Body ripples_by_spiral(int grid, Samples samples) {
-    Body body(scene(fmt::format("marschner-lobb:{0}x{0}x{0}", grid), samples));
-    body.trajectory = "spiral";
-    body.samples = name_of(samples);
-    body.grid = grid;
+    Body body = body_of(scene(fmt::format("marschner-lobb:{0}x{0}x{0}", grid), samples), "spiral",
+                        samples, grid);
     // On the level, sin(pi z / 2) is a quarter of the ripple, so the troughs are at -0.161 and the
     // crests at 0.161 of half the box.
     const double half = 0.5 * (grid - 1);

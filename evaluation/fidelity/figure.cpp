@@ -73,7 +73,7 @@ Panel panel_of(const Table& all, const std::string& body, const std::string& tra
                         .where("samples", line.samples)
                         .rows_of({"grid", column});
         std::erase_if(rows, [](const auto& row) { return std::isnan(row[1]); });
-        panel.series.push_back({Draw::line_points, line.title, line.look, std::move(rows)});
+        panel.add(Draw::line_points, line.title, line.look, std::move(rows));
     }
     return panel;
 }
@@ -123,14 +123,7 @@ Figure figure_of_facets(int grid) {
     spread.x = {
         .title = "angle of the force [degrees]", .is_logarithmic = true, .low = 0.01, .high = 100};
     spread.y = {.title = "part of the ticks with no larger angle [%]", .low = 0, .high = 100};
-    const Lines lines{{"", name_of(Samples::uint8), "exact, 8 bit", {colours::blue}},
-                      {"",
-                       name_of(Samples::smoothed),
-                       "exact, 8 bit smoothed",
-                       {.colour = colours::sky, .dash = Dash::dashed}},
-                      {"", name_of(Samples::float32), "exact, not rounded", {colours::green}}};
-    for (const Samples samples : {Samples::uint8, Samples::smoothed, Samples::float32}) {
-        const Line& line = lines[static_cast<std::size_t>(samples)];
+    const auto add = [&](Samples samples, const char* title, const Look& look) {
         const Body body = ball_by_circle(grid, samples);
         const auto part = follow(body, &update_exact, steps, 0.1, 0.1 + arc / 360).angles;
         Rows rows;
@@ -138,9 +131,12 @@ Figure figure_of_facets(int grid) {
             rows.push_back({arc * double(rows.size() + 1) / steps, angle});
         }
         const auto all = follow(body, &update_exact, 4 * steps, 0, 1).angles;
-        along.series.push_back({Draw::line, line.title, line.look, std::move(rows)});
-        spread.series.push_back({Draw::line, line.title, line.look, distribution(all)});
-    }
+        along.add(Draw::line, title, look, std::move(rows));
+        spread.add(Draw::line, title, look, distribution(all));
+    };
+    add(Samples::uint8, "exact, 8 bit", {colours::blue});
+    add(Samples::smoothed, "exact, 8 bit smoothed", {.colour = colours::sky, .dash = Dash::dashed});
+    add(Samples::float32, "exact, not rounded", {colours::green});
     figure.panels = {std::move(along), std::move(spread)};
     return figure;
 }
@@ -174,11 +170,9 @@ Figure fidelity_figure_of_users(const Table& table) {
     const std::vector<std::string> volumes = table.where("method", "exact").distinct("body");
     const auto panel = [&](const char* column, const char* what) {
         Panel made;
-        made.x = {.title = "volume",
-                  .low = -0.5,
-                  .high = double(volumes.size()) - 0.5,
-                  .ticks = ticks_named(volumes),
-                  .turned = 15};
+        made.x = axis_named(volumes);
+        made.x.title = "volume";
+        made.x.turned = 15;
         made.y = {.title = what, .low = 0};
         for (const auto& method : baselines::methods()) {
             Look look = look_of_method(method.name);
@@ -189,7 +183,7 @@ Figure fidelity_figure_of_users(const Table& table) {
             for (const double value : table.where("method", method.name).numbers(column)) {
                 rows.push_back({x++, value});
             }
-            made.series.push_back({Draw::points, method.name, look, std::move(rows)});
+            made.add(Draw::points, method.name, look, std::move(rows));
         }
         return made;
     };

@@ -2,8 +2,6 @@
 // can at best rest on.
 #pragma once
 
-#include <vector>
-
 #include "palpate/surface.hpp"
 
 namespace palpate::evaluation {

@@ -13,16 +13,6 @@
 namespace palpate::evaluation {
 namespace {
 
-Vec3 true_gradient(const Subject& subject, const Vec3& physical) {
-    constexpr double h = 1e-3;  // [mm]
-    Vec3 gradient;
-    for (int a = 0; a < 3; ++a) {
-        const Vec3 step = h * Vec3::Unit(a);
-        gradient[a] = (subject.exact(physical + step) - subject.exact(physical - step)) / (2 * h);
-    }
-    return gradient;
-}
-
 /// Of vectors that are not zero; accurate near 0, where an arc cosine is not.
 double degrees_between(const Vec3& a, const Vec3& b) {
     const Vec3 u = a.normalized(), v = b.normalized();
@@ -73,10 +63,14 @@ Spread spread_of(const std::vector<double>& numbers) {
             quantile(numbers, 1)};
 }
 
-Vec3 true_normal(const Subject& subject, const Vec3& physical) {
-    const Vec3 gradient = true_gradient(subject, physical);
-    const double steepness = gradient.norm();
-    return steepness > 0 ? Vec3(-subject.field.sign() / steepness * gradient) : Vec3(Vec3::Zero());
+Vec3 true_gradient(const Subject& subject, const Vec3& physical) {
+    constexpr double h = 1e-3;  // [mm]
+    Vec3 gradient;
+    for (int a = 0; a < 3; ++a) {
+        const Vec3 step = h * Vec3::Unit(a);
+        gradient[a] = (subject.exact(physical + step) - subject.exact(physical - step)) / (2 * h);
+    }
+    return gradient;
 }
 
 TrajectoryResult follow(const Body& body, ProxyMethod method, int steps, double from, double to) {

@@ -35,8 +35,8 @@ TrajectoryResult follow(const Body& body, ProxyMethod method, int steps, double 
 /// what has to do with time or with ticks is NaN.
 TrajectoryResult follow_nearest(const Body& body, int steps);
 
-/// Unit normal of a subject's analytic density, out of the solid; zero where it is flat. Central
-/// differences over 1e-3 mm: the surfaces here bend by far more than that.
-Vec3 true_normal(const Subject& subject, const Vec3& physical);
+/// Of a subject's analytic density [1/mm]. Central differences over 1e-3 mm: the surfaces here bend
+/// by far more than that.
+Vec3 true_gradient(const Subject& subject, const Vec3& physical);
 
 }  // namespace palpate::evaluation

@@ -68,14 +68,11 @@ struct Column {
 void add_press(Column& column, const Table& press, std::size_t function, bool is_inward) {
     const Look look = look_of_press(function, is_inward);
     const std::string title = is_inward ? pressing_functions[function] : "";
-    column.level.series.push_back({Draw::line, title, look, levels_in(press)});
-    column.force.series.push_back(
-        {Draw::line, title, look, press.rows_of({"depth_mm", "force_n"})});
+    column.level.add(Draw::line, title, look, levels_in(press));
+    column.force.add(Draw::line, title, look, press.rows_of({"depth_mm", "force_n"}));
     const Colours& strip = strip_colours[function];
-    column.mode.series.push_back({Draw::boxes,
-                                  "",
-                                  {.colour = is_inward ? strip.in : strip.out},
-                                  contacts_in(press, 6 - 2 * double(function) - !is_inward)});
+    column.mode.add(Draw::boxes, "", {.colour = is_inward ? strip.in : strip.out},
+                    contacts_in(press, 6 - 2 * double(function) - !is_inward));
 }
 
 Column column_of(const Table& table, const PressingLine& line, const PressingPlan& plan) {
@@ -104,21 +101,16 @@ Column column_of(const Table& table, const PressingLine& line, const PressingPla
         const Table press = table.where("penetrability", pressing_functions[f]);
         const Table in = press.where("direction", "in"), out = press.where("direction", "out");
         if (f == 0) {
-            column.level.series.push_back({Draw::area,
-                                           "data at the hand",
-                                           {"#e4e4e4"},
-                                           in.rows_of({"depth_mm", "density_at_hand"})});
+            column.level.add(Draw::area, "data at the hand", {"#e4e4e4"},
+                             in.rows_of({"depth_mm", "density_at_hand"}));
         }
         add_press(column, in, f, true);
         add_press(column, out, f, false);
     }
     // For the key alone: every dashed line is for going out.
-    column.level.series.push_back({Draw::line,
-                                   "out again",
-                                   {.colour = colours::grey, .width = 1.5, .dash = Dash::dashed},
-                                   {}});
-    column.force.series.push_back(
-        level_line(most, "", {.colour = colours::grey, .width = 1, .dash = Dash::dotted}));
+    column.level.add(Draw::line, "out again",
+                     {.colour = colours::grey, .width = 1.5, .dash = Dash::dashed}, {});
+    column.force.add_level(most, "", {.colour = colours::grey, .width = 1, .dash = Dash::dotted});
     return column;
 }
 

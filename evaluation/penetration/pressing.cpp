@@ -1,9 +1,6 @@
 // Chooses lines into heads, and presses a hand along them.
 #include "evaluation/penetration/pressing.hpp"
 
-#include <fmt/format.h>
-
-#include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>

@@ -223,25 +223,20 @@ Panel panel_of(const Table& table, const char* title) {
         if (i % 2 > 0) continue;
         panel.x.ticks.push_back({position(i) + 0.5, "\n" + table.text(i, "volume")});
     }
-    panel.series.push_back(
-        level_line(1000, "a tick at 1 kHz", {.colour = colours::dark_grey, .dash = Dash::dashed}));
+    panel.add_level(1000, "a tick at 1 kHz", {.colour = colours::dark_grey, .dash = Dash::dashed});
     const Rows paper = microseconds(table, "paper_mean_us", 1);
     if (std::any_of(paper.begin(), paper.end(), [](const auto& r) { return !std::isnan(r[1]); })) {
-        panel.series.push_back({Draw::points,
-                                "mean of the haptic loop in the paper",
-                                {colours::purple, Marker::star, 1.3},
-                                paper});
+        panel.add(Draw::points, "mean of the haptic loop in the paper",
+                  {colours::purple, Marker::star, 1.3}, paper);
     }
-    Series spans{Draw::segments, "", {.colour = colours::light_grey}, {}};
+    Series& spans = panel.add(Draw::segments, "", {.colour = colours::light_grey}, {});
     for (std::size_t i = 0; i < rows; ++i) {
         spans.rows.push_back({position(i), table.number(i, "p50_ns") / 1000, position(i),
                               table.number(i, "max_ns") / 1000});
     }
-    panel.series.push_back(spans);
     for (const Mark& mark : marks) {
         if (std::isnan(table.number(0, mark.column))) continue;
-        panel.series.push_back(
-            {Draw::points, mark.title, mark.look, microseconds(table, mark.column, 1e-3)});
+        panel.add(Draw::points, mark.title, mark.look, microseconds(table, mark.column, 1e-3));
     }
     return panel;
 }

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "palpate/scenes/volumes.hpp"
 #include "scenes/random.hpp"
@@ -39,7 +38,7 @@ Subject ball(const Ball& shape) {
         }
     }
     const Geometry geometry = scenes::centred(Index3::Constant(shape.size));
-    return {"ball", Field(Volume(geometry, std::move(samples))), 127.5, {}, ""};
+    return {"ball", Field(Volume(geometry, std::move(samples))), 127.5};
 }
 
 Subject noisy_ball(const Ball& shape, double amplitude, std::uint64_t seed) {
@@ -56,7 +55,7 @@ Subject noisy_ball(const Ball& shape, double amplitude, std::uint64_t seed) {
         }
     }
     const Geometry geometry = scenes::centred(Index3::Constant(shape.size));
-    return {"noisy-ball", Field(Volume(geometry, std::move(samples))), 0.5, {}, ""};
+    return {"noisy-ball", Field(Volume(geometry, std::move(samples))), 0.5};
 }
 
 Trajectory round_the_ball(double radius, double step, int ticks, double from) {

@@ -8,7 +8,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
-#include <limits>
 
 #include "evaluation/table.hpp"
 #include "evaluation/timing.hpp"
@@ -48,22 +47,16 @@ void change_levels(const Subject& subject, const std::vector<Trajectory>& trajec
                    Note&& note) {
     constexpr std::size_t every = 25;
     bool up = false;
-    for (const Trajectory& trajectory : trajectories) {
-        Proxy proxy;
-        place(proxy, subject.field, trajectory.front(), subject.isovalue);
-        for (std::size_t i = 1; i < trajectory.size(); ++i) {
-            if (i % every != 0) {
-                update_exact(proxy, subject.field, trajectory[i]);
-                continue;
-            }
-            const bool away = proxy.isovalue == subject.isovalue;
+    follow(subject, trajectories, [&](Proxy& proxy, const Trajectory& hand, std::size_t i) {
+        const bool changes = i % every == 0, away = proxy.isovalue == subject.isovalue;
+        if (changes) {
             if (away) up = !up;
             proxy.isovalue = away ? changed(subject.field, subject.isovalue, up) : subject.isovalue;
-            const auto begin = Clock::now();
-            const ProxyUpdate update = update_exact(proxy, subject.field, trajectory[i]);
-            note(update, nanoseconds_since(begin));
         }
-    }
+        const auto begin = Clock::now();
+        const ProxyUpdate update = update_exact(proxy, subject.field, hand[i]);
+        if (changes) note(update, nanoseconds_since(begin));
+    });
 }
 
 void time_changes(const Subject& subject, const std::vector<Trajectory>& trajectories, int passes,
@@ -113,16 +106,11 @@ std::vector<Segment> segments_of(const Subject& subject,
                                  const std::vector<Trajectory>& trajectories, std::size_t most) {
     const double above = 0.5 * subject.field.geometry().spacing.minCoeff();
     std::vector<Segment> all;
-    for (const Trajectory& trajectory : trajectories) {
-        Proxy proxy;
-        place(proxy, subject.field, trajectory.front(), subject.isovalue);
-        for (std::size_t i = 1; i < trajectory.size(); ++i) {
-            const ProxyUpdate update = update_exact(proxy, subject.field, trajectory[i]);
-            if (update.mode != Mode::constrained) continue;
-            const Vec3 from = update.scp + above * normal_at(proxy, subject.field);
-            all.push_back({from, trajectory[i]});
-        }
-    }
+    follow(subject, trajectories, [&](Proxy& proxy, const Trajectory& hand, std::size_t i) {
+        const ProxyUpdate update = update_exact(proxy, subject.field, hand[i]);
+        if (update.mode != Mode::constrained) return;
+        all.push_back({update.scp + above * normal_at(proxy, subject.field), hand[i]});
+    });
     if (all.size() <= most) return all;
     std::vector<Segment> some;
     for (std::size_t i = 0; i < most; ++i) some.push_back(all[i * all.size() / most]);

@@ -31,13 +31,6 @@ Panel panel_of(const Table& table, const Growth& growth, double most_us) {
         if (growth.column == std::string("samples")) value = std::cbrt(value);
         value = std::max(value, no_noise);
     }
-    const auto against_x = [&](const char* column, double unit) {
-        Rows points;
-        for (const double value : rows.numbers(column)) {
-            points.push_back({x[points.size()], value / unit});
-        }
-        return points;
-    };
     Panel panel;
     panel.title = volume.ends_with("ball") ? growth.title : growth.title + (": " + volume);
     panel.x = {.title = growth.axis,
@@ -49,19 +42,20 @@ Panel panel_of(const Table& table, const Growth& growth, double most_us) {
         .title = "time of an update [µs]", .is_logarithmic = true, .low = 0.05, .high = most_us};
     panel.right = panel.y;
     panel.right->title = "tetrahedra an update";
-    panel.series = {
-        {Draw::line_points,
-         "p99.9",
-         {colours::orange, Marker::triangle_down},
-         against_x("p999_ns", 1000)},
-        {Draw::line_points, "p99", {colours::green, Marker::triangle}, against_x("p99_ns", 1000)},
-        {Draw::line_points, "mean", {colours::black, Marker::cross}, against_x("mean_ns", 1000)},
-        {Draw::line_points, "p50", {colours::blue, Marker::circle}, against_x("p50_ns", 1000)},
-        {Draw::line_points,
-         "tetrahedra (right axis)",
-         {colours::purple, Marker::open_diamond, 1, 2, Dash::dashed},
-         against_x("tetrahedra_per_update", 1)}};
-    panel.series.back().on_right_axis = true;
+    const auto add = [&](const char* title, const Look& look, const char* column, double unit) {
+        Rows points;
+        for (const double value : rows.numbers(column)) {
+            points.push_back({x[points.size()], value / unit});
+        }
+        return &panel.add(Draw::line_points, title, look, std::move(points));
+    };
+    add("p99.9", {colours::orange, Marker::triangle_down}, "p999_ns", 1000);
+    add("p99", {colours::green, Marker::triangle}, "p99_ns", 1000);
+    add("mean", {colours::black, Marker::cross}, "mean_ns", 1000);
+    add("p50", {colours::blue, Marker::circle}, "p50_ns", 1000);
+    add("tetrahedra (right axis)", {colours::purple, Marker::open_diamond, 1, 2, Dash::dashed},
+        "tetrahedra_per_update", 1)
+        ->on_right_axis = true;
     return panel;
 }
 
@@ -120,33 +114,30 @@ constexpr std::array<Curve, 4> memory_curves{
 
 /// Lines through the balls, single marks for other volumes.
 void add_curve(Panel& panel, const Table& table, const Curve& curve, bool has_times) {
-    Series balls{Draw::line_points, curve.title, curve.look, {}};
-    Series others{Draw::points, curve.title, curve.look, {}};
-    Series names{Draw::text, "", {colours::dark_grey}, {}};
+    Rows balls, others;
+    int named = 0;
     for (std::size_t i = 0; i < table.rows().size(); ++i) {
         const std::vector<double> point{table.number(i, "samples"),
                                         curve.unit * table.number(i, curve.column)};
         if (std::isnan(point[1])) continue;
         const bool is_ball = table.text(i, "volume") == "ball";
-        (is_ball ? balls : others).rows.push_back(point);
+        (is_ball ? balls : others).push_back(point);
         if (is_ball || !curve.is_named) continue;
         // In turn to the left and to the right, so that neighbours do not cover one another.
-        const bool is_left = names.rows.size() % 2 == 0;
-        Series name{Draw::text, "", {colours::dark_grey}, {point}, {table.text(i, "volume")}};
+        const bool is_left = named++ % 2 == 0;
+        Series& name = panel.add(Draw::text, "", {colours::dark_grey}, {point});
+        name.labels = {table.text(i, "volume")};
         name.text = {.align = is_left ? Align::right : Align::left,
                      .right = is_left ? -0.9 : 0.9,
                      .up = is_left ? 0.2 : 0.4};
-        names.rows.push_back(point);
-        panel.series.push_back(std::move(name));
     }
-    if (has_times && curve.is_named && !balls.rows.empty()) {
-        Series time{Draw::text, "", {curve.look.colour}, {balls.rows.back()}};
-        time.labels = {time_text(balls.rows.back()[1])};
+    if (has_times && curve.is_named && !balls.empty()) {
+        Series& time = panel.add(Draw::text, "", {curve.look.colour}, {balls.back()});
+        time.labels = {time_text(balls.back()[1])};
         time.text.up = 0.9;
-        panel.series.push_back(std::move(time));
     }
-    panel.series.push_back(std::move(balls));
-    panel.series.push_back(std::move(others));
+    panel.add(Draw::line_points, curve.title, curve.look, std::move(balls));
+    panel.add(Draw::points, curve.title, curve.look, std::move(others));
 }
 
 Figure explicit_figure(const Table& all) {
@@ -186,8 +177,8 @@ Figure explicit_figure(const Table& all) {
                 .format = "%.0s %cB"};
     for (const Curve& curve : time_curves) add_curve(time, table, curve, true);
     for (const Curve& curve : memory_curves) add_curve(memory, table, curve, false);
-    time.series.push_back(level_line(1e-3, "a tick at 1 kHz",
-                                     {.colour = colours::dark_grey, .dash = Dash::dash_dotted}));
+    time.add_level(1e-3, "a tick at 1 kHz",
+                   {.colour = colours::dark_grey, .dash = Dash::dash_dotted});
     figure.panels = {std::move(time), std::move(memory)};
     return figure;
 }

@@ -2,7 +2,6 @@
 // which extracts the whole isosurface first.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <limits>

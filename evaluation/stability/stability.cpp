@@ -2,10 +2,8 @@
 // surface and held there. A loop that does not come to rest is in a limit cycle, felt as buzzing.
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
 
 #include "devices/simulated/profiles.hpp"
 #include "evaluation/experiment.hpp"
@@ -25,17 +23,6 @@ struct Case {
     double encoder = 0;     ///< [mm] step
     double rate = 1000;     ///< [Hz]
     double stiffness = 0;   ///< [N/mm]
-};
-
-/// From the least to the greatest of each coordinate.
-struct Extent {
-    Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity());
-    Vec3 high = -low;
-    void add(const Vec3& v) {
-        low = low.cwiseMin(v);
-        high = high.cwiseMax(v);
-    }
-    double largest() const { return (high - low).maxCoeff(); }
 };
 
 struct Held {
@@ -66,7 +53,7 @@ Held press(const Case& c, const Subject& subject) {
     settings.force.limit = info.limits.maximum_force;
     Renderer renderer = make_renderer(subject.field, subject.isovalue, settings);
     Held held;
-    Extent position, force;
+    Eigen::AlignedBox3d position, force;
     const int ticks = static_cast<int>(seconds * c.rate);
     for (int i = 0; i < ticks; ++i) {
         const double time = i / c.rate;
@@ -76,13 +63,13 @@ Held press(const Case& c, const Subject& subject) {
             render(renderer, {.time = time, .position = reading.position, .valid = ready});
         device->write(tick.force, time);
         if (time < seconds - 1) continue;
-        position.add(reading.position);
-        force.add(tick.force);
+        position.extend(reading.position);
+        force.extend(tick.force);
         held.push = tick.force.norm();
         held.in_contact = held.in_contact || tick.proxy.mode == Mode::constrained;
     }
-    held.position = position.largest();
-    held.force = force.largest();
+    held.position = position.sizes().maxCoeff();
+    held.force = force.sizes().maxCoeff();
     held.at_rest = held.position <= 2.01 * std::max(least_step, c.encoder);
     return held;
 }
@@ -133,24 +120,24 @@ double largest_stable(const Table& table, double rate) {
 /// Stiffness over rate, the colour the movement at rest; a line where it ends.
 Panel map_panel(const Table& table, const Plan& plan, double encoder) {
     const Table map = table.where("part", "map").where("encoder_step_mm", encoder);
-    Series cells{Draw::cells, "", {}, {}};
-    Series limit{Draw::line, "", {.colour = colours::vermilion, .width = 3}, {}};
-    Panel panel;
+    Rows cells, limit;
+    std::vector<std::string> kilohertz;
     for (std::size_t r = 0; r < plan.rates.size(); ++r) {
         const double stable = largest_stable(map, plan.rates[r]);
-        limit.rows.push_back({double(r) - 0.5, stable + 0.05});
-        limit.rows.push_back({double(r) + 0.5, stable + 0.05});
+        limit.push_back({double(r) - 0.5, stable + 0.05});
+        limit.push_back({double(r) + 0.5, stable + 0.05});
         for (const auto& row : map.where("rate_hz", plan.rates[r])
                                    .rows_of({"stiffness_N_mm", "position_peak_to_peak_mm"})) {
-            cells.rows.push_back({double(r), row[0], std::max(1e-3, row[1])});
+            cells.push_back({double(r), row[0], std::max(1e-3, row[1])});
         }
-        panel.x.ticks.push_back({double(r), fmt::format("{:g}", plan.rates[r] / 1000)});
+        kilohertz.push_back(fmt::format("{:g}", plan.rates[r] / 1000));
     }
-    panel.series = {std::move(cells), std::move(limit)};
+    Panel panel;
+    panel.add(Draw::cells, "", {}, std::move(cells));
+    panel.add(Draw::line, "", {.colour = colours::vermilion, .width = 3}, std::move(limit));
     panel.title = fmt::format("encoder step {:g} mm", encoder);
+    panel.x = axis_named(kilohertz);
     panel.x.title = "update rate [kHz]";
-    panel.x.low = -0.5;
-    panel.x.high = double(plan.rates.size()) - 0.5;
     panel.y = {.low = 0, .high = 3.05};
     panel.has_grid = false;
     panel.scale = ColourScale{"peak to peak [mm]", 0.001, 10, true};
@@ -195,11 +182,11 @@ Figure profile_figure(const Table& table, const Plan& plan) {
         panel.y = {.title = "largest stable stiffness [N/mm]", .low = 0, .high = 3.1};
         for (const std::string& profile : plan.profiles) {
             const Table rows = table.where("part", part).where("profile", profile);
-            Series line{Draw::line_points, profile, look_of(panel.series.size()), {}};
+            const Look look = look_of(panel.series.size());
+            Series& line = panel.add(Draw::line_points, profile, look, {});
             for (const double rate : plan.rates) {
                 line.rows.push_back({rate / 1000, largest_stable(rows, rate)});
             }
-            panel.series.push_back(std::move(line));
         }
         figure.panels.push_back(std::move(panel));
     }

@@ -57,7 +57,7 @@ Cut wall_cut() {
         return std::round(
             std::clamp(50 + 22 * (ground[static_cast<std::size_t>(i)] - j), 0.0, 100.0));
     };
-    Cut cut{{"wall", Field(extruded(width, height, 1, 1, density)), 50, {}, ""}};
+    Cut cut{{"wall", Field(extruded(width, height, 1, 1, density)), 50}};
     cut.z = 1;
     cut.high = {width - 1, height - 1, 0};
     cut.start = {0.6, 5.8, 1};

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <optional>
 
 #include "evaluation/walk_through/walk.hpp"
@@ -197,12 +196,9 @@ void add_walk(Panel& panel, const Cut& cut, const Walk& walk) {
         goal.reset();
     }
     goals.add_plain(panel, "GOAL of a move", {colours::green, Marker::open_diamond, 2}, "#006b4e");
-    panel.series.push_back(
-        {Draw::line, "", {.colour = colours::vermilion, .width = 2.5}, std::move(path)});
-    panel.series.push_back({Draw::points,
-                            "wall crossed",
-                            {colours::vermilion, Marker::circle, 0.6},
-                            std::move(crossings)});
+    panel.add(Draw::line, "", {.colour = colours::vermilion, .width = 2.5}, std::move(path));
+    panel.add(Draw::points, "wall crossed", {colours::vermilion, Marker::circle, 0.6},
+              std::move(crossings));
     scps.add_to(panel, "SCP, after each move", {colours::vermilion, Marker::circle, 1.3});
 }
 
@@ -218,24 +214,20 @@ Panel panel_of(const Cut& cut, const Drawing& drawing, const Walk& walk) {
     panel.y = {.title = "y [mm]",
                .low = (cut.low[1] - 0.6) * spacing[1],
                .high = (cut.high[1] + 0.4) * spacing[1]};
-    panel.series = {
-        {Draw::polygons, "solid", {"#dbe9f6"}, drawing.solid},
-        {Draw::line, "tetrahedra in the cut", {.colour = "#c4c4c4", .width = 1}, drawing.edges},
-        {Draw::points,
-         "sample, with its density",
-         {"#707070", Marker::circle, 0.4},
-         drawing.densities.rows},
-        drawing.densities,
-        {Draw::line,
-         fmt::format("isosurface at {:g}", cut.subject.isovalue),
-         {.colour = colours::blue, .width = 3},
-         drawing.contour}};
+    panel.add(Draw::polygons, "solid", {"#dbe9f6"}, drawing.solid);
+    panel.add(Draw::line, "tetrahedra in the cut", {.colour = "#c4c4c4", .width = 1},
+              drawing.edges);
+    panel.add(Draw::points, "sample, with its density", {"#707070", Marker::circle, 0.4},
+              drawing.densities.rows);
+    panel.series.push_back(drawing.densities);
+    panel.add(Draw::line, fmt::format("isosurface at {:g}", cut.subject.isovalue),
+              {.colour = colours::blue, .width = 3}, drawing.contour);
     add_walk(panel, cut, walk);
     const Rows hips{{cut.hip_before[0], cut.hip_before[1]}, {cut.hip[0], cut.hip[1]}};
-    panel.series.push_back({Draw::points, "HIP", {colours::black, Marker::cross, 1.6, 3}, hips});
-    Series names{Draw::text, "", {colours::black}, hips, {"HIP before", "HIP"}};
+    panel.add(Draw::points, "HIP", {colours::black, Marker::cross, 1.6, 3}, hips);
+    Series& names = panel.add(Draw::text, "", {colours::black}, hips);
+    names.labels = {"HIP before", "HIP"};
     names.text = {.size = 11, .align = Align::left, .right = 1.2};
-    panel.series.push_back(std::move(names));
     return panel;
 }
 

@@ -71,7 +71,8 @@ TEST(Fidelity, hands_are_as_deep_below_the_true_surface_as_said) {
             const Vec3 surface = hand + body.depth * body.ideal(hand);
             EXPECT_NEAR(subject.exact(surface), subject.isovalue, 1e-6) << subject.name;
             EXPECT_GT(subject.exact(hand), subject.isovalue);
-            EXPECT_LT((true_normal(subject, surface) - body.ideal(hand)).norm(), 1e-6);
+            const Vec3 into = true_gradient(subject, surface).normalized();
+            EXPECT_LT((-subject.field.sign() * into - body.ideal(hand)).norm(), 1e-6);
         }
         EXPECT_LT(subject.exact(body.start), subject.isovalue);
     }

@@ -32,7 +32,7 @@ TEST(Figure, every_way_to_draw_a_series_is_drawn_with_its_title_in_the_key) {
                         {Draw::line, "a line", {.dash = Dash::dashed}, points},
                         {Draw::points, "points", {.marker = Marker::circle}, points},
                         {Draw::line_points, "both", look_of(3), points},
-                        level_line(3, "a level", {})};
+                        {Draw::level, "a level", {}, {{3}}}};
         panel.series.push_back({Draw::text, "", {}, {{1, 3}}, {"some text"}});
     }
     figure.panels[1].title = "to the right";
@@ -59,7 +59,7 @@ TEST(Figure, a_map_has_a_scale_of_colours_and_its_texts) {
     Panel& panel = figure.panels[0];
     panel.scale = ColourScale{"share [%]", 0, 100, false};
     panel.series = {{Draw::cells, "", {}, {{0, 0, 10}, {1, 0, 50}, {0, 1, 90}, {1, 1, 100}}}};
-    panel.x.ticks = ticks_named({"left", "right\nside"});
+    panel.x.ticks = axis_named({"left", "right\nside"}).ticks;
     const std::string svg = svg_of(figure);
     for (const char* text : {"share [%]", "left", "right", "side"}) {
         EXPECT_TRUE(contains(svg, text)) << text;

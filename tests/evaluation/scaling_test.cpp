@@ -109,7 +109,7 @@ TEST(ExplicitApproach, extracts_the_surface_that_is_felt_on_every_type_and_an_ob
     for (const SampleType type :
          {SampleType::uint8, SampleType::int16, SampleType::uint16, SampleType::float32}) {
         scenes::Scene scene = scenes::make_volume("sphere", geometry, type);
-        const Subject subject{"sphere", Field(std::move(scene.volume)), scene.isovalue, {}, ""};
+        const Subject subject{"sphere", Field(std::move(scene.volume)), scene.isovalue};
         const auto trajectories = explore(subject, {.trajectories = 2, .trajectory_s = 0.5});
         auto segments = segments_of(subject, trajectories, 100);
         EXPECT_EQ(segments.size(), 100U);

@@ -54,4 +54,7 @@ class PendingFile {
     std::string buffer_;
 };
 
+/// A file with these bytes, whole or not at all: a PendingFile in one go.
+void write_file(const std::filesystem::path& path, std::string_view bytes);
+
 }  // namespace palpate::io
