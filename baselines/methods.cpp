@@ -18,6 +18,12 @@ std::span<const NamedMethod> methods() {
     return all;
 }
 
+std::vector<std::string> method_names() {
+    std::vector<std::string> names;
+    for (const NamedMethod& entry : methods()) names.emplace_back(entry.name);
+    return names;
+}
+
 ProxyMethod method_named(std::string_view name) {
     std::string names;
     for (const NamedMethod& entry : methods()) {

@@ -1,6 +1,7 @@
 // Exceptions to exit status.
 #include "apps/options/exit_status.hpp"
 
+#include <cstdio>
 #include <new>
 #include <stdexcept>
 
@@ -27,6 +28,11 @@ Failure failure_of(const std::exception& exception) {
     if (is<io::OutputError>(exception)) return {bad_output, text};
     if (is<std::invalid_argument>(exception)) return {wrong_use, text};
     return {bad_input, text};
+}
+
+int fail(const std::string& text, int status) {
+    std::fprintf(stderr, "palpate: %s\n", text.c_str());
+    return status;
 }
 
 }  // namespace palpate::app

@@ -29,4 +29,7 @@ struct Failure {
 /// What an exception that nobody caught means.
 Failure failure_of(const std::exception& exception);
 
+/// Prints the line on standard error, behind the program's name. Returns the status.
+int fail(const std::string& text, int status);
+
 }  // namespace palpate::app

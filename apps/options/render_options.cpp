@@ -43,11 +43,9 @@ run::LevelRange range_from(const std::string& text) {
 }
 
 void RenderOptions::add_to(CLI::App& command) {
-    std::vector<std::string> names;
-    for (const auto& entry : baselines::methods()) names.emplace_back(entry.name);
     const auto choose = [this](const std::string& name) { given.method = run::named_method(name); };
     command.add_option_function<std::string>("--method", choose, "Proxy method")
-        ->check(CLI::IsMember(names))
+        ->check(CLI::IsMember(baselines::method_names()))
         ->default_str(given.method.name);
     add_penetrability_to(command);
     add_force_to(command);
@@ -97,24 +95,16 @@ void RenderOptions::add_force_to(CLI::App& command) {
             [this](const std::string& text) { given.friction = friction_from("--friction", text); },
             "Friction coefficients; dynamic at most static")
         ->type_name("STATIC[,DYNAMIC]");
-    command
-        .add_option_function<std::string>(
-            "--magnet",
-            [this](const std::string& text) {
-                const auto [distance, peak] = two_numbers("--magnet", text);
-                given.force.magnet = {distance, peak};
-            },
-            "Snap to near surfaces: DISTANCE [mm],PEAK [N]")
+    const auto add_pair = [&](const char* name, auto& pair, const char* help) {
+        const auto read = [name, &pair](const std::string& text) {
+            const auto [first, second] = two_numbers(name, text);
+            pair = {first, second};
+        };
+        return command.add_option_function<std::string>(name, read, help);
+    };
+    add_pair("--magnet", force.magnet, "Snap to near surfaces: DISTANCE [mm],PEAK [N]")
         ->type_name("D,P");
-    command
-        .add_option_function<std::string>(
-            "--texture",
-            [this](const std::string& text) {
-                const auto [amplitude, wavelength] = two_numbers("--texture", text);
-                given.force.texture = {amplitude, wavelength};
-            },
-            "Bumps: AMPLITUDE,WAVELENGTH [mm]")
-        ->type_name("A,W");
+    add_pair("--texture", force.texture, "Bumps: AMPLITUDE,WAVELENGTH [mm]")->type_name("A,W");
     command.add_option("--force-limit", given.limit, "Largest force [N]")
         ->default_str(fmt::format("{}", force.limit));
     command.add_option("--force-rate", force.rate_limit, "Largest change of force [N/s]")

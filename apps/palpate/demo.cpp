@@ -9,7 +9,7 @@
 #include "apps/palpate/demo_run.hpp"
 #include "apps/palpate/picture.hpp"
 #include "apps/palpate/progress.hpp"
-#include "apps/palpate/result_folder.hpp"
+#include "palpate/io/output.hpp"
 #include "palpate/io/sample_volume.hpp"
 #include "pictures/levels.hpp"
 #include "pictures/view.hpp"
@@ -60,7 +60,7 @@ void explore(const DemoOptions& options) {
               "Blue: the hand (HIP). Vermilion: the proxy (SCP) in contact. Fainter where it is "
               "behind the surface.",
               [&](const std::filesystem::path& folder) {
-                  write_file(folder / "surface.png", draw(picture_of(demo, options)));
+                  io::write_file(folder / "surface.png", draw(picture_of(demo, options)));
               }});
 }
 
@@ -75,15 +75,13 @@ void add_demo(CLI::App& app) {
         app.add_subcommand("demo", "A simulated hand explores a volume; pictures and a report");
     command->footer(
         "Examples:\n  palpate demo\n  palpate demo lobster.nrrd --isovalue 35 --motion circle");
-    add_demo_options(*command, *options);
-    add_motion_options(*command, *options);
-    command->add_option("--speed", options->hand.speed_mm_s, "Speed of the hand [mm/s]")
-        ->capture_default_str();
-    command->add_option("--seed", options->hand.seed, "Seed of the hand's motion")
-        ->check(flaw_in_count)
-        ->capture_default_str();
     add_demo_sculpt(*command);
     add_demo_beating(*command);
+    add_demo_options(*command, *options);
+    add_motion_options(*command, *options);
+    command->add_option("--speed", options->hand.speed_mm_s, "Speed of the hand [mm/s]");
+    command->add_option("--seed", options->hand.seed, "Seed of the hand's motion")
+        ->check(flaw_in_count);
     command->callback([options, command] {
         if (!command->get_subcommands().empty()) return;  // it has done its own
         options->hand.rate_hz = options->render.given.rate;

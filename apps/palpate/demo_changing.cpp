@@ -10,8 +10,8 @@
 #include "apps/palpate/demo_run.hpp"
 #include "apps/palpate/picture.hpp"
 #include "apps/palpate/progress.hpp"
-#include "apps/palpate/result_folder.hpp"
 #include "palpate/editor.hpp"
+#include "palpate/io/output.hpp"
 #include "palpate/run/brush.hpp"
 #include "pictures/animation.hpp"
 #include "pictures/contact.hpp"
@@ -78,9 +78,9 @@ void animate(const Demo& demo, const std::vector<Moment>& moments, const Animati
         pngs.push_back(draw(picture_of(demo, moment, scene_of(demo, options), view)));
         bar.at(static_cast<double>(pngs.size()) / static_cast<double>(moments.size()));
     }
-    write_file(folder / "animation.png",
-               pictures::animation_of(pngs, animation.seconds_per_picture));
-    write_file(folder / "surface.png", pngs.back());
+    io::write_file(folder / "animation.png",
+                   pictures::animation_of(pngs, animation.seconds_per_picture));
+    io::write_file(folder / "surface.png", pngs.back());
 }
 
 /// Feels, keeps the moments of the animation, draws and reports.
@@ -199,8 +199,7 @@ CLI::App* add_changing(CLI::App& demo, const char* name, const char* what,
     CLI::App* command = demo.add_subcommand(name, what);
     add_demo_options(*command, *options);
     command->add_option("--pictures", options->pictures, "How many pictures the animation has")
-        ->check(CLI::Range(2, 240))
-        ->capture_default_str();
+        ->check(CLI::Range(2, 240));
     command->callback([options, run] {
         options->hand.rate_hz = options->render.given.rate;
         run(*options);
@@ -223,10 +222,8 @@ void add_demo_sculpt(CLI::App& demo) {
         demo, "sculpt", "A simulated hand carves what it feels; an animation", options, sculpt);
     command->footer("Example:\n  palpate demo sculpt lobster.nrrd --isovalue 35 --radius 4");
     add_motion_options(*command, *options);
-    command->add_option("--radius", options->brush.radius, "Radius of the brush [mm]")
-        ->capture_default_str();
-    command->add_option("--brush-rate", options->brush.rate, "How fast the brush works [1/s]")
-        ->capture_default_str();
+    command->add_option("--radius", options->brush.radius, "Radius of the brush [mm]");
+    command->add_option("--brush-rate", options->brush.rate, "How fast the brush works [1/s]");
 }
 
 void add_demo_beating(CLI::App& demo) {
@@ -239,8 +236,7 @@ void add_demo_beating(CLI::App& demo) {
         options, beating);
     command->footer("Example:\n  palpate demo beating heart.nii.gz --isovalue 120");
     command->add_option("--beats", options->beats, "How often the sequence is played")
-        ->check(CLI::Range(1, 1000))
-        ->capture_default_str();
+        ->check(CLI::Range(1, 1000));
 }
 
 }  // namespace palpate::app

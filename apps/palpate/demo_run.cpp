@@ -14,6 +14,7 @@
 #include "evaluation/figure.hpp"
 #include "evaluation/html.hpp"
 #include "io/plot.hpp"
+#include "palpate/io/output.hpp"
 
 namespace palpate::app {
 namespace {
@@ -27,7 +28,7 @@ void write_trajectory(const io::Trajectory& trajectory, const fs::path& path) {
         const Vec3& p = trajectory.position[i];
         text += fmt::format("{},{},{},{}\n", trajectory.time[i], p[0], p[1], p[2]);
     }
-    write_file(path, text);
+    io::write_file(path, text);
 }
 
 /// Renders the motion; writes trajectory, trace and path to files.
@@ -128,20 +129,17 @@ void add_demo_options(CLI::App& command, DemoOptions& options) {
     options.source.add_to(command, true);
     add_field_options(command, options.field);
     options.render.add_to(command);
-    command.add_option("--depth", options.hand.depth_mm, "How deep the hand presses [mm]")
-        ->capture_default_str();
+    command.option_defaults()->always_capture_default();  // of all that follow
+    command.add_option("--depth", options.hand.depth_mm, "How deep the hand presses [mm]");
     command.add_option("--picture", options.picture_width, "Width of the picture [pixels]")
-        ->check(CLI::Range(16, 8192))
-        ->capture_default_str();
-    command.add_option("-o,--output", options.output, "Folder for the results")
-        ->capture_default_str();
+        ->check(CLI::Range(16, 8192));
+    command.add_option("-o,--output", options.output, "Folder for the results");
 }
 
 void add_motion_options(CLI::App& command, DemoOptions& options) {
     command.add_option("--motion", options.motion, "Motion of the hand")
-        ->check(CLI::IsMember(scenes::motion_names()))
-        ->capture_default_str();
-    command.add_option("--duration", options.hand.duration_s, "Length [s]")->capture_default_str();
+        ->check(CLI::IsMember(scenes::motion_names()));
+    command.add_option("--duration", options.hand.duration_s, "Length [s]");
 }
 
 Demo load_demo(const DemoOptions& options) {
@@ -183,7 +181,7 @@ void run_demo(Demo& demo, const DemoOptions& options, const DemoPicture& picture
     if (plotted) images += image_html("session.png", "Depth, force and density over time", "");
     if (more) more(folder);
     stop_if_interrupted();
-    write_file(folder / "report.html", report_html(demo, images));
+    io::write_file(folder / "report.html", report_html(demo, images));
     results.complete();
     if (quiet) return;
     fmt::print("{} felt {} at isovalue {:g}.\n{}", demo.hand, demo.loaded.name, demo.isovalue,

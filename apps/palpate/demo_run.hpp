@@ -25,7 +25,8 @@ struct DemoOptions {
     std::string output;  ///< folder
 };
 
-/// All but the motion and its length, which add_motion_options() adds.
+/// All but the motion and its length, which add_motion_options() adds. The help shows the defaults
+/// of options that are added after these.
 void add_demo_options(CLI::App& command, DemoOptions& options);
 /// --motion and --duration.
 void add_motion_options(CLI::App& command, DemoOptions& options);

@@ -165,12 +165,10 @@ void add_evaluate(CLI::App& app) {
                      "Folder with the real volumes that some experiments use, such as "
                      "lobster.nrrd (default: environment PALPATE_DATA)")
         ->type_name("FOLDER");
-    std::vector<std::string> methods;
-    for (const auto& entry : baselines::methods()) methods.emplace_back(entry.name);
     command
         ->add_option("--method", options->experiment.method,
                      "Proxy method, for experiments that show one")
-        ->check(CLI::IsMember(methods))
+        ->check(CLI::IsMember(baselines::method_names()))
         ->capture_default_str();
     command->add_option("--seed", options->experiment.seed, "Seed of everything random")
         ->check(flaw_in_count)

@@ -24,11 +24,6 @@ void on_signal(int number) {
     stop_signal = number;
 }
 
-int fail(const char* what, int status) {
-    std::fprintf(stderr, "palpate: %s\n", what);
-    return status;
-}
-
 /// A standard stream that is closed would give its number, and then its text, to the next file that
 /// is opened. In its place: one that cannot be written, so that this is an error and no damage.
 void occupy_closed_streams() {
@@ -103,7 +98,7 @@ int run(int argc, char** argv) {
         std::cout.flush();
         return finish_output();
     } catch (const CLI::ParseError& e) {
-        return fail(complaint(app, e).c_str(), wrong_use);
+        return fail(complaint(app, e), wrong_use);
     }
     return finish_output();
 }
@@ -131,9 +126,8 @@ int main(int argc, char** argv) {
     try {
         return run(argc, argv);
     } catch (const ClaimsDoNotHold& broken) {
-        const std::string text =
-            std::to_string(broken.count) + " of the claims do not hold (see above)";
-        return fail(text.c_str(), claims_broken);
+        return fail(std::to_string(broken.count) + " of the claims do not hold (see above)",
+                    claims_broken);
     } catch (const Interrupted&) {
         return fail("interrupted", status_of_signal(stop_signal));
     } catch (const std::exception& e) {
@@ -142,6 +136,6 @@ int main(int argc, char** argv) {
         if (failure.status == bad_input && interrupted())
             return fail("interrupted", status_of_signal(stop_signal));
         if (std::ferror(stdout) != 0) return finish_output();
-        return fail(failure.text.c_str(), failure.status);
+        return fail(failure.text, failure.status);
     }
 }

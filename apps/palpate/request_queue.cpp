@@ -8,15 +8,6 @@
 
 namespace palpate::app {
 
-RequestQueue::~RequestQueue() {
-    {
-        const std::scoped_lock lock(mutex_);
-        stop_ = true;
-    }
-    changed_.notify_all();
-    thread_.join();
-}
-
 void RequestQueue::put(Work work) {
     {
         const std::scoped_lock lock(mutex_);
@@ -40,11 +31,10 @@ std::string RequestQueue::unsaved() const {
     return unsaved_;
 }
 
-void RequestQueue::run() {
+void RequestQueue::run(const std::stop_token& stop) {
     std::unique_lock lock(mutex_);
-    while (true) {
-        changed_.wait(lock, [&] { return stop_ || !waiting_.empty(); });
-        if (stop_) return;
+    while (changed_.wait(lock, stop, [&] { return !waiting_.empty(); })) {
+        if (stop.stop_requested()) return;
         const Work next = std::move(waiting_.front());
         waiting_.pop_front();
         busy_ = true;

@@ -15,13 +15,10 @@ namespace palpate::app {
 /// Returns a sentence for the person who asked, or nothing; what it throws is reported.
 using Work = std::function<std::string()>;
 
+/// The destructor waits for the work under way and drops the rest.
 class RequestQueue {
   public:
-    RequestQueue() : thread_([this] { run(); }) {}
-    /// Waits for the work under way and drops the rest.
-    ~RequestQueue();
-    RequestQueue(const RequestQueue&) = delete;
-    RequestQueue& operator=(const RequestQueue&) = delete;
+    RequestQueue() : thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
     void put(Work work);
     struct Message {
@@ -36,17 +33,17 @@ class RequestQueue {
     std::string unsaved() const;
 
   private:
-    void run();
+    void run(const std::stop_token& stop);
     void do_one(const Work& work);
     void say(const std::string& text, bool is_problem);
 
     mutable std::mutex mutex_;
-    std::condition_variable changed_;
+    std::condition_variable_any changed_;
     std::deque<Work> waiting_;
     std::vector<Message> messages_;
     std::string unsaved_;
-    bool busy_ = false, stop_ = false;
-    std::thread thread_;  // last: it uses all of the above
+    bool busy_ = false;
+    std::jthread thread_;  // last: it uses all of the above
 };
 
 }  // namespace palpate::app

@@ -47,10 +47,4 @@ void ResultFolder::complete() {
     complete_ = true;
 }
 
-void write_file(const fs::path& path, std::string_view bytes) {
-    io::PendingFile file(path);
-    file.write(bytes);
-    file.commit();
-}
-
 }  // namespace palpate::app

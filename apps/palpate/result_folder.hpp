@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <string_view>
 
 namespace palpate::app {
 
@@ -29,8 +28,5 @@ class ResultFolder {
     bool complete_ = false;
     int lock_ = -1;  // on part_, see io/leftovers.hpp
 };
-
-/// A file, whole or not at all. Throws io::OutputError.
-void write_file(const std::filesystem::path& path, std::string_view bytes);
 
 }  // namespace palpate::app

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "palpate/proxy.hpp"
 
@@ -15,6 +17,7 @@ struct NamedMethod {
 
 /// exact, paper, gradient, gradient-improved; the default first.
 std::span<const NamedMethod> methods();
+std::vector<std::string> method_names();
 
 /// Throws std::invalid_argument, listing the names, for another.
 ProxyMethod method_named(std::string_view name);
