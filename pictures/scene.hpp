@@ -68,6 +68,8 @@ struct Camera {
     Vec3 towards_viewer = Vec3(0, -1, 0);  ///< need not be unit
     Vec3 up = Vec3(0, 0, 1);               ///< not along `towards_viewer`
     double half_height = 1;                ///< [mm] from the middle to the upper edge
+
+    bool operator==(const Camera&) const = default;
 };
 
 struct PictureScene {

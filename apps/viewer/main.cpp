@@ -6,7 +6,6 @@
 #include <QSurfaceFormat>
 #include <QTimer>
 #include <csignal>
-#include <cstdio>
 
 #include "apps/options/exit_status.hpp"
 #include "apps/options/impossible_values.hpp"
@@ -25,11 +24,6 @@ volatile std::sig_atomic_t stop_signal = 0;
 
 void on_signal(int number) {
     stop_signal = number;
-}
-
-int fail(const std::string& text, int status) {
-    std::fprintf(stderr, "palpate: %s\n", text.c_str());
-    return status;
 }
 
 /// Without arguments the window begins with the sample volume, felt at the skin; empty where it is
@@ -72,7 +66,7 @@ int show(QApplication& application, const app::ViewOptions& options) {
             window, QString::fromStdString(options.screenshot), options.after);
     }
     const int status = application.exec();
-    if (stop_signal != 0) return fail("interrupted", app::status_of_signal(stop_signal));
+    if (stop_signal != 0) return app::fail("interrupted", app::status_of_signal(stop_signal));
     if (screenshot && screenshot->status() != 0) return screenshot->status();
     return status != 0 ? status : window.recordings().exit_status();
 }
@@ -92,9 +86,9 @@ int main(int argc, char** argv) {
     } catch (const CLI::Success& e) {
         return command.exit(e);
     } catch (const CLI::ParseError& e) {
-        return fail(std::string(e.what()) + " (see palpate view --help)", app::wrong_use);
+        return app::fail(std::string(e.what()) + " (see palpate view --help)", app::wrong_use);
     } catch (const std::exception& e) {
-        return fail(e.what(), app::wrong_use);
+        return app::fail(e.what(), app::wrong_use);
     }
     for (const int s : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) std::signal(s, on_signal);
     for (const int s : {SIGXFSZ, SIGPIPE}) std::signal(s, SIG_IGN);
@@ -115,6 +109,6 @@ int main(int argc, char** argv) {
         return show(application, options);
     } catch (const std::exception& e) {
         const app::Failure failure = app::failure_of(e);
-        return fail(failure.text, failure.status);
+        return app::fail(failure.text, failure.status);
     }
 }

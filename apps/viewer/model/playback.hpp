@@ -1,7 +1,6 @@
 // Playback of a recording: hand, proxy and force by time. No servo, no device.
 #pragma once
 
-#include <cstdint>
 #include <deque>
 #include <filesystem>
 #include <optional>

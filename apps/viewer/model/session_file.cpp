@@ -259,9 +259,7 @@ void write_session(const std::filesystem::path& path, const SessionFile& session
                               ": a name in the session is not UTF-8 text, which is what session "
                               "files hold: rename the volume");
     }
-    io::PendingFile file(path);
-    file.write(text);
-    file.commit();
+    io::write_file(path, text);
 }
 
 }  // namespace palpate::viewer

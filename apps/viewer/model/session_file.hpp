@@ -4,7 +4,6 @@
 
 #include <filesystem>
 #include <optional>
-#include <string>
 
 #include "apps/viewer/model/look.hpp"
 #include "palpate/run/setup.hpp"

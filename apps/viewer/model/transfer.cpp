@@ -1,14 +1,13 @@
 // Presets, and interpolation between control points.
 #include "apps/viewer/model/transfer.hpp"
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
-#include <utility>
 
 namespace palpate::viewer {
 namespace {
@@ -200,16 +199,13 @@ std::vector<std::string> preset_names() {
 
 TransferFunction preset(std::string_view name, const run::Histogram& histogram,
                         const Volume& volume) {
-    std::string names;
     for (const Preset& p : presets) {
-        if (name == p.name) {
-            const Levels levels = levels_of(histogram, volume);
-            return {p.name, over_the_data(p.points(levels), levels)};
-        }
-        names += (names.empty() ? "" : ", ") + std::string(p.name);
+        if (name != p.name) continue;
+        const Levels levels = levels_of(histogram, volume);
+        return {p.name, over_the_data(p.points(levels), levels)};
     }
-    throw std::invalid_argument(
-        fmt::format("there is no transfer function '{}'; there are: {}", name, names));
+    throw std::invalid_argument(fmt::format("there is no transfer function '{}'; there are: {}",
+                                            name, fmt::join(preset_names(), ", ")));
 }
 
 std::string suggested_preset(const run::Histogram& histogram, const Volume& volume) {

@@ -1,7 +1,7 @@
 // Lists devices and shows the state of the one in use.
 #include "apps/viewer/panel/device_controls.hpp"
 
-#include <QHBoxLayout>
+#include <QBoxLayout>
 #include <QSignalBlocker>
 
 #include <algorithm>
@@ -81,28 +81,17 @@ DeviceControls::DeviceControls()
 }
 
 void DeviceControls::build() {
-    auto* first = new QHBoxLayout;
-    first->addWidget(picker_, 1);
-    first->addWidget(refresh_);
-    auto* second = new QHBoxLayout;
-    second->addWidget(options_, 1);
-    second->addWidget(connect_);
-    auto* state = new QHBoxLayout;
-    state->setSpacing(6);
-    state->addWidget(dot_);
-    state->addWidget(state_, 1);
+    auto* state = row_of({dot_, state_}, 1);
+    state->layout()->setSpacing(6);
     auto* form = new QFormLayout;
     form->setVerticalSpacing(3);
     form->addRow("State", state);
     form->addRow("Model", model_);
     form->addRow("Reach", workspace_);
     form->addRow("Scale of the hand", scale_);
-    auto* column = column_in(this);
-    column->addLayout(first);
-    column->addLayout(second);
-    column->addWidget(missing_);
-    column->addWidget(problem_);
-    column->addLayout(form);
+    column_in(this,
+              {row_of({picker_, refresh_}, 0), row_of({options_, connect_}, 0), missing_, problem_})
+        ->addLayout(form);
 }
 
 void DeviceControls::connect_inputs() {
@@ -197,12 +186,11 @@ void DeviceControls::show_device(const DeviceInfo& info, DeviceStatus status,
     const QString name = QString::fromStdString(info.name);
     const QString model = QString::fromStdString(info.model);
     const QString both = model.isEmpty() || model == name ? name : name + ", " + model;
-    if (model_->text() != both) model_->setText(both);
+    model_->setText(both);
     const QString most = info.renders_force
                              ? QString("up to %1 N").arg(info.limits.maximum_force, 0, 'g', 3)
                              : QString("gives no force");
-    const QString reach = length_text(info.workspace_high - info.workspace_low).arg(most);
-    if (workspace_->text() != reach) workspace_->setText(reach);
+    workspace_->setText(length_text(info.workspace_high - info.workspace_low).arg(most));
 }
 
 void DeviceControls::show_scale(double scale) {

@@ -1,7 +1,7 @@
 // Keeps chart, slider and number box of the isovalue in step.
 #include "apps/viewer/panel/isovalue_controls.hpp"
 
-#include <QHBoxLayout>
+#include <QBoxLayout>
 #include <QSignalBlocker>
 
 #include <algorithm>
@@ -41,16 +41,9 @@ IsovalueControls::IsovalueControls()
                           2 * fontMetrics().height());
     solid_->addItems({"above is solid", "below is solid"});
     let_wheel_pass(*solid_);
-    auto* row = new QHBoxLayout;
-    row->addWidget(box_);
-    row->addWidget(solid_);
-    row->addStretch(1);
-    row->addWidget(felt_);
-    auto* column = column_in(this, {chart_, slider_});
-    column->setSpacing(3);
-    column->addLayout(row);
-    column->addWidget(warning_);
-    column->addWidget(overruled_);
+    felt_->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
+    column_in(this, {chart_, slider_, row_of({box_, solid_, felt_}, 2), warning_, overruled_})
+        ->setSpacing(3);
     connect_inputs();
 }
 
@@ -110,8 +103,7 @@ void IsovalueControls::show_felt(double isovalue, bool penetrability_on) {
     differing_ = isovalue == isovalue_ ? 0 : differing_ + 1;
     const bool apart = penetrability_on || differing_ > snapshots_of_grace;
     chart_->set_felt(apart ? isovalue : std::nan(""));
-    const QString words = apart ? "felt " + number_text(isovalue) : QString();
-    if (felt_->text() != words) felt_->setText(words);
+    felt_->setText(apart ? "felt " + number_text(isovalue) : QString());
 }
 
 void IsovalueControls::ask(double isovalue) {

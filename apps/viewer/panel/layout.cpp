@@ -4,7 +4,6 @@
 #include <QAbstractButton>
 #include <QHBoxLayout>
 #include <QKeyEvent>
-#include <QLabel>
 #include <QVBoxLayout>
 
 namespace palpate::viewer {
@@ -38,10 +37,17 @@ QBoxLayout* column_in(QWidget* owner, std::initializer_list<QWidget*> widgets) {
     return filled(new QVBoxLayout(owner), widgets);
 }
 
-QWidget* row_of(std::initializer_list<QWidget*> widgets) {
+QWidget* row_of(std::initializer_list<QWidget*> widgets, int wide) {
     auto* row = new QWidget;
-    row_in(row, widgets);
+    QBoxLayout* layout = row_in(row, widgets);
+    if (wide >= 0) layout->setStretch(wide, 1);
     return row;
+}
+
+QWidget* column_of(std::initializer_list<QWidget*> widgets) {
+    auto* column = new QWidget;
+    column_in(column, widgets);
+    return column;
 }
 
 void add_row(QFormLayout& form, const QString& label, QWidget* field, const QString& tip) {

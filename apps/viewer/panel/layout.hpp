@@ -22,8 +22,10 @@ Widget* named(Widget* widget, const QString& name, const QString& tip = {}) {
 /// Lays widgets out in `owner`, side by side or one below the other. More can be added.
 QBoxLayout* row_in(QWidget* owner, std::initializer_list<QWidget*> widgets = {});
 QBoxLayout* column_in(QWidget* owner, std::initializer_list<QWidget*> widgets = {});
-/// A widget that holds these side by side.
-QWidget* row_of(std::initializer_list<QWidget*> widgets);
+/// A widget that holds these side by side, or one below the other. Of a row, the `wide`-th, from 0,
+/// takes the room that is left.
+QWidget* row_of(std::initializer_list<QWidget*> widgets, int wide = -1);
+QWidget* column_of(std::initializer_list<QWidget*> widgets);
 /// A row of a form, whose label has the tip, too, and is the field's name for screen readers.
 void add_row(QFormLayout& form, const QString& label, QWidget* field, const QString& tip);
 

@@ -2,7 +2,6 @@
 #include "apps/viewer/panel/look_controls.hpp"
 
 #include <QGridLayout>
-#include <QHBoxLayout>
 #include <QLabel>
 
 #include <algorithm>
@@ -53,32 +52,22 @@ QWidget* LookControls::make_surface() {
     surface_opacity_->set_accessible_name("Opacity of the isosurface");
     surface_opacity_->setToolTip("Opacity of the isosurface, 0 to 1");
     auto* surface = add_switch("surface", "Surface", "The isosurface that is felt", &Look::surface);
-    auto* all = new QWidget;
-    row_in(all, {surface, surface_colour_})->addWidget(surface_opacity_, 1);
-    return all;
+    return row_of({surface, surface_colour_, surface_opacity_}, 2);
 }
 
 QWidget* LookControls::make_volume() {
     let_wheel_pass(*preset_);
     for (const std::string& name : preset_names()) preset_->addItem(QString::fromStdString(name));
     point_opacity_->setSingleStep(0.05);
-    auto* volume = new QHBoxLayout;
-    volume->addWidget(
-        add_switch("volume", "Volume", "Volume rendering by the transfer function", &Look::volume));
-    volume->addWidget(
-        add_switch("shading", "Shading", "Light on the volume, by its gradients", &Look::shading));
-    volume->addWidget(preset_, 1);
-    auto* point = new QHBoxLayout;
-    point->addWidget(new QLabel("Point"));
-    point->addWidget(point_level_, 1);
-    point->addWidget(point_opacity_, 1);
-    point->addWidget(point_colour_);
-    auto* all = new QWidget;
-    auto* column = column_in(all);
-    column->addLayout(volume);
-    column->addWidget(editor_);
-    column->addLayout(point);
-    return all;
+    auto* volume =
+        add_switch("volume", "Volume", "Volume rendering by the transfer function", &Look::volume);
+    auto* shading =
+        add_switch("shading", "Shading", "Light on the volume, by its gradients", &Look::shading);
+    for (NumberBox* box : {point_level_, point_opacity_}) {
+        box->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
+    }
+    return column_of({row_of({volume, shading, preset_}, 2), editor_,
+                      row_of({new QLabel("Point"), point_level_, point_opacity_, point_colour_})});
 }
 
 QWidget* LookControls::make_rest() {

@@ -2,9 +2,7 @@
 #include "apps/viewer/panel/number_box.hpp"
 
 #include <QEvent>
-#include <QLineEdit>
 #include <QSignalBlocker>
-#include <QWheelEvent>
 
 #include <cmath>
 #include <limits>

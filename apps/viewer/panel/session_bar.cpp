@@ -1,9 +1,8 @@
 // Connects the switches, and shows force and contact.
 #include "apps/viewer/panel/session_bar.hpp"
 
+#include <QBoxLayout>
 #include <QEvent>
-#include <QHBoxLayout>
-#include <QVBoxLayout>
 
 #include "apps/options/words.hpp"
 #include "apps/viewer/panel/layout.hpp"
@@ -49,17 +48,9 @@ SessionBar::SessionBar()
     forces_->setFont(big);
     forces_->setMinimumHeight(static_cast<int>(2.6 * fontMetrics().height()));
     contact_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Fixed);
-    auto* switches = new QVBoxLayout;
-    switches->setSpacing(2);
-    switches->addWidget(freeze_);
-    switches->addWidget(clutch_);
-    auto* row = new QHBoxLayout;
-    row->addWidget(forces_, 1);
-    row->addLayout(switches);
-    auto* column = column_in(this);
-    column->addLayout(row);
-    column->addWidget(gauge_);
-    column->addWidget(contact_);
+    auto* switches = column_of({freeze_, clutch_});
+    switches->layout()->setSpacing(2);
+    column_in(this, {row_of({forces_, switches}, 0), gauge_, contact_});
     connect(forces_, &SessionSwitch::wanted, this,
             [this](bool on) { Q_EMIT asked(command::Forces{on}); });
     connect(freeze_, &SessionSwitch::wanted, this,
@@ -109,11 +100,10 @@ void SessionBar::show_snapshot(const Snapshot& now, double limit) {
     gauge_->set_force(tick.force.norm(), limit, QString::fromStdString(app::force_words(tick)));
     const double apart = (tick.proxy.scp - tick.proxy.hip).norm();
     const bool touching = tick.proxy.mode == palpate::Mode::constrained;
-    const QString words = QString("%1, pull %2 mm (%3 mm in the volume)")
-                              .arg(touching ? "In contact" : "Free")
-                              .arg(apart / now.session.transform.scale, 0, 'f', 2)
-                              .arg(apart, 0, 'f', 2);
-    if (contact_->text() != words) contact_->setText(words);
+    contact_->setText(QString("%1, pull %2 mm (%3 mm in the volume)")
+                          .arg(touching ? "In contact" : "Free")
+                          .arg(apart / now.session.transform.scale, 0, 'f', 2)
+                          .arg(apart, 0, 'f', 2));
 }
 
 }  // namespace palpate::viewer

@@ -61,12 +61,9 @@ Timeline::Timeline(QWidget* parent)
       loop_(named(new QCheckBox("&Loop"), "timeline_loop", "After the end it begins again")),
       limiter_(this) {
     setObjectName("timeline");
-    auto* row = row_in(this, {back_, play_, forward_});
+    auto* row = row_in(this, {back_, play_, forward_, track_, text_, speed_, loop_});
     row->setContentsMargins(6, 2, 6, 2);
-    row->addWidget(track_, 1);
-    row->addWidget(text_);
-    row->addWidget(speed_);
-    row->addWidget(loop_);
+    row->setStretch(3, 1);
     back_->setAutoRepeat(true);
     forward_->setAutoRepeat(true);
     speed_->setAccessibleName("Speed");
@@ -168,8 +165,7 @@ void Timeline::show_time(double time) {
 }
 
 void Timeline::show_text() {
-    const QString words = text_at(track_->view(), track_->time());
-    if (text_->text() != words) text_->setText(words);
+    text_->setText(text_at(track_->view(), track_->time()));
 }
 
 /// Enables what is possible; makes the text as wide as it will ever be, so that nothing moves while

@@ -13,11 +13,6 @@ namespace {
 
 constexpr int rest_ms = 150;  // without a change: a fine picture
 
-bool same(const pictures::Camera& a, const pictures::Camera& b) {
-    return a.focus == b.focus && a.towards_viewer == b.towards_viewer && a.up == b.up &&
-           a.half_height == b.half_height;
-}
-
 /// The part of the look that is rendered here; the window draws the rest over it.
 Look rendered_part(Look look) {
     look.contact = look.tetrahedra = look.planes = look.orientation = look.scale_bar = false;
@@ -32,8 +27,8 @@ bool same_picture(const RenderRequest& a, const RenderRequest& b) {
     const bool slices = a.look.slices;
     return rendered_part(a.look) == rendered_part(b.look) &&
            (!slices || a.crosshair == b.crosshair) && a.background == b.background &&
-           a.ink == b.ink && same(a.camera, b.camera) && a.width == b.width &&
-           a.height == b.height && a.pixel_ratio == b.pixel_ratio;
+           a.ink == b.ink && a.camera == b.camera && a.width == b.width && a.height == b.height &&
+           a.pixel_ratio == b.pixel_ratio;
 }
 
 /// Calls `work` on the thread of `object`, unless that was destroyed before.

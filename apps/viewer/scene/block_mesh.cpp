@@ -2,7 +2,6 @@
 // that normals at its border include the neighbouring facets.
 #include "apps/viewer/scene/block_mesh.hpp"
 
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>

@@ -1,21 +1,14 @@
 // Draws the markers, once with the scene and once faintly over it.
 #include "apps/viewer/scene/markers.hpp"
 
-#include <vtkCellArray.h>
-#include <vtkFloatArray.h>
 #include <vtkNew.h>
 #include <vtkOpenGLRenderWindow.h>
 #include <vtkOpenGLState.h>
-#include <vtkPointData.h>
-#include <vtkPoints.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
 #include <vtkSphereSource.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 
 #include "apps/viewer/scene/shapes.hpp"
 #include "pictures/vtk/material.hpp"

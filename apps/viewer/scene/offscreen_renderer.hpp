@@ -11,7 +11,6 @@
 #include <atomic>
 #include <memory>
 #include <optional>
-#include <vector>
 
 #include "apps/viewer/scene/render_request.hpp"
 #include "apps/viewer/scene/surface_part.hpp"
@@ -25,8 +24,6 @@ class OffscreenRenderer {
     /// `hardware`: OpenGL here is the machine's graphics hardware.
     OffscreenRenderer(const std::atomic<bool>& give_up, bool hardware);
     ~OffscreenRenderer();
-    OffscreenRenderer(const OffscreenRenderer&) = delete;
-    OffscreenRenderer& operator=(const OffscreenRenderer&) = delete;
 
     /// Nothing if it was cancelled. Throws std::runtime_error if OpenGL fails.
     std::optional<RenderedImage> draw(const RenderRequest& request);

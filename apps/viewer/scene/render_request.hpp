@@ -2,7 +2,6 @@
 // data.
 #pragma once
 
-#include <memory>
 #include <optional>
 
 #include "apps/viewer/model/look.hpp"

@@ -34,8 +34,6 @@ class RenderThread {
     RenderThread(Priority priority, Results results);
     /// Cancels the present request and waits for the thread.
     ~RenderThread();
-    RenderThread(const RenderThread&) = delete;
-    RenderThread& operator=(const RenderThread&) = delete;
 
     /// Draws this one next; a request that still waits is dropped.
     void draw(RenderRequest request);

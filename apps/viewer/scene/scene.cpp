@@ -1,7 +1,6 @@
 // The widget: moves camera and probe by mouse, and composes the layers of the scene.
 #include "apps/viewer/scene/scene.hpp"
 
-#include <QApplication>
 #include <QFontMetricsF>
 #include <QMouseEvent>
 #include <QWheelEvent>

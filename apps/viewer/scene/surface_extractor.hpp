@@ -46,8 +46,6 @@ class SurfaceExtractor {
     explicit SurfaceExtractor(Results results, const SurfaceLimits& limits = {});
     /// Stops and waits for the thread: no longer than a few blocks take.
     ~SurfaceExtractor();
-    SurfaceExtractor(const SurfaceExtractor&) = delete;
-    SurfaceExtractor& operator=(const SurfaceExtractor&) = delete;
 
     /// New data, or another level. The extraction before it is cancelled once its coarsest surface
     /// was shown, so that the surface follows a level that is dragged.

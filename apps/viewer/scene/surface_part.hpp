@@ -5,7 +5,6 @@
 #include <vtkSmartPointer.h>
 
 #include <atomic>
-#include <memory>
 #include <vector>
 
 #include "apps/viewer/scene/render_mesh.hpp"

@@ -5,8 +5,6 @@
 #include <vtkVolume.h>
 #include <vtkVolumeMapper.h>
 
-#include <memory>
-
 #include "apps/viewer/model/look.hpp"
 #include "palpate/volume.hpp"
 

@@ -4,8 +4,6 @@
 #include <QColor>
 #include <QImage>
 
-#include <optional>
-
 #include "apps/viewer/slices/contour.hpp"
 #include "apps/viewer/slices/slice_map.hpp"
 

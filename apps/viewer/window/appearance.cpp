@@ -4,7 +4,6 @@
 #include <QApplication>
 #include <QPalette>
 #include <QSettings>
-#include <QStyle>
 
 namespace palpate::viewer {
 namespace {

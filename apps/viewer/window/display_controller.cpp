@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "apps/viewer/model/sample_block.hpp"
 #include "apps/viewer/model/transfer.hpp"
 #include "apps/viewer/panel/look_controls.hpp"
 #include "apps/viewer/panel/panel.hpp"
@@ -31,14 +32,14 @@ DisplayController::DisplayController(Content& content, Views& views, Panel& pane
 void DisplayController::clear() {
     held_.reset();
     isovalue_.reset();
-    shown_ = {};
+    shown_.reset();
     views_.clear();
     panel_.clear();
 }
 
 void DisplayController::show_field(const Field& field, double isovalue) {
     isovalue_ = isovalue;
-    shown_ = {};
+    shown_.reset();
     views_.set_field(field, isovalue);
 }
 
@@ -65,12 +66,8 @@ std::optional<Snapshot> DisplayController::observe() {
 
 void DisplayController::observe_data(const Snapshot& now) {
     const Field field = content_.field_at(now);
-    const Moment& moment = field.moment();
-    if (field.shared_samples() == shown_.samples && moment.from == shown_.moment.from &&
-        moment.to == shown_.moment.to && moment.weight == shown_.moment.weight) {
-        return;
-    }
-    shown_ = {field.shared_samples(), moment};
+    if (shown_ && same_samples(*shown_, field)) return;
+    shown_ = field;
     views_.update_field(field);
 }
 

@@ -39,17 +39,12 @@ class DisplayController : public QObject {
     void observe_data(const Snapshot& now);
     void clear();
 
-    struct ShownData {
-        std::shared_ptr<const Samples> samples;
-        Moment moment;
-    };
-
     Content& content_;
     Views& views_;
     Panel& panel_;
     std::optional<Snapshot> held_;
     std::optional<double> isovalue_;
-    ShownData shown_;
+    std::optional<Field> shown_;  // as it was given to the views last
 };
 
 }  // namespace palpate::viewer

@@ -17,15 +17,6 @@
 #include "palpate/io/written_formats.hpp"
 
 namespace palpate::viewer {
-namespace {
-
-std::optional<run::HandBrush> hand_brush(const BrushChoice& choice) {
-    if (!choice.on) return std::nullopt;
-    return run::HandBrush{choice.kind, choice.radius, choice.hardness, choice.rate, choice.value};
-}
-
-}  // namespace
-
 EditController::EditController(Content& content, Panel& panel, Messages& messages, QWidget* window)
     : content_(content), panel_(panel), messages_(messages), window_(window), saving_(messages) {
     connect(&content, &Content::run_changed, this, &EditController::show);
@@ -46,7 +37,7 @@ void EditController::use_brush(const BrushChoice& brush) {
     run::VolumeEditor* editor = content_.editor();
     if (!editor) return;
     try {
-        editor->set_brush(hand_brush(brush));
+        editor->set_brush(brush.on ? std::optional<run::HandBrush>(brush) : std::nullopt);
     } catch (const std::invalid_argument& e) {
         panel_.show_refused(QString::fromStdString(e.what()));
     }

@@ -145,9 +145,7 @@ void MainWindow::save_picture(const QString& path, bool whole_window) {
     QBuffer buffer(&bytes);
     buffer.open(QIODevice::WriteOnly);
     image.save(&buffer, "PNG");
-    io::PendingFile file(path.toStdString());
-    file.write({bytes.constData(), static_cast<std::size_t>(bytes.size())});
-    file.commit();
+    io::write_file(path.toStdString(), {bytes.constData(), std::size_t(bytes.size())});
     messages_.show_done(QString("Saved %1").arg(path));
 }
 

@@ -133,10 +133,8 @@ void make_session_menu(MainWindow& window, Actions& actions) {
     const auto scale = [&window](double factor) {
         return [&window, factor] { window.run().scale_hand(factor); };
     };
-    actions.add(menu, "level_up", "Isovalue &up by 1 %", QKeySequence("+"), raise(1), live)
-        ->setAutoRepeat(true);
-    actions.add(menu, "level_down", "Isovalue &down by 1 %", QKeySequence("-"), raise(-1), live)
-        ->setAutoRepeat(true);
+    actions.add(menu, "level_up", "Isovalue &up by 1 %", QKeySequence("+"), raise(1), live);
+    actions.add(menu, "level_down", "Isovalue &down by 1 %", QKeySequence("-"), raise(-1), live);
     actions.add(menu, "coarser", "Hand &larger in the volume", QKeySequence("]"), scale(1.1), live);
     actions.add(menu, "finer", "Hand &smaller in the volume", QKeySequence("["), scale(1 / 1.1),
                 live);
@@ -151,16 +149,12 @@ void make_data_menu(MainWindow& window, Actions& actions) {
     actions.add(
         menu, "brush_action", "&Brush at the probe", QKeySequence("B"),
         [&window] { window.panel().brush_controls().toggle(); }, editable);
-    actions
-        .add(
-            menu, "undo_action", "&Undo", QKeySequence::Undo,
-            [&window] { window.editing().undo(); }, editable)
-        ->setAutoRepeat(true);
-    actions
-        .add(
-            menu, "redo_action", "&Redo", QKeySequence("Ctrl+Shift+Z"),
-            [&window] { window.editing().redo(); }, editable)
-        ->setAutoRepeat(true);
+    actions.add(
+        menu, "undo_action", "&Undo", QKeySequence::Undo, [&window] { window.editing().undo(); },
+        editable);
+    actions.add(
+        menu, "redo_action", "&Redo", QKeySequence("Ctrl+Shift+Z"),
+        [&window] { window.editing().redo(); }, editable);
     actions.add(
         menu, "save_volume", "&Save the volume…", QKeySequence("Ctrl+Shift+S"),
         [&window] { window.editing().ask_save(); }, [&window] { return window.live() != nullptr; });
@@ -171,10 +165,8 @@ void make_data_menu(MainWindow& window, Actions& actions) {
     const auto step = [&window](int frames) {
         return [&window, frames] { window.timeline().step(frames); };
     };
-    actions.add(menu, "frame_back", "A frame &back", QKeySequence(","), step(-1), playable)
-        ->setAutoRepeat(true);
-    actions.add(menu, "frame_on", "A frame &on", QKeySequence("."), step(1), playable)
-        ->setAutoRepeat(true);
+    actions.add(menu, "frame_back", "A frame &back", QKeySequence(","), step(-1), playable);
+    actions.add(menu, "frame_on", "A frame &on", QKeySequence("."), step(1), playable);
 }
 
 void add_camera_actions(MainWindow& window, Actions& actions, QMenu* menu) {
@@ -243,6 +235,10 @@ void make_menus(MainWindow& window, Actions& actions) {
     for (const char* name :
          {"open", "forces", "freeze", "record", "pointer", "whole", "from_hand"}) {
         bar->addAction(actions.find(name));
+    }
+    for (const char* name :
+         {"level_up", "level_down", "undo_action", "redo_action", "frame_back", "frame_on"}) {
+        actions.find(name)->setAutoRepeat(true);
     }
     actions.refresh();
 }

@@ -1,8 +1,6 @@
 // Turns drags, clicks and arrow keys into positions of the mouse device.
 #include "apps/viewer/window/probe_controller.hpp"
 
-#include <Eigen/Geometry>
-
 #include <QAction>
 
 #include "apps/viewer/scene/scene.hpp"
@@ -52,11 +50,10 @@ void ProbeController::move_to(const Vec3& to) {
 
 void ProbeController::nudge(const Vec3& screen) {
     if (!content_.live()) return;
-    const pictures::Camera camera = views_.scene().camera();
-    const Vec3 back = camera.towards_viewer.normalized();
-    const Vec3 right = Vec3(camera.up).cross(back).normalized();
+    const ViewAxes axes = axes_of(views_.scene().camera());
     const double step = content_.live()->field().geometry().spacing.minCoeff();
-    move_by(step * (screen[0] * right + screen[1] * back.cross(right) + screen[2] * back));
+    move_by(step *
+            (screen[0] * axes.right + screen[1] * axes.up + screen[2] * axes.towards_viewer));
 }
 
 void ProbeController::add_keys() {

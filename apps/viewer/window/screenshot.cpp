@@ -1,8 +1,6 @@
 // Waits until everything is drawn, then saves the picture.
 #include "apps/viewer/window/screenshot.hpp"
 
-#include <cstdio>
-
 #include "apps/options/exit_status.hpp"
 #include "apps/viewer/window/main_window.hpp"
 
@@ -51,8 +49,7 @@ void Screenshot::look() {
         window_.save_picture(path_, true);
     } catch (const std::exception& e) {
         const app::Failure failure = app::failure_of(e);
-        std::fprintf(stderr, "palpate: %s\n", failure.text.c_str());
-        status_ = failure.status;
+        status_ = app::fail(failure.text, failure.status);
     }
     window_.close();
 }

@@ -1,9 +1,10 @@
 // Lays out the scene and the slices side by side, and keeps them in step.
 #include "apps/viewer/window/views.hpp"
 
-#include <QHBoxLayout>
+#include <QBoxLayout>
 #include <QSplitter>
 
+#include "apps/viewer/panel/layout.hpp"
 #include "apps/viewer/scene/scene.hpp"
 #include "apps/viewer/slices/slice_pane.hpp"
 
@@ -15,9 +16,7 @@ Views::Views(QWidget* parent)
       slices_{new SlicePane(0), new SlicePane(1), new SlicePane(2)},
       across_(new QSplitter(Qt::Horizontal)),
       down_(new QSplitter(Qt::Vertical)) {
-    auto* layout = new QHBoxLayout(this);
-    layout->setContentsMargins(0, 0, 0, 0);
-    layout->addWidget(across_);
+    row_in(this, {across_});
     scene_->setObjectName("scene");
     scene_->setMinimumSize(200, 200);
     across_->addWidget(scene_);

@@ -17,6 +17,8 @@ struct HandBrush {
         10;  ///< [1/s] after one second 1 - exp(-rate) of the change is done; inf: at once
     /// [data units] The value that it leaves; nothing: what brush_for() takes. Paint needs one.
     std::optional<double> value = {};
+
+    bool operator==(const HandBrush&) const = default;
 };
 /// A brush that carves a few voxels.
 HandBrush usual_brush(const Geometry& geometry);

@@ -100,7 +100,7 @@ TEST_F(Brushes, setters_show_and_emit_nothing) {
 }
 
 TEST_F(Brushes, choosing_the_same_kind_again_emits_nothing) {
-    edit({.kind = BrushKind::smooth});
+    edit({{.kind = BrushKind::smooth}});
     press("brush_smooth");
     EXPECT_TRUE(chosen().empty());
     press("brush_carve");
@@ -196,7 +196,7 @@ TEST_F(Brushes, typing_the_number_that_is_there_ends_automatic) {
 }
 
 TEST_F(Brushes, the_rate_comes_back_when_it_is_not_at_once_any_more) {
-    edit({.rate = 40});
+    edit({{.rate = 40}});
     auto* box = find<QWidget>("brush_at_once");
     QTest::keyClick(box, Qt::Key_Space);
     EXPECT_FALSE(find<QWidget>("brush_rate_box")->isEnabled());
@@ -233,7 +233,7 @@ TEST_F(Brushes, undo_redo_and_save_ask_once_a_press_and_say_how_many_steps_there
 }
 
 TEST_F(Brushes, a_sequence_cannot_be_edited_and_it_says_why) {
-    edit({.on = true});
+    edit({{}, true});
     panel.brush_controls().set_history(2, 0, true);
     panel.brush_controls().set_reason("A sequence cannot be edited: open one frame of it.");
     auto* why = find<QLabel>("brush_reason");
@@ -301,7 +301,7 @@ TEST_F(Brushes, are_drawn_in_light_and_dark) {
         const QString scale = image.devicePixelRatio() > 1.5 ? "_2x" : "";
         EXPECT_TRUE(image.save(QString(PALPATE_PICTURES) + "/" + name + scale + ".png"));
     };
-    edit({.kind = BrushKind::add, .rate = 20, .on = true});
+    edit({{.kind = BrushKind::add, .rate = 20}, true});
     panel.brush_controls().set_history(12, 1, true);
     picture("brush_light");
     QPalette dark(QColor(58, 58, 62), QColor(45, 45, 48));
