@@ -6,6 +6,7 @@
 #include <sys/prctl.h>
 
 #include <algorithm>
+#include <csignal>
 #include <limits>
 
 namespace palpate::devices {
@@ -16,11 +17,17 @@ std::int64_t monotonic_ns() noexcept {
         .count();
 }
 
-void ask_for_real_time_thread() noexcept {
+void prepare_device_thread() noexcept {
     ::prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
     sched_param parameter{};
     parameter.sched_priority = 81;
     ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &parameter);
+    sigset_t others;
+    ::sigfillset(&others);
+    for (const int crash : {SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT, SIGTRAP, SIGSYS}) {
+        ::sigdelset(&others, crash);
+    }
+    ::pthread_sigmask(SIG_BLOCK, &others, nullptr);
 }
 
 DeviceReading Link::read() const noexcept {

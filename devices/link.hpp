@@ -56,10 +56,11 @@ class Link {
     std::atomic<bool> stopped_{false};
 };
 
-/// Asks the system to wake the calling thread in time: exact timers, and SCHED_FIFO just above the
-/// servo's priority, where that is granted (the servo's privileges report what was not). For
-/// threads that talk to a device and wait most of the time.
-void ask_for_real_time_thread() noexcept;
+/// What a thread that talks to a device does first. Asks the system to wake it in time: exact
+/// timers, and SCHED_FIFO just above the servo's priority, where that is granted (the servo's
+/// privileges report what was not). Leaves signals to the other threads, but for its own crashes:
+/// while a handler waits for the zero (LastResort), this thread has to send it.
+void prepare_device_thread() noexcept;
 
 /// The machine's monotonic clock [ns].
 std::int64_t monotonic_ns() noexcept;

@@ -132,7 +132,7 @@ DeviceInfo DhdDevice::ask(const Settings& settings) const {
 }
 
 void DhdDevice::run(bool itself) {
-    ask_for_real_time_thread();
+    prepare_device_thread();
     if (itself) initialise();
     std::int64_t next = monotonic_ns();
     while (!quit_) {

@@ -138,7 +138,7 @@ void Inverse3::tell_identity(const ServiceState& state) {
 }
 
 void Inverse3::run(Talk talk) {
-    ask_for_real_time_thread();
+    prepare_device_thread();
     for (;;) {
         std::string why;
         try {

@@ -42,7 +42,7 @@ TEST(Reference, names_every_option_of_every_command) {
         const std::string help = palpate(folder, command + " --help").out;
         const std::string options = help.substr(0, help.find("\nExample"));
         for (auto at = options.find("--"); at != std::string::npos; at = options.find("--", at)) {
-            const auto end = options.find_first_of(" ,=\n", at);
+            const auto end = options.find_first_of(" ,={\n", at);
             const std::string option = options.substr(at, end - at);
             EXPECT_TRUE(contains(reference, option) || option == "--version") << option;
             at = end;

@@ -33,6 +33,7 @@ class Motor : public Device {
   public:
     explicit Motor(std::atomic<double>& sent)
         : sent_(sent), thread_([this](std::stop_token stop) {
+              prepare_device_thread();
               while (!stop.stop_requested()) {
                   sent_ = link_.force().norm();
                   std::this_thread::sleep_for(1ms);
@@ -185,6 +186,24 @@ TEST(LastResort, lets_go_when_a_real_time_thread_takes_too_long) {
     EXPECT_TRUE(WIFSIGNALED(status)) << status;
     EXPECT_EQ(WTERMSIG(status), SIGXCPU);
     EXPECT_EQ(sent, 0);
+}
+
+TEST(LastResort, the_thread_that_sends_the_zero_takes_no_signals) {
+    static std::atomic<bool> handled = false;
+    const auto before = std::signal(SIGUSR1, [](int) { handled = true; });
+    std::jthread thread([] {
+        prepare_device_thread();
+        ::pthread_kill(::pthread_self(), SIGUSR1);
+        EXPECT_FALSE(handled);
+        sigset_t waiting;
+        ::sigpending(&waiting);
+        EXPECT_EQ(::sigismember(&waiting, SIGUSR1), 1);
+        sigset_t blocked;
+        ::pthread_sigmask(SIG_BLOCK, nullptr, &blocked);
+        EXPECT_EQ(::sigismember(&blocked, SIGSEGV), 0);
+    });
+    thread.join();
+    std::signal(SIGUSR1, before);
 }
 
 TEST(LastResort, two_signals_at_once_wait_for_the_zero_as_one_does) {
