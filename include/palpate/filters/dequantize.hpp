@@ -65,7 +65,7 @@ struct DequantizeOptions {
 /// where they are. The box is that of Whitaker 2000, "Reducing aliasing artifacts in iso-surfaces
 /// of binary volumes", for any number of levels.
 ///
-/// Takes 4 bytes a sample besides the volume, and nine slices. Throws std::invalid_argument for
+/// Takes 4 bytes a sample besides the volume, and twelve slices. Throws std::invalid_argument for
 /// options out of range, std::bad_alloc.
 Volume dequantized(const Volume& volume, const DequantizeOptions& options = {});
 
