@@ -57,10 +57,11 @@ TEST(Info, suggests_the_middle_for_a_mask) {
 
 TEST(Info, suggests_to_dequantize_where_terraces_are_wide_and_says_why) {
     const ScratchFolder folder;
-    const json ball = info(folder, words_of("synthetic:torus:48x48x24 --type uint8"))["terraces"];
-    EXPECT_EQ(ball["level"], 1);
-    EXPECT_TRUE(contains(ball["suggestion"], "--dequantize: rounding to levels of 1")) << ball;
-    EXPECT_TRUE(contains(palpate(folder, "info synthetic:torus:48x48x24 --type uint8").out,
+    const json ramp =
+        info(folder, words_of("synthetic:cylinder:100x100x30 --type uint8"))["terraces"];
+    EXPECT_EQ(ramp["level"], 1);
+    EXPECT_TRUE(contains(ramp["suggestion"], "--dequantize: rounding to levels of 1")) << ramp;
+    EXPECT_TRUE(contains(palpate(folder, "info synthetic:cylinder:100x100x30 --type uint8").out,
                          "terraces     try --dequantize: rounding"));
     support::put_bytes(folder / "mask.raw", std::string("\0\0\1\1\1\0\0\1", 8));
     const json mask = info(folder, words_of("mask.raw --dims 2x2x2 --type uint8"))["terraces"];
