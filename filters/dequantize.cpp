@@ -30,10 +30,6 @@ constexpr double most_bend = 0.5, most_bend_of_mask = 0.05;
 /// Samples in a task: some 50 us of work.
 constexpr int grain = 16384;
 
-bool is_mask(const Volume& volume, double level) {
-    return volume.range() <= 1.5 * level;
-}
-
 /// The coarsest step over which a good part of the surfaces is straight to within the rounding; so
 /// about as long as the terraces are wide.
 int coarsest_for(const Volume& volume, double level) {

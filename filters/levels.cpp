@@ -80,7 +80,7 @@ std::optional<Terraces> terraces_of(const Volume& volume) {
     if (!level) return std::nullopt;
     Terraces terraces;
     terraces.level = *level;
-    terraces.mask = volume.range() <= 1.5 * *level;
+    terraces.mask = is_mask(volume, *level);
     if (terraces.mask) return terraces;
     double all = 0, stepped = 0, tilt = 0;
     for_sites(volume, 2e5, [&](const Index3& at) {

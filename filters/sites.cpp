@@ -34,6 +34,10 @@ double slope_at(const Volume& volume, const Index3& at) {
     return slope.norm();
 }
 
+bool is_mask(const Volume& volume, double level) {
+    return volume.range() <= 1.5 * level;
+}
+
 Smooth smooth_at(const Volume& volume, const Index3& at, int step) {
     constexpr double once[5] = {0, 0.25, 0.5, 0.25, 0};
     constexpr double twice[5] = {0.0625, 0.25, 0.375, 0.25, 0.0625};

@@ -1,4 +1,4 @@
-// Samples spread over a volume, and how the data run there.
+// What the choice of steps looks at: samples spread over a volume, and how the data run there.
 #pragma once
 
 #include <functional>
@@ -12,6 +12,9 @@ void for_sites(const Volume& volume, double most, const std::function<void(const
 
 /// Slope over four samples, so that a terrace or two is no plateau [data units a sample].
 double slope_at(const Volume& volume, const Index3& at);
+
+/// True for samples of two values only, `level` apart.
+bool is_mask(const Volume& volume, double level);
 
 struct Smooth {
     double mean;   ///< b, the binomial mean of the 27 neighbours `step` apart [data units]

@@ -1,5 +1,5 @@
-// Cubic: the smooth field's coefficients, by sums and differences of the samples on either side of
-// the plane e = 0, in which the field is even but for `differences`. docs/smooth.md derives them.
+// Cubic: the smooth field's coefficients from the samples, and the field at a point. docs/smooth.md
+// says where they come from.
 #include "palpate/cubic.hpp"
 
 namespace palpate::cubic {

@@ -20,8 +20,12 @@ struct Symmetric {
     }
 };
 
-/// Value and derivatives of the field at a point, in units of a `scale`-th of the data's, per voxel
-/// of the folded axes.
+/// What the values below are multiplied by, so that all coefficients of integer samples are
+/// integers.
+inline constexpr double scale = 96;
+
+/// Value and derivatives of the field at a point, times `scale` [data units], per voxel of the
+/// folded axes.
 struct Taylor {
     double value = 0;
     Vec3 gradient = Vec3::Zero();
@@ -46,9 +50,6 @@ struct Piece : Taylor {
     double operator()(const Vec3& folded) const;
 };
 
-/// What pieces are kept times, so that all coefficients of integer samples are integers.
-inline constexpr double scale = 96;
-
 /// The cubic of a tetrahedron from the neighbours of its sample. Each Bernstein coefficient of it
 /// is a mean of these samples with weights >= 0, so the field never leaves their range.
 Piece piece_of(const Tetrahedron& tetrahedron, const Neighbours& samples);
@@ -68,7 +69,7 @@ Vec3 gradient_at(const Field& field, const Vec3& physical);
 /// those of one of the tetrahedra that meet there.
 Mat3 hessian_at(const Field& field, const Vec3& physical);
 
-// Defined here, to be inlined: the servo thread spends most of its time in them.
+// Defined here, to be inlined.
 
 inline Taylor Piece::at(const Vec3& u) const {
     const Symmetric t = third(u);

@@ -1,5 +1,5 @@
-// Dequantization: gives integer data and masks back what rounding took from them. Uses the core;
-// the library works in parallel with oneTBB. See docs/dequantize.md.
+// Dequantization: gives integer data and masks back what rounding took from them. Uses the core,
+// and oneTBB to work in parallel. See docs/dequantize.md.
 #pragma once
 
 #include <functional>

@@ -12,13 +12,12 @@
 
 namespace palpate::io {
 
-/// A file being written: `.palpate-PID-N.part` beside the target. What processes that were killed
-/// have left of this kind in the folder, files and folders, is removed when a process opens its
-/// first file there. Without commit() the
-/// target stays unchanged and nothing is left behind. A target that exists and is not a regular
-/// file (/dev/stdout, a pipe, /dev/full) and "-", the standard output, are written directly
-/// instead: they cannot be replaced, and their reader is waiting. A symbolic link is followed.
-/// Everything here throws OutputError.
+/// A file being written: `.palpate-PID-N.part` beside the target. Files and folders of this kind
+/// that killed processes have left in the folder are removed when a process opens its first file
+/// there. Without commit() the target stays unchanged and nothing is left behind. A target that
+/// exists and is not a regular file (/dev/stdout, a pipe, /dev/full) and "-", the standard output,
+/// are written directly instead: they cannot be replaced, and their reader is waiting. A symbolic
+/// link is followed. Everything here throws OutputError.
 class PendingFile {
   public:
     /// Opens the temporary file, so what cannot be written is known before the work is done.
