@@ -5,7 +5,7 @@
 
 #include <limits>
 
-#include "palpate/lattice.hpp"
+#include "palpate/cubic.hpp"
 
 namespace palpate {
 

@@ -67,7 +67,7 @@ ProxyUpdate update_paper(Proxy& proxy, const Field& field, const Vec3& hip,
                          const ProxySettings& settings, StepObserver observer) {
     const Vec3 target = index_from_physical(field.geometry(), hip);
     if (!accepts(proxy, field, target)) return refuse_update(proxy, field, hip);
-    Update update(proxy, field, target, settings, observer);
+    Update<Site> update(proxy, field, target, settings, observer);
     Site& site = update.site;
     Progress& progress = update.progress;
     if (update.recovering) return finish_update(proxy, update, hip, Rest::recovering);

@@ -36,7 +36,7 @@ bool place(Proxy& proxy, const Field& field, const Vec3& hip, double isovalue,
     if (!accepts(proxy, field, target)) return false;
     const LatticePoint start = locate(target);
     for (int i = 0; i < patience; ++i) {
-        const Update update(proxy, field, target, {}, observer);
+        const Update<Site> update(proxy, field, target, {}, observer);
         // Not by coordinates: those of a point just below zero do not come back bit for bit.
         const LatticePoint& at = update.site.point;
         const bool stayed =

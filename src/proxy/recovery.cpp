@@ -59,6 +59,33 @@ bool descend_out(Site& site, Progress& progress) {
     return false;
 }
 
+/// The same on the smooth field, along its gradient: no farther at a time than a quarter of a
+/// voxel, and only where the excess falls.
+bool descend_out(CubicSite& site, Progress& progress) {
+    const double shortest = progress.geometry.spacing.minCoeff();
+    const double flat = 1e-9 * site.range / shortest;
+    while (progress.budget > 0) {
+        const double excess = site.excess();
+        if (!(excess > site.level())) return true;
+        const Tetrahedron& t = site.point.tetrahedron;
+        const Vec3 per_mm = fold_lengths(t, site.field.voxels_per_mm());
+        const Vec3 gradient = site.here.gradient.cwiseProduct(per_mm);
+        const double slope = std::sqrt(dot(gradient, gradient));
+        if (!(slope > flat)) return false;
+        const Vec3 from = site.index();
+        const Vec3 down = unfold(t, (gradient * (-1 / slope)).cwiseProduct(per_mm));
+        double length = std::min((excess - 0.5 * site.level()) / slope, 0.25 * shortest);
+        do {
+            if (--progress.budget <= 0 || !(length > 1e-9 * shortest)) return false;
+            site.move_to(cubic::locate(from + length * down));
+            length *= 0.5;
+        } while (!(site.excess() < excess));
+        ++progress.tetrahedra;
+        progress.report(StepKind::recover, site);
+    }
+    return false;
+}
+
 constexpr double thickest_shell = 16;    // [voxel] searched along each direction at a time
 constexpr double thinnest_shell = 0.25;  // needs a budget of some 100 pieces
 
@@ -70,10 +97,11 @@ double shell_within(int budget) {
 
 /// Searches 26 directions for free space, one shell at a time. If it finds some, it moves there and
 /// returns true.
-bool search_out(Site& site, Progress& progress, double& reach) {
+template <class AnySite>
+bool search_out(AnySite& site, Progress& progress, double& reach) {
     const Index3& size = site.field.geometry().size;
     const double farthest = 2 * size.cast<double>().norm() + 4 * thickest_shell;
-    const Vec3 from = index_of(site.point);
+    const Vec3 from = site.index();
     const Vec3& spacing = progress.geometry.spacing;
     const double unit = spacing.minCoeff();
     while (reach * unit <= farthest * spacing.maxCoeff()) {
@@ -87,17 +115,14 @@ bool search_out(Site& site, Progress& progress, double& reach) {
             const Vec3 per_unit = (axes / std::sqrt(dot(axes, axes))).cwiseQuotient(spacing) * unit;
             const Vec3 start = from + reach * per_unit;
             // The solid is the free side of the field with its sign turned.
-            Site probe(site.field, site.isovalue, -site.sign, locate(start));
+            AnySite probe = site.turned_at(start);
             Progress silent{progress.geometry, {}, start, progress.budget};
-            const bool free_already = probe.excess() >= 0;
-            const WalkEnd end =
-                free_already
-                    ? WalkEnd::surface
-                    : walk(probe, fold(probe.point.tetrahedron, per_unit * shell_thickness),
-                           silent);
+            const bool free_already = probe.excess() >= -site.level();
+            const WalkEnd end = free_already ? WalkEnd::surface
+                                             : walk_out(probe, per_unit * shell_thickness, silent);
             progress.budget = silent.budget;
             if (end != WalkEnd::surface) continue;
-            const Vec3 found = (index_of(probe.point) - from).cwiseProduct(spacing);
+            const Vec3 found = (probe.index() - from).cwiseProduct(spacing);
             if (dot(found, found) >= least) continue;
             least = dot(found, found);
             nearest = probe.point;
@@ -115,12 +140,16 @@ bool search_out(Site& site, Progress& progress, double& reach) {
 
 }  // namespace
 
-bool recover(Site& site, Progress& progress, double& reach) {
+template <class AnySite>
+bool recover(AnySite& site, Progress& progress, double& reach) {
     if (reach == 0 && descend_out(site, progress)) return true;
     if (progress.budget <= 0) return false;
     if (!search_out(site, progress, reach)) return false;
     reach = 0;
     return true;
 }
+
+template bool recover(Site&, Progress&, double&);
+template bool recover(CubicSite&, Progress&, double&);
 
 }  // namespace palpate

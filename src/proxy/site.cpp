@@ -2,61 +2,18 @@
 // leave the lattice.
 #include "proxy/site.hpp"
 
+#include "proxy/straight.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 namespace palpate {
-namespace {
 
-constexpr unsigned no_wall = wall_count;
-
-/// How far along a folded direction the first wall is, if nearer than `farthest`. Walls of the mask
-/// are left out.
-struct Exit {
-    double t;
-    unsigned wall;
-};
-Exit first_exit(const Vec3& folded, const Vec3& direction, double farthest, unsigned without) {
-    Exit exit{farthest, no_wall};
-    for (unsigned wall = 0; wall < wall_count; ++wall) {
-        const double speed = approach(direction, wall);
-        const double room = slack(folded, wall);
-        if (speed * exit.t <= room || has(without, wall)) continue;
-        const double t = room / speed;
-        if (t < exit.t) exit = {t, wall};
-    }
-    return exit;
-}
-
-/// From deep in the background: how much of the motion [0, left] certainly stays in it, up to half
-/// a voxel before the border of the padded grid. This avoids walking through empty space cell by
-/// cell.
-double stretch_in_background(const Site& site, const Vec3& displacement, double left) {
-    const Vec3 from = index_of(site.point);
-    const Index3& size = site.field.geometry().size;
-    double enter = 0;
-    double leave = left;
-    for (int a = 0; a < 3; ++a) {
-        const double low = -1.5 - from[a];
-        const double high = size[a] + 0.5 - from[a];
-        if (displacement[a] == 0) {
-            if (low > 0 || high < 0) return left;
-            continue;
-        }
-        const double t0 = low / displacement[a];
-        const double t1 = high / displacement[a];
-        enter = std::max(enter, std::min(t0, t1));
-        leave = std::min(leave, std::max(t0, t1));
-    }
-    return enter < leave ? enter : left;
-}
-
-}  // namespace
-
-void Progress::report_to_observer(StepKind kind, const Site& site, const Vec3& goal_index) const {
-    const Vec3 point = physical_from_index(geometry, index_of(site.point));
+void Progress::report_to_observer(StepKind kind, const Vec3& index, const Tetrahedron& tetrahedron,
+                                  const Vec3& goal_index) const {
+    const Vec3 point = physical_from_index(geometry, index);
     const Vec3 goal = physical_from_index(geometry, goal_index);
-    observer.on_step(Step{kind, point, goal, site.point.tetrahedron}, observer.context);
+    observer.on_step(Step{kind, point, goal, tetrahedron}, observer.context);
 }
 
 WalkEnd walk(Site& site, const Vec3& displacement, Progress& progress) {
@@ -65,7 +22,8 @@ WalkEnd walk(Site& site, const Vec3& displacement, Progress& progress) {
     while (progress.budget-- > 0) {
         if (site.field.is_background(site.point.tetrahedron.cell)) {
             const Vec3 along = unfold(site.point.tetrahedron, direction);
-            const double t = stretch_in_background(site, along, left);
+            const double t = stretch_outside(index_of(site.point), along, left, -1.5,
+                                             site.field.geometry().size, 0.5);
             if (t > 0) {
                 site.move_to(locate(index_of(site.point) + t * along));
                 direction = fold(site.point.tetrahedron, along);

@@ -27,9 +27,15 @@ struct Site {
     CellSamples samples;
     LinearPiece piece;
 
+    static LatticePoint located(const Vec3& index) { return locate(index); }
+    Vec3 index() const { return index_of(point); }
     /// As it is felt, offset included [data units].
     double density() const { return field.with_offset(piece(point.folded)); }
     double excess() const { return sign * (piece(point.folded) - isovalue); }
+    /// The excess up to which a point is free.
+    double level() const { return 0; }
+    bool is_inside() const { return excess() > field.tolerance(); }
+    bool in_contact() const { return excess() >= -field.tolerance(); }
     /// Rate of the excess along a folded direction.
     double slope(const Vec3& folded) const { return sign * dot(piece.gradient, folded); }
     /// Gradient of the excess [data units / voxel], folded, in an incident tetrahedron.
@@ -37,6 +43,10 @@ struct Site {
         if (t.cell == point.tetrahedron.cell) return sign * piece_of(t, samples).gradient;
         return sign * piece_of(t, field.cell(t.cell)).gradient;
     }
+    /// The site of another point (index space), and the same with its solid and its free side
+    /// exchanged.
+    Site at(const Vec3& index) const { return {field, isovalue, sign, locate(index)}; }
+    Site turned_at(const Vec3& index) const { return {field, isovalue, -sign, locate(index)}; }
     /// Moves to another point.
     void move_to(const LatticePoint& at) {
         point = at;
@@ -76,15 +86,19 @@ struct Progress {
                                (target[2] - t.cell[2]) - 0.5);
         return fold(t, from_centre) - site.point.folded;
     }
-    void report(StepKind kind, const Site& site) const {
-        if (observer.on_step) report_to_observer(kind, site, target);
+    template <class AnySite>
+    void report(StepKind kind, const AnySite& site) const {
+        report(kind, site, target);
     }
-    void report(StepKind kind, const Site& site, const Vec3& goal) const {
-        if (observer.on_step) report_to_observer(kind, site, goal);
+    template <class AnySite>
+    void report(StepKind kind, const AnySite& site, const Vec3& goal) const {
+        if (!observer.on_step) return;
+        report_to_observer(kind, site.index(), site.point.tetrahedron, goal);
     }
 
   private:
-    void report_to_observer(StepKind kind, const Site& site, const Vec3& goal_index) const;
+    void report_to_observer(StepKind kind, const Vec3& index, const Tetrahedron& tetrahedron,
+                            const Vec3& goal_index) const;
 };
 
 /// The cone of the walls that a point is on, in folded millimetres; more half-spaces may be added.
@@ -144,5 +158,11 @@ WalkEnd walk(Site& site, const Vec3& displacement, Progress& progress);
 /// wall other than those that the point is `on`. `walls` are held exactly. True if the end was
 /// reached.
 bool slide(Site& site, const Vec3& step, unsigned on, unsigned walls, Progress& progress);
+
+/// Walks a turned site along `displacement` (index axes, voxel) until it leaves what is its free
+/// side and the other's solid.
+inline WalkEnd walk_out(Site& turned, const Vec3& displacement, Progress& progress) {
+    return walk(turned, fold(turned.point.tetrahedron, displacement), progress);
+}
 
 }  // namespace palpate

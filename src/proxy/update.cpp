@@ -21,13 +21,14 @@ bool is_finite(double sum) {
 
 /// If the HIP is free and nearer to the start than the point that recovery found, the proxy goes to
 /// the HIP. Distances in mm.
-void prefer_free_hip(Site& site, Progress& progress, const Vec3& start_index) {
+template <class AnySite>
+void prefer_free_hip(AnySite& site, Progress& progress, const Vec3& start_index) {
     const Vec3& spacing = progress.geometry.spacing;
-    const Vec3 out = (index_of(site.point) - start_index).cwiseProduct(spacing);
+    const Vec3 out = (site.index() - start_index).cwiseProduct(spacing);
     const Vec3 to_hip = (progress.target - start_index).cwiseProduct(spacing);
     if (!(dot(out, out) > dot(to_hip, to_hip))) return;
-    const Site at_hip(site.field, site.isovalue, site.sign, locate(progress.target));
-    if (at_hip.excess() > 0) return;
+    const AnySite at_hip = site.at(progress.target);
+    if (at_hip.excess() > site.level()) return;
     site.move_to(at_hip.point);
     progress.report(StepKind::recover, site);
 }
@@ -37,17 +38,18 @@ constexpr double farthest_push = 8;
 
 /// A wall that moved over the proxy pushes it `ahead`, to the side on which it was, even where the
 /// other side is nearer. True if the point that recovery found, or the one found here, lies ahead.
-bool push_ahead(Site& site, Progress& progress, const Vec3& start_index, const Vec3& ahead) {
+template <class AnySite>
+bool push_ahead(AnySite& site, Progress& progress, const Vec3& start_index, const Vec3& ahead) {
     const Vec3& spacing = progress.geometry.spacing;
     const Vec3 normal = grid_axes_from_physical(progress.geometry, ahead);
-    const Vec3 out = (index_of(site.point) - start_index).cwiseProduct(spacing);
+    const Vec3 out = (site.index() - start_index).cwiseProduct(spacing);
     const double farthest = farthest_push * spacing.maxCoeff();
     if (dot(out, normal) >= 0) return dot(out, out) <= farthest * farthest;
     // The solid is the free side of the field with its sign turned.
-    Site probe(site.field, site.isovalue, -site.sign, locate(start_index));
+    AnySite probe = site.turned_at(start_index);
     Progress silent{progress.geometry, {}, start_index, progress.budget};
     const Vec3 push = (farthest * normal).cwiseQuotient(spacing);
-    const WalkEnd end = walk(probe, fold(probe.point.tetrahedron, push), silent);
+    const WalkEnd end = walk_out(probe, push, silent);
     progress.budget = silent.budget;
     if (end != WalkEnd::surface) return false;
     site.move_to(probe.point);
@@ -87,42 +89,45 @@ bool accepts(const Proxy& proxy, const Field& field, const Vec3& hip_index) {
 namespace {
 
 /// Where the update starts. The first update of a proxy places it at the HIP.
+template <class AnySite>
 const LatticePoint& start_of(Proxy& proxy, const Vec3& hip_index) {
-    if (!proxy.placed) proxy.scp = locate(hip_index);
+    if (!proxy.placed) proxy.scp = AnySite::located(hip_index);
     return proxy.scp;
 }
 
 }  // namespace
 
-Update::Update(Proxy& proxy, const Field& field, const Vec3& hip_index,
-               const ProxySettings& settings, StepObserver observer)
-    : site(field, proxy.isovalue - field.offset(), field.sign(), start_of(proxy, hip_index)),
+template <class AnySite>
+Update<AnySite>::Update(Proxy& proxy, const Field& field, const Vec3& hip_index,
+                        const ProxySettings& settings, StepObserver observer)
+    : site(field, proxy.isovalue - field.offset(), field.sign(),
+           start_of<AnySite>(proxy, hip_index)),
       progress{field.geometry(), observer, hip_index, settings.step_budget} {
     if (!proxy.placed) progress.report(StepKind::place, site);
-    if (!(site.excess() > field.tolerance())) {
+    if (!site.is_inside()) {
         proxy.recovery_reach = 0;
         return;
     }
-    const Vec3 start = index_of(site.point);
+    const Vec3 start = site.index();
     recovering = !recover(site, progress, proxy.recovery_reach);
     if (recovering) return;
     if (!proxy.ahead.isZero(0) && push_ahead(site, progress, start, proxy.ahead)) return;
     prefer_free_hip(site, progress, start);
 }
 
-ProxyUpdate finish_update(Proxy& proxy, const Update& update, const Vec3& hip, Rest rest) {
-    const Site& site = update.site;
+template <class AnySite>
+ProxyUpdate finish_update(Proxy& proxy, const Update<AnySite>& update, const Vec3& hip, Rest rest) {
+    const AnySite& site = update.site;
     if (!is_finite(sum_of(site.point.folded))) {
         return refuse_update(proxy, site.field, hip, UpdateStatus::not_finite);
     }
     proxy.placed = true;
     proxy.scp = site.point;
     if (rest != Rest::recovering) proxy.ahead.setZero();
-    proxy.scp_physical = rest == Rest::at_target
-                             ? hip
-                             : physical_from_index(update.progress.geometry, index_of(site.point));
+    proxy.scp_physical =
+        rest == Rest::at_target ? hip : physical_from_index(update.progress.geometry, site.index());
     proxy.mode = rest == Rest::on_surface || rest == Rest::recovering ||
-                         (rest == Rest::out_of_budget && site.excess() >= -site.field.tolerance())
+                         (rest == Rest::out_of_budget && site.in_contact())
                      ? Mode::constrained
                      : Mode::free;
     return {.status = rest == Rest::recovering      ? UpdateStatus::recovering
@@ -135,5 +140,10 @@ ProxyUpdate finish_update(Proxy& proxy, const Update& update, const Vec3& hip, R
             .isovalue = proxy.isovalue,
             .tetrahedra = update.progress.tetrahedra};
 }
+
+template struct Update<Site>;
+template struct Update<CubicSite>;
+template ProxyUpdate finish_update(Proxy&, const Update<Site>&, const Vec3&, Rest);
+template ProxyUpdate finish_update(Proxy&, const Update<CubicSite>&, const Vec3&, Rest);
 
 }  // namespace palpate

@@ -1,8 +1,9 @@
 // What every proxy method does before and after its own part: refuse bad input, place the proxy,
-// recover, describe the result.
+// recover, describe the result. `AnySite` is Site on the linear field and CubicSite on the smooth
+// one.
 #pragma once
 
-#include "proxy/site.hpp"
+#include "proxy/cubic_site.hpp"
 
 namespace palpate {
 
@@ -17,11 +18,12 @@ bool is_finite(const Proxy& proxy);
 
 /// The state of a running update. The constructor places the proxy if necessary and brings it out
 /// of the solid, unless `recovering` says that it is still inside.
+template <class AnySite>
 struct Update {
     Update(Proxy& proxy, const Field& field, const Vec3& hip_index, const ProxySettings& settings,
            StepObserver observer);
 
-    Site site;
+    AnySite site;
     Progress progress;
     bool recovering = false;
 };
@@ -30,12 +32,18 @@ struct Update {
 enum class Rest { at_target, on_surface, out_of_budget, recovering };
 
 /// Writes the site back into the proxy and describes the result.
-ProxyUpdate finish_update(Proxy& proxy, const Update& update, const Vec3& hip, Rest rest);
+template <class AnySite>
+ProxyUpdate finish_update(Proxy& proxy, const Update<AnySite>& update, const Vec3& hip, Rest rest);
 
 /// Brings the site out of the solid: steepest descent of the excess field from tetrahedron to
 /// tetrahedron until it is zero; where that gets stuck, to the nearest free point along 26
 /// directions. True when out. `reach` [voxel] is how far the directions were searched so far; it is
 /// kept between updates.
-bool recover(Site& site, Progress& progress, double& reach);
+template <class AnySite>
+bool recover(AnySite& site, Progress& progress, double& reach);
+
+/// Exact descent on the smooth field.
+ProxyUpdate update_cubic(Proxy& proxy, const Field& field, const Vec3& hip,
+                         const ProxySettings& settings, StepObserver observer);
 
 }  // namespace palpate

@@ -1,0 +1,172 @@
+// Certified straight motion on the smooth field.
+#include "proxy/cubic_site.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "proxy/straight.hpp"
+
+namespace palpate {
+namespace {
+
+using Bernstein = std::array<double, 4>;
+
+/// The root of a cubic whose coefficients rise from at most 0 to above 0, from the side below 0.
+double rising_root(const Bernstein& b, double tolerance) {
+    const double a1 = 3 * (b[1] - b[0]);
+    const double a2 = 3 * ((b[2] - b[1]) - (b[1] - b[0]));
+    const double a3 = (b[3] - b[0]) - 3 * (b[2] - b[1]);
+    double low = 0, high = 1;
+    double t = -b[0] / (b[3] - b[0]);
+    constexpr int enough = 80;  // bisection alone needs 54
+    for (int i = 0; i < enough; ++i) {
+        const double p = b[0] + t * (a1 + t * (a2 + t * a3));
+        (p <= 0 ? low : high) = t;
+        if (p <= 0 && p >= -tolerance) break;
+        const double slope = a1 + t * (2 * a2 + t * (3 * a3));
+        const double next = t - (p + 0.5 * tolerance) / slope;
+        t = next > low && next < high ? next : 0.5 * (low + high);
+        if (!(t > low && t < high)) break;
+    }
+    return low;
+}
+
+}  // namespace
+
+double certified_part(const Bernstein& bernstein, double tolerance) {
+    constexpr int deepest = 48;
+    struct Part {
+        Bernstein b;
+        double begin, size;
+        int depth;
+    };
+    std::array<Part, deepest + 1> waiting;  // right halves, the nearest last
+    int count = 0;
+    waiting[count++] = {bernstein, 0, 1, 0};
+    while (count > 0) {
+        const Part part = waiting[--count];
+        const Bernstein& b = part.b;
+        if (b[1] <= 0 && b[2] <= 0 && b[3] <= 0) continue;
+        if (b[0] > 0 || part.depth == deepest) return part.begin;
+        if (b[0] <= b[1] && b[1] <= b[2] && b[2] <= b[3]) {
+            return part.begin + part.size * rising_root(b, tolerance);
+        }
+        const double b01 = 0.5 * (b[0] + b[1]), b12 = 0.5 * (b[1] + b[2]),
+                     b23 = 0.5 * (b[2] + b[3]);
+        const double b012 = 0.5 * (b01 + b12), b123 = 0.5 * (b12 + b23);
+        const double middle = 0.5 * (b012 + b123);
+        const double half = 0.5 * part.size;
+        waiting[count++] = {{middle, b123, b23, b[3]}, part.begin + half, half, part.depth + 1};
+        waiting[count++] = {{b[0], b01, b012, middle}, part.begin, half, part.depth + 1};
+    }
+    return 1;
+}
+
+CubicSite::CubicSite(const Field& f, double level, double s, const LatticePoint& at)
+    : field(f), isovalue(level), sign(s), point(at), range(cubic::scale * f.range()) {
+    // A level far beyond the data separates them as one just beyond them does.
+    const double low = std::min(f.samples().minimum(), f.background()) - f.offset();
+    const double high = std::max(f.samples().maximum(), f.background()) - f.offset();
+    isovalue = std::clamp(level, low - f.range(), high + f.range());
+    enter_cube();
+    expand();
+}
+
+double CubicSite::density() const {
+    return field.with_offset(isovalue + sign * here.value / cubic::scale);
+}
+
+Vec3 CubicSite::folded_to(const Vec3& index) const {
+    const Tetrahedron& t = point.tetrahedron;
+    const Vec3 from_sample(index[0] - t.cell[0], index[1] - t.cell[1], index[2] - t.cell[2]);
+    return fold(t, from_sample) - point.folded;
+}
+
+void CubicSite::move_to(const LatticePoint& at) {
+    point = at;
+    enter_cube();
+    expand();
+}
+
+void CubicSite::enter_cube() {
+    samples = field.around(point.tetrahedron.cell);
+    double greatest = -std::numeric_limits<double>::infinity();
+    for (double& sample : samples) {
+        sample = sign * (sample - isovalue);
+        greatest = std::max(greatest, sample);
+    }
+    most = cubic::scale * greatest;
+}
+
+void CubicSite::expand() {
+    piece = cubic::piece_of(point.tetrahedron, samples);
+    here = piece.at(point.folded);
+}
+
+namespace {
+
+/// How much of a step (folded) from the site's point, at most to a wall, keeps below the level.
+double free_part(const CubicSite& site, const Vec3& step, double level) {
+    const double c0 = site.here.value - level;
+    const double c1 = dot(site.here.gradient, step) / 3;
+    const double c2 = dot(site.here.hessian * step, step) / 6;
+    const double c3 = dot(site.piece.third(step) * step, step) / 6;
+    const Bernstein b{c0, c0 + c1, c0 + 2 * c1 + c2, c0 + 3 * (c1 + c2) + c3};
+    if (b[1] <= 0 && b[2] <= 0 && b[3] <= 0) return 1;
+    return certified_part(b, 1e-13 * site.range);
+}
+
+}  // namespace
+
+WalkEnd walk(CubicSite& site, const Vec3& displacement, double level, Progress& progress) {
+    level = std::max(level, site.here.value + 4e-14 * site.range);
+    Vec3 direction = displacement;
+    double left = 1;
+    bool expanded = true;  // the piece is that of the tetrahedron, expanded at the point
+    while (progress.budget-- > 0) {
+        if (site.field.is_background_around(site.point.tetrahedron.cell)) {
+            const Vec3 along = unfold(site.point.tetrahedron, direction);
+            const Index3& size = site.field.geometry().size;
+            const double t = stretch_outside(site.index(), along, left, -2, size, 1);
+            if (t > 0) {
+                site.move_to(cubic::locate(site.index() + t * along));
+                expanded = true;
+                direction = fold(site.point.tetrahedron, along);
+                left -= t;
+                ++progress.tetrahedra;
+                if (left <= 0) return WalkEnd::target;
+                continue;
+            }
+        }
+        const Exit exit = first_exit(site.point.folded, direction, left, 0);
+        const Vec3 step = exit.t * direction;
+        if (site.most > level) {
+            if (!expanded) site.expand();
+            expanded = true;
+            const double t = free_part(site, step, level);
+            if (t < 1) {
+                site.point.folded = snap(site.point.folded + t * step, 0);
+                site.here = site.piece.at(site.point.folded);
+                progress.tetrahedra += t > 0;
+                return WalkEnd::surface;
+            }
+        }
+        progress.tetrahedra += exit.t > 0;
+        if (exit.wall == no_wall) {
+            site.point.folded = snap(site.point.folded + step, 0);
+            site.expand();
+            return WalkEnd::target;
+        }
+        site.point.folded = snap(site.point.folded + step, 1U << exit.wall);
+        progress.report(StepKind::cross, site);
+        site.point.tetrahedron = across(site.point.tetrahedron, exit.wall);
+        if (exit.wall == wall_face) site.enter_cube();
+        expanded = false;
+        direction = reflect(direction, exit.wall);
+        left -= exit.t;
+    }
+    if (!expanded) site.expand();
+    return WalkEnd::out_of_budget;
+}
+
+}  // namespace palpate

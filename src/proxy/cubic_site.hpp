@@ -1,0 +1,64 @@
+// Where the proxy is while an update on the smooth field runs, and certified straight motion there:
+// the Bernstein coefficients of the field along a segment bound it, so no crossing is missed
+// (docs/smooth.md).
+#pragma once
+
+#include "palpate/cubic.hpp"
+#include "proxy/site.hpp"
+
+namespace palpate {
+
+/// A lattice point of the smooth field with the cubic of its tetrahedron. Its excess, sign * (f -
+/// isovalue) times cubic::scale, is computed from differences to the isovalue, so it has all its
+/// digits however far the data lie from zero.
+struct CubicSite {
+    CubicSite(const Field& f, double level, double s, const LatticePoint& at);
+
+    const Field& field;
+    double isovalue;
+    double sign;
+    LatticePoint point;
+    double range;        // of the field, scaled like the excess
+    Neighbours samples;  // excess of the samples round the cube, not scaled
+    double most = 0;     // the greatest of them, scaled: nothing in the cube lies above it
+    cubic::Piece piece;  // of the excess
+    cubic::Taylor here;  // the same expanded at the point
+
+    static LatticePoint located(const Vec3& index) { return cubic::locate(index); }
+    Vec3 index() const { return cubic::index_of(point); }
+    /// As it is felt [data units].
+    double density() const;
+    double excess() const { return here.value; }
+    /// The excess up to which a point is free. It lies a hair above 0, so that a plateau at the
+    /// isovalue is free; slides have a little more room than falls, so that a slide along the
+    /// surface on which a fall ended is not blocked.
+    double level() const { return 1e-11 * range; }
+    double slide_level() const { return 1.2e-11 * range; }
+    bool is_inside() const { return excess() > 2e-11 * range; }
+    bool in_contact() const { return excess() >= 0.95e-11 * range; }
+    CubicSite at(const Vec3& index) const { return {field, isovalue, sign, located(index)}; }
+    CubicSite turned_at(const Vec3& index) const {
+        return {field, isovalue, -sign, located(index)};
+    }
+    void move_to(const LatticePoint& at);
+    /// The vector to a point in index space, folded [voxel].
+    Vec3 folded_to(const Vec3& index) const;
+
+    void enter_cube();
+    void expand();
+};
+
+/// Goes straight along `displacement` (folded, voxel) to its end, or until the excess would rise
+/// above `level`; a start above it may not rise either. The path never exceeds the level by more
+/// than rounding.
+WalkEnd walk(CubicSite& site, const Vec3& displacement, double level, Progress& progress);
+
+inline WalkEnd walk_out(CubicSite& turned, const Vec3& displacement, Progress& progress) {
+    return walk(turned, fold(turned.point.tetrahedron, displacement), -turned.level(), progress);
+}
+
+/// The end of the longest part [0, t] of [0, 1] on which a cubic with these Bernstein coefficients
+/// is certainly not above 0; the first is not above 0. It ends within `tolerance` of 0 or at 1.
+double certified_part(const std::array<double, 4>& bernstein, double tolerance);
+
+}  // namespace palpate

@@ -1,0 +1,69 @@
+// The proxy on the smooth field: the guarantees G1-G5 on difficult fields, judged by the reference.
+#include <gtest/gtest.h>
+
+#include "support/cubic_guarantees.hpp"
+#include "support/fields.hpp"
+#include "support/hand.hpp"
+
+using namespace palpate;
+using namespace palpate::support;
+
+namespace {
+
+constexpr int updates = scaled(20000);
+
+CubicTally run(const TestField& test, std::uint64_t seed, const HandStyle& style = {}) {
+    CubicGuarantees checked(test.field);
+    Hand hand(test.field.geometry(), seed, style);
+    Proxy proxy;
+    proxy.isovalue = test.isovalue;
+    for (int i = 0; i < updates; ++i) {
+        const Vec3 hip = hand.next();
+        SCOPED_TRACE(test.name + " seed " + std::to_string(seed) + " update " + std::to_string(i));
+        checked.update(proxy, hip);
+        if (testing::Test::HasFailure()) break;
+    }
+    checked.print(test.name);
+    return checked.tally();
+}
+
+void expect_substantial(const CubicTally& t, double constrained = 0.3) {
+    EXPECT_GT(double(t.constrained) / t.updates, constrained);
+    EXPECT_GT(t.long_moves, t.updates / 12);
+    EXPECT_EQ(t.out_of_budget, 0);
+}
+
+}  // namespace
+
+TEST(CubicProxy, keeps_its_guarantees_on_random_noise) {
+    expect_substantial(run(noise_field(), 11));
+}
+TEST(CubicProxy, keeps_its_guarantees_on_salt) {
+    expect_substantial(run(salt_field(), 12), 0.2);
+}
+TEST(CubicProxy, keeps_its_guarantees_on_a_lace_thinner_than_a_voxel) {
+    const HandStyle sweeps{.slide = 4, .sweep = 6, .margin = -2};
+    run(shell_field(), 13, sweeps);
+}
+TEST(CubicProxy, keeps_its_guarantees_on_a_grid_aligned_box) {
+    const HandStyle degenerate{.slide = 2, .sweep = 1, .jump = 1, .lattice = 6, .margin = -3};
+    expect_substantial(run(box_field(), 14, degenerate));
+}
+TEST(CubicProxy, keeps_its_guarantees_on_anisotropic_noise) {
+    expect_substantial(run(anisotropic_field(), 15));
+}
+TEST(CubicProxy, keeps_its_guarantees_on_an_oblique_grid) {
+    expect_substantial(run(oblique_field(), 16));
+}
+TEST(CubicProxy, keeps_its_guarantees_on_marschner_lobb) {
+    expect_substantial(run(marschner_lobb_field(), 17));
+}
+TEST(CubicProxy, keeps_its_guarantees_where_the_solid_is_below) {
+    expect_substantial(run(noise_field(7, Solid::below), 18));
+}
+TEST(CubicProxy, keeps_its_guarantees_on_floats_far_from_zero) {
+    expect_substantial(run(offset_field(), 19));
+}
+TEST(CubicProxy, keeps_its_guarantees_on_plateaus_at_the_isovalue) {
+    expect_substantial(run(terraces_field(), 20));
+}
