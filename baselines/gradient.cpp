@@ -66,13 +66,14 @@ ProxyUpdate update(Proxy& proxy, const Field& field, const Vec3& hip, bool impro
         proxy.placed = true;
         proxy.mode = free ? Mode::free : Mode::constrained;
         proxy.scp_physical = scp;
-        proxy.scp = locate(index_from_physical(field.geometry(), scp));
+        proxy.interpolation = field.interpolation();
+        proxy.scp = locate(proxy.interpolation, index_from_physical(field.geometry(), scp));
         result.tetrahedra = 1;
     }
     result.status = accepted ? UpdateStatus::done : UpdateStatus::refused;
     result.mode = proxy.mode;
     result.scp = proxy.scp_physical;
-    result.density = proxy.placed ? value_at(field, proxy.scp) : 0;
+    result.density = proxy.placed ? value_at(field, proxy.scp_physical) : 0;
     if (accepted && observer.on_step) {
         const StepKind kind = result.mode == Mode::free ? StepKind::free_move : StepKind::slide;
         observer.on_step({kind, result.scp, hip, proxy.scp.tetrahedron}, observer.context);

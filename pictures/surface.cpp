@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-#include "palpate/lattice.hpp"
+#include "palpate/density.hpp"
 
 namespace palpate::pictures {
 namespace {

@@ -59,40 +59,4 @@ Vec3 index_of(const LatticePoint& point) {
     return point.tetrahedron.cell.cast<double>() + unfold(point.tetrahedron, point.folded);
 }
 
-double value_at(const Field& field, const LatticePoint& point) {
-    const Tetrahedron& t = point.tetrahedron;
-    return field.with_offset(piece_of(t, field.around(t.cell))(point.folded) / scale);
-}
-
-double value_at(const Field& field, const Vec3& physical) {
-    const Vec3 index = index_from_physical(field.geometry(), physical);
-    if (!(index.cwiseAbs().maxCoeff() <= farthest_index)) return field.background();
-    return cubic::value_at(field, cubic::locate(index));
-}
-
-Vec3 gradient_at(const Field& field, const Vec3& physical) {
-    const Vec3 index = index_from_physical(field.geometry(), physical);
-    if (!(index.cwiseAbs().maxCoeff() <= farthest_index)) return Vec3::Zero();
-    const auto [t, folded] = cubic::locate(index);
-    const Vec3 gradient = cubic::piece_of(t, field.around(t.cell)).at(folded).gradient / scale;
-    return physical_from_grid_axes(field.geometry(),
-                                   unfold(t, gradient).cwiseProduct(field.voxels_per_mm()));
-}
-
-Mat3 hessian_at(const Field& field, const Vec3& physical) {
-    const Vec3 index = index_from_physical(field.geometry(), physical);
-    if (!(index.cwiseAbs().maxCoeff() <= farthest_index)) return Mat3::Zero();
-    const auto [t, folded] = cubic::locate(index);
-    const Symmetric h = cubic::piece_of(t, field.around(t.cell)).at(folded).hessian;
-    // Column by column: the derivative of the gradient along each physical axis.
-    Mat3 hessian;
-    for (int a = 0; a < 3; ++a) {
-        const Vec3 along = grid_axes_from_physical(field.geometry(), Vec3::Unit(a));
-        const Vec3 change = h * fold(t, along.cwiseProduct(field.voxels_per_mm())) / scale;
-        hessian.col(a) = physical_from_grid_axes(
-            field.geometry(), unfold(t, change).cwiseProduct(field.voxels_per_mm()));
-    }
-    return hessian;
-}
-
 }  // namespace palpate::cubic

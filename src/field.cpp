@@ -31,10 +31,12 @@ CellSamples corners(SampleType type, const void* data, std::ptrdiff_t at, std::p
 
 }  // namespace
 
-Field::Field(Volume volume, Solid solid, std::optional<double> background)
-    : Field(std::make_shared<const Samples>(std::move(volume)), solid, background) {}
+Field::Field(Volume volume, Solid solid, std::optional<double> background,
+             Interpolation interpolation)
+    : Field(std::make_shared<const Samples>(std::move(volume)), solid, background, interpolation) {}
 
-Field::Field(std::shared_ptr<const Samples> samples, Solid solid, std::optional<double> background)
+Field::Field(std::shared_ptr<const Samples> samples, Solid solid, std::optional<double> background,
+             Interpolation interpolation)
     : samples_(std::move(samples)),
       row_(geometry().size[0]),
       slice_(row_ * geometry().size[1]),
@@ -43,7 +45,8 @@ Field::Field(std::shared_ptr<const Samples> samples, Solid solid, std::optional<
       voxels_per_mm_(geometry().spacing.cwiseInverse()),
       sign_(solid == Solid::above ? 1 : -1),
       size_(geometry().size),
-      solid_(solid) {
+      solid_(solid),
+      interpolation_(interpolation) {
     // Like all samples: then no product of the proxy's overflows.
     if (!(std::abs(background_) <= std::numeric_limits<float>::max())) {
         throw std::invalid_argument("the background is not finite or beyond +-3.4e38");

@@ -69,25 +69,4 @@ Incident incident_tetrahedra(const LatticePoint& point) {
     return found;
 }
 
-double value_at(const Field& field, const LatticePoint& point) {
-    const auto& tetrahedron = point.tetrahedron;
-    const LinearPiece piece = piece_of(tetrahedron, field.cell(tetrahedron.cell));
-    return field.with_offset(piece(point.folded));
-}
-
-double value_at(const Field& field, const Vec3& physical) {
-    const Vec3 index = index_from_physical(field.geometry(), physical);
-    if (!(index.cwiseAbs().maxCoeff() <= farthest_index)) return field.background();
-    return value_at(field, locate(index));
-}
-
-Vec3 gradient_at(const Field& field, const Vec3& physical) {
-    const Vec3 index = index_from_physical(field.geometry(), physical);
-    if (!(index.cwiseAbs().maxCoeff() <= farthest_index)) return Vec3::Zero();
-    const auto tetrahedron = locate(index).tetrahedron;
-    const LinearPiece piece = piece_of(tetrahedron, field.cell(tetrahedron.cell));
-    const Vec3 per_mm = unfold(tetrahedron, piece.gradient).cwiseQuotient(field.geometry().spacing);
-    return physical_from_grid_axes(field.geometry(), per_mm);
-}
-
 }  // namespace palpate

@@ -49,7 +49,7 @@ double threshold_now(const Penetrability& p, const Pressing& pressing) {
 }
 
 void put_scp(Proxy& proxy, ProxyUpdate& update, const Field& field, const Vec3& physical) {
-    proxy.scp = locate(index_from_physical(field.geometry(), physical));
+    proxy.scp = locate(field.interpolation(), index_from_physical(field.geometry(), physical));
     proxy.scp_physical = physical;
     update.scp = physical;
     update.density = value_at(field, proxy.scp);

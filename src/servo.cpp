@@ -79,6 +79,7 @@ Snapshot snapshot_of(const Session& session, const SessionTick& tick, std::int64
     snapshot.number = number;
     snapshot.session = tick;
     snapshot.scp = renderer.proxy.scp;
+    snapshot.interpolation = renderer.proxy.interpolation;
     snapshot.normal = normal_at(renderer.proxy, renderer.field);
     snapshot.stiffness = renderer.settings.force.stiffness;
     snapshot.penetrability_on = renderer.settings.penetrability.on;

@@ -59,16 +59,6 @@ LatticePoint locate(const Vec3& index);
 /// The point in index space.
 Vec3 index_of(const LatticePoint& point);
 
-/// Density at a lattice point of this stage [data units].
-double value_at(const Field& field, const LatticePoint& point);
-/// Density at a physical point [mm]; the background outside the grid. The point must be finite.
-double value_at(const Field& field, const Vec3& physical);
-/// Gradient at a physical point, in physical axes [data units / mm].
-Vec3 gradient_at(const Field& field, const Vec3& physical);
-/// Second derivatives at a physical point, in physical axes [data units / mm^2]. On a wall they are
-/// those of one of the tetrahedra that meet there.
-Mat3 hessian_at(const Field& field, const Vec3& physical);
-
 // Defined here, to be inlined.
 
 inline Taylor Piece::at(const Vec3& u) const {

@@ -15,6 +15,11 @@ namespace palpate {
 /// bright.
 enum class Solid : std::uint8_t { above, below };
 
+/// How the field continues between its samples: `linear` in each tetrahedron of the lattice, exact
+/// and with facets (Corenthy et al. 2012), or `cubic`, whose gradient is continuous
+/// (docs/smooth.md).
+enum class Interpolation : std::uint8_t { linear, cubic };
+
 /// The eight samples at the corners of a cell, in the data's units, less the field's offset.
 /// Corner c has x offset (c & 1), y offset (c >> 1 & 1), z offset (c >> 2 & 1).
 using CellSamples = std::array<double, 8>;
@@ -29,10 +34,12 @@ class Field {
     /// maximum where `solid` is below, so that bodies cut off by the border are closed there.
     /// Throws std::invalid_argument for a background that is not finite or beyond float32's range.
     explicit Field(Volume volume, Solid solid = Solid::above,
-                   std::optional<double> background = std::nullopt);
+                   std::optional<double> background = std::nullopt,
+                   Interpolation interpolation = Interpolation::linear);
     /// The same for changing data; a sequence begins at its first moment. Not null.
     explicit Field(std::shared_ptr<const Samples> samples, Solid solid = Solid::above,
-                   std::optional<double> background = std::nullopt);
+                   std::optional<double> background = std::nullopt,
+                   Interpolation interpolation = Interpolation::linear);
 
     /// Changes to another version of the samples, on the same grid, not null; background, side and
     /// time stay. Neither allocates, locks nor throws; frees the previous version only if nobody
@@ -40,6 +47,8 @@ class Field {
     void use(const std::shared_ptr<const Samples>& samples) noexcept;
     /// Goes to a time of a sequence [s], see Samples::moment_at().
     void set_time(double time) noexcept;
+    /// Feels the same samples in another way from now on.
+    void set_interpolation(Interpolation to) noexcept { interpolation_ = to; }
 
     const Samples& samples() const { return *samples_; }
     const std::shared_ptr<const Samples>& shared_samples() const { return samples_; }
@@ -49,6 +58,7 @@ class Field {
     const Volume& volume() const { return samples_->volume(); }
     const Geometry& geometry() const { return volume().geometry(); }
     Solid solid() const { return solid_; }
+    Interpolation interpolation() const { return interpolation_; }
     double background() const { return background_; }
     /// +1 for above, -1 for below: sign * (density - isovalue) > 0 is solid.
     double sign() const { return sign_; }
@@ -117,6 +127,7 @@ class Field {
     Index3 plain_;  // cells along each axis that lie at data_ as they are felt; none if they change
     SampleType type_ = SampleType::uint8;
     Solid solid_ = Solid::above;
+    Interpolation interpolation_ = Interpolation::linear;
 };
 
 template <class T>

@@ -1,6 +1,6 @@
-// Stage 9, force: computes the force on the hand from hand and proxy (Corenthy et al. 2012, Eq. 4),
-// with further effects and with limits. Lengths in device mm, forces in N, time in s, vectors in
-// device axes.
+// Stage 11, force: computes the force on the hand from hand and proxy (Corenthy et al. 2012, Eq.
+// 4), with further effects and with limits. Lengths in device mm, forces in N, time in s, vectors
+// in device axes.
 #pragma once
 
 #include <cstdint>

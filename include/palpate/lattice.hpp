@@ -137,14 +137,6 @@ struct Incident {
 };
 Incident incident_tetrahedra(const LatticePoint& point);
 
-/// Density at a lattice point [data units].
-double value_at(const Field& field, const LatticePoint& point);
-/// Density at a physical point [mm]; the background outside the grid. The point must be finite.
-double value_at(const Field& field, const Vec3& physical);
-/// Gradient at a physical point, in physical axes [data units / mm]. On a wall it is that of one of
-/// the tetrahedra that meet there.
-Vec3 gradient_at(const Field& field, const Vec3& physical);
-
 // Defined here, to be inlined: the servo thread spends most of its time in them.
 
 inline bool same_tetrahedron(const Tetrahedron& a, const Tetrahedron& b) {

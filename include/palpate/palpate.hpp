@@ -16,6 +16,7 @@
 #include "palpate/editor.hpp"
 #include "palpate/lattice.hpp"
 #include "palpate/cubic.hpp"
+#include "palpate/density.hpp"
 #include "palpate/proxy.hpp"
 #include "palpate/penetrability.hpp"
 #include "palpate/force.hpp"

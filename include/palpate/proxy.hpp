@@ -1,11 +1,11 @@
-// Stage 7, proxy: the point that stays on the free side of the isosurface while the hand presses
+// Stage 9, proxy: the point that stays on the free side of the isosurface while the hand presses
 // into it (Corenthy et al. 2012, section 4). A proxy is a small value that can be copied. Nothing
 // here allocates, locks or throws.
 #pragma once
 
 #include <limits>
 
-#include "palpate/cubic.hpp"
+#include "palpate/density.hpp"
 
 namespace palpate {
 
@@ -27,10 +27,11 @@ inline constexpr double farthest_hip = 1e5;
 
 /// The state between updates. Set `isovalue` freely between two updates.
 struct Proxy {
-    LatticePoint scp;                  ///< surface contact point, index space
+    LatticePoint scp;                  ///< surface contact point, of the lattice of `interpolation`
     Vec3 scp_physical = Vec3::Zero();  ///< the same [mm]
     double isovalue = 0;               ///< [data units]
     Mode mode = Mode::free;
+    Interpolation interpolation = Interpolation::linear;  ///< of the field of the last update
     bool placed = false;        ///< false: the next update starts at its HIP
     bool sliding = false;       ///< dynamic friction applies
     double recovery_reach = 0;  ///< [voxel] how far recovery has searched for free space so far
@@ -90,10 +91,12 @@ struct ProxyUpdate {
 using ProxyMethod = ProxyUpdate (*)(Proxy& proxy, const Field& field, const Vec3& hip,
                                     const ProxySettings& settings, StepObserver observer);
 
-/// The default method, "exact descent" (docs/proxy.md). Guarantees, with r = field.range():
+/// The default method, "exact descent", on linear (docs/proxy.md) and cubic fields
+/// (docs/smooth.md). Guarantees, with r = field.range():
 /// G1 every point of the SCP's path has sign * (f - isovalue) / r <= 1e-9 (recovery excepted);
 /// G2 constrained: |f(SCP) - isovalue| / r <= 1e-9;
-/// G3 no free straight motion of 1e-3 voxel leads closer to the HIP (frictionless);
+/// G3 no free straight motion of 1e-3 voxel leads closer to the HIP (frictionless; on a cubic field
+///    by more than 2e-3 of its length);
 /// G4 the distance to the HIP [mm] never grows (frictionless, field and isovalue unchanged);
 /// G5 at most `step_budget` pieces an update, and never NaN.
 ProxyUpdate update_exact(Proxy& proxy, const Field& field, const Vec3& hip,
@@ -101,7 +104,7 @@ ProxyUpdate update_exact(Proxy& proxy, const Field& field, const Vec3& hip,
 
 /// The paper's method as published (Fig. 4): constraint planes of all tetrahedra at the SCP, one
 /// goal that satisfies all of them, walked to tetrahedron by tetrahedron. Keeps G1, G2 and G5;
-/// sticks on convex ridges, where it breaks G3. No friction. For comparison.
+/// sticks on convex ridges, where it breaks G3. No friction. For comparison. Refuses cubic fields.
 ProxyUpdate update_paper(Proxy& proxy, const Field& field, const Vec3& hip,
                          const ProxySettings& settings = {}, StepObserver observer = {});
 

@@ -1,4 +1,4 @@
-// Stage 15, servo: the real-time thread. It reads the device, advances the session and writes the
+// Stage 17, servo: the real-time thread. It reads the device, advances the session and writes the
 // force, usually a thousand times a second. Other threads observe snapshots and send commands.
 #pragma once
 
@@ -72,7 +72,8 @@ struct ServoReport {
 struct Snapshot {
     std::int64_t number = 0;  ///< of the tick, from 0
     SessionTick session;
-    LatticePoint scp;            ///< the SCP and its tetrahedron
+    LatticePoint scp;  ///< the SCP and its tetrahedron, of the lattice of `interpolation`
+    Interpolation interpolation = Interpolation::linear;
     Vec3 normal = Vec3::Zero();  ///< of the constraint plane at the SCP, out of the solid, physical
     double stiffness = 0;        ///< [N/mm] in use
     bool penetrability_on = false;

@@ -53,6 +53,10 @@ struct CubicSite {
 /// than rounding.
 WalkEnd walk(CubicSite& site, const Vec3& displacement, double level, Progress& progress);
 
+inline WalkEnd walk_to(CubicSite& site, const Vec3& index, Progress& progress) {
+    return walk(site, site.folded_to(index), site.level(), progress);
+}
+
 inline WalkEnd walk_out(CubicSite& turned, const Vec3& displacement, Progress& progress) {
     return walk(turned, fold(turned.point.tetrahedron, displacement), -turned.level(), progress);
 }

@@ -110,6 +110,9 @@ Rest descend(Site& site, Progress& progress, const Friction& friction, Proxy& pr
 
 ProxyUpdate update_exact(Proxy& proxy, const Field& field, const Vec3& hip,
                          const ProxySettings& settings, StepObserver observer) {
+    if (field.interpolation() == Interpolation::cubic) {
+        return update_cubic(proxy, field, hip, settings, observer);
+    }
     const Vec3 target = index_from_physical(field.geometry(), hip);
     if (!accepts(proxy, field, target)) return refuse_update(proxy, field, hip);
     Update<Site> update(proxy, field, target, settings, observer);

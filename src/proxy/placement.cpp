@@ -1,42 +1,28 @@
 // Placing a proxy away from the servo thread, and straight rays that meet the surface.
+#include <optional>
+
 #include "proxy/update.hpp"
 
 namespace palpate {
 
 namespace {
 
-Vec3 normal_of(const Field& field, const Tetrahedron& t) {
-    const Vec3 gradient = unfold(t, piece_of(t, field.cell(t.cell)).gradient);
-    const Vec3 out = -field.sign() * gradient.cwiseProduct(field.voxels_per_mm());
+Vec3 normal_of(const Field& field, const LatticePoint& point) {
+    const Vec3 out = -field.sign() * gradient_at(field, point).cwiseProduct(field.voxels_per_mm());
     const double length = out.norm();
     if (!(length > 0)) return Vec3::Zero();
     return physical_from_grid_axes(field.geometry(), out / length);
 }
 
-}  // namespace
-
-Vec3 normal_at(const Proxy& proxy, const Field& field) {
-    return normal_of(field, proxy.scp.tetrahedron);
-}
-
-void field_will_change(Proxy& proxy, const Field& field) {
-    // Of several changes before the next update, the first one had the surface that was felt.
-    if (proxy.mode == Mode::constrained && proxy.ahead.isZero(0)) {
-        proxy.ahead = normal_at(proxy, field);
-    }
-}
-
-bool place(Proxy& proxy, const Field& field, const Vec3& hip, double isovalue,
-           StepObserver observer) {
-    proxy = Proxy{};
-    proxy.isovalue = isovalue;
+/// place() for one kind of site.
+template <class AnySite>
+bool place_at(Proxy& proxy, const Field& field, const Vec3& hip, const Vec3& target,
+              StepObserver observer) {
     const Vec3 size = field.geometry().size.cast<double>();
     const int patience = 1000 + static_cast<int>(size.norm());
-    const Vec3 target = index_from_physical(field.geometry(), hip);
-    if (!accepts(proxy, field, target)) return false;
-    const LatticePoint start = locate(target);
+    const LatticePoint start = AnySite::located(target);
     for (int i = 0; i < patience; ++i) {
-        const Update<Site> update(proxy, field, target, {}, observer);
+        const Update<AnySite> update(proxy, field, target, {}, observer);
         // Not by coordinates: those of a point just below zero do not come back bit for bit.
         const LatticePoint& at = update.site.point;
         const bool stayed =
@@ -50,6 +36,42 @@ bool place(Proxy& proxy, const Field& field, const Vec3& hip, double isovalue,
     return false;
 }
 
+/// Where straight motion from one point (index space) to another meets the surface.
+template <class AnySite>
+std::optional<LatticePoint> first_hit(const Field& field, double isovalue, const Vec3& start,
+                                      const Vec3& target, int step_budget) {
+    AnySite site(field, isovalue - field.offset(), field.sign(), AnySite::located(start));
+    Progress progress{field.geometry(), {}, target, step_budget};
+    const bool hit =
+        site.excess() > site.level() || walk_to(site, target, progress) == WalkEnd::surface;
+    if (!hit) return std::nullopt;
+    return site.point;
+}
+
+}  // namespace
+
+Vec3 normal_at(const Proxy& proxy, const Field& field) {
+    return normal_of(field, scp_in(field, proxy));
+}
+
+void field_will_change(Proxy& proxy, const Field& field) {
+    // Of several changes before the next update, the first one had the surface that was felt.
+    if (proxy.mode == Mode::constrained && proxy.ahead.isZero(0)) {
+        proxy.ahead = normal_at(proxy, field);
+    }
+}
+
+bool place(Proxy& proxy, const Field& field, const Vec3& hip, double isovalue,
+           StepObserver observer) {
+    proxy = Proxy{};
+    proxy.isovalue = isovalue;
+    const Vec3 target = index_from_physical(field.geometry(), hip);
+    if (!accepts(proxy, field, target)) return false;
+    const auto place_here =
+        field.interpolation() == Interpolation::cubic ? place_at<CubicSite> : place_at<Site>;
+    return place_here(proxy, field, hip, target, observer);
+}
+
 RayHit cast_ray(const Field& field, double isovalue, const Vec3& from, const Vec3& to,
                 int step_budget) {
     const Geometry& geometry = field.geometry();
@@ -60,13 +82,13 @@ RayHit cast_ray(const Field& field, double isovalue, const Vec3& from, const Vec
         !(target.cwiseAbs().maxCoeff() <= farthest_index)) {
         return ray;
     }
-    Site site(field, isovalue - field.offset(), field.sign(), locate(start));
-    Progress progress{geometry, {}, target, step_budget};
-    ray.hit = site.excess() > 0 ||
-              walk(site, progress.folded_to_target(site), progress) == WalkEnd::surface;
-    if (!ray.hit) return ray;
-    ray.point = physical_from_index(geometry, index_of(site.point));
-    ray.normal = normal_of(field, site.point.tetrahedron);
+    const auto hit_of =
+        field.interpolation() == Interpolation::cubic ? first_hit<CubicSite> : first_hit<Site>;
+    const std::optional<LatticePoint> at = hit_of(field, isovalue, start, target, step_budget);
+    if (!at) return ray;
+    ray.hit = true;
+    ray.point = physical_from_index(geometry, index_of(field.interpolation(), *at));
+    ray.normal = normal_of(field, *at);
     return ray;
 }
 

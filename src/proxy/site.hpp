@@ -36,6 +36,13 @@ struct Site {
     double level() const { return 0; }
     bool is_inside() const { return excess() > field.tolerance(); }
     bool in_contact() const { return excess() >= -field.tolerance(); }
+    /// The vector to a point in index space, folded [voxel].
+    Vec3 folded_to(const Vec3& to) const {
+        const Tetrahedron& t = point.tetrahedron;
+        const Vec3 from_centre((to[0] - t.cell[0]) - 0.5, (to[1] - t.cell[1]) - 0.5,
+                               (to[2] - t.cell[2]) - 0.5);
+        return fold(t, from_centre) - point.folded;
+    }
     /// Rate of the excess along a folded direction.
     double slope(const Vec3& folded) const { return sign * dot(piece.gradient, folded); }
     /// Gradient of the excess [data units / voxel], folded, in an incident tetrahedron.
@@ -80,12 +87,7 @@ struct Progress {
         return unfold(site.point.tetrahedron, folded_to_target(site));
     }
     /// The same in the site's frame.
-    Vec3 folded_to_target(const Site& site) const {
-        const Tetrahedron& t = site.point.tetrahedron;
-        const Vec3 from_centre((target[0] - t.cell[0]) - 0.5, (target[1] - t.cell[1]) - 0.5,
-                               (target[2] - t.cell[2]) - 0.5);
-        return fold(t, from_centre) - site.point.folded;
-    }
+    Vec3 folded_to_target(const Site& site) const { return site.folded_to(target); }
     template <class AnySite>
     void report(StepKind kind, const AnySite& site) const {
         report(kind, site, target);
@@ -158,6 +160,11 @@ WalkEnd walk(Site& site, const Vec3& displacement, Progress& progress);
 /// wall other than those that the point is `on`. `walls` are held exactly. True if the end was
 /// reached.
 bool slide(Site& site, const Vec3& step, unsigned on, unsigned walls, Progress& progress);
+
+/// The same to a point in index space, from the free side.
+inline WalkEnd walk_to(Site& site, const Vec3& index, Progress& progress) {
+    return walk(site, site.folded_to(index), progress);
+}
 
 /// Walks a turned site along `displacement` (index axes, voxel) until it leaves what is its free
 /// side and the other's solid.

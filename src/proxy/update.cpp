@@ -67,8 +67,13 @@ ProxyUpdate refuse_update(const Proxy& proxy, const Field& field, const Vec3& hi
     result.hip = hip;
     result.scp = proxy.scp_physical;
     result.isovalue = proxy.isovalue;
-    if (proxy.placed) result.density = value_at(field, proxy.scp);
+    if (proxy.placed) result.density = value_at(field, scp_in(field, proxy));
     return result;
+}
+
+LatticePoint scp_in(const Field& field, const Proxy& proxy) {
+    if (proxy.interpolation == field.interpolation()) return proxy.scp;
+    return locate(field.interpolation(), index_from_physical(field.geometry(), proxy.scp_physical));
 }
 
 bool is_finite(const Proxy& proxy) {
@@ -86,22 +91,11 @@ bool accepts(const Proxy& proxy, const Field& field, const Vec3& hip_index) {
            field.sign() * proxy.isovalue > -std::numeric_limits<double>::infinity();
 }
 
-namespace {
-
-/// Where the update starts. The first update of a proxy places it at the HIP.
-template <class AnySite>
-const LatticePoint& start_of(Proxy& proxy, const Vec3& hip_index) {
-    if (!proxy.placed) proxy.scp = AnySite::located(hip_index);
-    return proxy.scp;
-}
-
-}  // namespace
-
 template <class AnySite>
 Update<AnySite>::Update(Proxy& proxy, const Field& field, const Vec3& hip_index,
                         const ProxySettings& settings, StepObserver observer)
     : site(field, proxy.isovalue - field.offset(), field.sign(),
-           start_of<AnySite>(proxy, hip_index)),
+           proxy.placed ? scp_in(field, proxy) : AnySite::located(hip_index)),
       progress{field.geometry(), observer, hip_index, settings.step_budget} {
     if (!proxy.placed) progress.report(StepKind::place, site);
     if (!site.is_inside()) {
@@ -123,6 +117,7 @@ ProxyUpdate finish_update(Proxy& proxy, const Update<AnySite>& update, const Vec
     }
     proxy.placed = true;
     proxy.scp = site.point;
+    proxy.interpolation = site.field.interpolation();
     if (rest != Rest::recovering) proxy.ahead.setZero();
     proxy.scp_physical =
         rest == Rest::at_target ? hip : physical_from_index(update.progress.geometry, site.index());

@@ -13,6 +13,8 @@ bool accepts(const Proxy& proxy, const Field& field, const Vec3& hip_index);
 /// The result of an update that changed nothing.
 ProxyUpdate refuse_update(const Proxy& proxy, const Field& field, const Vec3& hip,
                           UpdateStatus why = UpdateStatus::refused);
+/// The SCP in the lattice of a field, also after an update on one of another interpolation.
+LatticePoint scp_in(const Field& field, const Proxy& proxy);
 /// False if the SCP is NaN or infinite.
 bool is_finite(const Proxy& proxy);
 

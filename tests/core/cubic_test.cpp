@@ -1,5 +1,5 @@
 // The smooth field: equal to the slow reference, C1 everywhere, within the range of its samples.
-#include "palpate/cubic.hpp"
+#include "palpate/density.hpp"
 
 #include <gtest/gtest.h>
 
@@ -42,7 +42,7 @@ Vec3 random_index(Random& random, const Field& field) {
 /// A field whose samples are a function of their index, without a border near the points of a test.
 template <class T, class F>
 Field field_of(F&& sample) {
-    return Field(volume_of<T>(grid(cube(12)), sample));
+    return smooth(Field(volume_of<T>(grid(cube(12)), sample)));
 }
 
 Vec3 random_inner_index(Random& random) {
@@ -73,7 +73,7 @@ TEST(Cubic, masks_are_means_of_at_most_23_neighbours) {
 TEST(Cubic, value_and_gradient_are_those_of_the_reference) {
     for (const TestField& test : every_kind()) {
         SCOPED_TRACE(test.name);
-        const Field& field = test.field;
+        const Field field = smooth(test.field);
         Random random(31);
         for (int i = 0; i < scaled(4000); ++i) {
             const Vec3 index = random_index(random, field);
@@ -81,7 +81,7 @@ TEST(Cubic, value_and_gradient_are_those_of_the_reference) {
                 cubic_value(index.cast<long double>(),
                             [&](const Index3& at) { return paper_sample(field, at); });
             const double near = 1e-13 * field.range() + 2 * field.tolerance();
-            ASSERT_NEAR(cubic::value_at(field, cubic::locate(index)), double(expected.value), near)
+            ASSERT_NEAR(value_at(field, cubic::locate(index)), double(expected.value), near)
                 << index.transpose();
             const Vec3 gradient = index_gradient(field, index);
             ASSERT_LT((gradient - expected.gradient.cast<double>()).norm(), 10 * near)
@@ -93,7 +93,7 @@ TEST(Cubic, value_and_gradient_are_those_of_the_reference) {
 TEST(Cubic, value_and_gradient_are_continuous_across_every_kind_of_wall) {
     for (const TestField& test : every_kind()) {
         SCOPED_TRACE(test.name);
-        const Field& field = test.field;
+        const Field field = smooth(test.field);
         Random random(32);
         double greatest_jump_of_curvature = 0;
         for (int i = 0; i < scaled(8000); ++i) {
@@ -117,27 +117,27 @@ TEST(Cubic, value_and_gradient_are_continuous_across_every_kind_of_wall) {
 }
 
 TEST(Cubic, a_mirrored_name_of_a_tetrahedron_has_the_same_field) {
-    const Field field = noise_field().field;
+    const Field field = smooth(noise_field().field);
     Random random(33);
     for (int i = 0; i < 1000; ++i) {
         const LatticePoint point = cubic::locate(random_index(random, field));
         Tetrahedron mirrored = point.tetrahedron;
         mirrored.sign[2] = static_cast<std::int8_t>(-mirrored.sign[2]);
         const Vec3 folded(point.folded[0], point.folded[1], -point.folded[2]);
-        ASSERT_NEAR(cubic::value_at(field, point),
-                    cubic::value_at(field, LatticePoint{mirrored, folded}), 1e-12 * field.range());
+        ASSERT_NEAR(value_at(field, point), value_at(field, LatticePoint{mirrored, folded}),
+                    1e-12 * field.range());
     }
 }
 
 TEST(Cubic, never_leaves_the_range_of_the_samples) {
     for (const TestField& test : every_kind()) {
         SCOPED_TRACE(test.name);
-        const Field& field = test.field;
+        const Field field = smooth(test.field);
         const double low = std::min(field.samples().minimum(), field.background());
         const double high = std::max(field.samples().maximum(), field.background());
         Random random(34);
         for (int i = 0; i < scaled(20000); ++i) {
-            const double f = cubic::value_at(field, cubic::locate(random_index(random, field)));
+            const double f = value_at(field, cubic::locate(random_index(random, field)));
             ASSERT_GE(f, low - field.tolerance());
             ASSERT_LE(f, high + field.tolerance());
         }
@@ -151,7 +151,7 @@ TEST(Cubic, reproduces_linear_functions) {
     Random random(35);
     for (int i = 0; i < 2000; ++i) {
         const Vec3 index = random_inner_index(random);
-        ASSERT_NEAR(cubic::value_at(field, cubic::locate(index)), 40 + slope.dot(index), 1e-12);
+        ASSERT_NEAR(value_at(field, cubic::locate(index)), 40 + slope.dot(index), 1e-12);
         ASSERT_EQ(index_gradient(field, index), slope);
     }
 }
@@ -165,10 +165,10 @@ TEST(Cubic, of_a_quadratic_has_its_gradient_and_an_eighth_of_its_laplacian_more)
     Random random(36);
     for (int i = 0; i < 2000; ++i) {
         const Vec3 index = random_inner_index(random);
-        ASSERT_NEAR(cubic::value_at(field, cubic::locate(index)),
-                    quadratic(index) + 2 * a.trace() / 8, 1e-10);
+        ASSERT_NEAR(value_at(field, cubic::locate(index)), quadratic(index) + 2 * a.trace() / 8,
+                    1e-10);
         ASSERT_LT((index_gradient(field, index) - 2 * a * index).norm(), 1e-11);
-        const Mat3 hessian = cubic::hessian_at(field, index);
+        const Mat3 hessian = hessian_at(field, index);
         ASSERT_LT((hessian - 2 * a).norm(), 1e-11);
     }
 }
@@ -191,11 +191,11 @@ TEST(Cubic, coefficients_of_integer_samples_are_integers) {
 
 TEST(Cubic, of_a_constant_is_that_constant_bit_for_bit) {
     for (const float constant : {0.1F, -3.7e30F, 1e-30F}) {
-        const Field field(Volume(grid(cube(6)), std::vector<float>(216, constant)));
+        const Field field = smooth(Field(Volume(grid(cube(6)), std::vector<float>(216, constant))));
         Random random(38);
         for (int i = 0; i < 200; ++i) {
             const Vec3 index = random_index(random, field);
-            ASSERT_EQ(cubic::value_at(field, cubic::locate(index)), double(constant));
+            ASSERT_EQ(value_at(field, cubic::locate(index)), double(constant));
             ASSERT_TRUE(index_gradient(field, index).isZero(0));
         }
     }
@@ -204,21 +204,20 @@ TEST(Cubic, of_a_constant_is_that_constant_bit_for_bit) {
 TEST(Cubic, derivatives_are_physical_on_anisotropic_and_oblique_grids) {
     for (const TestField& test : {anisotropic_field(), oblique_field(), marschner_lobb_field()}) {
         SCOPED_TRACE(test.name);
-        const Field& field = test.field;
+        const Field field = smooth(test.field);
         const double near = 1e-3 * field.range();
         constexpr double h = 1e-5;  // [mm]
         int jumps = 0;
         Random random(39);
         for (int i = 0; i < 500; ++i) {
             const Vec3 at = physical_from_index(field.geometry(), random.point(2, 12));
-            const Vec3 gradient = cubic::gradient_at(field, at);
-            const Mat3 hessian = cubic::hessian_at(field, at);
+            const Vec3 gradient = gradient_at(field, at);
+            const Mat3 hessian = hessian_at(field, at);
             for (int a = 0; a < 3; ++a) {
                 const Vec3 before = at - h * Vec3::Unit(a), behind = at + h * Vec3::Unit(a);
-                const double rise = cubic::value_at(field, behind) - cubic::value_at(field, before);
+                const double rise = value_at(field, behind) - value_at(field, before);
                 ASSERT_NEAR(gradient[a], rise / (2 * h), near);
-                const Vec3 turn =
-                    cubic::gradient_at(field, behind) - cubic::gradient_at(field, before);
+                const Vec3 turn = gradient_at(field, behind) - gradient_at(field, before);
                 jumps += (hessian.col(a) - turn / (2 * h)).norm() > near;
             }
         }
@@ -228,10 +227,11 @@ TEST(Cubic, derivatives_are_physical_on_anisotropic_and_oblique_grids) {
 }
 
 TEST(Cubic, is_the_background_outside_the_grid) {
-    const Field field(noise_volume<std::uint8_t>(grid({3, 4, 5}), 40, 0, 255), Solid::above, 9.0);
+    const Field field(noise_volume<std::uint8_t>(grid({3, 4, 5}), 40, 0, 255), Solid::above, 9.0,
+                      Interpolation::cubic);
     for (const Vec3& far : {Vec3(-1.5, 1, 1), Vec3(4.5, 2, 2), Vec3(1, 1, 1e8), Vec3(1e30, 0, 0)}) {
-        EXPECT_EQ(cubic::value_at(field, far), 9);
-        EXPECT_TRUE(cubic::gradient_at(field, far).isZero(0));
+        EXPECT_EQ(value_at(field, far), 9);
+        EXPECT_TRUE(gradient_at(field, far).isZero(0));
     }
-    EXPECT_NE(cubic::value_at(field, Vec3(-1.4, 1, 1)), 9);
+    EXPECT_NE(value_at(field, Vec3(-1.4, 1, 1)), 9);
 }

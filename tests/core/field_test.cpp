@@ -5,7 +5,7 @@
 
 #include <limits>
 
-#include "palpate/lattice.hpp"
+#include "palpate/density.hpp"
 #include "support/fields.hpp"
 #include "support/paper_lattice.hpp"
 

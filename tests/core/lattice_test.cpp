@@ -1,6 +1,6 @@
 // The lattice: every point has a tetrahedron, walls are shared, the field is continuous; against
 // the paper's own form with explicit tetrahedra and barycentric coordinates.
-#include "palpate/lattice.hpp"
+#include "palpate/density.hpp"
 
 #include <gtest/gtest.h>
 

@@ -12,7 +12,7 @@
 #include <set>
 #include <utility>
 
-#include "palpate/lattice.hpp"
+#include "palpate/density.hpp"
 #include "support/mesh_checks.hpp"
 
 using namespace palpate;

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <map>
 
-#include "palpate/lattice.hpp"
+#include "palpate/density.hpp"
 #include "scenes/hash.hpp"
 #include "scenes/random.hpp"
 

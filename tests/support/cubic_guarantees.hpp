@@ -92,7 +92,7 @@ class CubicGuarantees {
                                         static_cast<CubicGuarantees*>(self)->path_.push_back(step);
                                     },
                                     this};
-        const ProxyUpdate r = update_cubic(proxy, field_, hip, settings_, observer);
+        const ProxyUpdate r = update_exact(proxy, field_, hip, settings_, observer);
         check(before, proxy, hip, r);
         return r;
     }
@@ -119,7 +119,7 @@ class CubicGuarantees {
     /// By the field itself: quicker, for most of the samples.
     long double quick_excess(const Vec3l& index, const Proxy& proxy) const {
         const Vec3 at = index.cast<double>();
-        return field_.sign() * (cubic::value_at(field_, cubic::locate(at)) - proxy.isovalue) /
+        return field_.sign() * (value_at(field_, cubic::locate(at)) - proxy.isovalue) /
                field_.range();
     }
     long double greatest(const Vec3& a, const Vec3& b, const Proxy& proxy) {
@@ -170,7 +170,7 @@ class CubicGuarantees {
         }
         if (r.mode != Mode::constrained || r.status != UpdateStatus::done) return;
         const Vec3 h = hip - r.scp;
-        const Vec3 g = field_.sign() * cubic::gradient_at(field_, r.scp);
+        const Vec3 g = field_.sign() * gradient_at(field_, r.scp);
         for (int i = 0; i < 8; ++i) {
             Vec3 v = random_.direction();
             if (i % 2 == 1) v -= g * (g.dot(v) / std::max(1e-300, g.squaredNorm()));

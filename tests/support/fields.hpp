@@ -64,6 +64,12 @@ inline double marschner_lobb(const Vec3& p) {
     return (1 - std::sin(pi * p[2] / 2) + 0.25 * (1 + rho)) / (2 * (1 + 0.25));
 }
 
+/// The same samples, felt smoothly.
+inline Field smooth(Field field) {
+    field.set_interpolation(Interpolation::cubic);
+    return field;
+}
+
 inline TestField noise_field(std::uint64_t seed = 1, Solid solid = Solid::above) {
     return {solid == Solid::above ? "noise" : "noise_below",
             Field(noise_volume<std::uint8_t>(grid(cube(24)), seed, 0, 256), solid), 128};

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "palpate/lattice.hpp"
+#include "palpate/density.hpp"
 
 namespace palpate::viewer {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-#include "palpate/lattice.hpp"
+#include "palpate/density.hpp"
 #include "support/fields.hpp"
 
 namespace palpate::viewer {
