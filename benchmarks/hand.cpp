@@ -110,6 +110,11 @@ Touch ramp_touch(int size) {
     return {Field(Volume(geometry, std::move(samples))), 0, {}};
 }
 
+Touch smooth(Touch touch) {
+    touch.field.set_interpolation(Interpolation::cubic);
+    return touch;
+}
+
 Touch all_in_bricks(Touch touch) {
     const auto& samples = touch.field.shared_samples();
     const double background = touch.field.background();

@@ -43,6 +43,8 @@ Touch ball_touch(int size, double voxels_per_mm);
 /// The path is left empty.
 Touch ramp_touch(int size);
 
+/// The same body, level and hand on the smooth field.
+Touch smooth(Touch touch);
 /// The same body, level and hand with all samples in edited bricks.
 Touch all_in_bricks(Touch touch);
 /// The same half way between two frames, both of them alike.

@@ -99,6 +99,21 @@ bool add_noise() {
     return true;
 }
 
+bool add_smooth() {
+    for (const auto& [resolution, v] : resolutions) {
+        for (const SampleType type : {SampleType::uint8, SampleType::float32}) {
+            const std::string rest = "/exact/" + std::string(name_of(type)) + "/" + resolution;
+            add("smooth/contact" + rest, "exact",
+                [=, v = v] { return smooth(cylinder_touch(type, v, 1)); });
+            add("smooth/free" + rest, "exact",
+                [=, v = v] { return smooth(cylinder_touch(type, v, -3)); });
+        }
+        add("smooth/noise/exact/float32/" + std::string(resolution), "exact",
+            [v = v] { return smooth(noise_touch(SampleType::float32, v)); });
+    }
+    return true;
+}
+
 bool add_sizes() {
     for (const int size : {64, 128, 256, 512, 768}) {
         add("size/exact/uint8/" + std::to_string(size), "exact",
@@ -107,7 +122,7 @@ bool add_sizes() {
     return true;
 }
 
-[[maybe_unused]] const bool added = add_cylinder() && add_noise() && add_sizes();
+[[maybe_unused]] const bool added = add_cylinder() && add_noise() && add_smooth() && add_sizes();
 
 }  // namespace
 }  // namespace palpate::benchmarks

@@ -92,6 +92,19 @@ CellSamples Field::other_cell(const Index3& cell) const {
     return samples;
 }
 
+Neighbours Field::around(const Index3& at) const {
+    return visit_around(at, [](const auto* centre, std::ptrdiff_t row, std::ptrdiff_t slice) {
+        Neighbours samples;
+        double* out = samples.data();
+        for (const std::ptrdiff_t z : {-slice, std::ptrdiff_t{0}, slice}) {
+            for (const std::ptrdiff_t y : {z - row, z, z + row}) {
+                for (int x = -1; x <= 1; ++x) *out++ = double(centre[y + x]);
+            }
+        }
+        return samples;
+    });
+}
+
 Neighbours Field::other_around(const Index3& at) const {
     Neighbours samples;
     // By the eight cells that meet at the sample: they know bricks, moments and the background.

@@ -6,6 +6,9 @@
 // half a voxel of it along each axis. Walls, folded coordinates and reflections are the lattice's.
 #pragma once
 
+#include <cstddef>
+#include <type_traits>
+
 #include "palpate/lattice.hpp"
 
 namespace palpate::cubic {
@@ -24,18 +27,18 @@ struct Symmetric {
 /// integers.
 inline constexpr double scale = 96;
 
-/// Value and derivatives of the field at a point, times `scale` [data units], per voxel of the
+/// Value [data units] and gradient [data units / voxel] of the field at a point, times `scale`, in
 /// folded axes.
-struct Taylor {
+struct Slope {
     double value = 0;
     Vec3 gradient = Vec3::Zero();
-    Symmetric hessian;
 };
 
 /// The cubic of a tetrahedron: its derivatives at the cube's centre, times `scale`. For integer
 /// samples all of them are exact. Value and gradient are the same for the whole cube; the third
 /// derivative along e is 0.
-struct Piece : Taylor {
+struct Piece : Slope {
+    Symmetric hessian;
     double ddd = 0, dds = 0, dde = 0, dss = 0, dse = 0, dee = 0, sss = 0, sse = 0, see = 0;
 
     /// The third derivatives applied to one vector.
@@ -44,15 +47,23 @@ struct Piece : Taylor {
                 dde * v[0] + dse * v[1] + dee * v[2], dss * v[0] + sss * v[1] + sse * v[2],
                 dse * v[0] + sse * v[1] + see * v[2], dee * v[0] + see * v[1]};
     }
-    /// The expansion at a folded point [voxel] of the tetrahedron.
-    Taylor at(const Vec3& folded) const;
+    /// Value and gradient at a folded point [voxel] of the tetrahedron.
+    Slope at(const Vec3& folded) const;
+    /// The second derivatives there.
+    Symmetric hessian_at(const Vec3& folded) const;
     /// The value alone.
     double operator()(const Vec3& folded) const;
+    /// That of the field with its sign turned.
+    Piece operator-() const;
 };
 
 /// The cubic of a tetrahedron from the neighbours of its sample. Each Bernstein coefficient of it
 /// is a mean of these samples with weights >= 0, so the field never leaves their range.
 Piece piece_of(const Tetrahedron& tetrahedron, const Neighbours& samples);
+/// The same from samples that lie as Field::visit_around() shows them, less `isovalue`.
+template <class T>
+Piece piece_of(const Tetrahedron& tetrahedron, const T* centre, std::ptrdiff_t row,
+               std::ptrdiff_t slice, double isovalue);
 
 /// A tetrahedron that contains the point (index space, every |coordinate| <= farthest_index).
 LatticePoint locate(const Vec3& index);
@@ -61,13 +72,95 @@ Vec3 index_of(const LatticePoint& point);
 
 // Defined here, to be inlined.
 
-inline Taylor Piece::at(const Vec3& u) const {
-    const Symmetric t = third(u);
-    const Symmetric h{hessian.dd + t.dd, hessian.ds + t.ds, hessian.de + t.de,
-                      hessian.ss + t.ss, hessian.se + t.se, hessian.ee + t.ee};
+// docs/smooth.md says where the coefficients come from.
+template <class T>
+inline Piece piece_of(const Tetrahedron& t, const T* centre, std::ptrdiff_t row,
+                      std::ptrdiff_t slice, double isovalue) {
+    // 16-bit samples times 96, and sums of some of them, fit into an int.
+    static_assert(std::is_floating_point_v<T> || sizeof(T) <= 2);
+    using Sum = std::conditional_t<std::is_floating_point_v<T>, double, int>;
+    const std::array<std::ptrdiff_t, 3> stride{1, row, slice};
+    const std::ptrdiff_t d = t.sign[0] * stride[t.axis[0]];
+    const std::ptrdiff_t s = t.sign[1] * stride[t.axis[1]];
+    const std::ptrdiff_t e = t.sign[2] * stride[t.axis[2]];
+    // Rows along s in the planes e = 0, 1 and -1 (z, p, m), at d = -1, 0 and 1 (m, 0, p).
+    const T *const zm = centre - d, *const z0 = centre, *const zp = centre + d;
+    const T *const pm = zm + e, *const p0 = z0 + e, *const pp = zp + e;
+    const T *const mm = zm - e, *const m0 = z0 - e, *const mp = zp - e;
+    const auto difference = [](const T* plus, const T* minus, std::ptrdiff_t at) {
+        return Sum(plus[at]) - Sum(minus[at]);
+    };
+    const auto sum = [](const T* plus, const T* minus, std::ptrdiff_t at) {
+        return Sum(plus[at]) + Sum(minus[at]);
+    };
+    Piece p;
+    {
+        // What is odd along e is made of differences of the planes e = 1 and e = -1. After the
+        // letter the place along d and s: dm0 is at d = -1, s = 0.
+        const Sum dm0 = difference(pm, mm, 0);
+        const Sum d0m = difference(p0, m0, -s), d00 = difference(p0, m0, 0),
+                  d0p = difference(p0, m0, s);
+        const Sum dpm = difference(pp, mp, -s), dp0 = difference(pp, mp, 0),
+                  dpp = difference(pp, mp, s);
+        p.gradient[2] = 36 * d00 + 3 * ((dm0 + dp0) + (d0m + d0p));
+        p.hessian.de = 36 * dp0 - 24 * d00 - 12 * dm0;
+        p.hessian.se = 36 * d0p - 24 * d00 - 12 * d0m;
+        p.dde = 24 * (dm0 - d00) + 12 * ((dpm + dpp) - (d0m + d0p));
+        p.dse = 12 * (d0m - dpm) + 24 * (d00 - dp0) + 36 * (dpp - d0p);
+        p.sse = 12 * ((d0m + d0p) + (dpm + dpp)) - 24 * (d00 + dp0);
+    }
+    // What is even is made of the plane e = 0 and the sums of the other two.
+    const Sum sm0 = sum(pm, mm, 0);
+    const Sum s0m = sum(p0, m0, -s), s00 = sum(p0, m0, 0), s0p = sum(p0, m0, s);
+    const Sum spm = sum(pp, mp, -s), sp0 = sum(pp, mp, 0), spp = sum(pp, mp, s);
+    const Sum zmm = zm[-s], zm0 = zm[0], zmp = zm[s];
+    const Sum z0m = z0[-s], z00 = z0[0], z0p = z0[s];
+    const Sum zpm = zp[-s], zp0 = zp[0], zpp = zp[s];
+    {
+        // Second differences along e.
+        const Sum c0m = s0m - 2 * z0m, c00 = s00 - 2 * z00, c0p = s0p - 2 * z0p;
+        const Sum cpm = spm - 2 * zpm, cp0 = sp0 - 2 * zp0, cpp = spp - 2 * zpp;
+        p.hessian.ee = 48 * c00 + 24 * (c0p + cp0);
+        p.dee = 24 * ((cp0 + cpp) - (c00 + c0p));
+        p.see = 24 * ((c0p + cpp) - (c00 + cp0));
+        p.sss = 12 * ((c0m + c0p) + (cpm + cpp)) - 24 * (c00 + cp0);
+    }
+    const Sum ring_m = zmm + zmp + sm0;  // the four neighbours of the sample at d = -1
+    const Sum ring_p = zpm + zpp + sp0;  // and of that at d = 1
+    // From differences, which keep their digits however far the samples lie from zero.
+    p.value = scale * (z00 - isovalue) + (8 * (((zm0 + zp0) + (z0m + z0p) + s00) - 6 * z00) +
+                                          ((ring_m + ring_p + s0m + s0p) - 12 * z00));
+    p.gradient[0] = 36 * (zp0 - zm0) + 3 * (ring_p - ring_m);
+    p.gradient[1] = 36 * (z0p - z0m) + 3 * ((zmp + zpp + s0p) - (zmm + zpm + s0m));
+    p.hessian.dd = 96 * (zm0 - z00) + 24 * (ring_p - (z0m + z0p + s00));
+    p.hessian.ds = 12 * (zmm - zmp) + 24 * (z0m - z0p) + 36 * (zpp - zpm);
+    p.hessian.ss = 72 * z0m - 96 * z00 - 48 * zp0 + 24 * ((z0p + zpm + zpp) + (s0p - s00));
+    p.ddd = 96 * (z00 - zm0) + 24 * ((ring_m - ring_p) + ((spm + spp) - (s0m + s0p)));
+    p.dds = 24 * ((zmp - zmm) + (z0m - z0p)) + 12 * ((s0m - s0p) + (spp - spm));
+    p.dss = 48 * ((z00 - z0m) + (zpm - zp0)) + 24 * ((s00 - s0p) + (spp - sp0));
+    return p;
+}
+
+inline Piece Piece::operator-() const {
+    Piece p;
+    p.value = -value;
+    p.gradient = -gradient;
+    p.hessian = {-hessian.dd, -hessian.ds, -hessian.de, -hessian.ss, -hessian.se, -hessian.ee};
+    p.ddd = -ddd, p.dds = -dds, p.dde = -dde, p.dss = -dss, p.dse = -dse, p.dee = -dee;
+    p.sss = -sss, p.sse = -sse, p.see = -see;
+    return p;
+}
+
+inline Slope Piece::at(const Vec3& u) const {
     const Vec3 hu = hessian * u;
-    const Vec3 tu = t * u;
-    return {value + dot(gradient + 0.5 * hu + (1.0 / 6) * tu, u), gradient + hu + 0.5 * tu, h};
+    const Vec3 tu = third(u) * u;
+    return {value + dot(gradient + 0.5 * hu + (1.0 / 6) * tu, u), gradient + hu + 0.5 * tu};
+}
+
+inline Symmetric Piece::hessian_at(const Vec3& u) const {
+    const Symmetric t = third(u);
+    return {hessian.dd + t.dd, hessian.ds + t.ds, hessian.de + t.de,
+            hessian.ss + t.ss, hessian.se + t.se, hessian.ee + t.ee};
 }
 
 inline double Piece::operator()(const Vec3& u) const {

@@ -82,9 +82,12 @@ class Field {
         return with_type(type_, [&](auto zero) { return cell_of<decltype(zero)>(cell); });
     }
     /// The sample `at` (index space) with its neighbours, less offset(); any sample in space.
-    Neighbours around(const Index3& at) const {
-        return with_type(type_, [&](auto zero) { return around_of<decltype(zero)>(at); });
-    }
+    Neighbours around(const Index3& at) const;
+    /// The same samples where they lie: returns visit(centre, row, slice), where `centre` points to
+    /// the sample, its neighbours in x are beside it, those in y `row` away, in z `slice`. Samples
+    /// that lie otherwise (at the border, edited, between frames) are gathered first, as doubles.
+    template <class Visit>
+    auto visit_around(const Index3& at, Visit&& visit) const;
     /// True where all eight samples of `cell` are background.
     bool is_background(const Index3& cell) const {
         // One unsigned comparison an axis covers both ends, here and in cell_of().
@@ -104,8 +107,6 @@ class Field {
   private:
     template <class T>
     CellSamples cell_of(const Index3& cell) const;
-    template <class T>
-    Neighbours around_of(const Index3& at) const;
     CellSamples other_cell(const Index3& cell) const;
     Neighbours other_around(const Index3& at) const;
     CellSamples absolute_cell(const Index3& cell) const;
@@ -143,20 +144,18 @@ inline CellSamples Field::cell_of(const Index3& cell) const {
             double(q[0]), double(q[1]), double(q[row_]), double(q[row_ + 1])};
 }
 
-template <class T>
-inline Neighbours Field::around_of(const Index3& at) const {
+template <class Visit>
+inline auto Field::visit_around(const Index3& at, Visit&& visit) const {
     // The lowest and the highest of the eight cells that meet at the sample.
     const auto is_plain = [&](int a) { return at[a] > 0 && at[a] < plain_[a]; };
-    if (!(is_plain(0) && is_plain(1) && is_plain(2))) return other_around(at);
-    const T* p = static_cast<const T*>(data_) + (at[0] + at[1] * row_ + at[2] * slice_);
-    Neighbours samples;
-    double* out = samples.data();
-    for (std::ptrdiff_t z : {-slice_, std::ptrdiff_t{0}, slice_}) {
-        for (std::ptrdiff_t y : {z - row_, z, z + row_}) {
-            for (int x = -1; x <= 1; ++x) *out++ = double(p[y + x]);
-        }
+    if (is_plain(0) && is_plain(1) && is_plain(2)) {
+        const std::ptrdiff_t offset = at[0] + at[1] * row_ + at[2] * slice_;
+        return with_type(type_, [&](auto zero) {
+            return visit(static_cast<const decltype(zero)*>(data_) + offset, row_, slice_);
+        });
     }
-    return samples;
+    const Neighbours samples = other_around(at);
+    return visit(samples.data() + 13, std::ptrdiff_t{3}, std::ptrdiff_t{9});
 }
 
 }  // namespace palpate

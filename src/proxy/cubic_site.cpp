@@ -68,7 +68,6 @@ CubicSite::CubicSite(const Field& f, double level, double s, const LatticePoint&
     const double low = std::min(f.samples().minimum(), f.background()) - f.offset();
     const double high = std::max(f.samples().maximum(), f.background()) - f.offset();
     isovalue = std::clamp(level, low - f.range(), high + f.range());
-    enter_cube();
     expand();
 }
 
@@ -84,39 +83,54 @@ Vec3 CubicSite::folded_to(const Vec3& index) const {
 
 void CubicSite::move_to(const LatticePoint& at) {
     point = at;
-    enter_cube();
+    most = std::numeric_limits<double>::infinity();
     expand();
 }
 
 void CubicSite::enter_cube() {
-    samples = field.around(point.tetrahedron.cell);
-    double greatest = -std::numeric_limits<double>::infinity();
-    for (double& sample : samples) {
-        sample = sign * (sample - isovalue);
-        greatest = std::max(greatest, sample);
-    }
+    const double greatest = field.visit_around(
+        point.tetrahedron.cell, [&](const auto* centre, std::ptrdiff_t row, std::ptrdiff_t slice) {
+            const auto best = [&](auto better) {
+                auto found = *centre;
+                for (const std::ptrdiff_t z : {-slice, std::ptrdiff_t{0}, slice}) {
+                    for (const std::ptrdiff_t y : {z - row, z, z + row}) {
+                        for (int x = -1; x <= 1; ++x) found = better(found, centre[y + x]);
+                    }
+                }
+                return found;
+            };
+            return sign > 0 ? best([](auto a, auto b) { return std::max(a, b); }) - isovalue
+                            : isovalue - best([](auto a, auto b) { return std::min(a, b); });
+        });
     most = cubic::scale * greatest;
 }
 
 void CubicSite::expand() {
-    piece = cubic::piece_of(point.tetrahedron, samples);
+    piece = field.visit_around(
+        point.tetrahedron.cell, [&](const auto* centre, std::ptrdiff_t row, std::ptrdiff_t slice) {
+            return cubic::piece_of(point.tetrahedron, centre, row, slice, isovalue);
+        });
+    if (sign < 0) piece = -piece;
     here = piece.at(point.folded);
 }
 
-namespace {
-
-/// How much of a step (folded) from the site's point, at most to a wall, keeps below the level.
-double free_part(const CubicSite& site, const Vec3& step, double level) {
-    const double c0 = site.here.value - level;
-    const double c1 = dot(site.here.gradient, step) / 3;
-    const double c2 = dot(site.here.hessian * step, step) / 6;
-    const double c3 = dot(site.piece.third(step) * step, step) / 6;
-    const Bernstein b{c0, c0 + c1, c0 + 2 * c1 + c2, c0 + 3 * (c1 + c2) + c3};
-    if (b[1] <= 0 && b[2] <= 0 && b[3] <= 0) return 1;
-    return certified_part(b, 1e-13 * site.range);
+double CubicSite::advance(const Vec3& step, double level, unsigned walls) {
+    // Along the step the Hessian changes by the third derivatives, which are the same everywhere.
+    const cubic::Symmetric third = piece.third(step);
+    const Vec3 bend = third * step;
+    const Vec3 turn = piece.hessian * step + third * point.folded;
+    const double c1 = dot(here.gradient, step), c2 = 0.5 * dot(turn, step),
+                 c3 = (1.0 / 6) * dot(bend, step);
+    const double c0 = here.value - level;
+    const double third_c1 = (1.0 / 3) * c1, third_c2 = (1.0 / 3) * c2;
+    const Bernstein b{c0, c0 + third_c1, c0 + 2 * third_c1 + third_c2, c0 + (c1 + c2 + c3)};
+    const bool free = b[1] <= 0 && b[2] <= 0 && b[3] <= 0;
+    const double t = free ? 1 : certified_part(b, 1e-13 * range);
+    here.value += t * (c1 + t * (c2 + t * c3));
+    here.gradient += t * (turn + (0.5 * t) * bend);
+    point.folded = t < 1 ? snap(point.folded + t * step, 0) : snap(point.folded + step, walls);
+    return t;
 }
-
-}  // namespace
 
 WalkEnd walk(CubicSite& site, const Vec3& displacement, double level, Progress& progress) {
     level = std::max(level, site.here.value + 4e-14 * site.range);
@@ -140,24 +154,23 @@ WalkEnd walk(CubicSite& site, const Vec3& displacement, double level, Progress& 
         }
         const Exit exit = first_exit(site.point.folded, direction, left, 0);
         const Vec3 step = exit.t * direction;
+        const bool at_wall = exit.wall != no_wall;
+        const unsigned walls = at_wall ? 1U << exit.wall : 0;
         if (site.most > level) {
             if (!expanded) site.expand();
+            const double t = site.advance(step, level, walls);
+            progress.tetrahedra += t * exit.t > 0;
+            if (t < 1) return WalkEnd::surface;
             expanded = true;
-            const double t = free_part(site, step, level);
-            if (t < 1) {
-                site.point.folded = snap(site.point.folded + t * step, 0);
-                site.here = site.piece.at(site.point.folded);
-                progress.tetrahedra += t > 0;
-                return WalkEnd::surface;
-            }
+        } else {
+            site.point.folded = snap(site.point.folded + step, walls);
+            progress.tetrahedra += exit.t > 0;
+            expanded = false;
         }
-        progress.tetrahedra += exit.t > 0;
-        if (exit.wall == no_wall) {
-            site.point.folded = snap(site.point.folded + step, 0);
-            site.expand();
+        if (!at_wall) {
+            if (!expanded) site.expand();
             return WalkEnd::target;
         }
-        site.point.folded = snap(site.point.folded + step, 1U << exit.wall);
         progress.report(StepKind::cross, site);
         site.point.tetrahedron = across(site.point.tetrahedron, exit.wall);
         if (exit.wall == wall_face) site.enter_cube();

@@ -18,11 +18,12 @@ struct CubicSite {
     double isovalue;
     double sign;
     LatticePoint point;
-    double range;        // of the field, scaled like the excess
-    Neighbours samples;  // excess of the samples round the cube, not scaled
-    double most = 0;     // the greatest of them, scaled: nothing in the cube lies above it
+    double range;  // of the field, scaled like the excess
+    /// Nothing in the cube lies above: the greatest of the samples round it, once it was looked
+    /// for.
+    double most = std::numeric_limits<double>::infinity();
     cubic::Piece piece;  // of the excess
-    cubic::Taylor here;  // the same expanded at the point
+    cubic::Slope here;   // its value and gradient at the point
 
     static LatticePoint located(const Vec3& index) { return cubic::locate(index); }
     Vec3 index() const { return cubic::index_of(point); }
@@ -44,8 +45,13 @@ struct CubicSite {
     /// The vector to a point in index space, folded [voxel].
     Vec3 folded_to(const Vec3& index) const;
 
+    /// Of another cube: `most`.
     void enter_cube();
+    /// Piece and slope after the point has gone to another tetrahedron.
     void expand();
+    /// Goes along a step (folded) inside the tetrahedron, which ends on the walls of the mask, as
+    /// far as the excess certainly stays below the level. Returns which part of it.
+    double advance(const Vec3& step, double level, unsigned walls);
 };
 
 /// Goes straight along `displacement` (folded, voxel) to its end, or until the excess would rise

@@ -14,6 +14,8 @@ constexpr double resting_slope = 1e-4;
 constexpr double least_distance = 1e-7;
 /// Below this slope [range / voxel] the normal says nothing.
 constexpr double least_slope = 1e-5;
+/// Farther than any slide [mm].
+constexpr double far = 1e30;
 /// Tries before the proxy looks round in all directions.
 constexpr int most_failures = 6;
 
@@ -23,67 +25,55 @@ struct Contact {
     Vec3 tangential;  ///< of the vector to the target
     double depth;     ///< of the target below the tangent plane, > 0 when pressing
     double tangential_length;
-    /// Directions of principal curvature and the curvatures [1/mm]; > 0 where the surface rises
-    /// from its tangent plane towards the free side.
-    std::array<Vec3, 2> direction;
-    std::array<double, 2> curvature;
 };
 
-Contact contact_at(const CubicSite& site, const Vec3& h_mm, const Vec3& per_mm, double slope) {
-    Contact c;
-    c.normal = site.here.gradient.cwiseProduct(per_mm) * (-1 / slope);
-    const double along = dot(h_mm, c.normal);
-    c.depth = -along;
-    c.tangential = h_mm - along * c.normal;
-    c.tangential_length = std::sqrt(dot(c.tangential, c.tangential));
-    // A basis of the tangent plane.
+/// The surface's curvature, in coordinates of the tangent plane: along the target's direction in
+/// it, and across.
+struct Curvature {
+    Vec3 along, across;           ///< unit
+    double cosine, sine;          ///< of the first direction of principal curvature
+    std::array<double, 2> value;  ///< [1/mm] > 0 where the surface rises towards the free side
+};
+
+/// `slope` is that of the field, in the unit of the Hessian.
+Curvature curvature_of(const cubic::Symmetric& hessian, const Contact& c, const Vec3& per_mm,
+                       double slope) {
+    const Vec3 t = c.tangential * (1 / c.tangential_length);
     const Vec3& n = c.normal;
-    const double x = std::abs(n[0]), y = std::abs(n[1]), z = std::abs(n[2]);
-    Vec3 a = x <= y && x <= z ? Vec3(0, -n[2], n[1])
-             : y <= z         ? Vec3(n[2], 0, -n[0])
-                              : Vec3(-n[1], n[0], 0);
-    a *= 1 / std::sqrt(dot(a, a));
-    const Vec3 b(n[1] * a[2] - n[2] * a[1], n[2] * a[0] - n[0] * a[2], n[0] * a[1] - n[1] * a[0]);
-    const auto second = [&](const Vec3& v, const Vec3& w) {
-        return dot(site.here.hessian * v.cwiseProduct(per_mm), w.cwiseProduct(per_mm)) / slope;
-    };
-    // The symmetric matrix of the curvatures, and its eigenvectors.
-    const double kaa = second(a, a), kab = second(a, b), kbb = second(b, b);
-    const double mean = 0.5 * (kaa + kbb), half = 0.5 * (kaa - kbb);
-    const double radius = std::sqrt(half * half + kab * kab);
-    c.curvature = {mean + radius, mean - radius};
+    const Vec3 a(n[1] * t[2] - n[2] * t[1], n[2] * t[0] - n[0] * t[2], n[0] * t[1] - n[1] * t[0]);
+    const Vec3 scaled_t = t.cwiseProduct(per_mm), scaled_a = a.cwiseProduct(per_mm);
+    const Vec3 ht = hessian * scaled_t;
+    const double each = 1 / slope;
+    const double ktt = each * dot(ht, scaled_t), kta = each * dot(ht, scaled_a),
+                 kaa = each * dot(hessian * scaled_a, scaled_a);
+    const double mean = 0.5 * (ktt + kaa), half = 0.5 * (ktt - kaa);
+    const double radius = std::sqrt(half * half + kta * kta);
     // Of the two forms of the first eigenvector the one without cancellation.
-    double ca = half >= 0 ? half + radius : kab;
-    double cb = half >= 0 ? kab : radius - half;
-    const double length = std::sqrt(ca * ca + cb * cb);
-    if (length > 0) {
-        ca /= length;
-        cb /= length;
-    } else {
-        ca = 1;
-        cb = 0;
-    }
-    c.direction = {ca * a + cb * b, ca * b - cb * a};
-    return c;
+    const double x = half >= 0 ? half + radius : kta;
+    const double y = half >= 0 ? kta : radius - half;
+    const double length = std::sqrt(x * x + y * y);
+    const double share = length > 0 ? 1 / length : 0;
+    return {t, a, length > 0 ? x * share : 1, y * share, {mean + radius, mean - radius}};
 }
 
-/// Where the target's foot lies along the surface, by its curvature: displacement in the tangent
-/// plane [mm]. A curvature that brings the target's depth near its centre (or past it) is cut: the
-/// displacement is at most 1 / `least` times that on a plane.
+/// Where the target's foot lies along the surface, by its curvature: in the tangent plane [mm]. A
+/// curvature that brings the target's depth near its centre (or past it) is cut: the displacement
+/// is at most 1 / `least` times that on a plane.
 struct Foot {
     Vec3 along;
     double rise;  ///< y' K y: twice the height of the surface above the tangent plane there [mm]
 };
-Foot foot_of(const Contact& c, double least, double longest) {
-    std::array<double, 2> y;
-    for (int i = 0; i < 2; ++i) {
-        y[i] = dot(c.tangential, c.direction[i]) / std::max(1 + c.depth * c.curvature[i], least);
+Foot foot_of(const Contact& c, const Curvature& k, double least, double longest) {
+    double y0 = c.tangential_length * k.cosine / std::max(1 + c.depth * k.value[0], least);
+    double y1 = -c.tangential_length * k.sine / std::max(1 + c.depth * k.value[1], least);
+    const double squared = y0 * y0 + y1 * y1;
+    if (squared > longest * longest) {
+        const double share = longest / std::sqrt(squared);
+        y0 *= share;
+        y1 *= share;
     }
-    double rise = c.curvature[0] * y[0] * y[0] + c.curvature[1] * y[1] * y[1];
-    const double length = std::sqrt(y[0] * y[0] + y[1] * y[1]);
-    double share = 1;
-    if (rise != 0 && length > longest) share = longest / length;
-    return {share * (y[0] * c.direction[0] + y[1] * c.direction[1]), share * share * rise};
+    return {(k.cosine * y0 - k.sine * y1) * k.along + (k.sine * y0 + k.cosine * y1) * k.across,
+            k.value[0] * y0 * y0 + k.value[1] * y1 * y1};
 }
 
 /// An update that is under way.
@@ -101,19 +91,29 @@ class Descent {
 
     Rest run() {
         int failures = 0;
+        Vec3 h = h_mm();
+        double before = dot(h, h);
         while (progress_.budget > 0) {
-            const double before = distance();
-            const End end = move(failures);
+            const End end = move(h, failures);
             if (end == End::at_target) return Rest::at_target;
             if (end == End::at_rest) return Rest::on_surface;
-            const double after = distance();
-            if (before - after > 1e-9 * shortest_ || end == End::target_changed) {
+            h = h_mm();
+            const double after = dot(h, h);
+            // Of the distance at least 1e-9 voxel, without its root.
+            const bool closer =
+                before - after >
+                2e-9 * shortest_ *
+                    std::max(std::abs(h[0]) + std::abs(h[1]) + std::abs(h[2]), 1e-9 * shortest_);
+            before = after;
+            if (closer || end == End::target_changed) {
                 failures = 0;
                 continue;
             }
             if (++failures <= most_failures) continue;
             if (!look_round()) return Rest::on_surface;
             failures = 0;
+            h = h_mm();
+            before = dot(h, h);
         }
         return Rest::out_of_budget;
     }
@@ -133,36 +133,42 @@ class Descent {
         return std::sqrt(dot(h, h));
     }
 
-    /// One round: a straight motion through free space, or a slide and a fall.
-    End move(int failures) {
-        const Vec3 h = h_mm();
+    /// One round: a straight motion through free space, or a slide and a fall. `h` leads to the
+    /// target.
+    End move(const Vec3& h, int failures) {
         const Vec3 per = per_mm();
         const Vec3 g = site_.here.gradient.cwiseProduct(per);
-        if (!site_.in_contact() || dot(g, h) <= 0) {
-            return fall_to_target(failures);
-        }
-        const double slope = std::sqrt(dot(g, g));
-        if (!(slope * shortest_ > least_slope * range_)) {
-            return look_round() ? End::moved : End::at_rest;
-        }
-        const Contact c = contact_at(site_, h, per, slope);
-        if (!(c.tangential_length >
-              std::max(resting_slope * c.depth, least_distance * shortest_))) {
+        const double along = dot(g, h);
+        if (!site_.in_contact() || along <= 0) return fall_to_target();
+        const double squared = dot(g, g);
+        const double flat = least_slope * range_ / shortest_;
+        if (!(squared > flat * flat)) return look_round() ? End::moved : End::at_rest;
+        // The target's distance along the tangent plane, times the slope, squared.
+        const double aside = dot(h, h) * squared - along * along;
+        const double least = least_distance * shortest_;
+        if (!(aside >
+              std::max(resting_slope * resting_slope * along * along, least * least * squared))) {
             return End::at_rest;
         }
+        const double slope = std::sqrt(squared);
+        Contact c;
+        c.normal = g * (-1 / slope);
+        c.depth = along / slope;
+        c.tangential = h + c.depth * c.normal;
+        c.tangential_length = std::sqrt(dot(c.tangential, c.tangential));
         if (friction_pending_) {
             friction_pending_ = false;
             return apply_friction(c) ? End::target_changed : End::at_rest;
         }
-        slide(c, failures);
+        const cubic::Symmetric hessian = site_.piece.hessian_at(site_.point.folded);
+        slide(h, c, curvature_of(hessian, c, per, slope), failures);
         return End::moved;
     }
 
-    End fall_to_target(int failures) {
+    End fall_to_target() {
         const Vec3 to_target = site_.folded_to(progress_.target);
         const WalkEnd end = walk(site_, to_target, site_.level(), progress_);
         progress_.report(StepKind::free_move, site_);
-        (void)failures;
         if (end != WalkEnd::target) return End::moved;
         if (progress_.target == hip_) return End::at_target;
         // Friction moved the target back to a point in free space, where there is no friction.
@@ -171,39 +177,35 @@ class Descent {
         return End::target_changed;
     }
 
-    /// A displacement in mm, no farther than where the distance to the target is least.
-    bool go(Vec3 v_mm, double level, WalkEnd& end) {
-        const double towards = dot(v_mm, h_mm());
+    /// A displacement in mm, no farther than where the distance to the target, which `h` leads to,
+    /// is least. False if it leads away.
+    bool go(Vec3 v_mm, const Vec3& h, double level) {
+        const double towards = dot(v_mm, h);
         if (!(towards > 0)) return false;
-        const double least = towards / dot(v_mm, v_mm);
-        if (least < 1) v_mm *= least;
-        end = walk(site_, v_mm.cwiseProduct(per_mm()), level, progress_);
+        const double squared = dot(v_mm, v_mm);
+        if (towards < squared) v_mm *= towards / squared;
+        walk(site_, v_mm.cwiseProduct(per_mm()), level, progress_);
         return true;
     }
 
     /// Along the tangent plane, lifted where the surface rises, and from there down to where the
-    /// surface's curvature says that the target's foot is.
-    void slide(const Contact& c, int failures) {
-        const double shrink = std::pow(0.25, failures);
-        const Foot step = foot_of(c, 1, 1e30);
-        const Foot aim = foot_of(c, 0.4, shortest_);
-        const Vec3 v = shrink * step.along;
-        const double lift = 0.55 * std::max(0.0, shrink * shrink * step.rise) +
-                            (failures > 0 ? 0.05 * failures * std::sqrt(dot(v, v)) : 0);
+    /// surface's curvature says that the target's foot is. After failures shorter and higher.
+    void slide(const Vec3& h, const Contact& c, const Curvature& k, int failures) {
+        const double shrink = failures == 0 ? 1 : std::pow(0.25, failures);
+        const Foot step = foot_of(c, k, 1, far);
+        const Foot aim = foot_of(c, k, 0.4, shortest_);
+        const double lift = 0.55 * shrink * shrink * std::max(0.0, step.rise) +
+                            0.05 * failures * shrink * std::sqrt(dot(step.along, step.along));
         // In index axes: the walk changes the frame.
-        const Tetrahedron frame = site_.point.tetrahedron;
-        const Vec3 from = site_.index();
-        const Vec3 foot_mm = shrink * aim.along + 0.5 * shrink * shrink * aim.rise * c.normal;
-        const Vec3 foot = from + unfold(frame, foot_mm.cwiseProduct(per_mm()));
-        WalkEnd end = WalkEnd::target;
-        if (!go(v + lift * c.normal, site_.slide_level(), end)) return;
+        const Vec3 foot_mm = shrink * (aim.along + (0.5 * shrink * aim.rise) * c.normal);
+        const Vec3 foot =
+            site_.index() + unfold(site_.point.tetrahedron, foot_mm.cwiseProduct(per_mm()));
+        if (!go(shrink * step.along + lift * c.normal, h, site_.slide_level())) return;
         progress_.report(StepKind::slide, site_);
         if (site_.in_contact()) return;
-        // Aim, past the foot in case the surface lies lower.
+        // Aim past the foot, in case the surface lies lower.
         const Vec3 aimed = site_.folded_to(foot).cwiseProduct(spacing());
-        if (go(2 * aimed, site_.level(), end)) {
-            progress_.report(StepKind::slide, site_);
-        }
+        if (go(2 * aimed, h_mm(), site_.level())) progress_.report(StepKind::slide, site_);
     }
 
     /// Moves the target back against the direction in which the SCP would slide, so that the SCP
@@ -236,8 +238,7 @@ class Descent {
             const Vec3 v = axes * (step * shortest_ / std::sqrt(dot(axes, axes)));
             if (std::abs(axes[0]) + std::abs(axes[1]) + std::abs(axes[2]) == 6) continue;
             site_.move_to(start);
-            WalkEnd end;
-            if (!go(v, site_.slide_level(), end)) continue;
+            if (!go(v, h, site_.slide_level())) continue;
             const double after = distance();
             if (after >= least) continue;
             least = after;
@@ -246,8 +247,7 @@ class Descent {
         progress_.budget = silent.budget - 1;
         site_.move_to(start);
         if (best.isZero(0)) return false;
-        WalkEnd end;
-        go(best, site_.slide_level(), end);
+        go(best, h, site_.slide_level());
         progress_.report(StepKind::slide, site_);
         return true;
     }

@@ -102,14 +102,16 @@ TEST(Cubic, value_and_gradient_are_continuous_across_every_kind_of_wall) {
             point.folded = random_folded(random, 1U << wall);
             const Tetrahedron& t = point.tetrahedron;
             const Tetrahedron next = across(t, wall);
-            const auto here = cubic::piece_of(t, field.around(t.cell)).at(point.folded);
-            const auto there = cubic::piece_of(next, field.around(next.cell)).at(point.folded);
+            const cubic::Piece piece = cubic::piece_of(t, field.around(t.cell));
+            const cubic::Piece other = cubic::piece_of(next, field.around(next.cell));
+            const auto here = piece.at(point.folded), there = other.at(point.folded);
             const double near = cubic::scale * (1e-13 * field.range() + 2 * field.tolerance());
             ASSERT_NEAR(here.value, there.value, near) << "wall " << wall;
             ASSERT_LT((unfold(t, here.gradient) - unfold(next, there.gradient)).norm(), 10 * near)
                 << "wall " << wall;
-            greatest_jump_of_curvature =
-                std::max(greatest_jump_of_curvature, std::abs(here.hessian.dd - there.hessian.dd));
+            greatest_jump_of_curvature = std::max(
+                greatest_jump_of_curvature,
+                std::abs(piece.hessian_at(point.folded).dd - other.hessian_at(point.folded).dd));
         }
         // It is C1, not C2: the tetrahedra differ.
         EXPECT_GT(greatest_jump_of_curvature, 0.01 * cubic::scale * field.range());
