@@ -70,6 +70,7 @@ Json to_json(const RecordingHead& head) {
                       {"type", type_names[static_cast<std::size_t>(head.volume.type)]},
                       {"crc32", head.volume.crc32}};
     json["solid"] = head.solid == Solid::above ? "above" : "below";
+    json["field"] = name_of(head.interpolation);
     json["background"] = number_to_json(head.background);
     json["isovalue"] = number_to_json(head.isovalue);
     json["device"] = head.device;
@@ -90,6 +91,8 @@ RecordingHead head_from_json(const Json& json) {
         throw std::invalid_argument("'solid' must be above or below");
     }
     head.solid = solid == "above" ? Solid::above : Solid::below;
+    // Recordings made before there was a choice have none.
+    if (json.contains("field")) head.interpolation = interpolation_from(text_of(json, "field"));
     head.background = number_from_json(member(json, "background"), "background");
     head.isovalue = number_from_json(member(json, "isovalue"), "isovalue");
     head.device = text_of(json, "device");

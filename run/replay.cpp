@@ -91,8 +91,8 @@ Session recorded_session(const io::RecordingHead& head, const LoadedVolume& load
         RendererSettings settings = head.settings;
         settings.method = baselines::method_named(head.method);
         check(head.session);
-        return {make_renderer(Field(loaded.volume, head.solid, head.background), head.isovalue,
-                              settings),
+        return {make_renderer(Field(loaded.volume, head.solid, head.background, head.interpolation),
+                              head.isovalue, settings),
                 head.session};
     } catch (const std::invalid_argument& e) {
         throw io::InputError(recording +

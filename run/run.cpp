@@ -60,6 +60,7 @@ io::RecordingHead recording_head(const Session& session, const DeviceInfo& devic
     head.begun = utc_now();
     head.volume = io::identify(field.volume(), to_names(source));
     head.solid = field.solid();
+    head.interpolation = field.interpolation();
     head.background = field.background();
     head.isovalue = session.renderer.proxy.isovalue;
     head.device = device.name + " (" + device.model + ")";
@@ -231,8 +232,8 @@ void Run::use_device(const devices::DeviceChoice& device) {
     launch(std::move(session));
 }
 
-void Run::use_field(Solid solid, std::optional<double> background) {
-    Field field(data_->start(), solid, background);
+void Run::use_field(Solid solid, Interpolation interpolation, std::optional<double> background) {
+    Field field(data_->start(), solid, background, interpolation);
     stop_recording();
     stop_servo();
     field_ = std::move(field);

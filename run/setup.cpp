@@ -59,11 +59,11 @@ struct MakePenetrability {
 
 Field make_field(std::shared_ptr<const Samples> samples, const FieldSetup& setup) {
     const auto background = background_in(samples->volume(), setup);
-    return Field(std::move(samples), setup.solid, background);
+    return Field(std::move(samples), setup.solid, background, setup.interpolation);
 }
 
 Field make_field(const Volume& volume, const FieldSetup& setup) {
-    return Field(volume, setup.solid, background_in(volume, setup));
+    return Field(volume, setup.solid, background_in(volume, setup), setup.interpolation);
 }
 
 double isovalue_of(const LoadedVolume& loaded, const FieldSetup& setup) {
@@ -78,6 +78,10 @@ RendererSettings render_settings(const RenderSetup& setup, const Field& field, d
                                  const DeviceLimits& limits) {
     if (setup.friction && setup.method.method != &update_exact) {
         throw std::invalid_argument("friction is for the method exact; the others have none");
+    }
+    if (field.interpolation() == Interpolation::cubic && setup.method.method == &update_paper) {
+        throw std::invalid_argument(
+            "the method paper is made for the linear field: choose another method or field");
     }
     RendererSettings settings;
     settings.method = setup.method.method;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <string>
 
 namespace palpate {
 namespace {
@@ -30,6 +31,17 @@ CellSamples corners(SampleType type, const void* data, std::ptrdiff_t at, std::p
 }
 
 }  // namespace
+
+std::string_view name_of(Interpolation interpolation) {
+    return interpolation == Interpolation::cubic ? "cubic" : "linear";
+}
+
+Interpolation interpolation_from(std::string_view name) {
+    for (const Interpolation known : {Interpolation::linear, Interpolation::cubic}) {
+        if (name == name_of(known)) return known;
+    }
+    throw std::invalid_argument("no field '" + std::string(name) + "': there are linear, cubic");
+}
 
 Field::Field(Volume volume, Solid solid, std::optional<double> background,
              Interpolation interpolation)

@@ -88,6 +88,13 @@ void add_side_options(CLI::App& command, run::FieldSetup& field) {
             "Which side of the level is solid: above, below")
         ->check(CLI::IsMember({"above", "below"}))
         ->default_str("above");
+    command
+        .add_option_function<std::string>(
+            "--field",
+            [&field](const std::string& text) { field.interpolation = interpolation_from(text); },
+            "How densities continue between samples: linear (exact, with facets), cubic (smooth)")
+        ->check(CLI::IsMember({"linear", "cubic"}))
+        ->default_str("linear");
     command.add_option_function<std::string>(
         "--background",
         [&field](const std::string& text) { field.background = io::level_from_text(text); },

@@ -172,7 +172,7 @@ void beating(const ChangingOptions& options) {
         throw std::invalid_argument(demo.loaded.name + ": is no sequence: it has one frame only");
     }
     demo.field = Field(all_frames(demo.loaded, options.source.quiet), demo.field.solid(),
-                       demo.field.background());
+                       demo.field.background(), demo.field.interpolation());
     const double period = sequence.period;
     const double rate = options.hand.rate_hz;
     demo.trajectory = resting_hand(demo.field, demo.isovalue, options.hand.depth_mm,

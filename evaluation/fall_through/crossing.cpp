@@ -73,7 +73,7 @@ std::vector<Crossing> draw_crossings(const Subject& subject, const Outside& outs
     const Lines lines{subject,
                       outside,
                       target,
-                      Field(field.volume(), other, field.background()),
+                      Field(field.volume(), other, field.background(), field.interpolation()),
                       geometry.spacing.minCoeff(),
                       2 * geometry.size.cast<double>().cwiseProduct(geometry.spacing).norm()};
     scenes::Random random(seed);

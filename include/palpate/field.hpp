@@ -6,6 +6,7 @@
 
 #include <array>
 #include <optional>
+#include <string_view>
 
 #include "palpate/samples.hpp"
 
@@ -19,6 +20,10 @@ enum class Solid : std::uint8_t { above, below };
 /// and with facets (Corenthy et al. 2012), or `cubic`, whose gradient is continuous
 /// (docs/smooth.md).
 enum class Interpolation : std::uint8_t { linear, cubic };
+/// "linear" or "cubic".
+std::string_view name_of(Interpolation interpolation);
+/// The inverse of name_of; throws std::invalid_argument with the accepted names.
+Interpolation interpolation_from(std::string_view name);
 
 /// The eight samples at the corners of a cell, in the data's units, less the field's offset.
 /// Corner c has x offset (c & 1), y offset (c >> 1 & 1), z offset (c >> 2 & 1).

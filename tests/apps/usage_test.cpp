@@ -70,7 +70,11 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"demo synthetic:noise --duration 1e12", "at most 100 million samples"},
                     Case{"demo synthetic:noise --speed 0", "speed above 0"},
                     Case{"demo synthetic:noise --depth -1", "depth of 0 mm or more"},
-                    Case{"extract synthetic:sphere -o a.ply -i 1 --solid left", "left"}));
+                    Case{"extract synthetic:sphere -o a.ply -i 1 --solid left", "left"},
+                    Case{"extract synthetic:sphere -o a.ply -i 1 --field quartic", "quartic"},
+                    Case{"touch synthetic:sphere:16x16x16 --headless --seconds 0 --field cubic "
+                         "--method paper",
+                         "made for the linear field"}));
 
 TEST(Usage, refuses_an_empty_value_of_an_option) {
     const ScratchFolder folder;

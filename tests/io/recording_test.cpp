@@ -34,6 +34,7 @@ io::RecordingHead some_head() {
     head.begun = "2026-01-02T03:04:05Z";
     head.volume = io::identify(field.volume(), {{"volume", "a \"b\".raw"}, {"dims", "9x9x101"}});
     head.solid = Solid::below;
+    head.interpolation = Interpolation::cubic;
     head.background = -infinity;
     head.isovalue = 0.1 + 0.2;
     head.device = "simulated omni";
@@ -152,6 +153,7 @@ TEST(Recording, every_event_and_the_head_come_back_bit_for_bit) {
     EXPECT_EQ(head.isovalue, expected.isovalue);
     EXPECT_EQ(head.background, -infinity);
     EXPECT_EQ(head.solid, Solid::below);
+    EXPECT_EQ(head.interpolation, Interpolation::cubic);
     EXPECT_EQ(head.settings.transform.rotation, expected.settings.transform.rotation);
     EXPECT_EQ(head.settings.penetrability.ranges[1].high, infinity);
     EXPECT_EQ(head.settings.penetrability.range_count, 2);

@@ -157,7 +157,8 @@ TEST(Run, what_was_asked_for_just_before_a_restart_is_not_lost) {
             s.live.record(folder / (std::to_string(i) + ".csv"));
             EXPECT_EQ(Again(folder / (std::to_string(i) + ".csv")).commands, 0);
         } else {
-            s.live.use_field(i % 4 == 1 ? Solid::below : Solid::above);
+            s.live.use_field(i % 4 == 1 ? Solid::below : Solid::above,
+                             i % 8 < 4 ? Interpolation::cubic : Interpolation::linear);
         }
         EXPECT_EQ(s.live.isovalue(), level);
         EXPECT_EQ(s.live.settings().transform.translation, moved.translation);
@@ -317,7 +318,7 @@ TEST(Run, a_device_that_is_refused_leaves_the_old_one_running) {
 TEST(Run, the_other_side_is_solid_when_that_is_asked_for_and_a_hand_by_itself_finds_it) {
     BallRun s(pressing);
     s.live.send(penetrability_threshold(1, s.live.isovalue()));
-    s.live.use_field(Solid::below, 200);
+    s.live.use_field(Solid::below, Interpolation::linear, 200);
     EXPECT_EQ(s.live.field().solid(), Solid::below);
     EXPECT_EQ(s.live.field().background(), 200);
     EXPECT_FALSE(s.live.settings().penetrability.on);
@@ -336,8 +337,10 @@ TEST(Run, a_background_that_is_none_changes_nothing) {
     BallRun s;
     ASSERT_TRUE(ticks_go_on(s.live));
     const std::int64_t before = s.live.snapshot()->number;
-    EXPECT_THROW(s.live.use_field(Solid::below, std::nan("")), std::invalid_argument);
+    EXPECT_THROW(s.live.use_field(Solid::below, Interpolation::cubic, std::nan("")),
+                 std::invalid_argument);
     EXPECT_EQ(s.live.field().solid(), Solid::above);
+    EXPECT_EQ(s.live.field().interpolation(), Interpolation::linear);
     ASSERT_TRUE(ticks_go_on(s.live));
     EXPECT_GT(s.live.snapshot()->number, before);
 }

@@ -200,6 +200,10 @@ SessionFile session_from(const Json& json, const std::filesystem::path& folder) 
     reader("solid", solid);
     if (solid != "above" && solid != "below") wrong("solid", "must be above or below");
     session.solid = solid == "above" ? Solid::above : Solid::below;
+    std::string field(name_of(session.interpolation));
+    reader("field", field);
+    if (field != "linear" && field != "cubic") wrong("field", "must be linear or cubic");
+    session.interpolation = interpolation_from(field);
     if (const Json* const settings = reader.find("settings")) {
         if (!settings->is_object()) wrong("settings", "must be an object");
         io::from_json(*settings, session.settings.emplace());
@@ -245,6 +249,7 @@ void write_session(const std::filesystem::path& path, const SessionFile& session
     writer.json["version"] = version;
     writer.json["volume"] = volume;
     writer.json["solid"] = session.solid == Solid::above ? "above" : "below";
+    writer.json["field"] = name_of(session.interpolation);
     writer.json["isovalue"] = session.isovalue;
     if (session.settings) writer.json["settings"] = io::to_json(*session.settings);
     writer("background", session.background);

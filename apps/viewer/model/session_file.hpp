@@ -13,6 +13,7 @@ namespace palpate::viewer {
 struct SessionFile {
     run::Source source;
     Solid solid = Solid::above;
+    Interpolation interpolation = Interpolation::linear;
     std::optional<double> background;  ///< [data units] nothing: the usual one
     double isovalue = 0;               ///< [data units] finite
     devices::DeviceChoice device{"simulated", {}};

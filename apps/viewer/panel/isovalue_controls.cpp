@@ -26,6 +26,9 @@ IsovalueControls::IsovalueControls()
       solid_(named(new QComboBox, "solid",
                    "Which side of the level is solid: bright bodies on dark, or airways and "
                    "vessels dark on bright.\nThe session starts anew, with penetrability off.")),
+      smoothness_(named(new QComboBox, "field",
+                        "How densities continue between samples: linear, exact and with facets, or "
+                        "cubic, smooth.\nThe session starts anew, with penetrability off.")),
       felt_(named(new QLabel, "felt",
                   "The level felt now [data units]; another than the isovalue while "
                   "penetrability lets the hand through")),
@@ -40,9 +43,12 @@ IsovalueControls::IsovalueControls()
     box_->setMinimumWidth(fontMetrics().horizontalAdvance("-0000.0000") +
                           2 * fontMetrics().height());
     solid_->addItems({"above is solid", "below is solid"});
+    smoothness_->addItems({"linear", "cubic"});
     let_wheel_pass(*solid_);
+    let_wheel_pass(*smoothness_);
     felt_->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
-    column_in(this, {chart_, slider_, row_of({box_, solid_, felt_}, 2), warning_, overruled_})
+    column_in(this, {chart_, slider_, row_of({box_, solid_, smoothness_, felt_}, 3), warning_,
+                     overruled_})
         ->setSpacing(3);
     connect_inputs();
 }
@@ -70,15 +76,20 @@ void IsovalueControls::connect_inputs() {
         limiter_.drop();
         Q_EMIT wanted(level);
     });
-    connect(solid_, qOverload<int>(&QComboBox::activated), this,
-            [this](int at) { Q_EMIT solid_wanted(at == 0 ? Solid::above : Solid::below); });
+    for (const QComboBox* box : {solid_, smoothness_}) {
+        connect(box, qOverload<int>(&QComboBox::activated), this, [this] {
+            Q_EMIT field_wanted(
+                solid_->currentIndex() == 0 ? Solid::above : Solid::below,
+                smoothness_->currentIndex() == 0 ? Interpolation::linear : Interpolation::cubic);
+        });
+    }
 }
 
 void IsovalueControls::set_data(const Field& field, const run::Histogram& histogram) {
     field_ = field;
     chart_->set_data(histogram, run::suggested_isovalues(histogram));
     box_->setSingleStep(chart_->fine_step());
-    set_solid(field.solid());
+    set_field(field.solid(), field.interpolation());
 }
 
 void IsovalueControls::clear() {
@@ -90,8 +101,9 @@ void IsovalueControls::clear() {
     warning_->say({});
 }
 
-void IsovalueControls::set_solid(Solid solid) {
+void IsovalueControls::set_field(Solid solid, Interpolation interpolation) {
     solid_->setCurrentIndex(solid == Solid::above ? 0 : 1);
+    smoothness_->setCurrentIndex(interpolation == Interpolation::linear ? 0 : 1);
 }
 
 void IsovalueControls::set_overruled(bool overruled) {

@@ -1,4 +1,5 @@
-// Controls of the isovalue: chart, slider, number, which side is solid, the level felt now.
+// Controls of the isovalue: chart, slider, number, which side is solid, how the field continues
+// between samples, the level felt now.
 #pragma once
 
 #include <QComboBox>
@@ -24,7 +25,7 @@ class IsovalueControls : public QWidget {
     void clear();
     /// Shows the level asked for; emits nothing.
     void set_isovalue(double isovalue);
-    void set_solid(Solid solid);
+    void set_field(Solid solid, Interpolation interpolation);
     /// Whether penetrability sets the level felt.
     void set_overruled(bool overruled);
     /// The level felt now; shown separately where it differs from the level asked for.
@@ -34,7 +35,7 @@ class IsovalueControls : public QWidget {
 
   Q_SIGNALS:
     void wanted(double isovalue);  ///< at most 60 a second while something is dragged
-    void solid_wanted(palpate::Solid solid);
+    void field_wanted(palpate::Solid solid, palpate::Interpolation interpolation);
 
   private:
     void connect_inputs();
@@ -45,7 +46,7 @@ class IsovalueControls : public QWidget {
     LevelChart* chart_;
     QSlider* slider_;
     NumberBox* box_;
-    QComboBox* solid_;
+    QComboBox *solid_, *smoothness_;
     QLabel* felt_;
     Note *warning_, *overruled_;
     RateLimiter limiter_;

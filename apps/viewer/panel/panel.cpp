@@ -59,13 +59,14 @@ void Panel::build() {
 void Panel::connect_sections() {
     connect(isovalue_, &IsovalueControls::wanted, this,
             [this](double level) { ask(isovalue_part_, command::Isovalue{level}); });
-    connect(isovalue_, &IsovalueControls::solid_wanted, this, [this](Solid solid) {
-        if (solid == solid_) return;
-        begin_request(isovalue_part_);
-        Q_EMIT solid_chosen(solid);
-        isovalue_->set_solid(
-            solid_);  // a session with the other side has been set by now, unless it failed
-    });
+    connect(isovalue_, &IsovalueControls::field_wanted, this,
+            [this](Solid solid, Interpolation interpolation) {
+                if (solid == solid_ && interpolation == interpolation_) return;
+                begin_request(isovalue_part_);
+                Q_EMIT field_chosen(solid, interpolation);
+                // A session with this field has been set by now, unless it failed.
+                isovalue_->set_field(solid_, interpolation_);
+            });
     connect(penetrability_, &PenetrabilityControls::wanted, this, &Panel::ask_penetrability);
     connect(penetrability_, &PenetrabilityControls::nonsense, penetrability_part_, &Section::say);
     connect(force_, &ForceControls::asked, this,
@@ -108,7 +109,8 @@ void Panel::set_session(const Field& field, const run::Histogram& histogram, dou
     force_->drop();
     live_ = true;
     solid_ = field.solid();
-    unedited_.emplace(field.volume(), field.solid(), field.background());
+    interpolation_ = field.interpolation();
+    unedited_.emplace(field.volume(), field.solid(), field.background(), field.interpolation());
     edit_->set_grid(field.geometry());
     clear_edits();
     now_ = before_ = {settings, isovalue, false, false, edit_->choice()};
@@ -172,7 +174,7 @@ const BrushChoice& Panel::brush() const {
 /// Shows the settings in effect in every section that commands change.
 void Panel::show_effect() {
     isovalue_->set_isovalue(now_.isovalue);
-    isovalue_->set_solid(solid_);
+    isovalue_->set_field(solid_, interpolation_);
     isovalue_->set_overruled(now_.settings.penetrability.on);
     penetrability_->set_in_use(now_.settings.penetrability);
     force_->set_settings(now_.settings.force, now_.settings.proxy.friction, now_.settings.device);

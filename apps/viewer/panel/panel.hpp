@@ -69,7 +69,7 @@ class Panel : public QWidget {
     /// A command that has passed palpate::check for the session that is shown.
     void asked(const palpate::Command& command);
     void device_chosen(const QString& option);
-    void solid_chosen(palpate::Solid solid);
+    void field_chosen(palpate::Solid solid, palpate::Interpolation interpolation);
     /// After show_refused() the previous choice holds again.
     void brush_changed(const palpate::viewer::BrushChoice& brush);
     void undo_asked();
@@ -110,6 +110,7 @@ class Panel : public QWidget {
 
     bool live_ = false;  // there is a session
     Solid solid_ = Solid::above;
+    Interpolation interpolation_ = Interpolation::linear;
     Effect now_, before_;  // in effect; before the last request
     Section* asked_by_ = nullptr;
     bool refused_ = false;

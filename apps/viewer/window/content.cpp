@@ -37,8 +37,8 @@ void Content::use_device(const devices::DeviceChoice& device) {
     Q_EMIT run_changed();
 }
 
-void Content::use_solid(Solid solid) {
-    live_->use_field(solid);
+void Content::use_field(Solid solid, Interpolation interpolation) {
+    live_->use_field(solid, interpolation);
     Q_EMIT field_replaced();
     Q_EMIT run_changed();
 }

@@ -23,7 +23,7 @@ class Content : public QObject {
     void close();
     /// As run::Run::use_device and use_field. If they throw, the run is unchanged.
     void use_device(const devices::DeviceChoice& device);
-    void use_solid(Solid solid);
+    void use_field(Solid solid, Interpolation interpolation);
     /// Ends the run, forces are zero; emits nothing.
     void end_run() { live_.reset(); }
 

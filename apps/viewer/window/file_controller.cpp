@@ -118,6 +118,7 @@ SessionFile FileController::session_now() const {
     if (const run::Run* live = content_.live()) {
         const auto now = live->snapshot();
         session.solid = live->field().solid();
+        session.interpolation = live->field().interpolation();
         session.background = live->field().background();
         session.isovalue = live->isovalue();
         session.device = live->setup().device;
@@ -127,6 +128,7 @@ SessionFile FileController::session_now() const {
     } else {
         const io::RecordingHead& head = content_.playback()->head();
         session.solid = head.solid;
+        session.interpolation = head.interpolation;
         session.background = head.background;
         session.isovalue = head.isovalue;
         session.device = run_.device();
@@ -161,7 +163,7 @@ void FileController::open_session(const QString& path) {
 void FileController::feel_session(std::shared_ptr<Opened> opened, const SessionFile& session,
                                   RunRequest request) {
     run::Setup& setup = request.setup;
-    setup.field = {session.solid, session.background, session.isovalue};
+    setup.field = {session.solid, session.background, session.isovalue, session.interpolation};
     setup.device = request.device.value_or(session.device);
     setup.render.method = session.method;
     try {

@@ -18,7 +18,7 @@ RunController::RunController(const RunRequest& request, Content& content, Panel&
     connect(&panel, &Panel::device_chosen, this, &RunController::use_device);
     connect(&panel.device_controls(), &DeviceControls::refresh_wanted, this,
             &RunController::find_devices);
-    connect(&panel, &Panel::solid_chosen, this, &RunController::use_solid);
+    connect(&panel, &Panel::field_chosen, this, &RunController::use_field);
     since_report_.start();
 }
 
@@ -118,9 +118,11 @@ void RunController::use_device(const QString& option) {
     show_devices();
 }
 
-void RunController::use_solid(Solid solid) {
-    if (!content_.live() || content_.live()->field().solid() == solid) return;
-    messages_.guarded([&] { content_.use_solid(solid); });
+void RunController::use_field(Solid solid, Interpolation interpolation) {
+    if (!content_.live()) return;
+    const Field& now = content_.live()->field();
+    if (now.solid() == solid && now.interpolation() == interpolation) return;
+    messages_.guarded([&] { content_.use_field(solid, interpolation); });
 }
 
 void RunController::observe(const Snapshot& now) {

@@ -54,7 +54,7 @@ class RunController : public QObject {
 
     void find_devices();
     void use_device(const QString& option);
-    void use_solid(Solid solid);
+    void use_field(Solid solid, Interpolation interpolation);
 
     /// Shows the device in the panel where it has changed; a few times a second.
     void observe(const Snapshot& now);

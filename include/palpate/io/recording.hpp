@@ -37,6 +37,7 @@ struct RecordingHead {
     std::string begun;    ///< date and time, ISO 8601
     VolumeIdentity volume;
     Solid solid = Solid::above;
+    Interpolation interpolation = Interpolation::linear;
     double background = 0;
     double isovalue = 0;
     std::string device;         ///< name and model

@@ -80,11 +80,12 @@ class Run {
     /// Goes on with another device, fitted to it, with everything that was asked for so far. Throws
     /// as the constructor does; the old device then goes on. A recording is finished before.
     void use_device(const devices::DeviceChoice& device);
-    /// Goes on with the other side solid, or another background outside the grid. The session
-    /// starts anew with everything that was asked for except penetrability, which is switched off.
-    /// A recording is finished before; if that fails, io::OutputError says so and the field stays.
-    /// Throws std::invalid_argument for a background that is not finite; then nothing has changed.
-    void use_field(Solid solid, std::optional<double> background = {});
+    /// Goes on with this side solid, this interpolation, this background outside the grid. The
+    /// session starts anew with everything that was asked for except penetrability, which is
+    /// switched off. A recording is finished before; if that fails, io::OutputError says so and the
+    /// field stays. Throws std::invalid_argument for a background that is not finite; then nothing
+    /// has changed.
+    void use_field(Solid solid, Interpolation interpolation, std::optional<double> background = {});
 
     /// Records from start() on, or from now on: then the session starts anew (forces ramp up) with
     /// everything that was asked for. Throws io::OutputError for a file that cannot be created;

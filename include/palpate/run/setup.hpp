@@ -22,6 +22,7 @@ struct FieldSetup {
     Solid solid = Solid::above;
     std::optional<io::Level> background;  ///< outside the data; nothing: as Field has it
     std::optional<io::Level> isovalue;    ///< nothing: the volume's own or a suggested one
+    Interpolation interpolation = Interpolation::linear;
 };
 
 struct ThresholdSetup {

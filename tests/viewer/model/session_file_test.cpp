@@ -29,6 +29,7 @@ SessionFile some_session() {
     s.source.from = run::SyntheticSource{"sphere:32x32x32", SampleType::uint16};
     s.source.smooth = 2;
     s.solid = Solid::below;
+    s.interpolation = Interpolation::cubic;
     s.background = 0.1 + 0.2;
     s.isovalue = 1.0 / 3;
     s.device = {"haply", {{"port", "10001"}}};
@@ -62,6 +63,7 @@ SessionFile some_session() {
 /// Everything but where the volume lies.
 void expect_same(const SessionFile& a, const SessionFile& b) {
     EXPECT_EQ(a.solid, b.solid);
+    EXPECT_EQ(a.interpolation, b.interpolation);
     EXPECT_EQ(a.background, b.background);
     EXPECT_EQ(a.isovalue, b.isovalue);
     EXPECT_EQ(a.device, b.device);
@@ -175,6 +177,7 @@ TEST(SessionFile, an_error_is_one_line_with_file_and_member) {
     names("/isovalue", "inf", "'isovalue'");
     names("/isovalue", nullptr, "'isovalue'");
     names("/solid", "sideways", "'solid'");
+    names("/field", "quartic", "'field'");
     names("/method", "magic", "exact");
     names("/device", "", "'device'");
     names("/settings/force/stiffness", -1, "stiffness");

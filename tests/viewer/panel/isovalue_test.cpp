@@ -49,7 +49,7 @@ TEST_F(Isovalue, a_session_is_shown_and_nothing_is_emitted) {
                      [&](const Look&) { ++looks; });
     QSignalSpy device(&panel, &Panel::device_chosen);
     int sides = 0;
-    QObject::connect(&panel, &Panel::solid_chosen, [&](Solid) { ++sides; });
+    QObject::connect(&panel, &Panel::field_chosen, [&](Solid, Interpolation) { ++sides; });
     set(settings, 412.5);
     set(settings, 300, Solid::below);
     set({}, 412.5);
@@ -216,7 +216,8 @@ TEST_F(Isovalue, the_level_felt_is_a_second_marker_while_it_differs) {
 TEST_F(Isovalue, choosing_the_other_side_is_emitted_once) {
     set();
     std::vector<Solid> chosen;
-    QObject::connect(&panel, &Panel::solid_chosen, [&](Solid solid) { chosen.push_back(solid); });
+    QObject::connect(&panel, &Panel::field_chosen,
+                     [&](Solid solid, Interpolation) { chosen.push_back(solid); });
     auto* box = find<QComboBox>("solid");
     box->setFocus();
     QTest::keyClick(box, Qt::Key_Down);
@@ -225,6 +226,19 @@ TEST_F(Isovalue, choosing_the_other_side_is_emitted_once) {
     panel.show_refused("this field is solid all over");
     EXPECT_EQ(box->currentIndex(), 0);
     EXPECT_EQ(message("isovalue_part"), "this field is solid all over");
+}
+
+TEST_F(Isovalue, choosing_the_smooth_field_is_emitted_with_the_side_that_is_solid) {
+    set();
+    std::vector<std::pair<Solid, Interpolation>> chosen;
+    QObject::connect(&panel, &Panel::field_chosen, [&](Solid solid, Interpolation interpolation) {
+        chosen.emplace_back(solid, interpolation);
+    });
+    auto* box = find<QComboBox>("field");
+    box->setFocus();
+    QTest::keyClick(box, Qt::Key_Down);
+    EXPECT_EQ(chosen, (std::vector{std::pair{Solid::above, Interpolation::cubic}}));
+    EXPECT_EQ(box->currentIndex(), 0) << "nobody has put a session in with this field";
 }
 
 TEST_F(Isovalue, zoomed_in_a_pixel_is_less_and_the_slider_still_covers_all) {
