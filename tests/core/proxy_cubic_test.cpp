@@ -10,15 +10,15 @@ using namespace palpate::support;
 
 namespace {
 
-constexpr int updates = scaled(20000);
+constexpr int smooth_updates = scaled(20000);
 
-CubicTally run(const TestField& test, std::uint64_t seed, const HandStyle& style = {}) {
+CubicTally run_smooth(const TestField& test, std::uint64_t seed, const HandStyle& style = {}) {
     const Field field = smooth(test.field);
     CubicGuarantees checked(field);
     Hand hand(field.geometry(), seed, style);
     Proxy proxy;
     proxy.isovalue = test.isovalue;
-    for (int i = 0; i < updates; ++i) {
+    for (int i = 0; i < smooth_updates; ++i) {
         const Vec3 hip = hand.next();
         SCOPED_TRACE(test.name + " seed " + std::to_string(seed) + " update " + std::to_string(i));
         checked.update(proxy, hip);
@@ -28,7 +28,7 @@ CubicTally run(const TestField& test, std::uint64_t seed, const HandStyle& style
     return checked.tally();
 }
 
-void expect_substantial(const CubicTally& t, double constrained = 0.3) {
+void expect_much_contact(const CubicTally& t, double constrained = 0.3) {
     EXPECT_GT(double(t.constrained) / t.updates, constrained);
     EXPECT_GT(t.long_moves, t.updates / 12);
     EXPECT_EQ(t.out_of_budget, 0);
@@ -37,36 +37,36 @@ void expect_substantial(const CubicTally& t, double constrained = 0.3) {
 }  // namespace
 
 TEST(CubicProxy, keeps_its_guarantees_on_random_noise) {
-    expect_substantial(run(noise_field(), 11));
+    expect_much_contact(run_smooth(noise_field(), 11));
 }
 TEST(CubicProxy, keeps_its_guarantees_on_salt) {
-    expect_substantial(run(salt_field(), 12), 0.1);
+    expect_much_contact(run_smooth(salt_field(), 12), 0.1);
 }
 TEST(CubicProxy, keeps_its_guarantees_on_a_lace_thinner_than_a_voxel) {
     const HandStyle sweeps{.slide = 4, .sweep = 6, .margin = -2};
-    run(shell_field(), 13, sweeps);
+    run_smooth(shell_field(), 13, sweeps);
 }
 TEST(CubicProxy, keeps_its_guarantees_on_a_grid_aligned_box) {
     const HandStyle degenerate{.slide = 2, .sweep = 1, .jump = 1, .lattice = 6, .margin = -3};
-    expect_substantial(run(box_field(), 14, degenerate));
+    expect_much_contact(run_smooth(box_field(), 14, degenerate));
 }
 TEST(CubicProxy, keeps_its_guarantees_on_anisotropic_noise) {
     TestField test = anisotropic_field();
     test.isovalue = 1150;  // nearer the mean: the smooth field has lower peaks
-    expect_substantial(run(test, 15));
+    expect_much_contact(run_smooth(test, 15));
 }
 TEST(CubicProxy, keeps_its_guarantees_on_an_oblique_grid) {
-    expect_substantial(run(oblique_field(), 16));
+    expect_much_contact(run_smooth(oblique_field(), 16));
 }
 TEST(CubicProxy, keeps_its_guarantees_on_marschner_lobb) {
-    expect_substantial(run(marschner_lobb_field(), 17));
+    expect_much_contact(run_smooth(marschner_lobb_field(), 17));
 }
 TEST(CubicProxy, keeps_its_guarantees_where_the_solid_is_below) {
-    expect_substantial(run(noise_field(7, Solid::below), 18));
+    expect_much_contact(run_smooth(noise_field(7, Solid::below), 18));
 }
 TEST(CubicProxy, keeps_its_guarantees_on_floats_far_from_zero) {
-    expect_substantial(run(offset_field(), 19), 0.2);
+    expect_much_contact(run_smooth(offset_field(), 19), 0.2);
 }
 TEST(CubicProxy, keeps_its_guarantees_on_plateaus_at_the_isovalue) {
-    expect_substantial(run(terraces_field(), 20));
+    expect_much_contact(run_smooth(terraces_field(), 20));
 }
