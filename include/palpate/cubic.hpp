@@ -72,59 +72,73 @@ Vec3 index_of(const LatticePoint& point);
 
 // Defined here, to be inlined.
 
-// docs/smooth.md says where the coefficients come from.
+namespace detail {
+
+/// The samples round a tetrahedron's cube as its frame sees them: rows along s in the planes e = 0,
+/// 1 and -1 (z, p, m), at d = -1, 0 and 1 (m, 0, p).
 template <class T>
-inline Piece piece_of(const Tetrahedron& t, const T* centre, std::ptrdiff_t row,
-                      std::ptrdiff_t slice, double isovalue) {
+struct Rows {
     // 16-bit samples times 96, and sums of some of them, fit into an int.
     static_assert(std::is_floating_point_v<T> || sizeof(T) <= 2);
     using Sum = std::conditional_t<std::is_floating_point_v<T>, double, int>;
-    const std::array<std::ptrdiff_t, 3> stride{1, row, slice};
-    const std::ptrdiff_t d = t.sign[0] * stride[t.axis[0]];
-    const std::ptrdiff_t s = t.sign[1] * stride[t.axis[1]];
-    const std::ptrdiff_t e = t.sign[2] * stride[t.axis[2]];
-    // Rows along s in the planes e = 0, 1 and -1 (z, p, m), at d = -1, 0 and 1 (m, 0, p).
-    const T *const zm = centre - d, *const z0 = centre, *const zp = centre + d;
-    const T *const pm = zm + e, *const p0 = z0 + e, *const pp = zp + e;
-    const T *const mm = zm - e, *const m0 = z0 - e, *const mp = zp - e;
+
+    Rows(const T* centre, std::ptrdiff_t d, std::ptrdiff_t along_s, std::ptrdiff_t e)
+        : zm(centre - d),
+          z0(centre),
+          zp(centre + d),
+          pm(zm + e),
+          p0(z0 + e),
+          pp(zp + e),
+          mm(zm - e),
+          m0(z0 - e),
+          mp(zp - e),
+          s(along_s) {}
+
+    const T *zm, *z0, *zp, *pm, *p0, *pp, *mm, *m0, *mp;
+    std::ptrdiff_t s;
+};
+
+/// What is odd along e is made of differences of the planes e = 1 and e = -1. In their names the
+/// place along d and s follows: dm0 is at d = -1, s = 0.
+template <class T>
+inline void add_odd(Piece& p, const Rows<T>& r) {
+    using Sum = typename Rows<T>::Sum;
     const auto difference = [](const T* plus, const T* minus, std::ptrdiff_t at) {
         return Sum(plus[at]) - Sum(minus[at]);
     };
+    const Sum dm0 = difference(r.pm, r.mm, 0);
+    const Sum d0m = difference(r.p0, r.m0, -r.s), d00 = difference(r.p0, r.m0, 0),
+              d0p = difference(r.p0, r.m0, r.s);
+    const Sum dpm = difference(r.pp, r.mp, -r.s), dp0 = difference(r.pp, r.mp, 0),
+              dpp = difference(r.pp, r.mp, r.s);
+    p.gradient[2] = 36 * d00 + 3 * ((dm0 + dp0) + (d0m + d0p));
+    p.hessian.de = 36 * dp0 - 24 * d00 - 12 * dm0;
+    p.hessian.se = 36 * d0p - 24 * d00 - 12 * d0m;
+    p.dde = 24 * (dm0 - d00) + 12 * ((dpm + dpp) - (d0m + d0p));
+    p.dse = 12 * (d0m - dpm) + 24 * (d00 - dp0) + 36 * (dpp - d0p);
+    p.sse = 12 * ((d0m + d0p) + (dpm + dpp)) - 24 * (d00 + dp0);
+}
+
+/// What is even along e is made of the plane e = 0 and the sums of the other two.
+template <class T>
+inline void add_even(Piece& p, const Rows<T>& r, double isovalue) {
+    using Sum = typename Rows<T>::Sum;
     const auto sum = [](const T* plus, const T* minus, std::ptrdiff_t at) {
         return Sum(plus[at]) + Sum(minus[at]);
     };
-    Piece p;
-    {
-        // What is odd along e is made of differences of the planes e = 1 and e = -1. After the
-        // letter the place along d and s: dm0 is at d = -1, s = 0.
-        const Sum dm0 = difference(pm, mm, 0);
-        const Sum d0m = difference(p0, m0, -s), d00 = difference(p0, m0, 0),
-                  d0p = difference(p0, m0, s);
-        const Sum dpm = difference(pp, mp, -s), dp0 = difference(pp, mp, 0),
-                  dpp = difference(pp, mp, s);
-        p.gradient[2] = 36 * d00 + 3 * ((dm0 + dp0) + (d0m + d0p));
-        p.hessian.de = 36 * dp0 - 24 * d00 - 12 * dm0;
-        p.hessian.se = 36 * d0p - 24 * d00 - 12 * d0m;
-        p.dde = 24 * (dm0 - d00) + 12 * ((dpm + dpp) - (d0m + d0p));
-        p.dse = 12 * (d0m - dpm) + 24 * (d00 - dp0) + 36 * (dpp - d0p);
-        p.sse = 12 * ((d0m + d0p) + (dpm + dpp)) - 24 * (d00 + dp0);
-    }
-    // What is even is made of the plane e = 0 and the sums of the other two.
-    const Sum sm0 = sum(pm, mm, 0);
-    const Sum s0m = sum(p0, m0, -s), s00 = sum(p0, m0, 0), s0p = sum(p0, m0, s);
-    const Sum spm = sum(pp, mp, -s), sp0 = sum(pp, mp, 0), spp = sum(pp, mp, s);
-    const Sum zmm = zm[-s], zm0 = zm[0], zmp = zm[s];
-    const Sum z0m = z0[-s], z00 = z0[0], z0p = z0[s];
-    const Sum zpm = zp[-s], zp0 = zp[0], zpp = zp[s];
-    {
-        // Second differences along e.
-        const Sum c0m = s0m - 2 * z0m, c00 = s00 - 2 * z00, c0p = s0p - 2 * z0p;
-        const Sum cpm = spm - 2 * zpm, cp0 = sp0 - 2 * zp0, cpp = spp - 2 * zpp;
-        p.hessian.ee = 48 * c00 + 24 * (c0p + cp0);
-        p.dee = 24 * ((cp0 + cpp) - (c00 + c0p));
-        p.see = 24 * ((c0p + cpp) - (c00 + cp0));
-        p.sss = 12 * ((c0m + c0p) + (cpm + cpp)) - 24 * (c00 + cp0);
-    }
+    const Sum sm0 = sum(r.pm, r.mm, 0);
+    const Sum s0m = sum(r.p0, r.m0, -r.s), s00 = sum(r.p0, r.m0, 0), s0p = sum(r.p0, r.m0, r.s);
+    const Sum spm = sum(r.pp, r.mp, -r.s), sp0 = sum(r.pp, r.mp, 0), spp = sum(r.pp, r.mp, r.s);
+    const Sum zmm = r.zm[-r.s], zm0 = r.zm[0], zmp = r.zm[r.s];
+    const Sum z0m = r.z0[-r.s], z00 = r.z0[0], z0p = r.z0[r.s];
+    const Sum zpm = r.zp[-r.s], zp0 = r.zp[0], zpp = r.zp[r.s];
+    // Second differences along e.
+    const Sum c0m = s0m - 2 * z0m, c00 = s00 - 2 * z00, c0p = s0p - 2 * z0p;
+    const Sum cpm = spm - 2 * zpm, cp0 = sp0 - 2 * zp0, cpp = spp - 2 * zpp;
+    p.hessian.ee = 48 * c00 + 24 * (c0p + cp0);
+    p.dee = 24 * ((cp0 + cpp) - (c00 + c0p));
+    p.see = 24 * ((c0p + cpp) - (c00 + cp0));
+    p.sss = 12 * ((c0m + c0p) + (cpm + cpp)) - 24 * (c00 + cp0);
     const Sum ring_m = zmm + zmp + sm0;  // the four neighbours of the sample at d = -1
     const Sum ring_p = zpm + zpp + sp0;  // and of that at d = 1
     // From differences, which keep their digits however far the samples lie from zero.
@@ -138,6 +152,20 @@ inline Piece piece_of(const Tetrahedron& t, const T* centre, std::ptrdiff_t row,
     p.ddd = 96 * (z00 - zm0) + 24 * ((ring_m - ring_p) + ((spm + spp) - (s0m + s0p)));
     p.dds = 24 * ((zmp - zmm) + (z0m - z0p)) + 12 * ((s0m - s0p) + (spp - spm));
     p.dss = 48 * ((z00 - z0m) + (zpm - zp0)) + 24 * ((s00 - s0p) + (spp - sp0));
+}
+
+}  // namespace detail
+
+// docs/smooth.md says where the coefficients come from.
+template <class T>
+inline Piece piece_of(const Tetrahedron& t, const T* centre, std::ptrdiff_t row,
+                      std::ptrdiff_t slice, double isovalue) {
+    const std::array<std::ptrdiff_t, 3> stride{1, row, slice};
+    const detail::Rows<T> rows(centre, t.sign[0] * stride[t.axis[0]], t.sign[1] * stride[t.axis[1]],
+                               t.sign[2] * stride[t.axis[2]]);
+    Piece p;
+    detail::add_odd(p, rows);
+    detail::add_even(p, rows, isovalue);
     return p;
 }
 

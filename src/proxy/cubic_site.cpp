@@ -88,28 +88,28 @@ void CubicSite::move_to(const LatticePoint& at) {
 }
 
 void CubicSite::enter_cube() {
-    const double greatest = field.visit_around(
-        point.tetrahedron.cell, [&](const auto* centre, std::ptrdiff_t row, std::ptrdiff_t slice) {
-            const auto best = [&](auto better) {
-                auto found = *centre;
-                for (const std::ptrdiff_t z : {-slice, std::ptrdiff_t{0}, slice}) {
-                    for (const std::ptrdiff_t y : {z - row, z, z + row}) {
-                        for (int x = -1; x <= 1; ++x) found = better(found, centre[y + x]);
-                    }
+    const auto greatest = [&](const auto* centre, std::ptrdiff_t row, std::ptrdiff_t slice) {
+        const auto best = [&](auto better) {
+            auto found = *centre;
+            for (const std::ptrdiff_t z : {-slice, std::ptrdiff_t{0}, slice}) {
+                for (const std::ptrdiff_t y : {z - row, z, z + row}) {
+                    for (int x = -1; x <= 1; ++x) found = better(found, centre[y + x]);
                 }
-                return found;
-            };
-            return sign > 0 ? best([](auto a, auto b) { return std::max(a, b); }) - isovalue
-                            : isovalue - best([](auto a, auto b) { return std::min(a, b); });
-        });
-    most = cubic::scale * greatest;
+            }
+            return found;
+        };
+        return sign > 0 ? best([](auto a, auto b) { return std::max(a, b); }) - isovalue
+                        : isovalue - best([](auto a, auto b) { return std::min(a, b); });
+    };
+    most = cubic::scale * field.visit_around(point.tetrahedron.cell, greatest);
 }
 
 void CubicSite::expand() {
-    piece = field.visit_around(
-        point.tetrahedron.cell, [&](const auto* centre, std::ptrdiff_t row, std::ptrdiff_t slice) {
-            return cubic::piece_of(point.tetrahedron, centre, row, slice, isovalue);
-        });
+    const Tetrahedron& t = point.tetrahedron;
+    const auto make = [&](const auto* centre, std::ptrdiff_t row, std::ptrdiff_t slice) {
+        return cubic::piece_of(t, centre, row, slice, isovalue);
+    };
+    piece = field.visit_around(t.cell, make);
     if (sign < 0) piece = -piece;
     here = piece.at(point.folded);
 }
