@@ -77,9 +77,9 @@ Foot foot_of(const Contact& c, const Curvature& k, double least, double longest)
 }
 
 /// An update that is under way.
-class Descent {
+class CubicDescent {
   public:
-    Descent(CubicSite& site, Progress& progress, const Friction& friction, Proxy& proxy)
+    CubicDescent(CubicSite& site, Progress& progress, const Friction& friction, Proxy& proxy)
         : site_(site),
           progress_(progress),
           friction_(friction),
@@ -191,7 +191,7 @@ class Descent {
     /// Along the tangent plane, lifted where the surface rises, and from there down to where the
     /// surface's curvature says that the target's foot is. After failures shorter and higher.
     void slide(const Vec3& h, const Contact& c, const Curvature& k, int failures) {
-        const double shrink = failures == 0 ? 1 : std::pow(0.25, failures);
+        const double shrink = std::ldexp(1.0, -2 * failures);
         const Foot step = foot_of(c, k, 1, far);
         const Foot aim = foot_of(c, k, 0.4, shortest_);
         const double lift = 0.55 * shrink * shrink * std::max(0.0, step.rise) +
@@ -270,7 +270,7 @@ ProxyUpdate update_cubic(Proxy& proxy, const Field& field, const Vec3& hip,
     if (!accepts(proxy, field, target)) return refuse_update(proxy, field, hip);
     Update<CubicSite> update(proxy, field, target, settings, observer);
     if (update.recovering) return finish_update(proxy, update, hip, Rest::recovering);
-    const Rest rest = Descent(update.site, update.progress, settings.friction, proxy).run();
+    const Rest rest = CubicDescent(update.site, update.progress, settings.friction, proxy).run();
     if (rest == Rest::at_target) proxy.sliding = false;
     return finish_update(proxy, update, hip, rest);
 }

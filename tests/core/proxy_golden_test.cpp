@@ -45,6 +45,13 @@ std::vector<TestField> golden_fields() {
     return {noise_field(), anisotropic_field(), oblique_field(), offset_field(), box_field()};
 }
 
+/// The same fields, felt smoothly.
+std::vector<TestField> smooth_golden_fields() {
+    std::vector<TestField> fields = golden_fields();
+    for (TestField& test : fields) test.field = smooth(test.field);
+    return fields;
+}
+
 }  // namespace
 
 TEST(Golden, trajectories_of_the_exact_method_are_the_same_bit_for_bit) {
@@ -77,6 +84,23 @@ TEST(Golden, trajectories_of_the_papers_method_are_the_same_bit_for_bit) {
     const std::vector<TestField> fields = golden_fields();
     for (std::size_t i = 0; i < fields.size(); ++i) {
         EXPECT_EQ(hex(trajectory(fields[i], update_paper, {})), expected[i]) << fields[i].name;
+    }
+}
+
+TEST(Golden, trajectories_on_smooth_fields_are_the_same_bit_for_bit) {
+    const std::vector<std::string> expected{"b5468cf720af2a25", "9caa05dc26e0c2ca",
+                                            "2cb748d758403c1a", "3f3b02a875177810",
+                                            "47772043c15967fc"};
+    const std::vector<std::string> with_friction{"1f4aa36cd8f1b912", "7549909654e79ccf",
+                                                 "a057952afd3cd243", "1f3da844da5170e5",
+                                                 "ba3fe4b9a2f04784"};
+    const std::vector<TestField> fields = smooth_golden_fields();
+    ProxySettings settings;
+    settings.friction = {0.5, 0.25};
+    for (std::size_t i = 0; i < fields.size(); ++i) {
+        EXPECT_EQ(hex(trajectory(fields[i], update_exact, {})), expected[i]) << fields[i].name;
+        EXPECT_EQ(hex(trajectory(fields[i], update_exact, settings)), with_friction[i])
+            << fields[i].name;
     }
 }
 
