@@ -76,12 +76,12 @@ struct SurfaceOptions {
 /// other vertices lie on the isosurface to rounding.
 inline constexpr double surface_margin = 1.0 / 1024;
 
-/// The boundary of the solid: sign * (density - isovalue) > 0 is solid, equal is free. Outside the
-/// grid the field has the background's value, so bodies cut by the border are closed there. Where
-/// the background is solid the mesh bounds the free space instead; it is closed, too, with normals
-/// out of the solid. The same input gives the same mesh, bit for bit. Throws std::invalid_argument
-/// for an isovalue that is not finite and std::length_error past max_vertices. (Corenthy et al.
-/// 2012, section 3; docs/surface.md)
+/// The boundary of the solid, of the linear field whichever is felt: sign * (density - isovalue) >
+/// 0 is solid, equal is free. Outside the grid the field has the background's value, so bodies cut
+/// by the border are closed there. Where the background is solid the mesh bounds the free space
+/// instead; it is closed, too, with normals out of the solid. The same input gives the same mesh,
+/// bit for bit. Throws std::invalid_argument for an isovalue that is not finite and
+/// std::length_error past max_vertices. (Corenthy et al. 2012, section 3; docs/surface.md)
 SurfaceMesh extract_surface(const Field& field, double isovalue,
                             const SurfaceOptions& options = {});
 

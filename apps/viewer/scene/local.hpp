@@ -19,7 +19,7 @@ struct ConstraintPlane {
 struct LocalTetrahedron {
     std::array<Vec3, 4> corners;  ///< cell centre, face centre, the edge's two ends [mm, physical]
     /// The isosurface in it: nothing, or the 3 or 4 corners of a plane polygon, in turn [mm,
-    /// physical].
+    /// physical]. On a cubic field it is roughly there: only the corners' densities count.
     std::vector<Vec3> patch;
     /// Where the point lies on the isosurface and the field is not constant here.
     std::optional<ConstraintPlane> plane;
