@@ -19,8 +19,29 @@ constexpr std::array crashes{SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT, SIGTRAP, 
 constexpr std::array harmless{SIGKILL, SIGSTOP, SIGCHLD, SIGCONT, SIGURG, SIGWINCH};
 
 std::array<std::atomic<Device*>, LastResort::most> guarded{};
+/// Those that a handler has told to stop.
+std::array<std::atomic<Device*>, LastResort::most> told{};
 /// Handlers that are waiting for a zero to be sent.
 std::atomic<int> letting_go{0};
+
+/// How long a handler waits [ms]: at least, for devices that cannot tell, and at most.
+constexpr int least_wait = 100;
+constexpr int most_wait = 1000;
+
+bool is_stopping(const std::atomic<Device*>& place) {
+    const Device* const device = place.load();
+    return device && device->is_stopping();
+}
+
+void wait_for_zeros() {
+    constexpr int step = 5;
+    for (int waited = 0; waited < most_wait; waited += step) {
+        if (waited >= least_wait && std::ranges::none_of(told, is_stopping)) return;
+        timespec left{0, step * 1'000'000};
+        while (::nanosleep(&left, &left) != 0 && errno == EINTR) {
+        }
+    }
+}
 
 /// On a stack of its own, for the crash may be that of a stack that has run out (of the thread that
 /// made the LastResort; other threads have their guard page and no second stack).
@@ -29,17 +50,14 @@ alignas(16) std::array<char, 64 * 1024> handler_stack;
 void on_signal(int number) {
     // A second signal, on another thread, must not end the program before the zero is sent.
     bool wait = letting_go.fetch_add(1) > 0;
-    for (std::atomic<Device*>& place : guarded) {
-        Device* const device = place.exchange(nullptr);
+    for (std::size_t i = 0; i < guarded.size(); ++i) {
+        Device* const device = guarded[i].exchange(nullptr);
         if (!device) continue;
         device->stop();
+        told[i].store(device);
         wait = true;
     }
-    if (wait) {
-        timespec left{0, 100'000'000};
-        while (::nanosleep(&left, &left) != 0 && errno == EINTR) {
-        }
-    }
+    if (wait) wait_for_zeros();
     letting_go.fetch_sub(1);
     // The default action is restored (SA_RESETHAND): what the signal does goes on.
     ::raise(number);
@@ -94,6 +112,7 @@ LastResort::LastResort(Device& device) {
 
 LastResort::~LastResort() {
     guarded[place_].store(nullptr);
+    told[place_].store(nullptr);
     const bool last = std::ranges::none_of(guarded, [](const auto& place) { return place.load(); });
     if (last) forget_signals();
 }

@@ -60,7 +60,10 @@ void Link::report(DeviceStatus status) noexcept {
 }
 
 Vec3 Link::force() const noexcept {
-    if (stopped()) return Vec3::Zero();
+    if (stopped()) {
+        if (zeros_.load(std::memory_order_relaxed) < 2) zeros_.fetch_add(1);
+        return Vec3::Zero();
+    }
     const auto newest = force_.get();
     if (!newest) return Vec3::Zero();
     const double age = 1e-9 * static_cast<double>(monotonic_ns() - newest->at);
@@ -70,6 +73,10 @@ Vec3 Link::force() const noexcept {
 
 void Link::stop() noexcept {
     stopped_.store(true, std::memory_order_release);
+}
+
+bool Link::stopping() const noexcept {
+    return stopped() && zeros_.load(std::memory_order_acquire) < 2;
 }
 
 bool Link::stopped() const noexcept {

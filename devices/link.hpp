@@ -40,6 +40,9 @@ class Link {
     /// From now on force() returns zero. Safe in a signal handler.
     void stop() noexcept;
     bool stopped() const noexcept;
+    /// True from stop() until the backend has come back from sending the zero: it has asked for the
+    /// force twice. For Device::is_stopping().
+    bool stopping() const noexcept;
 
   private:
     struct Force {
@@ -54,6 +57,7 @@ class Link {
     Newest<Force> force_;
     DeviceReading last_;  // the backend's
     std::atomic<bool> stopped_{false};
+    mutable std::atomic<int> zeros_{0};  // asked for since stop(), 2 at most
 };
 
 /// What a thread that talks to a device does first. Asks the system to wake it in time: exact

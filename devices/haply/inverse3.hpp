@@ -63,6 +63,7 @@ class Inverse3 final : public Device {
     DeviceReading read(double) noexcept override { return link_.read(); }
     void write(const Vec3& force, double) noexcept override { link_.write(force); }
     void stop() noexcept override { link_.stop(); }
+    bool is_stopping() const noexcept override { return link_.stopping(); }
 
   private:
     // Called by the thread only.

@@ -44,6 +44,7 @@ class Phantom final : public Device {
     DeviceReading read(double) noexcept override { return frames_->link().read(); }
     void write(const Vec3& force, double) noexcept override { frames_->link().write(force); }
     void stop() noexcept override { frames_->link().stop(); }
+    bool is_stopping() const noexcept override { return frames_->link().stopping(); }
 
   private:
     void start();

@@ -88,6 +88,9 @@ class Device {
     /// such a thread holds. A device whose force cannot be reached from a second thread says so in
     /// problem() and its documentation.
     virtual void stop() noexcept = 0;
+    /// After stop(): true while the zero is still on its way, where the device can tell. Any
+    /// thread, and signal handlers.
+    virtual bool is_stopping() const noexcept { return false; }
 };
 
 }  // namespace palpate

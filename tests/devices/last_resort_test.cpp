@@ -31,18 +31,19 @@ using namespace std::chrono_literals;
 /// that outlives the process.
 class Motor : public Device {
   public:
-    explicit Motor(std::atomic<double>& sent)
-        : sent_(sent), thread_([this](std::stop_token stop) {
+    explicit Motor(std::atomic<double>& sent, std::chrono::milliseconds period = 1ms)
+        : sent_(sent), thread_([this, period](std::stop_token stop) {
               prepare_device_thread();
               while (!stop.stop_requested()) {
                   sent_ = link_.force().norm();
-                  std::this_thread::sleep_for(1ms);
+                  std::this_thread::sleep_for(period);
               }
           }) {}
     DeviceInfo info() const override { return {}; }
     DeviceReading read(double) noexcept override { return link_.read(); }
     void write(const Vec3& force, double) noexcept override { link_.write(force); }
     void stop() noexcept override { link_.stop(); }
+    bool is_stopping() const noexcept override { return link_.stopping(); }
 
   private:
     std::atomic<double>& sent_;
@@ -57,7 +58,7 @@ struct Shared {
 /// Presses with 2 N from a thread that goes on and on, as a servo would, until `crash` happens in
 /// another. Returns the child's status and the larger force that its two motors sent last.
 template <class F>
-std::pair<int, double> crashed(bool guarded, F&& crash) {
+std::pair<int, double> crashed(bool guarded, F&& crash, std::chrono::milliseconds period = 1ms) {
     void* memory =
         ::mmap(nullptr, sizeof(Shared), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     auto* shared = new (memory) Shared;
@@ -66,7 +67,7 @@ std::pair<int, double> crashed(bool guarded, F&& crash) {
         std::fclose(stderr);  // what terminate() has to say
         // Sanitizers have handlers of their own.
         for (const int s : {SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT}) std::signal(s, SIG_DFL);
-        Motor motor(shared->sent), second(shared->other);
+        Motor motor(shared->sent), second(shared->other, period);
         std::optional<LastResort> last_resort, of_second;
         if (guarded) {
             last_resort.emplace(motor);
@@ -117,6 +118,14 @@ TEST(LastResort, lets_go_before_a_wild_pointer_ends_the_program) {
         void* page = ::mmap(nullptr, 4096, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
         *static_cast<volatile int*>(page) = 1;
     });
+}
+
+TEST(LastResort, waits_for_a_thread_that_seldom_gets_the_processor) {
+    const auto [status, sent] = crashed(
+        true, [] { std::raise(SIGSEGV); }, 400ms);
+    EXPECT_TRUE(WIFSIGNALED(status)) << status;
+    EXPECT_EQ(WTERMSIG(status), SIGSEGV);
+    EXPECT_EQ(sent, 0);
 }
 
 TEST(LastResort, lets_go_before_an_exception_that_nobody_catches_does) {

@@ -8,8 +8,9 @@
 namespace palpate::devices {
 
 /// While one exists, a signal that ends or suspends the program calls device.stop(), leaves the
-/// device's own thread 100 ms to send the zero, and then does what it would have done: the same
-/// exit status, the same core file. These are the crashes (SIGSEGV, SIGBUS, SIGILL, SIGFPE,
+/// device's own thread 100 ms to send the zero, or up to 1 s where the device can tell that it has
+/// not (Device::is_stopping()), and then does what it would have done: the same exit status, the
+/// same core file. These are the crashes (SIGSEGV, SIGBUS, SIGILL, SIGFPE,
 /// SIGTRAP, SIGSYS, SIGABRT and with it an exception that nobody catches), whatever handled them
 /// before, and all others whose default action ends or suspends a program (SIGTERM, SIGALRM,
 /// SIGUSR1, SIGXCPU, SIGTSTP, real-time signals, ...), unless the application handles or ignores
