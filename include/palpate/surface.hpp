@@ -63,10 +63,10 @@ struct SurfaceOptions {
     /// More vertices than this are an error. The default is the most that a 32-bit index can name;
     /// a vertex with its two triangles takes 48 bytes.
     std::uint64_t max_vertices = std::numeric_limits<std::uint32_t>::max();
-    /// Only the part in these cells (by their lowest corner; -1 is the layer of cells before the
-    /// grid), clipped to the grid and that layer. The mesh is open where the surface leaves the
-    /// box. It fits the meshes of neighbouring boxes: at the border both have the same vertices,
-    /// bit for bit.
+    /// Only the part in these cells (by their lowest corner, on a cubic field by the sample in
+    /// their middle; -1 is the layer of cells before the grid), clipped to surface_cells(). The
+    /// mesh is open where the surface leaves the box. It fits the meshes of neighbouring boxes: at
+    /// the border both have the same vertices, bit for bit.
     std::optional<SampleBox> cells = std::nullopt;
 };
 
@@ -76,7 +76,7 @@ struct SurfaceOptions {
 /// other vertices lie on the isosurface to rounding.
 inline constexpr double surface_margin = 1.0 / 1024;
 
-/// The boundary of the solid, of the linear field whichever is felt: sign * (density - isovalue) >
+/// The boundary of the solid: sign * (density - isovalue) >
 /// 0 is solid, equal is free. Outside the grid the field has the background's value, so bodies cut
 /// by the border are closed there. Where the background is solid the mesh bounds the free space
 /// instead; it is closed, too, with normals out of the solid. The same input gives the same mesh,
@@ -84,6 +84,10 @@ inline constexpr double surface_margin = 1.0 / 1024;
 /// std::length_error past max_vertices. (Corenthy et al. 2012, section 3; docs/surface.md)
 SurfaceMesh extract_surface(const Field& field, double isovalue,
                             const SurfaceOptions& options = {});
+
+/// All cells through which a surface of the field can go: for SurfaceOptions::cells. Those of a
+/// cubic field lie round a sample each, with its index.
+SampleBox surface_cells(const Field& field);
 
 /// Volume enclosed by a closed mesh [mm^3], by the divergence theorem; negative where the mesh
 /// bounds the free space.
