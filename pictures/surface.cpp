@@ -34,13 +34,15 @@ Volume thinned(const Volume& volume, int every) {
     return Volume(coarse, std::move(samples));
 }
 
-/// Out of the solid, from the field's central differences over a voxel along each axis of the grid.
+/// Out of the solid: of a cubic field its gradient, of a linear one, which has facets, central
+/// differences over a voxel along each axis of the grid.
 /// `facet`, the normal of the mesh, where they say nothing (plateaus) or something else (sheets
 /// thinner than a voxel).
 Eigen::Vector3f smooth_normal(const Field& field, const Vec3& at, const Eigen::Vector3f& facet) {
     const Geometry& g = field.geometry();
-    Vec3 gradient = Vec3::Zero();
-    for (int axis = 0; axis < 3; ++axis) {
+    const bool is_smooth = field.interpolation() == Interpolation::cubic;
+    Vec3 gradient = is_smooth ? gradient_at(field, at) : Vec3::Zero();
+    for (int axis = 0; axis < 3 && !is_smooth; ++axis) {
         const Vec3 step = g.spacing[axis] * g.direction.col(axis);
         gradient += (value_at(field, Vec3(at + step)) - value_at(field, Vec3(at - step))) /
                     g.spacing[axis] * g.direction.col(axis);
@@ -55,7 +57,7 @@ Field coarser(const Field& field, int every) {
     const Volume& v = field.volume();
     Volume coarse =
         with_type(v.type(), [&](auto zero) { return thinned<decltype(zero)>(v, every); });
-    return Field(std::move(coarse), field.solid(), field.background());
+    return Field(std::move(coarse), field.solid(), field.background(), field.interpolation());
 }
 
 std::vector<Eigen::Vector3f> mesh_normals(const SurfaceMesh& mesh) {

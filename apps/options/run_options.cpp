@@ -33,7 +33,6 @@ void RunOptions::add_to(CLI::App& command, For purpose) {
     if (purpose != For::view) add_script_options(command);
     add_data_options(command);
     add_field_options(command, given.field);
-    add_interpolation_option(command, given.field);
     render.given.force.start_below = run::live_start_below;
     render.add_to(command);
     command.get_option("--scale")->default_str("fits the device");

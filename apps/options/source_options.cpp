@@ -88,14 +88,6 @@ void add_side_options(CLI::App& command, run::FieldSetup& field) {
             "Which side of the level is solid: above, below")
         ->check(CLI::IsMember({"above", "below"}))
         ->default_str("above");
-    command.add_option_function<std::string>(
-        "--background",
-        [&field](const std::string& text) { field.background = io::level_from_text(text); },
-        "Level outside the data (default: the data's minimum; its maximum for "
-        "--solid below)");
-}
-
-void add_interpolation_option(CLI::App& command, run::FieldSetup& field) {
     command
         .add_option_function<std::string>(
             "--field",
@@ -103,6 +95,11 @@ void add_interpolation_option(CLI::App& command, run::FieldSetup& field) {
             "How densities continue between samples: linear (exact, with facets), cubic (smooth)")
         ->check(CLI::IsMember({"linear", "cubic"}))
         ->default_str("linear");
+    command.add_option_function<std::string>(
+        "--background",
+        [&field](const std::string& text) { field.background = io::level_from_text(text); },
+        "Level outside the data (default: the data's minimum; its maximum for "
+        "--solid below)");
 }
 
 void warn_of_isovalue(const Field& field, double isovalue) {

@@ -29,12 +29,10 @@ struct SourceOptions {
     run::Source source() const;
 };
 
-/// --isovalue, --solid and --background.
+/// --isovalue, --solid, --field and --background.
 void add_field_options(CLI::App& command, run::FieldSetup& field);
 /// All but --isovalue, for a command that takes several.
 void add_side_options(CLI::App& command, run::FieldSetup& field);
-/// --field.
-void add_interpolation_option(CLI::App& command, run::FieldSetup& field);
 
 /// Empty for a whole number from 0, else what is wrong: a check for CLI11, which reads -1 as
 /// 2^64-1.

@@ -128,7 +128,6 @@ std::string report_html(const Demo& demo, const std::string& images) {
 void add_demo_options(CLI::App& command, DemoOptions& options) {
     options.source.add_to(command, true);
     add_field_options(command, options.field);
-    add_interpolation_option(command, options.field);
     options.render.add_to(command);
     command.option_defaults()->always_capture_default();  // of all that follow
     command.add_option("--depth", options.hand.depth_mm, "How deep the hand presses [mm]");

@@ -158,7 +158,6 @@ void add_replay(CLI::App& app) {
     command->add_option("-o,--output", options->output, "Trace to write (CSV; - for standard out)");
     command->add_option("--path", options->path, "Path of the SCP to write (CSV)");
     add_field_options(*command, options->field);
-    add_interpolation_option(*command, options->field);
     options->render.add_to(*command);
     command->add_flag("--validate", options->validate,
                       "Render the recording that is given as VOLUME again and compare every tick");

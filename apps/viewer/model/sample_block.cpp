@@ -146,10 +146,10 @@ bool same_but_for_edits(const Field& a, const Field& b) {
         return f.samples().frames()[frame].volume.data();
     };
     // By the frames at hand: others may have come into memory.
-    return a.solid() == b.solid() && a.background() == b.background() &&
-           a.geometry() == b.geometry() && a.samples().type() == b.samples().type() &&
-           m.weight == n.weight && data(a, m.from) == data(b, n.from) &&
-           (m.weight == 0 || data(a, m.to) == data(b, n.to));
+    return a.solid() == b.solid() && a.interpolation() == b.interpolation() &&
+           a.background() == b.background() && a.geometry() == b.geometry() &&
+           a.samples().type() == b.samples().type() && m.weight == n.weight &&
+           data(a, m.from) == data(b, n.from) && (m.weight == 0 || data(a, m.to) == data(b, n.to));
 }
 
 SampleBox changed_between(const Field& a, const Field& b) {

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "apps/viewer/model/sample_block.hpp"
+#include "palpate/density.hpp"
 #include "palpate/surface.hpp"
 #include "pictures/surface.hpp"
 
@@ -79,17 +80,18 @@ bool one_sided(const std::vector<float>& values, const Field& field, double isov
 }
 
 /// The triangles in the block's own cells: one with all of its middle in the cell that it lies in.
-void drop_neighbours(SurfaceMesh& mesh, const Index3& low, int edge) {
+/// A cell begins `begin` from its index.
+void drop_neighbours(SurfaceMesh& mesh, const Index3& low, int edge, double begin) {
     const Index3 last = low + Index3::Constant(edge - 1);
     std::erase_if(mesh.triangles, [&](const auto& t) {
-        const Index3 cell =
-            cell_of((mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) / 3);
+        const Vec3 middle = (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) / 3;
+        const Index3 cell = cell_of(middle - Vec3::Constant(begin));
         return (cell.array() < low.array()).any() || (cell.array() > last.array()).any();
     });
 }
 
 /// On which sides of the block: 2 bits an axis.
-std::uint8_t seams_of(const Vec3& index, const Index3& low, int edge) {
+std::uint8_t seams_of(const Vec3& index, const Vec3& low, int edge) {
     int seams = 0;
     for (int a = 0; a < 3; ++a) {
         if (index[a] == low[a]) seams |= 1 << (2 * a);
@@ -122,22 +124,27 @@ std::vector<Vector3f> facet_normals(SurfaceMesh mesh, const Placing& place) {
 
 std::shared_ptr<const RenderMesh> block_mesh(const Field& field, double isovalue,
                                              const Index3& cell, int edge, int every) {
-    const Index3 around = cell - Index3::Ones(), size = Index3::Constant(edge + 3);
+    // One more cell on every side; a cubic one, round a sample, has samples on both sides.
+    const bool is_smooth = field.interpolation() == Interpolation::cubic;
+    const int more = is_smooth ? 2 : 1;
+    const double begin = is_smooth ? -0.5 : 0;
+    const Index3 around = cell - Index3::Constant(more);
+    const Index3 size = Index3::Constant(edge + (is_smooth ? 4 : 3));
     const Corners corners{around, size, sample_block(field, around, size, every)};
     if (one_sided(corners.values, field, isovalue)) return nullptr;
 
     // In index space, so that a vertex between two blocks is the same number in both.
     const Field local(Volume({size, Vec3::Ones(), around.cast<double>()}, corners.values),
-                      field.solid(), field.background());
+                      field.solid(), field.background(), field.interpolation());
     SurfaceOptions options;
-    options.cells = SampleBox{Index3::Zero(), Index3::Constant(edge + 1)};
+    options.cells = SampleBox{Index3::Constant(more - 1), Index3::Constant(edge + more)};
     SurfaceMesh mesh = extract_surface(local, isovalue, options);
     if (field.geometry().direction.determinant() < 0) {
         for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
     }
     const Placing place(field.geometry(), every);
     const std::vector<Vector3f> facets = facet_normals(mesh, place);
-    drop_neighbours(mesh, cell, edge);
+    drop_neighbours(mesh, cell, edge, begin);
     if (mesh.triangles.empty()) return nullptr;
 
     auto block = std::make_shared<RenderMesh>();
@@ -146,15 +153,17 @@ std::shared_ptr<const RenderMesh> block_mesh(const Field& field, double isovalue
     const auto add_vertex = [&](std::uint32_t v) {
         const Vec3& index = mesh.vertices[v];
         const Index3 in = cell_of(index).cwiseMax(cell).cwiseMin(last);
-        const Vec3 slope =
-            place.direction * slope_at(corners, index, in).cwiseQuotient(place.spacing);
+        // The copy's physical space is index space.
+        const Vec3 per_sample =
+            is_smooth ? gradient_at(local, index) : slope_at(corners, index, in);
+        const Vec3 slope = place.direction * per_sample.cwiseQuotient(place.spacing);
         // The facet's where the slope says nothing (plateaus) or something else (thin sheets).
         const Vector3f smooth = (-field.sign() * slope).normalized().cast<float>();
         const Vector3f normal = smooth.dot(facets[v]) > 0.3F ? smooth : facets[v];
         const Vector3f position = place(index).cast<float>();
         block->positions.insert(block->positions.end(), position.begin(), position.end());
         block->normals.insert(block->normals.end(), normal.begin(), normal.end());
-        block->seams.push_back(seams_of(index, cell, edge));
+        block->seams.push_back(seams_of(index, cell.cast<double>() + Vec3::Constant(begin), edge));
     };
     std::vector<std::int32_t> number(mesh.vertices.size(), -1);
     for (const auto& t : mesh.triangles) {

@@ -54,10 +54,10 @@ std::vector<std::size_t> zeros_of(const std::vector<std::uint8_t>& flags) {
 
 }  // namespace
 
-SurfaceBlocks::SurfaceBlocks(const Geometry& geometry, int every)
-    : geometry_(geometry), every_(every) {
-    // The cells of the ring count: from -1 to the last sample.
-    const Index3 cells_there = thinned_size(geometry.size, every) + Index3::Ones();
+SurfaceBlocks::SurfaceBlocks(const Geometry& geometry, int every, Interpolation interpolation)
+    : geometry_(geometry), every_(every), reach_(interpolation == Interpolation::cubic ? 2 : 1) {
+    // The cells of the ring count: from -1 to the last sample; round samples, to one after it.
+    const Index3 cells_there = thinned_size(geometry.size, every) + Index3::Constant(reach_);
     count_ = (cells_there.array() + cells - 1) / cells;
     const auto blocks = static_cast<std::size_t>(count_.cast<std::int64_t>().prod());
     meshes_.resize(blocks);
@@ -77,10 +77,10 @@ void SurfaceBlocks::mark(const SampleBox& changed) {
     if (changed.empty()) return;
     Index3 low, high;
     for (int a = 0; a < 3; ++a) {
-        // Samples of the thinned grid; a block looks at those from one before its first cell to
-        // two after its last.
+        // Samples of the thinned grid; a block looks at those from one before its first cell (two
+        // on a cubic field) to two after its last.
         const int first = (std::max(changed.low[a], 0) + every_ - 1) / every_;
-        const int last = std::min(changed.high[a], geometry_.size[a] - 1) / every_;
+        const int last = std::min(changed.high[a], geometry_.size[a] - 1) / every_ + (reach_ - 1);
         if (last < first || changed.high[a] < 0) return;
         low[a] = std::max(0, (first - cells) / cells);
         while ((low[a] + 1) * cells < first) ++low[a];  // its last sample: low * cells + cells

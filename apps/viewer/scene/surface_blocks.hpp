@@ -19,7 +19,7 @@ class SurfaceBlocks {
     static constexpr int cells = 32;  ///< along each axis of a block
 
     /// Nothing is made yet. `every` at least 1.
-    SurfaceBlocks(const Geometry& geometry, int every);
+    SurfaceBlocks(const Geometry& geometry, int every, Interpolation interpolation);
 
     int every() const { return every_; }
     /// These samples, of the full grid, are no longer what they were: the blocks that they touch
@@ -47,6 +47,7 @@ class SurfaceBlocks {
 
     Geometry geometry_;
     int every_;
+    int reach_;  // of a block's cells: samples before the first and after the last
     Index3 count_;
     MeshBlocks meshes_, simple_;
     std::vector<std::uint8_t> fresh_;         // the mesh is what it should be

@@ -122,7 +122,7 @@ void SurfaceExtractor::take_up(Request request) {
         finer_.reset();
         streaming_ = false;
         moving_step_ = 0;
-        shown_.emplace(request_->field.geometry(), steps.front());
+        shown_.emplace(request_->field.geometry(), steps.front(), request_->field.interpolation());
         steps_.assign(steps.begin() + 1, steps.end());
         return;
     }
@@ -150,7 +150,7 @@ void SurfaceExtractor::stream(const std::vector<int>& steps) {
         steps_.insert(steps_.begin(), shown_->every());
         finer_ = std::move(shown_);
     }
-    shown_.emplace(request_->field.geometry(), moving_step_);
+    shown_.emplace(request_->field.geometry(), moving_step_, request_->field.interpolation());
 }
 
 void SurfaceExtractor::carry_out(const std::stop_token& stop) {
@@ -175,7 +175,8 @@ bool SurfaceExtractor::make_first(const std::function<bool()>& go_on) {
                                            coarse ? limits_.most_triangles : no_limit);
         if (outcome == SurfaceBlocks::Outcome::done) break;
         if (outcome == SurfaceBlocks::Outcome::interrupted) return false;
-        shown_.emplace(request_->field.geometry(), shown_->every() + 1);
+        shown_.emplace(request_->field.geometry(), shown_->every() + 1,
+                       request_->field.interpolation());
         steps_.clear();
     }
     publish(steps_.empty());
@@ -186,7 +187,7 @@ bool SurfaceExtractor::make_first(const std::function<bool()>& go_on) {
 /// False if a newer request waits; the finished blocks of the step are kept.
 bool SurfaceExtractor::make_finer(const std::function<bool()>& go_on) {
     const int step = finer_ ? finer_->every() : steps_.front();
-    if (!finer_) finer_.emplace(request_->field.geometry(), step);
+    if (!finer_) finer_.emplace(request_->field.geometry(), step, request_->field.interpolation());
     switch (finer_->renew(request_->field, request_->isovalue, go_on, limits_.most_triangles)) {
         case SurfaceBlocks::Outcome::interrupted:
             return false;

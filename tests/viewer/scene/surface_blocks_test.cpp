@@ -28,7 +28,7 @@ Point point(const std::vector<float>& values, std::int32_t i) {
 }
 
 SurfaceBlocks blocks_of(const Field& field, double isovalue, int every = 1) {
-    SurfaceBlocks blocks(field.geometry(), every);
+    SurfaceBlocks blocks(field.geometry(), every, field.interpolation());
     EXPECT_EQ(blocks.renew(field, isovalue, always, all), SurfaceBlocks::Outcome::done);
     return blocks;
 }
@@ -87,8 +87,11 @@ TEST(SurfaceBlocks, are_the_surface_with_its_normals_on_every_grid) {
          {support::grid({70, 40, 33}, {1, 1, 1}),
           support::grid({35, 34, 30}, {0.5, 1.5, 2}, {300, -20, 1000}, mirrored),
           support::grid({1, 40, 1})}) {
-        for (const Solid solid : {Solid::above, Solid::below}) {
-            const Field field = noise(g, solid);
+        for (const auto& [solid, interpolation] : {std::pair{Solid::above, Interpolation::linear},
+                                                   std::pair{Solid::below, Interpolation::linear},
+                                                   std::pair{Solid::above, Interpolation::cubic}}) {
+            Field field = noise(g, solid);
+            field.set_interpolation(interpolation);
             const pictures::Surface whole = pictures::shaded_surface(field, 350.5).surface;
             const Vec3 middle = physical_centre(g);
             const auto mesh = joined(blocks_of(field, 350.5).meshes());
@@ -116,8 +119,11 @@ TEST(SurfaceBlocks, are_the_surface_with_its_normals_on_every_grid) {
 
 TEST(SurfaceBlocks, meet_without_cracks) {
     for (const int every : {1, 2}) {
-        const Field field = noise(support::grid({70, 40, 33}));
-        EXPECT_EQ(open_edges(*joined(blocks_of(field, 300, every).meshes())), 0);
+        for (const auto interpolation : {Interpolation::linear, Interpolation::cubic}) {
+            Field field = noise(support::grid({70, 40, 33}));
+            field.set_interpolation(interpolation);
+            EXPECT_EQ(open_edges(*joined(blocks_of(field, 300, every).meshes())), 0);
+        }
     }
 }
 
@@ -208,7 +214,7 @@ TEST(SurfaceBlocks, between_two_frames_are_those_of_the_samples_between_them) {
 
 TEST(SurfaceBlocks, stop_on_request_or_when_too_large_and_continue_later) {
     const Field field = noise(support::grid(support::cube(80)));
-    SurfaceBlocks blocks(field.geometry(), 1);
+    SurfaceBlocks blocks(field.geometry(), 1, field.interpolation());
     std::atomic<int> asked{0};
     EXPECT_EQ(blocks.renew(
                   field, 350, [&] { return ++asked < 5; }, all),
