@@ -18,9 +18,9 @@ struct ConstraintPlane {
 
 struct LocalTetrahedron {
     std::array<Vec3, 4> corners;  ///< cell centre, face centre, the edge's two ends [mm, physical]
-    /// The isosurface in it: nothing, or the 3 or 4 corners of a plane polygon, in turn [mm,
-    /// physical]. On a cubic field it is roughly there: only the corners' densities count.
-    std::vector<Vec3> patch;
+    /// The isosurface in it, as convex polygons of 3 or 4 corners, in turn [mm, physical]: one at
+    /// most on a linear field, several along the curved surface of a cubic one.
+    std::vector<std::vector<Vec3>> patch;
     /// Where the point lies on the isosurface and the field is not constant here.
     std::optional<ConstraintPlane> plane;
 };

@@ -65,10 +65,11 @@ void put_edges(vtkPolyData& data, const std::vector<LocalTetrahedron>& all, cons
 void put_patches(vtkPolyData& data, const std::vector<LocalTetrahedron>& all, const Vec3& origin) {
     Shape shape;
     for (const LocalTetrahedron& t : all) {
-        if (t.patch.empty()) continue;
-        std::vector<vtkIdType> corners;
-        for (const Vec3& corner : t.patch) corners.push_back(shape.point(corner - origin));
-        shape.polygon(corners);
+        for (const std::vector<Vec3>& polygon : t.patch) {
+            std::vector<vtkIdType> corners;
+            for (const Vec3& corner : polygon) corners.push_back(shape.point(corner - origin));
+            shape.polygon(corners);
+        }
     }
     shape.move_to(data);
 }

@@ -4,98 +4,60 @@
 #include <algorithm>
 #include <array>
 
+#include "apps/viewer/slices/cell_cut.hpp"
+#include "apps/viewer/slices/smooth_contour.hpp"
+
 namespace palpate::viewer {
 namespace {
 
-/// A corner of a triangle: where, and by how much it lies inside the solid [data units].
-struct Corner {
-    double u, v, depth;
-};
-
-Corner between(const Corner& a, const Corner& b, double part) {
-    return {a.u + part * (b.u - a.u), a.v + part * (b.v - a.v),
-            a.depth + part * (b.depth - a.depth)};
-}
-
-class Marching {
+/// Draws the contour of fields that are linear in triangles, in the cell at (u, v).
+class LinearCell {
   public:
-    Marching(std::vector<ContourPiece>& pieces, int u, int v) : pieces_(pieces), u_(u), v_(v) {}
+    LinearCell(std::vector<ContourPiece>& pieces, int u, int v) : pieces_(pieces), u_(u), v_(v) {}
 
     void triangle(const Corner& a, const Corner& b, const Corner& c) {
-        const bool in_a = a.depth > 0, in_b = b.depth > 0, in_c = c.depth > 0;
-        if (in_a == in_b && in_b == in_c) return;
-        if (in_b == in_c) {
-            piece(a, b, c);
-        } else if (in_a == in_c) {
-            piece(b, c, a);
-        } else {
-            piece(c, a, b);
-        }
+        march(a, b, c, [this](const Corner& lone, const Corner& p, const Corner& q) {
+            const auto [u0, v0] = root(lone, p);
+            const auto [u1, v1] = root(lone, q);
+            pieces_.push_back({u0, v0, u1, v1});
+        });
     }
 
   private:
-    /// `lone` is on the other side than the two.
-    void piece(const Corner& lone, const Corner& p, const Corner& q) {
-        const Corner a = between(lone, p, lone.depth / (lone.depth - p.depth));
-        const Corner b = between(lone, q, lone.depth / (lone.depth - q.depth));
-        pieces_.push_back({static_cast<float>(u_ + a.u), static_cast<float>(v_ + a.v),
-                           static_cast<float>(u_ + b.u), static_cast<float>(v_ + b.v)});
+    std::array<float, 2> root(const Corner& a, const Corner& b) const {
+        const double part = a.depth / (a.depth - b.depth);
+        return {static_cast<float>(u_ + a.u + part * (b.u - a.u)),
+                static_cast<float>(v_ + a.v + part * (b.v - a.v))};
     }
 
     std::vector<ContourPiece>& pieces_;
     double u_, v_;
 };
 
-// The corners of a cell's face in the order in which one walks round it.
-using Face = std::array<double, 4>;
-constexpr std::array<std::array<double, 2>, 4> place{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
-
-double mean(const Face& f) {
-    return 0.25 * ((f[0] + f[1]) + (f[2] + f[3]));
-}
-
-/// Cuts the tetrahedra of a cell `part` (0 to 1/2) of the distance from the face `near` to `far`.
-/// Each corner of the cut lies on an edge of a tetrahedron, along which the field is linear.
-void cut_cell(Marching& march, const Face& near, const Face& far, double part) {
-    const double in = 2 * part;  // towards the cell's centre, which is half a cell away
-    const Corner centre{0.5, 0.5, 0.5 * (mean(near) + mean(far))};
-    const Corner middle = between({0.5, 0.5, mean(near)}, centre, in);
-    std::array<Corner, 4> base, inner;
-    for (std::size_t i = 0; i < 4; ++i) {
-        base[i] = {place[i][0], place[i][1], near[i]};
-        inner[i] = between(base[i], centre, in);
-    }
-    for (std::size_t i = 0; i < 4; ++i) {
-        const std::size_t j = (i + 1) % 4;
-        march.triangle(middle, inner[i], inner[j]);
-        if (part == 0) continue;  // the tetrahedra at the face's edges are not cut
-        const Corner side{0.5 * (base[i].u + base[j].u), 0.5 * (base[i].v + base[j].v),
-                          0.25 * ((near[i] + near[j]) + (far[i] + far[j]))};
-        const Corner side_i = between(base[i], side, in), side_j = between(base[j], side, in);
-        march.triangle(inner[i], inner[j], side_i);
-        march.triangle(inner[j], side_j, side_i);
-        const auto upright = [&](std::size_t k) {
-            return Corner{base[k].u, base[k].v, near[k] + part * (far[k] - near[k])};
-        };
-        march.triangle(upright(i), inner[i], side_i);
-        march.triangle(upright(j), inner[j], side_j);
-    }
+void cut_cell(LinearCell& cell, const Face& near, const Face& far, double part) {
+    const CellCut cut = cut_of_cell(near, far, part);
+    for (const auto& [a, b, c] : triangles_at(part)) cell.triangle(cut[a], cut[b], cut[c]);
 }
 
 /// The same by two triangles.
-void cut_square(Marching& march, const Face& near, const Face& far, double part) {
+void cut_square(LinearCell& cell, const Face& near, const Face& far, double part) {
     std::array<Corner, 4> c;
     for (std::size_t i = 0; i < 4; ++i) {
-        c[i] = {place[i][0], place[i][1], near[i] + part * (far[i] - near[i])};
+        c[i] = {corner_place[i][0], corner_place[i][1], near[i] + part * (far[i] - near[i])};
     }
-    march.triangle(c[0], c[1], c[2]);
-    march.triangle(c[0], c[2], c[3]);
+    cell.triangle(c[0], c[1], c[2]);
+    cell.triangle(c[0], c[2], c[3]);
 }
 
 }  // namespace
 
 void append_contour(const SliceSamples& samples, double isovalue, const CellRange& cells,
                     ContourDetail detail, std::vector<ContourPiece>& pieces) {
+    if (samples.field().interpolation() == Interpolation::cubic &&
+        detail == ContourDetail::lattice) {
+        append_smooth_contour(samples, isovalue, cells, pieces);
+        return;
+    }
     const double sign = samples.field().sign();
     const bool towards_next = samples.fraction() > 0.5;
     const int near_layer = towards_next ? 1 : 0;
@@ -120,11 +82,11 @@ void append_contour(const SliceSamples& samples, double isovalue, const CellRang
             if (both == 0 || both == 8) continue;
             const Face near{depth(n0[u]), depth(n0[u + 1]), depth(n1[u + 1]), depth(n1[u])};
             const Face far{depth(f0[u]), depth(f0[u + 1]), depth(f1[u + 1]), depth(f1[u])};
-            Marching march(pieces, u, v);
+            LinearCell cell(pieces, u, v);
             if (detail == ContourDetail::lattice) {
-                cut_cell(march, near, far, part);
+                cut_cell(cell, near, far, part);
             } else {
-                cut_square(march, near, far, part);
+                cut_square(cell, near, far, part);
             }
         }
     }

@@ -13,14 +13,16 @@ struct ContourPiece {
 };
 
 /// The cells of a slice: those whose lower corner has u from `u0` to below `u1`, and so for v. The
-/// ring of cells between data and background counts: from -1 to below the number of samples.
+/// ring of cells between data and background counts: from -1 to below the number of samples. On a
+/// cubic field the sample in a cell's middle names it, and the ring goes to the number of samples.
 struct CellRange {
     int u0 = -1, v0 = -1, u1 = 0, v1 = 0;
 };
 
 enum class ContourDetail : std::uint8_t {
-    lattice,  ///< exactly where the proxy meets the surface
-    cells,    ///< two triangles a cell: less than a sample away from it, an eighth of the work
+    lattice,  ///< exactly where the proxy meets the surface; bent lines to a hundredth of a sample
+    cells,    ///< two triangles a cell of the linear field: less than a sample away, an eighth of
+              ///< the work
 };
 
 /// Appends the contour of `isovalue` [data units] in these cells, in no particular order. Costs

@@ -17,13 +17,17 @@ constexpr int nowhere = std::numeric_limits<int>::min();
 
 SliceSamples::SliceSamples(Field field, const SlicePlane& plane)
     : field_(std::move(field)), plane_(plane), size_(samples_of(plane, field_.geometry())) {
-    for (Layer& layer : layers_) layer.number = nowhere;
+    forget_layers();
     go_to(0);
+}
+
+void SliceSamples::forget_layers() {
+    for (Layer& layer : layers_) layer.number = nowhere;
 }
 
 void SliceSamples::use(const Field& field) {
     field_ = field;
-    for (Layer& layer : layers_) layer.number = nowhere;
+    forget_layers();
     go_to(position_);
 }
 
@@ -34,22 +38,23 @@ double SliceSamples::nearest(double position) const {
 
 void SliceSamples::go_to(double position) {
     position_ = nearest(position);
-    const int before = static_cast<int>(std::floor(position_));
-    fraction_ = position_ - before;
-    if (layers_[0].number != before && layers_[1].number == before) {
-        std::swap(layers_[0], layers_[1]);
-    } else if (layers_[1].number != before + 1 && layers_[0].number == before + 1) {
-        std::swap(layers_[0], layers_[1]);
+    before_ = static_cast<int>(std::floor(position_));
+    fraction_ = position_ - before_;
+    load(before_);
+    if (field_.interpolation() == Interpolation::cubic) {
+        load(before_ + 1);
+        load(fraction_ > 0.5 ? before_ + 2 : before_ - 1);
+    } else if (fraction_ > 0) {
+        load(before_ + 1);
     }
-    load(layers_[0], before);
-    if (fraction_ > 0) load(layers_[1], before + 1);
 }
 
-void SliceSamples::load(Layer& layer, int number) const {
+void SliceSamples::load(int number) {
+    Layer& layer = layers_[place_of(number)];
     if (layer.number == number) return;
     layer.number = number;
-    const std::size_t count =
-        static_cast<std::size_t>(size_[0] + 2) * static_cast<std::size_t>(size_[1] + 2);
+    const std::size_t count = static_cast<std::size_t>(size_[0] + 2 * ring) *
+                              static_cast<std::size_t>(size_[1] + 2 * ring);
     layer.values.assign(count, static_cast<float>(field_.background()));
     Index3 low = Index3::Zero(), size = field_.geometry().size;
     if (number < 0 || number >= size[plane_.axis]) return;
@@ -68,8 +73,8 @@ void SliceSamples::load(Layer& layer, int number) const {
                                std::min<std::ptrdiff_t>(0, along_v) * (size_[1] - 1);
     for (int v = 0; v < size_[1]; ++v) {
         const float* const from = first + v * along_v;
-        float* const to =
-            layer.values.data() + static_cast<std::ptrdiff_t>(v + 1) * (size_[0] + 2) + 1;
+        float* const to = layer.values.data() +
+                          static_cast<std::ptrdiff_t>(v + ring) * (size_[0] + 2 * ring) + ring;
         for (int u = 0; u < size_[0]; ++u) to[u] = from[u * along_u];
     }
 }
@@ -77,8 +82,8 @@ void SliceSamples::load(Layer& layer, int number) const {
 void SliceSamples::interpolate(int v, float* values) const {
     const int last = field_.geometry().size[plane_.axis] - 1;
     const float* const before = row(0, v);
-    const bool only_before = fraction_ == 0 || layers_[0].number >= last;
-    const bool only_after = !only_before && layers_[0].number < 0;
+    const bool only_before = fraction_ == 0 || before_ >= last;
+    const bool only_after = !only_before && before_ < 0;
     if (only_before || only_after) {
         const float* const one = only_after ? row(1, v) : before;
         std::copy(one, one + size_[0], values);

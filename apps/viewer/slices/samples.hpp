@@ -10,14 +10,14 @@
 
 namespace palpate::viewer {
 
-/// One layer of samples along u and v, with a ring of background round it.
+/// One layer of samples along u and v, with a ring of background round it, two samples wide.
 struct Layer {
     int number = 0;  ///< along the grid axis
     std::vector<float> values;
 };
 
-/// A slice at any place along its axis: the layers before and after it, and how far it is between
-/// them. Layers that the next slice needs too are kept.
+/// A slice at any place along its axis: the layers before and after it, on a cubic field the three
+/// nearest, and how far it is between them. Layers that the next slice needs too are kept.
 class SliceSamples {
   public:
     SliceSamples(Field field, const SlicePlane& plane);
@@ -37,11 +37,12 @@ class SliceSamples {
     double fraction() const { return fraction_; }
     const Field& field() const { return field_; }
 
-    /// Row v of the layer before (0) or after (1) the slice; both may be taken from -1 to the
-    /// number of samples: the ring is background.
+    /// Row v of a layer: 0 is the last one at or before the slice, 1 the one after it (where
+    /// fraction() > 0). On a cubic field also the third nearest, -1 or 2. Both row and column may
+    /// be taken from -2 to the number of samples plus 1: the ring is background.
     const float* row(int layer, int v) const {
-        return layers_[static_cast<std::size_t>(layer)].values.data() +
-               static_cast<std::ptrdiff_t>(v + 1) * (size_[0] + 2) + 1;
+        return layer_numbered(before_ + layer).values.data() +
+               static_cast<std::ptrdiff_t>(v + ring) * (size_[0] + 2 * ring) + ring;
     }
     /// The data between the two layers, interpolated linearly, into width() values; beyond the
     /// first and last layer those go on. `v` from 0.
@@ -50,13 +51,20 @@ class SliceSamples {
     bool in_data() const;
 
   private:
-    void load(Layer& layer, int number) const;
+    static constexpr int ring = 2;
+
+    /// Any three in succession have places of their own.
+    std::size_t place_of(int number) const { return static_cast<std::size_t>(number + 3) % 3; }
+    const Layer& layer_numbered(int number) const { return layers_[place_of(number)]; }
+    void forget_layers();
+    void load(int number);
 
     Field field_;
     SlicePlane plane_;
     std::array<int, 2> size_;
     double position_ = 0, fraction_ = 0;
-    std::array<Layer, 2> layers_;
+    int before_ = 0;  // the last layer at or before the slice
+    std::array<Layer, 3> layers_;
 };
 
 /// Grey levels [data units] that are shown black and white.

@@ -48,6 +48,24 @@ TEST(LocalTetrahedra, contain_the_point_and_are_a_24th_of_a_voxel) {
     }
 }
 
+/// Checks that the polygons are convex, with corners where the field that is felt has the isovalue.
+void expect_on_isosurface(const support::TestField& test, const LocalTetrahedron& local,
+                          double within) {
+    for (const std::vector<Vec3>& polygon : local.patch) {
+        const std::size_t n = polygon.size();
+        ASSERT_TRUE(n == 3 || n == 4);
+        Vec3 first = Vec3::Zero();
+        for (std::size_t c = 0; c < n; ++c) {
+            EXPECT_NEAR(value_at(test.field, polygon[c]), test.isovalue,
+                        within * test.field.range());
+            const Vec3 turn = (polygon[(c + 1) % n] - polygon[c])
+                                  .cross(polygon[(c + 2) % n] - polygon[(c + 1) % n]);
+            if (c == 0) first = turn;
+            EXPECT_GE(turn.dot(first), -1e-6 * first.squaredNorm() - 1e-12);
+        }
+    }
+}
+
 TEST(LocalTetrahedra, patches_lie_on_the_isosurface_and_are_convex) {
     for (const support::TestField& test : {support::oblique_field(), support::noise_field()}) {
         Random random(2);
@@ -56,23 +74,29 @@ TEST(LocalTetrahedra, patches_lie_on_the_isosurface_and_are_convex) {
             const LatticePoint point = locate(random.point(1, 16));
             for (const LocalTetrahedron& t : local_tetrahedra(test.field, point, test.isovalue)) {
                 if (t.patch.empty()) continue;
-                ASSERT_TRUE(t.patch.size() == 3 || t.patch.size() == 4);
-                (t.patch.size() == 3 ? triangles : quads)++;
-                const std::size_t n = t.patch.size();
-                Vec3 first = Vec3::Zero();
-                for (std::size_t c = 0; c < n; ++c) {
-                    EXPECT_NEAR(value_at(test.field, t.patch[c]), test.isovalue,
-                                1e-9 * test.field.range());
-                    const Vec3 turn = (t.patch[(c + 1) % n] - t.patch[c])
-                                          .cross(t.patch[(c + 2) % n] - t.patch[(c + 1) % n]);
-                    if (c == 0) first = turn;
-                    EXPECT_GE(turn.dot(first), -1e-12);
-                }
+                ASSERT_EQ(t.patch.size(), 1U);
+                (t.patch[0].size() == 3 ? triangles : quads)++;
+                expect_on_isosurface(test, t, 1e-9);
             }
         }
         EXPECT_GT(triangles, 10);
         EXPECT_GT(quads, 10);
     }
+}
+
+TEST(LocalTetrahedra, patches_of_a_smooth_field_are_curved) {
+    support::TestField test = support::oblique_field();
+    test.field.set_interpolation(Interpolation::cubic);
+    Random random(2);
+    int curved = 0;
+    for (int i = 0; i < 300; ++i) {
+        const LatticePoint point = locate(Interpolation::cubic, random.point(1, 16));
+        for (const LocalTetrahedron& t : local_tetrahedra(test.field, point, test.isovalue)) {
+            expect_on_isosurface(test, t, 1e-4);
+            curved += t.patch.size() > 1;
+        }
+    }
+    EXPECT_GT(curved, 20);
 }
 
 TEST(LocalTetrahedra, planes_are_those_of_the_field_at_a_point_on_the_surface) {
