@@ -19,14 +19,14 @@
 namespace palpate::filters {
 namespace {
 
-/// A hair less than half a level, so that no sample of a mask comes to lie on its surface.
-constexpr double half_level = 127.0 / 256;
+/// A hair less than half a level: samples on both sides of a mask's surface must not meet in it.
+constexpr double half_level = 511.0 / 1024, half_level_of_mask = 127.0 / 256;
 /// The coarsest steps that are chosen. A mask does not tell how far it is straight.
 constexpr int usual_coarsest = 16, mask_step = 4;
 /// A step is chosen if it bends half of the surfaces by no more than this [levels].
 constexpr double chosen_bend = 0.5, enough = 0.5;
 /// From this bend on a coarse step moves a sample less, from twice of it on not at all [levels].
-constexpr double most_bend = 0.5, most_bend_of_mask = 0.05;
+constexpr double most_bend = 0.55, most_bend_of_mask = 0.05;
 /// Samples in a task: some 50 us of work.
 constexpr int grain = 16384;
 
@@ -49,11 +49,12 @@ int coarsest_for(const Volume& volume, double level) {
     return 1;
 }
 
-int rounds_of(int step, int finest) {
+/// Coarse rounds take long waves out of the rounding, and a few too many flatten what is curved.
+int rounds_of(int step, int finest, bool mask) {
     if (step == 1) return finest;
     if (step == 2) return 20;
-    if (step == 4) return 10;
-    return step == 8 ? 4 : 2;
+    if (step == 4) return mask ? 10 : 6;
+    return 2;
 }
 
 std::vector<int> steps_from(int coarsest) {
@@ -114,9 +115,11 @@ Volume dequantized(const Volume& volume, const DequantizeOptions& options) {
     }
     const std::vector<int> steps =
         steps_from(options.coarsest ? *options.coarsest : coarsest_for(volume, *level));
-    const double bend = is_mask(volume, *level) ? most_bend_of_mask : most_bend;
+    const bool mask = is_mask(volume, *level);
+    const double bend = mask ? most_bend_of_mask : most_bend;
+    const double half = mask ? half_level_of_mask : half_level;
     double all = 0, done = 0;  // slices
-    for (const int step : steps) all += rounds_of(step, options.rounds);
+    for (const int step : steps) all += rounds_of(step, options.rounds, mask);
     all *= volume.geometry().size[2];
 
     std::vector<float> state = float_samples(volume);
@@ -126,9 +129,9 @@ Volume dequantized(const Volume& volume, const DequantizeOptions& options) {
     for (const int step : steps) {
         const RoundSettings settings{
             .step = step,
-            .half = float(half_level * *level),
+            .half = float(half * *level),
             .straight = step == 1 ? std::numeric_limits<float>::infinity() : float(bend * *level)};
-        for (int round = 0; round < rounds_of(step, options.rounds); ++round) {
+        for (int round = 0; round < rounds_of(step, options.rounds, mask); ++round) {
             run_round(volume, state, settings, rows, [&] {
                 done += 1;
                 if (options.progress) options.progress(done / all);
