@@ -46,7 +46,7 @@ class Section {
     /// The nearest point of the contour, roughly, not farther than `most`.
     Point onto_contour(Point at, double most) const {
         const Point from = at;
-        for (int i = 0; i < 2; ++i) {
+        for (int i = 0; i < 4; ++i) {
             const auto [value, gradient] = piece_.at(folded(at));
             const Point slope = unfold(tetrahedron_, gradient).head<2>();
             if (!(slope.squaredNorm() > 0)) break;
@@ -71,31 +71,33 @@ class SmoothCell {
 
     void cut() {
         const double part = 0.5 - std::abs(w_);
-        CellCut cut = cut_of_cell({}, {}, part);
-        for (Corner& corner : cut) {
-            const Vec3 at(corner.u - 0.5, corner.v - 0.5, w_);
-            const Tetrahedron t = tetrahedron_at(at);
-            corner.depth = cubic::piece_of(t, depths_)(fold(t, at));
-        }
-        for (const auto& [a, b, c] : triangles_at(part)) {
-            march(
-                cut[a], cut[b], cut[c],
-                [this](const Corner& lone, const Corner& p, const Corner& q) { draw(lone, p, q); });
-        }
+        const CellCut cut = cut_of_cell({}, {}, part);
+        for (const auto& [a, b, c] : triangles_at(part)) cut_triangle({cut[a], cut[b], cut[c]});
     }
 
   private:
     static Point place(const Corner& corner) { return {corner.u - 0.5, corner.v - 0.5}; }
 
-    void draw(const Corner& lone, const Corner& p, const Corner& q) {
-        const Point middle = (place(lone) + place(p) + place(q)) / 3;
+    /// In four parts, so that less is hidden between corners.
+    void cut_triangle(const std::array<Corner, 3>& corners) {
+        const Point middle = (place(corners[0]) + place(corners[1]) + place(corners[2])) / 3;
         const Section section(tetrahedron_at({middle[0], middle[1], w_}), depths_, w_);
-        const bool in = lone.depth > 0;
-        const auto root = [&](const Corner& end) {
-            return in ? section.root(place(lone), place(end))
-                      : section.root(place(end), place(lone));
+        std::array<Corner, 3> c = corners, half;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Corner &a = c[i], &b = c[(i + 1) % 3];
+            half[i] = {0.5 * (a.u + b.u), 0.5 * (a.v + b.v), 0};
+        }
+        for (auto* set : {&c, &half}) {
+            for (Corner& corner : *set) corner.depth = section.depth(place(corner));
+        }
+        const auto draw = [&](const Corner& lone, const Corner& p, const Corner& q) {
+            bend(section, root(section, lone, p), root(section, lone, q), halvings);
         };
-        bend(section, root(p), root(q), halvings);
+        march(half[0], half[1], half[2], draw);
+        for (std::size_t i = 0; i < 3; ++i) march(c[i], half[i], half[(i + 2) % 3], draw);
+    }
+    static Point root(const Section& section, const Corner& a, const Corner& b) {
+        return a.depth > 0 ? section.root(place(a), place(b)) : section.root(place(b), place(a));
     }
     void bend(const Section& section, const Point& a, const Point& b, int more) {
         const Point straight_middle = 0.5 * (a + b);
