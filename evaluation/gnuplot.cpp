@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <array>
 
+#include "evaluation/contestants.hpp"
 #include "evaluation/figure.hpp"
 #include "io/plot.hpp"
-#include "palpate/baselines/methods.hpp"
 #include "palpate/io/error.hpp"
 
 namespace palpate::evaluation {
@@ -334,9 +334,8 @@ Look look_of(std::size_t number) {
 }
 
 Look look_of_method(std::string_view method) {
-    const auto all = baselines::methods();
-    const auto found = std::find_if(all.begin(), all.end(),
-                                    [&](const auto& entry) { return method == entry.name; });
+    const auto all = contestants();
+    const auto found = std::ranges::find(all, method, &Contestant::name);
     return look_of(static_cast<std::size_t>(found - all.begin()));
 }
 

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <functional>
 
+#include "evaluation/contestants.hpp"
 #include "evaluation/experiment.hpp"
 #include "evaluation/ring.hpp"
-#include "palpate/baselines/methods.hpp"
 
 namespace palpate::evaluation {
 namespace {
@@ -26,9 +26,9 @@ bool is_noted(int turn, int turns, bool shown) {
 }
 
 struct Round {
-    const Subject& subject;
+    Subject subject;
     const Ring& ring;
-    const baselines::NamedMethod& method;
+    const Contestant& contestant;
     double speed, rate;
     int turns;
     bool shown;
@@ -43,7 +43,7 @@ void go_round(const Round& round, Table& table) {
     // side.
     const Vec3 centre = physical_centre(field.geometry());
     place(proxy, field, centre + 2 * (round.ring.at(0) - centre), round.subject.isovalue);
-    round.method.method(proxy, field, round.ring.at(0), {}, {});
+    round.contestant.method(proxy, field, round.ring.at(0), {}, {});
     const double step = round.speed / round.rate;
     double arc = 0, worst = 0;
     for (int turn = 1; turn <= round.turns; ++turn) {
@@ -52,7 +52,7 @@ void go_round(const Round& round, Table& table) {
         std::int64_t constrained = 0, ticks = 0;
         for (; arc < turn * round.ring.length(); arc += step, ++ticks) {
             const ProxyUpdate update =
-                round.method.method(proxy, field, round.ring.at(arc), {}, {});
+                round.contestant.method(proxy, field, round.ring.at(arc), {}, {});
             density = update.density;
             constrained += update.mode == Mode::constrained;
             // In contact it has to be on the isosurface, and free it has to be outside.
@@ -61,7 +61,7 @@ void go_round(const Round& round, Table& table) {
         }
         if (!is_noted(turn, round.turns, round.shown)) continue;
         table.add({{"volume", round.subject.name},
-                   {"method", round.method.name},
+                   {"method", round.contestant.name},
                    {"speed_mm_s", round.speed},
                    {"rate_hz", round.rate},
                    {"turn", double(turn)},
@@ -106,9 +106,9 @@ Panel density_panel(const Table& table, const Plan& plan) {
     const Table shown = table.where("volume", volume)
                             .where("speed_mm_s", plan.shown_speed)
                             .where("rate_hz", plan.shown_rate);
-    for (const auto& method : baselines::methods()) {
-        panel.add(Draw::line_points, method.name, look_of_method(method.name),
-                  shown.where("method", method.name).rows_of({"turn", "density"}));
+    for (const auto& [name, method, interpolation] : contestants()) {
+        panel.add(Draw::line_points, name, look_of_method(name),
+                  shown.where("method", name).rows_of({"turn", "density"}));
     }
     panel.add_level(shown.number(0, "isovalue"), "isovalue",
                     {.colour = colours::grey, .dash = Dash::dashed});
@@ -125,13 +125,13 @@ Panel rate_panel(const Table& table, const Plan& plan) {
                .low = 1e-17,
                .high = 10,
                .format = "10^{%L}"};
-    for (const auto& method : baselines::methods()) {
+    for (const auto& [name, method, interpolation] : contestants()) {
         Rows rows;
         for (const double rate : plan.rates) {
-            const double worst = worst_of(table.where("rate_hz", rate), method.name);
+            const double worst = worst_of(table.where("rate_hz", rate), name);
             rows.push_back({rate, std::max(worst, 1e-17)});  // a logarithm has no zero
         }
-        panel.add(Draw::line_points, method.name, look_of_method(method.name), rows);
+        panel.add(Draw::line_points, name, look_of_method(name), rows);
     }
     panel.add_level(granted, "tolerance (G2)", {.colour = colours::grey, .dash = Dash::dotted});
     return panel;
@@ -149,7 +149,7 @@ Figure figure_of(const Table& table, const Plan& plan) {
 
 std::vector<Claim> claims_of(const Table& table, bool own_volumes) {
     std::vector<Claim> claims;
-    for (const char* method : {"exact", "paper"}) {
+    for (const char* method : {"exact", "paper", "smooth"}) {
         const double worst = worst_of(table, method);
         claims.push_back({fmt::format("{} stays on the isosurface to {:g} of the data's range, at "
                                       "every rate and speed",
@@ -179,11 +179,12 @@ Result drift(const Options& options) {
         const Ring ring = ring_round(subject, 2 * subject.field.geometry().spacing.minCoeff());
         for (const double speed : plan.speeds) {
             for (const double rate : plan.rates) {
-                for (const auto& method : baselines::methods()) {
+                for (const Contestant& contestant : contestants()) {
                     const auto alive = [&] { options.progress(done / cases); };
-                    go_round({subject, ring, method, speed, rate, plan.turns,
-                              speed == plan.shown_speed && rate == plan.shown_rate, alive},
-                             result.table);
+                    go_round(
+                        {as_felt_by(contestant, subject), ring, contestant, speed, rate, plan.turns,
+                         speed == plan.shown_speed && rate == plan.shown_rate, alive},
+                        result.table);
                 }
                 done += 1;
             }
@@ -195,13 +196,16 @@ Result drift(const Options& options) {
         "A hand goes round each body {} times, 2 voxels below its surface, with penetrability off; "
         "the density at the SCP says how far the proxy has left the isosurface. Largest deviation "
         "over all {} volumes, {} hand speeds and {} update rates, as a part of the data's range: "
-        "exact {:.1e}, paper {:.1e}, gradient {:.2g}, gradient-improved {:.2g}. The exact method "
-        "and the paper's move inside linear pieces, so what is left is rounding, however far the "
-        "hand moves in a tick. The gradient method follows a plane off the surface; putting the "
+        "exact {:.1e}, paper {:.1e}, smooth {:.1e}, gradient {:.2g}, gradient-improved {:.2g}. The "
+        "exact method and the paper's move inside linear pieces, so what is left is rounding, "
+        "however far the hand moves in a tick; on the smooth field (exact method, its own "
+        "isosurface) it is the accuracy of the roots. The gradient method follows a plane off the "
+        "surface; putting the "
         "SCP back along the gradient helps where the gradient leads back to the same surface.",
         plan.turns, subjects.size(), plan.speeds.size(), plan.rates.size(),
         worst_of(result.table, "exact"), worst_of(result.table, "paper"),
-        worst_of(result.table, "gradient"), worst_of(result.table, "gradient-improved"));
+        worst_of(result.table, "smooth"), worst_of(result.table, "gradient"),
+        worst_of(result.table, "gradient-improved"));
     return result;
 }
 

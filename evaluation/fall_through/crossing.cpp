@@ -54,8 +54,7 @@ struct Lines {
         const RayHit next =
             cast_ray(field, subject.isovalue, at(behind), at(behind + 2 * end_behind_wall * voxel));
         crossing.end = behind + 0.5 * (next.point - at(behind)).norm();
-        const Vec3 end = index_from_physical(geometry, at(crossing.end));
-        if (out.hit && !outside.holds(locate(end))) return crossing;
+        if (out.hit && !outside.holds(at(crossing.end))) return crossing;
         if (target == Target::behind_walls) return {};
         crossing.end = std::min(end_in_body * voxel, 0.5 * crossing.wall);
         crossing.wall = std::numeric_limits<double>::infinity();
@@ -107,7 +106,9 @@ Passage cross(const Subject& subject, const Outside& outside, const Crossing& cr
         passage.felt |= update.mode == Mode::constrained;
         ++passage.ticks;
     };
-    const auto inside = [&] { return excess > counts_as_inside || !outside.holds(proxy.scp); };
+    const auto inside = [&] {
+        return excess > counts_as_inside || !outside.holds(proxy.scp_physical);
+    };
     const double end = std::min(crossing.end, crossing.wall + most_steps_behind * step);
     const double solid_end = std::min(crossing.wall, end);
     for (int k = 1; (k - phase) * step < end; ++k) {

@@ -6,11 +6,11 @@
 #include <numeric>
 #include <thread>
 
+#include "evaluation/contestants.hpp"
 #include "evaluation/experiment.hpp"
 #include "evaluation/fall_through/crossing.hpp"
 #include "evaluation/fall_through/figure.hpp"
 #include "evaluation/fall_through/shell.hpp"
-#include "palpate/baselines/methods.hpp"
 #include "scenes/random.hpp"
 
 namespace palpate::evaluation {
@@ -40,6 +40,11 @@ struct Row {
     std::string name;  // as the table has it
     double thickness;  // [voxel]; NaN for a volume of the user
     std::vector<Wall> walls;
+    std::vector<Wall> smooth;  // as thick, on the smooth field; none for a volume of the user
+
+    const std::vector<Wall>& walls_for(const Contestant& contestant) const {
+        return contestant.interpolation == Interpolation::cubic ? smooth : walls;
+    }
 };
 
 /// The median path in the solid [voxel]; NaN where most crossings end in it.
@@ -59,16 +64,20 @@ std::vector<Row> rows_of(const Options& options, const Plan& plan) {
                           [&](const Subject& other) { return other.name == subject.name; });
         const std::string level =
             namesakes > 1 ? fmt::format(" at {:g}", subject.isovalue) : std::string();
-        Row row{subject.name + level, std::nan(""), {}};
+        Row row{subject.name + level, std::nan(""), {}, {}};
         row.walls.emplace_back(subject, Target::anywhere, plan.crossings, options);
         rows.push_back(std::move(row));
     }
     if (!rows.empty()) return rows;
     for (const double thickness : plan.thicknesses) {
-        Row row{"box and ball", thickness, {}};
+        Row row{"box and ball", thickness, {}, {}};
         for (const Enclosed enclosed : {Enclosed::box, Enclosed::ball}) {
-            row.walls.emplace_back(closed_shell(enclosed, thickness), Target::behind_walls,
-                                   plan.crossings / 2, options);
+            const auto add = [&](std::vector<Wall>& walls, Interpolation interpolation) {
+                walls.emplace_back(closed_shell(enclosed, thickness, interpolation),
+                                   Target::behind_walls, plan.crossings / 2, options);
+            };
+            add(row.walls, Interpolation::linear);
+            add(row.smooth, Interpolation::cubic);
         }
         rows.push_back(std::move(row));
     }
@@ -78,7 +87,7 @@ std::vector<Row> rows_of(const Options& options, const Plan& plan) {
 /// One of the table's rows: all lines through the walls of a row, at one speed and rate.
 struct Case {
     const Row& row;
-    const baselines::NamedMethod& method;
+    const Contestant& contestant;
     double speed, rate;
 };
 
@@ -127,7 +136,7 @@ Shares go_through(const Wall& wall, const Case& c, scenes::Random& random,
                 running.emplace_back([&, t] {
                     for (std::size_t i = first + t; i < last; i += threads) {
                         parts[t].add(Shares(cross(wall.subject, wall.outside, wall.crossings[i],
-                                                  c.method.method, step, phases[i])));
+                                                  c.contestant.method, step, phases[i])));
                     }
                 });
             }
@@ -140,7 +149,8 @@ Shares go_through(const Wall& wall, const Case& c, scenes::Random& random,
 Shares go_through(const Case& c, std::uint64_t seed, const std::function<void()>& alive) {
     scenes::Random random(seed);
     Shares shares;
-    for (const Wall& wall : c.row.walls) shares.add(go_through(wall, c, random, alive));
+    for (const Wall& wall : c.row.walls_for(c.contestant))
+        shares.add(go_through(wall, c, random, alive));
     return shares;
 }
 
@@ -155,24 +165,26 @@ Table measured(const std::vector<Row>& rows, const Plan& plan, const Options& op
     for (const double speed : plan.speeds) {
         for (const double rate : plan.rates) total += effort(plan, speed, rate);
     }
-    total *= double(rows.size() * baselines::methods().size());
+    total *= double(rows.size() * contestants().size());
     std::uint64_t cell = 0;
     for (const Row& row : rows) {
-        double path = 0;
-        for (const Wall& wall : row.walls) path += median_wall(wall) / double(row.walls.size());
         for (const double speed : plan.speeds) {
             for (const double rate : plan.rates) {
                 ++cell;  // every method meets the same phases
-                for (const auto& method : baselines::methods()) {
+                for (const Contestant& contestant : contestants()) {
+                    const std::vector<Wall>& walls = row.walls_for(contestant);
+                    if (walls.empty()) continue;
+                    double path = 0;
+                    for (const Wall& wall : walls) path += median_wall(wall) / double(walls.size());
                     const Shares shares =
-                        go_through({row, method, speed, rate}, options.seed + 1000 * cell,
+                        go_through({row, contestant, speed, rate}, options.seed + 1000 * cell,
                                    [&] { options.progress(std::min(1.0, done / total)); });
                     done += effort(plan, speed, rate);
                     const double crossings = shares.crossings;
                     table.add({{"wall", row.name},
                                {"thickness_voxel", row.thickness},
                                {"median_path_in_wall_voxel", path},
-                               {"method", method.name},
+                               {"method", contestant.name},
                                {"speed_mm_s", speed},
                                {"rate_hz", rate},
                                {"step_mm", speed / rate},
@@ -203,17 +215,16 @@ double least(const Table& table, const std::string& method, const std::string& c
 bool are_closed(const std::vector<Row>& rows) {
     return std::all_of(rows.begin(), rows.end(), [](const Row& row) {
         return std::none_of(row.walls.begin(), row.walls.end(), [](const Wall& wall) {
-            const Geometry& geometry = wall.subject.field.geometry();
-            const Vec3 centre = index_from_physical(geometry, physical_centre(geometry));
-            return wall.outside.holds(locate(centre));
+            return wall.outside.holds(physical_centre(wall.subject.field.geometry()));
         });
     });
 }
 
 std::vector<Claim> claims_of(const Table& table, const std::vector<Row>& rows, bool own_walls) {
     std::vector<Claim> claims;
-    for (const char* method : {"exact", "paper"}) {
+    for (const char* method : {"exact", "paper", "smooth"}) {
         const auto counts = table.where("method", method).numbers("crossings");
+        if (counts.empty()) continue;
         const double crossings = std::accumulate(counts.begin(), counts.end(), 0.0);
         const double inside = most(table, method, "inside_share");
         claims.push_back(
@@ -239,10 +250,10 @@ std::vector<Claim> claims_of(const Table& table, const std::vector<Row>& rows, b
 std::string paragraph_of(const Table& table, const Plan& plan, bool own_walls) {
     const auto every = [&](const char* column) {
         std::string text;
-        for (const auto& method : baselines::methods()) {
-            text += fmt::format("{}{} {:.3g} to {:.3g} %", text.empty() ? "" : ", ", method.name,
-                                100 * least(table, method.name, column),
-                                100 * most(table, method.name, column));
+        for (const std::string& method : table.distinct("method")) {
+            text +=
+                fmt::format("{}{} {:.3g} to {:.3g} %", text.empty() ? "" : ", ", method,
+                            100 * least(table, method, column), 100 * most(table, method, column));
         }
         return text;
     };
@@ -262,7 +273,9 @@ std::string paragraph_of(const Table& table, const Plan& plan, bool own_walls) {
             ? "A hand goes straight through closed shells, a flat one (box) and a stepped one "
               "(ball of voxels), on random lines, to 3 voxels or 50 ticks behind the wall. "
               "The shells are layers of full samples, and the level sets their thickness on "
-              "each flat face; a ramp sampled thinner than a voxel would have real holes."
+              "each flat face; a ramp sampled thinner than a voxel would have real holes. "
+              "\"smooth\" "
+              "is the exact method on the smooth field, on walls as thick there."
             : "A hand goes straight into the user's volumes on random lines, to behind the "
               "wall where it cannot be reached otherwise, else into the solid.",
         plan.speeds.front(), plan.speeds.back(), plan.rates.front(), plan.rates.back(),

@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "palpate/baselines/methods.hpp"
-
 namespace palpate::evaluation {
 namespace {
 
@@ -83,12 +81,16 @@ Figure map(const Table& table, const char* column, const std::string& suffix,
     figure.suffix = suffix;
     figure.caption = caption;
     figure.width = 1500;
-    figure.height = 330 + 2 * std::max(200, 42 * static_cast<int>(axes.names.size()));
+    const std::vector<std::string> methods = table.distinct("method");
+    const std::size_t rows = (methods.size() + 1) / 2;
+    figure.height =
+        330 + static_cast<int>(rows) * std::max(200, 42 * static_cast<int>(axes.names.size()));
     figure.columns = 2;
-    for (const auto& method : baselines::methods()) {
-        Panel panel = panel_of(table.where("method", method.name), axes, column);
-        const bool is_left = figure.panels.size() % 2 == 0, is_top = figure.panels.size() < 2;
-        panel.title = method.name;
+    for (const std::string& method : methods) {
+        Panel panel = panel_of(table.where("method", method), axes, column);
+        const bool is_left = figure.panels.size() % 2 == 0;
+        const bool is_top = figure.panels.size() + 2 < methods.size();
+        panel.title = method;
         panel.scale = ColourScale{what + " [% of crossings]", 0, 100, false};
         panel.x = axis_named(axes.step_names);
         panel.x.turned = 90;

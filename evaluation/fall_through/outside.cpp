@@ -4,6 +4,8 @@
 #include <array>
 #include <stdexcept>
 
+#include "palpate/density.hpp"
+
 namespace palpate::evaluation {
 namespace {
 
@@ -111,6 +113,20 @@ void Outside::flood(const std::function<void()>& alive) {
         }
         std::swap(front, next);
     }
+}
+
+bool Outside::holds(const Vec3& physical) const {
+    const Geometry& geometry = field_.geometry();
+    Vec3 at = physical;
+    if (field_.interpolation() == Interpolation::cubic) {
+        const double voxel = geometry.spacing.minCoeff();
+        for (int i = 0; i < 40; ++i) {
+            const Vec3 gradient = field_.sign() * gradient_at(field_, at);
+            if (!(gradient.norm() > 0)) break;
+            at -= 0.1 * voxel * gradient.normalized();
+        }
+    }
+    return holds(locate(index_from_physical(geometry, at)));
 }
 
 bool Outside::holds(const LatticePoint& point) const {

@@ -14,6 +14,11 @@ namespace palpate::evaluation {
 /// linear in each tetrahedron, so the free part of one is convex and holds its lowest corner, and
 /// two free corners are joined by a free edge. Connected corners of the lattice (samples, face and
 /// cell centres) are therefore connected free space. Takes a byte a voxel.
+///
+/// A smooth field's free space is not decided that way. For the smooth field of a closed shell,
+/// whose density falls all the way from the middle of the wall to either side, a point goes down
+/// along the gradient until it is clear of the wall, where the linear field of the same samples
+/// tells.
 class Outside {
   public:
     /// `alive` is called now and then and may throw, for a large volume takes some time. Throws
@@ -22,6 +27,8 @@ class Outside {
 
     /// Whether a free point belongs to it. (A point in the solid: whether the tetrahedron's lowest
     /// corner does.)
+    bool holds(const Vec3& physical) const;
+    /// The same for a point of the linear lattice.
     bool holds(const LatticePoint& point) const;
 
   private:

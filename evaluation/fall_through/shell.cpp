@@ -76,20 +76,35 @@ void fill_layer_inside(Voxels& voxels) {
     });
 }
 
+/// A smooth field across a flat wall of so many full layers, `x` [voxel] from its middle: a
+/// quadratic spline.
+double across_layers(int layers, double x) {
+    double sum = 0;
+    for (int i = 0; i < layers; ++i) {
+        const double off = std::abs(x - (i - 0.5 * (layers - 1)));
+        const double tail = std::max(0.0, 1.5 - off);
+        sum += off <= 0.5 ? 0.75 - off * off : 0.5 * tail * tail;
+    }
+    return sum;
+}
+
 }  // namespace
 
-Subject closed_shell(Enclosed enclosed, double thickness) {
+Subject closed_shell(Enclosed enclosed, double thickness, Interpolation interpolation) {
     if (!(thickness > 0 && thickness <= 4)) {
         throw std::invalid_argument(
             fmt::format("a shell of {} voxels: it can be above 0 and up to 4 thick", thickness));
     }
-    const int layers = std::max(1, static_cast<int>(std::lround(thickness)));
+    const bool is_smooth = interpolation == Interpolation::cubic;
+    const int layers = std::max(is_smooth ? 2 : 1, static_cast<int>(std::lround(thickness)));
     Voxels voxels{enclosed, std::vector<std::uint8_t>(samples * samples * samples, 0)};
     fill_surface(voxels);
     for (int i = 1; i < layers; ++i) fill_layer_inside(voxels);
     Volume volume(scenes::centred(Index3::Constant(samples)), std::move(voxels.sample));
-    return {enclosed == Enclosed::box ? "box" : "ball", Field(std::move(volume)),
-            full * (1 - 0.5 * (thickness - layers + 1))};
+    const double level =
+        is_smooth ? across_layers(layers, 0.5 * thickness) : 1 - 0.5 * (thickness - layers + 1);
+    return {enclosed == Enclosed::box ? "box" : "ball",
+            Field(std::move(volume), Solid::above, std::nullopt, interpolation), full * level};
 }
 
 }  // namespace palpate::evaluation

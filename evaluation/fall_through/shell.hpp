@@ -11,9 +11,10 @@ namespace palpate::evaluation {
 enum class Enclosed : std::uint8_t { box, ball };
 
 /// A wall round a hollow body, `thickness` [voxel] on every flat face and thicker at edges and
-/// steps; spacing 1 mm. Every face of the body has its four samples full, so the field is full all
-/// over the face, and the wall is closed at any level below that; the level sets how thick it is:
-/// t = (layers - 1) + 2 (1 - level). Throws std::invalid_argument unless 0 < thickness <= 4.
-Subject closed_shell(Enclosed enclosed, double thickness);
+/// steps; spacing 1 mm. Every face of the body has its four samples full, so a linear field is full
+/// all over the face, and the wall is closed at any level below that; the level sets how thick it
+/// is: t = (layers - 1) + 2 (1 - level). A smooth field needs two layers for that, between which it
+/// is full. Throws std::invalid_argument unless 0 < thickness <= 4.
+Subject closed_shell(Enclosed enclosed, double thickness, Interpolation interpolation);
 
 }  // namespace palpate::evaluation

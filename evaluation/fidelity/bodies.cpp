@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "evaluation/ring.hpp"
+#include "palpate/filters/dequantize.hpp"
 #include "palpate/scenes/volumes.hpp"
 
 namespace palpate::evaluation {
@@ -24,8 +25,10 @@ SampleType stored(Samples samples) {
 }
 
 Subject with_samples(Subject subject, Samples samples) {
-    if (samples != Samples::smoothed) return subject;
-    subject.field = Field(smoothed(subject.field.volume()));
+    if (samples == Samples::smoothed) subject.field = Field(smoothed(subject.field.volume()));
+    if (samples == Samples::dequantized) {
+        subject.field = Field(filters::dequantized(subject.field.volume()));
+    }
     return subject;
 }
 
@@ -71,6 +74,8 @@ const char* name_of(Samples samples) {
             return "uint8";
         case Samples::smoothed:
             return "uint8 smoothed";
+        case Samples::dequantized:
+            return "uint8 dequantized";
         case Samples::float32:
             break;
     }

@@ -8,9 +8,9 @@
 
 namespace palpate::evaluation {
 
-/// What a body's samples are: as they come in 8 bits, 8 bits smoothed in one pass, or not rounded
-/// at all.
-enum class Samples : std::uint8_t { uint8, smoothed, float32 };
+/// What a body's samples are: as they come in 8 bits, 8 bits smoothed in one pass or dequantized,
+/// or not rounded at all.
+enum class Samples : std::uint8_t { uint8, smoothed, dequantized, float32 };
 const char* name_of(Samples samples);
 
 /// A body and the trajectory of a hand.

@@ -10,7 +10,6 @@
 #include "evaluation/fidelity/bodies.hpp"
 #include "evaluation/fidelity/figure.hpp"
 #include "evaluation/fidelity/trajectory.hpp"
-#include "palpate/baselines/methods.hpp"
 
 namespace palpate::evaluation {
 namespace {
@@ -39,7 +38,8 @@ std::vector<MakeBody> bodies_of(const Options& options) {
     using Maker = Body (*)(int, Samples);
     const auto add = [&](Maker maker, std::vector<int> grids) {
         for (const int grid : grids) {
-            for (const Samples samples : {Samples::uint8, Samples::smoothed, Samples::float32}) {
+            for (const Samples samples :
+                 {Samples::uint8, Samples::smoothed, Samples::dequantized, Samples::float32}) {
                 bodies.emplace_back([=] { return maker(grid, samples); });
             }
         }
@@ -161,12 +161,13 @@ std::string comparison(const Table& table, const std::vector<Incumbent>& grids,
 
 Claim stays_on_surface(const Table& table) {
     double worst = 0;
-    for (const char* method : {"exact", "paper"}) {
+    for (const char* method : {"exact", "paper", "smooth"}) {
         const Table rows = table.where("method", method);
         worst = std::max(worst, largest(rows.numbers("worst_deviation_of_range")));
     }
     return {
-        fmt::format("exact and paper stay on the sampled isosurface to {:g} of the data's range",
+        fmt::format("exact, paper and smooth stay on the sampled isosurface to {:g} of the data's "
+                    "range",
                     granted),
         worst <= granted, fmt::format("largest deviation {:.2g}", worst)};
 }
@@ -192,7 +193,35 @@ Claim converges(const Table& table, const std::string& body) {
             least >= 1.7, fmt::format("least factor {:.3g} over {} doublings", least, doublings)};
 }
 
-std::vector<Claim> claims_of(const Table& table, bool own_bodies) {
+/// Of the smooth field on the ball, felt along the circle: the largest of a number over the grids
+/// from 128 on.
+double largest_of_smooth(const Table& table, const char* samples, const char* column) {
+    double worst = 0;
+    const Table rows = ball_rows(table, samples, "circle", "smooth");
+    for (const auto& row : rows.rows_of({"grid", column})) {
+        if (row[0] >= 128) worst = std::max(worst, row[1]);
+    }
+    return worst;
+}
+
+std::vector<Claim> claims_of_smooth(const Table& table, int steps) {
+    const auto claim = [&](const std::string& what, const char* samples, const char* column,
+                           double most) {
+        const double worst = largest_of_smooth(table, samples, column);
+        return Claim{fmt::format("ball, {}, smooth field: {} is at most {:.3g} degrees from grid "
+                                 "128 on",
+                                 samples, what, most),
+                     worst <= most, fmt::format("largest {:.2g}", worst)};
+    };
+    return {
+        claim("the mean angle", "float32", "off_ideal_mean_deg", 0.005),
+        claim("the mean angle", "uint8 dequantized", "off_ideal_mean_deg", 0.03),
+        claim("the 99th percentile of the angle", "uint8 dequantized", "off_ideal_p99_deg", 0.1),
+        claim("the turn of the force in a tick, p99 (the ball's own and 10 %),", "float32",
+              "turn_p99_deg", 1.1 * 360 / steps)};
+}
+
+std::vector<Claim> claims_of(const Table& table, bool own_bodies, int steps) {
     std::vector<Claim> claims{stays_on_surface(table)};
     if (!own_bodies) return claims;
     claims.push_back(converges(table, "ball"));
@@ -209,6 +238,7 @@ std::vector<Claim> claims_of(const Table& table, bool own_bodies) {
         {"8-bit ball, smoothed once: exact is below the incumbent in mean and p99 angle "
          "on every grid",
          all_below("uint8 smoothed", 512), comparison(table, met, "uint8 smoothed")});
+    for (Claim& claim : claims_of_smooth(table, steps)) claims.push_back(std::move(claim));
     return claims;
 }
 
@@ -238,10 +268,11 @@ std::string against_incumbent(const Table& table) {
     return text;
 }
 
-/// "0.43 at grid 64, 0.21 at grid 128": exact where nothing is rounded.
-std::string facets_of(const Table& table) {
+/// "0.43 at grid 64, 0.21 at grid 128": the mean angles of a method.
+std::string means_of(const Table& table, const char* method, const char* samples) {
     std::string text;
-    for (const auto& row : ball_rows(table, "float32").rows_of({"off_ideal_mean_deg", "grid"})) {
+    for (const auto& row :
+         ball_rows(table, samples, "circle", method).rows_of({"off_ideal_mean_deg", "grid"})) {
         text += fmt::format("{}{:.2g} at grid {:g}", text.empty() ? "" : ", ", row[0], row[1]);
     }
     return text;
@@ -258,7 +289,9 @@ std::string paragraph_of(const Table& table, int steps) {
         "a hand goes round it 0.03 below the surface on a tilted great circle in {} steps. Angle "
         "between the force and the direction that a perfect force would have, mean and p99 in "
         "degrees.{} How much of it is the linear pieces' shows where the samples are not rounded: "
-        "their facets leave {} on average. One pass of smoothing over the 8-bit "
+        "their facets leave {} on average. On the smooth field (\"smooth\") the mean angle is {}; "
+        "from 8-bit samples that were dequantized it is {}, from raw ones {}. One pass of "
+        "smoothing over the 8-bit "
         "samples brings exact to: grid {}; the incumbent's are without smoothing. The SCP is off "
         "the true "
         "sphere by {:.2g} voxels on average where nothing is rounded, and by {:.2g} in 8 bits; "
@@ -266,8 +299,9 @@ std::string paragraph_of(const Table& table, int steps) {
         "bits (grid {}). On torus and Marschner-Lobb ripples the force is compared with the true "
         "normal at the SCP; ripples near the Nyquist limit need more than their classic 41 "
         "samples.",
-        steps, against_incumbent(table), facets_of(table),
-        comparison(table, met, name_of(Samples::smoothed)),
+        steps, against_incumbent(table), means_of(table, "exact", "float32"),
+        means_of(table, "smooth", "float32"), means_of(table, "smooth", "uint8 dequantized"),
+        means_of(table, "smooth", "uint8"), comparison(table, met, name_of(Samples::smoothed)),
         number("surface_error_mean_voxel", grid, "float32"),
         number("surface_error_mean_voxel", grid, "uint8"), number("turn_max_deg", grid, "float32"),
         number("turn_max_deg", grid, "uint8"), grid);
@@ -276,11 +310,12 @@ std::string paragraph_of(const Table& table, int steps) {
 std::string paragraph_of_users(const Table& table) {
     std::string text =
         "A hand goes round each of the user's volumes, 0.03 of the shortest axis below the "
-        "surface. How much the force of the exact method turns from one tick to the next, p99 and "
-        "at most:";
+        "surface. How much the force of the exact method turns from one tick to the next on the "
+        "linear field (exact) and on the smooth one (smooth), p99 and at most:";
     for (std::size_t i = 0; i < table.rows().size(); ++i) {
-        if (table.text(i, "method") != "exact") continue;
-        text += fmt::format(" {} {:.2g} and {:.2g} degrees", table.text(i, "body"),
+        const std::string& method = table.text(i, "method");
+        if (method != "exact" && method != "smooth") continue;
+        text += fmt::format(" {} ({}) {:.2g} and {:.2g} degrees", table.text(i, "body"), method,
                             table.number(i, "turn_p99_deg"), table.number(i, "turn_max_deg"));
         const double angle = table.number(i, "angle_mean_deg");
         text += std::isnan(angle)
@@ -304,10 +339,10 @@ Result fidelity(const Options& options) {
         const bool is_protocol = own_bodies && body.subject.name == "ball" &&
                                  body.trajectory == "circle" &&
                                  body.samples == name_of(Samples::uint8);
-        for (const auto& method : baselines::methods()) {
+        for (const Contestant& contestant : contestants()) {
             options.progress(double(i) / double(bodies.size()));
-            add_row(result.table, body, method.name, steps,
-                    follow(body, method.method, steps, 0, 1));
+            add_row(result.table, body, contestant.name, steps,
+                    follow(body, contestant, steps, 0, 1));
         }
         if (!is_protocol) continue;
         const int hands = options.quick ? 20 : 100;  // each looks at the whole surface
@@ -321,7 +356,7 @@ Result fidelity(const Options& options) {
         result.figures = {fidelity_figure_of_users(result.table)};
         result.paragraph = paragraph_of_users(result.table);
     }
-    result.claims = claims_of(result.table, own_bodies);
+    result.claims = claims_of(result.table, own_bodies, steps);
     return result;
 }
 

@@ -73,9 +73,11 @@ Vec3 true_gradient(const Subject& subject, const Vec3& physical) {
     return gradient;
 }
 
-TrajectoryResult follow(const Body& body, ProxyMethod method, int steps, double from, double to) {
+TrajectoryResult follow(const Body& body, const Contestant& contestant, int steps, double from,
+                        double to) {
     using Clock = std::chrono::steady_clock;
-    const Field& field = body.subject.field;
+    const Field field = as_felt_by(contestant, body.subject).field;
+    const ProxyMethod method = contestant.method;
     Proxy proxy;
     place(proxy, field, body.start, body.subject.isovalue);
     method(proxy, field, body.hand(from), {}, {});
@@ -112,6 +114,7 @@ TrajectoryResult follow(const Body& body, ProxyMethod method, int steps, double 
     const double strength = spread_of(log.strength).mean;
     for (double& change : log.change) change /= strength;
     sum_up(log, result);
+    result.turns = std::move(log.turn);
     result.contact_share = contacts / steps;
     result.step = path / steps;
     return result;

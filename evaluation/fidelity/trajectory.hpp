@@ -3,8 +3,8 @@
 
 #include <vector>
 
+#include "evaluation/contestants.hpp"
 #include "evaluation/fidelity/bodies.hpp"
-#include "palpate/proxy.hpp"
 
 namespace palpate::evaluation {
 
@@ -25,11 +25,13 @@ struct TrajectoryResult {
     double step = 0;             ///< [mm] mean, of the hand in a tick
     double worst_deviation = 0;  ///< of an SCP in contact from the level, relative to the range
     std::vector<double> angles;  ///< [deg] off_ideal, tick by tick; NaN without contact
+    std::vector<double> turns;   ///< [deg] of the force from each tick to the next, in contact
 };
 
 /// From part `from` to part `to` of the body's trajectory in equal parts, one tick each. The force
 /// is SCP - HIP: stiffness does not turn it.
-TrajectoryResult follow(const Body& body, ProxyMethod method, int steps, double from, double to);
+TrajectoryResult follow(const Body& body, const Contestant& contestant, int steps, double from,
+                        double to);
 
 /// The same angles and errors of a proxy that is always at the sampled isosurface's nearest point;
 /// what has to do with time or with ticks is NaN.

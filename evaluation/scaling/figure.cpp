@@ -25,8 +25,9 @@ constexpr double no_noise = 0.004;  // where 0 is on a logarithmic axis
 Panel panel_of(const Table& table, const Growth& growth, double most_us) {
     const Table part = table.where("part", growth.part);
     const std::string volume = part.text(0, "volume");
-    const Table rows = part.where("volume", volume);
-    std::vector<double> x = rows.numbers(growth.column);
+    const Table both = part.where("volume", volume);
+    const Table exact = both.where("method", "exact"), smooth = both.where("method", "smooth");
+    std::vector<double> x = exact.numbers(growth.column);
     for (double& value : x) {
         if (growth.column == std::string("samples")) value = std::cbrt(value);
         value = std::max(value, no_noise);
@@ -42,19 +43,21 @@ Panel panel_of(const Table& table, const Growth& growth, double most_us) {
         .title = "time of an update [µs]", .is_logarithmic = true, .low = 0.05, .high = most_us};
     panel.right = panel.y;
     panel.right->title = "tetrahedra an update";
-    const auto add = [&](const char* title, const Look& look, const char* column, double unit) {
+    const auto add = [&](const char* title, const Look& look, const char* column, double unit,
+                         const Table& rows) {
         Rows points;
         for (const double value : rows.numbers(column)) {
             points.push_back({x[points.size()], value / unit});
         }
         return &panel.add(Draw::line_points, title, look, std::move(points));
     };
-    add("p99.9", {colours::orange, Marker::triangle_down}, "p999_ns", 1000);
-    add("p99", {colours::green, Marker::triangle}, "p99_ns", 1000);
-    add("mean", {colours::black, Marker::cross}, "mean_ns", 1000);
-    add("p50", {colours::blue, Marker::circle}, "p50_ns", 1000);
+    add("p99.9", {colours::orange, Marker::triangle_down}, "p999_ns", 1000, exact);
+    add("p99", {colours::green, Marker::triangle}, "p99_ns", 1000, exact);
+    add("mean", {colours::black, Marker::cross}, "mean_ns", 1000, exact);
+    add("p50", {colours::blue, Marker::circle}, "p50_ns", 1000, exact);
+    add("mean, smooth field", {colours::vermilion, Marker::open_square}, "mean_ns", 1000, smooth);
     add("tetrahedra (right axis)", {colours::purple, Marker::open_diamond, 1, 2, Dash::dashed},
-        "tetrahedra_per_update", 1)
+        "tetrahedra_per_update", 1, exact)
         ->on_right_axis = true;
     return panel;
 }
@@ -64,7 +67,8 @@ Figure growth_figure(const Table& table) {
     figure.caption =
         "What the time of an update grows with: the hand's speed; the voxels per millimetre of "
         "hand, the same ball sampled more finely; the edge of the volume, the same motion in the "
-        "same samples; white noise added to the ball, as a part of its range. Right axis: "
+        "same samples; white noise added to the ball, as a part of its range. On the linear field, "
+        "and the mean on the smooth one. Right axis: "
         "tetrahedra that the proxy moves through in an update.";
     std::vector<AxisTick> noises = ticks_at({0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1});
     noises.push_back({no_noise, "0"});

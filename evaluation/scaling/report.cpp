@@ -24,8 +24,9 @@ Extent extent_of(const std::vector<double>& numbers) {
 /// Tetrahedra entered beyond the one that an update starts in, for each voxel of the hand's path.
 Extent density_of_crossings(const Table& table) {
     std::vector<double> densities;
-    for (const auto& row :
-         table.where("part", "speed").rows_of({"tetrahedra", "updates", "path_voxel"})) {
+    for (const auto& row : table.where("part", "speed")
+                               .where("method", "exact")
+                               .rows_of({"tetrahedra", "updates", "path_voxel"})) {
         densities.push_back((row[0] - row[1]) / row[2]);
     }
     return extent_of(densities);
@@ -48,7 +49,8 @@ std::vector<Claim> scaling_claims(const Table& table, bool own_volumes) {
     claim(claims, both, "heap_growth_bytes", 0, 0,
           "updates and changes of the level take no memory", "heap grew by {:g} to {:g} bytes");
     if (!own_volumes) return claims;
-    const Table sizes = table.where("part", "size"), balls = both.where("volume", "ball");
+    const Table sizes = table.where("part", "size").where("method", "exact");
+    const Table balls = both.where("volume", "ball");
     const double first = sizes.number(0, "tetrahedra");
     claim(claims, sizes, "tetrahedra", first, first,
           "the same motion enters the same tetrahedra in a volume of any size",
@@ -132,22 +134,26 @@ std::string segment_text(const Table& table) {
 }  // namespace
 
 std::string scaling_paragraph(const Table& table, bool own_volumes) {
-    const auto mean = [&](const char* part) {
-        return extent_of(table.where("part", part).numbers("mean_ns"));
+    const auto rows = [&](const char* part, const char* method) {
+        return table.where("part", part).where("method", method);
+    };
+    const auto mean = [&](const char* part, const char* method = "exact") {
+        return extent_of(rows(part, method).numbers("mean_ns"));
     };
     const Extent speeds = mean("speed"), voxels = mean("voxels-per-mm");
     std::string text = fmt::format(
         "How the time of an update grows (exact, {:g} Hz, in contact {:g} mm of hand below the "
         "surface; otherwise {:g} mm/s and {:g} voxels a mm). With the hand's speed: mean {}. "
-        "With the voxels per millimetre of hand: {}. ",
+        "With the voxels per millimetre of hand: {}. On the smooth field the same two take {} and "
+        "{}. ",
         usual.rate_hz, usual.depth_mm, usual.speed_mm_s, usual.voxels_per_mm, span_text(speeds),
-        span_text(voxels));
+        span_text(voxels), span_text(mean("speed", "smooth")),
+        span_text(mean("voxels-per-mm", "smooth")));
     if (own_volumes) {
         const Extent sizes = mean("size"), noises = mean("noise");
-        const std::vector<std::string> edges = table.where("part", "size").distinct("size");
+        const std::vector<std::string> edges = rows("size", "exact").distinct("size");
         const Extent crossings = density_of_crossings(table);
-        const Extent moved =
-            extent_of(table.where("part", "noise").numbers("tetrahedra_per_update"));
+        const Extent moved = extent_of(rows("noise", "exact").numbers("tetrahedra_per_update"));
         text += fmt::format(
             "The cost is in the tetrahedra passed: {:.2f} to {:.2f} of them a voxel of path at "
             "every speed. With the size of the volume, from {} to {} samples: {}. With noise added "

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <limits>
 
+#include "evaluation/contestants.hpp"
 #include "evaluation/experiment.hpp"
 #include "evaluation/scaling/bodies.hpp"
 #include "evaluation/scaling/explicit.hpp"
@@ -62,9 +63,11 @@ double path_of(const Subject& subject, const std::vector<Trajectory>& trajectori
     return path / subject.field.geometry().spacing.minCoeff();
 }
 
-void add_times(Cells cells, const Subject& subject, const std::vector<Trajectory>& trajectories,
-               int passes, Table& table) {
+void add_times(Cells cells, const Subject& given, const std::vector<Trajectory>& trajectories,
+               int passes, const char* method, Table& table) {
+    const Subject subject = as_felt_by(contestant(method), given);
     const UpdateTimes times = time_updates(subject, &update_exact, trajectories, {passes, 0});
+    cells.emplace_back("method", method);
     const auto updates = static_cast<double>(times.updates);
     const Cells measured{{"updates", updates},
                          {"path_voxel", path_of(subject, trajectories)},
@@ -78,6 +81,14 @@ void add_times(Cells cells, const Subject& subject, const std::vector<Trajectory
                          {"max_ns", times.max_ns}};
     cells.insert(cells.end(), measured.begin(), measured.end());
     table.add(cells);
+}
+
+/// The exact method on the linear and on the smooth field.
+void add_times(const Cells& cells, const Subject& subject,
+               const std::vector<Trajectory>& trajectories, int passes, Table& table) {
+    for (const char* method : {"exact", "smooth"}) {
+        add_times(cells, subject, trajectories, passes, method, table);
+    }
 }
 
 /// Round a ball at a depth, both as long as they are in voxels.
@@ -138,7 +149,7 @@ void by_hand(const Plan& plan, const Options& options, Progress& progress, Table
             auto cells = cells_of(subject, part);
             cells.emplace_back("speed_mm_s", speed);
             cells.emplace_back("voxels_per_mm", voxels);
-            add_times(std::move(cells), subject, trajectories, plan.passes, table);
+            add_times(cells, subject, trajectories, plan.passes, table);
         };
         progress.next();
         for (const Subject& own : options.subjects) {
@@ -172,7 +183,7 @@ void by_body(const Plan& plan, const Options& options, Progress& progress, Table
         const Subject subject = noisy_ball(same, noise, options.seed);
         auto cells = cells_of(subject, "noise");
         cells.emplace_back("noise_of_range", noise);
-        add_times(std::move(cells), subject, trajectories, plan.passes, table);
+        add_times(cells, subject, trajectories, plan.passes, table);
     }
 }
 

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 
 #include "devices/simulated/profiles.hpp"
 #include "evaluation/experiment.hpp"
@@ -23,10 +24,12 @@ struct Case {
     double encoder = 0;     ///< [mm] step
     double rate = 1000;     ///< [Hz]
     double stiffness = 0;   ///< [N/mm]
+    Interpolation interpolation = Interpolation::linear;
 };
 
 struct Held {
     double position = 0;  ///< [mm] peak to peak, as the encoders say
+    double along = 0;     ///< [mm] the same along the force at the end
     double force = 0;     ///< [N] peak to peak, as rendered
     double push = 0;      ///< [N] at the end
     bool in_contact = false;
@@ -39,7 +42,8 @@ std::string device_text(const Case& c) {
         c.friction ? "yes" : "no", c.encoder, seconds);
 }
 
-Held press(const Case& c, const Subject& subject) {
+Held press(const Case& c, Subject subject) {
+    subject.field.set_interpolation(c.interpolation);
     const auto device = devices::open_device(
         devices::parse_device(device_text(c)),
         {subject.field, subject.isovalue, c.rate,
@@ -53,7 +57,9 @@ Held press(const Case& c, const Subject& subject) {
     settings.force.limit = info.limits.maximum_force;
     Renderer renderer = make_renderer(subject.field, subject.isovalue, settings);
     Held held;
+    Vec3 last_force = Vec3::Zero();
     Eigen::AlignedBox3d position, force;
+    std::vector<Vec3> positions;
     const int ticks = static_cast<int>(seconds * c.rate);
     for (int i = 0; i < ticks; ++i) {
         const double time = i / c.rate;
@@ -64,10 +70,17 @@ Held press(const Case& c, const Subject& subject) {
         device->write(tick.force, time);
         if (time < seconds - 1) continue;
         position.extend(reading.position);
+        positions.push_back(reading.position);
         force.extend(tick.force);
-        held.push = tick.force.norm();
+        last_force = tick.force;
         held.in_contact = held.in_contact || tick.proxy.mode == Mode::constrained;
     }
+    held.push = last_force.norm();
+    Eigen::AlignedBox1d along;
+    for (const Vec3& p : positions) {
+        along.extend(Eigen::AlignedBox1d::VectorType(p.dot(last_force.normalized())));
+    }
+    held.along = along.sizes()[0];
     held.position = position.sizes().maxCoeff();
     held.force = force.sizes().maxCoeff();
     held.at_rest = held.position <= 2.01 * std::max(least_step, c.encoder);
@@ -95,10 +108,12 @@ Held add_case(const Case& c, const Subject& subject, const char* part, Table& ta
     table.add({{"part", part},
                {"profile", c.profile},
                {"friction", c.friction ? "yes" : "no"},
+               {"field", std::string(name_of(c.interpolation))},
                {"encoder_step_mm", c.encoder},
                {"rate_hz", c.rate},
                {"stiffness_N_mm", c.stiffness},
                {"position_peak_to_peak_mm", held.position},
+               {"along_force_peak_to_peak_mm", held.along},
                {"force_peak_to_peak_N", held.force},
                {"push_N", held.push},
                {"in_contact", held.in_contact ? "yes" : "no"},
@@ -161,19 +176,32 @@ Figure map_figure(const Table& table, const Plan& plan) {
     return figure;
 }
 
-/// The largest stable stiffness of every profile over the rate, as it is and without friction.
+struct Part {
+    const char *name, *title;
+    bool friction;
+    Interpolation interpolation;
+};
+constexpr std::array<Part, 4> profile_parts{
+    {{"profiles", "as they are", true, Interpolation::linear},
+     {"profiles, smooth field", "as they are, smooth field", true, Interpolation::cubic},
+     {"profiles without friction", "without friction", false, Interpolation::linear},
+     {"profiles without friction, smooth field", "without friction, smooth field", false,
+      Interpolation::cubic}}};
+
+/// The largest stable stiffness of every profile over the rate, on both fields, as it is and
+/// without friction.
 Figure profile_figure(const Table& table, const Plan& plan) {
     Figure figure;
     figure.suffix = "profiles";
     figure.caption =
         "The largest stiffness up to 3 N/mm at which a simulated device in a light hand comes to "
-        "rest, with its own encoders, delay and (left) friction. Right: without the friction, "
-        "which stills small limit cycles.";
-    figure.height = 520;
+        "rest, with its own encoders, delay and (above) friction. Below: without the friction, "
+        "which stills small limit cycles. Right: on the smooth field.";
+    figure.height = 900;
     figure.columns = 2;
-    for (const std::string part : {"profiles", "profiles without friction"}) {
+    for (const Part& part : profile_parts) {
         Panel panel;
-        panel.title = part == "profiles" ? "as they are" : "without friction";
+        panel.title = part.title;
         panel.x = {.title = "update rate [kHz]",
                    .is_logarithmic = true,
                    .low = 0.2,
@@ -181,7 +209,7 @@ Figure profile_figure(const Table& table, const Plan& plan) {
                    .ticks = ticks_at({0.25, 0.5, 1, 2, 4})};
         panel.y = {.title = "largest stable stiffness [N/mm]", .low = 0, .high = 3.1};
         for (const std::string& profile : plan.profiles) {
-            const Table rows = table.where("part", part).where("profile", profile);
+            const Table rows = table.where("part", part.name).where("profile", profile);
             const Look look = look_of(panel.series.size());
             Series& line = panel.add(Draw::line_points, profile, look, {});
             for (const double rate : plan.rates) {
@@ -205,6 +233,33 @@ Claim rated_claim(const Subject& subject, Table& table) {
         claim.measured += fmt::format("{}{} {:g} N/mm: {:g} mm", claim.measured.empty() ? "" : ", ",
                                       name, device.stiffness, held.position);
     }
+    return claim;
+}
+
+/// Each profile's largest stable stiffness on the smooth field is at least that on the linear one.
+Claim smooth_claim(const Table& table, const Plan& plan) {
+    Claim claim{
+        "on the smooth field every profile comes to rest at least as stiff as on the linear "
+        "one, at every rate",
+        true, ""};
+    int same = 0, stiffer = 0;
+    for (const std::string& profile : plan.profiles) {
+        const auto largest = [&](const Part& part, double rate) {
+            return largest_stable(table.where("part", part.name).where("profile", profile), rate);
+        };
+        for (const double rate : plan.rates) {
+            const double linear = largest(profile_parts[0], rate);
+            const double smooth = largest(profile_parts[1], rate);
+            claim.held = claim.held && smooth >= linear;
+            same += smooth == linear;
+            stiffer += smooth > linear;
+            if (smooth < linear) {
+                claim.measured += fmt::format("{} at {:g} Hz: {:.1f} against {:.1f} N/mm; ",
+                                              profile, rate, smooth, linear);
+            }
+        }
+    }
+    claim.measured += fmt::format("as stiff in {} cases, stiffer in {}", same, stiffer);
     return claim;
 }
 
@@ -255,26 +310,28 @@ Result stability(const Options& options) {
         options.subjects.empty() ? synthetic("sphere") : options.subjects.front();
     Result result;
     std::vector<std::pair<const char*, Case>> cases;
-    const auto add = [&](const char* part, const std::string& profile, bool friction,
-                         double encoder) {
+    const auto add = [&](const Part& part, const std::string& profile, double encoder) {
         for (const double rate : plan.rates) {
             for (const double k : plan.stiffnesses) {
-                cases.push_back({part, {profile, friction, encoder, rate, k}});
+                cases.push_back(
+                    {part.name, {profile, part.friction, encoder, rate, k, part.interpolation}});
             }
         }
     };
-    for (const double encoder : plan.encoders) add("map", map_profile, false, encoder);
-    for (const bool friction : {true, false}) {
+    for (const double encoder : plan.encoders) {
+        add({"map", "", false, Interpolation::linear}, map_profile, encoder);
+    }
+    for (const Part& part : profile_parts) {
         for (const std::string& name : plan.profiles) {
-            add(friction ? "profiles" : "profiles without friction", name, friction,
-                devices::profile(name).encoder_step);
+            add(part, name, devices::profile(name).encoder_step);
         }
     }
     for (std::size_t i = 0; i < cases.size(); ++i) {
         options.progress(double(i) / double(cases.size()));
         add_case(cases[i].second, subject, cases[i].first, result.table);
     }
-    result.claims = {rated_claim(subject, result.table), control_claim(result.table)};
+    result.claims = {rated_claim(subject, result.table), smooth_claim(result.table, plan),
+                     control_claim(result.table)};
     result.figures = {map_figure(result.table, plan), profile_figure(result.table, plan)};
     result.paragraph = paragraph_of(result.table, plan, subject);
     return result;

@@ -5,6 +5,7 @@
 #include <array>
 #include <optional>
 
+#include "evaluation/contestants.hpp"
 #include "evaluation/walk_through/walk.hpp"
 
 namespace palpate::evaluation {
@@ -25,46 +26,66 @@ void add(Rows& rows, const Corner& corner) {
     rows.push_back({corner.x, corner.y});
 }
 
-/// Everything in the cut that does not depend on a method.
-struct Drawing {
-    Rows edges, solid, contour;
-    Series densities{Draw::text, "", {"#707070"}, {}};
-
-    explicit Drawing(const Cut& cut) {
+/// Everything in the cut that is the field's.
+class Drawing {
+  public:
+    Drawing(const Cut& cut, const Contestant& contestant)
+        : cut_(cut), field_(as_felt_by(contestant, cut.subject).field) {
+        const bool is_smooth = field_.interpolation() == Interpolation::cubic;
+        const double begin = is_smooth ? -0.5 : 0;  // of a square, from its first sample
+        parts_ = is_smooth ? 6 : 1;
         for (int j = cut.low[1]; j <= cut.high[1]; ++j) {
             for (int i = cut.low[0]; i <= cut.high[0]; ++i) {
-                const Corner corner = at(cut, i, j);
+                const Corner corner = at(i, j);
                 add(densities.rows, corner);
-                densities.labels.push_back(fmt::format("{:.4g}", density(cut, corner)));
-                if (i < cut.high[0] && j < cut.high[1]) add_square(cut, i, j);
+                densities.labels.push_back(fmt::format("{:.4g}", density(corner)));
+                if (is_smooth || (i < cut.high[0] && j < cut.high[1])) {
+                    add_square(i + begin, j + begin);
+                }
             }
         }
         densities.text = {.size = 9, .right = 1.2, .up = -0.5};
     }
 
-    static double density(const Cut& cut, const Corner& corner) {
-        return cut.subject.isovalue + cut.subject.field.sign() * corner.excess;
+    Rows edges, solid, contour;
+    Series densities{Draw::text, "", {"#707070"}, {}};
+
+  private:
+    double density(const Corner& corner) const {
+        return cut_.subject.isovalue + field_.sign() * corner.excess;
     }
-    static Corner at(const Cut& cut, double i, double j) {
-        const Field& field = cut.subject.field;
-        const Vec3 spacing = field.geometry().spacing;
-        const Vec3 point(i * spacing[0], j * spacing[1], cut.z);
-        return {point[0], point[1], field.sign() * (value_at(field, point) - cut.subject.isovalue)};
+    Corner at(double i, double j) const {
+        const Vec3 spacing = field_.geometry().spacing;
+        const Vec3 point(i * spacing[0], j * spacing[1], cut_.z);
+        return {point[0], point[1],
+                field_.sign() * (value_at(field_, point) - cut_.subject.isovalue)};
     }
 
-    void add_square(const Cut& cut, int i, int j) {
-        const Corner centre = at(cut, i + 0.5, j + 0.5);
-        const std::array<Corner, 4> corners{at(cut, i, j), at(cut, i + 1, j), at(cut, i + 1, j + 1),
-                                            at(cut, i, j + 1)};
-        for (std::size_t c = 0; c < 4; ++c)
-            add_triangle({centre, corners[c], corners[(c + 1) % 4]});
+    void add_square(double i, double j) {
+        using Place = std::array<double, 2>;
+        const Place centre{i + 0.5, j + 0.5};
+        const std::array<Place, 4> corners{{{i, j}, {i + 1, j}, {i + 1, j + 1}, {i, j + 1}}};
+        for (std::size_t c = 0; c < 4; ++c) {
+            const Place &a = corners[c], &b = corners[(c + 1) % 4];
+            for (const Place& corner : {centre, a, b}) add(edges, at(corner[0], corner[1]));
+            edges.emplace_back();
+            // In parts so small that the field is as good as linear in them.
+            const auto within = [&](int u, int v) {
+                const double s = double(u) / parts_, t = double(v) / parts_;
+                return at(centre[0] + s * (a[0] - centre[0]) + t * (b[0] - centre[0]),
+                          centre[1] + s * (a[1] - centre[1]) + t * (b[1] - centre[1]));
+            };
+            for (int u = 0; u < parts_; ++u) {
+                for (int v = 0; u + v < parts_; ++v) {
+                    add_part({within(u, v), within(u + 1, v), within(u, v + 1)});
+                    if (u + v + 1 == parts_) continue;
+                    add_part({within(u + 1, v), within(u + 1, v + 1), within(u, v + 1)});
+                }
+            }
+        }
     }
 
-    void add_triangle(const std::array<Corner, 3>& triangle) {
-        add(edges, triangle[0]);
-        add(edges, triangle[1]);
-        add(edges, triangle[2]);
-        edges.emplace_back();
+    void add_part(const std::array<Corner, 3>& triangle) {
         Rows part;
         std::vector<Corner> on_level;
         for (std::size_t c = 0; c < 3; ++c) {
@@ -85,6 +106,10 @@ struct Drawing {
             contour.emplace_back();
         }
     }
+
+    const Cut& cut_;
+    Field field_;
+    int parts_ = 1;
 };
 
 /// Places that are marked with the numbers of the moves that end there.
@@ -167,7 +192,7 @@ void add_walk(Panel& panel, const Cut& cut, const Walk& walk) {
     Rows path{{walk.before[0], walk.before[1]}}, crossings;
     Marks scps(voxel), goals(voxel);
     // Numbers stand across the path, on the side that was free at the start.
-    const Field& field = cut.subject.field;
+    const Field field = as_felt_by(contestant(walk.method), cut.subject).field;
     const Vec3 into = field.sign() * gradient_at(field, walk.before);
     Vec3 out = into.norm() > 0 ? Vec3(-into.normalized()) : Vec3(Vec3::UnitY());
     Vec3 last = walk.before;
@@ -202,7 +227,8 @@ void add_walk(Panel& panel, const Cut& cut, const Walk& walk) {
     scps.add_to(panel, "SCP, after each move", {colours::vermilion, Marker::circle, 1.3});
 }
 
-Panel panel_of(const Cut& cut, const Drawing& drawing, const Walk& walk) {
+Panel panel_of(const Cut& cut, const Walk& walk) {
+    const Drawing drawing(cut, contestant(walk.method));
     Panel panel;
     panel.title = walk.method;
     panel.has_grid = false;
@@ -234,17 +260,18 @@ Panel panel_of(const Cut& cut, const Drawing& drawing, const Walk& walk) {
 }  // namespace
 
 Figure walk_figure(const Cut& cut, const std::vector<Walk>& walks) {
-    const Drawing drawing(cut);
     Figure figure;
+    std::string methods = walks.front().method;
+    for (std::size_t i = 1; i < walks.size(); ++i) methods += " and by " + walks[i].method;
     figure.caption = fmt::format(
-        "{}: one update in a plane cut of the lattice by {} and by {}. 0 is the SCP before the "
-        "update, the numbers are its moves; GOALs are shown where they are not the HIP.",
-        cut.subject.name, walks.front().method, walks.back().method);
+        "{}: one update in a plane cut of the lattice by {}. 0 is the SCP before the update, the "
+        "numbers are its moves; GOALs are shown where they are not the HIP.",
+        cut.subject.name, methods);
     figure.columns = walks.size();
-    for (const Walk& walk : walks) figure.panels.push_back(panel_of(cut, drawing, walk));
+    for (const Walk& walk : walks) figure.panels.push_back(panel_of(cut, walk));
     const Panel& first = figure.panels.front();
     const double shape = (first.y.high - first.y.low) / (first.x.high - first.x.low);
-    figure.width = 1500;
+    figure.width = walks.size() > 1 ? 1500 : 900;
     figure.height = static_cast<int>(std::clamp(650 * shape, 200.0, 1400.0)) + 180;
     return figure;
 }

@@ -12,7 +12,8 @@ namespace palpate::evaluation {
 
 /// A volume that does not change along z, so that a motion in a plane of samples stays in it and
 /// the cut through that plane tells all: the squares between four samples, each cut by its
-/// diagonals into four triangles with a linear field. And the hand before and in the update.
+/// diagonals into four triangles with a linear field (or squares round the samples, with a cubic in
+/// each triangle). And the hand before and in the update.
 struct Cut {
     Subject subject;
     double z = 0;                             ///< [mm] of the plane of samples
@@ -35,6 +36,7 @@ struct Walk {
     std::vector<Step> steps;     ///< as observed, those that crossed a wall included
     ProxyUpdate end;
 };
+/// Of a contestant, by its name.
 Walk walk_in(const Cut& cut, const std::string& method);
 
 /// Panels of the cut, one for each walk.

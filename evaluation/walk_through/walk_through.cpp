@@ -8,14 +8,15 @@
 #include <array>
 #include <cmath>
 
+#include "evaluation/contestants.hpp"
 #include "evaluation/experiment.hpp"
-#include "palpate/baselines/methods.hpp"
 
 namespace palpate::evaluation {
 namespace {
 
-double excess_of_range(const Cut& cut, const Vec3& physical) {
-    const Field& field = cut.subject.field;
+/// In the field that the method feels.
+double excess_of_range(const Cut& cut, const std::string& method, const Vec3& physical) {
+    const Field field = as_felt_by(contestant(method), cut.subject).field;
     return field.sign() * (value_at(field, physical) - cut.subject.isovalue) / field.range();
 }
 
@@ -34,6 +35,7 @@ std::string text_of(const Tetrahedron& t) {
 }
 
 void add_rows(Table& table, const Cut& cut, const Walk& walk) {
+    const Field field = as_felt_by(contestant(walk.method), cut.subject).field;
     const auto add = [&](double number, const char* kind, const Vec3& scp, const Vec3& goal,
                          const std::string& tetrahedron) {
         table.add({{"volume", cut.subject.name},
@@ -44,7 +46,7 @@ void add_rows(Table& table, const Cut& cut, const Walk& walk) {
                    {"scp_y_mm", scp[1]},
                    {"goal_x_mm", goal[0]},
                    {"goal_y_mm", goal[1]},
-                   {"density", value_at(cut.subject.field, scp)},
+                   {"density", value_at(field, scp)},
                    {"isovalue", cut.subject.isovalue},
                    {"tetrahedron", tetrahedron},
                    {"distance_to_hip_mm", (scp - cut.hip).norm()}});
@@ -64,7 +66,7 @@ double worst_on_path(const Cut& cut, const Walk& walk) {
     for (const Step& step : walk.steps) {
         for (int i = 0; i <= parts; ++i) {
             const Vec3 point = from + (step.point - from) * (double(i) / parts);
-            worst = std::max(worst, excess_of_range(cut, point));
+            worst = std::max(worst, excess_of_range(cut, walk.method, point));
         }
         from = step.point;
     }
@@ -84,7 +86,7 @@ double farthest_off_plane(const Cut& cut, const std::vector<Walk>& walks) {
 void add_claims(std::vector<Claim>& claims, const Cut& cut, const std::vector<Walk>& walks,
                 bool own_cut) {
     for (const Walk& walk : walks) {
-        if (walk.method != "exact" && walk.method != "paper") continue;
+        if (walk.method != "exact" && walk.method != "paper" && walk.method != "smooth") continue;
         const double worst = worst_on_path(cut, walk);
         claims.push_back(
             {fmt::format("{}: every SCP of {} and the path between them is outside to "
@@ -100,7 +102,7 @@ void add_claims(std::vector<Claim>& claims, const Cut& cut, const std::vector<Wa
     if (!own_cut) return;
     const auto gradient = std::find_if(walks.begin(), walks.end(),
                                        [](const Walk& walk) { return walk.method == "gradient"; });
-    const double excess = excess_of_range(cut, gradient->end.scp);
+    const double excess = excess_of_range(cut, gradient->method, gradient->end.scp);
     claims.push_back({fmt::format("{}: gradient ends inside, by more than a tenth of the data's "
                                   "range",
                                   cut.subject.name),
@@ -121,7 +123,7 @@ std::string counted(int count, const char* one, const char* many) {
 std::string paragraph_of(const Cut& cut, const std::vector<Walk>& walks) {
     std::string text;
     for (const Walk& walk : walks) {
-        const double excess = excess_of_range(cut, walk.end.scp);
+        const double excess = excess_of_range(cut, walk.method, walk.end.scp);
         text += fmt::format("{}{} takes {} through {} and ends {:.3g} mm from the hand, {}",
                             text.empty() ? "" : "; ", walk.method,
                             counted(moves_of(walk), "move", "moves"),
@@ -135,15 +137,17 @@ std::string paragraph_of(const Cut& cut, const std::vector<Walk>& walks) {
         "{}: one update, in which the hand jumps from ({:.2f}, {:.2f}) to ({:.2f}, {:.2f}) mm. The "
         "volume is the same in every slice, so the motion stays in a plane of samples, and the cut "
         "shows all of it: squares between four samples, each of four triangles with a linear "
-        "density. {}.",
+        "density; of the smooth field the squares lie round the samples, with a cubic in each "
+        "triangle. {}.",
         cut.subject.name, cut.hip_before[0], cut.hip_before[1], cut.hip[0], cut.hip[1], text);
 }
 
 }  // namespace
 
 Walk walk_in(const Cut& cut, const std::string& method) {
-    const ProxyMethod move = baselines::method_named(method);
-    const Field& field = cut.subject.field;
+    const Contestant& mover = contestant(method);
+    const ProxyMethod move = mover.method;
+    const Field field = as_felt_by(mover, cut.subject).field;
     Walk walk;
     walk.method = method;
     Proxy proxy;
@@ -166,18 +170,19 @@ Result walk_through(const Options& options) {
     for (const Cut& cut : cuts) {
         options.progress(double(&cut - cuts.data()) / double(cuts.size()));
         std::vector<Walk> walks, shown;
-        for (const auto& method : baselines::methods()) {
-            walks.push_back(walk_in(cut, method.name));
+        for (const Contestant& one : contestants()) {
+            walks.push_back(walk_in(cut, one.name));
             add_rows(result.table, cut, walks.back());
         }
         // The method of choice, and the gradient method or, if that is it, what it should do.
         const std::string other = options.method == "gradient" ? "exact" : "gradient";
         for (const std::string& method : {options.method, other})
             shown.push_back(walk_in(cut, method));
+        const auto number = &cut - cuts.data() + 1;
         result.figures.push_back(walk_figure(cut, shown));
-        if (&cut != cuts.data()) {
-            result.figures.back().suffix = std::to_string(&cut - cuts.data() + 1);
-        }
+        if (number > 1) result.figures.back().suffix = std::to_string(number);
+        result.figures.push_back(walk_figure(cut, {walk_in(cut, "smooth")}));
+        result.figures.back().suffix = number > 1 ? fmt::format("smooth-{}", number) : "smooth";
         add_claims(result.claims, cut, walks, own_cut);
         result.paragraph += (result.paragraph.empty() ? "" : " ") + paragraph_of(cut, walks);
     }

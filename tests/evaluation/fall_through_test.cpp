@@ -14,6 +14,8 @@
 namespace palpate::evaluation {
 namespace {
 
+constexpr Interpolation linear = Interpolation::linear, cubic = Interpolation::cubic;
+
 Outside outside_of(const Subject& subject) {
     return {subject.field, subject.isovalue, [] {}};
 }
@@ -22,12 +24,12 @@ constexpr double thicknesses[] = {3, 2, 1.5, 1, 0.75, 0.5, 0.25};
 
 TEST(FallThrough, claims_hold_in_quick_mode) {
     const Result result = quick_result(fall_through);
-    EXPECT_EQ(result.claims.size(), 7U);
+    EXPECT_EQ(result.claims.size(), 9U);
 }
 
 TEST(FallThrough, the_same_seed_gives_the_same_table_and_another_one_another) {
     Options options = quick_options();
-    options.subjects.push_back(closed_shell(Enclosed::ball, 0.5));
+    options.subjects.push_back(closed_shell(Enclosed::ball, 0.5, linear));
     const std::string first = csv_from(fall_through(options).table);
     EXPECT_EQ(first, csv_from(fall_through(options).table));
     options.seed = 2;
@@ -53,9 +55,11 @@ TEST(FallThrough, a_volume_in_which_nothing_is_closed_is_refused) {
 /// The surface's inner and outer sheet: vertices nearer to the centre than the wall's middle, and
 /// the others, share no triangle, and each sheet winds round the cavity once.
 TEST(FallThrough, walls_are_closed_by_the_surface_and_by_the_flood) {
-    for (const Enclosed enclosed : {Enclosed::box, Enclosed::ball}) {
+    for (const auto& [enclosed, interpolation] :
+         {std::pair{Enclosed::box, linear}, std::pair{Enclosed::ball, linear},
+          std::pair{Enclosed::box, cubic}, std::pair{Enclosed::ball, cubic}}) {
         for (const double thickness : {3.0, 1.0, 0.25}) {
-            const Subject wall = closed_shell(enclosed, thickness);
+            const Subject wall = closed_shell(enclosed, thickness, interpolation);
             const SurfaceMesh mesh = extract_surface(wall.field, wall.isovalue);
             EXPECT_EQ(support::flaw_in_closed_mesh(mesh), "");
             const Outside outside = outside_of(wall);
@@ -65,8 +69,7 @@ TEST(FallThrough, walls_are_closed_by_the_surface_and_by_the_flood) {
             for (const auto& triangle : mesh.triangles) {
                 int reached = 0;
                 for (const std::uint32_t v : triangle) {
-                    reached += outside.holds(
-                        locate(index_from_physical(wall.field.geometry(), mesh.vertices[v])));
+                    reached += outside.holds(mesh.vertices[v]);
                 }
                 ASSERT_TRUE(reached == 0 || reached == 3) << wall.name << ' ' << thickness;
                 (reached ? outer : inner).triangles.push_back(triangle);
@@ -81,11 +84,13 @@ TEST(FallThrough, walls_are_closed_by_the_surface_and_by_the_flood) {
 }
 
 TEST(FallThrough, walls_have_the_thickness_that_is_asked_for) {
-    for (const double thickness : thicknesses) {
-        const Subject wall = closed_shell(Enclosed::box, thickness);
-        const Field inverse(wall.field.volume(), Solid::below, wall.field.background());
+    for (int i = 0; i < 14; ++i) {
+        const double thickness = thicknesses[i % 7];
+        const Subject wall = closed_shell(Enclosed::box, thickness, i < 7 ? linear : cubic);
+        const Field inverse(wall.field.volume(), Solid::below, wall.field.background(),
+                            wall.field.interpolation());
         support::Random random(7);
-        for (int i = 0; i < 50; ++i) {
+        for (int line = 0; line < 50; ++line) {
             const Vec3 from(-20, random.uniform(-5, 5), random.uniform(-5, 5));
             const Vec3 to(0, from[1], from[2]);
             const RayHit in = cast_ray(wall.field, wall.isovalue, from, to);
@@ -96,8 +101,8 @@ TEST(FallThrough, walls_have_the_thickness_that_is_asked_for) {
             EXPECT_NEAR(out.point[0] - in.point[0], thickness, 1e-8);
         }
     }
-    EXPECT_THROW(closed_shell(Enclosed::box, 0), std::invalid_argument);
-    EXPECT_THROW(closed_shell(Enclosed::box, 4.5), std::invalid_argument);
+    EXPECT_THROW(closed_shell(Enclosed::box, 0, linear), std::invalid_argument);
+    EXPECT_THROW(closed_shell(Enclosed::box, 4.5, linear), std::invalid_argument);
 }
 
 TEST(FallThrough, no_exact_proxy_on_a_random_trajectory_leaves_what_the_flood_has_reached) {
@@ -124,7 +129,7 @@ TEST(FallThrough, no_exact_proxy_on_a_random_trajectory_leaves_what_the_flood_ha
 }
 
 TEST(FallThrough, a_hole_in_a_wall_is_found_by_the_flood_and_by_a_proxy_that_is_led_there) {
-    const Subject closed = closed_shell(Enclosed::box, 0.5);
+    const Subject closed = closed_shell(Enclosed::box, 0.5, linear);
     const Geometry& geometry = closed.field.geometry();
     const auto samples = closed.field.volume().samples<std::uint8_t>();
     std::vector<std::uint8_t> with_hole(samples.begin(), samples.end());
@@ -144,7 +149,7 @@ TEST(FallThrough, a_hole_in_a_wall_is_found_by_the_flood_and_by_a_proxy_that_is_
 }
 
 TEST(FallThrough, every_line_leads_from_free_space_into_what_cannot_be_reached) {
-    const Subject wall = closed_shell(Enclosed::ball, 0.75);
+    const Subject wall = closed_shell(Enclosed::ball, 0.75, linear);
     const Outside outside = outside_of(wall);
     const Geometry& geometry = wall.field.geometry();
     for (const Crossing& crossing : draw_crossings(wall, outside, Target::behind_walls, 300, 1)) {

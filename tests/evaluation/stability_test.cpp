@@ -6,7 +6,7 @@ namespace {
 
 TEST(Stability, claims_hold_in_quick_mode_and_devices_at_rest_are_in_contact) {
     const Result result = quick_result(stability);
-    EXPECT_EQ(result.claims.size(), 2U);
+    EXPECT_EQ(result.claims.size(), 3U);
     EXPECT_EQ(result.figures.size(), 2U);
     const Table& table = result.table;
     for (std::size_t i = 0; i < table.rows().size(); ++i) {

@@ -13,7 +13,7 @@ namespace {
 
 TEST(WalkThrough, claims_hold_in_quick_mode) {
     const Result result = quick_result(walk_through);
-    EXPECT_EQ(result.claims.size(), 4U);
+    EXPECT_EQ(result.claims.size(), 5U);
     int goals = 0, slides = 0, free_moves = 0, crossed = 0;
     for (std::size_t i = 0; i < result.table.rows().size(); ++i) {
         if (result.table.text(i, "method") != "paper") continue;
@@ -89,10 +89,10 @@ TEST(WalkThrough, slices_of_the_user_s_volumes_are_walked_through) {
     options.subjects.push_back(synthetic("noise:16x16x16"));
     const Result result = walk_through(options);
     EXPECT_TRUE(all_hold(result));
-    EXPECT_EQ(result.claims.size(), 6U);
-    ASSERT_EQ(result.figures.size(), 2U);
+    EXPECT_EQ(result.claims.size(), 8U);
+    ASSERT_EQ(result.figures.size(), 4U);
     EXPECT_EQ(result.figures[0].suffix, "");
-    EXPECT_EQ(result.figures[1].suffix, "2");
+    EXPECT_EQ(result.figures[2].suffix, "2");
     const Cut cut = slice_of(options.subjects[0]);
     const Volume& volume = options.subjects[0].field.volume();
     for (int i = 0; i < 40; ++i) {
