@@ -52,10 +52,19 @@ class Grid:
         return math.fsum(((1 - 2 * abs(u[d])) * centre, (2 * abs(u[d]) - w_edge) * face,
                           high * on_edge[1], (w_edge - high) * on_edge[0]))
 
-    def along(self, a, b):
+    def is_background(self, a, b):
+        """Whether all of a segment (index space) is too far outside for any sample to count."""
+        return any(max(x, y) < -2 or min(x, y) > n + 1 for x, y, n in zip(a, b, self.size))
+
+    def along(self, a, b, level, sign):
         """The field's values at both ends of a segment (index space) and wherever it meets the wall of a
         tetrahedron: between these it is linear, so its extremes are among them."""
         delta = [y - x for x, y in zip(a, b)]
+        return [self.value([x + t * d for x, d in zip(a, delta)]) for t in self.moments(a, delta)]
+
+    @staticmethod
+    def moments(a, delta):
+        """Parts of the way from a by delta at which it meets a wall, 0 and 1 among them."""
         moments = {0.0, 1.0}
         for coefficients in WALLS:
             start = sum(c * x for c, x in zip(coefficients, a))
@@ -65,7 +74,7 @@ class Grid:
             first, last = sorted((start, start + change))
             for k in range(math.ceil(first), math.floor(last) + 1):
                 moments.add(min(1.0, max(0.0, (k - start) / change)))
-        return [self.value([x + t * d for x, d in zip(a, delta)]) for t in sorted(moments)]
+        return sorted(moments)
 
 
 # The planes that separate tetrahedra: x=k, y=k, z=k, x+-y=k, x+-z=k, y+-z=k for all whole k, and those

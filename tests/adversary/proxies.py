@@ -6,6 +6,7 @@ import math
 
 from fields import KINDS, Grid, rotation, samples_of
 from program import Finding, judge
+from smooth_fields import SmoothGrid
 from volume_files import nrrd, packed
 
 G = 1e-9  # of the range
@@ -21,7 +22,8 @@ def grid_of(random):
     spacing = tuple(random.choice((1, 0.5, 2, 0.01, 30)) for _ in range(3))
     origin = tuple(random.choice((0, -100, random.uniform(-1000, 1000))) for _ in range(3))
     axes = rotation(random) if random.random() < 0.5 else None
-    return Grid(size, samples, spacing, origin, axes), stored, kind
+    make = random.choice((Grid, SmoothGrid))
+    return make(size, samples, spacing, origin, axes), stored, kind
 
 
 def level_of(grid, random):
@@ -66,6 +68,10 @@ def one(program, random, folder, counts):
             file.write(f"{i / 1000!r},{','.join(repr(x) for x in grid.physical(at))}\n")
     words = ["replay", "v.nrrd", "--trajectory", "t.csv", f"--isovalue={level!r}", "--output", "o.csv",
              "--path", "p.csv", "--quiet", "--solid", "above" if above else "below"]
+    if isinstance(grid, SmoothGrid):
+        counts["smooth"] += 1  # the program's default
+    else:
+        words += ["--field", "linear"]
     if random.random() < 0.3:
         words += ["--friction", "0.6,0.3"]
     if random.random() < 0.2:
@@ -113,9 +119,9 @@ def check(grid, level, sign, folder, what, counts):
         corners = [before, *path.get(tick, [])] if before and inside(before) <= G else []
         for a, b in zip(corners, corners[1:]):
             a, b = grid.index(a), grid.index(b)
-            if max(abs(x - y) for x, y in zip(a, b)) > 300:
-                continue  # far outside the field is the background
-            worst = max(sign * (v - level) for v in grid.along(a, b)) / scale
+            if grid.is_background(a, b) or max(abs(x - y) for x, y in zip(a, b)) > 300:
+                continue
+            worst = max(sign * (v - level) for v in grid.along(a, b, level, sign)) / scale
             if worst > G:
                 raise Finding(f"G1: tick {tick}: the path is {worst:.3g} of the range inside; {what}")
             counts["stretches"] += 1
