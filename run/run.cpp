@@ -72,7 +72,9 @@ io::RecordingHead recording_head(const Session& session, const DeviceInfo& devic
 }
 
 Run::Run(std::shared_ptr<Data> data, const Setup& setup)
-    : data_(std::move(data)), setup_(setup), field_(make_field(data_->start(), setup.field)) {
+    : data_(std::move(data)),
+      setup_(setup),
+      field_(make_field(data_->start(), setup.field, setup.render.method.method)) {
     const double isovalue = isovalue_of(data_->loaded(), setup.field);
     auto device = open_for(field_, isovalue, setup);
     take(make_session(field_, isovalue, device->info(), setup));

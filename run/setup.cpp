@@ -17,6 +17,11 @@ std::optional<double> background_in(const Volume& volume, const FieldSetup& setu
     return io::level_in(volume, *setup.background);
 }
 
+Interpolation interpolation_in(const FieldSetup& setup, ProxyMethod method) {
+    return setup.interpolation.value_or(method == &update_exact ? Interpolation::cubic
+                                                                : Interpolation::linear);
+}
+
 /// The device's bit for a button; 0 for none.
 std::uint32_t bit_of(const ButtonSetup& setup, const char* purpose, int buttons) {
     if (std::holds_alternative<std::monostate>(setup)) return 0;
@@ -57,13 +62,15 @@ struct MakePenetrability {
 
 }  // namespace
 
-Field make_field(std::shared_ptr<const Samples> samples, const FieldSetup& setup) {
+Field make_field(std::shared_ptr<const Samples> samples, const FieldSetup& setup,
+                 ProxyMethod method) {
     const auto background = background_in(samples->volume(), setup);
-    return Field(std::move(samples), setup.solid, background, setup.interpolation);
+    return Field(std::move(samples), setup.solid, background, interpolation_in(setup, method));
 }
 
-Field make_field(const Volume& volume, const FieldSetup& setup) {
-    return Field(volume, setup.solid, background_in(volume, setup), setup.interpolation);
+Field make_field(const Volume& volume, const FieldSetup& setup, ProxyMethod method) {
+    return Field(volume, setup.solid, background_in(volume, setup),
+                 interpolation_in(setup, method));
 }
 
 double isovalue_of(const LoadedVolume& loaded, const FieldSetup& setup) {

@@ -92,9 +92,9 @@ void add_side_options(CLI::App& command, run::FieldSetup& field) {
         .add_option_function<std::string>(
             "--field",
             [&field](const std::string& text) { field.interpolation = interpolation_from(text); },
-            "How densities continue between samples: linear (exact, with facets), cubic (smooth)")
-        ->check(CLI::IsMember({"linear", "cubic"}))
-        ->default_str("linear");
+            "How densities continue between samples: cubic (smooth), linear (with facets, the paper's)")
+        ->check(CLI::IsMember({"cubic", "linear"}))
+        ->default_str("cubic; linear for the methods paper and gradient");
     command.add_option_function<std::string>(
         "--background",
         [&field](const std::string& text) { field.background = io::level_from_text(text); },

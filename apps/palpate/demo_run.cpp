@@ -144,7 +144,8 @@ void add_motion_options(CLI::App& command, DemoOptions& options) {
 
 Demo load_demo(const DemoOptions& options) {
     run::LoadedVolume loaded = load_for_terminal(options.source);
-    const Field field = run::make_field(loaded.volume, options.field);
+    const Field field =
+        run::make_field(loaded.volume, options.field, options.render.given.method.method);
     const double isovalue = suggested_isovalue(loaded, field, options.field);
     return {std::move(loaded), field, isovalue};
 }

@@ -114,7 +114,8 @@ void replay(const ReplayOptions& options) {
     const io::Trajectory trajectory = io::parse_trajectory(
         io::read_text(options.trajectory, stop_if_interrupted), options.trajectory);
     const run::LoadedVolume loaded = load_for_terminal(options.source);
-    const Field field = run::make_field(loaded.volume, options.field);
+    const Field field =
+        run::make_field(loaded.volume, options.field, options.render.given.method.method);
     const double isovalue = required_isovalue(loaded, field, options.field);
     Renderer renderer = make_renderer(
         field, isovalue, run::offline_settings(options.render.setup(), field, isovalue));

@@ -119,7 +119,8 @@ TEST_P(Path, is_free_all_along_and_ends_on_the_surface) {
     const ScratchFolder folder;
     const Field field(volume_of(c.volume),
                       contains(c.options, "below") ? Solid::below : Solid::above, std::nullopt,
-                      contains(c.options, "cubic") ? Interpolation::cubic : Interpolation::linear);
+                      c.method == "paper" || contains(c.options, "linear") ? Interpolation::linear
+                                                                           : Interpolation::cubic);
     put_motion(folder, field, c.isovalue);
     const Outcome outcome =
         palpate(folder, Words{"replay", synthetic ? c.volume : data_file(c.volume).string(), "-i",
@@ -134,20 +135,22 @@ TEST_P(Path, is_free_all_along_and_ends_on_the_surface) {
 INSTANTIATE_TEST_SUITE_P(
     Replay, Path,
     testing::Values(
-        PathCase{"synthetic:noise:48x48x48", 127.5, "exact"},
+        PathCase{"synthetic:noise:48x48x48", 127.5, "exact", "--field linear"},
         PathCase{"synthetic:noise:48x48x48", 127.5, "paper"},
+        PathCase{"synthetic:noise:48x48x48", 127.5, "exact", "--field linear --step-budget 2"},
+        PathCase{"synthetic:noise:48x48x48", 127.5, "exact", "--field linear --friction 0.6,0.4"},
+        PathCase{"synthetic:sphere:32x32x32", 76.5, "exact", "--field linear --solid below"},
+        PathCase{"synthetic:noise:48x48x48", 127.5, "exact"},
         PathCase{"synthetic:noise:48x48x48", 127.5, "exact", "--step-budget 2"},
         PathCase{"synthetic:noise:48x48x48", 127.5, "exact", "--friction 0.6,0.4"},
         PathCase{"synthetic:sphere:32x32x32", 76.5, "exact", "--solid below"},
-        PathCase{"synthetic:noise:48x48x48", 127.5, "exact", "--field cubic"},
-        PathCase{"synthetic:noise:48x48x48", 127.5, "exact", "--field cubic --friction 0.6,0.4"},
-        PathCase{"synthetic:sphere:32x32x32", 76.5, "exact", "--field cubic --solid below"},
-        PathCase{"lobster.nrrd", 35, "exact", "--field cubic"},
-        PathCase{"daisy_pollen.nrrd", 40, "exact", "--field cubic"},
-        PathCase{"cthead_unc.nrrd", 500, "exact", "--field cubic"},
+        PathCase{"lobster.nrrd", 35, "exact", "--field linear"},
         PathCase{"lobster.nrrd", 35, "exact"}, PathCase{"lobster.nrrd", 35, "paper"},
+        PathCase{"orange.nrrd", 15, "exact", "--field linear"},
         PathCase{"orange.nrrd", 15, "exact"}, PathCase{"orange.nrrd", 15, "paper"},
+        PathCase{"daisy_pollen.nrrd", 40, "exact", "--field linear"},
         PathCase{"daisy_pollen.nrrd", 40, "exact"}, PathCase{"daisy_pollen.nrrd", 40, "paper"},
+        PathCase{"cthead_unc.nrrd", 500, "exact", "--field linear"},
         PathCase{"cthead_unc.nrrd", 500, "exact"}, PathCase{"cthead_unc.nrrd", 500, "paper"}));
 
 TEST(Path, starts_at_the_recovered_point_of_a_hand_inside_the_body) {
@@ -156,7 +159,8 @@ TEST(Path, starts_at_the_recovered_point_of_a_hand_inside_the_body) {
     const Outcome outcome = palpate(
         folder, "replay synthetic:sphere:32x32x32 --trajectory t.csv -o a.csv --path p.csv");
     ASSERT_EQ(outcome.status, 0) << outcome.err;
-    const Field field(scenes::make_volume("synthetic:sphere:32x32x32").volume);
+    const Field field(scenes::make_volume("synthetic:sphere:32x32x32").volume, Solid::above,
+                      std::nullopt, Interpolation::cubic);
     PathCheck check(field, 76.5);
     const auto trace = io::read_trace(folder / "a.csv");
     check.check(trace, read_path(folder / "p.csv"));

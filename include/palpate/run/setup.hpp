@@ -22,7 +22,8 @@ struct FieldSetup {
     Solid solid = Solid::above;
     std::optional<io::Level> background;  ///< outside the data; nothing: as Field has it
     std::optional<io::Level> isovalue;    ///< nothing: the volume's own or a suggested one
-    Interpolation interpolation = Interpolation::linear;
+    /// Nothing: cubic, but linear for the methods that are made for it (paper and the gradients).
+    std::optional<Interpolation> interpolation;
 };
 
 struct ThresholdSetup {
@@ -80,9 +81,12 @@ struct Setup {
 /// smallest devices give. Setups for live runs take it as `force.start_below`.
 inline constexpr double live_start_below = 0.3;
 
-/// Field of these samples. Throws std::invalid_argument as Field does.
-Field make_field(std::shared_ptr<const Samples> samples, const FieldSetup& setup);
-Field make_field(const Volume& volume, const FieldSetup& setup);
+/// Field of these samples, for this method where the setup leaves the interpolation open. Throws
+/// std::invalid_argument as Field does.
+Field make_field(std::shared_ptr<const Samples> samples, const FieldSetup& setup,
+                 ProxyMethod method = &update_exact);
+Field make_field(const Volume& volume, const FieldSetup& setup,
+                 ProxyMethod method = &update_exact);
 
 /// The level asked for, else the volume's own, else the first that the histogram suggests. Throws
 /// std::invalid_argument for constant data without a level.
