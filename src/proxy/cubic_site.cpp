@@ -87,6 +87,13 @@ void CubicSite::move_to(const LatticePoint& at) {
     expand();
 }
 
+void CubicSite::return_to(const CubicSite& before) {
+    point = before.point;
+    most = before.most;
+    piece = before.piece;
+    here = before.here;
+}
+
 void CubicSite::enter_cube() {
     const auto greatest = [&](const auto* centre, std::ptrdiff_t row, std::ptrdiff_t slice) {
         const auto best = [&](auto better) {
@@ -133,7 +140,9 @@ double CubicSite::advance(const Vec3& step, double level, unsigned walls) {
 }
 
 WalkEnd walk(CubicSite& site, const Vec3& displacement, double level, Progress& progress) {
-    level = std::max(level, site.here.value + 4e-14 * site.range);
+    // Rounding must not hold a start, nor add up to more than what counts as inside.
+    const double hair = site.here.value < 1.5e-11 * site.range ? 4e-14 * site.range : 0;
+    level = std::max(level, site.here.value + hair);
     Vec3 direction = displacement;
     double left = 1;
     bool expanded = true;  // the piece is that of the tetrahedron, expanded at the point

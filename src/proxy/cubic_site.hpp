@@ -42,6 +42,8 @@ struct CubicSite {
         return {field, isovalue, -sign, located(index)};
     }
     void move_to(const LatticePoint& at);
+    /// Back to where a copy of this site was made, without the work of move_to().
+    void return_to(const CubicSite& before);
     /// The vector to a point in index space, folded [voxel].
     Vec3 folded_to(const Vec3& index) const;
 

@@ -142,13 +142,13 @@ class CubicDescent {
         if (!site_.in_contact() || along <= 0) return fall_to_target();
         const double squared = dot(g, g);
         const double flat = least_slope * range_ / shortest_;
-        if (!(squared > flat * flat)) return look_round() ? End::moved : End::at_rest;
+        const bool is_flat = !(squared > flat * flat);
         // The target's distance along the tangent plane, times the slope, squared.
         const double aside = dot(h, h) * squared - along * along;
         const double least = least_distance * shortest_;
         if (!(aside >
               std::max(resting_slope * resting_slope * along * along, least * least * squared))) {
-            return End::at_rest;
+            return is_flat && look_round() ? End::moved : End::at_rest;
         }
         const double slope = std::sqrt(squared);
         Contact c;
@@ -179,12 +179,12 @@ class CubicDescent {
 
     /// A displacement in mm, no farther than where the distance to the target, which `h` leads to,
     /// is least. False if it leads away.
-    bool go(Vec3 v_mm, const Vec3& h, double level) {
+    bool go(Vec3 v_mm, const Vec3& h, double level, Progress& progress) {
         const double towards = dot(v_mm, h);
         if (!(towards > 0)) return false;
         const double squared = dot(v_mm, v_mm);
         if (towards < squared) v_mm *= towards / squared;
-        walk(site_, v_mm.cwiseProduct(per_mm()), level, progress_);
+        walk(site_, v_mm.cwiseProduct(per_mm()), level, progress);
         return true;
     }
 
@@ -200,12 +200,13 @@ class CubicDescent {
         const Vec3 foot_mm = shrink * (aim.along + (0.5 * shrink * aim.rise) * c.normal);
         const Vec3 foot =
             site_.index() + unfold(site_.point.tetrahedron, foot_mm.cwiseProduct(per_mm()));
-        if (!go(shrink * step.along + lift * c.normal, h, site_.slide_level())) return;
+        if (!go(shrink * step.along + lift * c.normal, h, site_.slide_level(), progress_)) return;
         progress_.report(StepKind::slide, site_);
         if (site_.in_contact()) return;
         // Aim past the foot, in case the surface lies lower.
         const Vec3 aimed = site_.folded_to(foot).cwiseProduct(spacing());
-        if (go(2 * aimed, h_mm(), site_.level())) progress_.report(StepKind::slide, site_);
+        if (go(2 * aimed, h_mm(), site_.level(), progress_))
+            progress_.report(StepKind::slide, site_);
     }
 
     /// Moves the target back against the direction in which the SCP would slide, so that the SCP
@@ -222,32 +223,37 @@ class CubicDescent {
         return true;
     }
 
-    /// Where the normal does not show a way: a small step in each of 52 directions that lead
-    /// closer.
+    /// Where the normal does not show a way: of 52 directions the one in which a small step leads
+    /// closest, and along it as far as a voxel. Takes as much of the budget as it has directions,
+    /// for that is its work.
     bool look_round() {
         constexpr double step = 1e-3;  // [voxel]
-        const double before = distance();
+        constexpr int directions = 52;
+        if (progress_.budget <= directions) {
+            progress_.budget = 0;
+            return true;
+        }
         const Vec3 h = h_mm();
-        const LatticePoint start = site_.point;
+        const CubicSite start = site_;
         Vec3 best = Vec3::Zero();
-        double least = before - 1e-3 * step * shortest_;
-        Progress silent{progress_.geometry, {}, progress_.target, progress_.budget};
+        double least = distance() - 1e-3 * step * shortest_;
+        progress_.budget -= directions;
+        Progress unseen{progress_.geometry, {}, progress_.target, progress_.budget};
         for (int i = 0; i < 125; ++i) {
             const Vec3 axes(i % 5 - 2, i / 5 % 5 - 2, i / 25 - 2);
             if (dot(axes, h) <= 0) continue;
-            const Vec3 v = axes * (step * shortest_ / std::sqrt(dot(axes, axes)));
             if (std::abs(axes[0]) + std::abs(axes[1]) + std::abs(axes[2]) == 6) continue;
-            site_.move_to(start);
-            if (!go(v, h, site_.slide_level())) continue;
+            const Vec3 v = axes * (shortest_ / std::sqrt(dot(axes, axes)));
+            site_.return_to(start);
+            if (!go(step * v, h, site_.slide_level(), unseen)) continue;
             const double after = distance();
             if (after >= least) continue;
             least = after;
             best = v;
         }
-        progress_.budget = silent.budget - 1;
-        site_.move_to(start);
+        site_.return_to(start);
         if (best.isZero(0)) return false;
-        go(best, h, site_.slide_level());
+        go(best, h, site_.slide_level(), progress_);
         progress_.report(StepKind::slide, site_);
         return true;
     }

@@ -10,15 +10,14 @@ using namespace palpate::support;
 
 namespace {
 
-constexpr int smooth_updates = scaled(20000);
-
 CubicTally run_smooth(const TestField& test, std::uint64_t seed, const HandStyle& style = {}) {
     const Field field = smooth(test.field);
     CubicGuarantees checked(field);
     Hand hand(field.geometry(), seed, style);
     Proxy proxy;
     proxy.isovalue = test.isovalue;
-    for (int i = 0; i < smooth_updates; ++i) {
+    const int count = scaled_or_asked(20000);
+    for (int i = 0; i < count; ++i) {
         const Vec3 hip = hand.next();
         SCOPED_TRACE(test.name + " seed " + std::to_string(seed) + " update " + std::to_string(i));
         checked.update(proxy, hip);
@@ -66,6 +65,26 @@ TEST(CubicProxy, keeps_its_guarantees_where_the_solid_is_below) {
 }
 TEST(CubicProxy, keeps_its_guarantees_on_floats_far_from_zero) {
     expect_much_contact(run_smooth(offset_field(), 19), 0.1);
+}
+TEST(CubicProxy, keeps_its_guarantees_on_walls_of_one_sample) {
+    TestField test = sheet_field();
+    test.isovalue = 180;  // three quarters of a full wall's height are 191
+    const HandStyle sweeps{.slide = 4, .sweep = 4, .jump = 1, .margin = -3};
+    expect_much_contact(run_smooth(test, 21, sweeps), 0.1);
+}
+TEST(CubicProxy, keeps_its_guarantees_on_two_slices) {
+    const Geometry geometry = grid({40, 30, 2}, {1, 1, 3});
+    const TestField test{"two slices", Field(noise_volume<std::uint8_t>(geometry, 9, 0, 256)), 80};
+    expect_much_contact(run_smooth(test, 22), 0.1);
+}
+TEST(CubicProxy, keeps_its_guarantees_on_a_plateau_with_ripples_of_a_millionth) {
+    Random random(10);
+    const Volume volume = volume_of<float>(grid(cube(24)), [&](const Index3& i) {
+        if (i == Index3(0, 0, 0)) return 2.0;
+        return i[0] < 14 ? 1 + random.uniform(-1e-6, 1e-6) : 0.0;
+    });
+    const CubicTally t = run_smooth({"ripples", Field(volume), 1}, 23);
+    EXPECT_GT(double(t.constrained) / t.updates, 0.1);
 }
 TEST(CubicProxy, keeps_its_guarantees_on_plateaus_at_the_isovalue) {
     expect_much_contact(run_smooth(terraces_field(), 20));

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "palpate/proxy.hpp"
-#include "proxy/update.hpp"
 #include "support/cubic_reference.hpp"
 #include "support/paper_lattice.hpp"
 #include "support/random.hpp"

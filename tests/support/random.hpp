@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <random>
 
 #include "palpate/volume.hpp"
@@ -59,6 +60,12 @@ inline constexpr bool is_slow_build = false;
 /// `count` repetitions in an optimised build, a twentieth of them in a slow one.
 constexpr int scaled(int count) {
     return is_slow_build ? (count + 19) / 20 : count;
+}
+
+/// As scaled(), or as many as the environment variable PALPATE_TEST_UPDATES says: for long runs.
+inline int scaled_or_asked(int usual) {
+    const char* const asked = std::getenv("PALPATE_TEST_UPDATES");
+    return asked ? std::atoi(asked) : scaled(usual);
 }
 
 }  // namespace palpate::support
