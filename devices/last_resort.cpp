@@ -2,6 +2,9 @@
 // globals of the devices.
 #include "palpate/devices/last_resort.hpp"
 
+#include <ucontext.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -9,6 +12,8 @@
 #include <csignal>
 #include <ctime>
 #include <stdexcept>
+
+#include "devices/link.hpp"
 
 namespace palpate::devices {
 namespace {
@@ -21,8 +26,6 @@ constexpr std::array harmless{SIGKILL, SIGSTOP, SIGCHLD, SIGCONT, SIGURG, SIGWIN
 std::array<std::atomic<Device*>, LastResort::most> guarded{};
 /// Those that a handler has told to stop.
 std::array<std::atomic<Device*>, LastResort::most> told{};
-/// Handlers that are waiting for a zero to be sent.
-std::atomic<int> letting_go{0};
 
 /// How long a handler waits [ms]: at least, for devices that cannot tell, and at most.
 constexpr int least_wait = 100;
@@ -47,37 +50,48 @@ void wait_for_zeros() {
 /// made the LastResort; other threads have their guard page and no second stack).
 alignas(16) std::array<char, 64 * 1024> handler_stack;
 
-void on_signal(int number) {
-    // A second signal, on another thread, must not end the program before the zero is sent.
-    bool wait = letting_go.fetch_add(1) > 0;
+void on_signal(int number, siginfo_t* info, void* context) {
+    bool wait = false;  // also for what another handler, on another thread, has told to stop
     for (std::size_t i = 0; i < guarded.size(); ++i) {
-        Device* const device = guarded[i].exchange(nullptr);
-        if (!device) continue;
-        device->stop();
-        told[i].store(device);
-        wait = true;
+        if (Device* const device = guarded[i].load()) told[i].store(device);
+        if (Device* const device = guarded[i].exchange(nullptr)) device->stop();
+        wait = wait || told[i].load();
+    }
+    const bool was_sent = info->si_code <= 0;  // by someone: no fault of this thread
+    if (was_sent && is_device_thread()) {
+        // This thread has the zero to send: others take the signal from now on.
+        ::sigaddset(&static_cast<ucontext_t*>(context)->uc_sigmask, number);
+        ::kill(::getpid(), number);
+        return;
     }
     if (wait) wait_for_zeros();
-    letting_go.fetch_sub(1);
-    // The default action is restored (SA_RESETHAND): what the signal does goes on.
+    // What the signal does goes on: signals are held back here until this returns.
+    std::signal(number, SIG_DFL);
     ::raise(number);
 }
 
-bool has_handler(int number, void (*handler)(int)) {
+bool has_default_action(int number) {
     struct sigaction now {};
     return ::sigaction(number, nullptr, &now) == 0 && (now.sa_flags & SA_SIGINFO) == 0 &&
-           now.sa_handler == handler;
+           now.sa_handler == SIG_DFL;
+}
+
+bool has_our_handler(int number) {
+    struct sigaction now {};
+    return ::sigaction(number, nullptr, &now) == 0 && (now.sa_flags & SA_SIGINFO) != 0 &&
+           now.sa_sigaction == &on_signal;
 }
 
 /// Every signal whose default action ends or suspends the program. What an application handles or
 /// ignores stays its own.
 void handle_signals() {
     struct sigaction action {};
-    action.sa_handler = &on_signal;
-    action.sa_flags = SA_RESETHAND | SA_ONSTACK | SA_NODEFER;
+    action.sa_sigaction = &on_signal;
+    action.sa_flags = SA_SIGINFO | SA_ONSTACK;
+    ::sigfillset(&action.sa_mask);  // a signal that comes again waits for the zero as well
     for (int number = 1; number <= SIGRTMAX; ++number) {
         if (std::ranges::count(harmless, number) > 0) continue;
-        if (std::ranges::count(crashes, number) > 0 || has_handler(number, SIG_DFL)) {
+        if (std::ranges::count(crashes, number) > 0 || has_default_action(number)) {
             ::sigaction(number, &action, nullptr);  // fails for those that the C library keeps
         }
     }
@@ -85,7 +99,7 @@ void handle_signals() {
 
 void forget_signals() {
     for (int number = 1; number <= SIGRTMAX; ++number) {
-        if (has_handler(number, &on_signal)) std::signal(number, SIG_DFL);
+        if (has_our_handler(number)) std::signal(number, SIG_DFL);
     }
 }
 

@@ -17,7 +17,16 @@ std::int64_t monotonic_ns() noexcept {
         .count();
 }
 
+namespace {
+thread_local bool talks_to_a_device = false;
+}
+
+bool is_device_thread() noexcept {
+    return talks_to_a_device;
+}
+
 void prepare_device_thread() noexcept {
+    talks_to_a_device = true;
     ::prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
     sched_param parameter{};
     parameter.sched_priority = 81;

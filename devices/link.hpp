@@ -65,6 +65,8 @@ class Link {
 /// privileges report what was not). Leaves signals to the other threads, but for its own crashes:
 /// while a handler waits for the zero (LastResort), this thread has to send it.
 void prepare_device_thread() noexcept;
+/// Whether the thread that asks is one of those. Safe in a signal handler.
+bool is_device_thread() noexcept;
 
 /// The machine's monotonic clock [ns].
 std::int64_t monotonic_ns() noexcept;

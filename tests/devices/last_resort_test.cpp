@@ -128,6 +128,40 @@ TEST(LastResort, waits_for_a_thread_that_seldom_gets_the_processor) {
     EXPECT_EQ(sent, 0);
 }
 
+TEST(LastResort, a_signal_that_comes_again_waits_for_the_zero) {
+    for (const int signal : {SIGSYS, SIGUSR1, SIGALRM}) {
+        const auto [status, sent] = crashed(
+            true,
+            [signal] {
+                for (int i = 0; i < 5; ++i) {
+                    ::kill(::getpid(), signal);
+                    std::this_thread::sleep_for(2ms);
+                }
+                std::this_thread::sleep_for(5s);
+            },
+            250ms);
+        EXPECT_TRUE(WIFSIGNALED(status)) << status;
+        EXPECT_EQ(WTERMSIG(status), signal);
+        EXPECT_EQ(sent, 0) << signal;
+    }
+}
+
+TEST(LastResort,
+     a_crash_signal_sent_to_the_device_s_thread_does_not_keep_it_from_sending_the_zero) {
+    const auto [status, sent] = crashed(true, [] {
+        sigset_t all, before;
+        ::sigfillset(&all);
+        ::pthread_sigmask(SIG_SETMASK, &all, &before);  // so that the devices' threads get it
+        ::kill(::getpid(), SIGSYS);
+        std::this_thread::sleep_for(50ms);
+        ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
+        std::this_thread::sleep_for(5s);
+    });
+    EXPECT_TRUE(WIFSIGNALED(status)) << status;
+    EXPECT_EQ(WTERMSIG(status), SIGSYS);
+    EXPECT_EQ(sent, 0);
+}
+
 TEST(LastResort, lets_go_before_an_exception_that_nobody_catches_does) {
     expect_let_go(SIGABRT, [] {
         std::thread([] { throw std::runtime_error("nobody catches this"); }).join();
