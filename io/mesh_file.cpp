@@ -33,10 +33,16 @@ void put(PendingFile& file, const Vec3& v) {
 void write_ply(const SurfaceMesh& mesh, PendingFile& file) {
     file.write("ply\nformat binary_little_endian 1.0\ncomment " + std::string(made_by) +
                "\nelement vertex " + std::to_string(mesh.vertices.size()) +
-               "\nproperty double x\nproperty double y\nproperty double z\nelement face " +
-               std::to_string(mesh.triangles.size()) +
+               "\nproperty double x\nproperty double y\nproperty double z\n" +
+               (mesh.normals.empty()
+                    ? ""
+                    : "property double nx\nproperty double ny\nproperty double nz\n") +
+               "element face " + std::to_string(mesh.triangles.size()) +
                "\nproperty list uchar uint vertex_indices\nend_header\n");
-    for (const Vec3& v : mesh.vertices) put(file, v);
+    for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+        put(file, mesh.vertices[i]);
+        if (!mesh.normals.empty()) put(file, mesh.normals[i]);
+    }
     for (const auto& triangle : mesh.triangles) {
         put(file, std::uint8_t{3});
         for (const std::uint32_t index : triangle) put(file, index);
@@ -71,19 +77,26 @@ void write_stl(const SurfaceMesh& mesh, PendingFile& file) {
 void write_obj(const SurfaceMesh& mesh, PendingFile& file) {
     file.write("# " + std::string(made_by) + "\n");
     std::string line;
-    for (const Vec3& v : mesh.vertices) {
-        line.assign(1, 'v');
-        for (int a = 0; a < 3; ++a) {
-            line += ' ';
-            append_number(line, v[a]);
+    const auto write_vectors = [&](const char* what, const std::vector<Vec3>& vectors) {
+        for (const Vec3& v : vectors) {
+            line = what;
+            for (int a = 0; a < 3; ++a) {
+                line += ' ';
+                append_number(line, v[a]);
+            }
+            line += '\n';
+            file.write(line);
         }
-        line += '\n';
-        file.write(line);
-    }
+    };
+    write_vectors("v", mesh.vertices);
+    write_vectors("vn", mesh.normals);
     for (const auto& triangle : mesh.triangles) {
         line.assign(1, 'f');
         for (const std::uint32_t index : triangle) {
             line += ' ';
+            append_number(line, std::int64_t{index} + 1);
+            if (mesh.normals.empty()) continue;
+            line += "//";
             append_number(line, std::int64_t{index} + 1);
         }
         line += '\n';
@@ -107,6 +120,7 @@ void write_vtp(const SurfaceMesh& mesh, PendingFile& file) {
     const std::uint64_t vertex_bytes = mesh.vertices.size() * 3 * sizeof(double);
     const std::uint64_t corner_bytes = corners * sizeof(Id);
     const std::uint64_t offset_bytes = mesh.triangles.size() * sizeof(Id);
+    const bool has_normals = !mesh.normals.empty();
     std::uint64_t offset = 0;
     std::string xml =
         "<?xml version=\"1.0\"?>\n<!-- " + std::string(made_by) +
@@ -116,13 +130,24 @@ void write_vtp(const SurfaceMesh& mesh, PendingFile& file) {
         "\" NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"" +
         std::to_string(mesh.triangles.size()) + "\">\n<Points>\n";
     xml += vtp_array("Float64", "Name=\"Points\" NumberOfComponents=\"3\"", offset, vertex_bytes);
-    xml += "</Points>\n<Polys>\n";
+    xml += "</Points>\n";
+    if (has_normals) {
+        xml += "<PointData Normals=\"Normals\">\n";
+        xml +=
+            vtp_array("Float64", "Name=\"Normals\" NumberOfComponents=\"3\"", offset, vertex_bytes);
+        xml += "</PointData>\n";
+    }
+    xml += "<Polys>\n";
     xml += vtp_array(id, "Name=\"connectivity\"", offset, corner_bytes);
     xml += vtp_array(id, "Name=\"offsets\"", offset, offset_bytes);
     xml += "</Polys>\n</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_";
     file.write(xml);
     put(file, vertex_bytes);
     for (const Vec3& v : mesh.vertices) put(file, v);
+    if (has_normals) {
+        put(file, vertex_bytes);
+        for (const Vec3& n : mesh.normals) put(file, n);
+    }
     put(file, corner_bytes);
     for (const auto& triangle : mesh.triangles) {
         for (const std::uint32_t index : triangle) put(file, static_cast<Id>(index));

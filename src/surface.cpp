@@ -7,7 +7,9 @@
 #include <stdexcept>
 #include <string>
 
+#include "palpate/density.hpp"
 #include "surface/nodes.hpp"
+#include "surface/refine.hpp"
 
 namespace palpate {
 namespace {
@@ -130,9 +132,11 @@ class Extraction {
     std::vector<FaceVertices> slab_;
 };
 
+/// Vertices by a 32-bit index.
+constexpr std::uint64_t nameable = std::numeric_limits<std::uint32_t>::max();
+
 template <class Nodes>
 SurfaceMesh extract(const Field& field, double isovalue, const SurfaceOptions& options) {
-    const std::uint64_t nameable = std::numeric_limits<std::uint32_t>::max();
     SurfaceMesh mesh;
     SampleBox box = Nodes::cells(field.geometry());
     if (options.cells) {
@@ -158,9 +162,23 @@ SampleBox surface_cells(const Field& field) {
 
 SurfaceMesh extract_surface(const Field& field, double isovalue, const SurfaceOptions& options) {
     if (!std::isfinite(isovalue)) throw std::invalid_argument("the isovalue is not finite");
-    return field.interpolation() == Interpolation::cubic
-               ? extract<CubicNodes>(field, isovalue, options)
-               : extract<LinearNodes>(field, isovalue, options);
+    if (!(options.tolerance >= 0)) throw std::invalid_argument("a tolerance is 0 or more");
+    if (field.interpolation() == Interpolation::linear) {
+        return extract<LinearNodes>(field, isovalue, options);
+    }
+    SurfaceMesh mesh = extract<CubicNodes>(field, isovalue, options);
+    if (options.tolerance > 0) {
+        refine(mesh, field, isovalue, options.tolerance * field.geometry().spacing.minCoeff(),
+               std::min(options.max_vertices, nameable));
+    }
+    if (options.normals) {
+        mesh.normals.reserve(mesh.vertices.size());
+        for (const Vec3& vertex : mesh.vertices) {
+            mesh.normals.emplace_back(-field.sign() *
+                                      gradient_at(field, vertex).stableNormalized());
+        }
+    }
+    return mesh;
 }
 
 double enclosed_volume(const SurfaceMesh& mesh) {

@@ -18,6 +18,7 @@ struct ExtractOptions {
     SourceOptions source;
     run::FieldSetup field;
     std::string output;
+    double tolerance = 0;  // [voxel]
     bool json = false;
 };
 
@@ -31,6 +32,8 @@ void extract(const ExtractOptions& options) {
     {
         ProgressBar bar("extracting", options.source.quiet);
         SurfaceOptions surface;
+        surface.tolerance = options.tolerance;
+        surface.normals = true;
         surface.progress = [&](double fraction) {
             bar.at(fraction);
             return true;
@@ -64,6 +67,11 @@ void add_extract(CLI::App& app) {
     add_field_options(*command, options->field);
     command->add_option("-o,--output", options->output, "Mesh to write: .ply, .stl, .obj or .vtp")
         ->required();
+    command
+        ->add_option("--tolerance", options->tolerance,
+                     "Split facets of the smooth surface until they are as near to it [voxel] (0: "
+                     "not at all)")
+        ->check(CLI::Range(1e-6, 1.0));
     command->add_flag("--json", options->json, "Print the summary as JSON");
     command->callback([options] { extract(*options); });
 }

@@ -54,7 +54,8 @@ struct SurfaceMesh {
     /// Indices into `vertices`, counter-clockwise seen from the free side: normals point out of the
     /// solid.
     std::vector<std::array<std::uint32_t, 3>> triangles;
-    bool complete = true;  ///< false if `progress` cancelled: then the mesh is empty
+    std::vector<Vec3> normals;  ///< unit, one a vertex, out of the solid; empty unless asked for
+    bool complete = true;       ///< false if `progress` cancelled: then the mesh is empty
 };
 
 struct SurfaceOptions {
@@ -68,6 +69,12 @@ struct SurfaceOptions {
     /// mesh is open where the surface leaves the box. It fits the meshes of neighbouring boxes: at
     /// the border both have the same vertices, bit for bit.
     std::optional<SampleBox> cells = std::nullopt;
+    /// [voxel, smallest spacing] On a cubic field, whose surface is curved: facets are split until
+    /// the middles of their edges are as near to it, or eight times. 0: not at all. A linear
+    /// field's surface is the mesh already.
+    double tolerance = 0;
+    /// Makes normals, of a cubic field only: those that are felt, from the gradient.
+    bool normals = false;
 };
 
 /// Least distance of a vertex from the ends of its tetrahedron's edge, as a fraction of the edge.

@@ -129,6 +129,47 @@ TEST(SmoothSurface, in_boxes_is_the_whole_one_bit_for_bit) {
     EXPECT_EQ(vertices, expected);
 }
 
+TEST(SmoothSurface, has_facets_as_near_to_it_as_asked) {
+    for (const TestField& test : smooth_fields()) {
+        if (test.name != "box" && test.name != "marschner_lobb" && test.name != "oblique") continue;
+        SCOPED_TRACE(test.name);
+        const Field& field = test.field;
+        const double voxel = field.geometry().spacing.minCoeff();
+        SurfaceOptions options;
+        options.tolerance = 0.01;
+        const SurfaceMesh coarse = extract_surface(field, test.isovalue);
+        const SurfaceMesh fine = extract_surface(field, test.isovalue, options);
+        EXPECT_EQ(flaw_in_closed_mesh(fine), "");
+        EXPECT_GT(fine.triangles.size(), coarse.triangles.size() * 5 / 4);
+        std::size_t edges = 0, far = 0;
+        for (const auto& t : fine.triangles) {
+            for (int i = 0; i < 3; ++i) {
+                const Vec3 middle = 0.5 * (fine.vertices[t[i]] + fine.vertices[t[(i + 1) % 3]]);
+                const double slope = gradient_at(field, middle).norm();
+                const double off = std::abs(value_at(field, middle) - test.isovalue) / slope;
+                ++edges;
+                far += off > 1.5 * options.tolerance * voxel;
+            }
+        }
+        EXPECT_LT(far,
+                  edges / 50);  // where the surface pinches, Newton's method finds another part
+    }
+}
+
+TEST(SmoothSurface, has_the_normals_that_are_felt) {
+    const TestField test = oblique_field();
+    SurfaceOptions options;
+    options.normals = true;
+    EXPECT_TRUE(extract_surface(test.field, test.isovalue, options).normals.empty());
+    const Field field = smooth(test.field);
+    const SurfaceMesh mesh = extract_surface(field, test.isovalue, options);
+    ASSERT_EQ(mesh.normals.size(), mesh.vertices.size());
+    for (std::size_t i = 0; i < mesh.normals.size(); i += 13) {
+        const Vec3 out = -field.sign() * gradient_at(field, mesh.vertices[i]).normalized();
+        EXPECT_LT((mesh.normals[i] - out).norm(), 1e-12);
+    }
+}
+
 TEST(SmoothSurface, of_a_body_that_the_border_cuts_is_closed_outside_the_grid) {
     const Field field(Volume(grid({5, 6, 7}), std::vector<std::uint8_t>(210, 200)), Solid::above,
                       0.0, Interpolation::cubic);

@@ -135,6 +135,31 @@ TEST(MeshFile, vtp_holds_every_array_where_its_header_says) {
     EXPECT_EQ(rest, "\n</AppendedData>\n</VTKFile>\n");
 }
 
+TEST(MeshFile, holds_normals_where_the_mesh_has_them) {
+    SurfaceMesh mesh = example();
+    for (const Vec3& v : mesh.vertices) mesh.normals.push_back(v.normalized());
+    const std::string ply = written(mesh, "a.ply"), end = "end_header\n";
+    EXPECT_TRUE(contains(ply, "property double z\nproperty double nx\n"));
+    std::string_view rest = std::string_view(ply).substr(ply.find(end) + end.size());
+    for (std::size_t i = 0; i < 4; ++i) {
+        EXPECT_EQ(take_vec3(rest), mesh.vertices[i]);
+        EXPECT_EQ(take_vec3(rest), mesh.normals[i]);
+    }
+    const std::string obj = written(mesh, "a.obj");
+    EXPECT_TRUE(contains(obj, "vn 1 0 0\n"));
+    EXPECT_TRUE(contains(obj, "f 1//1 3//3 2//2\n"));
+    const std::string vtp = written(mesh, "a.vtp");
+    const std::string start = "<AppendedData encoding=\"raw\">\n_";
+    EXPECT_TRUE(contains(vtp, "<PointData Normals=\"Normals\">"));
+    rest = std::string_view(vtp).substr(vtp.find(start) + start.size());
+    EXPECT_EQ(take<std::uint64_t>(rest), 96U);
+    for (const Vec3& v : mesh.vertices) EXPECT_EQ(take_vec3(rest), v);
+    EXPECT_EQ(take<std::uint64_t>(rest), 96U);
+    for (const Vec3& n : mesh.normals) EXPECT_EQ(take_vec3(rest), n);
+    EXPECT_EQ(take<std::uint64_t>(rest), 48U);
+    EXPECT_EQ(written(mesh, "a.stl"), written(example(), "a.stl"));
+}
+
 TEST(MeshFile, of_an_empty_mesh_is_a_valid_file) {
     EXPECT_TRUE(contains(written({}, "a.ply"), "element vertex 0\n"));
     EXPECT_EQ(written({}, "a.stl").size(), 84U);

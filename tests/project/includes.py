@@ -6,10 +6,10 @@ import re
 
 import repository
 
-# The flow. `surface` looks at the lattice from the side: no stage may include it.
+# The flow. `surface` looks at the field from the side: no stage may include it.
 STAGES = ("volume samples field edit editor lattice cubic density proxy penetrability force renderer "
           "exchange latency device session servo").split()
-OBSERVERS = {"surface": "lattice"}  # name -> last stage that it may include
+OBSERVERS = {"surface": "density"}  # name -> last stage that it may include
 UMBRELLA = "palpate"                # include/palpate/palpate.hpp, for users of the library
 
 # Which folders each folder may include from, besides itself. A folder that is named covers those

@@ -9,7 +9,8 @@
 namespace palpate::io {
 
 /// Binary little-endian PLY, binary STL, OBJ text, VTP with raw appended data. Vertices are doubles
-/// in all but STL, which has 32-bit floats only.
+/// in all but STL, which has 32-bit floats only. Normals go along where the mesh has them, but for
+/// STL.
 enum class MeshFormat : std::uint8_t { ply, stl, obj, vtp };
 
 /// The format of an extension, upper or lower case. Throws std::invalid_argument, naming the four,
