@@ -7,6 +7,7 @@
 
 #include "io/real_volumes.hpp"
 #include "palpate/io/volume_file.hpp"
+#include "support/cubic_guarantees.hpp"
 #include "support/fields.hpp"
 #include "support/guarantees.hpp"
 #include "support/hand.hpp"
@@ -46,6 +47,25 @@ TEST_P(ProxyOnRealVolumes, keeps_its_guarantees) {
     EXPECT_GT(checked.tally().long_moves, updates / 200);
     EXPECT_GT(checked.tally().motions, checked.tally().constrained);
     EXPECT_EQ(checked.tally().recovering, 0);
+}
+
+TEST_P(ProxyOnRealVolumes, keeps_its_guarantees_on_the_smooth_field) {
+    const ProxyScan scan = GetParam();
+    const auto path = io::test::real_volume(scan.file);
+    if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
+    const Field field(io::read_volume(path).volume, scan.solid, std::nullopt, Interpolation::cubic);
+    Hand hand(field.geometry(), 6, {.slide = 8, .sweep = 3, .jump = 1, .margin = -1});
+    CubicGuarantees checked(field);
+    Proxy proxy;
+    proxy.isovalue = scan.isovalue;
+    const int count = scaled_or_asked(2000);
+    for (int i = 0; i < count && !HasFailure(); ++i) {
+        SCOPED_TRACE(std::string(scan.file) + " update " + std::to_string(i));
+        checked.update(proxy, hand.next());
+    }
+    checked.print(scan.file);
+    EXPECT_GT(checked.tally().constrained, count / 50);
+    EXPECT_EQ(checked.tally().out_of_budget, 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(
