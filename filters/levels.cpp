@@ -1,6 +1,8 @@
 // The levels that samples lie on, and what rounding to them does to surfaces.
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <limits>
 #include <type_traits>
@@ -98,6 +100,18 @@ std::optional<Terraces> terraces_of(const Volume& volume) {
         terraces.tilt = tilt / stepped;
     }
     return terraces;
+}
+
+std::string reason_to_dequantize(const Terraces& terraces) {
+    if (!terraces.wide()) return {};
+    if (terraces.mask) return "the samples have two values, so surfaces are stair steps";
+    std::array<char, 160> text{};
+    std::snprintf(
+        text.data(), text.size(),
+        "rounding to levels of %g makes terraces of %.0f%% of the surfaces and tilts them "
+        "by %.0f degrees",
+        terraces.level, 100 * terraces.share, terraces.tilt);
+    return text.data();
 }
 
 }  // namespace palpate::filters

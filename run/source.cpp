@@ -61,9 +61,9 @@ LoadedVolume loaded_of(const SyntheticSource& synthetic, const Source& source,
 }
 
 LoadedVolume loaded_of(const LiveSource& live, const Source& source, const io::Progress&) {
-    if (source.smooth > 0 || source.dequantize > 0) {
+    if (source.smooth > 0 || source.dequantize > 0 || source.prefilter) {
         throw std::invalid_argument(live.path +
-                                    ": a live source cannot be smoothed or dequantized");
+                                    ": a live source cannot be smoothed, dequantized or sharpened");
     }
     auto frames = std::make_shared<const io::LiveFrames>(live.path);
     const std::shared_ptr<const Samples> samples = frames->wait(longest_wait);
@@ -122,16 +122,20 @@ LoadedVolume loaded_of(const FileSource& file, const Source& source, const io::P
 class Preparation {
   public:
     explicit Preparation(const Source& source)
-        : dequantize_(source.dequantize), smooth_(source.smooth) {}
+        : dequantize_(source.dequantize), smooth_(source.smooth), prefilter_(source.prefilter) {}
 
-    bool any() const { return dequantize_ != 0 || smooth_ != 0; }
+    bool any() const { return dequantize_ != 0 || smooth_ != 0 || prefilter_; }
 
     Volume operator()(const Volume& volume, const io::Progress& progress) const {
-        if (dequantize_ == 0) return smoothed(volume, smooth_);
-        filters::DequantizeOptions options;
-        options.rounds = dequantize_;
-        options.progress = progress;
-        return smoothed(filters::dequantized(volume, options), smooth_);
+        Volume prepared = volume;
+        if (dequantize_ != 0) {
+            filters::DequantizeOptions options;
+            options.rounds = dequantize_;
+            options.progress = progress;
+            prepared = filters::dequantized(prepared, options);
+        }
+        prepared = smoothed(prepared, smooth_);
+        return prefilter_ ? sharpened(prepared) : prepared;
     }
 
     /// The progress of reading, if that is the first part of the work, and that of the rest.
@@ -147,6 +151,7 @@ class Preparation {
     }
 
     int dequantize_, smooth_;
+    bool prefilter_;
     double reading_ = dequantize_ != 0 ? 0.2 : 1;  ///< of the time
 };
 

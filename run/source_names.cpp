@@ -110,6 +110,7 @@ std::map<std::string, std::string> to_names(const Source& source) {
     if (source.frame_interval) names["frame-interval"] = number_text(*source.frame_interval);
     if (source.smooth > 0) names["smooth"] = std::to_string(source.smooth);
     if (source.dequantize > 0) names["dequantize"] = std::to_string(source.dequantize);
+    if (source.prefilter) names["prefilter"] = "yes";
     return names;
 }
 
@@ -125,6 +126,7 @@ Source source_from(const std::map<std::string, std::string>& names) {
     if (interval && *interval > 0) source.frame_interval = interval;
     source.smooth = io::number_from<int>(value_of(names, "smooth")).value_or(0);
     source.dequantize = io::number_from<int>(value_of(names, "dequantize")).value_or(0);
+    source.prefilter = value_of(names, "prefilter") == "yes";
     return source;
 }
 

@@ -204,4 +204,30 @@ Volume smoothed(const Volume& volume, int passes) {
     return {geometry, std::move(samples)};
 }
 
+Volume sharpened(const Volume& volume) {
+    const Geometry& geometry = volume.geometry();
+    const Index3 size = geometry.size;
+    std::vector<float> samples(static_cast<std::size_t>(sample_count(geometry)));
+    with_type(volume.type(), [&](auto s) {
+        const auto* const from = volume.samples<decltype(s)>().data();
+        const std::array<std::ptrdiff_t, 3> stride{1, size[0], std::ptrdiff_t{size[0]} * size[1]};
+        std::ptrdiff_t at = 0;
+        for (Index3 i = Index3::Zero(); i[2] < size[2]; ++i[2]) {
+            for (i[1] = 0; i[1] < size[1]; ++i[1]) {
+                for (i[0] = 0; i[0] < size[0]; ++i[0], ++at) {
+                    const double here = from[at];
+                    double laplacian = 0;
+                    for (int a = 0; a < 3; ++a) {
+                        if (i[a] > 0) laplacian += from[at - stride[a]] - here;
+                        if (i[a] + 1 < size[a]) laplacian += from[at + stride[a]] - here;
+                    }
+                    samples[static_cast<std::size_t>(at)] =
+                        static_cast<float>(here - 0.125 * laplacian);
+                }
+            }
+        }
+    });
+    return {geometry, std::move(samples)};
+}
+
 }  // namespace palpate

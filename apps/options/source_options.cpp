@@ -53,6 +53,9 @@ void SourceOptions::add_to(CLI::App& command, bool optional) {
                   "Give back what rounding to levels took, against terraces and the stair steps of "
                   "masks: --dequantize or --dequantize=ROUNDS; samples become float32")
         ->check(CLI::Range(0, filters::most_rounds));
+    command.add_flag("--prefilter", prefilter,
+                     "Sharpen the samples so that thin structures keep their height in the smooth "
+                     "field; they become float32");
     command.add_flag("-q,--quiet", quiet, "No progress, no notes");
 }
 
@@ -66,6 +69,7 @@ run::Source SourceOptions::source() const {
     source.frame = frame;
     source.frame_interval = frame_interval;
     source.smooth = smooth;
+    source.prefilter = prefilter;
     source.dequantize = dequantize;
     return source;
 }
@@ -92,7 +96,8 @@ void add_side_options(CLI::App& command, run::FieldSetup& field) {
         .add_option_function<std::string>(
             "--field",
             [&field](const std::string& text) { field.interpolation = interpolation_from(text); },
-            "How densities continue between samples: cubic (smooth), linear (with facets, the paper's)")
+            "How densities continue between samples: cubic (smooth), linear (with facets, the "
+            "paper's)")
         ->check(CLI::IsMember({"cubic", "linear"}))
         ->default_str("cubic; linear for the methods paper and gradient");
     command.add_option_function<std::string>(

@@ -17,6 +17,7 @@ struct SourceOptions {
     std::optional<int> frame;
     std::optional<double> frame_interval;  ///< [s]
     int smooth = 0;
+    bool prefilter = false;
     int dequantize = 0;  ///< rounds
     bool quiet = false;
 

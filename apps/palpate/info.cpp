@@ -46,24 +46,22 @@ std::string size_text(std::size_t bytes) {
     return b < 1e6 ? fmt::format("{:.1f} kB", b / 1e3) : fmt::format("{:.1f} MB", b / 1e6);
 }
 
-/// Why the volume is worth dequantizing; empty if it is not.
-std::string reason_to_dequantize(const std::optional<filters::Terraces>& terraces) {
+/// "--dequantize: why"; empty where it is not worth it.
+std::string suggestion_of(const std::optional<filters::Terraces>& terraces) {
     if (!terraces || !terraces->wide()) return {};
-    if (terraces->mask) return "the samples have two values, so surfaces are stair steps";
-    return fmt::format(
-        "rounding to levels of {:g} makes terraces of {:.0f}% of the surfaces and "
-        "tilts them by {:.0f} degrees",
-        terraces->level, 100 * terraces->share, terraces->tilt);
+    const bool is_usual = terraces->rounds() == filters::DequantizeOptions{}.rounds;
+    return fmt::format("--dequantize{}: {}", is_usual ? "" : fmt::format("={}", terraces->rounds()),
+                       filters::reason_to_dequantize(*terraces));
 }
 
 nlohmann::ordered_json json_of(const std::optional<filters::Terraces>& terraces) {
     if (!terraces) return nullptr;
-    const std::string reason = reason_to_dequantize(terraces);
+    const std::string suggestion = suggestion_of(terraces);
     nlohmann::ordered_json json{{"level", terraces->level},
                                 {"mask", terraces->mask},
                                 {"share", terraces->share},
                                 {"tilt_degrees", terraces->tilt}};
-    if (!reason.empty()) json["suggestion"] = "--dequantize: " + reason;
+    if (!suggestion.empty()) json["suggestion"] = suggestion;
     return json;
 }
 
@@ -152,8 +150,8 @@ void print_text(const run::LoadedVolume& loaded, const run::Histogram& histogram
     }
     fmt::print("isovalues    {}\n",
                levels.empty() ? "none: the data are constant" : "try " + levels);
-    const std::string reason = reason_to_dequantize(terraces);
-    if (!reason.empty()) fmt::print("terraces     try --dequantize: {}\n", reason);
+    const std::string suggestion = suggestion_of(terraces);
+    if (!suggestion.empty()) fmt::print("terraces     try {}\n", suggestion);
     print_histogram(histogram);
 }
 

@@ -134,4 +134,10 @@ class Volume {
 /// the volume itself. Throws std::invalid_argument for fewer than 0 or more than 64.
 Volume smoothed(const Volume& volume, int passes = 1);
 
+/// s - (discrete Laplacian of s) / 8, as float32; samples beyond the border count as those on it.
+/// The smooth field of these samples is at each sample nearer to the data's own value: thin
+/// structures keep their height, and curved surfaces their place. Noise is sharpened, too, and
+/// samples may leave the data's range by up to 0.75 of it.
+Volume sharpened(const Volume& volume);
+
 }  // namespace palpate

@@ -8,6 +8,7 @@
 #include <limits>
 #include <vector>
 
+#include "palpate/density.hpp"
 #include "support/constants.hpp"
 #include "support/fields.hpp"
 
@@ -243,6 +244,40 @@ TEST(Volume, work_is_called_with_the_type_that_the_samples_have) {
          {SampleType::uint8, SampleType::int16, SampleType::uint16, SampleType::float32}) {
         EXPECT_EQ(with_type(type, [](auto zero) { return sample_type_of<decltype(zero)>(); }),
                   type);
+    }
+}
+
+TEST(Volume, sharpened_gives_a_lone_sample_its_height_in_the_smooth_field) {
+    std::vector<std::uint8_t> samples(7 * 7 * 7, 0);
+    samples[3 + 7 * (3 + 7 * 3)] = 96;
+    const Geometry geometry{.size = {7, 7, 7}};
+    const Volume sharp = sharpened(Volume(geometry, samples));
+    EXPECT_EQ(sharp.sample({3, 3, 3}), 96 * 1.75);
+    EXPECT_EQ(sharp.sample({3, 4, 3}), -12);
+    EXPECT_EQ(sharp.sample({4, 4, 3}), 0);
+    const auto peak = [&](const Volume& volume) {
+        return value_at(Field(volume, Solid::above, 0.0, Interpolation::cubic), Vec3(3, 3, 3));
+    };
+    EXPECT_NEAR(peak(Volume(geometry, samples)), 36, 1e-9);
+    EXPECT_NEAR(peak(sharp), 57, 1e-9);  // (36 * 168 - 8 * 6 * 12) / 96
+}
+
+TEST(Volume, sharpened_quadratics_are_in_the_smooth_field_what_they_were) {
+    const Geometry geometry{.size = {9, 8, 7}};
+    const auto quadratic = [](const Vec3& p) {
+        return 3 * p[0] * p[0] - 2 * p[1] * p[1] + p[2] * p[2] + p[0] * p[1] - 4 * p[2] + 5;
+    };
+    std::vector<float> samples;
+    for (int k = 0; k < 7; ++k) {
+        for (int j = 0; j < 8; ++j) {
+            for (int i = 0; i < 9; ++i)
+                samples.push_back(static_cast<float>(quadratic({1.0 * i, 1.0 * j, 1.0 * k})));
+        }
+    }
+    const Field field(sharpened(Volume(geometry, samples)), Solid::above, std::nullopt,
+                      Interpolation::cubic);
+    for (const Vec3& at : {Vec3(4, 4, 3), Vec3(3.3, 4.2, 2.9), Vec3(5.5, 3.5, 3.1)}) {
+        EXPECT_NEAR(value_at(field, at), quadratic(at), 1e-3);
     }
 }
 

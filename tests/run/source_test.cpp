@@ -35,6 +35,17 @@ TEST(Source, is_dequantized_and_then_smoothed) {
     EXPECT_TRUE(same_samples(load(source).volume, smoothed(dequantized_here(plain, 3), 2)));
 }
 
+TEST(Source, is_sharpened_after_all_that_and_keeps_it_in_its_names) {
+    const Volume plain = load(dequantized_source("synthetic:sphere:16x16x16", 0)).volume;
+    Source source = dequantized_source("synthetic:sphere:16x16x16", 3);
+    source.smooth = 1;
+    source.prefilter = true;
+    EXPECT_TRUE(
+        same_samples(load(source).volume, sharpened(smoothed(dequantized_here(plain, 3), 1))));
+    EXPECT_TRUE(source_from(to_names(source)).prefilter);
+    EXPECT_FALSE(source_from(to_names(source_named("synthetic:sphere"))).prefilter);
+}
+
 TEST(Source, is_dequantized_frame_by_frame) {
     const LoadedVolume plain = load(dequantized_source("synthetic:beating:12x12x12", 0));
     const LoadedVolume loaded = load(dequantized_source("synthetic:beating:12x12x12", 2));

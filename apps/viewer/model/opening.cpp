@@ -42,8 +42,9 @@ Opened open(const run::Source& source, const io::Progress& progress) {
     // Counting takes at most a tenth of the time of reading.
     run::LoadedVolume loaded = run::load(source, [&](double part) { progress(0.9 * part); });
     run::Histogram histogram = run::histogram_of(loaded.volume, bins);
+    auto terraces = source.dequantize > 0 ? std::nullopt : filters::terraces_of(loaded.volume);
     progress(1);
-    return {std::move(loaded), std::move(histogram)};
+    return {std::move(loaded), std::move(histogram), std::move(terraces)};
 }
 
 double first_isovalue(const Opened& opened) {

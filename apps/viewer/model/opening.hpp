@@ -1,6 +1,7 @@
 // A volume that is ready to be shown and felt.
 #pragma once
 
+#include "palpate/filters/dequantize.hpp"
 #include "palpate/run/source.hpp"
 #include "palpate/run/statistics.hpp"
 
@@ -9,6 +10,8 @@ namespace palpate::viewer {
 struct Opened {
     run::LoadedVolume loaded;
     run::Histogram histogram;  ///< of 256 bins, as `palpate info`
+    /// What rounding does to its surfaces; nothing where it has no levels, or was dequantized.
+    std::optional<filters::Terraces> terraces = {};
 
     /// The grey levels between which nearly all samples lie [data units].
     double dark() const;

@@ -27,13 +27,17 @@ IsovalueControls::IsovalueControls()
                    "Which side of the level is solid: bright bodies on dark, or airways and "
                    "vessels dark on bright.\nThe session starts anew, with penetrability off.")),
       smoothness_(named(new QComboBox, "field",
-                        "How densities continue between samples: linear, exact and with facets, or "
-                        "cubic, smooth.\nThe session starts anew, with penetrability off.")),
+                        "How densities continue between samples: cubic, smooth, or linear, with "
+                        "facets.\nThe session starts anew, with penetrability off.")),
+      dequantize_(named(new QCheckBox("dequantize"), "dequantize",
+                        "Give back what rounding to levels took, against terraces and the stair "
+                        "steps of masks.\nThe volume is read again; edits are lost.")),
       felt_(named(new QLabel, "felt",
                   "The level felt now [data units]; another than the isovalue while "
                   "penetrability lets the hand through")),
       warning_(new Note("isovalue_warning", Note::Kind::warning)),
       overruled_(new Note("isovalue_overruled", Note::Kind::plain)),
+      terraces_(new Note("terraces", Note::Kind::plain)),
       limiter_(this) {
     slider_->setRange(0, places);
     slider_->setSingleStep(places / 500);
@@ -47,8 +51,9 @@ IsovalueControls::IsovalueControls()
     let_wheel_pass(*solid_);
     let_wheel_pass(*smoothness_);
     felt_->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
-    column_in(this, {chart_, slider_, row_of({box_, solid_, smoothness_, felt_}, 3), warning_,
-                     overruled_})
+    column_in(this,
+              {chart_, slider_, row_of({box_, felt_}, 1),
+               row_of({solid_, smoothness_, dequantize_}, 2), terraces_, warning_, overruled_})
         ->setSpacing(3);
     connect_inputs();
 }
@@ -76,6 +81,10 @@ void IsovalueControls::connect_inputs() {
         limiter_.drop();
         Q_EMIT wanted(level);
     });
+    connect(dequantize_, &QCheckBox::clicked, this, [this](bool on) {
+        dequantize_->setChecked(!on);  // until the volume has been read again
+        Q_EMIT dequantize_wanted(on);
+    });
     for (const QComboBox* box : {solid_, smoothness_}) {
         connect(box, qOverload<int>(&QComboBox::activated), this, [this] {
             Q_EMIT field_wanted(
@@ -99,11 +108,18 @@ void IsovalueControls::clear() {
     felt_->clear();
     overruled_->say({});
     warning_->say({});
+    set_dequantized(false, false, {});
 }
 
 void IsovalueControls::set_field(Solid solid, Interpolation interpolation) {
     solid_->setCurrentIndex(solid == Solid::above ? 0 : 1);
     smoothness_->setCurrentIndex(interpolation == Interpolation::linear ? 0 : 1);
+}
+
+void IsovalueControls::set_dequantized(bool on, bool possible, const QString& reason) {
+    dequantize_->setChecked(on);
+    dequantize_->setEnabled(possible);
+    terraces_->say(reason.isEmpty() ? "" : QString("Dequantizing is worth it: %1.").arg(reason));
 }
 
 void IsovalueControls::set_overruled(bool overruled) {

@@ -1,7 +1,8 @@
 // Controls of the isovalue: chart, slider, number, which side is solid, how the field continues
-// between samples, the level felt now.
+// between samples, whether the samples are dequantized, the level felt now.
 #pragma once
 
+#include <QCheckBox>
 #include <QComboBox>
 #include <QSlider>
 #include <QWidget>
@@ -26,6 +27,9 @@ class IsovalueControls : public QWidget {
     /// Shows the level asked for; emits nothing.
     void set_isovalue(double isovalue);
     void set_field(Solid solid, Interpolation interpolation);
+    /// Whether the samples are dequantized, whether they could be, and why that is worth it (or
+    /// nothing).
+    void set_dequantized(bool on, bool possible, const QString& reason);
     /// Whether penetrability sets the level felt.
     void set_overruled(bool overruled);
     /// The level felt now; shown separately where it differs from the level asked for.
@@ -36,6 +40,7 @@ class IsovalueControls : public QWidget {
   Q_SIGNALS:
     void wanted(double isovalue);  ///< at most 60 a second while something is dragged
     void field_wanted(palpate::Solid solid, palpate::Interpolation interpolation);
+    void dequantize_wanted(bool on);  ///< it shows the state before until the next set_dequantized
 
   private:
     void connect_inputs();
@@ -47,8 +52,9 @@ class IsovalueControls : public QWidget {
     QSlider* slider_;
     NumberBox* box_;
     QComboBox *solid_, *smoothness_;
+    QCheckBox* dequantize_;
     QLabel* felt_;
-    Note *warning_, *overruled_;
+    Note *warning_, *overruled_, *terraces_;
     RateLimiter limiter_;
     double isovalue_ = 0;
     int differing_ = 0;  // consecutive snapshots with another level

@@ -61,6 +61,7 @@ class Panel : public QWidget {
     double isovalue() const { return now_.isovalue; }
 
     /// Sections that controllers connect to directly.
+    IsovalueControls& isovalue_controls() { return *isovalue_; }
     LookControls& look_controls() { return *look_; }
     BrushControls& brush_controls() { return *edit_; }
     DeviceControls& device_controls() { return *device_; }

@@ -77,6 +77,18 @@ void FileController::feel(std::shared_ptr<Opened> opened, const RunRequest& requ
     }
 }
 
+void FileController::dequantize(bool on) {
+    if (!content_.live()) return;
+    SessionFile session = session_now();
+    const auto& terraces = content_.volume()->terraces;
+    const int rounds = terraces ? terraces->rounds() : filters::DequantizeOptions{}.rounds;
+    session.source.dequantize = on ? rounds : 0;
+    load(session.source,
+         [this, session, request = run_.take_request()](std::shared_ptr<Opened> opened) {
+             feel_session(std::move(opened), session, request);
+         });
+}
+
 void FileController::open_recording(const QString& path) {
     messages_.forget();
     messages_.guarded([&] {

@@ -30,6 +30,8 @@ class FileController : public QObject {
     void open_volume(const run::Source& source);
     void open_session(const QString& path);
     void open_recording(const QString& path);
+    /// Reads the volume that is felt again, dequantized or as it comes, and feels it as before.
+    void dequantize(bool on);
     /// Ends the playback: feels the recording's volume, at the level and in the view shown.
     void leave_playback();
     /// Throws io::OutputError.

@@ -14,6 +14,7 @@
 #include <QSettings>
 #include <QStatusBar>
 
+#include "apps/viewer/panel/isovalue_controls.hpp"
 #include "apps/viewer/panel/layout.hpp"
 #include "apps/viewer/panel/panel.hpp"
 #include "apps/viewer/panel/timeline.hpp"
@@ -91,6 +92,10 @@ void MainWindow::connect_parts() {
             [this](const QString& what) { statusBar()->showMessage(what, message_ms); });
     connect(&views_->scene(), &Scene::problem, this,
             [this](const QString& what) { messages_.show_problem(what); });
+    connect(&panel_->isovalue_controls(), &IsovalueControls::dequantize_wanted, this,
+            [this](bool on) {
+                if (editing_.may_lose_edits()) files_.dequantize(on);
+            });
     const auto show_title = [this] {
         const auto& opened = content_.volume();
         const QString name = opened ? QString::fromStdString(opened->loaded.name) : QString();

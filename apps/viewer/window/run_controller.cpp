@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "apps/viewer/panel/device_controls.hpp"
+#include "apps/viewer/panel/isovalue_controls.hpp"
 #include "apps/viewer/panel/panel.hpp"
 #include "apps/viewer/window/content.hpp"
 #include "apps/viewer/window/messages.hpp"
@@ -99,6 +100,12 @@ void RunController::show_settings() {
     const run::Run& live = *content_.live();
     panel_.set_session(live.field(), content_.volume()->histogram, live.isovalue(), live.settings(),
                        live.device());
+    const Opened& opened = *content_.volume();
+    const bool on = opened.loaded.source.dequantize > 0;
+    panel_.isovalue_controls().set_dequantized(
+        on, on || opened.terraces,
+        opened.terraces ? QString::fromStdString(filters::reason_to_dequantize(*opened.terraces))
+                        : QString());
 }
 
 void RunController::use_device(const QString& option) {

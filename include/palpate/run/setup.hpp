@@ -85,8 +85,7 @@ inline constexpr double live_start_below = 0.3;
 /// std::invalid_argument as Field does.
 Field make_field(std::shared_ptr<const Samples> samples, const FieldSetup& setup,
                  ProxyMethod method = &update_exact);
-Field make_field(const Volume& volume, const FieldSetup& setup,
-                 ProxyMethod method = &update_exact);
+Field make_field(const Volume& volume, const FieldSetup& setup, ProxyMethod method = &update_exact);
 
 /// The level asked for, else the volume's own, else the first that the histogram suggests. Throws
 /// std::invalid_argument for constant data without a level.

@@ -36,7 +36,8 @@ struct Source {
     std::optional<int> frame;              ///< of a sequence this one alone, from 0
     std::optional<double> frame_interval;  ///< [s] instead of what the file gives or lacks
     int smooth = 0;                        ///< passes of the binomial kernel, see smoothed()
-    int dequantize = 0;  ///< before that: rounds, see filters::dequantized(); 0: none
+    int dequantize = 0;      ///< before that: rounds, see filters::dequantized(); 0: none
+    bool prefilter = false;  ///< after all that, see sharpened()
 };
 
 /// As people write it: "head.nrrd", "synthetic:torus", "live:frames.shm".
@@ -46,7 +47,7 @@ Source source_named(const std::string& name);
 
 /// The names and values under which recordings and session files keep a source: "volume" is its
 /// name, the others are "dims", "type", "spacing", "skip", "series", "time-step",
-/// "frame-interval", "smooth" and "dequantize". What was not given is left out.
+/// "frame-interval", "smooth", "dequantize" and "prefilter". What was not given is left out.
 std::map<std::string, std::string> to_names(const Source& source);
 /// The inverse. Unknown names are ignored, numbers that cannot be read count as not given. Throws
 /// std::invalid_argument for a layout that cannot be, and for values that this kind of source does

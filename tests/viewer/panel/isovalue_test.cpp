@@ -1,12 +1,14 @@
 // The isovalue, set by mouse, wheel, keys and number.
 #include "tests/viewer/panel/panel_fixture.hpp"
 
+#include <QCheckBox>
 #include <QComboBox>
 #include <QSlider>
 #include <QWheelEvent>
 
 #include <cmath>
 
+#include "apps/viewer/panel/isovalue_controls.hpp"
 #include "apps/viewer/panel/level_chart.hpp"
 #include "apps/viewer/panel/number_box.hpp"
 #include "apps/viewer/panel/rate_limiter.hpp"
@@ -239,6 +241,26 @@ TEST_F(Isovalue, choosing_the_smooth_field_is_emitted_with_the_side_that_is_soli
     QTest::keyClick(box, Qt::Key_Down);
     EXPECT_EQ(chosen, (std::vector{std::pair{Solid::above, Interpolation::cubic}}));
     EXPECT_EQ(box->currentIndex(), 0) << "nobody has put a session in with this field";
+}
+
+TEST_F(Isovalue, dequantizing_is_asked_for_and_shown_once_the_volume_has_been_read_again) {
+    set();
+    auto* box = find<QCheckBox>("dequantize");
+    EXPECT_FALSE(box->isEnabled());
+    std::vector<bool> wanted;
+    IsovalueControls& controls = panel.isovalue_controls();
+    QObject::connect(&controls, &IsovalueControls::dequantize_wanted,
+                     [&](bool on) { wanted.push_back(on); });
+    controls.set_dequantized(false, true, "the samples have two values");
+    EXPECT_TRUE(find<QLabel>("terraces")->text().contains("the samples have two values"));
+    box->click();
+    EXPECT_EQ(wanted, std::vector{true});
+    EXPECT_FALSE(box->isChecked());
+    controls.set_dequantized(true, true, {});
+    EXPECT_TRUE(box->isChecked());
+    EXPECT_TRUE(find<QLabel>("terraces")->text().isEmpty());
+    box->click();
+    EXPECT_EQ(wanted, (std::vector{true, false}));
 }
 
 TEST_F(Isovalue, zoomed_in_a_pixel_is_less_and_the_slider_still_covers_all) {

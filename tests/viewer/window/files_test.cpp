@@ -1,5 +1,6 @@
 // The whole window: files dropped, recent, raw, cancelled; pictures.
 #include <QAction>
+#include <QCheckBox>
 #include <QComboBox>
 #include <QDialog>
 #include <QDragEnterEvent>
@@ -14,6 +15,7 @@
 #include "apps/options/view_options.hpp"
 #include "apps/viewer/window/raw_dialog.hpp"
 #include "apps/viewer/window/screenshot.hpp"
+#include "palpate/scenes/volumes.hpp"
 #include "viewer/window/window_fixture.hpp"
 
 namespace palpate::viewer::test {
@@ -72,6 +74,24 @@ TEST_F(Files, loading_can_be_cancelled_and_what_was_felt_goes_on) {
     EXPECT_EQ(window_->live(), before);
     EXPECT_EQ(window_->live()->field().geometry().size[0], 32);
     EXPECT_TRUE(window_->messages().problem().isEmpty());
+}
+
+TEST_F(Files, a_volume_is_dequantized_and_felt_at_the_same_level) {
+    io::write_volume(scenes::ball(Index3::Constant(40)), scratch_.path() / "ball.nrrd");
+    feel(scratch("ball.nrrd").toStdString());
+    window_->run().send(command::Isovalue{100.25});
+    auto& box = part<QCheckBox>("dequantize");
+    ASSERT_TRUE(box.isEnabled());
+    const auto type = [&] { return window_->live()->field().volume().type(); };
+    EXPECT_EQ(type(), SampleType::uint8);
+    box.click();
+    ASSERT_TRUE(wait_until([&] { return window_->live() && type() == SampleType::float32; }));
+    EXPECT_TRUE(box.isChecked());
+    EXPECT_EQ(window_->live()->isovalue(), 100.25);
+    box.click();
+    ASSERT_TRUE(wait_until([&] { return window_->live() && type() == SampleType::uint8; }));
+    EXPECT_FALSE(box.isChecked());
+    EXPECT_EQ(window_->live()->isovalue(), 100.25);
 }
 
 TEST_F(Files, a_raw_file_is_opened_once_the_dialog_knows_its_size) {
