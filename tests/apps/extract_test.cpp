@@ -34,12 +34,17 @@ SurfaceMesh read_ply(const std::filesystem::path& path) {
     mesh.triangles.resize(count_after(bytes, "element face "));
     const std::string end = "end_header\n";
     std::size_t at = bytes.find(end) + end.size();
-    for (Vec3& v : mesh.vertices) {
-        for (int a = 0; a < 3; ++a) v[a] = take<double>(bytes, at);
+    mesh.normals.resize(contains(bytes.substr(0, at), "property double nx\n") ? mesh.vertices.size()
+                                                                              : 0);
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+        for (int a = 0; a < 3; ++a) mesh.vertices[v][a] = take<double>(bytes, at);
+        for (int a = 0; a < 3 && !mesh.normals.empty(); ++a)
+            mesh.normals[v][a] = take<double>(bytes, at);
     }
     for (auto& triangle : mesh.triangles) {
         EXPECT_EQ(take<std::uint8_t>(bytes, at), 3);
         for (auto& index : triangle) index = take<std::uint32_t>(bytes, at);
+        for (const auto index : triangle) EXPECT_LT(index, mesh.vertices.size());
     }
     EXPECT_EQ(at, bytes.size());
     return mesh;
@@ -55,6 +60,7 @@ TEST(Extract, the_ply_is_closed_and_encloses_what_the_summary_says) {
         const SurfaceMesh mesh = read_ply(folder / "a.ply");
         EXPECT_EQ(support::flaw_in_closed_mesh(mesh), "") << volume;
         EXPECT_GT(mesh.triangles.size(), 100U) << volume;
+        EXPECT_EQ(mesh.normals.size(), mesh.vertices.size());
         EXPECT_EQ(summary["triangles"], mesh.triangles.size());
         EXPECT_EQ(summary["vertices"], mesh.vertices.size());
         EXPECT_EQ(summary["enclosed_volume_mm3"], enclosed_volume(mesh));

@@ -37,7 +37,8 @@ class PressedSphere {
 
   private:
     static Vec3 position(std::int64_t asked) {
-        const double depth = std::min(0.06, 2e-5 * static_cast<double>(asked));
+        // Out and in again, should the machine have stalled: forces wait for a hand to withdraw.
+        const double depth = std::min(0.06, 2e-5 * static_cast<double>(asked % 10000));
         return {-0.007, -0.068, 0.13 + 0.08 - depth};
     }
 
@@ -60,7 +61,7 @@ TEST_P(EndOfSession, leaves_no_force_on_the_device) {
     MockService service;
     PressedSphere sphere(service);
     Running running(sphere.words() + Words{"--record", "r.csv"}, folder.path());
-    ASSERT_TRUE(sphere.is_felt());
+    ASSERT_TRUE(sphere.is_felt()) << running.finish(SIGINT).err;
     const Outcome end = running.finish(GetParam());
     EXPECT_EQ(end.status, expected_status(GetParam())) << end.err;
     ASSERT_TRUE(comes_true([&] { return service.forces().back().isZero(0); }));

@@ -72,7 +72,7 @@ class Includes(unittest.TestCase):
     def test_a_stage_may_not_include_a_later_one(self):
         self.assert_found("include/palpate/field.hpp", '"palpate/lattice.hpp"', "after field")
         self.assert_found("src/proxy/site.cpp", '"palpate/force.hpp"', "after proxy")
-        self.assert_found("include/palpate/surface.hpp", '"palpate/proxy.hpp"', "after lattice")
+        self.assert_found("include/palpate/surface.hpp", '"palpate/proxy.hpp"', "after density")
 
     def test_a_private_header_does_not_hide_its_stage(self):
         self.assert_found("src/field.cpp", '"proxy/site.hpp"', "after field")

@@ -137,8 +137,14 @@ class CubicGuarantees {
         tally_.recovering += r.status == UpdateStatus::recovering;
         ASSERT_TRUE(r.scp.allFinite() && proxy.scp.folded.allFinite() && std::isfinite(r.density));
         ASSERT_LE(r.tetrahedra, settings_.step_budget);
+        // A hand whose first position is deep in the solid; never later, for the field stays.
+        const bool recovers = r.status == UpdateStatus::recovering;
+        const bool was_free = before.placed && !inside_;
+        ASSERT_FALSE(was_free && recovers) << "inside again";
+        inside_ = recovers;
+        if (recovers) return;
         int rounds = 0;
-        if (before.placed) {
+        if (was_free) {
             Vec3 from = before.scp_physical;
             for (const Step& step : path_) {
                 rounds += step.kind != StepKind::cross;
@@ -160,7 +166,7 @@ class CubicGuarantees {
             ASSERT_LE(std::abs(at_end), 1e-9) << "G2";
         }
         if (!optimal_) return;
-        if (before.placed) {
+        if (was_free) {
             const double was = (before.scp_physical - hip).norm();
             const double growth =
                 ((r.scp - hip).norm() - was) / (was + geometry.spacing.minCoeff());
@@ -198,6 +204,7 @@ class CubicGuarantees {
     const Field& field_;
     ProxySettings settings_;
     bool optimal_;
+    bool inside_ = false;  // the last update left the SCP in the solid, where it began
     Random random_;
     std::vector<Step> path_;
     CubicTally tally_;
