@@ -53,7 +53,7 @@ Mat3 hessian_at(const Field& field, const Vec3& physical) {
     const Vec3 index = index_from_physical(field.geometry(), physical);
     if (is_far(index) || field.interpolation() == Interpolation::linear) return Mat3::Zero();
     const auto [t, folded] = cubic::locate(index);
-    const cubic::Symmetric h = cubic::piece_of(t, field.around(t.cell)).hessian_at(folded);
+    const cubic::Symmetric h = cubic::piece_of(t, field.around(t.cell)).at(folded).hessian;
     // Column by column: the derivative of the gradient along each physical axis.
     Mat3 hessian;
     for (int a = 0; a < 3; ++a) {

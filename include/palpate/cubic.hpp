@@ -7,19 +7,25 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <type_traits>
 
 #include "palpate/lattice.hpp"
 
 namespace palpate::cubic {
 
-/// A symmetric matrix or quadratic form in folded axes (d, s, e).
+/// Two numbers that are computed together.
+using Vec2 = Eigen::Vector2d;
+
+/// A symmetric matrix or quadratic form in folded axes (d, s, e): the rows d and s of its columns
+/// d, s and e. Row e has the same numbers, and `ee`.
 struct Symmetric {
-    double dd = 0, ds = 0, de = 0, ss = 0, se = 0, ee = 0;
+    Vec2 d = Vec2::Zero(), s = Vec2::Zero(), e = Vec2::Zero();
+    double ee = 0;
 
     Vec3 operator*(const Vec3& v) const {
-        return {dd * v[0] + ds * v[1] + de * v[2], ds * v[0] + ss * v[1] + se * v[2],
-                de * v[0] + se * v[1] + ee * v[2]};
+        const Vec2 rows = d * v[0] + s * v[1] + e * v[2];
+        return {rows[0], rows[1], e[0] * v[0] + e[1] * v[1] + ee * v[2]};
     }
 };
 
@@ -27,34 +33,45 @@ struct Symmetric {
 /// integers.
 inline constexpr double scale = 96;
 
-/// Value [data units] and gradient [data units / voxel] of the field at a point, times `scale`, in
-/// folded axes.
-struct Slope {
+/// Value [data units], gradient [data units / voxel] and Hessian [data units / voxel^2] of the field
+/// at a point, times `scale`, in folded axes.
+struct Expansion {
     double value = 0;
     Vec3 gradient = Vec3::Zero();
+    Symmetric hessian;
 };
 
 /// The cubic of a tetrahedron: its derivatives at the cube's centre, times `scale`. For integer
-/// samples all of them are exact. Value and gradient are the same for the whole cube; the third
-/// derivative along e is 0.
-struct Piece : Slope {
-    Symmetric hessian;
-    double ddd = 0, dds = 0, dde = 0, dss = 0, dse = 0, dee = 0, sss = 0, sse = 0, see = 0;
+/// samples all of them are exact. Value and gradient are the same for the whole cube.
+struct Piece : Expansion {
+    /// The third derivatives: how those of second order change along d and s. Along e, those that
+    /// are not among these are 0.
+    Vec2 dd = Vec2::Zero(), ds = Vec2::Zero(), de = Vec2::Zero();
+    Vec2 ss = Vec2::Zero(), se = Vec2::Zero(), ee = Vec2::Zero();
 
     /// The third derivatives applied to one vector.
     Symmetric third(const Vec3& v) const {
-        return {ddd * v[0] + dds * v[1] + dde * v[2], dds * v[0] + dss * v[1] + dse * v[2],
-                dde * v[0] + dse * v[1] + dee * v[2], dss * v[0] + sss * v[1] + sse * v[2],
-                dse * v[0] + sse * v[1] + see * v[2], dee * v[0] + see * v[1]};
+        return {dd * v[0] + ds * v[1] + de * v[2], ds * v[0] + ss * v[1] + se * v[2],
+                de * v[0] + se * v[1] + ee * v[2], ee[0] * v[0] + ee[1] * v[1]};
     }
-    /// Value and gradient at a folded point [voxel] of the tetrahedron.
-    Slope at(const Vec3& folded) const;
-    /// The second derivatives there.
-    Symmetric hessian_at(const Vec3& folded) const;
+    /// The field at a folded point [voxel] of the tetrahedron.
+    Expansion at(const Vec3& folded) const;
     /// The value alone.
     double operator()(const Vec3& folded) const;
     /// That of the field with its sign turned.
     Piece operator-() const;
+};
+
+/// The piece that an update made last, for the next one, which mostly begins in its tetrahedron. It
+/// is used only where all that it was made from is the same, so results do not depend on it.
+struct KeptPiece {
+    std::uint64_t version = 0;  ///< Field::version(); 0: nothing is kept
+    double isovalue = 0;        ///< less the field's offset [data units]
+    Tetrahedron tetrahedron;    ///< of the piece
+    Piece piece;  ///< of the excess, sign * (f - isovalue)
+    /// Nothing in the tetrahedron's cube lies above: the greatest excess of the samples round it,
+    /// once it was looked for, times `scale`.
+    double most = std::numeric_limits<double>::infinity();
 };
 
 /// The cubic of a tetrahedron from the neighbours of its sample. Each Bernstein coefficient of it
@@ -112,11 +129,12 @@ inline void add_odd(Piece& p, const Rows<T>& r) {
     const Sum dpm = difference(r.pp, r.mp, -r.s), dp0 = difference(r.pp, r.mp, 0),
               dpp = difference(r.pp, r.mp, r.s);
     p.gradient[2] = 36 * d00 + 3 * ((dm0 + dp0) + (d0m + d0p));
-    p.hessian.de = 36 * dp0 - 24 * d00 - 12 * dm0;
-    p.hessian.se = 36 * d0p - 24 * d00 - 12 * d0m;
-    p.dde = 24 * (dm0 - d00) + 12 * ((dpm + dpp) - (d0m + d0p));
-    p.dse = 12 * (d0m - dpm) + 24 * (d00 - dp0) + 36 * (dpp - d0p);
-    p.sse = 12 * ((d0m + d0p) + (dpm + dpp)) - 24 * (d00 + dp0);
+    p.hessian.e = {36 * dp0 - 24 * d00 - 12 * dm0, 36 * d0p - 24 * d00 - 12 * d0m};
+    const Sum dde = 24 * (dm0 - d00) + 12 * ((dpm + dpp) - (d0m + d0p));
+    const Sum dse = 12 * (d0m - dpm) + 24 * (d00 - dp0) + 36 * (dpp - d0p);
+    const Sum sse = 12 * ((d0m + d0p) + (dpm + dpp)) - 24 * (d00 + dp0);
+    p.de = {dde, dse};
+    p.se = {dse, sse};
 }
 
 /// What is even along e is made of the plane e = 0 and the sums of the other two.
@@ -136,9 +154,8 @@ inline void add_even(Piece& p, const Rows<T>& r, double isovalue) {
     const Sum c0m = s0m - 2 * z0m, c00 = s00 - 2 * z00, c0p = s0p - 2 * z0p;
     const Sum cpm = spm - 2 * zpm, cp0 = sp0 - 2 * zp0, cpp = spp - 2 * zpp;
     p.hessian.ee = 48 * c00 + 24 * (c0p + cp0);
-    p.dee = 24 * ((cp0 + cpp) - (c00 + c0p));
-    p.see = 24 * ((c0p + cpp) - (c00 + cp0));
-    p.sss = 12 * ((c0m + c0p) + (cpm + cpp)) - 24 * (c00 + cp0);
+    p.ee = {24 * ((cp0 + cpp) - (c00 + c0p)), 24 * ((c0p + cpp) - (c00 + cp0))};
+    const Sum sss = 12 * ((c0m + c0p) + (cpm + cpp)) - 24 * (c00 + cp0);
     const Sum ring_m = zmm + zmp + sm0;  // the four neighbours of the sample at d = -1
     const Sum ring_p = zpm + zpp + sp0;  // and of that at d = 1
     // From differences, which keep their digits however far the samples lie from zero.
@@ -146,12 +163,17 @@ inline void add_even(Piece& p, const Rows<T>& r, double isovalue) {
                                           ((ring_m + ring_p + s0m + s0p) - 12 * z00));
     p.gradient[0] = 36 * (zp0 - zm0) + 3 * (ring_p - ring_m);
     p.gradient[1] = 36 * (z0p - z0m) + 3 * ((zmp + zpp + s0p) - (zmm + zpm + s0m));
-    p.hessian.dd = 96 * (zm0 - z00) + 24 * (ring_p - (z0m + z0p + s00));
-    p.hessian.ds = 12 * (zmm - zmp) + 24 * (z0m - z0p) + 36 * (zpp - zpm);
-    p.hessian.ss = 72 * z0m - 96 * z00 - 48 * zp0 + 24 * ((z0p + zpm + zpp) + (s0p - s00));
-    p.ddd = 96 * (z00 - zm0) + 24 * ((ring_m - ring_p) + ((spm + spp) - (s0m + s0p)));
-    p.dds = 24 * ((zmp - zmm) + (z0m - z0p)) + 12 * ((s0m - s0p) + (spp - spm));
-    p.dss = 48 * ((z00 - z0m) + (zpm - zp0)) + 24 * ((s00 - s0p) + (spp - sp0));
+    const Sum hdd = 96 * (zm0 - z00) + 24 * (ring_p - (z0m + z0p + s00));
+    const Sum hds = 12 * (zmm - zmp) + 24 * (z0m - z0p) + 36 * (zpp - zpm);
+    const Sum hss = 72 * z0m - 96 * z00 - 48 * zp0 + 24 * ((z0p + zpm + zpp) + (s0p - s00));
+    p.hessian.d = {hdd, hds};
+    p.hessian.s = {hds, hss};
+    const Sum ddd = 96 * (z00 - zm0) + 24 * ((ring_m - ring_p) + ((spm + spp) - (s0m + s0p)));
+    const Sum dds = 24 * ((zmp - zmm) + (z0m - z0p)) + 12 * ((s0m - s0p) + (spp - spm));
+    const Sum dss = 48 * ((z00 - z0m) + (zpm - zp0)) + 24 * ((s00 - s0p) + (spp - sp0));
+    p.dd = {ddd, dds};
+    p.ds = {dds, dss};
+    p.ss = {dss, sss};
 }
 
 }  // namespace detail
@@ -173,22 +195,17 @@ inline Piece Piece::operator-() const {
     Piece p;
     p.value = -value;
     p.gradient = -gradient;
-    p.hessian = {-hessian.dd, -hessian.ds, -hessian.de, -hessian.ss, -hessian.se, -hessian.ee};
-    p.ddd = -ddd, p.dds = -dds, p.dde = -dde, p.dss = -dss, p.dse = -dse, p.dee = -dee;
-    p.sss = -sss, p.sse = -sse, p.see = -see;
+    p.hessian = {-hessian.d, -hessian.s, -hessian.e, -hessian.ee};
+    p.dd = -dd, p.ds = -ds, p.de = -de, p.ss = -ss, p.se = -se, p.ee = -ee;
     return p;
 }
 
-inline Slope Piece::at(const Vec3& u) const {
+inline Expansion Piece::at(const Vec3& u) const {
     const Vec3 hu = hessian * u;
-    const Vec3 tu = third(u) * u;
-    return {value + dot(gradient + 0.5 * hu + (1.0 / 6) * tu, u), gradient + hu + 0.5 * tu};
-}
-
-inline Symmetric Piece::hessian_at(const Vec3& u) const {
     const Symmetric t = third(u);
-    return {hessian.dd + t.dd, hessian.ds + t.ds, hessian.de + t.de,
-            hessian.ss + t.ss, hessian.se + t.se, hessian.ee + t.ee};
+    const Vec3 tu = t * u;
+    return {value + dot(gradient + 0.5 * hu + (1.0 / 6) * tu, u), gradient + hu + 0.5 * tu,
+            {hessian.d + t.d, hessian.s + t.s, hessian.e + t.e, hessian.ee + t.ee}};
 }
 
 inline double Piece::operator()(const Vec3& u) const {

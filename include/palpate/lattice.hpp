@@ -30,6 +30,8 @@ struct Tetrahedron {
 
 /// True if both name the same region of space.
 bool same_tetrahedron(const Tetrahedron& a, const Tetrahedron& b);
+/// True if both are the same cell and the same frame, also along the edge.
+bool same_frame(const Tetrahedron& a, const Tetrahedron& b);
 
 /// The walls of a tetrahedron in folded coordinates.
 enum Wall : unsigned {
@@ -141,6 +143,14 @@ Incident incident_tetrahedra(const LatticePoint& point);
 
 inline bool same_tetrahedron(const Tetrahedron& a, const Tetrahedron& b) {
     return a.cell == b.cell && a.axis == b.axis && a.sign[0] == b.sign[0] && a.sign[1] == b.sign[1];
+}
+
+inline bool same_frame(const Tetrahedron& a, const Tetrahedron& b) {
+    // Arrays of three bytes are compared by a function call.
+    const auto same = [](const auto& x, const auto& y) {
+        return x[0] == y[0] && x[1] == y[1] && x[2] == y[2];
+    };
+    return same(a.cell, b.cell) && same(a.axis, b.axis) && same(a.sign, b.sign);
 }
 
 inline Vec3 fold(const Tetrahedron& t, const Vec3& v) {

@@ -5,6 +5,7 @@
 
 #include <limits>
 
+#include "palpate/cubic.hpp"
 #include "palpate/density.hpp"
 
 namespace palpate {
@@ -37,6 +38,7 @@ struct Proxy {
     double recovery_reach = 0;  ///< [voxel] how far recovery has searched for free space so far
     /// Unit normal of the surface felt before the field changed, physical axes; zero: none
     Vec3 ahead = Vec3::Zero();
+    cubic::KeptPiece kept;  ///< saves time on a cubic field, changes no result
 };
 
 /// Coulomb friction as a cone on the proxy's motion: it stays until the tangential pull exceeds

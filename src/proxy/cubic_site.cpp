@@ -17,7 +17,10 @@ double rising_root(const Bernstein& b, double tolerance) {
     const double a2 = 3 * ((b[2] - b[1]) - (b[1] - b[0]));
     const double a3 = (b[3] - b[0]) - 3 * (b[2] - b[1]);
     double low = 0, high = 1;
-    double t = -b[0] / (b[3] - b[0]);
+    // That of the parabola at the start is near; the chord's if there is none.
+    const double square = a1 * a1 - 4 * a2 * b[0];
+    double t = square > 0 ? std::min(1.0, -2 * b[0] / (a1 + std::sqrt(square)))
+                          : -b[0] / (b[3] - b[0]);
     constexpr int enough = 80;  // bisection alone needs 54
     for (int i = 0; i < enough; ++i) {
         const double p = b[0] + t * (a1 + t * (a2 + t * a3));
@@ -63,38 +66,53 @@ double certified_part(const Bernstein& bernstein, double tolerance) {
 }
 
 CubicSite::CubicSite(const Field& f, double level, double s, const LatticePoint& at)
-    : field(f), isovalue(level), sign(s), point(at), range(cubic::scale * f.range()) {
+    : field(f), sign(s), point(at), range(cubic::scale * f.range()) {
+    set_isovalue(level);
+}
+
+CubicSite::CubicSite(const Proxy& proxy, const Field& f, const LatticePoint& at)
+    : CubicSite(f, proxy.isovalue - f.offset(), f.sign(), at) {
+    const cubic::KeptPiece& last = proxy.kept;
+    made = last.version == f.version() && last.isovalue == isovalue &&
+           same_frame(last.tetrahedron, at.tetrahedron);
+    if (made) kept = last;
+    if (kept.most == std::numeric_limits<double>::infinity()) look_at_cube();
+}
+
+void CubicSite::set_isovalue(double level) {
     // A level far beyond the data separates them as one just beyond them does.
-    const double low = std::min(f.samples().minimum(), f.background()) - f.offset();
-    const double high = std::max(f.samples().maximum(), f.background()) - f.offset();
-    isovalue = std::clamp(level, low - f.range(), high + f.range());
-    expand();
+    const double low = std::min(field.samples().minimum(), field.background()) - field.offset();
+    const double high = std::max(field.samples().maximum(), field.background()) - field.offset();
+    isovalue = std::clamp(level, low - field.range(), high + field.range());
 }
 
-double CubicSite::density() const {
-    return field.with_offset(isovalue + sign * here.value / cubic::scale);
-}
-
-Vec3 CubicSite::folded_to(const Vec3& index) const {
-    const Tetrahedron& t = point.tetrahedron;
-    const Vec3 from_sample(index[0] - t.cell[0], index[1] - t.cell[1], index[2] - t.cell[2]);
-    return fold(t, from_sample) - point.folded;
+double CubicSite::density() {
+    return field.with_offset(isovalue + sign * excess() / cubic::scale);
 }
 
 void CubicSite::move_to(const LatticePoint& at) {
     point = at;
-    most = std::numeric_limits<double>::infinity();
-    expand();
+    made = made && same_frame(kept.tetrahedron, at.tetrahedron);
+    kept.most = std::numeric_limits<double>::infinity();
+    expanded = false;
 }
 
 void CubicSite::return_to(const CubicSite& before) {
     point = before.point;
-    most = before.most;
-    piece = before.piece;
-    here = before.here;
+    kept = before.kept;
+    at_point = before.at_point;
+    made = before.made;
+    expanded = before.expanded;
 }
 
-void CubicSite::enter_cube() {
+void CubicSite::cross(unsigned wall) {
+    point.tetrahedron = across(point.tetrahedron, wall);
+    made = false;
+    expanded = false;
+    if (wall == wall_face) look_at_cube();
+}
+
+void CubicSite::look_at_cube() {
     const auto greatest = [&](const auto* centre, std::ptrdiff_t row, std::ptrdiff_t slice) {
         const auto best = [&](auto better) {
             auto found = *centre;
@@ -108,44 +126,65 @@ void CubicSite::enter_cube() {
         return sign > 0 ? best([](auto a, auto b) { return std::max(a, b); }) - isovalue
                         : isovalue - best([](auto a, auto b) { return std::min(a, b); });
     };
-    most = cubic::scale * field.visit_around(point.tetrahedron.cell, greatest);
+    kept.most = cubic::scale * field.visit_around(point.tetrahedron.cell, greatest);
+    kept_is_new = true;
 }
 
 void CubicSite::expand() {
+    if (!made) make_piece();
+    at_point = kept.piece.at(point.folded);
+    expanded = true;
+}
+
+void CubicSite::make_piece() {
     const Tetrahedron& t = point.tetrahedron;
     const auto make = [&](const auto* centre, std::ptrdiff_t row, std::ptrdiff_t slice) {
-        return cubic::piece_of(t, centre, row, slice, isovalue);
+        kept.piece = cubic::piece_of(t, centre, row, slice, isovalue);
     };
-    piece = field.visit_around(t.cell, make);
-    if (sign < 0) piece = -piece;
-    here = piece.at(point.folded);
+    field.visit_around(t.cell, make);
+    if (sign < 0) kept.piece = -kept.piece;
+    kept.version = field.version();
+    kept.isovalue = isovalue;
+    kept.tetrahedron = t;
+    made = true;
+    kept_is_new = true;
 }
 
 double CubicSite::advance(const Vec3& step, double level, unsigned walls) {
+    cubic::Expansion& from = at_point;
+    if (!expanded) expand();
     // Along the step the Hessian changes by the third derivatives, which are the same everywhere.
-    const cubic::Symmetric third = piece.third(step);
+    const cubic::Symmetric third = kept.piece.third(step);
     const Vec3 bend = third * step;
-    const Vec3 turn = piece.hessian * step + third * point.folded;
-    const double c1 = dot(here.gradient, step), c2 = 0.5 * dot(turn, step),
+    const Vec3 turn = from.hessian * step;
+    const double c1 = dot(from.gradient, step), c2 = 0.5 * dot(turn, step),
                  c3 = (1.0 / 6) * dot(bend, step);
-    const double c0 = here.value - level;
+    const double c0 = from.value - level;
     const double third_c1 = (1.0 / 3) * c1, third_c2 = (1.0 / 3) * c2;
     const Bernstein b{c0, c0 + third_c1, c0 + 2 * third_c1 + third_c2, c0 + (c1 + c2 + c3)};
     const bool free = b[1] <= 0 && b[2] <= 0 && b[3] <= 0;
     const double t = free ? 1 : certified_part(b, 1e-13 * range);
-    here.value += t * (c1 + t * (c2 + t * c3));
-    here.gradient += t * (turn + (0.5 * t) * bend);
-    point.folded = t < 1 ? snap(point.folded + t * step, 0) : snap(point.folded + step, walls);
+    if (t == 1) jump(step, walls);
+    if (t == 1 && walls != 0) return t;  // the next tetrahedron has another piece
+    if (t < 1) point.folded = snap(point.folded + t * step, 0);
+    from.value += t * (c1 + t * (c2 + t * c3));
+    from.gradient += t * (turn + (0.5 * t) * bend);
+    from.hessian.d += t * third.d;
+    from.hessian.s += t * third.s;
+    from.hessian.e += t * third.e;
+    from.hessian.ee += t * third.ee;
+    expanded = true;
     return t;
 }
 
 WalkEnd walk(CubicSite& site, const Vec3& displacement, double level, Progress& progress) {
-    // Rounding must not hold a start, nor add up to more than what counts as inside.
-    const double hair = site.here.value < 1.5e-11 * site.range ? 4e-14 * site.range : 0;
-    level = std::max(level, site.here.value + hair);
+    if (site.reaches(level)) {
+        // Rounding must not hold a start, nor add up to more than what counts as inside.
+        const double hair = site.excess() < 1.5e-11 * site.range ? 4e-14 * site.range : 0;
+        level = std::max(level, site.excess() + hair);
+    }
     Vec3 direction = displacement;
     double left = 1;
-    bool expanded = true;  // the piece is that of the tetrahedron, expanded at the point
     while (progress.budget-- > 0) {
         if (site.field.is_background_around(site.point.tetrahedron.cell)) {
             const Vec3 along = unfold(site.point.tetrahedron, direction);
@@ -153,7 +192,6 @@ WalkEnd walk(CubicSite& site, const Vec3& displacement, double level, Progress& 
             const double t = stretch_outside(site.index(), along, left, -2, size, 1);
             if (t > 0) {
                 site.move_to(cubic::locate(site.index() + t * along));
-                expanded = true;
                 direction = fold(site.point.tetrahedron, along);
                 left -= t;
                 ++progress.tetrahedra;
@@ -165,29 +203,20 @@ WalkEnd walk(CubicSite& site, const Vec3& displacement, double level, Progress& 
         const Vec3 step = exit.t * direction;
         const bool at_wall = exit.wall != no_wall;
         const unsigned walls = at_wall ? 1U << exit.wall : 0;
-        if (site.most > level) {
-            if (!expanded) site.expand();
+        if (site.reaches(level)) {
             const double t = site.advance(step, level, walls);
             progress.tetrahedra += t * exit.t > 0;
             if (t < 1) return WalkEnd::surface;
-            expanded = true;
         } else {
-            site.point.folded = snap(site.point.folded + step, walls);
+            site.jump(step, walls);
             progress.tetrahedra += exit.t > 0;
-            expanded = false;
         }
-        if (!at_wall) {
-            if (!expanded) site.expand();
-            return WalkEnd::target;
-        }
+        if (!at_wall) return WalkEnd::target;
         progress.report(StepKind::cross, site);
-        site.point.tetrahedron = across(site.point.tetrahedron, exit.wall);
-        if (exit.wall == wall_face) site.enter_cube();
-        expanded = false;
+        site.cross(exit.wall);
         direction = reflect(direction, exit.wall);
         left -= exit.t;
     }
-    if (!expanded) site.expand();
     return WalkEnd::out_of_budget;
 }
 

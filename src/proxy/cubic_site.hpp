@@ -13,30 +13,42 @@ namespace palpate {
 /// digits however far the data lie from zero.
 struct CubicSite {
     CubicSite(const Field& f, double level, double s, const LatticePoint& at);
+    /// The proxy, at a point, with what its last update kept.
+    CubicSite(const Proxy& proxy, const Field& f, const LatticePoint& at);
 
     const Field& field;
     double isovalue;
     double sign;
     LatticePoint point;
     double range;  // of the field, scaled like the excess
-    /// Nothing in the cube lies above: the greatest of the samples round it, once it was looked
-    /// for.
-    double most = std::numeric_limits<double>::infinity();
-    cubic::Piece piece;  // of the excess
-    cubic::Slope here;   // its value and gradient at the point
+    cubic::KeptPiece kept;  // its `most` is that of the point's cube; its piece may be another's
+
+    static CubicSite of(const Proxy& proxy, const Field& f, const LatticePoint& at) {
+        return {proxy, f, at};
+    }
+    void keep(Proxy& proxy) const {
+        if (kept_is_new) proxy.kept = kept;
+    }
 
     static LatticePoint located(const Vec3& index) { return cubic::locate(index); }
     Vec3 index() const { return cubic::index_of(point); }
     /// As it is felt [data units].
-    double density() const;
-    double excess() const { return here.value; }
+    double density();
+    /// The excess at the point.
+    const cubic::Expansion& here() {
+        if (!expanded) expand();
+        return at_point;
+    }
+    double excess() { return here().value; }
     /// The excess up to which a point is free. It lies a hair above 0, so that a plateau at the
     /// isovalue is free; slides have a little more room than falls, so that a slide along the
     /// surface on which a fall ended is not blocked.
     double level() const { return 1e-11 * range; }
     double slide_level() const { return 1.2e-11 * range; }
-    bool is_inside() const { return excess() > 2e-11 * range; }
-    bool in_contact() const { return excess() >= 0.95e-11 * range; }
+    bool is_inside() { return reaches(2e-11 * range) && excess() > 2e-11 * range; }
+    bool in_contact() { return reaches(0.95e-11 * range) && excess() >= 0.95e-11 * range; }
+    /// False if nothing in the cube lies above the level.
+    bool reaches(double at) const { return kept.most > at; }
     CubicSite at(const Vec3& index) const { return {field, isovalue, sign, located(index)}; }
     CubicSite turned_at(const Vec3& index) const {
         return {field, isovalue, -sign, located(index)};
@@ -45,15 +57,34 @@ struct CubicSite {
     /// Back to where a copy of this site was made, without the work of move_to().
     void return_to(const CubicSite& before);
     /// The vector to a point in index space, folded [voxel].
-    Vec3 folded_to(const Vec3& index) const;
+    Vec3 folded_to(const Vec3& index) const {
+        const Index3& cell = point.tetrahedron.cell;
+        const Vec3 from_sample(index[0] - cell[0], index[1] - cell[1], index[2] - cell[2]);
+        return fold(point.tetrahedron, from_sample) - point.folded;
+    }
 
-    /// Of another cube: `most`.
-    void enter_cube();
-    /// Piece and slope after the point has gone to another tetrahedron.
-    void expand();
-    /// Goes along a step (folded) inside the tetrahedron, which ends on the walls of the mask, as
-    /// far as the excess certainly stays below the level. Returns which part of it.
+    /// Goes to the end of a step (folded) inside the tetrahedron, on the walls of the mask.
+    void jump(const Vec3& step, unsigned walls) {
+        point.folded = snap(point.folded + step, walls);
+        expanded = false;
+    }
+    /// The same, as far as the excess certainly stays below the level. Returns which part of it.
     double advance(const Vec3& step, double level, unsigned walls);
+    /// Same point, seen from across the wall that it is on.
+    void cross(unsigned wall);
+
+  private:
+    void set_isovalue(double level);
+    /// Finds `most`.
+    void look_at_cube();
+    /// Piece and expansion at the point.
+    void expand();
+    void make_piece();
+
+    cubic::Expansion at_point;
+    bool made = false;         // `kept.piece` is that of the point's tetrahedron
+    bool expanded = false;     // `at_point` is that at the point
+    bool kept_is_new = false;  // not what the proxy has
 };
 
 /// Goes straight along `displacement` (folded, voxel) to its end, or until the excess would rise

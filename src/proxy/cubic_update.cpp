@@ -19,61 +19,63 @@ constexpr double far = 1e30;
 /// Tries before the proxy looks round in all directions.
 constexpr int most_failures = 6;
 
-/// The surface at a point in contact, in folded millimetres, and where the target lies from there.
+/// The surface at a point in contact, in folded millimetres, and where the target lies from there:
+/// at aside * along - depth * normal.
 struct Contact {
-    Vec3 normal;      ///< unit, out of the solid
-    Vec3 tangential;  ///< of the vector to the target
-    double depth;     ///< of the target below the tangent plane, > 0 when pressing
-    double tangential_length;
+    Vec3 normal;   ///< unit, out of the solid
+    Vec3 along;    ///< unit, in the tangent plane towards the target
+    double depth;  ///< of the target below the tangent plane, > 0 when pressing
+    double aside;  ///< the target's distance from the normal
+
+    Vec3 across() const {
+        const Vec3 &n = normal, &t = along;
+        return {n[1] * t[2] - n[2] * t[1], n[2] * t[0] - n[0] * t[2], n[0] * t[1] - n[1] * t[0]};
+    }
 };
 
-/// The surface's curvature, in coordinates of the tangent plane: along the target's direction in
-/// it, and across.
+/// The surface's curvature in the tangent plane [1/mm], > 0 where it rises towards the free side:
+/// a matrix for displacements along the contact's `along` and `across`, and its eigenvalues.
 struct Curvature {
-    Vec3 along, across;           ///< unit
-    double cosine, sine;          ///< of the first direction of principal curvature
-    std::array<double, 2> value;  ///< [1/mm] > 0 where the surface rises towards the free side
+    double tt, ta, aa;
+    double greatest, least;
+    double per_apart;  ///< 1 / (greatest - least); 0 if they are the same
 };
 
-/// `slope` is that of the field, in the unit of the Hessian.
-Curvature curvature_of(const cubic::Symmetric& hessian, const Contact& c, const Vec3& per_mm,
-                       double slope) {
-    const Vec3 t = c.tangential * (1 / c.tangential_length);
-    const Vec3& n = c.normal;
-    const Vec3 a(n[1] * t[2] - n[2] * t[1], n[2] * t[0] - n[0] * t[2], n[0] * t[1] - n[1] * t[0]);
-    const Vec3 scaled_t = t.cwiseProduct(per_mm), scaled_a = a.cwiseProduct(per_mm);
-    const Vec3 ht = hessian * scaled_t;
-    const double each = 1 / slope;
-    const double ktt = each * dot(ht, scaled_t), kta = each * dot(ht, scaled_a),
-                 kaa = each * dot(hessian * scaled_a, scaled_a);
-    const double mean = 0.5 * (ktt + kaa), half = 0.5 * (ktt - kaa);
-    const double radius = std::sqrt(half * half + kta * kta);
-    // Of the two forms of the first eigenvector the one without cancellation.
-    const double x = half >= 0 ? half + radius : kta;
-    const double y = half >= 0 ? kta : radius - half;
-    const double length = std::sqrt(x * x + y * y);
-    const double share = length > 0 ? 1 / length : 0;
-    return {t, a, length > 0 ? x * share : 1, y * share, {mean + radius, mean - radius}};
+/// `each` is 1 / slope of the field, in the unit of the Hessian; `t` and `a` are folded `along` and
+/// `across` in voxels.
+Curvature curvature_of(const cubic::Symmetric& hessian, const Vec3& t, const Vec3& a, double each) {
+    const Vec3 ht = hessian * t;
+    const double tt = each * dot(ht, t), ta = each * dot(ht, a), aa = each * dot(hessian * a, a);
+    const double mean = 0.5 * (tt + aa), half = 0.5 * (tt - aa);
+    const double radius = std::sqrt(half * half + ta * ta);
+    return {tt, ta, aa, mean + radius, mean - radius, radius > 1e-100 ? 0.5 / radius : 0};
 }
 
-/// Where the target's foot lies along the surface, by its curvature: in the tangent plane [mm]. A
-/// curvature that brings the target's depth near its centre (or past it) is cut: the displacement
-/// is at most 1 / `least` times that on a plane.
+/// Where the target's foot lies along the surface, by its curvature: in the tangent plane [mm].
 struct Foot {
-    Vec3 along;
-    double rise;  ///< y' K y: twice the height of the surface above the tangent plane there [mm]
+    double along, across;
+    double rise;  ///< twice the height of the surface above the tangent plane there [mm]
+
+    double squared() const { return along * along + across * across; }
 };
+
+/// A curvature that brings the target's depth near its centre (or past it) is cut: along each
+/// principal direction the displacement is at most 1 / `least` times that on a plane.
 Foot foot_of(const Contact& c, const Curvature& k, double least, double longest) {
-    double y0 = c.tangential_length * k.cosine / std::max(1 + c.depth * k.value[0], least);
-    double y1 = -c.tangential_length * k.sine / std::max(1 + c.depth * k.value[1], least);
-    const double squared = y0 * y0 + y1 * y1;
+    // Of a function of a symmetric matrix only its values at the two eigenvalues matter.
+    const double at_greatest = c.aside / std::max(1 + c.depth * k.greatest, least);
+    const double at_least = c.aside / std::max(1 + c.depth * k.least, least);
+    const double rate = (at_greatest - at_least) * k.per_apart;
+    Foot foot{at_greatest + rate * (k.tt - k.greatest), rate * k.ta, 0};
+    const double squared = foot.squared();
     if (squared > longest * longest) {
         const double share = longest / std::sqrt(squared);
-        y0 *= share;
-        y1 *= share;
+        foot.along *= share;
+        foot.across *= share;
     }
-    return {(k.cosine * y0 - k.sine * y1) * k.along + (k.sine * y0 + k.cosine * y1) * k.across,
-            k.value[0] * y0 * y0 + k.value[1] * y1 * y1};
+    foot.rise = (k.tt * foot.along + 2 * k.ta * foot.across) * foot.along +
+                k.aa * foot.across * foot.across;
+    return foot;
 }
 
 /// An update that is under way.
@@ -121,25 +123,23 @@ class CubicDescent {
   private:
     enum class End { moved, at_target, at_rest, target_changed };
 
-    Vec3 h_mm() const { return site_.folded_to(progress_.target).cwiseProduct(spacing()); }
-    Vec3 spacing() const {
-        return fold_lengths(site_.point.tetrahedron, progress_.geometry.spacing);
+    // Vectors are folded, in millimetres. A walk changes the frame.
+    Vec3 h_mm() const {
+        return site_.folded_to(progress_.target)
+            .cwiseProduct(fold_lengths(site_.point.tetrahedron, progress_.geometry.spacing));
     }
     Vec3 per_mm() const {
         return fold_lengths(site_.point.tetrahedron, site_.field.voxels_per_mm());
-    }
-    double distance() const {
-        const Vec3 h = h_mm();
-        return std::sqrt(dot(h, h));
     }
 
     /// One round: a straight motion through free space, or a slide and a fall. `h` leads to the
     /// target.
     End move(const Vec3& h, int failures) {
+        if (!site_.in_contact()) return fall_to_target();
         const Vec3 per = per_mm();
-        const Vec3 g = site_.here.gradient.cwiseProduct(per);
+        const Vec3 g = site_.here().gradient.cwiseProduct(per);
         const double along = dot(g, h);
-        if (!site_.in_contact() || along <= 0) return fall_to_target();
+        if (along <= 0) return fall_to_target();
         const double squared = dot(g, g);
         const double flat = least_slope * range_ / shortest_;
         const bool is_flat = !(squared > flat * flat);
@@ -150,18 +150,19 @@ class CubicDescent {
               std::max(resting_slope * resting_slope * along * along, least * least * squared))) {
             return is_flat && look_round() ? End::moved : End::at_rest;
         }
-        const double slope = std::sqrt(squared);
+        // At rest above less than this: here both roots have at least eight digits.
+        const double slope = std::sqrt(squared), aside_root = std::sqrt(aside);
+        const double each = 1 / slope;
         Contact c;
-        c.normal = g * (-1 / slope);
-        c.depth = along / slope;
-        c.tangential = h + c.depth * c.normal;
-        c.tangential_length = std::sqrt(dot(c.tangential, c.tangential));
+        c.normal = g * -each;
+        c.depth = along * each;
+        c.aside = aside_root * each;
+        c.along = (h + c.depth * c.normal) * (slope / aside_root);
         if (friction_pending_) {
             friction_pending_ = false;
             return apply_friction(c) ? End::target_changed : End::at_rest;
         }
-        const cubic::Symmetric hessian = site_.piece.hessian_at(site_.point.folded);
-        slide(h, c, curvature_of(hessian, c, per, slope), failures);
+        slide(h, c, each, failures);
         return End::moved;
     }
 
@@ -190,23 +191,31 @@ class CubicDescent {
 
     /// Along the tangent plane, lifted where the surface rises, and from there down to where the
     /// surface's curvature says that the target's foot is. After failures shorter and higher.
-    void slide(const Vec3& h, const Contact& c, const Curvature& k, int failures) {
-        const double shrink = std::ldexp(1.0, -2 * failures);
+    void slide(const Vec3& h, const Contact& c, double each, int failures) {
+        const Vec3 across = c.across();
+        const Vec3 per = per_mm();
+        const Curvature k = curvature_of(site_.here().hessian, c.along.cwiseProduct(per),
+                                         across.cwiseProduct(per), each);
+        const double shrink = 1.0 / (1 << (2 * failures));
         const Foot step = foot_of(c, k, 1, far);
         const Foot aim = foot_of(c, k, 0.4, shortest_);
-        const double lift = 0.55 * shrink * shrink * std::max(0.0, step.rise) +
-                            0.05 * failures * shrink * std::sqrt(dot(step.along, step.along));
-        // In index axes: the walk changes the frame.
-        const Vec3 foot_mm = shrink * (aim.along + (0.5 * shrink * aim.rise) * c.normal);
-        const Vec3 foot =
-            site_.index() + unfold(site_.point.tetrahedron, foot_mm.cwiseProduct(per_mm()));
-        if (!go(shrink * step.along + lift * c.normal, h, site_.slide_level(), progress_)) return;
+        double lift = 0.55 * shrink * shrink * std::max(0.0, step.rise);
+        if (failures > 0) lift += 0.05 * failures * shrink * std::sqrt(step.squared());
+        const auto place = [&](const Foot& foot, double height) -> Vec3 {
+            return (shrink * foot.along) * c.along + (shrink * foot.across) * across +
+                   height * c.normal;
+        };
+        const Vec3 from_foot = unfold(site_.point.tetrahedron,
+                                      h - place(aim, 0.5 * shrink * shrink * aim.rise));
+        if (!go(place(step, lift), h, site_.slide_level(), progress_)) return;
         progress_.report(StepKind::slide, site_);
         if (site_.in_contact()) return;
+        const Vec3 left = h_mm();
         // Aim past the foot, in case the surface lies lower.
-        const Vec3 aimed = site_.folded_to(foot).cwiseProduct(spacing());
-        if (go(2 * aimed, h_mm(), site_.level(), progress_))
+        const Vec3 to_foot = left - fold(site_.point.tetrahedron, from_foot);
+        if (go(2 * to_foot, left, site_.level(), progress_)) {
             progress_.report(StepKind::slide, site_);
+        }
     }
 
     /// Moves the target back against the direction in which the SCP would slide, so that the SCP
@@ -214,12 +223,11 @@ class CubicDescent {
     bool apply_friction(const Contact& c) {
         const double mu =
             proxy_.sliding ? friction_.dynamic_coefficient : friction_.static_coefficient;
-        proxy_.sliding = c.tangential_length > mu * c.depth;
+        proxy_.sliding = c.aside > mu * c.depth;
         if (!proxy_.sliding) return false;
-        const double back =
-            std::min(1.0, friction_.dynamic_coefficient * c.depth / c.tangential_length);
+        const double back = std::min(c.aside, friction_.dynamic_coefficient * c.depth);
         progress_.target -=
-            unfold(site_.point.tetrahedron, (back * c.tangential).cwiseProduct(per_mm()));
+            unfold(site_.point.tetrahedron, (back * c.along).cwiseProduct(per_mm()));
         return true;
     }
 
@@ -236,7 +244,7 @@ class CubicDescent {
         const Vec3 h = h_mm();
         const CubicSite start = site_;
         Vec3 best = Vec3::Zero();
-        double least = distance() - 1e-3 * step * shortest_;
+        double least = std::sqrt(dot(h, h)) - 1e-3 * step * shortest_;
         progress_.budget -= directions;
         Progress unseen{progress_.geometry, {}, progress_.target, progress_.budget};
         for (int i = 0; i < 125; ++i) {
@@ -246,7 +254,8 @@ class CubicDescent {
             const Vec3 v = axes * (shortest_ / std::sqrt(dot(axes, axes)));
             site_.return_to(start);
             if (!go(step * v, h, site_.slide_level(), unseen)) continue;
-            const double after = distance();
+            const Vec3 left = h_mm();
+            const double after = std::sqrt(dot(left, left));
             if (after >= least) continue;
             least = after;
             best = v;

@@ -22,7 +22,7 @@ bool place_at(Proxy& proxy, const Field& field, const Vec3& hip, const Vec3& tar
     const int patience = 1000 + static_cast<int>(size.norm());
     const LatticePoint start = AnySite::located(target);
     for (int i = 0; i < patience; ++i) {
-        const Update<AnySite> update(proxy, field, target, {}, observer);
+        Update<AnySite> update(proxy, field, target, {}, observer);
         // Not by coordinates: those of a point just below zero do not come back bit for bit.
         const LatticePoint& at = update.site.point;
         const bool stayed =

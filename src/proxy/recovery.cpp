@@ -69,7 +69,7 @@ bool descend_out(CubicSite& site, Progress& progress) {
         if (!(excess > site.level())) return true;
         const Tetrahedron& t = site.point.tetrahedron;
         const Vec3 per_mm = fold_lengths(t, site.field.voxels_per_mm());
-        const Vec3 gradient = site.here.gradient.cwiseProduct(per_mm);
+        const Vec3 gradient = site.here().gradient.cwiseProduct(per_mm);
         const double slope = std::sqrt(dot(gradient, gradient));
         if (!(slope > flat)) return false;
         const Vec3 from = site.index();

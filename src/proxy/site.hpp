@@ -27,6 +27,12 @@ struct Site {
     CellSamples samples;
     LinearPiece piece;
 
+    /// The proxy, at a point, and what an update keeps of it for the next one: nothing.
+    static Site of(const Proxy& proxy, const Field& f, const LatticePoint& at) {
+        return {f, proxy.isovalue - f.offset(), f.sign(), at};
+    }
+    void keep(Proxy&) const {}
+
     static LatticePoint located(const Vec3& index) { return locate(index); }
     Vec3 index() const { return index_of(point); }
     /// As it is felt, offset included [data units].

@@ -27,7 +27,7 @@ void prefer_free_hip(AnySite& site, Progress& progress, const Vec3& start_index)
     const Vec3 out = (site.index() - start_index).cwiseProduct(spacing);
     const Vec3 to_hip = (progress.target - start_index).cwiseProduct(spacing);
     if (!(dot(out, out) > dot(to_hip, to_hip))) return;
-    const AnySite at_hip = site.at(progress.target);
+    AnySite at_hip = site.at(progress.target);
     if (at_hip.excess() > site.level()) return;
     site.move_to(at_hip.point);
     progress.report(StepKind::recover, site);
@@ -94,8 +94,8 @@ bool accepts(const Proxy& proxy, const Field& field, const Vec3& hip_index) {
 template <class AnySite>
 Update<AnySite>::Update(Proxy& proxy, const Field& field, const Vec3& hip_index,
                         const ProxySettings& settings, StepObserver observer)
-    : site(field, proxy.isovalue - field.offset(), field.sign(),
-           proxy.placed ? scp_in(field, proxy) : AnySite::located(hip_index)),
+    : site(AnySite::of(proxy, field,
+                       proxy.placed ? scp_in(field, proxy) : AnySite::located(hip_index))),
       progress{field.geometry(), observer, hip_index, settings.step_budget} {
     if (!proxy.placed) progress.report(StepKind::place, site);
     if (!site.is_inside()) {
@@ -110,8 +110,8 @@ Update<AnySite>::Update(Proxy& proxy, const Field& field, const Vec3& hip_index,
 }
 
 template <class AnySite>
-ProxyUpdate finish_update(Proxy& proxy, const Update<AnySite>& update, const Vec3& hip, Rest rest) {
-    const AnySite& site = update.site;
+ProxyUpdate finish_update(Proxy& proxy, Update<AnySite>& update, const Vec3& hip, Rest rest) {
+    AnySite& site = update.site;
     if (!is_finite(sum_of(site.point.folded))) {
         return refuse_update(proxy, site.field, hip, UpdateStatus::not_finite);
     }
@@ -125,20 +125,22 @@ ProxyUpdate finish_update(Proxy& proxy, const Update<AnySite>& update, const Vec
                          (rest == Rest::out_of_budget && site.in_contact())
                      ? Mode::constrained
                      : Mode::free;
+    const double density = site.density();
+    site.keep(proxy);
     return {.status = rest == Rest::recovering      ? UpdateStatus::recovering
                       : rest == Rest::out_of_budget ? UpdateStatus::out_of_budget
                                                     : UpdateStatus::done,
             .mode = proxy.mode,
             .hip = hip,
             .scp = proxy.scp_physical,
-            .density = site.density(),
+            .density = density,
             .isovalue = proxy.isovalue,
             .tetrahedra = update.progress.tetrahedra};
 }
 
 template struct Update<Site>;
 template struct Update<CubicSite>;
-template ProxyUpdate finish_update(Proxy&, const Update<Site>&, const Vec3&, Rest);
-template ProxyUpdate finish_update(Proxy&, const Update<CubicSite>&, const Vec3&, Rest);
+template ProxyUpdate finish_update(Proxy&, Update<Site>&, const Vec3&, Rest);
+template ProxyUpdate finish_update(Proxy&, Update<CubicSite>&, const Vec3&, Rest);
 
 }  // namespace palpate

@@ -35,7 +35,7 @@ enum class Rest { at_target, on_surface, out_of_budget, recovering };
 
 /// Writes the site back into the proxy and describes the result.
 template <class AnySite>
-ProxyUpdate finish_update(Proxy& proxy, const Update<AnySite>& update, const Vec3& hip, Rest rest);
+ProxyUpdate finish_update(Proxy& proxy, Update<AnySite>& update, const Vec3& hip, Rest rest);
 
 /// Brings the site out of the solid: steepest descent of the excess field from tetrahedron to
 /// tetrahedron until it is zero; where that gets stuck, to the nearest free point along 26

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "support/cubic_guarantees.hpp"
+#include "support/edits.hpp"
 #include "support/fields.hpp"
 #include "support/hand.hpp"
 
@@ -88,4 +89,62 @@ TEST(CubicProxy, keeps_its_guarantees_on_a_plateau_with_ripples_of_a_millionth) 
 }
 TEST(CubicProxy, keeps_its_guarantees_on_plateaus_at_the_isovalue) {
     expect_much_contact(run_smooth(terraces_field(), 20));
+}
+
+TEST(CubicProxy, what_an_update_keeps_for_the_next_changes_no_result) {
+    const Geometry geometry = grid(cube(12), {1, 1, 1.5});
+    const auto noise = [&](std::uint64_t seed) {
+        return noise_of(SampleType::uint8, geometry, seed);
+    };
+    const auto sequence = std::make_shared<const Samples>(
+        std::vector<Frame>{{0, noise(1)}, {1, noise(2)}, {2, noise(3)}});
+    auto samples = std::make_shared<const Samples>(std::vector<Frame>{{0, noise(4)}});
+    const auto field_of = [](const auto& of, Solid solid) {
+        return Field(of, solid, std::nullopt, Interpolation::cubic);
+    };
+    Field field = field_of(samples, Solid::above);
+    Proxy proxy, forgetful;
+    proxy.isovalue = forgetful.isovalue = 128;
+    Hand hand(geometry, 31, {.slide = 8, .sweep = 1, .jump = 1, .margin = -1});
+    Random random(32);
+    int reused = 0;
+    const int count = scaled(40000);
+    for (int i = 0; i < count; ++i) {
+        SCOPED_TRACE(i);
+        switch (random.below(40)) {
+            case 0:
+            case 1: {
+                const Brush brush{.kind = BrushKind::paint, .value = random.uniform(0, 255)};
+                const Vec3 at = proxy.scp_physical;
+                samples = edited(samples, edit::Stroke{brush, at, at}).samples;
+                if (field.samples().frames().size() == 1) field.use(samples);
+                break;
+            }
+            case 2:
+                field.set_time(random.uniform(0, 2));
+                break;
+            case 3:
+                proxy.isovalue = forgetful.isovalue = random.uniform(100, 156);
+                break;
+            case 4:
+                field.use(random.chance(0.5) ? sequence : samples);
+                break;
+            case 5:
+                field = field_of(samples, random.chance(0.5) ? Solid::above : Solid::below);
+                break;
+            default:
+                break;
+        }
+        reused += proxy.kept.version == field.version();
+        forgetful.kept = {};
+        const Vec3 hip = hand.next();
+        const ProxyUpdate a = update_exact(proxy, field, hip, {});
+        const ProxyUpdate b = update_exact(forgetful, field, hip, {});
+        ASSERT_EQ(a.scp, b.scp);
+        ASSERT_EQ(a.density, b.density);
+        ASSERT_EQ(a.status, b.status);
+        ASSERT_EQ(a.tetrahedra, b.tetrahedra);
+    }
+    EXPECT_GT(reused, count / 2);
+    EXPECT_LT(reused, count - count / 20);
 }

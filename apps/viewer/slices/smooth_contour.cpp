@@ -47,10 +47,10 @@ class Section {
     Point onto_contour(Point at, double most) const {
         const Point from = at;
         for (int i = 0; i < 4; ++i) {
-            const auto [value, gradient] = piece_.at(folded(at));
-            const Point slope = unfold(tetrahedron_, gradient).head<2>();
+            const cubic::Expansion here = piece_.at(folded(at));
+            const Point slope = unfold(tetrahedron_, here.gradient).head<2>();
             if (!(slope.squaredNorm() > 0)) break;
-            at -= value / slope.squaredNorm() * slope;
+            at -= here.value / slope.squaredNorm() * slope;
         }
         return (at - from).norm() <= most ? at : from;
     }
