@@ -3,7 +3,6 @@
 #include "palpate/field.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -23,12 +22,6 @@ CellSamples corners(const void* data, std::ptrdiff_t at, std::ptrdiff_t row, std
     const T* q = p + slice;
     return {double(p[0]), double(p[1]), double(p[row]), double(p[row + 1]),
             double(q[0]), double(q[1]), double(q[row]), double(q[row + 1])};
-}
-
-/// One more each time, from any thread. At a million a second 64 bits last for half a million years.
-std::uint64_t next_version() noexcept {
-    static std::atomic<std::uint64_t> last{0};
-    return last.fetch_add(1, std::memory_order_relaxed) + 1;
 }
 
 CellSamples corners(SampleType type, const void* data, std::ptrdiff_t at, std::ptrdiff_t row,
@@ -74,7 +67,6 @@ Field::Field(std::shared_ptr<const Samples> samples, Solid solid, std::optional<
 }
 
 void Field::use(const std::shared_ptr<const Samples>& samples) noexcept {
-    if (samples == samples_) return;
     samples_ = samples;
     look();
 }
@@ -87,7 +79,6 @@ void Field::set_time(double time) noexcept {
 
 /// Updates what is derived from samples and time.
 void Field::look() noexcept {
-    version_ = next_version();
     moment_ = samples_->moment_at(time_);
     data_ = samples_->frames()[moment_.from].volume.data();
     type_ = samples_->type();

@@ -6,7 +6,10 @@
 // half a voxel of it along each axis. Walls, folded coordinates and reflections are the lattice's.
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
+#include <cstring>
 #include <limits>
 #include <type_traits>
 
@@ -33,8 +36,8 @@ struct Symmetric {
 /// integers.
 inline constexpr double scale = 96;
 
-/// Value [data units], gradient [data units / voxel] and Hessian [data units / voxel^2] of the field
-/// at a point, times `scale`, in folded axes.
+/// Value [data units], gradient [data units / voxel] and Hessian [data units / voxel^2] of the
+/// field at a point, times `scale`, in folded axes.
 struct Expansion {
     double value = 0;
     Vec3 gradient = Vec3::Zero();
@@ -62,12 +65,74 @@ struct Piece : Expansion {
     Piece operator-() const;
 };
 
+/// A sample and its neighbours, to the bit.
+class KeptSamples {
+  public:
+    template <class T>
+    void keep(const T* centre, std::ptrdiff_t row, std::ptrdiff_t slice) {
+        type_ = type_of<T>;
+        std::byte* to = bytes_.data();
+        for (const std::ptrdiff_t z : {-slice, std::ptrdiff_t{0}, slice}) {
+            for (const std::ptrdiff_t y : {z - row, z, z + row}) {
+                std::memcpy(to, centre + y - 1, 3 * sizeof(T));
+                to += 3 * sizeof(T);
+            }
+        }
+    }
+    template <class T>
+    bool are(const T* centre, std::ptrdiff_t row, std::ptrdiff_t slice) const {
+        if (type_ != type_of<T>) return false;
+        const std::byte* kept = bytes_.data();
+        bool same = true;
+        for (const std::ptrdiff_t z : {-slice, std::ptrdiff_t{0}, slice}) {
+            for (const std::ptrdiff_t y : {z - row, z, z + row}) {
+                same &= same_three<T>(kept, centre + y - 1);
+                kept += 3 * sizeof(T);
+            }
+        }
+        return same;
+    }
+
+  private:
+    template <class T>
+    static constexpr int type_of = static_cast<int>(sizeof(T)) * (std::is_signed_v<T> ? -1 : 1);
+    /// Without a call or a branch: each of them costs as much as all the rest.
+    template <class Bits>
+    static Bits difference_at(const std::byte* a, const std::byte* b) {
+        Bits x, y;
+        std::memcpy(&x, a, sizeof x);
+        std::memcpy(&y, b, sizeof y);
+        return x ^ y;
+    }
+    template <class T>
+    static bool same_three(const std::byte* a, const T* from) {
+        const auto* b = reinterpret_cast<const std::byte*>(from);
+        if constexpr (sizeof(T) == 1) {
+            return (difference_at<std::uint16_t>(a, b) |
+                    difference_at<std::uint8_t>(a + 2, b + 2)) == 0;
+        } else if constexpr (sizeof(T) == 2) {
+            return (difference_at<std::uint32_t>(a, b) |
+                    difference_at<std::uint16_t>(a + 4, b + 4)) == 0;
+        } else if constexpr (sizeof(T) == 4) {
+            return (difference_at<std::uint64_t>(a, b) |
+                    difference_at<std::uint32_t>(a + 8, b + 8)) == 0;
+        } else {
+            return (difference_at<std::uint64_t>(a, b) |
+                    difference_at<std::uint64_t>(a + 8, b + 8) |
+                    difference_at<std::uint64_t>(a + 16, b + 16)) == 0;
+        }
+    }
+
+    int type_ = 0;  // none
+    std::array<std::byte, 27 * sizeof(double)> bytes_{};
+};
+
 /// The piece that an update made last, for the next one, which mostly begins in its tetrahedron. It
 /// is used only where all that it was made from is the same, so results do not depend on it.
 struct KeptPiece {
-    std::uint64_t version = 0;  ///< Field::version(); 0: nothing is kept
-    double isovalue = 0;        ///< less the field's offset [data units]
-    Tetrahedron tetrahedron;    ///< of the piece
+    double isovalue = 0;  ///< less the field's offset [data units]
+    double sign = 0;
+    Tetrahedron tetrahedron;
     Piece piece;  ///< of the excess, sign * (f - isovalue)
     /// Nothing in the tetrahedron's cube lies above: the greatest excess of the samples round it,
     /// once it was looked for, times `scale`.
@@ -204,7 +269,8 @@ inline Expansion Piece::at(const Vec3& u) const {
     const Vec3 hu = hessian * u;
     const Symmetric t = third(u);
     const Vec3 tu = t * u;
-    return {value + dot(gradient + 0.5 * hu + (1.0 / 6) * tu, u), gradient + hu + 0.5 * tu,
+    return {value + dot(gradient + 0.5 * hu + (1.0 / 6) * tu, u),
+            gradient + hu + 0.5 * tu,
             {hessian.d + t.d, hessian.s + t.s, hessian.e + t.e, hessian.ee + t.ee}};
 }
 

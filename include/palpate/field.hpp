@@ -70,9 +70,6 @@ class Field {
     /// max - min of samples and background [data units], never 0: what tolerances are relative to.
     double range() const { return range_; }
 
-    /// A number that every field with other samples, or at another moment, does not have: what was
-    /// computed from the samples holds as long as it is the same. Never 0.
-    std::uint64_t version() const { return version_; }
     /// How far sign * (f - isovalue) may exceed 0 by rounding before a point counts as solid [data
     /// units]: a thousandth of the tolerance of G1 and G2 (proxy.hpp).
     double tolerance() const { return tolerance_; }
@@ -128,7 +125,6 @@ class Field {
     std::ptrdiff_t slice_ = 0;    // samples between neighbours in z
     double background_ = 0;
     double range_ = 1;
-    std::uint64_t version_ = 0;
     double tolerance_ = 0;
     double offset_ = 0;
     Vec3 voxels_per_mm_;

@@ -38,7 +38,9 @@ struct Proxy {
     double recovery_reach = 0;  ///< [voxel] how far recovery has searched for free space so far
     /// Unit normal of the surface felt before the field changed, physical axes; zero: none
     Vec3 ahead = Vec3::Zero();
-    cubic::KeptPiece kept;  ///< saves time on a cubic field, changes no result
+    /// These save time on a cubic field and change no result.
+    cubic::KeptPiece kept;
+    cubic::KeptSamples kept_samples;  ///< that its piece was made from
 };
 
 /// Coulomb friction as a cone on the proxy's motion: it stays until the tangential pull exceeds

@@ -19,8 +19,8 @@ double rising_root(const Bernstein& b, double tolerance) {
     double low = 0, high = 1;
     // That of the parabola at the start is near; the chord's if there is none.
     const double square = a1 * a1 - 4 * a2 * b[0];
-    double t = square > 0 ? std::min(1.0, -2 * b[0] / (a1 + std::sqrt(square)))
-                          : -b[0] / (b[3] - b[0]);
+    double t =
+        square > 0 ? std::min(1.0, -2 * b[0] / (a1 + std::sqrt(square))) : -b[0] / (b[3] - b[0]);
     constexpr int enough = 80;  // bisection alone needs 54
     for (int i = 0; i < enough; ++i) {
         const double p = b[0] + t * (a1 + t * (a2 + t * a3));
@@ -73,8 +73,11 @@ CubicSite::CubicSite(const Field& f, double level, double s, const LatticePoint&
 CubicSite::CubicSite(const Proxy& proxy, const Field& f, const LatticePoint& at)
     : CubicSite(f, proxy.isovalue - f.offset(), f.sign(), at) {
     const cubic::KeptPiece& last = proxy.kept;
-    made = last.version == f.version() && last.isovalue == isovalue &&
-           same_frame(last.tetrahedron, at.tetrahedron);
+    made = last.isovalue == isovalue && last.sign == sign &&
+           same_frame(last.tetrahedron, at.tetrahedron) &&
+           f.visit_around(at.tetrahedron.cell, [&](const auto* centre, auto row, auto slice) {
+               return proxy.kept_samples.are(centre, row, slice);
+           });
     if (made) kept = last;
     if (kept.most == std::numeric_limits<double>::infinity()) look_at_cube();
 }
@@ -88,6 +91,14 @@ void CubicSite::set_isovalue(double level) {
 
 double CubicSite::density() {
     return field.with_offset(isovalue + sign * excess() / cubic::scale);
+}
+
+void CubicSite::keep(Proxy& proxy) const {
+    if (!made || !kept_is_new) return;
+    proxy.kept = kept;
+    field.visit_around(point.tetrahedron.cell, [&](const auto* centre, auto row, auto slice) {
+        proxy.kept_samples.keep(centre, row, slice);
+    });
 }
 
 void CubicSite::move_to(const LatticePoint& at) {
@@ -143,8 +154,8 @@ void CubicSite::make_piece() {
     };
     field.visit_around(t.cell, make);
     if (sign < 0) kept.piece = -kept.piece;
-    kept.version = field.version();
     kept.isovalue = isovalue;
+    kept.sign = sign;
     kept.tetrahedron = t;
     made = true;
     kept_is_new = true;

@@ -26,9 +26,7 @@ struct CubicSite {
     static CubicSite of(const Proxy& proxy, const Field& f, const LatticePoint& at) {
         return {proxy, f, at};
     }
-    void keep(Proxy& proxy) const {
-        if (kept_is_new) proxy.kept = kept;
-    }
+    void keep(Proxy& proxy) const;
 
     static LatticePoint located(const Vec3& index) { return cubic::locate(index); }
     Vec3 index() const { return cubic::index_of(point); }
