@@ -76,7 +76,8 @@ Field make_field(const Volume& volume, const FieldSetup& setup, ProxyMethod meth
 double isovalue_of(const LoadedVolume& loaded, const FieldSetup& setup) {
     if (setup.isovalue) return io::level_in(loaded.volume, *setup.isovalue);
     if (loaded.isovalue) return *loaded.isovalue;
-    const std::vector<double> levels = suggested_isovalues(histogram_of(loaded.volume, bins));
+    const std::vector<double> levels = suggested_isovalues(
+        histogram_of(loaded.volume, bins, padding_of(loaded.volume, loaded.values.padding)));
     if (!levels.empty()) return levels.front();
     throw std::invalid_argument(loaded.name + ": the data are constant, there is nothing to feel");
 }

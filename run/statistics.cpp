@@ -4,32 +4,67 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace palpate::run {
 namespace {
 
+/// How many samples have the least value, and the least of the others.
 template <class T>
-void count(const Volume& volume, Histogram& h) {
+std::pair<std::int64_t, double> above_least(const Volume& volume) {
+    const T least = static_cast<T>(volume.minimum());
+    std::int64_t count = 0;
+    T next = static_cast<T>(volume.maximum());
+    for (const T s : volume.samples<T>()) {
+        count += s == least;
+        if (s > least && s < next) next = s;
+    }
+    return {count, static_cast<double>(next)};
+}
+
+template <class T>
+void count(const Volume& volume, std::optional<double> padding, Histogram& h) {
     const double scale = static_cast<double>(h.counts.size()) / (h.high - h.low);
     const auto last = static_cast<std::int64_t>(h.counts.size()) - 1;
     double sum = 0;
     double squares = 0;
+    std::int64_t counted = 0;
     for (const T s : volume.samples<T>()) {
+        if (padding && static_cast<double>(s) == *padding) continue;
+        ++counted;
         const double value = static_cast<double>(s) - h.low;
         const auto bin = std::min(last, static_cast<std::int64_t>(value * scale));
         ++h.counts[static_cast<std::size_t>(bin)];
         sum += value;
         squares += value * value;
     }
-    const auto n = static_cast<double>(sample_count(volume.geometry()));
+    const auto n = static_cast<double>(counted);
     h.mean = h.low + sum / n;
     h.deviation = std::sqrt(std::max(0.0, squares / n - (sum / n) * (sum / n)));
 }
 
 }  // namespace
 
-Histogram histogram_of(const Volume& volume, int bins) {
+std::optional<double> padding_of(const Volume& volume, std::optional<double> header) {
+    constexpr double least_gap = 0.1, least_share = 0.001;
+    const double least = volume.minimum(), greatest = volume.maximum();
+    if (!(least < 0) || !(greatest > least)) return std::nullopt;
+    const auto [count, next] =
+        with_type(volume.type(), [&](auto zero) { return above_least<decltype(zero)>(volume); });
+    if (!(next < greatest)) return std::nullopt;  // a mask
+    const auto all = static_cast<double>(sample_count(volume.geometry()));
+    const bool stands_apart = next - least >= least_gap * (greatest - next) &&
+                              static_cast<double>(count) >= least_share * all;
+    return stands_apart || header == least ? std::optional(least) : std::nullopt;
+}
+
+Histogram histogram_of(const Volume& volume, int bins, std::optional<double> padding) {
     Histogram h{volume.minimum(), volume.maximum(), {}, volume.minimum(), 0};
+    if (padding) {
+        h.low = with_type(volume.type(),
+                          [&](auto zero) { return above_least<decltype(zero)>(volume).second; });
+    }
+    h.greatest = volume.maximum();
     if (h.high == h.low) {
         h.counts = {sample_count(volume.geometry())};
         return h;
@@ -43,7 +78,7 @@ Histogram histogram_of(const Volume& volume, int bins) {
         h.whole_numbers = true;
     }
     h.counts.assign(static_cast<std::size_t>(bins), 0);
-    with_type(volume.type(), [&](auto zero) { count<decltype(zero)>(volume, h); });
+    with_type(volume.type(), [&](auto zero) { count<decltype(zero)>(volume, padding, h); });
     return h;
 }
 

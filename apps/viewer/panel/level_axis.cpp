@@ -73,9 +73,8 @@ double rounded_to(double value, double unit) {
 }
 
 LevelAxis axis_of(const run::Histogram& histogram, const QRectF& plot) {
-    LevelAxis axis{histogram.low, histogram.high, plot.left(),
+    LevelAxis axis{histogram.low, histogram.greatest, plot.left(),
                    std::max(plot.right(), plot.left() + 1)};
-    if (histogram.whole_numbers) axis.high -= 1;  // the last number itself
     if (!(axis.high > axis.low)) {
         const double room = std::max(0.5, 1e-3 * std::abs(axis.low));
         axis.low -= room;
@@ -96,7 +95,7 @@ void paint_histogram(QPainter& painter, const run::Histogram& histogram, const L
     for (std::size_t i = 0; i < histogram.counts.size(); ++i) {
         const double from = first + static_cast<double>(i) * width;
         double left = axis.x_of(from);
-        double right = axis.x_of(from + width);
+        double right = std::min(axis.x_of(from + width), plot.right());
         if (width == 0) {  // all samples have one value
             left -= 1.5;
             right += 1.5;

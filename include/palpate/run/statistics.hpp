@@ -2,21 +2,28 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "palpate/volume.hpp"
 
 namespace palpate::run {
 
+/// The value of samples that were not measured (outside a scanner's circle, -2000 in many CT), if
+/// there are such [data units]: the least one, if it lies below 0 and either the header says so or
+/// a thousandth of the samples have it, a tenth of what the others span below the next.
+std::optional<double> padding_of(const Volume& volume, std::optional<double> header = {});
+
 struct Histogram {
     double low = 0, high = 0;  ///< [data units] ends of the first and last bin
     std::vector<std::int64_t> counts;
     double mean = 0, deviation = 0;  ///< of the samples [data units]
     bool whole_numbers = false;      ///< each bin holds (high - low) / bins whole numbers
+    double greatest = 0;             ///< of the samples; the last bin may end above it
 };
 
-/// One pass over the samples.
-Histogram histogram_of(const Volume& volume, int bins);
+/// Of the samples that are not padding.
+Histogram histogram_of(const Volume& volume, int bins, std::optional<double> padding = {});
 
 /// Two levels between the three classes that explain most of the variance (Otsu 1979, three
 /// classes); fewer for data with fewer values. In CT of a head: skin and bone.

@@ -97,6 +97,13 @@ TEST(LevelAxis, whole_numbers_end_at_the_last_of_them) {
     EXPECT_EQ(axis.high, 255);
 }
 
+TEST(LevelAxis, ends_at_the_greatest_sample_however_wide_the_bins_are) {
+    const LevelAxis axis =
+        axis_of(histogram_of(std::vector<std::int16_t>{-1000, 5, 3071}), QRectF(0, 0, 100, 10));
+    EXPECT_EQ(axis.low, -1000);
+    EXPECT_EQ(axis.high, 3071);
+}
+
 TEST(LevelAxis, both_values_of_a_mask_are_drawn) {
     std::vector<std::uint8_t> mask(100, 0);
     mask.insert(mask.end(), 50, 1);

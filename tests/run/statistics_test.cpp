@@ -1,0 +1,79 @@
+// Histogram, padding and suggested levels.
+#include "palpate/run/statistics.hpp"
+
+#include <gtest/gtest.h>
+
+#include "palpate/io/sample_volume.hpp"
+#include "palpate/io/volume_file.hpp"
+#include "support/fields.hpp"
+
+using namespace palpate;
+using namespace palpate::run;
+using namespace palpate::support;
+
+namespace {
+
+/// A body of 40 and bone of 400 to 1100 in air of -1000, as CT has them, with noise; outside the
+/// scanner's circle as `outside` says.
+Volume scan(double outside) {
+    Random random(1);
+    return volume_of<std::int16_t>(grid({64, 64, 8}), [&](const Index3& i) {
+        const double r = std::hypot(i[0] - 31.5, i[1] - 31.5);
+        if (r > 32) return outside;
+        if (r > 20) return -1000 + random.uniform(0, 40);
+        if (r > 12) return random.uniform(0, 80);
+        return random.uniform(400, 1100);
+    });
+}
+
+}  // namespace
+
+TEST(Padding, of_a_scan_is_left_out_of_histogram_mean_and_levels) {
+    const Volume plain = scan(-1000);
+    const std::vector<double> levels = suggested_isovalues(histogram_of(plain, 256));
+    ASSERT_EQ(levels.size(), 2U);
+    EXPECT_NEAR(levels[0], -480, 40) << "between air and body";
+    for (const double value : {-2000.0, -3024.0, -32768.0}) {
+        const Volume padded = scan(value);
+        const auto padding = padding_of(padded);
+        ASSERT_TRUE(padding);
+        EXPECT_EQ(*padding, value);
+        const Histogram h = histogram_of(padded, 256, padding);
+        EXPECT_GE(h.low, -1000);
+        EXPECT_GT(h.mean, -1000);
+        const auto found = suggested_isovalues(h);
+        ASSERT_EQ(found.size(), 2U);
+        for (int i = 0; i < 2; ++i) EXPECT_NEAR(found[i], levels[i], 40) << value;
+        // Without that, the levels would bound the circle.
+        EXPECT_LT(suggested_isovalues(histogram_of(padded, 256))[0], -900) << value;
+    }
+}
+
+TEST(Padding, is_not_what_is_only_the_least_value) {
+    EXPECT_FALSE(padding_of(scan(-1000)));
+    EXPECT_FALSE(padding_of(noise_field().field.volume()));
+    const auto of = [](const std::vector<float>& values) {
+        return padding_of(volume_of<float>(grid({10, 10, 10}), [&](const Index3& i) {
+            return values[static_cast<std::size_t>(i.sum()) % values.size()];
+        }));
+    };
+    EXPECT_FALSE(of({0, 50, 60, 70})) << "an empty background at 0";
+    EXPECT_FALSE(of({-1, 1})) << "a mask";
+    EXPECT_FALSE(of({-1, -1, -1})) << "constant";
+    EXPECT_TRUE(of({-9, 1, 2, 3}));
+    // One odd sample is none.
+    EXPECT_FALSE(padding_of(volume_of<float>(grid({20, 20, 20}), [](const Index3& i) {
+        return i == Index3(3, 3, 3) ? -900 : i.sum();
+    })));
+}
+
+TEST(Padding, that_the_header_names_needs_no_gap) {
+    const Volume close = scan(-1060);
+    EXPECT_FALSE(padding_of(close));
+    EXPECT_EQ(padding_of(close, -1060), std::optional(-1060.0));
+    EXPECT_FALSE(padding_of(close, -1000)) << "not the least one";
+}
+
+TEST(Padding, of_the_sample_volume_there_is_none) {
+    EXPECT_FALSE(padding_of(io::read_volume(io::sample_volume_path()).volume));
+}
