@@ -7,7 +7,6 @@
 #include <sstream>
 #include <utility>
 
-#include "io/helper/decode.hpp"
 #include "io/number.hpp"
 
 namespace palpate::io {
@@ -60,22 +59,32 @@ double count_in(const Description& description, const char* name) {
 
 }  // namespace
 
-void check_image_j_stack(TIFF* tiff, std::size_t pages) {
+Moments image_j_moments(TIFF* tiff, std::size_t pages, std::vector<std::string>& notes) {
     const Description description = description_of(tiff);
-    if (!description.contains("ImageJ")) return;
-    for (const auto& [name, meaning] :
-         {std::pair("channels", " channels"), std::pair("frames", " times")}) {
-        const double count = count_in(description, name);
-        if (count > 1) {
-            throw Failure("holds " + text_of(count) + meaning +
-                          " slice by slice; save one of them (ImageJ: Image > Duplicate)");
-        }
+    if (!description.contains("ImageJ")) return {};
+    if (const double channels = count_in(description, "channels"); channels > 1) {
+        throw Failure("holds " + text_of(channels) +
+                      " channels slice by slice; save one of them (ImageJ: Image > Duplicate)");
     }
     const double images = count_in(description, "images");
     if (images > static_cast<double>(pages)) {
         throw Failure("tells of " + text_of(images) + " slices, but has " + std::to_string(pages) +
                       " as TIFF counts them; save it as BigTIFF (Bio-Formats) or as NRRD");
     }
+    const double frames = count_in(description, "frames");
+    if (!(frames > 1)) return {};
+    const double slices = static_cast<double>(pages) / frames;
+    if (slices != std::floor(slices)) {
+        throw Failure("tells of " + text_of(frames) + " times, but has " + std::to_string(pages) +
+                      " pages; save it again");
+    }
+    Moments moments{static_cast<std::int64_t>(frames), {}};
+    if (const auto interval = description.find("finterval"); interval != description.end()) {
+        const auto unit = description.find("tunit");
+        moments.times = frame_times(number_from<double>(interval->second).value_or(0), 0,
+                                    unit == description.end() ? "s" : unit->second, notes);
+    }
+    return moments;
 }
 
 std::optional<Vec3> image_j_spacing(TIFF* tiff) {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "io/helper/decode.hpp"
 #include "io/helper/tiff_library.hpp"
 #include "palpate/volume.hpp"
 
@@ -15,10 +16,14 @@ namespace palpate::io {
 /// lengths.
 std::optional<Vec3> image_j_spacing(TIFF* tiff);
 
-/// Refuses a file whose pages are not slices of one volume by ImageJ's description:
-/// channels, times, or more of them than there are (ImageJ's own files above 4 GB have one page).
-/// Throws Failure.
-void check_image_j_stack(TIFF* tiff, std::size_t pages);
+/// Into how many moments, one after the other, ImageJ's description divides the pages.
+struct Moments {
+    std::int64_t count = 1;
+    FrameTimes times;
+};
+/// Throws Failure where it has channels, or other counts than there are pages (ImageJ's own files
+/// above 4 GB have one page).
+Moments image_j_moments(TIFF* tiff, std::size_t pages, std::vector<std::string>& notes);
 
 /// Writes the spacing [mm] of a stack into its first page, which is the current one.
 void set_image_j_spacing(TIFF* tiff, const Vec3& spacing, int slices);

@@ -209,9 +209,18 @@ Result read_slices(const std::vector<Slice>& slices, const Request& request) {
             "it does not tell the distance between slices (as ImageJ would): a spacing of 1 mm was "
             "taken along every axis; give the spacing");
     }
-    checked_time_step(request, 1);
     finish(result, request, samples);
     return result;
+}
+
+/// Pages far more in number than they are wide may be moments of one slice.
+void note_stick(Result& result) {
+    const Index3& size = result.geometry.size;
+    if (size[2] <= 8 * std::max(size[0], size[1])) return;
+    result.notes.push_back("its " + std::to_string(size[2]) + " pages of " +
+                           std::to_string(size[0]) + "x" + std::to_string(size[1]) +
+                           " were taken as slices; if they are moments, say so in the file "
+                           "(ImageJ: Image > Properties, frames) and it is a sequence");
 }
 
 bool is_digit(char c) {
@@ -277,9 +286,15 @@ bool looks_like_tiff(const fs::path& file) {
 
 Result read_tiff_file(const Request& request) {
     const std::vector<Slice> slices = pages_of(request.path);
-    check_image_j_stack(open(request.path).get(), slices.size());
-    Result result = read_slices(slices, request);
+    std::vector<std::string> notes;
+    const Moments moments = image_j_moments(open(request.path).get(), slices.size(), notes);
+    const auto each = static_cast<std::ptrdiff_t>(slices.size()) / moments.count;
+    const auto begin = slices.begin() + checked_time_step(request, moments.count) * each;
+    Result result = read_slices({begin, begin + each}, request);
     result.format = "TIFF";
+    result.notes.insert(result.notes.begin(), notes.begin(), notes.end());
+    take_step(request, moments.count, moments.times, result);
+    note_stick(result);
     return result;
 }
 
@@ -298,8 +313,10 @@ Result read_tiff_folder(const Request& request) {
         }
         slices.insert(slices.end(), pages.begin(), pages.end());
     }
+    checked_time_step(request, 1);
     Result result = read_slices(slices, request);
     result.format = "TIFF slices";
+    note_stick(result);
     note_gaps(files, result.notes);
     return result;
 }

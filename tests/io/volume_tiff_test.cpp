@@ -177,12 +177,44 @@ TEST(tiff, the_spacing_that_image_j_writes_is_taken) {
     }
 }
 
-TEST(tiff, stacks_of_channels_and_times_and_stacks_that_lack_slices_are_refused) {
+TEST(tiff, times_are_a_sequence) {
+    const ScratchFolder folder;
+    std::vector<TestPage> pages;
+    for (int i = 0; i < 6; ++i) pages.push_back(counting_page(12 * i));
+    const std::string head = "ImageJ=1.53t\nimages=6\nunit=mm\nspacing=2\n";
+    for (const int frames : {6, 3, 2}) {
+        pages[0].description = head + "slices=" + std::to_string(6 / frames) +
+                               "\nframes=" + std::to_string(frames) + "\nfinterval=40\ntunit=ms\n";
+        put_bytes(folder / "a.tif", tiff_bytes(pages));
+        for (int step = 0; step < frames; ++step) {
+            ReadOptions options;
+            options.time_step = step;
+            const VolumeFile file = read_volume(folder / "a.tif", options);
+            EXPECT_EQ(file.time_steps, frames);
+            EXPECT_DOUBLE_EQ(file.frame_interval, 0.04);
+            ASSERT_EQ(file.volume.geometry().size[2], 6 / frames);
+            EXPECT_EQ(file.volume.sample({0, 0, 0}), 12 * step * (6 / frames));
+        }
+    }
+    pages[0].description = head + "frames=4\n";
+    put_bytes(folder / "a.tif", tiff_bytes(pages));
+    EXPECT_TRUE(contains(refusal(folder / "a.tif"), "4 times, but has 6 pages"));
+}
+
+TEST(tiff, many_small_pages_are_slices_with_a_word_about_it) {
+    const ScratchFolder folder;
+    const std::vector<TestPage> pages(40, counting_page(0));
+    put_bytes(folder / "a.tif", tiff_bytes(pages));
+    const VolumeFile file = read_volume(folder / "a.tif");
+    EXPECT_EQ(file.volume.geometry().size[2], 40);
+    EXPECT_TRUE(contains(all_notes(file), "if they are moments")) << all_notes(file);
+}
+
+TEST(tiff, stacks_of_channels_and_stacks_that_lack_slices_are_refused) {
     const ScratchFolder folder;
     std::vector<TestPage> pages{counting_page(0), counting_page(12)};
     for (const auto& [text, reason] : std::initializer_list<std::pair<const char*, const char*>>{
              {"ImageJ=1.53t\nimages=2\nchannels=2\nunit=mm\nspacing=2\n", "2 channels"},
-             {"ImageJ=1.53t\nimages=2\nframes=2\nunit=mm\nspacing=2\n", "2 times"},
              {"ImageJ=1.53t\nimages=600\nslices=600\nunit=mm\nspacing=2\n", "600"}}) {
         pages[0].description = text;
         put_bytes(folder / "a.tif", tiff_bytes(pages));
