@@ -169,7 +169,8 @@ double interval_of(const SequenceOptions& options, const VolumeFile& file,
 
 SequenceFile opened(VolumeFile file, const std::vector<double>& places, double first_time,
                     const SequenceOptions& options, std::vector<std::string> notes) {
-    SequenceFile result{{}, file.volume, std::move(file.format), std::move(file.notes)};
+    SequenceFile result{
+        {}, file.volume, std::move(file.format), std::move(file.notes), std::move(file.values)};
     std::erase_if(result.notes,
                   [](const std::string& note) { return note.starts_with("time step "); });
     std::move(notes.begin(), notes.end(), std::back_inserter(result.notes));

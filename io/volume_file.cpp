@@ -85,6 +85,44 @@ std::vector<std::string> notes_of(const nlohmann::json& done) {
     return notes;
 }
 
+ValueInfo values_of(const nlohmann::json& j) {
+    // As long as DICOM's short texts are.
+    const auto word = [&](const char* name) {
+        return one_line(j.at(name).get<std::string>().substr(0, 16));
+    };
+    ValueInfo values{word("modality"), word("units"), {}, {}};
+    if (j.contains("padding")) values.padding = j["padding"].get<double>();
+    if (j.contains("window")) {
+        values.window = {j["window"].at(0).get<double>(), j["window"].at(1).get<double>()};
+    }
+    return values;
+}
+
+std::vector<SeriesInfo> series_from(const nlohmann::json& list) {
+    std::vector<SeriesInfo> all;
+    for (const nlohmann::json& j : list) {
+        SeriesInfo s;
+        const auto text = [&](const char* name) { return one_line(j.at(name).get<std::string>()); };
+        s.uid = text("uid");
+        s.patient = text("patient");
+        s.study = text("study");
+        s.description = text("description");
+        s.modality = text("modality");
+        s.stack = text("stack");
+        s.slices = j.at("slices").get<int>();
+        s.size = j.at("size").get<std::array<int, 2>>();
+        s.spacing = vec3_from(j.at("spacing"));
+        const auto size = j.at("picture").get<std::array<int, 2>>();
+        s.picture = {size[0], size[1], j.at("grey").get<std::vector<std::uint8_t>>()};
+        if (s.picture.grey.size() !=
+            static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1])) {
+            s.picture = {};
+        }
+        all.push_back(std::move(s));
+    }
+    return all;
+}
+
 VolumeFile volume_from(const nlohmann::json& done, const Descriptor& samples) {
     const Geometry geometry = geometry_from(done.at("geometry"));
     const SampleType type = sample_type_from(done.at("type").get<std::string>());
@@ -99,7 +137,8 @@ VolumeFile volume_from(const nlohmann::json& done, const Descriptor& samples) {
             done.at("time_steps").get<int>(),
             notes_of(done),
             done.value("frame_interval", 0.0),
-            done.value("first_time", 0.0)};
+            done.value("first_time", 0.0),
+            values_of(done.at("values"))};
 }
 
 }  // namespace
@@ -116,6 +155,7 @@ VolumeFile read_volume(const fs::path& path, const ReadOptions& options) {
     }
     nlohmann::json request = {{"caller", getpid()},
                               {"series", options.series},
+                              {"pictures", options.series_pictures},
                               {"time_step", options.time_step},
                               {"memory", limited.memory_limit_bytes}};
     if (options.spacing) request["spacing"] = json_from(*options.spacing);
@@ -128,6 +168,10 @@ VolumeFile read_volume(const fs::path& path, const ReadOptions& options) {
             limits.processor_s};
         const HelperResult result = run_helper(job);
         if (!result.failure.empty()) throw InputError(path.string() + ": " + result.failure);
+        if (result.done.contains("choose")) {
+            throw SeriesChoice(path.string() + ": " + result.done.at("why").get<std::string>(),
+                               series_from(result.done["choose"]));
+        }
         return volume_from(result.done, samples);
     } catch (const std::system_error& e) {
         throw InputError(path.string() + ": " + e.what());

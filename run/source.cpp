@@ -84,6 +84,7 @@ LoadedVolume one_frame_of(const FileSource& file, const Source& source, io::Read
     LoadedVolume loaded = loaded_from(std::move(got.volume), source);
     loaded.format = std::move(got.format);
     loaded.notes = std::move(got.notes);
+    loaded.values = std::move(got.values);
     loaded.time_steps = got.time_steps;
     return loaded;
 }
@@ -102,6 +103,7 @@ LoadedVolume loaded_of(const FileSource& file, const Source& source, const io::P
     LoadedVolume loaded = loaded_from(std::move(got.first), source);
     loaded.format = std::move(got.format);
     loaded.notes = std::move(got.notes);
+    loaded.values = std::move(got.values);
     loaded.time_steps = got.sequence.count();
     if (!source.frame) {
         if (loaded.time_steps > 1) loaded.sequence = std::move(got.sequence);

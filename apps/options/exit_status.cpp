@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "palpate/devices/error.hpp"
-#include "palpate/io/error.hpp"
+#include "palpate/io/series.hpp"
 
 namespace palpate::app {
 
@@ -15,6 +15,15 @@ namespace {
 template <class E>
 bool is(const std::exception& exception) {
     return dynamic_cast<const E*>(&exception) != nullptr;
+}
+
+/// A numbered line each.
+std::string list_of(const std::vector<io::SeriesInfo>& series) {
+    std::string text;
+    for (std::size_t i = 0; i < series.size(); ++i) {
+        text += "\n  " + std::to_string(i + 1) + "  " + io::text_of(series[i]);
+    }
+    return text;
 }
 
 }  // namespace
@@ -27,6 +36,9 @@ Failure failure_of(const std::exception& exception) {
     if (is<devices::DeviceError>(exception)) return {no_device, text};
     if (is<io::OutputError>(exception)) return {bad_output, text};
     if (is<std::invalid_argument>(exception)) return {wrong_use, text};
+    if (const auto* choice = dynamic_cast<const io::SeriesChoice*>(&exception)) {
+        return {bad_input, text + list_of(choice->series())};
+    }
     return {bad_input, text};
 }
 

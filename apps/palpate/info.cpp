@@ -65,6 +65,31 @@ nlohmann::ordered_json json_of(const std::optional<filters::Terraces>& terraces)
     return json;
 }
 
+/// "CT in HU, to be shown from -160 to 240"; empty where the file does not say.
+std::string text_of(const io::ValueInfo& values) {
+    std::string text = values.modality;
+    if (!values.units.empty())
+        text += fmt::format("{}in {}", text.empty() ? "" : " ", values.units);
+    if (values.window) {
+        const auto [centre, width] = *values.window;
+        text += fmt::format("{}to be shown from {:g} to {:g}", text.empty() ? "" : ", ",
+                            centre - 0.5 * width, centre + 0.5 * width);
+    }
+    return text;
+}
+
+nlohmann::ordered_json json_of(const io::ValueInfo& values) {
+    nlohmann::ordered_json json{
+        {"modality", values.modality},
+        {"units", values.units},
+        {"window", nullptr},
+        {"padding", values.padding ? nlohmann::ordered_json(*values.padding) : nullptr}};
+    if (values.window) {
+        json["window"] = {{"centre", values.window->centre}, {"width", values.window->width}};
+    }
+    return json;
+}
+
 nlohmann::ordered_json json_of(const run::LoadedVolume& loaded, const run::Histogram& histogram,
                                const std::vector<double>& suggested,
                                const std::optional<filters::Terraces>& terraces) {
@@ -81,6 +106,7 @@ nlohmann::ordered_json json_of(const run::LoadedVolume& loaded, const run::Histo
             {"origin_mm", list(g.origin)},
             {"direction", direction},
             {"orientation", orientation(g)},
+            {"values", json_of(loaded.values)},
             {"minimum", volume.minimum()},
             {"maximum", volume.maximum()},
             {"mean", histogram.mean},
@@ -140,6 +166,12 @@ void print_text(const run::LoadedVolume& loaded, const run::Histogram& histogram
                g.origin[2] + 0.0);  // no -0
     fmt::print("orientation  axes run towards {}{}\n", orientation(g),
                is_oblique(g) ? " (oblique)" : "");
+    const std::string values = text_of(loaded.values);
+    if (!values.empty()) fmt::print("values       {}\n", values);
+    if (loaded.values.padding) {
+        fmt::print("padding      {:g}: not measured, left out of mean, isovalues and histogram\n",
+                   *loaded.values.padding);
+    }
     fmt::print("range        {:g} to {:g}, mean {:.4g}, standard deviation {:.4g}\n",
                volume.minimum(), volume.maximum(), histogram.mean, histogram.deviation);
     fmt::print("memory       {}\n", size_text(volume.bytes()));
@@ -167,8 +199,10 @@ void add_info(CLI::App& app) {
     options->add_to(*command);
     command->add_flag("--json", *json, "Print JSON");
     command->callback([options, json] {
-        const run::LoadedVolume loaded = load_for_terminal(*options);
-        const run::Histogram histogram = run::histogram_of(loaded.volume, fine_bins);
+        run::LoadedVolume loaded = load_for_terminal(*options);
+        loaded.values.padding = run::padding_of(loaded.volume, loaded.values.padding);
+        const run::Histogram histogram =
+            run::histogram_of(loaded.volume, fine_bins, loaded.values.padding);
         std::vector<double> suggested = run::suggested_isovalues(histogram);
         const std::optional<double>& own = loaded.isovalue;  // a tiny grid may miss its range
         if (own && *own > loaded.volume.minimum() && *own < loaded.volume.maximum()) {

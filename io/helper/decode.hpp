@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "palpate/io/series.hpp"
+#include "palpate/io/value_info.hpp"
 #include "palpate/volume.hpp"
 
 namespace palpate::io {
@@ -22,9 +24,18 @@ class Failure : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+/// A series has to be chosen.
+class ChooseSeries : public Failure {
+  public:
+    ChooseSeries(const std::string& what, std::vector<SeriesInfo> all)
+        : Failure(what), series(std::move(all)) {}
+    std::vector<SeriesInfo> series;
+};
+
 struct Request {
     std::filesystem::path path;
     std::string series;
+    bool pictures = false;  ///< of the series, if one has to be chosen
     int time_step = 0;
     std::uint64_t memory_limit = UINT64_MAX;  ///< [bytes]
     std::optional<Vec3> spacing;              ///< [mm] instead of the file's
@@ -48,6 +59,7 @@ struct Result {
     int time_steps = 1;
     std::vector<std::string> notes;
     FrameTimes times;
+    ValueInfo values;
 };
 
 /// How a file stores a sample.

@@ -1,22 +1,20 @@
-// One DICOM file at a time through GDCM and ITK, checked before and within bounds of memory.
+// DICOM files through ITK, one at a time, after dicom_check.hpp and within bounds of memory.
 #pragma once
 
 #include "io/helper/dicom_stack.hpp"
 
 namespace palpate::io {
 
-/// What the header says, after check_dicom(). Without rows: a file that has no image. Throws
-/// Failure.
-DicomSlice slice_from(const std::filesystem::path& file);
-
+/// The samples of one file, or of one frame of it.
 struct Decoded {
     Stored stored = Stored::uint8;
     std::vector<std::byte> samples;
-    std::string decoder_said;  ///< warnings of the decoder of a compressed image, one line
-    Geometry geometry;         ///< as ITK sees it; used for a file with several frames only
+    std::string decoder_said;         ///< warnings of the decoder of a compressed image, one line
+    double slope = 1, intercept = 0;  ///< that have been applied
 };
 
-/// The samples, slope and intercept applied. Throws Failure, or the library's exception.
-Decoded decode(const DicomSlice& slice, const Request& request);
+/// The samples of some slices, each with its own slope and intercept applied. A file with several
+/// frames is decoded once. Throws Failure, or the library's exception.
+std::vector<Decoded> decode(const std::vector<DicomSlice>& slices, const Request& request);
 
 }  // namespace palpate::io

@@ -15,7 +15,10 @@ constexpr double even_part = 0.02;     // of the spacing
 constexpr double shift_pixels = 0.05;  // more is gantry tilt
 
 std::string key_of(const DicomSlice& s) {
-    std::string key = s.series_uid + "|" + std::to_string(s.rows) + "x" + std::to_string(s.columns);
+    std::string key = s.series_uid + "|" + s.stack + "|" + s.image_type + "|" +
+                      std::to_string(s.rows) + "x" + std::to_string(s.columns);
+    // Moments of different places, which are not known, make no volume.
+    if (s.is_moment && !s.position) key += "|" + s.instance_uid;
     for (const auto& v : {s.row, s.column, s.pixel}) {
         if (!v) continue;
         for (int i = 0; i < 3; ++i) {
@@ -24,6 +27,23 @@ std::string key_of(const DicomSlice& s) {
         }
     }
     return key;
+}
+
+/// [mm] along the normal; the number of a slice without a place.
+double place_along(const DicomSlice& s) {
+    if (!s.position || !s.row || !s.column) return s.instance;
+    return s.row->cross(*s.column).dot(*s.position);
+}
+
+/// In order; empty where slices have no place.
+std::vector<double> places_along(const DicomSeries& series) {
+    std::vector<double> along;
+    for (const DicomSlice& s : series.slices) {
+        if (!s.position || !s.row || !s.column) return {};
+        along.push_back(place_along(s));
+    }
+    std::sort(along.begin(), along.end());
+    return along;
 }
 
 /// The slices in order along the normal; all those at one place are one group.
@@ -53,7 +73,8 @@ Groups groups_of(const DicomSeries& series, const Vec3& normal) {
     return groups;
 }
 
-void choose_time_step(const Groups& groups, const Request& request, Stack& stack) {
+void choose_time_step(const DicomSeries& series, const Groups& groups, const Request& request,
+                      Stack& stack) {
     const std::size_t steps = groups.front().size();
     for (const auto& group : groups) {
         if (group.size() == steps) continue;
@@ -64,6 +85,7 @@ void choose_time_step(const Groups& groups, const Request& request, Stack& stack
     const int step = checked_time_step(request, static_cast<std::int64_t>(steps));
     stack.time_steps = static_cast<int>(steps);
     for (const auto& group : groups) stack.slices.push_back(group[static_cast<std::size_t>(step)]);
+    stack.seconds = series.slices[stack.slices.front().slice].seconds;
     if (steps > 1) {
         stack.notes.push_back("time step " + std::to_string(step) + " of " + std::to_string(steps) +
                               " (0 to " + std::to_string(steps - 1) + ") was taken");
@@ -170,12 +192,20 @@ void find_shear(const DicomSeries& series, const Vec3& row, const Vec3& column, 
     stack.geometry.size[1] += high;
 }
 
-/// Slices without position or orientation, stacked in the order of their numbers.
+/// Slices without position or orientation, stacked in the order of their numbers, or moments of
+/// one.
 void pile_up(const DicomSeries& series, const Request& request, Stack& stack) {
-    for (std::size_t i = 0; i < series.slices.size(); ++i) stack.slices.push_back({i, 0, 0, 0});
-    std::stable_sort(stack.slices.begin(), stack.slices.end(), [&](const auto& a, const auto& b) {
+    std::vector<PlacedSlice> slices;
+    for (std::size_t i = 0; i < series.slices.size(); ++i) slices.push_back({i, 0, 0, 0});
+    std::stable_sort(slices.begin(), slices.end(), [&](const auto& a, const auto& b) {
         return series.slices[a.slice].instance < series.slices[b.slice].instance;
     });
+    if (series.slices.front().is_moment) {
+        choose_time_step(series, {slices}, request, stack);
+        stack.grid.push_back({0, 0, 0});
+        return;
+    }
+    stack.slices = std::move(slices);
     for (std::size_t i = 0; i < stack.slices.size(); ++i) stack.grid.push_back({i, i, 0});
     checked_time_step(request, 1);
     stack.notes.emplace_back("its slices say nothing of their position: piled up by their numbers");
@@ -195,13 +225,41 @@ std::vector<DicomSeries> series_of(std::vector<DicomSlice> slices) {
     for (DicomSlice& s : slices) {
         DicomSeries& series = sorted[key_of(s)];
         series.uid = s.series_uid;
-        series.description = s.description;
-        series.modality = s.modality;
         series.slices.push_back(std::move(s));
     }
     std::vector<DicomSeries> all;
     for (auto& [key, series] : sorted) all.push_back(std::move(series));
     return all;
+}
+
+SeriesInfo info_of(const DicomSeries& series) {
+    const DicomSlice& one = series.slices.front();
+    SeriesInfo info;
+    info.uid = one.series_uid;
+    info.patient = one.patient;
+    info.study = one.study;
+    info.description = one.description;
+    info.modality = one.values.modality;
+    info.stack = one.stack;
+    info.slices = static_cast<int>(series.slices.size());
+    info.size = {one.columns, one.rows};
+    if (one.pixel) info.spacing.head<2>() = one.pixel->head<2>();
+    const std::vector<double> along = places_along(series);
+    double gap = 0;
+    for (std::size_t i = 1; i < along.size(); ++i) {
+        const double step = along[i] - along[i - 1];
+        if (step > same_place_mm && (gap == 0 || step < gap)) gap = step;
+    }
+    info.spacing[2] = gap > 0 ? gap : one.thickness;
+    return info;
+}
+
+const DicomSlice& middle_of(const DicomSeries& series) {
+    std::vector<std::pair<double, const DicomSlice*>> order;
+    for (const DicomSlice& s : series.slices) order.emplace_back(place_along(s), &s);
+    const auto middle = order.begin() + static_cast<std::ptrdiff_t>(order.size() / 2);
+    std::nth_element(order.begin(), middle, order.end());
+    return *middle->second;
 }
 
 const DicomSeries& choose_series(const std::vector<DicomSeries>& all, const std::string& chosen) {
@@ -214,16 +272,9 @@ const DicomSeries& choose_series(const std::vector<DicomSeries>& all, const std:
     std::string text = chosen.empty()     ? "has " + std::to_string(all.size()) + " DICOM series"
                        : matching.empty() ? "has no DICOM series '" + chosen + "'"
                                           : "has several DICOM series '" + chosen + "'";
-    text += "; choose one by its number or UID:";
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        const DicomSeries& s = all[i];
-        const DicomSlice& one = s.slices.front();
-        text += "\n  " + std::to_string(i + 1) + "  " + std::to_string(s.slices.size()) +
-                (s.slices.size() == 1 ? " slice of " : " slices of ") +
-                std::to_string(one.columns) + "x" + std::to_string(one.rows) + "  " + s.modality +
-                " '" + s.description + "'  " + s.uid;
-    }
-    throw Failure(text);
+    std::vector<SeriesInfo> list;
+    for (const DicomSeries& series : all) list.push_back(info_of(series));
+    throw ChooseSeries(text + "; choose one by its number or UID", std::move(list));
 }
 
 Stack stack_slices(const DicomSeries& series, const Request& request) {
@@ -250,7 +301,7 @@ Stack stack_slices(const DicomSeries& series, const Request& request) {
         throw Failure("its row and column directions are not at right angles; export it again");
     }
     const Vec3 normal = row.cross(column);
-    choose_time_step(groups_of(scaled, normal), request, stack);
+    choose_time_step(scaled, groups_of(scaled, normal), request, stack);
     const double start = stack.slices.front().along;
     for (PlacedSlice& p : stack.slices) p.along -= start;
     find_shear(scaled, row, column, stack);

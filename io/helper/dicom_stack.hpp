@@ -9,29 +9,41 @@ namespace palpate::io {
 /// What the header of one slice says.
 struct DicomSlice {
     std::filesystem::path file;
-    std::string series_uid, instance_uid, description, modality;
-    int rows = 0, columns = 0, frames = 1;
+    std::string series_uid, instance_uid, description;
+    std::string patient, study;
+    std::string stack, image_type;  ///< of a frame: stacks of one file; original, phase, ...
+    ValueInfo values;
+    int rows = 0, columns = 0;
+    int frames = 1, frame = 0;  ///< how many its file has, and which of them it is
     int instance = 0, acquisition = 0;
     std::optional<Vec3> position;     ///< [mm, LPS] centre of the first pixel
     std::optional<Vec3> row, column;  ///< unit vectors along a row and along a column
     std::optional<Vec3> pixel;        ///< [mm] between columns, between rows, 0
     double thickness = 0;             ///< [mm] between slices or of one; 0 if not given
+    double slope = 1, intercept = 0;  ///< of the values [units]
+    bool own_values = false;          ///< these hold, not what a library takes for the whole file
+    bool is_moment = false;           ///< the frames of its file are one place at several times
+    double seconds = 0;               ///< from one of them to the next; 0 if not given
     bool deflated = false;            ///< the file as a whole
     std::string compression;          ///< "JPEG 2000", "deflate", ...; empty if there is none
     std::vector<std::string> notes;   ///< on the file
 };
 
-/// Slices that belong together: one series UID, one size, one orientation.
+/// Slices that belong together: one series UID, one stack, one size, one orientation.
 struct DicomSeries {
-    std::string uid, description, modality;
+    std::string uid;
     std::vector<DicomSlice> slices;
 };
+/// What there is to know of it before its samples are read.
+SeriesInfo info_of(const DicomSeries& series);
+/// The slice halfway along the normal.
+const DicomSlice& middle_of(const DicomSeries& series);
 
 /// Sorts slices into series, in the order of their UIDs.
 std::vector<DicomSeries> series_of(std::vector<DicomSlice> slices);
 
 /// The series that `chosen` names by number (from 1) or UID, or the only one there is. Otherwise
-/// throws Failure whose first line says what to do and whose further lines list the series.
+/// throws ChooseSeries, without pictures.
 const DicomSeries& choose_series(const std::vector<DicomSeries>& all, const std::string& chosen);
 
 /// One slice and its position.
@@ -54,6 +66,7 @@ struct Stack {
     double first_u = 0, first_v = 0;  ///< where the grid's column 0 and row 0 lie [pixels]
     bool sheared = false;             ///< gantry tilt: the slices' shifts have to be undone
     int time_steps = 1;
+    double seconds = 0;  ///< from one to the next; 0 if not given
     std::vector<std::string> notes;
 };
 

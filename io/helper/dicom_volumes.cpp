@@ -9,6 +9,7 @@
 #include <map>
 #include <set>
 
+#include "io/helper/dicom_header.hpp"
 #include "io/helper/dicom_library.hpp"
 #include "io/helper/dicom_stack.hpp"
 #include "io/helper/readers.hpp"
@@ -125,29 +126,6 @@ void note_files(const std::vector<DicomSlice>& slices, std::vector<std::string>&
     }
 }
 
-/// A file with several frames: ITK's geometry, since the frames' own positions lie deep in it.
-Result read_frames(const DicomSlice& slice, const Request& request,
-                   const std::vector<std::string>& notes) {
-    Result result;
-    result.notes = notes;
-    result.format = "DICOM, several frames in one file";
-    std::vector<Decoded> all;
-    all.push_back(decode(slice, request));
-    checked_time_step(request, 1);
-    result.geometry = all[0].geometry;
-    result.type = common_type(all, result.notes);
-    note_files({slice}, result.notes);
-    DecoderWarnings warnings;
-    warnings.take(all[0], slice);
-    warnings.note(result.notes);
-    result.notes.emplace_back("the positions of its frames were not checked for gaps or tilt");
-    const auto count = static_cast<std::size_t>(sample_count(result.geometry));
-    const auto samples = shared_samples(count * size_of(result.type));
-    convert(all[0].stored, all[0].samples.data(), result.type, samples.data(), count);
-    finish(result, request, samples);
-    return result;
-}
-
 std::string bytes_of(const fs::path& file) {
     std::ifstream in(file, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
@@ -156,57 +134,51 @@ std::string bytes_of(const fs::path& file) {
 /// Without files that are copies of others, byte by byte; one of each stays. A slice with the same
 /// identity but other bytes stays too, to be refused where the slices are placed.
 DicomSeries without_copies(DicomSeries series, std::vector<std::string>& notes) {
-    std::map<std::string, int> count;
-    for (const DicomSlice& slice : series.slices) ++count[slice.instance_uid];
-    std::map<std::pair<std::string, std::size_t>, fs::path> seen;  // by identity and hash
-    const auto is_copy = [&](const DicomSlice& slice) {
-        if (slice.instance_uid.empty() || count[slice.instance_uid] == 1) return false;
-        const std::string bytes = bytes_of(slice.file);
-        const auto [first, is_new] =
-            seen.try_emplace({slice.instance_uid, std::hash<std::string>()(bytes)}, slice.file);
-        return !is_new && bytes_of(first->second) == bytes;
-    };
-    const std::size_t all = series.slices.size();
-    std::erase_if(series.slices, is_copy);
-    const std::size_t copies = all - series.slices.size();
-    if (copies > 0) {
-        notes.push_back(std::to_string(copies) + " of its " + std::to_string(all) +
-                        " files are copies of others in the folder: they were left out");
+    std::map<std::string, std::set<fs::path>> files;  // by identity
+    std::set<fs::path> all, copies;
+    for (const DicomSlice& slice : series.slices) {
+        files[slice.instance_uid].insert(slice.file);
+        all.insert(slice.file);
     }
+    for (const auto& [identity, same] : files) {
+        if (identity.empty() || same.size() == 1) continue;
+        std::map<std::size_t, fs::path> seen;  // by hash
+        for (const fs::path& file : same) {
+            const std::string bytes = bytes_of(file);
+            const auto [first, is_new] = seen.try_emplace(std::hash<std::string>()(bytes), file);
+            if (!is_new && bytes_of(first->second) == bytes) copies.insert(file);
+        }
+    }
+    if (copies.empty()) return series;
+    std::erase_if(series.slices, [&](const DicomSlice& s) { return copies.contains(s.file); });
+    notes.push_back(std::to_string(copies.size()) + " of its " + std::to_string(all.size()) +
+                    " files are copies of others in the folder: they were left out");
     return series;
 }
 
 Result read_series(const DicomSeries& given, const Request& request) {
     std::vector<std::string> notes;
     const DicomSeries series = without_copies(given, notes);
-    const bool frames = std::any_of(series.slices.begin(), series.slices.end(),
-                                    [](const DicomSlice& s) { return s.frames > 1; });
-    if (frames) {
-        if (series.slices.size() == 1) return read_frames(series.slices.front(), request, notes);
-        throw Failure(
-            "it has several files, some with several frames each; give one of these files");
-    }
     Stack stack = stack_slices(series, request);
-    std::vector<Decoded> decoded;
     std::vector<DicomSlice> taken;
+    for (const PlacedSlice& p : stack.slices) taken.push_back(series.slices[p.slice]);
+    std::vector<Decoded> decoded = decode(taken, request);
     DecoderWarnings warnings;
-    for (const PlacedSlice& p : stack.slices) {
-        taken.push_back(series.slices[p.slice]);
-        decoded.push_back(decode(taken.back(), request));
-        warnings.take(decoded.back(), taken.back());
-        say_progress(0.1 + 0.8 * static_cast<double>(decoded.size()) /
-                               static_cast<double>(stack.slices.size()));
-    }
+    for (std::size_t i = 0; i < taken.size(); ++i) warnings.take(decoded[i], taken[i]);
+    const DicomSlice& one = taken.front();
     Result result;
-    result.format = stack.slices.size() > 1 ? "DICOM series" : "DICOM, one slice";
+    result.format = one.frames > 1            ? "DICOM, several frames in one file"
+                    : stack.slices.size() > 1 ? "DICOM series"
+                                              : "DICOM, one slice";
     result.geometry = stack.geometry;
     result.time_steps = stack.time_steps;
+    result.times.interval = stack.time_steps > 1 ? stack.seconds : 0;
+    result.values = one.values;
     result.notes = notes;
     result.notes.insert(result.notes.end(), stack.notes.begin(), stack.notes.end());
     note_files(taken, result.notes);
     warnings.note(result.notes);
     result.type = common_type(decoded, result.notes);
-    const DicomSlice& one = series.slices.front();
     const auto pixels = static_cast<std::size_t>(one.columns) * static_cast<std::size_t>(one.rows);
     double outside = range_of(decoded[0].stored, decoded[0].samples).first;
     std::vector<std::vector<std::byte>> slices;
@@ -228,6 +200,48 @@ Result read_series(const DicomSeries& given, const Request& request) {
     return result;
 }
 
+/// A small picture of a slice, from the darkest of its samples to the brightest.
+Thumbnail picture_of(const DicomSlice& slice, const Request& request) {
+    constexpr int longest = 64;
+    const Decoded decoded = decode({slice}, request).front();
+    const int step = (std::max(slice.columns, slice.rows) + longest - 1) / longest;
+    Thumbnail picture{slice.columns / step, slice.rows / step, {}};
+    auto [low, high] = range_of(decoded.stored, decoded.samples);
+    if (slice.values.window) {
+        const auto [centre, width] = *slice.values.window;
+        low = centre - 0.5 * width;
+        high = centre + 0.5 * width;
+    }
+    const double scale = high > low ? 255 / (high - low) : 0;
+    with_stored(decoded.stored, [&](auto zero) {
+        const auto* from = reinterpret_cast<const decltype(zero)*>(decoded.samples.data());
+        for (int y = 0; y < picture.height; ++y) {
+            for (int x = 0; x < picture.width; ++x) {
+                const std::ptrdiff_t at = std::ptrdiff_t{y} * step * slice.columns + x * step;
+                const double grey = (static_cast<double>(from[at]) - low) * scale;
+                picture.grey.push_back(static_cast<std::uint8_t>(std::clamp(grey, 0.0, 255.0)));
+            }
+        }
+    });
+    return picture;
+}
+
+Result read_chosen(const std::vector<DicomSeries>& all, const Request& request) {
+    try {
+        return read_series(choose_series(all, request.series), request);
+    } catch (ChooseSeries& choice) {
+        constexpr std::size_t most = 48;
+        for (std::size_t i = 0; request.pictures && i < std::min(all.size(), most); ++i) {
+            try {
+                choice.series[i].picture = picture_of(middle_of(all[i]), request);
+            } catch (const std::exception&) {
+                // It is still listed; choosing it says what is wrong.
+            }
+        }
+        throw;
+    }
+}
+
 }  // namespace
 
 bool looks_like_dicom(const fs::path& file) {
@@ -239,11 +253,11 @@ bool looks_like_dicom(const fs::path& file) {
 
 Result read_dicom_file(const Request& request) {
     say_doing(request.path.filename().string());
-    DicomSlice slice = slice_from(request.path);
-    if (slice.rows < 1 || slice.columns < 1) {
+    const auto all = series_of(slices_from(request.path));
+    if (all.empty()) {
         throw Failure("is a DICOM file without an image; give the folder with the slices");
     }
-    return read_series({slice.series_uid, slice.description, slice.modality, {slice}}, request);
+    return read_chosen(all, request);
 }
 
 Result read_dicom_folder(const Request& request) {
@@ -258,13 +272,12 @@ Result read_dicom_folder(const Request& request) {
     for (const fs::path& file : files) {
         say_doing(file.filename().string());
         say_progress(0.1 * static_cast<double>(slices.size()) / static_cast<double>(files.size()));
-        DicomSlice slice = slice_from(file);
-        if (slice.rows > 0 && slice.columns > 0) slices.push_back(std::move(slice));
+        for (DicomSlice& slice : slices_from(file)) slices.push_back(std::move(slice));
     }
     if (slices.empty())
         throw Failure("has DICOM files, but none with an image; give another folder");
     const auto all = series_of(std::move(slices));
-    return read_series(choose_series(all, request.series), request);
+    return read_chosen(all, request);
 }
 
 }  // namespace palpate::io

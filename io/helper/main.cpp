@@ -83,6 +83,27 @@ Result read(const Request& request) {
         "it holds nothing but samples, give its dims and type");
 }
 
+nlohmann::json json_of(const ValueInfo& values) {
+    nlohmann::json json = {{"modality", values.modality}, {"units", values.units}};
+    if (values.window) json["window"] = {values.window->centre, values.window->width};
+    if (values.padding) json["padding"] = *values.padding;
+    return json;
+}
+
+nlohmann::json json_of(const SeriesInfo& s) {
+    return {{"uid", s.uid},
+            {"patient", s.patient},
+            {"study", s.study},
+            {"description", s.description},
+            {"modality", s.modality},
+            {"stack", s.stack},
+            {"slices", s.slices},
+            {"size", s.size},
+            {"spacing", json_from(s.spacing)},
+            {"picture", {s.picture.width, s.picture.height}},
+            {"grey", s.picture.grey}};
+}
+
 nlohmann::json run_read(const fs::path& path, const nlohmann::json& asked) {
     Request request;
     request.path = path;
@@ -90,14 +111,23 @@ nlohmann::json run_read(const fs::path& path, const nlohmann::json& asked) {
     request.time_step = asked.at("time_step").get<int>();
     request.memory_limit = asked.at("memory").get<std::uint64_t>();
     if (asked.contains("spacing")) request.spacing = vec3_from(asked["spacing"]);
+    request.pictures = asked.value("pictures", false);
     limit_this_process(asked, request.memory_limit);
-    const Result result = read(request);
+    Result result;
+    try {
+        result = read(request);
+    } catch (const ChooseSeries& choice) {
+        nlohmann::json list = nlohmann::json::array();
+        for (const SeriesInfo& series : choice.series) list.push_back(json_of(series));
+        return {{"choose", list}, {"why", choice.what()}};
+    }
     return {{"geometry", json_from(result.geometry)},
             {"type", name_of(result.type)},
             {"format", result.format},
             {"time_steps", result.time_steps},
             {"frame_interval", result.times.interval},
             {"first_time", result.times.first},
+            {"values", json_of(result.values)},
             {"notes", result.notes}};
 }
 

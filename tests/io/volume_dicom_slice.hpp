@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "volume_support.hpp"
+#include "io/volume_support.hpp"
 
 namespace palpate::io::test {
 

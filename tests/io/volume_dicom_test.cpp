@@ -107,10 +107,13 @@ TEST(dicom, several_series_are_listed_and_one_is_chosen_by_number_or_uid) {
         put_slice(folder / name_of_slice(i), slice);
     }
     const std::string message = refusal(folder.path());
-    EXPECT_TRUE(one_line_about(message.substr(0, message.find('\n')), folder.path())) << message;
-    EXPECT_TRUE(contains(message, "has 2 DICOM series")) << message;
-    EXPECT_TRUE(contains(message, "1  3 slices of 4x3  CT 'HEAD'  1.2.3.1")) << message;
-    EXPECT_TRUE(contains(message, "2  4 slices of 4x3  CT 'CHEST'  1.2.3.2")) << message;
+    EXPECT_TRUE(one_line_about(message, folder.path())) << message;
+    EXPECT_TRUE(contains(message, "has 2 DICOM series; choose one by its number")) << message;
+    const std::vector<SeriesInfo> all = choice_in(folder.path());
+    ASSERT_EQ(all.size(), 2U);
+    EXPECT_EQ(text_of(all[0]), "3 slices of 4x3  CT 'HEAD'  0.25 x 0.5 x 2 mm  1.2.3.1");
+    EXPECT_EQ(text_of(all[1]), "4 slices of 4x3  CT 'CHEST'  0.25 x 0.5 x 2 mm  1.2.3.2");
+    EXPECT_TRUE(all[0].picture.grey.empty());
     const auto slices_of = [&](const std::string& series) {
         ReadOptions options;
         options.series = series;
@@ -122,6 +125,30 @@ TEST(dicom, several_series_are_listed_and_one_is_chosen_by_number_or_uid) {
     ReadOptions options;
     options.series = "7";
     EXPECT_TRUE(contains(refusal(folder.path(), options), "has no DICOM series '7'"));
+}
+
+TEST(dicom, series_to_choose_from_have_pictures_if_asked_for) {
+    const ScratchFolder folder;
+    for (int i = 0; i < 6; ++i) {
+        TestSlice slice = slice_at(i, i);
+        slice.series = i < 5 ? "1.2.3.1" : "1.2.3.2";
+        slice.columns = 150;
+        slice.rows = 100;
+        for (int k = 0; k < 150 * 100; ++k) {
+            slice.pixels.push_back(i == 2 ? static_cast<std::uint16_t>(100 * (k % 150)) : 5);
+        }
+        put_slice(folder / name_of_slice(i), slice);
+    }
+    ReadOptions options;
+    options.series_pictures = true;
+    const std::vector<SeriesInfo> all = choice_in(folder.path(), options);
+    ASSERT_EQ(all.size(), 2U);
+    const Thumbnail& picture = all[0].picture;  // of the third of five
+    EXPECT_EQ(picture.width, 50);
+    EXPECT_EQ(picture.height, 33);
+    ASSERT_EQ(picture.grey.size(), 50U * 33U);
+    for (const int x : {0, 10, 49}) EXPECT_NEAR(picture.grey[x], 255.0 * 3 * x / 149, 1) << x;
+    EXPECT_EQ(all[1].picture.grey, std::vector<std::uint8_t>(50 * 33, 0));  // all the same
 }
 
 TEST(dicom, a_scout_image_in_the_series_is_a_series_of_its_own) {

@@ -68,6 +68,19 @@ inline std::string refusal(const std::filesystem::path& path, const ReadOptions&
     return message_of<InputError>([&] { (void)read_volume(path, options); });
 }
 
+/// What there is to choose from; a test failure if there is no choice.
+inline std::vector<SeriesInfo> choice_in(const std::filesystem::path& path,
+                                         const ReadOptions& options = {}) {
+    try {
+        (void)read_volume(path, options);
+    } catch (const SeriesChoice& choice) {
+        EXPECT_EQ(choice.what(), refusal(path, options));
+        return choice.series();
+    }
+    ADD_FAILURE() << "no choice";
+    return {};
+}
+
 inline bool one_line_about(const std::string& message, const std::filesystem::path& path) {
     return message.rfind(path.string() + ": ", 0) == 0 && !contains(message, "\n") &&
            message.size() > path.string().size() + 10;

@@ -27,21 +27,39 @@ double quantile(const run::Histogram& histogram, double part) {
     return histogram.high;
 }
 
+/// As run::load(); io::SeriesChoice comes with pictures.
+run::LoadedVolume loaded_from(const run::Source& source, const io::Progress& progress) {
+    try {
+        return run::load(source, progress);
+    } catch (const io::SeriesChoice&) {
+        const auto& file = std::get<run::FileSource>(source.from);
+        io::ReadOptions options;
+        options.series = file.series;
+        options.series_pictures = true;
+        options.progress = progress;
+        (void)io::read_volume(file.path, options);
+        throw;
+    }
+}
+
 }  // namespace
 
 double Opened::dark() const {
+    if (const auto& window = loaded.values.window) return window->centre - 0.5 * window->width;
     return quantile(histogram, outliers);
 }
 
 double Opened::bright() const {
+    if (const auto& window = loaded.values.window) return window->centre + 0.5 * window->width;
     const double level = quantile(histogram, 1 - outliers);
     return level > dark() ? level : loaded.volume.maximum();
 }
 
 Opened open(const run::Source& source, const io::Progress& progress) {
     // Counting takes at most a tenth of the time of reading.
-    run::LoadedVolume loaded = run::load(source, [&](double part) { progress(0.9 * part); });
-    run::Histogram histogram = run::histogram_of(loaded.volume, bins);
+    run::LoadedVolume loaded = loaded_from(source, [&](double part) { progress(0.9 * part); });
+    run::Histogram histogram = run::histogram_of(
+        loaded.volume, bins, run::padding_of(loaded.volume, loaded.values.padding));
     auto terraces = source.dequantize > 0 ? std::nullopt : filters::terraces_of(loaded.volume);
     progress(1);
     return {std::move(loaded), std::move(histogram), std::move(terraces)};

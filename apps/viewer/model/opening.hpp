@@ -13,7 +13,8 @@ struct Opened {
     /// What rounding does to its surfaces; nothing where it has no levels, or was dequantized.
     std::optional<filters::Terraces> terraces = {};
 
-    /// The grey levels between which nearly all samples lie [data units].
+    /// The grey levels that the file suggests, or those between which nearly all samples lie [data
+    /// units].
     double dark() const;
     double bright() const;
 };

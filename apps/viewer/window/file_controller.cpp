@@ -11,6 +11,7 @@
 #include "apps/viewer/window/messages.hpp"
 #include "apps/viewer/window/recording_controller.hpp"
 #include "apps/viewer/window/run_controller.hpp"
+#include "apps/viewer/window/series_dialog.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -32,13 +33,38 @@ FileController::FileController(Content& content, RunController& run,
       loader_(messages) {}
 
 void FileController::load(const run::Source& source, Then then) {
-    auto result = std::make_shared<std::shared_ptr<Opened>>();
+    struct Result {
+        std::shared_ptr<Opened> opened;
+        std::optional<io::SeriesChoice> choice;
+    };
+    auto result = std::make_shared<Result>();
     loader_.start(
         QString("Reading %1").arg(short_name(QString::fromStdString(name_of(source)))),
         [result, source](const io::Progress& progress) {
-            *result = std::make_shared<Opened>(open(source, progress));
+            try {
+                result->opened = std::make_shared<Opened>(open(source, progress));
+            } catch (const io::SeriesChoice& choice) {
+                result->choice = choice;
+            }
         },
-        [result, then = std::move(then)] { then(*result); });
+        [this, result, source, then = std::move(then)] {
+            if (result->choice) return choose_series(*result->choice, source, then);
+            then(result->opened);
+        });
+}
+
+/// Asks which series, and loads it.
+void FileController::choose_series(const io::SeriesChoice& choice, const run::Source& source,
+                                   const Then& then) {
+    const QString name = short_name(QString::fromStdString(name_of(source)));
+    auto* dialog = new SeriesDialog(name, choice.series(), messages_.window());
+    dialog->setAttribute(Qt::WA_DeleteOnClose);
+    connect(dialog, &QDialog::accepted, this, [this, dialog, source, then] {
+        run::Source chosen = source;
+        std::get<run::FileSource>(chosen.from).series = std::to_string(dialog->chosen());
+        load(chosen, then);
+    });
+    dialog->open();  // does not block the live run
 }
 
 /// As load(), but does not read a volume again that is open already.

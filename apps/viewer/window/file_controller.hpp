@@ -44,6 +44,7 @@ class FileController : public QObject {
   private:
     using Then = std::function<void(std::shared_ptr<Opened>)>;
     void load(const run::Source& source, Then then);
+    void choose_series(const io::SeriesChoice& choice, const run::Source& source, const Then& then);
     void load_or_reuse(const run::Source& source, Then then);
     void feel(std::shared_ptr<Opened> opened, const RunRequest& request);
     void feel_session(std::shared_ptr<Opened> opened, const SessionFile& session,

@@ -27,6 +27,8 @@ class Messages : public QObject {
     const QString& problem() const { return problem_; }
     int problem_status() const { return problem_status_; }
     void forget() { problem_.clear(); }
+    /// What dialogs belong to.
+    QWidget* window() const { return window_; }
 
   Q_SIGNALS:
     void done(const QString& what);

@@ -32,6 +32,7 @@ struct SequenceFile {
     Volume first;
     std::string format;
     std::vector<std::string> notes;  ///< one sentence each
+    ValueInfo values = {};
 };
 
 struct SequenceOptions {

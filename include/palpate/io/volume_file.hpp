@@ -10,7 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "palpate/io/error.hpp"
+#include "palpate/io/series.hpp"
+#include "palpate/io/value_info.hpp"
 #include "palpate/volume.hpp"
 
 namespace palpate::io {
@@ -35,6 +36,8 @@ struct ReadOptions {
     std::optional<Vec3> spacing;
     /// Which DICOM series: its UID, or its number in the list that the error message gives.
     std::string series;
+    /// Where a series has to be chosen: make pictures of them for SeriesChoice.
+    bool series_pictures = false;
     /// Which volume of a 4-D file, counted from 0.
     int time_step = 0;
     Progress progress;
@@ -57,14 +60,15 @@ struct VolumeFile {
         notes;                  ///< one sentence each: conversions, gaps, tilt, missing spacing
     double frame_interval = 0;  ///< [s] from one volume to the next; 0: the file does not say
     double first_time = 0;      ///< [s] of the first volume
+    ValueInfo values = {};
 };
 
 /// Reads a file, or a folder of DICOM or TIFF slices. Physical space is LPS, mm. Samples of uint8,
 /// int16, uint16 and float32 keep their type; int8 becomes int16, anything wider float32, with a
 /// note. Samples that are not finite become the least finite one, with a note.
 /// The volume holds the samples once; nothing else stays in memory.
-/// Throws InputError. Its message is one line; for a folder with several DICOM series and none
-/// chosen, lines that list them follow.
+/// Throws InputError, with a message of one line; SeriesChoice for a folder or file with several
+/// DICOM series and none chosen.
 VolumeFile read_volume(const std::filesystem::path& path, const ReadOptions& options = {});
 
 struct WriteOptions {

@@ -61,6 +61,7 @@ struct LoadedVolume {
     std::string name;
     std::string format = {};
     std::vector<std::string> notes = {};              ///< for people, a sentence each
+    io::ValueInfo values = {};                        ///< what the header says
     std::optional<double> isovalue = {};              ///< a good one, of a synthetic volume
     io::Sequence sequence = {};                       ///< empty unless there are several frames
     std::shared_ptr<const io::LiveFrames> live = {};  ///< null unless it is a live source

@@ -5,16 +5,19 @@
 #include <QDialog>
 #include <QDragEnterEvent>
 #include <QDropEvent>
+#include <QLabel>
 #include <QMenu>
 #include <QMimeData>
 #include <QPushButton>
 #include <QSpinBox>
+#include <QTableWidget>
 #include <QUrl>
 #include <fstream>
 
 #include "apps/options/view_options.hpp"
 #include "apps/viewer/window/raw_dialog.hpp"
 #include "apps/viewer/window/screenshot.hpp"
+#include "io/volume_dicom_slice.hpp"
 #include "palpate/scenes/volumes.hpp"
 #include "viewer/window/window_fixture.hpp"
 
@@ -92,6 +95,40 @@ TEST_F(Files, a_volume_is_dequantized_and_felt_at_the_same_level) {
     ASSERT_TRUE(wait_until([&] { return window_->live() && type() == SampleType::uint8; }));
     EXPECT_FALSE(box.isChecked());
     EXPECT_EQ(window_->live()->isovalue(), 100.25);
+}
+
+TEST_F(Files, of_several_series_one_is_chosen_by_its_picture) {
+    for (int i = 0; i < 9; ++i) {
+        io::test::TestSlice slice;
+        slice.series = i < 3 ? "1.2.3.1" : "1.2.3.2";
+        slice.description = i < 3 ? "HEAD" : "CHEST";
+        slice.number = i;
+        slice.position = "0\\0\\" + std::to_string(i);
+        slice.columns = slice.rows = 20;
+        io::test::put_slice(scratch_.path() / ("slice" + std::to_string(i)), slice);
+    }
+    const auto choose = [&](int row) {
+        window_->files().open_path(scratch("."));
+        ASSERT_TRUE(wait_until([&] { return window_->findChild<QDialog*>("choose-series"); }));
+        auto& table = part<QTableWidget>("series");
+        ASSERT_TRUE(QTest::qWaitForWindowExposed(&table));
+        EXPECT_EQ(table.rowCount(), 2);
+        EXPECT_EQ(table.item(1, 1)->text(), "CHEST");
+        EXPECT_EQ(table.item(1, 3)->text(), "6");
+        EXPECT_FALSE(
+            qobject_cast<QLabel*>(table.cellWidget(1, 0))->pixmap(Qt::ReturnByValue).isNull());
+        EXPECT_EQ(table.currentRow(), 1) << "the one with the most slices";
+        const QPoint place = table.visualItemRect(table.item(row, 1)).center();
+        QTest::mouseClick(table.viewport(), Qt::LeftButton, {}, place);
+        QTest::keyClick(&table, Qt::Key_Return);
+        ASSERT_TRUE(wait_until([&] { return window_->live() && window_->settled(); }));
+    };
+    const auto slices = [&] { return window_->live()->field().geometry().size[2]; };
+    choose(1);
+    EXPECT_EQ(slices(), 6);
+    choose(0);
+    ASSERT_TRUE(wait_until([&] { return slices() == 3; }));
+    EXPECT_TRUE(window_->messages().problem().isEmpty());
 }
 
 TEST_F(Files, a_raw_file_is_opened_once_the_dialog_knows_its_size) {

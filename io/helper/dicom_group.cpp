@@ -1,0 +1,87 @@
+#include "io/helper/dicom_group.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "io/helper/headers.hpp"
+
+namespace palpate::io {
+namespace {
+
+gdcm::Tag tag_of(DicomTag tag) {
+    return {tag.group, tag.element};
+}
+
+/// Binary values as GDCM holds them: in this machine's order.
+template <class T>
+std::vector<T> values_in(const std::string& bytes) {
+    std::vector<T> values(bytes.size() / sizeof(T));
+    if (!values.empty()) std::memcpy(values.data(), bytes.data(), values.size() * sizeof(T));
+    return values;
+}
+
+}  // namespace
+
+bool DicomGroup::has(DicomTag tag) const {
+    return data_->FindDataElement(tag_of(tag));
+}
+
+std::string DicomGroup::bytes(DicomTag tag) const {
+    if (!has(tag)) return {};
+    const gdcm::ByteValue* value = data_->GetDataElement(tag_of(tag)).GetByteValue();
+    return value == nullptr ? std::string()
+                            : std::string(value->GetPointer(), std::size_t(value->GetLength()));
+}
+
+std::string DicomGroup::representation(DicomTag tag) const {
+    if (!has(tag)) return {};
+    const gdcm::VR vr = data_->GetDataElement(tag_of(tag)).GetVR();
+    return vr == gdcm::VR::INVALID ? std::string() : gdcm::VR::GetVRString(vr);
+}
+
+std::string DicomGroup::text(DicomTag tag) const {
+    std::string value = bytes(tag);
+    value.resize(strnlen(value.c_str(), value.size()));
+    return trimmed(value);
+}
+
+std::vector<double> DicomGroup::numbers(DicomTag tag) const {
+    std::string value = text(tag);
+    std::replace(value.begin(), value.end(), '\\', ' ');
+    return numbers_in(value, "DICOM tag");
+}
+
+double DicomGroup::number(DicomTag tag, double otherwise) const {
+    const auto all = numbers(tag);
+    return all.empty() || !(std::abs(all[0]) < 1e9) ? otherwise : all[0];
+}
+
+std::vector<std::uint32_t> DicomGroup::counts(DicomTag tag) const {
+    // Without a representation (implicit little endian) the length of a single value tells.
+    const std::string raw = bytes(tag);
+    const std::string vr = representation(tag);
+    if (vr == "UL" || (vr.empty() && raw.size() == 4)) return values_in<std::uint32_t>(raw);
+    const auto narrow = values_in<std::uint16_t>(raw);
+    return {narrow.begin(), narrow.end()};
+}
+
+std::vector<DicomTag> DicomGroup::tags(DicomTag tag) const {
+    const auto parts = values_in<std::uint16_t>(bytes(tag));
+    std::vector<DicomTag> all;
+    for (std::size_t i = 0; i + 1 < parts.size(); i += 2) all.push_back({parts[i], parts[i + 1]});
+    return all;
+}
+
+std::vector<DicomGroup> DicomGroup::items(DicomTag tag) const {
+    std::vector<DicomGroup> all;
+    if (!has(tag)) return all;
+    const auto sequence = data_->GetDataElement(tag_of(tag)).GetValueAsSQ();
+    if (sequence == nullptr) return all;
+    for (gdcm::SequenceOfItems::SizeType i = 1; i <= sequence->GetNumberOfItems(); ++i) {
+        all.emplace_back(sequence->GetItem(i).GetNestedDataSet(), sequence);
+    }
+    return all;
+}
+
+}  // namespace palpate::io

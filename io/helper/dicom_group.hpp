@@ -1,0 +1,48 @@
+// The elements of a DICOM data set or of an item of a sequence, read leniently: what is not there
+// is empty.
+#pragma once
+
+#include <gdcmDataSet.h>
+#include <gdcmSequenceOfItems.h>
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace palpate::io {
+
+struct DicomTag {
+    std::uint16_t group = 0, element = 0;
+    bool operator==(const DicomTag&) const = default;
+};
+
+class DicomGroup {
+  public:
+    using Sequence = gdcm::SmartPointer<gdcm::SequenceOfItems>;
+    /// The data set must live as long; `of` is the sequence that holds it.
+    explicit DicomGroup(const gdcm::DataSet& data, Sequence of = nullptr)
+        : data_(&data), of_(std::move(of)) {}
+
+    /// Without padding.
+    std::string text(DicomTag tag) const;
+    /// Numbers as text (DS, IS). Throws Failure where they make no sense.
+    std::vector<double> numbers(DicomTag tag) const;
+    /// The first of them, if it is within +-1e9.
+    double number(DicomTag tag, double otherwise) const;
+    /// Unsigned binary ones (US, UL).
+    std::vector<std::uint32_t> counts(DicomTag tag) const;
+    /// Tags (AT).
+    std::vector<DicomTag> tags(DicomTag tag) const;
+    bool has(DicomTag tag) const;
+    /// The items of a sequence.
+    std::vector<DicomGroup> items(DicomTag tag) const;
+
+  private:
+    std::string bytes(DicomTag tag) const;
+    std::string representation(DicomTag tag) const;
+    const gdcm::DataSet* data_;
+    Sequence of_;
+};
+
+}  // namespace palpate::io

@@ -1,0 +1,296 @@
+// Reads headers with GDCM, those of files with several frames through their functional groups.
+#include "io/helper/dicom_header.hpp"
+
+#include <fcntl.h>
+#include <gdcmReader.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <new>
+
+#include "io/helper/dicom_check.hpp"
+#include "io/helper/dicom_group.hpp"
+#include "io/helper/headers.hpp"
+
+namespace palpate::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr DicomTag position_tag{0x0020, 0x0032}, orientation_tag{0x0020, 0x0037},
+    pixel_tag{0x0028, 0x0030}, thickness_tag{0x0018, 0x0050}, between_tag{0x0018, 0x0088},
+    intercept_tag{0x0028, 0x1052}, slope_tag{0x0028, 0x1053};
+
+void set_place(DicomSlice& s, const DicomGroup& position, const DicomGroup& orientation) {
+    if (const auto p = position.numbers(position_tag); p.size() == 3) {
+        for (const double c : p) check_coordinate(c, "DICOM tag ImagePositionPatient");
+        s.position = Vec3(p[0], p[1], p[2]);
+    }
+    const auto axes = orientation.numbers(orientation_tag);
+    if (axes.size() != 6) return;
+    s.row = Vec3(axes[0], axes[1], axes[2]);
+    s.column = Vec3(axes[3], axes[4], axes[5]);
+    for (const auto& direction : {s.row, s.column}) {
+        if (direction->norm() > 0.5 && direction->norm() < 2) continue;
+        throw Failure("its DICOM tag ImageOrientationPatient has no unit vectors; correct it");
+    }
+}
+
+void set_pixel(DicomSlice& s, const DicomGroup& measures) {
+    auto pixel = measures.numbers(pixel_tag);
+    if (pixel.size() != 2) pixel = measures.numbers({0x0018, 0x1164});
+    if (pixel.size() == 2) {
+        check_spacing(pixel[0], "DICOM tag PixelSpacing");
+        check_spacing(pixel[1], "DICOM tag PixelSpacing");
+        s.pixel = Vec3(pixel[1], pixel[0], 0);  // DICOM gives the distance between rows first
+    }
+    const double between = measures.number(between_tag, 0);
+    if (between > 0) s.thickness = between;
+    if (!(s.thickness > 0)) s.thickness = measures.number(thickness_tag, 0);
+}
+
+void set_rescale(DicomSlice& s, const DicomGroup& transformation) {
+    s.slope = transformation.number(slope_tag, s.slope);
+    s.intercept = transformation.number(intercept_tag, s.intercept);
+    const std::string units = transformation.text({0x0028, 0x1054});
+    if (!units.empty() && units != "US") s.values.units = units;  // "US": unspecified
+}
+
+void set_window(DicomSlice& s, const DicomGroup& group) {
+    const double centre = group.number({0x0028, 0x1050}, 0);
+    const double width = group.number({0x0028, 0x1051}, 0);
+    if (width > 0) s.values.window = ValueWindow{centre, width};
+}
+
+/// The groups of attributes that a frame has of its own or shares with all.
+class FunctionalGroups {
+  public:
+    FunctionalGroups(const DicomGroup& frame, const DicomGroup* shared)
+        : frame_(frame), shared_(shared) {}
+
+    /// What `use` makes of the first item of the group, if there is one.
+    template <class F>
+    void with(DicomTag group, F&& use) const {
+        auto items = frame_.items(group);
+        if (items.empty() && shared_ != nullptr) items = shared_->items(group);
+        if (!items.empty()) use(items.front());
+    }
+
+  private:
+    const DicomGroup& frame_;
+    const DicomGroup* shared_;
+};
+
+/// PixelPaddingValue, in units.
+void set_padding(DicomSlice& s, const DicomGroup& data) {
+    const auto stored = data.counts({0x0028, 0x0120});
+    if (stored.size() != 1) return;
+    const bool is_signed = data.counts({0x0028, 0x0103}) == std::vector<std::uint32_t>{1};
+    const double value = is_signed ? static_cast<std::int16_t>(stored[0]) : double(stored[0]);
+    s.values.padding = s.slope * value + s.intercept;
+}
+
+DicomSlice enhanced_frame(const DicomSlice& file, int number, const FunctionalGroups& groups) {
+    DicomSlice s = file;
+    s.frame = number;
+    s.instance = number;
+    s.own_values = true;
+    groups.with({0x0028, 0x9110}, [&](const DicomGroup& g) { set_pixel(s, g); });
+    groups.with({0x0020, 0x9113}, [&](const DicomGroup& g) { set_place(s, g, g); });
+    groups.with({0x0020, 0x9116}, [&](const DicomGroup& g) { set_place(s, g, g); });
+    groups.with({0x0028, 0x9145}, [&](const DicomGroup& g) { set_rescale(s, g); });
+    groups.with({0x0028, 0x9132}, [&](const DicomGroup& g) { set_window(s, g); });
+    groups.with({0x0020, 0x9111}, [&](const DicomGroup& g) {
+        s.stack = g.text({0x0020, 0x9056});
+        if (const auto moment = g.counts({0x0020, 0x9128}); !moment.empty()) {
+            s.acquisition = static_cast<int>(moment[0]);
+        }
+    });
+    for (const std::uint16_t element : {0x9226, 0x9329}) {  // of MR and CT
+        groups.with({0x0018, element}, [&](const DicomGroup& g) {
+            s.image_type = g.text({0x0008, 0x9007});
+        });
+    }
+    return s;
+}
+
+std::vector<DicomSlice> enhanced_frames(const DicomSlice& file, const DicomGroup& data) {
+    const auto frames = data.items({0x5200, 0x9230});
+    if (frames.size() != static_cast<std::size_t>(file.frames)) {
+        throw Failure(quoted(file.file) + " has " + std::to_string(file.frames) +
+                      " frames, and describes " + std::to_string(frames.size()) +
+                      "; copy or export it again");
+    }
+    const auto shared = data.items({0x5200, 0x9229});
+    std::vector<DicomSlice> slices;
+    for (int i = 0; i < file.frames; ++i) {
+        const FunctionalGroups groups(frames[static_cast<std::size_t>(i)],
+                                      shared.empty() ? nullptr : &shared.front());
+        slices.push_back(enhanced_frame(file, i, groups));
+    }
+    return slices;
+}
+
+/// What FrameIncrementPointer counts the frames by.
+enum class Counted { by_nothing, by_time, by_slice, by_offset, otherwise };
+
+Counted counted(const DicomGroup& data) {
+    const auto pointers = data.tags({0x0028, 0x0009});
+    if (pointers.empty()) {
+        const bool has_time = data.has({0x0018, 0x1063}) || data.has({0x0018, 0x1065});
+        return has_time ? Counted::by_time : Counted::by_nothing;
+    }
+    if (pointers.size() > 1) return Counted::otherwise;
+    if (pointers[0] == DicomTag{0x0018, 0x1063} || pointers[0] == DicomTag{0x0018, 0x1065}) {
+        return Counted::by_time;
+    }
+    if (pointers[0] == DicomTag{0x0054, 0x0080}) return Counted::by_slice;
+    if (pointers[0] == DicomTag{0x3004, 0x000c}) return Counted::by_offset;
+    return Counted::otherwise;
+}
+
+/// One behind the other from the first one's position, by the distances given [mm].
+void place_behind(std::vector<DicomSlice>& slices, const std::vector<double>& distances) {
+    const DicomSlice first = slices.front();
+    if (!first.position || !first.row || !first.column) return;
+    const Vec3 normal = first.row->cross(*first.column).normalized();
+    for (std::size_t i = 0; i < slices.size(); ++i) {
+        slices[i].position = *first.position + normal * (distances[i] - distances[0]);
+    }
+}
+
+std::vector<double> even_distances(std::size_t count, double step) {
+    std::vector<double> distances;
+    for (std::size_t i = 0; i < count; ++i) distances.push_back(static_cast<double>(i) * step);
+    return distances;
+}
+
+/// Frames without functional groups.
+std::vector<DicomSlice> plain_frames(DicomSlice file, const DicomGroup& data) {
+    // Nuclear medicine keeps the place of its slices with the detector.
+    const auto detectors = data.items({0x0054, 0x0022});
+    if (!detectors.empty() && !file.position) {
+        set_place(file, detectors.front(), detectors.front());
+    }
+    std::vector<DicomSlice> slices(static_cast<std::size_t>(file.frames), file);
+    for (std::size_t i = 0; i < slices.size(); ++i) {
+        slices[i].frame = slices[i].instance = static_cast<int>(i);
+    }
+    const auto note = [&](const std::string& text) {
+        for (DicomSlice& s : slices) s.notes.push_back(text);
+    };
+    const std::string all = "its " + std::to_string(file.frames) + " frames ";
+    const Counted by = counted(data);
+    if (by == Counted::otherwise) {
+        throw Failure(quoted(file.file) +
+                      " counts its frames by more than their place or time (projections, phases); "
+                      "export a reconstructed volume");
+    }
+    if (by == Counted::by_time) {
+        note(all + "are moments of one slice, not slices");
+        for (DicomSlice& s : slices) {
+            s.is_moment = true;
+            s.seconds = data.number({0x0018, 0x1063}, 0) / 1000;
+        }
+        return slices;
+    }
+    if (by == Counted::by_offset) {
+        const auto offsets = data.numbers({0x3004, 0x000c});
+        for (const double offset : offsets) check_coordinate(offset, "GridFrameOffsetVector");
+        if (offsets.size() == slices.size()) {
+            place_behind(slices, offsets);
+            return slices;
+        }
+    }
+    const double between = data.number(between_tag, 0);  // negative: against the normal
+    check_coordinate(between, "DICOM tag SpacingBetweenSlices");
+    if (between != 0) {
+        place_behind(slices, even_distances(slices.size(), between));
+        return slices;
+    }
+    const double step = file.thickness > 0 ? file.thickness : 1;
+    place_behind(slices, even_distances(slices.size(), step));
+    note(all + "do not say where they lie: taken as slices " + text_of(step) + " mm apart");
+    return slices;
+}
+
+DicomSlice file_as_slice(const fs::path& file, const DicomExtent& extent, const DicomGroup& data) {
+    DicomSlice s;
+    s.file = file;
+    s.deflated = extent.deflated;
+    s.compression = extent.compression;
+    s.notes = extent.notes;
+    s.rows = static_cast<int>(extent.rows);
+    s.columns = static_cast<int>(extent.columns);
+    s.frames = static_cast<int>(extent.frames);
+    s.instance_uid = data.text({0x0008, 0x0018});
+    s.series_uid = data.text({0x0020, 0x000e});
+    s.description = data.text({0x0008, 0x103e});
+    s.patient = data.text({0x0010, 0x0010});
+    s.study = data.text({0x0008, 0x1030});
+    s.values.modality = data.text({0x0008, 0x0060});
+    s.instance = static_cast<int>(data.number({0x0020, 0x0013}, 0));
+    s.acquisition = static_cast<int>(data.number({0x0020, 0x0012}, 0));
+    set_place(s, data, data);
+    set_pixel(s, data);
+    if (s.values.modality == "CT") s.values.units = "HU";
+    set_rescale(s, data);
+    set_window(s, data);
+    set_padding(s, data);
+    if (constexpr DicomTag dose{0x3004, 0x000e}; data.has(dose)) {
+        s.slope = data.number(dose, 1);
+        s.own_values = true;
+        s.values.units = data.text({0x3004, 0x0002});  // GY
+    }
+    return s;
+}
+
+}  // namespace
+
+LibraryFile::LibraryFile(const fs::path& file, bool deflated) : path_(file) {
+    if (!deflated) return;
+    const auto bytes = inflated_dicom(file);
+    memory_ = memfd_create("palpate-dicom", MFD_CLOEXEC);
+    for (std::size_t at = 0; at < bytes.size();) {
+        const ssize_t written = write(memory_, bytes.data() + at, bytes.size() - at);
+        if (written <= 0) throw std::bad_alloc();
+        at += static_cast<std::size_t>(written);
+    }
+    path_ = "/proc/self/fd/" + std::to_string(memory_);
+}
+
+LibraryFile::~LibraryFile() {
+    if (memory_ >= 0) close(memory_);
+}
+
+std::vector<DicomSlice> slices_from(const fs::path& file) {
+    const DicomExtent extent = check_dicom(file);
+    const LibraryFile readable(file, extent.deflated);
+    const MemoryBound bound(8 * fs::file_size(file) + 2 * extent.bytes());
+    gdcm::Reader reader;
+    reader.SetFileName(readable.name().c_str());
+    if (!reader.ReadUpToTag(gdcm::Tag(0x7fe0, 0x0010), {})) {
+        throw Failure(quoted(file) +
+                      " is no DICOM file or is damaged in its header; copy it again");
+    }
+    const DicomGroup data(reader.GetFile().GetDataSet());
+    const DicomSlice slice = file_as_slice(file, extent, data);
+    if (slice.rows < 1 || slice.columns < 1) {
+        // Reports, plans and the folder's index have no rows; an image that has none is cut off.
+        if (has_no_image(extent.sop_class)) return {};
+        throw Failure(quoted(file) +
+                      " gives no size of its image; it is cut off or damaged: copy "
+                      "or export it again");
+    }
+    // Siemens packs a whole volume into one flat image, side by side.
+    if (data.text({0x0008, 0x0008}).find("MOSAIC") != std::string::npos) {
+        throw Failure(quoted(file) +
+                      " is a mosaic of slices; convert it to NIfTI (dcm2niix) and give that file");
+    }
+    if (data.has({0x5200, 0x9230})) return enhanced_frames(slice, data);
+    return slice.frames == 1 ? std::vector{slice} : plain_frames(slice, data);
+}
+
+}  // namespace palpate::io

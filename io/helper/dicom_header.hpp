@@ -1,0 +1,28 @@
+// What a DICOM file's header says of its slices: one, or one for each of its frames.
+#pragma once
+
+#include "io/helper/dicom_stack.hpp"
+
+namespace palpate::io {
+
+/// The slices of a file, after check_dicom(); none if it has no image. Each frame of a file with
+/// several is a slice, with the place, the stack and the moment that its functional groups give it
+/// (PS3.3 C.7.6.16); without these, frames that the header counts by time are moments of one slice,
+/// and others lie one behind the other. Throws Failure.
+std::vector<DicomSlice> slices_from(const std::filesystem::path& file);
+
+/// What GDCM is given: the file itself, or a deflated one unpacked in memory.
+class LibraryFile {
+  public:
+    LibraryFile(const std::filesystem::path& file, bool deflated);
+    ~LibraryFile();
+    LibraryFile(const LibraryFile&) = delete;
+    LibraryFile& operator=(const LibraryFile&) = delete;
+    std::string name() const { return path_.string(); }
+
+  private:
+    std::filesystem::path path_;
+    int memory_ = -1;
+};
+
+}  // namespace palpate::io
