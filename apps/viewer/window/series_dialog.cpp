@@ -38,7 +38,7 @@ QStringList texts_of(const io::SeriesInfo& s) {
             QString::number(s.slices),
             QString("%1 x %2").arg(s.size[0]).arg(s.size[1]),
             spacing.join(" x "),
-            text(s.patient),
+            text(s.patient).replace('^', ' ').simplified(),
             text(s.study)};
 }
 
