@@ -111,8 +111,8 @@ TEST(dicom, several_series_are_listed_and_one_is_chosen_by_number_or_uid) {
     EXPECT_TRUE(contains(message, "has 2 DICOM series; choose one by its number")) << message;
     const std::vector<SeriesInfo> all = choice_in(folder.path());
     ASSERT_EQ(all.size(), 2U);
-    EXPECT_EQ(text_of(all[0]), "3 slices of 4x3  CT 'HEAD'  0.25 x 0.5 x 2 mm  1.2.3.1");
-    EXPECT_EQ(text_of(all[1]), "4 slices of 4x3  CT 'CHEST'  0.25 x 0.5 x 2 mm  1.2.3.2");
+    EXPECT_EQ(text_of(all[0]), "3 slices of 4x3  CT 'HEAD'  0.25 x 0.5 x 1 mm  1.2.3.1");
+    EXPECT_EQ(text_of(all[1]), "4 slices of 4x3  CT 'CHEST'  0.25 x 0.5 x 1 mm  1.2.3.2");
     EXPECT_TRUE(all[0].picture.grey.empty());
     const auto slices_of = [&](const std::string& series) {
         ReadOptions options;
