@@ -20,7 +20,7 @@ struct CubicSite {
     double isovalue;
     double sign;
     LatticePoint point;
-    double range;  // of the field, scaled like the excess
+    double range;           // of the field, scaled like the excess
     cubic::KeptPiece kept;  // its `most` is that of the point's cube; its piece may be another's
 
     static CubicSite of(const Proxy& proxy, const Field& f, const LatticePoint& at) {

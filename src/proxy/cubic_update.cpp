@@ -205,8 +205,8 @@ class CubicDescent {
             return (shrink * foot.along) * c.along + (shrink * foot.across) * across +
                    height * c.normal;
         };
-        const Vec3 from_foot = unfold(site_.point.tetrahedron,
-                                      h - place(aim, 0.5 * shrink * shrink * aim.rise));
+        const Vec3 from_foot =
+            unfold(site_.point.tetrahedron, h - place(aim, 0.5 * shrink * shrink * aim.rise));
         if (!go(place(step, lift), h, site_.slide_level(), progress_)) return;
         progress_.report(StepKind::slide, site_);
         if (site_.in_contact()) return;

@@ -109,9 +109,9 @@ TEST(Cubic, value_and_gradient_are_continuous_across_every_kind_of_wall) {
             ASSERT_NEAR(here.value, there.value, near) << "wall " << wall;
             ASSERT_LT((unfold(t, here.gradient) - unfold(next, there.gradient)).norm(), 10 * near)
                 << "wall " << wall;
-            greatest_jump_of_curvature = std::max(
-                greatest_jump_of_curvature,
-                std::abs(piece.at(point.folded).hessian.d[0] - other.at(point.folded).hessian.d[0]));
+            greatest_jump_of_curvature =
+                std::max(greatest_jump_of_curvature, std::abs(piece.at(point.folded).hessian.d[0] -
+                                                              other.at(point.folded).hessian.d[0]));
         }
         // It is C1, not C2: the tetrahedra differ.
         EXPECT_GT(greatest_jump_of_curvature, 0.01 * cubic::scale * field.range());
@@ -184,8 +184,7 @@ TEST(Cubic, coefficients_of_integer_samples_are_integers) {
             const cubic::Symmetric& h = p.hessian;
             const auto is_whole = [](auto... c) { return ((c == std::round(c)) && ...); };
             ASSERT_TRUE(is_whole(p.value, p.gradient[0], p.gradient[1], p.gradient[2], h.ee));
-            for (const cubic::Vec2& pair :
-                 {h.d, h.s, h.e, p.dd, p.ds, p.de, p.ss, p.se, p.ee}) {
+            for (const cubic::Vec2& pair : {h.d, h.s, h.e, p.dd, p.ds, p.de, p.ss, p.se, p.ee}) {
                 ASSERT_TRUE(is_whole(pair[0], pair[1]));
             }
         }
