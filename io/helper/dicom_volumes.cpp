@@ -206,7 +206,8 @@ Thumbnail picture_of(const DicomSlice& slice, const Request& request) {
     const Decoded decoded = decode({slice}, request).front();
     const int step = (std::max(slice.columns, slice.rows) + longest - 1) / longest;
     Thumbnail picture{slice.columns / step, slice.rows / step, {}};
-    auto [low, high] = range_of(decoded.stored, decoded.samples);
+    const auto range = range_of(decoded.stored, decoded.samples);
+    double low = range.first, high = range.second;
     if (slice.values.window) {
         const auto [centre, width] = *slice.values.window;
         low = centre - 0.5 * width;
