@@ -64,7 +64,7 @@ void CubicNodes::enter_slab(int z) {
 
 bool CubicNodes::enter(const Index3& cell) {
     if (cell[2] != slab_) enter_slab(cell[2]);
-    const auto row = static_cast<std::size_t>(box_.high[0] - box_.low[0] + 2);
+    const std::size_t row = static_cast<std::size_t>(box_.high[0] - box_.low[0]) + 2;
     const std::uint8_t* const first = either_.data() +
                                       static_cast<std::size_t>(cell[1] - box_.low[1]) * row +
                                       static_cast<std::size_t>(cell[0] - box_.low[0]);
@@ -110,7 +110,7 @@ void CubicNodes::take_values() {
         nearest += centre[-d] + centre[d];
         next += corners(centre, s, e);
         for (int side = 0; side < 2; ++side) {
-            const double* const low = centre + (side - 1) * d;
+            const double* const low = side == 0 ? centre - d : centre;
             const double* const high = low + d;
             excess_[face_node(a, side)] =
                 (52 * (low[0] + high[0]) + 10 * (edges(low, s, e) + edges(high, s, e)) +
@@ -147,7 +147,8 @@ Vec3 CubicNodes::centre_gradient() const {
 Vec3 CubicNodes::face_gradient(Node face) const {
     const int axis = (face - 8) / 2, side = face & 1;
     const int d = stride[axis], s = stride[(axis + 1) % 3], e = stride[(axis + 2) % 3];
-    const double* const low = samples_.data() + 13 + (side - 1) * d;
+    const double* const centre = samples_.data() + 13;
+    const double* const low = side == 0 ? centre - d : centre;
     const double* const high = low + d;
     const auto rise = [](const double* c, int along, int across) {
         return 7 * (c[along] - c[-along]) + 0.5 * ((c[along - across] - c[-along - across]) +
