@@ -9,6 +9,7 @@
 #include <fstream>
 #include <memory>
 
+#include "io/byte_order.hpp"
 #include "io/finite.hpp"
 #include "io/inflate.hpp"
 #include "palpate/io/output.hpp"
@@ -16,7 +17,7 @@
 namespace palpate::io {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "raw files are little-endian");
+static_assert(std::endian::native == std::endian::little, "so are raw files, unless they say");
 
 std::string layout_text(const RawLayout& raw) {
     return std::to_string(raw.size[0]) + "x" + std::to_string(raw.size[1]) + "x" +
@@ -130,12 +131,14 @@ VolumeFile read_raw(const std::filesystem::path& path, const ReadOptions& option
     } else {
         read_plain(path, fill);
     }
+    if (raw.big_endian) swap_bytes({samples.get(), bytes}, size_of(raw.type));
     std::vector<std::string> notes;
     if (raw.type == SampleType::float32) {
         const auto count =
             replace_non_finite({reinterpret_cast<float*>(samples.get()), bytes / sizeof(float)});
         if (count == bytes / sizeof(float)) {
-            throw InputError(path.string() + ": no sample is a finite number; check its type");
+            throw InputError(path.string() +
+                             ": no sample is a finite number; check its type and byte order");
         }
         if (count > 0) notes.push_back(non_finite_note(count));
     }

@@ -25,9 +25,6 @@ void check(const HandBrush& brush) {
     if (brush.value && !std::isfinite(*brush.value)) {
         throw std::invalid_argument("the brush's value must be finite");
     }
-    if (brush.kind == BrushKind::paint && !brush.value) {
-        throw std::invalid_argument("a brush that paints needs a value");
-    }
 }
 
 std::optional<edit::Stroke> stroke_of(const HandBrush& hand, const Field& field, double isovalue,

@@ -36,6 +36,7 @@ void add_names(Names& names, const FileSource& file) {
             std::to_string(size[0]) + "x" + std::to_string(size[1]) + "x" + std::to_string(size[2]);
         names["type"] = name_of(file.raw->type);
         if (file.raw->skip > 0) names["skip"] = std::to_string(file.raw->skip);
+        if (file.raw->big_endian) names["byte-order"] = "big";
     }
     if (file.spacing) names["spacing"] = spacing_text(*file.spacing);
     if (!file.series.empty()) names["series"] = file.series;
@@ -52,8 +53,13 @@ FileSource with_layout(FileSource file, const Names& names) {
     const std::string dims = value_of(names, "dims"), type = value_of(names, "type");
     const std::string spacing = value_of(names, "spacing");
     const auto skip = io::number_from<std::uint64_t>(value_of(names, "skip")).value_or(0);
+    const std::string order = value_of(names, "byte-order");
+    if (!order.empty() && order != "little" && order != "big") {
+        throw std::invalid_argument("byte-order " + order + ": it is little or big");
+    }
     if (!dims.empty() || !type.empty()) {
         file.raw = io::raw_layout_from(dims, type, spacing, skip);
+        file.raw->big_endian = order == "big";
     }
     if (!spacing.empty()) file.spacing = io::spacing_from(spacing);
     file.series = value_of(names, "series");
@@ -67,8 +73,8 @@ SyntheticSource with_type(SyntheticSource synthetic, const Names& names) {
             "synthetic:NAME:WxHxD");
     }
     const auto skip = io::number_from<std::uint64_t>(value_of(names, "skip")).value_or(0);
-    if (names.contains("series") || skip != 0) {
-        throw std::invalid_argument("series and skip are for files");
+    if (names.contains("series") || names.contains("byte-order") || skip != 0) {
+        throw std::invalid_argument("series, byte-order and skip are for files");
     }
     const std::string type = value_of(names, "type");
     if (!type.empty()) synthetic.type = sample_type_from(type);

@@ -43,6 +43,20 @@ void count(const Volume& volume, std::optional<double> padding, Histogram& h) {
     h.deviation = std::sqrt(std::max(0.0, squares / n - (sum / n) * (sum / n)));
 }
 
+/// Samples between two levels.
+struct Class {
+    double share;  ///< of all samples
+    double mean;   ///< [bins]
+};
+
+/// Whether the middle class is what an object was put into (resin, gel, a box): much of it, and
+/// hardly denser than air next to the object.
+bool is_filler(const Class& below, const Class& middle, const Class& above) {
+    constexpr double least_share = 0.2, most_contrast = 0.2;
+    return middle.share >= least_share && above.share > 0 &&
+           middle.mean - below.mean < most_contrast * (above.mean - below.mean);
+}
+
 }  // namespace
 
 std::optional<double> padding_of(const Volume& volume, std::optional<double> header) {
@@ -121,6 +135,14 @@ std::vector<double> suggested_isovalues(const Histogram& h) {
         while (above + 1 < n && h.counts[above] == 0) ++above;
         const double level = h.low + bin_middle + 0.5 * width * static_cast<double>(below + above);
         if (levels.empty() || level > levels.back()) levels.push_back(level);
+    }
+    const auto class_of = [&](std::size_t from, std::size_t to) {
+        const double w = weight[to] - weight[from];
+        return Class{w / weight[n], w > 0 ? (sum[to] - sum[from]) / w : 0};
+    };
+    if (levels.size() == 2 &&
+        is_filler(class_of(0, cut[0]), class_of(cut[0], cut[1]), class_of(cut[1], n))) {
+        std::swap(levels[0], levels[1]);
     }
     return levels;
 }

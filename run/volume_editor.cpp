@@ -61,6 +61,7 @@ void VolumeEditor::set_brush(const std::optional<HandBrush>& brush) {
         new_step_ = true;
     }
     brush_ = brush;
+    brush_taken_up_.notify_all();
     set_problem({});
 }
 
@@ -137,7 +138,8 @@ void VolumeEditor::send(const command::Samples& command) {
 void VolumeEditor::run(const std::stop_token& stop) {
     while (!stop.stop_requested()) {
         std::this_thread::sleep_for(brush_interval);
-        const std::scoped_lock lock(mutex_);
+        std::unique_lock lock(mutex_);
+        brush_taken_up_.wait(lock, stop, [this] { return brush_.has_value(); });
         try {
             for (Hand& hand : hands_) brush(hand);
         } catch (const std::exception& e) {  // a servo that takes no commands, or no memory

@@ -32,6 +32,9 @@ void SourceOptions::add_to(CLI::App& command, bool optional) {
     text("spacing", "Spacing [mm] instead of what the file gives or lacks: X,Y,Z")
         ->type_name("X,Y,Z");
     text("skip", "Bytes of header to skip in a raw file")->type_name("UINT")->check(flaw_in_count);
+    text("byte-order", "Byte order of a raw file: little (default), big")
+        ->type_name("ORDER")
+        ->check(CLI::IsMember({"little", "big"}));
     text("series", "DICOM series: its number in the list, or its UID");
     command
         .add_option("--time-step", frame,

@@ -10,11 +10,10 @@
 #include "apps/options/exit_status.hpp"
 #include "apps/options/impossible_values.hpp"
 #include "apps/options/view_options.hpp"
+#include "apps/viewer/model/raw_preview.hpp"
 #include "apps/viewer/window/appearance.hpp"
 #include "apps/viewer/window/main_window.hpp"
 #include "apps/viewer/window/screenshot.hpp"
-#include "palpate/io/error.hpp"
-#include "palpate/io/sample_volume.hpp"
 
 namespace {
 
@@ -26,26 +25,15 @@ void on_signal(int number) {
     stop_signal = number;
 }
 
-/// Without arguments the window begins with the sample volume, felt at the skin; empty where it is
-/// not installed.
-void begin_with_sample(app::ViewOptions& options) {
-    if (options.has_volume() || !options.session.empty() || !options.play.empty()) return;
-    try {
-        options.run.source.volume() = io::sample_volume_path().string();
-    } catch (const io::InputError&) {
-        return;
-    }
-    auto& isovalue = options.run.given.field.isovalue;
-    if (!isovalue) isovalue = io::sample_volume_skin;
-}
-
 void open(viewer::MainWindow& window, const app::ViewOptions& options) {
     if (!options.session.empty()) {
         window.files().open_session(QString::fromStdString(options.session));
     } else if (!options.play.empty()) {
         window.files().open_recording(QString::fromStdString(options.play));
     } else if (options.has_volume()) {
-        window.files().open_volume(options.run.source.source());
+        const run::Source source = options.run.source.source();
+        const bool ask = options.screenshot.empty() && viewer::lacks_layout(source);
+        ask ? window.files().ask_layout(source) : window.files().open_volume(source);
     }
 }
 
@@ -82,7 +70,6 @@ int main(int argc, char** argv) {
         app::refuse_impossible_values(command, argc, argv);
         command.parse(argc, argv);
         options.check();
-        begin_with_sample(options);
     } catch (const CLI::Success& e) {
         return command.exit(e);
     } catch (const CLI::ParseError& e) {

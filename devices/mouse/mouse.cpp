@@ -12,8 +12,10 @@ constexpr double lag = 0.03;
 constexpr double longest_gap = 0.02;
 
 /// [mm] Half of the usable box, into which a volume is fitted, and of what can be reached: room to
-/// go round the volume.
-const Vec3 workspace(80, 80, 80), reach(100, 100, 100);
+/// go round the volume's corners.
+const Vec3 workspace(80, 80, 80), reach(160, 160, 160);
+/// [mm] Where the hand begins, in front of the volume.
+const Vec3 begin(0, 0, 100);
 
 }  // namespace
 
@@ -33,7 +35,7 @@ std::unique_ptr<Device> open_mouse(const DeviceChoice& choice, const DeviceScene
     return std::make_unique<Mouse>(speed);
 }
 
-Mouse::Mouse(double speed) : aim_(0, 0, reach[2]), speed_(speed), target_(aim_), position_(aim_) {}
+Mouse::Mouse(double speed) : aim_(begin), speed_(speed), target_(aim_), position_(aim_) {}
 
 void Mouse::aim(const Vec3& position) noexcept {
     if (!position.allFinite()) return;

@@ -75,8 +75,8 @@ void check(const Edit& edit, const Samples& samples);
 /// gives the same bits. Throws as check() does.
 Edited edited(const std::shared_ptr<const Samples>& samples, const Edit& edit);
 
-/// A brush for the level that is felt: carving goes down to the field's background, adding goes as
-/// far above the level as the background lies below it.
+/// A brush for the level that is felt: carving goes down to the field's background, adding and
+/// painting go as far above the level as the background lies below it.
 Brush brush_for(BrushKind kind, const Field& field, double isovalue, double radius);
 
 }  // namespace palpate

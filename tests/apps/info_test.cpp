@@ -160,6 +160,17 @@ INSTANTIATE_TEST_SUITE_P(
         Known{"HeadMRVolume.mhd", {48, 62, 42}, "uint8", 0, 255, {4, 4, 4}, "L P S"},
         Known{"dicom_sphere", {86, 86, 63}, "uint16", 0, 3752, {2.23256, 2.23256, 2.2}, "P I R"}));
 
+TEST(Info, the_first_level_suggested_bounds_what_was_scanned) {
+    SKIP_WITHOUT("lobster.nrrd");
+    SKIP_WITHOUT("cthead_unc.nrrd");
+    const ScratchFolder folder;
+    const auto first = [&](const char* name) {
+        return info(folder, {data_file(name).string()})["suggested_isovalues"][0].get<double>();
+    };
+    EXPECT_GT(first("lobster.nrrd"), 25) << "not the resin, at 17";
+    EXPECT_NEAR(first("cthead_unc.nrrd"), 571.5, 20) << "skin";
+}
+
 TEST(Info, reads_the_packed_raw_file_like_the_nrrd) {
     SKIP_WITHOUT("lobster.nrrd");
     SKIP_WITHOUT("lobster_301x324x56_uint8.raw.gz");

@@ -40,6 +40,26 @@ TEST(raw_file, every_type_is_read_plain_packed_and_after_a_header) {
     }
 }
 
+TEST(raw_file, big_endian_samples_are_turned_round) {
+    const ScratchFolder folder;
+    std::mt19937 random(22);
+    for (const auto type :
+         {SampleType::uint8, SampleType::int16, SampleType::uint16, SampleType::float32}) {
+        Geometry g = random_geometry(random, false, false);
+        g.origin.setZero();
+        const Volume volume = random_volume(random, type, g);
+        std::string bytes = raw_bytes(volume);
+        const std::size_t each = size_of(type);
+        for (std::size_t at = 0; at < bytes.size(); at += each) {
+            std::reverse(bytes.data() + at, bytes.data() + at + each);
+        }
+        put_bytes(folder / "a.raw", bytes);
+        ReadOptions options = options_for(volume);
+        options.raw->big_endian = true;
+        EXPECT_TRUE(same_samples(read_volume(folder / "a.raw", options).volume, volume));
+    }
+}
+
 TEST(raw_file, what_is_written_is_read_again_with_the_words_that_were_said) {
     const ScratchFolder folder;
     std::mt19937 random(23);

@@ -81,6 +81,19 @@ TEST(Source, keeps_dequantize_in_its_names) {
     EXPECT_EQ(source_from(to_names(source)).dequantize, 60);
 }
 
+TEST(Source, keeps_the_layout_of_a_raw_file_in_its_names) {
+    const std::map<std::string, std::string> names{{"volume", "a.raw"},   {"dims", "2x3x4"},
+                                                   {"type", "int16"},     {"skip", "5"},
+                                                   {"byte-order", "big"}, {"spacing", "1,2,3"}};
+    const Source source = source_from(names);
+    EXPECT_TRUE(std::get<FileSource>(source.from).raw->big_endian);
+    EXPECT_EQ(to_names(source), names);
+    EXPECT_THROW(source_from({{"volume", "a.raw"}, {"byte-order", "middle"}}),
+                 std::invalid_argument);
+    EXPECT_THROW(source_from({{"volume", "synthetic:torus"}, {"byte-order", "big"}}),
+                 std::invalid_argument);
+}
+
 TEST(Source, refuses_rounds_out_of_range_and_a_live_source) {
     EXPECT_THROW(load(dequantized_source("synthetic:sphere:8x8x8", -1)), std::invalid_argument);
     EXPECT_THROW(load(dequantized_source("synthetic:sphere:8x8x8", 1001)), std::invalid_argument);

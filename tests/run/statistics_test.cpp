@@ -26,6 +26,25 @@ Volume scan(double outside) {
     });
 }
 
+TEST(SuggestedIsovalues, what_an_object_was_put_into_comes_last) {
+    Histogram h{0, 256, std::vector<std::int64_t>(256), 0, 0, true, 255};
+    h.counts[2] = 4800;
+    h.counts[116] = 300;
+    h.counts[17] = 4900;  // resin, as in a scan of a lobster
+    const std::vector<double> in_resin = suggested_isovalues(h);
+    ASSERT_EQ(in_resin.size(), 2U);
+    EXPECT_GT(in_resin[0], 17);
+    EXPECT_LT(in_resin[1], 17);
+    h.counts[17] = 0;
+    h.counts[60] = 4900;  // flesh
+    const std::vector<double> flesh = suggested_isovalues(h);
+    EXPECT_LT(flesh[0], 60);
+    EXPECT_GT(flesh[1], 60);
+    h.counts[60] = 0;
+    h.counts[17] = 500;  // a thin skin
+    EXPECT_LT(suggested_isovalues(h)[0], 17);
+}
+
 }  // namespace
 
 TEST(Padding, of_a_scan_is_left_out_of_histogram_mean_and_levels) {

@@ -67,6 +67,15 @@ TEST(VolumeEditor, one_that_adds_pushes_the_hand_out) {
     EXPECT_TRUE(comes_true([&] { return p.scp()[0] < before - 2; }));
 }
 
+TEST(VolumeEditor, one_that_paints_without_a_value_takes_what_adding_leaves) {
+    Pressing p;
+    ASSERT_TRUE(p.touches());
+    const double before = p.scp()[0];
+    p.editor.set_brush(HandBrush{.kind = BrushKind::paint, .radius = 4, .rate = 30});
+    EXPECT_TRUE(comes_true([&] { return p.scp()[0] < before - 2; }));
+    EXPECT_EQ(p.editor.state().problem, "");
+}
+
 TEST(VolumeEditor, works_only_in_contact) {
     Pressing p;
     p.editor.apply(edit::Fill{whole_box(p.field.geometry()), 0});
@@ -168,7 +177,6 @@ TEST(VolumeEditor, refuses_brushes_that_cannot_work_and_says_why) {
     EXPECT_THROW(p.editor.set_brush(HandBrush{.radius = nan}), std::invalid_argument);
     EXPECT_THROW(p.editor.set_brush(HandBrush{.hardness = 2}), std::invalid_argument);
     EXPECT_THROW(p.editor.set_brush(HandBrush{.rate = 0}), std::invalid_argument);
-    EXPECT_THROW(p.editor.set_brush(HandBrush{.kind = BrushKind::paint}), std::invalid_argument);
     EXPECT_THROW(p.editor.apply(edit::Fill{{{0, 0, 0}, {1, 1, 1}}, nan}), std::invalid_argument);
     EXPECT_EQ(p.editor.state().version, 0U);
 }

@@ -28,6 +28,9 @@ struct TransferFunction {
     bool operator==(const TransferFunction&) const = default;
 };
 
+/// Of the brush round the proxy: orange (Okabe and Ito).
+inline constexpr pictures::Colour brush_colour{0.902, 0.624, 0};
+
 /// What is in the scene and how it looks.
 struct Look {
     bool surface = true;  ///< the isosurface that is felt

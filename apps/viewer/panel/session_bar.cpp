@@ -3,8 +3,10 @@
 
 #include <QBoxLayout>
 #include <QEvent>
+#include <QVariant>
 
 #include "apps/options/words.hpp"
+#include "apps/viewer/model/hand_state.hpp"
 #include "apps/viewer/panel/layout.hpp"
 
 namespace palpate::viewer {
@@ -22,6 +24,11 @@ SessionSwitch::SessionSwitch(const QString& on, const QString& off) : on_(on), o
 void SessionSwitch::show_state(bool on) {
     const bool same = on == isChecked();
     if (!awaited_.passes_over(same) && !same) set_state(on);
+}
+
+void SessionSwitch::set_on_text(const QString& text) {
+    on_ = text;
+    if (isChecked()) setText(on_);
 }
 
 void SessionSwitch::set_state(bool on) {
@@ -60,11 +67,13 @@ SessionBar::SessionBar()
     colour_forces();
 }
 
-/// On: green, off: as any button. The text says it, too.
+/// On: green, waiting: amber, off: as any button. The text says it, too.
 void SessionBar::colour_forces() {
     const QString sheet =
         "QPushButton:checked:enabled { background-color: #00855f; color: white; border: 1px solid "
         "#00553c; border-radius: 4px; }"
+        "QPushButton:checked:enabled[waiting=true] { background-color: #ffb000; color: black; "
+        "border-color: #8a5f00; }"
         "QPushButton:checked:enabled:focus { border: 2px solid palette(highlight); }";
     if (forces_->styleSheet() != sheet) forces_->setStyleSheet(sheet);
 }
@@ -78,6 +87,14 @@ void SessionBar::changeEvent(QEvent* event) {
     QWidget::changeEvent(event);
 }
 
+void SessionBar::show_waiting(bool waiting) {
+    if (forces_->property("waiting").toBool() == waiting) return;
+    forces_->setProperty("waiting", waiting);
+    forces_->set_on_text(waiting ? "Forces WAIT: withdraw a little" : "Forces are ON");
+    forces_->setStyleSheet({});  // a rule by property is looked up only once
+    colour_forces();
+}
+
 void SessionBar::set_session(const RendererSettings& settings) {
     forces_->set_state(settings.forces_on);
     freeze_->set_state(false);
@@ -88,12 +105,14 @@ void SessionBar::set_session(const RendererSettings& settings) {
 
 void SessionBar::clear() {
     for (SessionSwitch* one : {forces_, freeze_, clutch_}) one->set_state(false);
+    show_waiting(false);
     gauge_->clear();
     contact_->clear();
 }
 
 void SessionBar::show_snapshot(const Snapshot& now, double limit) {
     forces_->show_state(now.forces_on);
+    show_waiting(waits_for_hand(now));
     freeze_->show_state(now.session.frozen);
     clutch_->show_state(now.session.clutched);
     const Tick& tick = now.session.tick;

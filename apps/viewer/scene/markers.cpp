@@ -1,14 +1,18 @@
 // Draws the markers, once with the scene and once faintly over it.
 #include "apps/viewer/scene/markers.hpp"
 
+#include <vtkCellArray.h>
 #include <vtkNew.h>
 #include <vtkOpenGLRenderWindow.h>
 #include <vtkOpenGLState.h>
+#include <vtkPoints.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
 #include <vtkSphereSource.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "apps/viewer/scene/shapes.hpp"
 #include "pictures/vtk/material.hpp"
@@ -48,6 +52,28 @@ vtkSmartPointer<vtkPolyData> unit_ball() {
     return source->GetOutput();
 }
 
+/// Of radius 1, one across each axis.
+vtkSmartPointer<vtkPolyData> three_circles() {
+    constexpr int corners = 64;
+    vtkNew<vtkPoints> points;
+    vtkNew<vtkCellArray> lines;
+    for (int axis = 0; axis < 3; ++axis) {
+        lines->InsertNextCell(corners + 1);
+        const vtkIdType first = points->GetNumberOfPoints();
+        for (int i = 0; i < corners; ++i) {
+            Vec3 at = Vec3::Zero();
+            at[(axis + 1) % 3] = std::cos(2 * std::numbers::pi * i / corners);
+            at[(axis + 2) % 3] = std::sin(2 * std::numbers::pi * i / corners);
+            lines->InsertCellPoint(points->InsertNextPoint(at.data()));
+        }
+        lines->InsertCellPoint(first);
+    }
+    auto data = vtkSmartPointer<vtkPolyData>::New();
+    data->SetPoints(points);
+    data->SetLines(lines);
+    return data;
+}
+
 void place(vtkActor& actor, const Vec3& at, double scale) {
     actor.SetPosition(Vec3(at).data());
     actor.SetScale(scale);
@@ -78,14 +104,15 @@ Markers::Markers(vtkRenderer& solid, vtkRenderer& overlay) : solid_(solid), over
     arrow_ = twin_of(pictures::force_colour, nothing());
     scp_ = twin_of(pictures::scp_colour, unit_ball());
     hip_ = twin_of(pictures::hip_colour, unit_ball());
+    brush_ = twin_of(brush_colour, three_circles());
     normals_ = twin_of(plane_colour, nothing());
     discs_ = twin_of(plane_colour, nothing());
     patches_ = twin_of(pictures::scp_colour, nothing());
     for (const Twin* twin :
-         {&edges_, &spring_, &arrow_, &scp_, &hip_, &normals_, &discs_, &patches_}) {
+         {&edges_, &spring_, &arrow_, &scp_, &hip_, &brush_, &normals_, &discs_, &patches_}) {
         solid_.AddActor(twin->solid);
     }
-    for (const Twin* twin : {&edges_, &normals_}) {
+    for (const Twin* twin : {&edges_, &brush_, &normals_}) {
         flat(*twin->solid, 1);
         flat(*twin->faint, faint_opacity);
     }
@@ -97,7 +124,7 @@ Markers::Markers(vtkRenderer& solid, vtkRenderer& overlay) : solid_(solid), over
 /// A faint actor over its visible twin changes nothing; over a surface that hides the twin it shows
 /// where that is. Depths are drawn first, so that only the nearest part of all of them is seen.
 void Markers::add_faint_actors() {
-    const auto all = {&edges_, &spring_, &arrow_, &scp_, &hip_, &normals_};
+    const auto all = {&edges_, &spring_, &arrow_, &scp_, &hip_, &brush_, &normals_};
     const auto writing = [this](bool on) {
         vtkNew<ColourWriting> prop;
         prop->on = on;
@@ -167,7 +194,7 @@ void Markers::show_lattice(const Contact& contact, const Look& look, const Vec3&
 
 void Markers::show(const std::optional<Contact>& contact, const Look& look, const Vec3& origin,
                    double pixel, double voxel, const Colour& ink, double pixel_ratio) {
-    for (const Twin* twin : {&hip_, &scp_, &spring_, &arrow_, &edges_, &normals_}) {
+    for (const Twin* twin : {&hip_, &scp_, &spring_, &arrow_, &brush_, &edges_, &normals_}) {
         set_visible(*twin, false);
     }
     patches_.solid->SetVisibility(false);
@@ -181,6 +208,11 @@ void Markers::show(const std::optional<Contact>& contact, const Look& look, cons
         actor->GetProperty()->SetLineWidth(static_cast<float>(2 * pixel_ratio));
     }
     if (look.contact) show_probe(*contact, origin, pixel);
+    set_visible(brush_, contact->brush > 0);
+    for (vtkActor* actor : brush_.actors()) {
+        place(*actor, contact->scp - origin, contact->brush);
+        actor->GetProperty()->SetLineWidth(static_cast<float>(1.5 * pixel_ratio));
+    }
     show_lattice(*contact, look, origin, voxel);
 }
 

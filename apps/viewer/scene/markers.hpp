@@ -22,6 +22,7 @@ struct Contact {
     Vec3 hip = Vec3::Zero(), scp = Vec3::Zero();  ///< [mm, physical]
     Vec3 force = Vec3::Zero();                    ///< [N] on the hand, physical axes
     std::vector<LocalTetrahedron> lattice;
+    double brush = 0;  ///< [mm] its radius round the proxy; 0: none
 };
 /// Nothing while the device is not ready. The lattice only where it is asked for.
 std::optional<Contact> contact_of(const std::optional<Snapshot>& snapshot, const Field& field,
@@ -56,7 +57,7 @@ class Markers {
     void show_lattice(const Contact& contact, const Look& look, const Vec3& origin, double voxel);
 
     vtkRenderer &solid_, &overlay_;
-    Twin hip_, scp_, spring_, arrow_, edges_, patches_, discs_, normals_;
+    Twin hip_, scp_, spring_, arrow_, brush_, edges_, patches_, discs_, normals_;
 };
 
 }  // namespace palpate::viewer

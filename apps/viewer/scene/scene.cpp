@@ -17,6 +17,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "apps/viewer/model/hand_state.hpp"
 #include "apps/viewer/scene/annotations.hpp"
 #include "apps/viewer/scene/background_renderer.hpp"
 #include "apps/viewer/scene/layer_prop.hpp"
@@ -49,6 +50,7 @@ struct Scene::Parts {
     BackgroundRenderer background;
     RenderRequest wanted;  // look, crosshair; changed() fills in the rest
     std::optional<Snapshot> snapshot;
+    double brush = 0;
     bool outdated = true;  // something was set since the layers were drawn
 
     vtkNew<vtkGenericOpenGLRenderWindow> window;
@@ -138,7 +140,11 @@ void Scene::set_look(const Look& look) {
 void Scene::show_snapshot(const std::optional<Snapshot>& snapshot) {
     const bool was = parts_->snapshot.has_value();
     if (!snapshot && !was) return;
-    if (snapshot && was && snapshot->number == parts_->snapshot->number) return;
+    constexpr double unseen_px = 0.1;
+    if (snapshot && was &&
+        looks_same(*snapshot, *parts_->snapshot, unseen_px * mm_per_pixel(camera_, view_size()))) {
+        return;
+    }
     parts_->snapshot = snapshot;
     refresh();
 }
@@ -151,6 +157,11 @@ void Scene::set_crosshair(const Vec3& physical) {
 void Scene::set_hand(Hand hand) {
     hand_ = hand;
     setCursor(hand == Hand::probe ? Qt::CrossCursor : Qt::ArrowCursor);
+}
+
+void Scene::set_brush(double radius) {
+    parts_->brush = radius;
+    refresh();
 }
 
 void Scene::set_camera(const pictures::Camera& camera) {
@@ -236,8 +247,10 @@ void Scene::lay_out() {
         const Vec3 origin = physical_centre(field->geometry());
         direct(*parts_->front->GetActiveCamera(), camera, origin, reach_of(field->geometry()));
         const double voxel = field->geometry().spacing.mean();
-        parts_->markers->show(contact_of(parts_->snapshot, *field, look.tetrahedra || look.planes),
-                              look, origin, mm_per_pixel(camera, view_size()), voxel, ink, ratio);
+        auto contact = contact_of(parts_->snapshot, *field, look.tetrahedra || look.planes);
+        if (contact) contact->brush = parts_->brush;
+        parts_->markers->show(contact, look, origin, mm_per_pixel(camera, view_size()), voxel, ink,
+                              ratio);
     } else {
         parts_->markers->show({}, look, Vec3::Zero(), 1, 1, ink, ratio);
     }
@@ -293,6 +306,10 @@ void Scene::mousePressEvent(QMouseEvent* event) {
     drag_ = drag_of(*event);
     drag_from_ = drag_start_ = event->localPos();
     event->accept();
+    const bool touches = drag_ == Drag::probe && !(event->modifiers() & Qt::ShiftModifier);
+    if (touches && parts_->background.field()) {
+        Q_EMIT probe_pressed(point_at(camera_, view_size(), {drag_from_.x(), drag_from_.y()}));
+    }
 }
 
 void Scene::mouseMoveEvent(QMouseEvent* event) {
@@ -322,13 +339,15 @@ void Scene::mouseMoveEvent(QMouseEvent* event) {
 }
 
 void Scene::mouseReleaseEvent(QMouseEvent* event) {
+    if (drag_ == Drag::probe && event->button() == Qt::LeftButton) Q_EMIT probe_released();
     if (event->buttons() == Qt::NoButton) drag_ = Drag::none;
 }
 
 void Scene::mouseDoubleClickEvent(QMouseEvent* event) {
     const auto& shown = parts_->background.shown();
     const auto& field = parts_->background.field();
-    if (hand_ != Hand::camera || event->button() != Qt::LeftButton || !shown || !field) {
+    const bool asked = event->button() == Qt::LeftButton && event->modifiers() & Qt::ShiftModifier;
+    if (!asked || !shown || !field) {
         mousePressEvent(event);
         return;
     }

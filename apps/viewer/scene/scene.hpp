@@ -49,7 +49,10 @@ class Scene : public QVTKOpenGLNativeWidget {
     /// What the left mouse button moves. docs/viewer.md has what all buttons do.
     enum class Hand { camera, probe };
     void set_hand(Hand hand);
+    /// [mm] Outlined round the proxy; 0: no brush.
+    void set_brush(double radius);
 
+    ViewSize view_size() const;
     pictures::Camera camera() const { return camera_; }
     /// Throws std::invalid_argument for one that cannot be looked through.
     void set_camera(const pictures::Camera& camera);
@@ -70,6 +73,10 @@ class Scene : public QVTKOpenGLNativeWidget {
   Q_SIGNALS:
     /// Hand motion asked for with mouse or wheel under Hand::probe [mm, physical].
     void probe_dragged(const palpate::Vec3& by);
+    /// The left button went down under Hand::probe, without Shift: `at` lies under the pointer, in
+    /// the plane through the camera's focus [mm, physical].
+    void probe_pressed(const palpate::Vec3& at);
+    void probe_released();
     void camera_moved();
     /// The surface is shown as finely as it will be, `seconds` after it was asked for.
     void surface_ready(double isovalue, double seconds);
@@ -89,7 +96,6 @@ class Scene : public QVTKOpenGLNativeWidget {
     struct Parts;
     enum class Drag { none, turn, pan, zoom, probe };
 
-    ViewSize view_size() const;
     Drag drag_of(const QMouseEvent& event) const;
     void move_camera(const pictures::Camera& camera);
     void changed();

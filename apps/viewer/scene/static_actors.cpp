@@ -21,7 +21,11 @@
 namespace palpate::viewer {
 namespace {
 
-/// The grey of a plane at a fractional index of `axis`, between the two slices beside it.
+/// Greys that cannot be told from black.
+constexpr unsigned char black = 8;
+
+/// The grey of a plane at a fractional index of `axis`, between the two slices beside it; null
+/// where it is all black: such a plane only hides what is behind it.
 vtkSmartPointer<vtkImageData> slice_image(const Field& field, int axis, double where) {
     const Index3& size = field.geometry().size;
     const int u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
@@ -40,12 +44,14 @@ vtkSmartPointer<vtkImageData> slice_image(const Field& field, int axis, double w
     image->SetDimensions(size[u], size[v], 1);
     image->AllocateScalars(VTK_UNSIGNED_CHAR, 1);
     auto* out = static_cast<unsigned char*>(image->GetScalarPointer());
+    bool empty = true;
     for (std::size_t i = 0; i < before.size(); ++i) {
         const double value = (1 - t) * double(before[i]) + t * double(after[i]);
-        *out++ = static_cast<unsigned char>(
+        out[i] = static_cast<unsigned char>(
             std::lround(std::clamp(scale * (value - samples.minimum()), 0.0, 255.0)));
+        empty = empty && out[i] <= black;
     }
-    return image;
+    return empty ? nullptr : image;
 }
 
 vtkSmartPointer<vtkActor> slice_actor(const Field& field, int axis, double where) {
@@ -77,7 +83,8 @@ vtkSmartPointer<vtkActor> slice_actor(const Field& field, int axis, double where
     vtkNew<vtkPolyDataMapper> mapper;
     mapper->SetInputData(data);
     vtkNew<vtkTexture> texture;
-    texture->SetInputData(slice_image(field, axis, where));
+    const vtkSmartPointer<vtkImageData> image = slice_image(field, axis, where);
+    texture->SetInputData(image);
     texture->SetColorModeToDirectScalars();
     texture->InterpolateOn();
     texture->RepeatOff();
@@ -85,6 +92,7 @@ vtkSmartPointer<vtkActor> slice_actor(const Field& field, int axis, double where
     actor->SetMapper(mapper);
     actor->SetTexture(texture);
     actor->GetProperty()->LightingOff();
+    actor->SetVisibility(image != nullptr);
     return actor;
 }
 

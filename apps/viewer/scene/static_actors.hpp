@@ -11,7 +11,8 @@
 namespace palpate::viewer {
 
 /// Three planes of the grid through a point, grey from the least sample to the greatest, at the
-/// field's moment. Positions from the middle of the grid.
+/// field's moment; hidden where all of it is as good as black. Positions from the middle of the
+/// grid.
 std::array<vtkSmartPointer<vtkActor>, 3> slice_actors(const Field& field, const Vec3& crosshair);
 
 /// The twelve edges of the box whose corners are the outermost samples.

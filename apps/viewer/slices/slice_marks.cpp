@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pictures/scene.hpp"
+#include "apps/viewer/model/look.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -139,6 +139,18 @@ void paint_probe(QPainter& painter, const SliceSheet& sheet, const Snapshot& sna
     paint_force(painter, sheet, snapshot, scp_opacity, unit);
     if (apart) dot(painter, scp, qt_colour(pictures::scp_colour, scp_opacity), 0.5 * unit);
     dot(painter, hip, qt_colour(pictures::hip_colour, hip_opacity), 0.5 * unit);
+    painter.restore();
+}
+
+void paint_brush(QPainter& painter, const SliceSheet& sheet, const Vec3& centre, double radius) {
+    const double away = centre.allFinite() ? sheet.distance(centre) : radius;
+    if (!(away < radius)) return;
+    const double cut = std::sqrt(radius * radius - away * away) * sheet.map.per_mm;
+    painter.save();
+    painter.setRenderHint(QPainter::Antialiasing);
+    QPainterPath circle;
+    circle.addEllipse(sheet.pixel(centre), cut, cut);
+    stroke(painter, circle, qt_colour(brush_colour), 1.5);
     painter.restore();
 }
 

@@ -31,6 +31,9 @@ void paint_crosshair(QPainter& painter, const SliceSheet& sheet, const QPointF& 
 /// visible.
 void paint_probe(QPainter& painter, const SliceSheet& sheet, const Snapshot& snapshot);
 
+/// Where the slice cuts a ball of this radius [mm] round a physical point.
+void paint_brush(QPainter& painter, const SliceSheet& sheet, const Vec3& centre, double radius);
+
 /// Which side of the body is at each edge.
 void paint_letters(QPainter& painter, const SliceSheet& sheet);
 

@@ -14,6 +14,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "apps/viewer/model/hand_state.hpp"
 #include "apps/viewer/slices/slice_marks.hpp"
 #include "apps/viewer/slices/slice_picture.hpp"
 #include "palpate/density.hpp"
@@ -123,6 +124,12 @@ double SlicePane::layer() const {
 }
 
 void SlicePane::show_snapshot(const std::optional<Snapshot>& snapshot) {
+    constexpr double unseen_px = 0.1;
+    if (!snapshot && !snapshot_) return;
+    if (snapshot && snapshot_ && content_ &&
+        looks_same(*snapshot, *snapshot_, unseen_px / map().per_mm)) {
+        return;
+    }
     snapshot_ = snapshot;
     update();
 }
@@ -143,6 +150,11 @@ void SlicePane::use_window(double low, double high) {
 void SlicePane::set_hand(bool probe) {
     probe_ = probe;
     if (!probe && drag_ == Drag::probe) drag_ = Drag::none;
+}
+
+void SlicePane::set_brush(double radius) {
+    brush_ = radius;
+    update();
 }
 
 QString SlicePane::title() const {
@@ -231,7 +243,10 @@ void SlicePane::paintEvent(QPaintEvent*) {
     const SliceSheet sheet{content_->plane, geometry(), where, content_->samples.position(),
                            size()};
     paint_crosshair(painter, sheet, sheet.pixel(crosshair_));
-    if (snapshot_) paint_probe(painter, sheet, *snapshot_);
+    if (snapshot_) {
+        paint_brush(painter, sheet, snapshot_->session.tick.proxy.scp, brush_);
+        paint_probe(painter, sheet, *snapshot_);
+    }
     paint_letters(painter, sheet);
     paint_words(painter);
     if (hasFocus()) {

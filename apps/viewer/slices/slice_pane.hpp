@@ -50,6 +50,8 @@ class SlicePane : public QWidget {
     double window_high() const { return high_; }
     /// True: the left button aims the probe.
     void set_hand(bool probe);
+    /// [mm] Radius of the brush that is outlined round the proxy; 0: none.
+    void set_brush(double radius);
 
     /// Sagittal, Coronal or Axial; empty without a volume.
     QString title() const;
@@ -108,6 +110,7 @@ class SlicePane : public QWidget {
     std::optional<Snapshot> snapshot_;
     double low_ = 0, high_ = 1;
     bool probe_ = false;
+    double brush_ = 0;
     SliceView view_;
     Drag drag_ = Drag::none;
     double drag_layer_ = 0;  // of the slice that the probe is dragged in

@@ -29,7 +29,19 @@ void Content::close() {
     live_.reset();
     playback_.reset();
     volume_.reset();
+    saved_.reset();
+    session_.clear();
     Q_EMIT closed();
+}
+
+void Content::set_saved(const run::Source& source) {
+    saved_ = source;
+    Q_EMIT renamed();
+}
+
+void Content::set_session(const QString& path) {
+    session_ = path;
+    Q_EMIT renamed();
 }
 
 void Content::use_device(const devices::DeviceChoice& device) {

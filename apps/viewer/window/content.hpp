@@ -3,6 +3,7 @@
 #pragma once
 
 #include <QObject>
+#include <QString>
 #include <memory>
 #include <optional>
 
@@ -29,6 +30,15 @@ class Content : public QObject {
 
     /// Null if nothing is open.
     const std::shared_ptr<Opened>& volume() const { return volume_; }
+    /// Where the volume as it is felt can be read again: the file that it was saved to last, else
+    /// where it came from. For an open volume.
+    run::Source source() const { return saved_ ? *saved_ : volume_->loaded.source; }
+    /// The volume as it is felt was written there.
+    void set_saved(const run::Source& source);
+    bool saved_elsewhere() const { return saved_.has_value(); }
+    /// The session file that was opened or saved last; empty: none.
+    const QString& session() const { return session_; }
+    void set_session(const QString& path);
     /// Null unless there is a live run.
     run::Run* live() const { return live_.get(); }
     /// Null unless the run's data can be edited.
@@ -56,9 +66,13 @@ class Content : public QObject {
     /// The run has started, or has another device, field or settings.
     void run_changed();
     void playback_started();
+    /// source() or session() is another one.
+    void renamed();
 
   private:
     std::shared_ptr<Opened> volume_;
+    std::optional<run::Source> saved_;
+    QString session_;
     std::unique_ptr<run::Run> live_;
     std::optional<Playback> playback_;
     double time_ = 0;

@@ -1,7 +1,9 @@
 // Keeps scene and slices at the snapshot, the data and the level that are felt or played.
 #include "apps/viewer/window/display_controller.hpp"
 
+#include <Eigen/Geometry>
 #include <cmath>
+#include <optional>
 
 #include "apps/viewer/model/sample_block.hpp"
 #include "apps/viewer/model/transfer.hpp"
@@ -12,6 +14,18 @@
 #include "apps/viewer/window/views.hpp"
 
 namespace palpate::viewer {
+namespace {
+
+/// Of a single slice, as it lies on a screen: rows to the right, and down or towards the head.
+std::optional<pictures::View> face_on(const Geometry& geometry) {
+    int thin = 0;
+    if (geometry.size.minCoeff(&thin) > 1) return std::nullopt;
+    const Vec3 right = geometry.direction.col(thin == 0 ? 1 : 0);
+    const Vec3 up = thin == 2 ? Vec3(-geometry.direction.col(1)) : geometry.direction.col(2);
+    return pictures::View{right.cross(up), up};
+}
+
+}  // namespace
 
 DisplayController::DisplayController(Content& content, Views& views, Panel& panel)
     : content_(content), views_(views), panel_(panel) {
@@ -48,6 +62,7 @@ void DisplayController::show_volume(const Field& field, double isovalue,
     show_field(field, isovalue);
     views_.scene().reset_camera();
     look_from_hand(transform);
+    if (const auto view = face_on(field.geometry())) views_.scene().look_from(*view);
     views_.set_window(content_.volume()->dark(), content_.volume()->bright());
 }
 

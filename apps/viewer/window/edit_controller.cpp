@@ -5,6 +5,7 @@
 #include <QDir>
 #include <QFileInfo>
 #include <QMessageBox>
+#include <QPushButton>
 #include <cstdio>
 #include <utility>
 
@@ -17,13 +18,30 @@
 #include "palpate/io/written_formats.hpp"
 
 namespace palpate::viewer {
+namespace {
+
+/// What opens such a file again.
+run::Source source_of(const QString& path, const Volume& volume) {
+    run::Source source;
+    run::FileSource file{QFileInfo(path).absoluteFilePath().toStdString(), {}, {}, {}};
+    if (path.endsWith(".raw")) {
+        const Geometry& geometry = volume.geometry();
+        file.raw = io::RawLayout{geometry.size, volume.type(), geometry.spacing};
+        file.spacing = geometry.spacing;
+    }
+    source.from = file;
+    return source;
+}
+
+}  // namespace
+
 EditController::EditController(Content& content, Panel& panel, Messages& messages, QWidget* window)
     : content_(content), panel_(panel), messages_(messages), window_(window), saving_(messages) {
     connect(&content, &Content::run_changed, this, &EditController::show);
     connect(&panel, &Panel::brush_changed, this, &EditController::use_brush);
     connect(&panel, &Panel::undo_asked, this, &EditController::undo);
     connect(&panel, &Panel::redo_asked, this, &EditController::redo);
-    connect(&panel, &Panel::save_asked, this, &EditController::ask_save);
+    connect(&panel, &Panel::save_asked, this, [this] { ask_save(); });
 }
 
 void EditController::show() {
@@ -69,20 +87,20 @@ void EditController::observe() {
     }
 }
 
-void EditController::ask_save() {
+void EditController::ask_save(std::function<void()> then) {
     if (!content_.live()) return;
-    const std::string& volume = content_.volume()->loaded.name;
+    const std::string volume = run::name_of(content_.source());
     const std::string kind(io::written_extension_of(volume));
     const QString suffix = kind.empty() ? "nrrd" : QString::fromStdString(kind.substr(1));
     QString base = QFileInfo(QString::fromStdString(volume)).fileName();
     if (base.startsWith("synthetic:")) base = base.section(':', 1, 1);
     if (base.endsWith("." + suffix, Qt::CaseInsensitive)) base.chop(suffix.size() + 1);
-    const QString path =
-        ask_save_name(window_, "Save the volume", base + "-edited." + suffix, suffix);
-    if (!path.isEmpty()) save(path);
+    if (!content_.saved_elsewhere()) base += "-edited";
+    const QString path = ask_save_name(window_, "Save the volume", base + "." + suffix, suffix);
+    if (!path.isEmpty()) save(path, std::move(then));
 }
 
-void EditController::save(const QString& path) {
+void EditController::save(const QString& path, std::function<void()> then) {
     if (!content_.live() || saving()) return;
     const std::filesystem::path file(path.toStdString());
     // The samples as they are now, whatever is done to them while they are written.
@@ -92,6 +110,7 @@ void EditController::save(const QString& path) {
     }
     const auto samples = field.shared_samples();
     const QString words = QString::fromStdString(io::opening_words(file, field.volume()));
+    const run::Source source = source_of(path, field.volume());
     messages_.show_done(QString("Saving %1").arg(path));
     saving_.start(
         QString("Saving %1").arg(path),
@@ -100,24 +119,50 @@ void EditController::save(const QString& path) {
             options.progress = progress;
             io::write_volume(flattened(*samples, moment), file, options);
         },
-        [this, path, words, samples] {
-            if (run::VolumeEditor* editor = content_.editor()) editor->set_saved(samples);
+        [this, path, words, samples, source, then = std::move(then)] {
+            // Of a sequence only one frame was saved.
+            if (run::VolumeEditor* editor = content_.editor()) {
+                editor->set_saved(samples);
+                content_.set_saved(source);
+                remember_file(path);
+            }
             messages_.show_done(QString("Saved %1").arg(path) + words);
+            if (then) then();
         });
 }
 
-bool EditController::may_lose_edits() {
+void EditController::settle_edits(const std::function<void()>& action) {
+    if (may_lose_edits(action)) action();
+}
+
+bool EditController::may_lose_edits(const std::function<void()>& once_saved) {
+    QMessageBox box(QMessageBox::Question, "Palpate",
+                    "The volume was edited, and not saved since. Save it?",
+                    QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel, window_);
+    return go_on(box, once_saved);
+}
+
+void EditController::save_edits_first(const std::function<void()>& action) {
+    QMessageBox box(QMessageBox::Question, "Palpate",
+                    "This will name the volume's file, which has not the latest edits. Save the "
+                    "volume first?",
+                    QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel, window_);
+    box.button(QMessageBox::Discard)->setText("Without the edits");
+    if (go_on(box, action)) action();
+}
+
+/// Asks, if there are unsaved edits.
+bool EditController::go_on(QMessageBox& question, const std::function<void()>& once_saved) {
     if (saving()) {
         messages_.show_done("The volume is still being saved");
         return false;
     }
     if (!unsaved()) return true;
-    QMessageBox box(QMessageBox::Question, "Palpate",
-                    "The volume was edited, and not saved since. Lose the edits?",
-                    QMessageBox::Discard | QMessageBox::Cancel, window_);
-    box.setObjectName("lose_edits");
-    box.setDefaultButton(QMessageBox::Cancel);
-    return box.exec() == QMessageBox::Discard;
+    question.setObjectName("lose_edits");
+    question.setDefaultButton(QMessageBox::Save);
+    const int answer = question.exec();
+    if (answer == QMessageBox::Save) ask_save(once_saved);
+    return answer == QMessageBox::Discard;
 }
 
 std::shared_ptr<const Samples> EditController::unsaved() const {

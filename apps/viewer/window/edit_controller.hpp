@@ -4,12 +4,14 @@
 
 #include <QObject>
 #include <QString>
+#include <functional>
 #include <memory>
 
 #include "apps/viewer/window/background_task.hpp"
 #include "palpate/run/volume_editor.hpp"
 #include "palpate/samples.hpp"
 
+class QMessageBox;
 class QWidget;
 
 namespace palpate::viewer {
@@ -28,14 +30,21 @@ class EditController : public QObject {
     void undo();
     void redo();
 
-    /// Asks for a name; offers the format of the volume, if it can be written.
-    void ask_save();
-    /// Saves the volume as it is now, edits included, in the background. Errors are shown.
-    void save(const QString& path);
+    /// Asks for a name; offers the format of the volume, if it can be written. `then` runs once it
+    /// is saved.
+    void ask_save(std::function<void()> then = {});
+    /// Saves the volume as it is now, edits included, in the background; what is felt then goes by
+    /// this name. Errors are shown.
+    void save(const QString& path, std::function<void()> then = {});
     bool saving() const { return saving_.busy(); }
 
-    /// False while the volume is being saved, and if the user wants to keep unsaved edits.
-    bool may_lose_edits();
+    /// True if there are no unsaved edits, or the user goes on without them. Offers to save them,
+    /// and calls `once_saved` when that is done. False while the volume is being saved.
+    bool may_lose_edits(const std::function<void()>& once_saved);
+    /// `action` at once if may_lose_edits(), or once they are saved.
+    void settle_edits(const std::function<void()>& action);
+    /// The same before something is saved that names the volume: then its edits are not lost.
+    void save_edits_first(const std::function<void()>& action);
     /// The samples, if they have edits that were not saved; else null.
     std::shared_ptr<const Samples> unsaved() const;
 
@@ -43,6 +52,7 @@ class EditController : public QObject {
     void observe();
 
   private:
+    bool go_on(QMessageBox& question, const std::function<void()>& once_saved);
     void show();
     void step(bool (run::VolumeEditor::*take)(), const char* if_none);
 

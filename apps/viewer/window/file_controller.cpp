@@ -5,13 +5,16 @@
 #include <utility>
 
 #include "apps/options/exit_status.hpp"
+#include "apps/viewer/model/raw_preview.hpp"
 #include "apps/viewer/window/content.hpp"
 #include "apps/viewer/window/display_controller.hpp"
 #include "apps/viewer/window/file_dialogs.hpp"
 #include "apps/viewer/window/messages.hpp"
+#include "apps/viewer/window/raw_dialog.hpp"
 #include "apps/viewer/window/recording_controller.hpp"
 #include "apps/viewer/window/run_controller.hpp"
 #include "apps/viewer/window/series_dialog.hpp"
+#include "palpate/io/sample_volume.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -70,7 +73,9 @@ void FileController::choose_series(const io::SeriesChoice& choice, const run::So
 /// As load(), but does not read a volume again that is open already.
 void FileController::load_or_reuse(const run::Source& source, Then then) {
     const std::shared_ptr<Opened> opened = content_.volume();
-    if (!opened || run::to_names(opened->loaded.source) != run::to_names(source)) {
+    // The samples of one that was saved elsewhere are those of before its edits.
+    if (!opened || content_.saved_elsewhere() ||
+        run::to_names(opened->loaded.source) != run::to_names(source)) {
         return load(source, std::move(then));
     }
     loader_.abandon();
@@ -81,7 +86,19 @@ void FileController::open_path(const QString& path) {
     remember_folder(path);
     if (path.endsWith(".json", Qt::CaseInsensitive)) return open_session(path);
     if (path.endsWith(".csv", Qt::CaseInsensitive)) return open_recording(path);
-    open_volume(run::source_named(path.toStdString()));
+    const run::Source source = run::source_named(path.toStdString());
+    lacks_layout(source) ? ask_layout(source) : open_volume(source);
+}
+
+void FileController::ask_layout(const run::Source& source) {
+    auto* dialog = new RawDialog(QString::fromStdString(name_of(source)), messages_.window());
+    dialog->setAttribute(Qt::WA_DeleteOnClose);
+    connect(dialog, &QDialog::accepted, this, [this, dialog, source] {
+        run::Source known = source;
+        known.from = dialog->layout_source();
+        open_volume(known);
+    });
+    dialog->open();  // does not block the live run
 }
 
 void FileController::open_volume(const run::Source& source) {
@@ -91,6 +108,14 @@ void FileController::open_volume(const run::Source& source) {
         if (!request.setup.field.isovalue) request.setup.field.isovalue = first_isovalue(*opened);
         feel(std::move(opened), request);
         display_.use_usual_look();
+    });
+}
+
+void FileController::open_sample() {
+    messages_.guarded([&] {
+        const std::string path = io::sample_volume_path().string();
+        run_.set_first_isovalue(io::sample_volume_skin);
+        open_volume(run::source_named(path));
     });
 }
 
@@ -152,7 +177,7 @@ void FileController::leave_playback() {
 
 SessionFile FileController::session_now() const {
     SessionFile session;
-    session.source = content_.volume()->loaded.source;
+    session.source = content_.source();
     if (const run::Run* live = content_.live()) {
         const auto now = live->snapshot();
         session.solid = live->field().solid();
@@ -180,6 +205,7 @@ SessionFile FileController::session_now() const {
 void FileController::save_session(const QString& path) {
     if (!content_.volume()) return;
     write_session(path.toStdString(), session_now());
+    content_.set_session(path);
     remember_file(path);
     messages_.show_done(QString("Saved %1").arg(path));
 }
@@ -191,6 +217,7 @@ void FileController::open_session(const QString& path) {
         load_or_reuse(session.source, [this, session, path, request = run_.take_request()](
                                           std::shared_ptr<Opened> opened) {
             feel_session(std::move(opened), session, request);
+            content_.set_session(path);
             remember_file(path);
         });
     });

@@ -24,10 +24,15 @@ class FileController : public QObject {
     FileController(Content& content, RunController& run, RecordingController& recordings,
                    DisplayController& display, Messages& messages);
 
-    /// A volume, a folder, a session or a recording: its name tells which.
+    /// A volume, a folder, a session or a recording: its name tells which. Asks for the layout
+    /// where lacks_layout().
     void open_path(const QString& path);
+    /// Asks how the samples lie in a file without a header, and opens it.
+    void ask_layout(const run::Source& source);
     /// Feels it, with the settings of the command line.
     void open_volume(const run::Source& source);
+    /// The volume that comes with Palpate, felt at the skin.
+    void open_sample();
     void open_session(const QString& path);
     void open_recording(const QString& path);
     /// Reads the volume that is felt again, dequantized or as it comes, and feels it as before.

@@ -7,8 +7,6 @@
 #include <QFileInfo>
 #include <QSettings>
 
-#include "apps/viewer/window/raw_dialog.hpp"
-
 namespace palpate::viewer {
 namespace {
 
@@ -29,7 +27,7 @@ QString ask_open_name(QWidget* window) {
         window, "Open a volume, a session or a recording", last_folder(),
 
         "All that can be opened (*.nrrd *.nhdr *.mha *.mhd *.nii *.nii.gz *.dcm *.tif *.tiff "
-        "*.vti *.json *.csv);;All files (*)");
+        "*.vti *.raw *.raw.gz *.json *.csv);;All files (*)");
 }
 
 QString ask_open_folder(QWidget* window) {
@@ -48,13 +46,8 @@ QString ask_save_name(QWidget* window, const QString& title, const QString& name
     return dialog.selectedFiles().value(0);
 }
 
-std::optional<run::Source> ask_open_raw(QWidget* window) {
-    const QString path =
-        QFileDialog::getOpenFileName(window, "Open raw data", last_folder(), "All files (*)");
-    if (path.isEmpty()) return std::nullopt;
-    RawDialog dialog(path, window);
-    if (dialog.exec() != QDialog::Accepted) return std::nullopt;
-    return dialog.source();
+QString ask_open_raw_name(QWidget* window) {
+    return QFileDialog::getOpenFileName(window, "Open raw data", last_folder(), "All files (*)");
 }
 
 void remember_folder(const QString& path) {

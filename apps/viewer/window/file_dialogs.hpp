@@ -4,9 +4,6 @@
 
 #include <QString>
 #include <QStringList>
-#include <optional>
-
-#include "palpate/run/source.hpp"
 
 class QWidget;
 
@@ -15,12 +12,11 @@ namespace palpate::viewer {
 /// These return an empty name if the user cancels.
 QString ask_open_name(QWidget* window);
 QString ask_open_folder(QWidget* window);
+QString ask_open_raw_name(QWidget* window);
 /// A name without an extension gets `suffix`. `replaces`: the dialog asks before an existing file
 /// is replaced; false for files that are never replaced.
 QString ask_save_name(QWidget* window, const QString& title, const QString& name,
                       const QString& suffix, bool replaces = true);
-/// A raw file and what it holds.
-std::optional<run::Source> ask_open_raw(QWidget* window);
 
 /// The dialogs begin in the folder of this file.
 void remember_folder(const QString& path);

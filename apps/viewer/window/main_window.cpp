@@ -1,6 +1,7 @@
 // Builds the window, and updates it 60 times a second.
 #include "apps/viewer/window/main_window.hpp"
 
+#include <QAction>
 #include <QApplication>
 #include <QBoxLayout>
 #include <QBuffer>
@@ -14,6 +15,7 @@
 #include <QSettings>
 #include <QStatusBar>
 
+#include "apps/viewer/model/hand_state.hpp"
 #include "apps/viewer/panel/isovalue_controls.hpp"
 #include "apps/viewer/panel/layout.hpp"
 #include "apps/viewer/panel/panel.hpp"
@@ -22,12 +24,15 @@
 #include "apps/viewer/window/file_dialogs.hpp"
 #include "apps/viewer/window/menus.hpp"
 #include "apps/viewer/window/views.hpp"
+#include "apps/viewer/window/welcome.hpp"
 #include "palpate/io/output.hpp"
 
 namespace palpate::viewer {
 namespace {
 
 constexpr int frame_ms = 16;
+// After so many updates in which nothing moved they come less often, until something does.
+constexpr int rounds_at_rest = 60, resting_frame_ms = 48;
 // [frames] Intervals of updates that change slowly or take long.
 constexpr int panel_rounds = 2, device_rounds = 8, report_rounds = 32;
 constexpr int message_ms = 10'000;
@@ -36,6 +41,7 @@ constexpr int message_ms = 10'000;
 
 MainWindow::MainWindow(const RunRequest& request)
     : views_(new Views(this)),
+      welcome_(new Welcome(this)),
       panel_(new Panel(this)),
       timeline_(new Timeline(this)),
       frame_time_(new QLabel),
@@ -47,6 +53,7 @@ MainWindow::MainWindow(const RunRequest& request)
       editing_(content_, *panel_, messages_, this),
       playing_(content_, *timeline_, messages_),
       files_(content_, run_, recordings_, display_, messages_),
+      hints_(content_, recordings_, views_->scene()),
       actions_(this, messages_) {
     setObjectName("palpate");
     setWindowTitle("Palpate");
@@ -54,6 +61,7 @@ MainWindow::MainWindow(const RunRequest& request)
     build();
     make_menus(*this, actions_);
     connect_parts();
+    connect_welcome();
     restore_layout();
     run_.find_devices();
     timer_.start(frame_ms);
@@ -66,8 +74,10 @@ MainWindow::~MainWindow() {
 
 void MainWindow::build() {
     auto* centre = new QWidget;
-    auto* layout = column_in(centre, {views_, timeline_});
+    auto* layout = column_in(centre, {welcome_, views_, timeline_});
     layout->setStretch(0, 1);
+    layout->setStretch(1, 1);
+    views_->hide();
     layout->setSpacing(0);
     layout->addWidget(make_progress_strip(files_.loader()));
     setCentralWidget(centre);
@@ -92,24 +102,52 @@ void MainWindow::connect_parts() {
             [this](const QString& what) { statusBar()->showMessage(what, message_ms); });
     connect(&views_->scene(), &Scene::problem, this,
             [this](const QString& what) { messages_.show_problem(what); });
-    connect(&panel_->isovalue_controls(), &IsovalueControls::dequantize_wanted, this,
-            [this](bool on) {
-                if (editing_.may_lose_edits()) files_.dequantize(on);
-            });
-    const auto show_title = [this] {
-        const auto& opened = content_.volume();
-        const QString name = opened ? QString::fromStdString(opened->loaded.name) : QString();
-        setWindowTitle(opened ? short_name(name) + " – Palpate" : "Palpate");
+    const auto outline_brush = [this] {
+        const BrushChoice& brush = panel_->brush();
+        views_->set_brush(content_.editor() && brush.on ? brush.radius : 0);
     };
-    connect(&content_, &Content::closed, this, show_title);
-    connect(&content_, &Content::run_started, this, show_title);
-    connect(&content_, &Content::playback_started, this, show_title);
+    connect(panel_, &Panel::brush_changed, this, outline_brush);
+    connect(&content_, &Content::run_changed, this, outline_brush);
+    connect(&content_, &Content::closed, this, outline_brush);
+    connect(&panel_->isovalue_controls(), &IsovalueControls::dequantize_wanted, this,
+            [this](bool on) { editing_.settle_edits([this, on] { files_.dequantize(on); }); });
+    connect(&content_, &Content::closed, this, &MainWindow::show_title);
+    connect(&content_, &Content::run_started, this, &MainWindow::show_title);
+    connect(&content_, &Content::playback_started, this, &MainWindow::show_title);
+    connect(&content_, &Content::renamed, this, &MainWindow::show_title);
     const auto refresh = [this] { actions_.refresh(); };
     connect(&content_, &Content::closed, this, refresh);
     connect(&content_, &Content::run_changed, this, refresh);
     connect(&content_, &Content::playback_started, this, refresh);
     connect(&run_, &RunController::device_changed, this, refresh);
     connect(&recordings_, &RecordingController::changed, this, refresh);
+}
+
+/// It stands in for the views while nothing is open.
+void MainWindow::connect_welcome() {
+    const auto show_views = [this] {
+        welcome_->hide();
+        views_->show();
+    };
+    connect(&content_, &Content::run_started, this, show_views);
+    connect(&content_, &Content::playback_started, this, show_views);
+    connect(&run_, &RunController::devices_found, this,
+            [this] { welcome_->set_devices(run_.device_words()); });
+    connect(welcome_, &Welcome::open_asked, actions_.find("open"), &QAction::trigger);
+    connect(welcome_, &Welcome::folder_asked, actions_.find("open_folder"), &QAction::trigger);
+    connect(welcome_, &Welcome::sample_asked, this, [this] { files_.open_sample(); });
+    connect(welcome_, &Welcome::recent_chosen, this,
+            [this](const QString& path) { files_.open_path(path); });
+}
+
+/// Volume, a mark while it has unsaved edits, and session.
+void MainWindow::show_title() {
+    if (!content_.volume()) return setWindowTitle("Palpate");
+    QString volume = short_name(QString::fromStdString(run::name_of(content_.source())));
+    volume.replace("[*]", "[*][*]");
+    const QString session =
+        content_.session().isEmpty() ? "" : QString(" (%1)").arg(short_name(content_.session()));
+    setWindowTitle(QString("%1[*]%2 – Palpate").arg(volume, session));
 }
 
 void MainWindow::restore_layout() {
@@ -124,13 +162,19 @@ void MainWindow::tick() {
     ++rounds_;
     playing_.advance();
     const auto now = display_.observe();
+    rest_or_wake(now);
+    probe_.observe();
+    hints_.observe(now);
     if (now && rounds_ % panel_rounds == 0) {
         panel_->show_snapshot(*now);
         editing_.observe();
         playing_.observe();
     }
     if (now && rounds_ % device_rounds == 0) run_.observe(*now);
-    if (rounds_ % device_rounds == 0) actions_.refresh();
+    if (rounds_ % device_rounds == 0) {
+        actions_.refresh();
+        setWindowModified(editing_.unsaved() != nullptr);
+    }
     if (rounds_ % report_rounds != 0) return;
     run_.show_report();
     recordings_.check();
@@ -139,8 +183,18 @@ void MainWindow::tick() {
                                      : QString());
 }
 
+/// Looks less often at a hand that rests.
+void MainWindow::rest_or_wake(const std::optional<Snapshot>& now) {
+    constexpr double unseen_mm = 1e-6;
+    const bool same = now ? seen_ && looks_same(*now, *seen_, unseen_mm) : !seen_;
+    at_rest_ = same && !probe_.travelling() ? at_rest_ + 1 : 0;
+    if (!same) seen_ = now;
+    const int wanted = at_rest_ > rounds_at_rest ? resting_frame_ms : frame_ms;
+    if (timer_.interval() != wanted) timer_.setInterval(wanted);
+}
+
 bool MainWindow::settled() const {
-    return !files_.loading() && !editing_.saving() &&
+    return !files_.loading() && !editing_.saving() && !probe_.travelling() &&
            (!content_.volume() || views_->scene().settled());
 }
 
@@ -164,7 +218,7 @@ void MainWindow::end() {
 }
 
 void MainWindow::closeEvent(QCloseEvent* event) {
-    if (!editing_.may_lose_edits()) return event->ignore();
+    if (!editing_.may_lose_edits([this] { close(); })) return event->ignore();
     QSettings settings;
     settings.setValue("geometry", saveGeometry());
     settings.setValue("state", saveState());
@@ -180,7 +234,7 @@ void MainWindow::dropEvent(QDropEvent* event) {
     const auto urls = event->mimeData()->urls();
     if (urls.isEmpty()) return;
     event->acceptProposedAction();
-    if (editing_.may_lose_edits()) files_.open_path(urls.front().toLocalFile());
+    editing_.settle_edits([this, path = urls.front().toLocalFile()] { files_.open_path(path); });
 }
 
 }  // namespace palpate::viewer

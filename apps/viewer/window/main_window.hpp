@@ -10,6 +10,7 @@
 #include "apps/viewer/window/display_controller.hpp"
 #include "apps/viewer/window/edit_controller.hpp"
 #include "apps/viewer/window/file_controller.hpp"
+#include "apps/viewer/window/hints.hpp"
 #include "apps/viewer/window/messages.hpp"
 #include "apps/viewer/window/probe_controller.hpp"
 #include "apps/viewer/window/recording_controller.hpp"
@@ -23,6 +24,7 @@ namespace palpate::viewer {
 class Panel;
 class Timeline;
 class Views;
+class Welcome;
 
 class MainWindow : public QMainWindow {
   public:
@@ -62,10 +64,14 @@ class MainWindow : public QMainWindow {
   private:
     void build();
     void connect_parts();
+    void connect_welcome();
+    void show_title();
     void restore_layout();
     void tick();
+    void rest_or_wake(const std::optional<Snapshot>& now);
 
     Views* views_;
+    Welcome* welcome_;
     Panel* panel_;
     Timeline* timeline_;
     QLabel* frame_time_;
@@ -78,9 +84,11 @@ class MainWindow : public QMainWindow {
     EditController editing_;
     TimelineController playing_;
     FileController files_;
+    Hints hints_;
     Actions actions_;
     QTimer timer_;
-    int rounds_ = 0;
+    int rounds_ = 0, at_rest_ = 0;
+    std::optional<Snapshot> seen_;  // the last one that differed from the one before
 };
 
 }  // namespace palpate::viewer

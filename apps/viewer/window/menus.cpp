@@ -26,7 +26,7 @@ void fill_recent(QMenu& menu, MainWindow& window) {
     menu.clear();
     for (const QString& path : recent_files()) {
         QObject::connect(menu.addAction(path), &QAction::triggered, &window, [&window, path] {
-            if (window.editing().may_lose_edits()) window.files().open_path(path);
+            window.editing().settle_edits([&window, path] { window.files().open_path(path); });
         });
     }
     if (menu.isEmpty()) menu.addAction("nothing yet")->setEnabled(false);
@@ -35,17 +35,20 @@ void fill_recent(QMenu& menu, MainWindow& window) {
 void add_open_actions(MainWindow& window, Actions& actions, QMenu* menu) {
     const auto open = [&window](auto ask) {
         return [&window, ask] {
-            if (!window.editing().may_lose_edits()) return;
-            const QString path = ask(&window);
-            if (!path.isEmpty()) window.files().open_path(path);
+            window.editing().settle_edits([&window, ask] {
+                const QString path = ask(&window);
+                if (!path.isEmpty()) window.files().open_path(path);
+            });
         };
     };
     actions.add(menu, "open", "&Open…", QKeySequence::Open, open(ask_open_name));
     actions.add(menu, "open_folder", "Open a &folder (DICOM, TIFF)…", QKeySequence("Ctrl+Shift+O"),
                 open(ask_open_folder));
     actions.add(menu, "open_raw", "Open ra&w data…", {}, [&window] {
-        if (!window.editing().may_lose_edits()) return;
-        if (const auto options = ask_open_raw(&window)) window.files().open_volume(*options);
+        window.editing().settle_edits([&window] {
+            const QString path = ask_open_raw_name(&window);
+            if (!path.isEmpty()) window.files().ask_layout(run::source_named(path.toStdString()));
+        });
     });
     QMenu* recent = menu->addMenu("Open &recent");
     recent->setObjectName("recent");
@@ -53,15 +56,24 @@ void add_open_actions(MainWindow& window, Actions& actions, QMenu* menu) {
                      [&window, recent] { fill_recent(*recent, window); });
 }
 
+/// Asks for a name where there is none. A session names a volume, so its edits are saved first.
+void save_session(MainWindow& window, const QString& name) {
+    window.editing().save_edits_first([&window, name] {
+        const QString path =
+            !name.isEmpty() ? name
+                            : ask_save_name(&window, "Save the session", "session.json", "json");
+        if (!path.isEmpty()) window.files().save_session(path);
+    });
+}
+
 void add_save_actions(MainWindow& window, Actions& actions, QMenu* menu) {
     const auto opened = [&window] { return window.content().volume() != nullptr; };
     actions.add(
-        menu, "save_session", "&Save the session…", QKeySequence::Save,
-        [&window] {
-            const QString path = ask_save_name(&window, "Save the session", "session.json", "json");
-            if (!path.isEmpty()) window.files().save_session(path);
-        },
-        opened);
+        menu, "save_session", "&Save the session", QKeySequence::Save,
+        [&window] { save_session(window, window.content().session()); }, opened);
+    actions.add(
+        menu, "save_session_as", "Save the session &as…", {},
+        [&window] { save_session(window, {}); }, opened);
     const auto picture = [&window](bool whole_window) {
         const QString path =
             ask_save_name(&window, "Save a picture", "palpate-" + time_stamp() + ".png", "png");
@@ -148,7 +160,12 @@ void make_data_menu(MainWindow& window, Actions& actions) {
     const auto playable = [&window] { return window.content().player() || window.playback(); };
     actions.add(
         menu, "brush_action", "&Brush at the probe", QKeySequence("B"),
-        [&window] { window.panel().brush_controls().toggle(); }, editable);
+        [&window] {
+            if (window.content().editor()) return window.panel().brush_controls().toggle();
+            window.messages().show_done(
+                "A sequence cannot be edited: open one frame of it (--time-step)");
+        },
+        [&window] { return window.live() != nullptr; });
     actions.add(
         menu, "undo_action", "&Undo", QKeySequence::Undo, [&window] { window.editing().undo(); },
         editable);
@@ -198,6 +215,16 @@ void make_view_menu(MainWindow& window, Actions& actions) {
     actions.add_switch(
         view, "slices", "&Slices beside the scene", QKeySequence("X"),
         [&views](bool on) { views.show_slices(on); }, [&views] { return views.slices_shown(); });
+    const auto opened = [&window] { return window.content().volume() != nullptr; };
+    actions.add(
+        view, "beside", "Scene with slices &beside it", QKeySequence("F5"),
+        [&views] { views.arrange(Views::Arrangement::beside); }, opened);
+    actions.add(
+        view, "four", "Four &panes", QKeySequence("F6"),
+        [&views] { views.arrange(Views::Arrangement::four); }, opened);
+    actions.add(
+        view, "scene_alone", "Scene a&lone, or all panes", QKeySequence("F7"),
+        [&views] { views.toggle_alone(&views.scene()); }, opened);
     QAction* follow = actions.add_switch(
         view, "follow", "&Crosshair follows the probe", QKeySequence("G"),
         [&views](bool on) { views.set_follow(on); }, [&views] { return views.follows(); });

@@ -2,7 +2,10 @@
 #include "apps/viewer/window/probe_controller.hpp"
 
 #include <QAction>
+#include <algorithm>
+#include <utility>
 
+#include "apps/viewer/model/probe_route.hpp"
 #include "apps/viewer/scene/scene.hpp"
 #include "apps/viewer/window/content.hpp"
 #include "apps/viewer/window/messages.hpp"
@@ -10,14 +13,53 @@
 #include "apps/viewer/window/views.hpp"
 
 namespace palpate::viewer {
+namespace {
+
+/// So near to the probe a click takes hold of it where it is [pixels].
+constexpr double grab_px = 14;
+/// A click presses with this force, and no deeper than this [device mm].
+constexpr double touch_newtons = 0.3, deepest_touch = 3;
+/// In front of the surface at the start.
+constexpr double off_voxels = 2;
+/// [device mm] So near to a stop the hand has arrived.
+constexpr double arrived_mm = 0.2;
+/// A button held so long presses deeper, at this speed [device mm/s].
+constexpr double hold_seconds = 0.6, press_speed = 3;
+/// So soon after the button went down a drag begins, or it is a touch.
+constexpr int drag_ms = 150;
+
+}  // namespace
 
 ProbeController::ProbeController(Content& content, RunController& run, Views& views,
                                  Messages& messages)
     : content_(content), views_(views), messages_(messages) {
-    connect(&views, &Views::probe_dragged, this, &ProbeController::move_by);
+    connect(&views, &Views::probe_dragged, this, [this](const Vec3& by) {
+        pressed_.reset();
+        held_.invalidate();
+        move_by(by);
+    });
     connect(&views, &Views::probe_aimed, this, &ProbeController::move_to);
-    connect(&run, &RunController::device_changed, this, [this] { set_pointing(possible()); });
+    connect(&views, &Views::probe_pressed, this, [this](const Vec3& at) {
+        pressed_ = at;
+        held_.start();
+        pressed_seconds_ = 0;
+    });
+    connect(&views, &Views::probe_released, this, [this] {
+        held_.invalidate();
+        if (pressed_) touch(*std::exchange(pressed_, std::nullopt));
+    });
+    connect(&run, &RunController::device_changed, this, [this] {
+        set_pointing(possible());
+        approaching_ = possible();
+        route_.clear();
+    });
     connect(&content, &Content::playback_started, this, [this] { set_pointing(false); });
+    connect(&content, &Content::closed, this, [this] {
+        approaching_ = false;
+        route_.clear();
+        pressed_.reset();
+        held_.invalidate();
+    });
     add_keys();
 }
 
@@ -31,21 +73,113 @@ void ProbeController::set_pointing(bool probe) {
     if (!pointing_) return;
     views_.scene().setFocus();
     messages_.show_done(
-        "Drag to move the probe, turn the wheel to push it in; the right button turns the "
-        "view");
+        "Click to touch, drag to move the probe, turn the wheel to push it in; the right button "
+        "turns the view");
+}
+
+Vec3 ProbeController::towards_viewer() const {
+    return axes_of(views_.scene().camera()).towards_viewer;
+}
+
+Vec3 ProbeController::aimed(const DeviceTransform& transform) const {
+    return physical_from_device(transform, content_.live()->mouse()->aimed());
+}
+
+void ProbeController::aim(const DeviceTransform& transform, const Vec3& physical) {
+    content_.live()->mouse()->aim(device_from_physical(transform, physical));
 }
 
 void ProbeController::move_by(const Vec3& by) {
     const auto now = possible() ? content_.snapshot() : std::nullopt;
     if (!now) return;
-    const DeviceTransform& transform = now->session.transform;
-    devices::Mouse& mouse = *content_.live()->mouse();
-    mouse.aim(mouse.aimed() + transform.rotation.transpose() * by / transform.scale);
+    approaching_ = false;
+    for (Vec3& stop : route_) stop += by;
+    const Vec3 from = aimed(now->session.transform);
+    aim(now->session.transform, from + before_far_side(from, by));
 }
 
 void ProbeController::move_to(const Vec3& to) {
     const auto now = possible() ? content_.snapshot() : std::nullopt;
-    if (now) content_.live()->mouse()->aim(device_from_physical(now->session.transform, to));
+    if (!now) return;
+    approaching_ = false;
+    route_.clear();
+    aim(now->session.transform, to);
+}
+
+/// The part of a step that ends in front of the grid's far side.
+Vec3 ProbeController::before_far_side(const Vec3& from, const Vec3& by) {
+    const Vec3 towards = towards_viewer();
+    const double deeper = -by.dot(towards);
+    if (!(deeper > 0)) return by;
+    const double room =
+        from.dot(towards) - extent_along(content_.live()->field().geometry(), towards).back;
+    if (deeper <= room) return by;
+    messages_.show_done("The probe is at the far side of the volume: nothing lies deeper");
+    return by + (deeper - std::max(room, 0.0)) * towards;
+}
+
+void ProbeController::touch(const Vec3& at) {
+    const auto now = possible() ? content_.snapshot() : std::nullopt;
+    if (!now) return;
+    approaching_ = false;
+    const DeviceTransform& transform = now->session.transform;
+    const Vec3 towards = towards_viewer(), from = aimed(transform);
+    const Vec3 aside = at - from - (at - from).dot(towards) * towards;
+    const double grab = grab_px * mm_per_pixel(views_.scene().camera(), views_.scene().view_size());
+    if (aside.norm() <= grab && now->session.tick.proxy.mode == Mode::constrained) return;
+    const Field field = content_.live()->field_now();
+    const auto surface = surface_under(field, content_.live()->isovalue(), at, towards);
+    if (!surface) return;
+    const double stiffness = content_.live()->settings().force.stiffness;
+    const double depth = transform.scale * std::min(touch_newtons / stiffness, deepest_touch);
+    route_ = route_in_front(field.geometry(), from, *surface - depth * towards, towards);
+    std::ranges::reverse(route_);
+    aim(transform, route_.back());
+}
+
+void ProbeController::observe() {
+    const auto live = possible() ? content_.snapshot() : std::nullopt;
+    if (!live || live->session.device.status != DeviceStatus::ready) return;
+    const Snapshot& now = *live;
+    if (approaching_) approach(now);
+    // A press that is no drag is a touch.
+    if (pressed_ && held_.elapsed() > drag_ms) touch(*std::exchange(pressed_, std::nullopt));
+    if (!route_.empty()) return travel(now);
+    press_deeper(now);
+}
+
+/// The first thing after a start: the probe stands just off the first surface in view.
+void ProbeController::approach(const Snapshot& now) {
+    approaching_ = false;
+    const pictures::Camera camera = views_.scene().camera();
+    const Vec3 towards = axes_of(camera).towards_viewer;
+    const Field field = content_.live()->field_now();
+    const auto surface = surface_in_view(field, content_.live()->isovalue(), towards, camera.up);
+    if (!surface) return;
+    const Vec3 off = off_voxels * field.geometry().spacing.maxCoeff() * towards;
+    const DeviceTransform& transform = now.session.transform;
+    route_ = route_in_front(field.geometry(), aimed(transform), *surface + off, towards);
+    std::ranges::reverse(route_);
+    aim(transform, route_.back());
+}
+
+void ProbeController::travel(const Snapshot& now) {
+    const Vec3 away = now.session.device.position - content_.live()->mouse()->aimed();
+    if (away.norm() > arrived_mm) return;
+    route_.pop_back();
+    if (!route_.empty()) aim(now.session.transform, route_.back());
+}
+
+/// While the button is held still.
+void ProbeController::press_deeper(const Snapshot& now) {
+    if (!held_.isValid()) return;
+    const double seconds = 1e-3 * double(held_.elapsed()) - hold_seconds - pressed_seconds_;
+    if (!(seconds > 0)) return;
+    pressed_seconds_ += seconds;
+    const Tick& tick = now.session.tick;
+    if (tick.proxy.mode != Mode::constrained || (tick.force_flags & force_limited)) return;
+    const double step = std::min(seconds, 0.1) * press_speed * now.session.transform.scale;
+    move_by(-step * towards_viewer());
 }
 
 void ProbeController::nudge(const Vec3& screen) {

@@ -1,9 +1,12 @@
 // Mouse and keys as the hand: they move the probe where the device of the live run is the mouse.
 #pragma once
 
+#include <QElapsedTimer>
 #include <QObject>
+#include <optional>
+#include <vector>
 
-#include "palpate/volume.hpp"
+#include "palpate/servo.hpp"
 
 namespace palpate::viewer {
 
@@ -21,19 +24,39 @@ class ProbeController : public QObject {
     /// Whether the left button moves the probe, not the view.
     bool pointing() const { return pointing_; }
     void set_pointing(bool probe);
-    /// Moves what the mouse aims at [mm, physical].
+    /// Moves what the mouse aims at [mm, physical], not beyond the far side of the grid.
     void move_by(const Vec3& by);
     void move_to(const Vec3& to);
     /// `screen`: to the right, up, towards the viewer [voxels].
     void nudge(const Vec3& screen);
+    /// Brings the probe from in front to the surface under a point of the picture, and a little
+    /// into it; nothing where the probe is there already, or there is no surface.
+    void touch(const Vec3& at);
+
+    /// Sixty times a second: goes on with what takes time.
+    void observe();
+    /// The probe is on its way to where it was sent.
+    bool travelling() const { return approaching_ || !route_.empty(); }
 
   private:
     void add_keys();
+    Vec3 towards_viewer() const;
+    Vec3 aimed(const DeviceTransform& transform) const;
+    void aim(const DeviceTransform& transform, const Vec3& physical);
+    void approach(const Snapshot& now);
+    void travel(const Snapshot& now);
+    void press_deeper(const Snapshot& now);
+    Vec3 before_far_side(const Vec3& from, const Vec3& by);
 
     Content& content_;
     Views& views_;
     Messages& messages_;
     bool pointing_ = false;
+    bool approaching_ = false;     // a run has begun: to the first surface, once there is a tick
+    std::vector<Vec3> route_;      // stops to come, the next one last [mm, physical]
+    std::optional<Vec3> pressed_;  // where the button went down, until it is a touch or a drag
+    QElapsedTimer held_;           // since then, without a drag; not valid while it is up
+    double pressed_seconds_ = 0;   // of it, for which the probe has gone deeper
 };
 
 }  // namespace palpate::viewer

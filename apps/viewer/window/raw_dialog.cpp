@@ -8,67 +8,100 @@
 #include <QFormLayout>
 #include <QLabel>
 #include <QPushButton>
+#include <QSlider>
+#include <cmath>
 #include <limits>
 
+#include "apps/viewer/model/raw_preview.hpp"
 #include "apps/viewer/panel/layout.hpp"
 
 namespace palpate::viewer {
+namespace {
+
+constexpr int picture_side = 280;  // pixels
+
+}  // namespace
+
 RawDialog::RawDialog(const QString& path, QWidget* parent)
     : QDialog(parent),
       path_(path),
       size_{new QSpinBox, new QSpinBox, new QSpinBox},
       spacing_{new QDoubleSpinBox, new QDoubleSpinBox, new QDoubleSpinBox},
-      type_(new QComboBox),
-      skip_(new QSpinBox),
-      verdict_(new QLabel) {
+      type_(named(new QComboBox, "raw_type")),
+      order_(named(new QComboBox, "raw_order")),
+      skip_(named(new QSpinBox, "raw_skip")),
+      skip_rest_(named(new QPushButton("Skip the rest"), "raw_skip_rest",
+                       "Takes the bytes that are left over for a header")),
+      slice_(named(new QSlider(Qt::Horizontal), "raw_slice")),
+      picture_(named(new QLabel, "raw_picture")),
+      verdict_(named(new QLabel, "raw_verdict")) {
     setObjectName("raw");
     setWindowTitle(QString("Raw data: %1").arg(QFileInfo(path).fileName()));
-    const auto changed = [this] { judge(); };
-    for (std::size_t a = 0; a < 3; ++a) {
-        size_[a]->setRange(1, 65535);
-        size_[a]->setValue(256);
-        size_[a]->setObjectName(QString("size%1").arg(a));
-        spacing_[a]->setRange(1e-4, 1000);
-        spacing_[a]->setDecimals(4);
-        spacing_[a]->setValue(1);
-        connect(size_[a], qOverload<int>(&QSpinBox::valueChanged), this, changed);
-    }
-    type_->addItems({"uint8", "int16", "uint16", "float32"});
-    connect(type_, qOverload<int>(&QComboBox::currentIndexChanged), this, changed);
-    skip_->setRange(0, std::numeric_limits<int>::max());
-    connect(skip_, qOverload<int>(&QSpinBox::valueChanged), this, changed);
+    make_fields();
     auto* buttons = new QDialogButtonBox(QDialogButtonBox::Open | QDialogButtonBox::Cancel);
     accept_ = buttons->button(QDialogButtonBox::Open);
     connect(buttons, &QDialogButtonBox::accepted, this, &QDialog::accept);
     connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);
-    auto* form = new QFormLayout(this);
-    form->addRow("Samples (x runs fastest)", row_of({size_[0], size_[1], size_[2]}));
-    form->addRow("Sample type (little-endian)", type_);
-    form->addRow("Spacing [mm]", row_of({spacing_[0], spacing_[1], spacing_[2]}));
-    form->addRow("Bytes of header to skip", skip_);
-    verdict_->setWordWrap(true);
+    auto* form = new QFormLayout;
+    add_row(*form, "Samples", row_of({size_[0], size_[1], size_[2]}),
+            "How many along x, which runs fastest, y and z");
+    add_row(*form, "Sample type", type_, "Of each sample in the file");
+    add_row(*form, "Byte order", order_, "Of samples of two or four bytes");
+    add_row(*form, "Spacing [mm]", row_of({spacing_[0], spacing_[1], spacing_[2]}),
+            "Between samples along x, y and z");
+    add_row(*form, "Header [bytes]", row_of({skip_, skip_rest_}), "Skipped before the samples");
     form->addRow(verdict_);
-    form->addRow(buttons);
+    auto* fields = new QWidget;
+    fields->setLayout(form);
+    column_in(this, {row_of({fields, make_preview()}), buttons});
     judge();
 }
 
-void RawDialog::judge() {
-    const std::size_t each = size_of(sample_type_from(type_->currentText().toStdString()));
-    double bytes = double(each) + 0.0;
-    for (const QSpinBox* size : size_) bytes *= size->value();
-    bytes += skip_->value();
-    const bool packed = path_.endsWith(".gz", Qt::CaseInsensitive);
-    const auto have = static_cast<double>(QFileInfo(path_).size());
-    accept_->setEnabled(packed || bytes <= have);
-    verdict_->setText(
-        packed ? QString("These samples take %L1 bytes once unpacked.").arg(bytes, 0, 'f', 0)
-        : bytes == have ? "These samples are just what the file holds."
-                        : QString("The file holds %L1 bytes, these samples take %L2.")
-                              .arg(have, 0, 'f', 0)
-                              .arg(bytes, 0, 'f', 0));
+void RawDialog::make_fields() {
+    const auto changed = [this] { judge(); };
+    const auto bytes = static_cast<std::uint64_t>(QFileInfo(path_).size());
+    const io::RawLayout guess = guessed_layout(path_.toStdString(), bytes);
+    const char* const axes[] = {"x", "y", "z"};
+    for (std::size_t a = 0; a < 3; ++a) {
+        size_[a]->setRange(1, 65535);
+        size_[a]->setValue(guess.size[int(a)]);
+        size_[a]->setObjectName(QString("size%1").arg(a));
+        size_[a]->setAccessibleName(QString("Samples along %1").arg(axes[a]));
+        spacing_[a]->setRange(1e-4, 1000);
+        spacing_[a]->setDecimals(4);
+        spacing_[a]->setValue(1);
+        spacing_[a]->setAccessibleName(QString("Spacing along %1").arg(axes[a]));
+        connect(size_[a], qOverload<int>(&QSpinBox::valueChanged), this, changed);
+    }
+    type_->addItems({"uint8", "int16", "uint16", "float32"});
+    type_->setCurrentText(QString::fromLatin1(name_of(guess.type).data()));
+    order_->addItems({"little-endian (PC)", "big-endian"});
+    order_->setCurrentIndex(guess.big_endian ? 1 : 0);
+    skip_->setRange(0, std::numeric_limits<int>::max());
+    for (QComboBox* box : {type_, order_}) {
+        connect(box, qOverload<int>(&QComboBox::currentIndexChanged), this, changed);
+    }
+    connect(skip_, qOverload<int>(&QSpinBox::valueChanged), this, changed);
+    connect(skip_rest_, &QPushButton::clicked, this, [this] {
+        const double rest = double(QFileInfo(path_).size()) - bytes_of(layout_now());
+        skip_->setValue(static_cast<int>(skip_->value() + rest));
+    });
+    verdict_->setWordWrap(true);
 }
 
-run::Source RawDialog::source() const {
+QWidget* RawDialog::make_preview() {
+    picture_->setFixedSize(picture_side, picture_side);
+    picture_->setAlignment(Qt::AlignCenter);
+    picture_->setWordWrap(true);
+    picture_->setFrameShape(QFrame::StyledPanel);
+    slice_->setAccessibleName("Slice of the preview");
+    slice_->setRange(0, size_[2]->value() - 1);
+    slice_->setValue(size_[2]->value() / 2);
+    connect(slice_, &QSlider::valueChanged, this, &RawDialog::show_slice);
+    return column_of({picture_, slice_});
+}
+
+io::RawLayout RawDialog::layout_now() const {
     io::RawLayout layout;
     for (int a = 0; a < 3; ++a) {
         layout.size[a] = size_.at(static_cast<std::size_t>(a))->value();
@@ -76,9 +109,41 @@ run::Source RawDialog::source() const {
     }
     layout.type = sample_type_from(type_->currentText().toStdString());
     layout.skip = static_cast<std::uint64_t>(skip_->value());
-    run::Source source;
-    source.from = run::FileSource{path_.toStdString(), layout, layout.spacing, {}};
-    return source;
+    layout.big_endian = order_->currentIndex() == 1;
+    return layout;
+}
+
+void RawDialog::judge() {
+    const io::RawLayout layout = layout_now();
+    const double bytes = bytes_of(layout);
+    const bool packed = path_.endsWith(".gz", Qt::CaseInsensitive);
+    const auto have = static_cast<double>(QFileInfo(path_).size());
+    order_->setEnabled(size_of(layout.type) > 1);
+    accept_->setEnabled(packed || bytes == have);
+    skip_rest_->setEnabled(!packed && bytes < have && have - bytes < skip_->maximum());
+    verdict_->setText(
+        packed ? QString("These samples take %L1 bytes once unpacked.").arg(bytes, 0, 'f', 0)
+        : bytes == have ? "These samples are just what the file holds."
+                        : QString("The file holds %L1 bytes, %L2 %3 than these samples take.")
+                              .arg(have, 0, 'f', 0)
+                              .arg(std::abs(have - bytes), 0, 'f', 0)
+                              .arg(have > bytes ? "more" : "fewer"));
+    slice_->setMaximum(layout.size[2] - 1);
+    show_slice();
+}
+
+void RawDialog::show_slice() {
+    const auto slice = raw_slice(path_.toStdString(), layout_now(), slice_->value());
+    if (!slice) return picture_->setText("No preview");
+    const QImage image(slice->grey.data(), slice->width, slice->height, slice->width,
+                       QImage::Format_Grayscale8);
+    picture_->setPixmap(QPixmap::fromImage(image.scaled(
+        picture_->contentsRect().size(), Qt::KeepAspectRatio, Qt::SmoothTransformation)));
+}
+
+run::FileSource RawDialog::layout_source() const {
+    const io::RawLayout layout = layout_now();
+    return {path_.toStdString(), layout, layout.spacing, {}};
 }
 
 }  // namespace palpate::viewer

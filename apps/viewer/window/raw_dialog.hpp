@@ -1,7 +1,8 @@
-// A dialog that asks for the layout of a raw file: size, type, spacing, header to skip.
+// A dialog that asks for the layout of a raw file: size, type, byte order, spacing, header to skip.
 #pragma once
 
 #include <QDialog>
+#include <array>
 
 #include "palpate/run/source.hpp"
 
@@ -9,25 +10,34 @@ class QComboBox;
 class QDoubleSpinBox;
 class QLabel;
 class QPushButton;
+class QSlider;
 class QSpinBox;
 
 namespace palpate::viewer {
 
-/// Shows at every change whether the file is long enough.
+/// Begins with what the file's name and length suggest. Shows at every change a slice, and whether
+/// the file has just the bytes that are needed; else it cannot be accepted.
 class RawDialog : public QDialog {
   public:
     explicit RawDialog(const QString& path, QWidget* parent = nullptr);
-    run::Source source() const;
+    /// The file with the layout that is chosen.
+    run::FileSource layout_source() const;
 
   private:
+    void make_fields();
+    QWidget* make_preview();
+    io::RawLayout layout_now() const;
     void judge();
+    void show_slice();
 
     QString path_;
     std::array<QSpinBox*, 3> size_;
     std::array<QDoubleSpinBox*, 3> spacing_;
-    QComboBox* type_;
+    QComboBox *type_, *order_;
     QSpinBox* skip_;
-    QLabel* verdict_;
+    QPushButton* skip_rest_;
+    QSlider* slice_;
+    QLabel *picture_, *verdict_;
     QPushButton* accept_;
 };
 

@@ -30,6 +30,21 @@ RunRequest RunController::take_request() {
     return request;
 }
 
+void RunController::set_first_isovalue(double isovalue) {
+    if (!request_.setup.field.isovalue) request_.setup.field.isovalue = isovalue;
+}
+
+QString RunController::device_words() const {
+    QStringList names;
+    for (const devices::DeviceFinding& finding : findings_) {
+        const bool made =
+            finding.name == "mouse" || finding.name == "simulated" || finding.name == "recorded";
+        if (finding.found && !made) names << QString::fromStdString(finding.name);
+    }
+    if (names.isEmpty()) return "No haptic device was found: the mouse is the hand.";
+    return QString("Found: %1. Choose it under Device.").arg(names.join(", "));
+}
+
 void RunController::start(std::shared_ptr<Opened> volume, const run::Setup& setup) {
     content_.start_run(std::move(volume), setup);
     QString words = QString("Felt through the device %1")
@@ -86,6 +101,7 @@ void RunController::find_devices() {
         [this, found] {
             findings_ = *found;
             show_devices();
+            Q_EMIT devices_found();
         });
 }
 

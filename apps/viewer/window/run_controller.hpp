@@ -38,6 +38,10 @@ class RunController : public QObject {
     /// The request for another run. The level and the recording of the command line are for the
     /// first one only.
     RunRequest take_request();
+    /// The level of the next run, unless the command line gave one.
+    void set_first_isovalue(double isovalue);
+    /// What find_devices() found, in a sentence.
+    QString device_words() const;
     /// The device chosen last.
     const devices::DeviceChoice& device() const { return request_.setup.device; }
     void set_device(const devices::DeviceChoice& device) { request_.setup.device = device; }
@@ -63,6 +67,7 @@ class RunController : public QObject {
 
   Q_SIGNALS:
     void device_changed();
+    void devices_found();
 
   private:
     void show_devices();

@@ -29,7 +29,7 @@ bool Screenshot::reached() {
     const run::Run* live = window_.live();
     const auto now = live ? live->snapshot() : std::nullopt;
     if (!now) return false;
-    if (!held_ && now->session.tick.time >= after_) {
+    if (!held_ && now->session.tick.time >= after_ && !window_.probe().travelling()) {
         window_.display().hold();
         held_ = true;
     }

@@ -2,6 +2,7 @@
 #include "apps/viewer/window/views.hpp"
 
 #include <QBoxLayout>
+#include <QMouseEvent>
 #include <QSplitter>
 
 #include "apps/viewer/panel/layout.hpp"
@@ -15,31 +16,78 @@ Views::Views(QWidget* parent)
       scene_(new Scene),
       slices_{new SlicePane(0), new SlicePane(1), new SlicePane(2)},
       across_(new QSplitter(Qt::Horizontal)),
+      left_(new QSplitter(Qt::Vertical)),
       down_(new QSplitter(Qt::Vertical)) {
     row_in(this, {across_});
     scene_->setObjectName("scene");
     scene_->setMinimumSize(200, 200);
-    across_->addWidget(scene_);
+    left_->addWidget(scene_);
+    across_->addWidget(left_);
     across_->addWidget(down_);
     across_->setStretchFactor(0, 3);
     across_->setStretchFactor(1, 1);
-    across_->setSizes({900, 300});
+    scene_->installEventFilter(this);
     // Axial above, as is usual.
     for (const std::size_t axis : {2U, 1U, 0U}) {
         SlicePane* pane = slices_[axis];
         pane->setObjectName(QString("slice%1").arg(axis));
         down_->addWidget(pane);
+        pane->installEventFilter(this);
         connect(pane, &SlicePane::crosshair_chosen, this, &Views::choose_crosshair);
         connect(pane, &SlicePane::probe_aimed, this, &Views::probe_aimed);
         connect(pane, &SlicePane::window_changed, this, &Views::set_window);
     }
     connect(scene_, &Scene::probe_dragged, this, &Views::probe_dragged);
+    connect(scene_, &Scene::probe_pressed, this, &Views::probe_pressed);
+    connect(scene_, &Scene::probe_released, this, &Views::probe_released);
+    arrange(Arrangement::beside);
+}
+
+bool Views::eventFilter(QObject* watched, QEvent* event) {
+    if (event->type() == QEvent::MouseButtonDblClick) {
+        const auto& mouse = static_cast<const QMouseEvent&>(*event);
+        if (mouse.button() == Qt::LeftButton && mouse.modifiers() == Qt::NoModifier) {
+            toggle_alone(static_cast<QWidget*>(watched));
+            return true;
+        }
+    }
+    return QWidget::eventFilter(watched, event);
+}
+
+void Views::toggle_alone(QWidget* pane) {
+    alone_ = alone_ ? nullptr : pane;
+    show_panes();
+}
+
+void Views::arrange(Arrangement arrangement) {
+    alone_ = nullptr;
+    slices_shown_ = true;
+    const bool four = arrangement == Arrangement::four;
+    // Above one another in every arrangement: axial, coronal, sagittal.
+    (four ? left_ : down_)->addWidget(slices_[0]);
+    show_panes();
+    const int part = four ? 1 : 3;
+    across_->setSizes({part * 300, 300});
+    left_->setSizes({300, 300});
+    down_->setSizes({300, 300, 300});
+}
+
+/// A splitter whose panes are all hidden is hidden, or it would keep its room.
+void Views::show_panes() {
+    const auto seen = [this](const QWidget* pane) {
+        return alone_ ? pane == alone_ : pane == scene_ || slices_shown_;
+    };
+    scene_->setVisible(seen(scene_));
+    for (SlicePane* pane : slices_) pane->setVisible(seen(pane));
+    left_->setVisible(seen(scene_) || (slices_[0]->parent() == left_ && seen(slices_[0])));
+    down_->setVisible(!alone_ ? slices_shown_ : alone_->parent() == down_);
 }
 
 void Views::set_field(const Field& field, double isovalue) {
     scene_->set_field(field, isovalue);
     for (SlicePane* pane : slices_) pane->set_field(field, isovalue);
     set_crosshair(physical_centre(field.geometry()));
+    touched_ = false;
 }
 
 void Views::update_field(const Field& field) {
@@ -65,13 +113,19 @@ void Views::show_snapshot(const std::optional<Snapshot>& snapshot) {
     scene_->show_snapshot(snapshot);
     const bool placed = snapshot && snapshot->session.device.status == DeviceStatus::ready &&
                         snapshot->session.tick.proxy.scp.allFinite();
-    if (placed && follow_) set_crosshair(snapshot->session.tick.proxy.scp);
+    touched_ = touched_ || (placed && snapshot->session.tick.proxy.mode == Mode::constrained);
+    if (placed && follow_ && touched_) set_crosshair(snapshot->session.tick.proxy.scp);
     for (SlicePane* pane : slices_) pane->show_snapshot(snapshot);
 }
 
 void Views::set_hand(bool probe) {
     scene_->set_hand(probe ? Scene::Hand::probe : Scene::Hand::camera);
     for (SlicePane* pane : slices_) pane->set_hand(probe);
+}
+
+void Views::set_brush(double radius) {
+    scene_->set_brush(radius);
+    for (SlicePane* pane : slices_) pane->set_brush(radius);
 }
 
 void Views::set_crosshair(const Vec3& physical) {
@@ -100,11 +154,12 @@ void Views::set_window(double low, double high) {
 }
 
 void Views::show_slices(bool shown) {
-    down_->setVisible(shown);
+    slices_shown_ = shown;
+    show_panes();
 }
 
 bool Views::slices_shown() const {
-    return !down_->isHidden();
+    return slices_shown_;
 }
 
 }  // namespace palpate::viewer

@@ -31,9 +31,11 @@ class Views : public QWidget {
     void show_snapshot(const std::optional<Snapshot>& snapshot);
     /// True: the left button moves the probe, where the device is the mouse.
     void set_hand(bool probe);
+    /// [mm] Radius of the brush that is outlined round the proxy; 0: none.
+    void set_brush(double radius);
     void set_crosshair(const Vec3& physical);
     const Vec3& crosshair() const { return crosshair_; }
-    /// The crosshair follows the probe.
+    /// The crosshair follows the probe, once it has touched something.
     void set_follow(bool follow);
     bool follows() const { return follow_; }
     /// The grey levels of the slices [data units].
@@ -42,6 +44,14 @@ class Views : public QWidget {
     double window_high() const { return window_high_; }
     void show_slices(bool shown);
     bool slices_shown() const;
+    /// Beside: the slices in a column beside the scene. Four: all panes of the same size, the
+    /// sagittal slice below the scene.
+    enum class Arrangement { beside, four };
+    void arrange(Arrangement arrangement);
+    /// Shows this pane alone, or again all of them.
+    void toggle_alone(QWidget* pane);
+    /// The pane that is shown alone, or null.
+    const QWidget* alone() const { return alone_; }
 
     Scene& scene() { return *scene_; }
     SlicePane& slice(int axis) { return *slices_.at(static_cast<std::size_t>(axis)); }
@@ -50,16 +60,25 @@ class Views : public QWidget {
     /// The user asks the probe to move by, or to go to [mm, physical].
     void probe_dragged(const palpate::Vec3& by);
     void probe_aimed(const palpate::Vec3& to);
+    /// As Scene's.
+    void probe_pressed(const palpate::Vec3& at);
+    void probe_released();
     void follow_changed(bool follow);
+
+  protected:
+    bool eventFilter(QObject* watched, QEvent* event) override;
 
   private:
     void choose_crosshair(const Vec3& physical);
+    void show_panes();
 
     Scene* scene_;
     std::array<SlicePane*, 3> slices_;
-    QSplitter *across_, *down_;
+    QSplitter *across_, *left_, *down_;
+    QWidget* alone_ = nullptr;
+    bool slices_shown_ = true;
     Vec3 crosshair_ = Vec3::Zero();
-    bool follow_ = true;
+    bool follow_ = true, touched_ = false;
     double window_low_ = 0, window_high_ = 1;
 };
 

@@ -24,7 +24,7 @@ class Mouse final : public Device {
     /// `speed` [mm/s]: the hand's greatest.
     explicit Mouse(double speed);
 
-    /// Where the hand is to go [device mm], cut to a quarter more than the workspace. By one
+    /// Where the hand is to go [device mm], cut to twice the workspace. By one
     /// thread, the window's; not finite: nothing happens.
     void aim(const Vec3& position) noexcept;
     /// Where it is going. The thread that aims.

@@ -21,12 +21,13 @@ namespace palpate::io {
 /// the caller: throw to cancel.
 using Progress = std::function<void(double fraction)>;
 
-/// Layout of a headerless file. Samples are little-endian, x fastest, then y, then z.
+/// Layout of a headerless file: x fastest, then y, then z.
 struct RawLayout {
     Index3 size = Index3::Zero();
     SampleType type = SampleType::uint8;
     Vec3 spacing = Vec3::Ones();  ///< [mm]
     std::uint64_t skip = 0;       ///< bytes before the first sample (after unpacking a .gz)
+    bool big_endian = false;      ///< the first byte of a sample is the highest
 };
 
 struct ReadOptions {

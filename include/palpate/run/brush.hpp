@@ -15,7 +15,7 @@ struct HandBrush {
     double hardness = 1;  ///< Brush::hardness
     double rate =
         10;  ///< [1/s] after one second 1 - exp(-rate) of the change is done; inf: at once
-    /// [data units] The value that it leaves; nothing: what brush_for() takes. Paint needs one.
+    /// [data units] The value that it leaves; nothing: what brush_for() takes.
     std::optional<double> value = {};
 
     bool operator==(const HandBrush&) const = default;

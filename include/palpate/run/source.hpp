@@ -46,7 +46,7 @@ std::string name_of(const Source& source);
 Source source_named(const std::string& name);
 
 /// The names and values under which recordings and session files keep a source: "volume" is its
-/// name, the others are "dims", "type", "spacing", "skip", "series", "time-step",
+/// name, the others are "dims", "type", "spacing", "skip", "byte-order", "series", "time-step",
 /// "frame-interval", "smooth", "dequantize" and "prefilter". What was not given is left out.
 std::map<std::string, std::string> to_names(const Source& source);
 /// The inverse. Unknown names are ignored, numbers that cannot be read count as not given. Throws

@@ -26,7 +26,8 @@ struct Histogram {
 Histogram histogram_of(const Volume& volume, int bins, std::optional<double> padding = {});
 
 /// Two levels between the three classes that explain most of the variance (Otsu 1979, three
-/// classes); fewer for data with fewer values. In CT of a head: skin and bone.
+/// classes); fewer for data with fewer values. In CT of a head: skin and bone. The best is first:
+/// the lower one, unless it bounds what an object was put into (resin, gel).
 std::vector<double> suggested_isovalues(const Histogram& histogram);
 
 }  // namespace palpate::run

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <condition_variable>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -94,6 +95,7 @@ class VolumeEditor {
     Editor editor_;
     std::vector<Hand> hands_;
     std::optional<HandBrush> brush_;
+    std::condition_variable_any brush_taken_up_;
     bool new_step_ = true;  // the next change by a brush begins a step for undo
     std::chrono::steady_clock::time_point last_change_;  // by a brush
     std::string problem_;

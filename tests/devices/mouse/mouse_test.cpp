@@ -49,15 +49,14 @@ TEST(Mouse, hand_is_never_faster_than_its_speed_however_the_pointer_jumps) {
     EXPECT_GT(farthest, 0.29) << "the speed was never reached: the test shows nothing";
 }
 
-TEST(Mouse,
-     aim_stays_within_a_quarter_more_than_the_workspace_and_what_is_not_finite_is_passed_over) {
+TEST(Mouse, aim_stays_within_twice_the_workspace_and_what_is_not_finite_is_passed_over) {
     Mouse mouse(600);
     mouse.aim({1e6, -1e6, 0});
-    EXPECT_EQ(mouse.aimed(), Vec3(100, -100, 0));
+    EXPECT_EQ(mouse.aimed(), Vec3(160, -160, 0));
     mouse.aim({std::numeric_limits<double>::quiet_NaN(), 0, 0});
-    EXPECT_EQ(mouse.aimed(), Vec3(100, -100, 0));
+    EXPECT_EQ(mouse.aimed(), Vec3(160, -160, 0));
     for (int i = 0; i < 2000; ++i) mouse.read(i * tick);
-    EXPECT_NEAR((mouse.read(2).position - Vec3(100, -100, 0)).norm(), 0, 1e-6);
+    EXPECT_NEAR((mouse.read(2).position - Vec3(160, -160, 0)).norm(), 0, 1e-6);
 }
 
 TEST(Mouse, hand_waits_before_the_person_and_is_ready_from_the_first_read) {

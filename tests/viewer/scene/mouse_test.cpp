@@ -86,13 +86,13 @@ TEST(SceneMouse, wheel_zooms_about_the_pointer_and_right_drag_about_where_it_beg
     EXPECT_LT((seen({300, 60}) - point).norm(), 1e-9);
 }
 
-TEST(SceneMouse, double_click_recentres_on_the_surface_and_beside_it_does_nothing) {
+TEST(SceneMouse, shift_and_double_click_recentre_on_the_surface_and_beside_it_does_nothing) {
     Hands hands;
     hands.settled();
     const Vec3 before = hands.scene.camera().focus;
-    QTest::mouseDClick(&hands.scene, Qt::LeftButton, Qt::NoModifier, {10, 10});
+    QTest::mouseDClick(&hands.scene, Qt::LeftButton, Qt::ShiftModifier, {10, 10});
     EXPECT_EQ(hands.scene.camera().focus, before);
-    QTest::mouseDClick(&hands.scene, Qt::LeftButton, Qt::NoModifier, {225, 160});
+    QTest::mouseDClick(&hands.scene, Qt::LeftButton, Qt::ShiftModifier, {225, 160});
     const Vec3 focus = hands.scene.camera().focus;
     EXPECT_NEAR(focus.norm(), 0.35 * 32, 0.4);  // on the ball, where it was clicked
     EXPECT_NEAR(focus[0], 25.5 * 0.2, 0.15);

@@ -4,10 +4,12 @@
 #include <QFile>
 #include <QMessageBox>
 #include <QPushButton>
+#include <QStatusBar>
 #include <QTimer>
 #include <QToolButton>
 
 #include "apps/viewer/panel/timeline.hpp"
+#include "apps/viewer/window/file_dialogs.hpp"
 #include "palpate/io/volume_file.hpp"
 #include "viewer/window/window_fixture.hpp"
 
@@ -64,6 +66,84 @@ TEST_F(ChangingData, the_edited_volume_is_saved_by_a_dialog_and_can_be_opened) {
     EXPECT_EQ(std::memcmp(saved.data(), felt.data(), felt.bytes()), 0);
     feel(scratch("carved.nrrd").toStdString());
     EXPECT_EQ(work().version, 0U);
+}
+
+TEST_F(ChangingData, the_brush_is_outlined_in_scene_and_slices) {
+    feel("synthetic:sphere:48x48x48");
+    press_until_force();
+    ASSERT_TRUE(wait_until([&] { return window_->settled(); }));
+    const auto orange = [](const QImage& image) {
+        int count = 0;
+        for (int y = 0; y < image.height(); ++y) {
+            for (int x = 0; x < image.width(); ++x) {
+                const QColor c = image.pixelColor(x, y);
+                count += c.red() > 200 && c.green() > 120 && c.green() < 190 && c.blue() < 60;
+            }
+        }
+        return count;
+    };
+    const auto scene = [&] { return orange(window_->views().scene().picture()); };
+    const auto slice = [&] { return orange(window_->views().slice(2).grab().toImage()); };
+    const int before_scene = scene(), before_slice = slice();
+    QTest::keyClick(window_.get(), Qt::Key_B);
+    EXPECT_TRUE(wait_until([&] { return scene() > before_scene + 50; }));
+    EXPECT_TRUE(wait_until([&] { return slice() > before_slice + 20; }));
+    save("brush");
+    QTest::keyClick(window_.get(), Qt::Key_B);
+    EXPECT_TRUE(wait_until([&] { return scene() <= before_scene + 5; }));
+}
+
+TEST_F(ChangingData, what_was_saved_is_what_is_open) {
+    feel("synthetic:sphere:48x48x48");
+    EXPECT_FALSE(window_->isWindowModified());
+    carve();
+    const auto carved = work().samples;
+    EXPECT_TRUE(wait_until([&] { return window_->isWindowModified(); }));
+    type_in_dialog(Qt::Key_S, scratch("carved.nrrd"), Qt::ShiftModifier);
+    ASSERT_TRUE(wait_until([&] { return !window_->editing().saving(); }));
+    EXPECT_TRUE(wait_until([&] { return !window_->isWindowModified(); }));
+    EXPECT_TRUE(window_->windowTitle().startsWith("carved.nrrd[*]"));
+    EXPECT_EQ(recent_files().value(0), scratch("carved.nrrd"));
+    type_in_dialog(Qt::Key_S, scratch("case.json"));
+    EXPECT_TRUE(window_->windowTitle().contains("(case.json)"));
+    EXPECT_EQ(run::name_of(read_session(scratch("case.json").toStdString()).source),
+              scratch("carved.nrrd").toStdString());
+    // Opened here, where the volume of before the edits is still at hand.
+    window_->files().open_path(scratch("case.json"));
+    ASSERT_TRUE(wait_until([&] { return window_->settled() && !window_->files().loading(); }));
+    EXPECT_EQ(work().version, 0U);
+    EXPECT_TRUE(window_->windowTitle().contains("(case.json)"));
+    const Volume felt = flattened(*work().samples), edited = flattened(*carved);
+    EXPECT_EQ(std::memcmp(felt.data(), edited.data(), edited.bytes()), 0);
+    // A session that has a name is saved under it without a question.
+    QFile::remove(scratch("case.json"));
+    QTest::keyClick(window_.get(), Qt::Key_S, Qt::ControlModifier);
+    EXPECT_TRUE(QFile::exists(scratch("case.json")));
+}
+
+TEST_F(ChangingData, closing_offers_to_save_and_closes_once_that_is_done) {
+    feel("synthetic:sphere:48x48x48");
+    carve();
+    answer(QMessageBox::Save);
+    typing(scratch("kept.nrrd"),
+           [&] { EXPECT_FALSE(window_->close()) << "not before it is saved"; });
+    EXPECT_TRUE(wait_until([&] { return !window_->isVisible(); }));
+    EXPECT_TRUE(QFile::exists(scratch("kept.nrrd")));
+}
+
+TEST_F(ChangingData, a_session_of_a_volume_with_unsaved_edits_asks_first) {
+    feel("synthetic:sphere:48x48x48");
+    carve();
+    answer(QMessageBox::Cancel);
+    QTest::keyClick(window_.get(), Qt::Key_S, Qt::ControlModifier);
+    EXPECT_TRUE(work().changed);
+    window_->activateWindow();
+    ASSERT_TRUE(QTest::qWaitForWindowActive(window_.get()));
+    answer(QMessageBox::Discard);
+    type_in_dialog(Qt::Key_S, scratch("case.json"));
+    EXPECT_TRUE(work().changed) << "the edits are not lost";
+    EXPECT_EQ(run::name_of(read_session(scratch("case.json").toStdString()).source),
+              "synthetic:sphere:48x48x48");
 }
 
 TEST_F(ChangingData, a_window_with_unsaved_edits_asks_before_it_closes) {
@@ -127,7 +207,9 @@ TEST_F(ChangingData, a_sequence_plays_steps_and_is_sought_with_the_timeline) {
     ASSERT_TRUE(wait_until([&] { return window_->settled(); }));
     save("beating");
     // The brush is not for sequences, and says so.
-    EXPECT_FALSE(part<QAction>("brush_action").isEnabled());
+    QTest::keyClick(window_.get(), Qt::Key_B);
+    EXPECT_TRUE(window_->statusBar()->currentMessage().contains("cannot be edited"));
+    EXPECT_FALSE(window_->panel().brush().on);
     QTest::keyClick(window_.get(), Qt::Key_K);
     EXPECT_TRUE(wait_until([&] { return now().speed == 1; }));
     feel("synthetic:sphere:32x32x32");

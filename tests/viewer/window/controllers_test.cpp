@@ -176,17 +176,17 @@ TEST_F(Controllers, a_recording_ends_when_another_volume_is_opened_and_is_played
 TEST_F(Controllers, without_edits_nothing_is_unsaved_and_nothing_can_be_undone) {
     Panel panel;
     EditController editing(content, panel, messages, &parent);
-    EXPECT_TRUE(editing.may_lose_edits());
+    EXPECT_TRUE(editing.may_lose_edits({}));
     editing.undo();
     EXPECT_TRUE(done.isEmpty()) << "nothing is open";
     feel("synthetic:sphere:24x24x24");
     EXPECT_EQ(editing.unsaved(), nullptr);
-    EXPECT_TRUE(editing.may_lose_edits());
+    EXPECT_TRUE(editing.may_lose_edits({}));
     editing.undo();
     EXPECT_EQ(done, "There is nothing to undo");
     const auto file = scratch.path() / "saved.nrrd";
     editing.save(QString::fromStdString(file.string()));
-    EXPECT_FALSE(editing.may_lose_edits()) << "it is being saved";
+    EXPECT_FALSE(editing.may_lose_edits({})) << "it is being saved";
     ASSERT_TRUE(QTest::qWaitFor([&] { return !editing.saving(); }, 20'000));
     EXPECT_TRUE(std::filesystem::exists(file));
 }

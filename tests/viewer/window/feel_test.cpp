@@ -1,12 +1,17 @@
 // The whole window: opening, feeling, recording, playing.
 #include <Eigen/Geometry>
 
+#include <QAbstractButton>
 #include <QAction>
 #include <QDoubleSpinBox>
+#include <QLabel>
 #include <QMessageBox>
+#include <QPushButton>
 #include <QSlider>
 #include <QToolButton>
 
+#include "apps/viewer/model/probe_route.hpp"
+#include "palpate/io/sample_volume.hpp"
 #include "viewer/window/window_fixture.hpp"
 
 namespace palpate::viewer::test {
@@ -34,6 +39,110 @@ TEST_F(Window, pressing_with_the_mouse_makes_force_and_letting_go_ends_it) {
     EXPECT_EQ(now().session.tick.proxy.mode, Mode::constrained);
     turn_wheel(window_->views().scene(), -20);
     ASSERT_TRUE(wait_until([&] { return force() == 0; }));
+}
+
+TEST_F(Window, an_empty_window_welcomes_with_what_can_be_opened) {
+    io::write_volume(run::load(run::source_named(large_sphere)).volume,
+                     scratch_.path() / "ball.nrrd");
+    QSettings().setValue("recent", QStringList{scratch("ball.nrrd")});
+    open_window("mouse");
+    auto& welcome = part<QWidget>("welcome");
+    EXPECT_TRUE(welcome.isVisible());
+    EXPECT_FALSE(window_->views().isVisible());
+    ASSERT_TRUE(
+        wait_until([&] { return part<QLabel>("welcome_devices").text().contains("mouse"); }));
+    save("welcome");
+    QPushButton* recent = nullptr;
+    for (auto* button : part<QWidget>("welcome_recent").findChildren<QPushButton*>()) {
+        if (button->text() == "ball.nrrd") recent = button;
+    }
+    ASSERT_NE(recent, nullptr);
+    QTest::mouseClick(recent, Qt::LeftButton);
+    ASSERT_TRUE(wait_until([&] { return window_->live() && window_->settled(); }));
+    EXPECT_FALSE(welcome.isVisible());
+    EXPECT_TRUE(window_->views().isVisible());
+}
+
+TEST_F(Window, the_sample_volume_is_a_click_away) {
+    QTest::mouseClick(&part<QAbstractButton>("welcome_sample"), Qt::LeftButton);
+    ASSERT_TRUE(wait_until([&] { return window_->live() != nullptr; }))
+        << window_->messages().problem().toStdString();
+    EXPECT_EQ(window_->live()->isovalue(), io::sample_volume_skin);
+}
+
+TEST_F(Window, at_the_start_the_probe_stands_just_off_the_first_surface_in_view) {
+    feel(large_sphere);
+    const Field& field = window_->live()->field();
+    const Vec3 towards = axes_of(window_->views().scene().camera()).towards_viewer;
+    const auto surface =
+        surface_in_view(field, window_->live()->isovalue(), towards, Vec3::UnitY());
+    ASSERT_TRUE(surface);
+    const auto away = [&] { return (now().session.tick.proxy.hip - *surface).dot(towards); };
+    EXPECT_NEAR(away(), 2 * field.geometry().spacing.maxCoeff(), 1);
+    EXPECT_EQ(now().session.tick.proxy.mode, Mode::free);
+    EXPECT_EQ(window_->views().crosshair(), physical_centre(field.geometry()));
+    press_until_force();
+    EXPECT_TRUE(wait_until([&] {
+        return window_->views().crosshair() != physical_centre(field.geometry());
+    })) << "from the first contact on it follows";
+}
+
+TEST_F(Window, a_click_touches_the_surface_there_and_a_held_button_presses_deeper) {
+    feel(large_sphere);
+    Scene& scene = window_->views().scene();
+    const QPoint at = scene.rect().center() + QPoint(70, -50);
+    QTest::mousePress(&scene, Qt::LeftButton, {}, at);
+    ASSERT_TRUE(wait_until([&] { return !window_->probe().travelling(); }));
+    EXPECT_TRUE(wait_until([&] { return force() > 0.1; }));
+    const auto contact = now().session.tick.proxy;
+    EXPECT_EQ(contact.mode, Mode::constrained);
+    const Pixel seen = pixel_of(scene.camera(), scene.view_size(), contact.hip);
+    EXPECT_NEAR(seen.x, at.x(), 3);
+    EXPECT_NEAR(seen.y, at.y(), 3);
+    EXPECT_TRUE(wait_until([&] { return part<QLabel>("depth").isVisible(); }));
+    EXPECT_TRUE(part<QLabel>("depth").text().contains("mm deep"));
+    const double first = force();
+    EXPECT_TRUE(wait_until([&] { return force() > first + 0.2; })) << "the button is held";
+    save("touched");
+    QTest::mouseRelease(&scene, Qt::LeftButton, {}, at);
+    QTest::qWait(200);
+    const double then = force();
+    QTest::qWait(300);
+    EXPECT_NEAR(force(), then, 0.02) << "the hand stays";
+}
+
+TEST_F(Window, the_wheel_does_not_carry_the_probe_out_at_the_far_side) {
+    feel("synthetic:torus:48x48x24");
+    Scene& scene = window_->views().scene();
+    const Geometry& g = window_->live()->field().geometry();
+    const Vec3 towards = axes_of(scene.camera()).towards_viewer;
+    const Vec3 before = physical_centre(g) + 20 * towards;
+    window_->probe().move_to(before);
+    ASSERT_TRUE(wait_until([&] { return (now().session.tick.proxy.hip - before).norm() < 0.5; }));
+    turn_wheel(scene, 60);
+    QTest::qWait(300);
+    const double depth = now().session.tick.proxy.hip.dot(towards);
+    EXPECT_NEAR(depth, extent_along(g, towards).back, 0.5);
+}
+
+TEST_F(Window, forces_that_wait_say_so_where_the_eye_is) {
+    feel(large_sphere);
+    EXPECT_FALSE(part<QLabel>("hint").isVisible());
+    ForceSettings force = window_->live()->settings().force;
+    force.start_below = 0.3;
+    Q_EMIT window_->panel().asked(force);
+    press_until_force();
+    turn_wheel(window_->views().scene(), 5);
+    QTest::keyClick(window_.get(), Qt::Key_Space);
+    EXPECT_TRUE(wait_until([&] { return part<QLabel>("hint").text().contains("space bar"); }));
+    QTest::keyClick(window_.get(), Qt::Key_Space);
+    EXPECT_TRUE(wait_until([&] { return part<QLabel>("hint").text().contains("Withdraw"); }));
+    EXPECT_TRUE(part<QLabel>("hint").isVisible());
+    EXPECT_TRUE(part<QPushButton>("forces").text().contains("WAIT"));
+    save("waiting");
+    turn_wheel(window_->views().scene(), -15);
+    EXPECT_TRUE(wait_until([&] { return !part<QLabel>("hint").isVisible(); }));
+    EXPECT_TRUE(part<QPushButton>("forces").text().contains("ON"));
 }
 
 TEST_F(Window, dragging_in_the_scene_moves_the_probe_in_the_plane_of_the_view) {
@@ -104,9 +213,12 @@ TEST_F(Window, a_session_is_recorded_and_played_back_with_the_timeline) {
     ASSERT_NE(window_->live()->recording(), nullptr);
     press_until_force();
     QTest::qWait(300);
+    EXPECT_TRUE(part<QLabel>("recording_clock").isVisible());
+    EXPECT_TRUE(part<QLabel>("recording_clock").text().contains("0:0"));
     save("recording");
     QTest::keyClick(window_.get(), Qt::Key_R, Qt::ControlModifier);
     EXPECT_EQ(window_->live()->recording(), nullptr);
+    EXPECT_TRUE(wait_until([&] { return !part<QLabel>("recording_clock").isVisible(); }));
     ASSERT_TRUE(QFile::exists(file));
     type_in_dialog(Qt::Key_O, file);
     ASSERT_TRUE(wait_until([&] { return window_->playback() != nullptr; }))
@@ -189,6 +301,34 @@ TEST_F(Window, control_q_ends_the_window_and_the_session) {
     QTest::keyClick(window_.get(), Qt::Key_Q, Qt::ControlModifier);
     EXPECT_FALSE(window_->isVisible());
     window_.reset();
+}
+
+TEST_F(Window, a_double_click_shows_a_pane_alone_and_again_all) {
+    feel(large_sphere);
+    SlicePane& axial = window_->views().slice(2);
+    Scene& scene = window_->views().scene();
+    QTest::mouseDClick(&axial, Qt::LeftButton);
+    EXPECT_TRUE(axial.isVisible());
+    EXPECT_FALSE(scene.isVisible());
+    EXPECT_FALSE(window_->views().slice(1).isVisible());
+    EXPECT_TRUE(wait_until([&] { return axial.width() > window_->views().width() - 20; }));
+    save("axial");
+    QTest::mouseDClick(&axial, Qt::LeftButton);
+    EXPECT_TRUE(scene.isVisible());
+    QTest::keyClick(window_.get(), Qt::Key_F7);
+    EXPECT_TRUE(scene.isVisible());
+    EXPECT_FALSE(axial.isVisible());
+    QTest::keyClick(window_.get(), Qt::Key_F6);
+    ASSERT_TRUE(wait_until([&] { return window_->settled(); }));
+    save("four");
+    EXPECT_NEAR(scene.width(), axial.width(), 20);
+    EXPECT_NEAR(scene.height(), window_->views().slice(0).height(), 20);
+    QTest::keyClick(window_.get(), Qt::Key_F5);
+    ASSERT_TRUE(wait_until([&] { return window_->settled(); }));
+    EXPECT_GT(scene.width(), 2 * axial.width());
+    // Order, from above: axial, coronal, sagittal.
+    EXPECT_LT(axial.y(), window_->views().slice(1).y());
+    EXPECT_LT(window_->views().slice(1).y(), window_->views().slice(0).y());
 }
 
 TEST_F(Window, question_mark_lists_every_shortcut) {

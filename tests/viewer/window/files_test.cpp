@@ -12,10 +12,10 @@
 #include <QSpinBox>
 #include <QTableWidget>
 #include <QUrl>
+#include <cmath>
 #include <fstream>
 
 #include "apps/options/view_options.hpp"
-#include "apps/viewer/window/raw_dialog.hpp"
 #include "apps/viewer/window/screenshot.hpp"
 #include "io/volume_dicom_slice.hpp"
 #include "palpate/scenes/volumes.hpp"
@@ -132,27 +132,60 @@ TEST_F(Files, of_several_series_one_is_chosen_by_its_picture) {
 }
 
 TEST_F(Files, a_raw_file_is_opened_once_the_dialog_knows_its_size) {
-    std::ofstream(scratch_.path() / "samples.raw", std::ios::binary)
-        << std::string(2 * 12 * 10 * 8, '\x05');
-    RawDialog dialog(scratch("samples.raw"));
-    const auto set = [&](const char* name, int value) {
-        dialog.findChild<QSpinBox*>(name)->setValue(value);
-    };
-    auto* open = dialog.findChild<QPushButton*>();
-    for (auto* button : dialog.findChildren<QPushButton*>()) {
+    // A bright disk in the middle of each slice: 12 x 10 x 8 big-endian samples after 5 bytes.
+    std::string bytes = "head:";
+    for (int z = 0; z < 8; ++z) {
+        for (int y = 0; y < 10; ++y) {
+            for (int x = 0; x < 12; ++x) {
+                const bool in = std::hypot(x - 5.5, y - 4.5) < 3;
+                bytes += {in ? '\x02' : '\x00', '\x01'};
+            }
+        }
+    }
+    std::ofstream(scratch_.path() / "samples.raw", std::ios::binary) << bytes;
+    window_->files().open_path(scratch("samples.raw"));
+    ASSERT_TRUE(wait_until([&] { return window_->findChild<QDialog*>("raw"); }));
+    const auto set = [&](const char* name, int value) { part<QSpinBox>(name).setValue(value); };
+    QPushButton* open = nullptr;
+    for (auto* button : part<QDialog>("raw").findChildren<QPushButton*>()) {
         if (button->text().contains("Open")) open = button;
     }
+    ASSERT_NE(open, nullptr);
     EXPECT_FALSE(open->isEnabled()) << "256^3 samples are more than the file holds";
     set("size0", 12);
     set("size1", 10);
     set("size2", 8);
-    dialog.findChild<QComboBox*>()->setCurrentText("uint16");
-    EXPECT_TRUE(open->isEnabled());
-    const run::Source source = dialog.source();
-    EXPECT_EQ(run::to_names(source).at("dims"), "12x10x8");
-    EXPECT_EQ(run::to_names(source).at("type"), "uint16");
-    const Volume volume = run::load(source).volume;
-    EXPECT_EQ(volume.minimum(), 0x0505);
+    part<QComboBox>("raw_type").setCurrentText("uint16");
+    part<QComboBox>("raw_order").setCurrentIndex(1);
+    EXPECT_FALSE(open->isEnabled()) << "the header is left over";
+    EXPECT_TRUE(part<QLabel>("raw_verdict").text().contains("5 more"));
+    QTest::mouseClick(&part<QPushButton>("raw_skip_rest"), Qt::LeftButton);
+    EXPECT_EQ(part<QSpinBox>("raw_skip").value(), 5);
+    const QImage slice = part<QLabel>("raw_picture").pixmap(Qt::ReturnByValue).toImage();
+    ASSERT_FALSE(slice.isNull());
+    EXPECT_EQ(slice.pixelColor(slice.rect().center()).red(), 255);
+    EXPECT_EQ(slice.pixelColor(2, 2).red(), 0);
+    part<QDialog>("raw").grab().save(QString(PALPATE_PICTURES) + "/raw-dialog.png");
+    ASSERT_TRUE(open->isEnabled());
+    QTest::mouseClick(open, Qt::LeftButton);
+    ASSERT_TRUE(wait_until([&] { return window_->live() && window_->settled(); }));
+    const Volume& volume = window_->live()->field().volume();
+    EXPECT_EQ(volume.geometry().size, Index3(12, 10, 8));
+    EXPECT_EQ(volume.minimum(), 0x0001);
+    EXPECT_EQ(volume.maximum(), 0x0201);
+}
+
+TEST_F(Files, a_single_slice_is_seen_face_on) {
+    Geometry geometry{Index3(24, 20, 1)};
+    std::vector<std::uint8_t> disk(480);
+    for (int i = 0; i < 480; ++i)
+        disk[std::size_t(i)] = std::hypot(i % 24 - 12, i / 24 - 8) < 6 ? 200 : 0;
+    io::write_volume(Volume(geometry, std::move(disk)), scratch_.path() / "slice.nrrd");
+    feel(scratch("slice.nrrd").toStdString());
+    const ViewAxes axes = axes_of(window_->views().scene().camera());
+    EXPECT_LT((axes.right - Vec3::UnitX()).norm(), 1e-9);
+    EXPECT_LT((axes.up + Vec3::UnitY()).norm(), 1e-9) << "rows from above";
+    save("slice");
 }
 
 TEST_F(Files, pictures_of_scene_and_window_are_what_is_seen) {

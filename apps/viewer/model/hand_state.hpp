@@ -1,0 +1,31 @@
+// What a snapshot says about the hand.
+#pragma once
+
+#include "palpate/servo.hpp"
+
+namespace palpate::viewer {
+
+/// Forces are on but wait, because the hand is deeper in the solid than where they may begin.
+inline bool waits_for_hand(const Snapshot& now) {
+    return now.forces_on && !now.session.frozen && !now.session.clutched &&
+           now.session.device.status == DeviceStatus::ready &&
+           now.session.tick.proxy.mode == Mode::constrained &&
+           (now.session.tick.force_flags & force_waiting) != 0;
+}
+
+/// Whether two snapshots look the same where `mm` cannot be seen: what a resting hand sends a
+/// thousand times a second need not be drawn again.
+inline bool looks_same(const Snapshot& a, const Snapshot& b, double mm) {
+    constexpr double newtons = 1e-3;
+    const auto near = [](const Vec3& p, const Vec3& q, double within) {
+        return p == q || (p - q).cwiseAbs().maxCoeff() <= within;
+    };
+    const SessionTick &one = a.session, &other = b.session;
+    const ProxyUpdate &p = one.tick.proxy, &q = other.tick.proxy;
+    return one.device.status == other.device.status && p.mode == q.mode &&
+           p.isovalue == q.isovalue && one.version == other.version && one.moment == other.moment &&
+           one.transform.rotation == other.transform.rotation && near(p.hip, q.hip, mm) &&
+           near(p.scp, q.scp, mm) && near(one.tick.force, other.tick.force, newtons);
+}
+
+}  // namespace palpate::viewer

@@ -1,0 +1,75 @@
+// Casts rays into the picture.
+#include "apps/viewer/model/probe_route.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <limits>
+
+#include "palpate/proxy.hpp"
+
+namespace palpate::viewer {
+namespace {
+
+/// Rays on a square of so many are tried, the whole grid wide.
+constexpr int rays = 15;
+
+/// Moved along `towards` to this distance.
+Vec3 at_depth(const Vec3& point, const Vec3& towards, double depth) {
+    return point + (depth - point.dot(towards)) * towards;
+}
+
+/// In front of the grid, with a little room.
+double front_of(const DepthExtent& extent) {
+    return extent.front + 0.02 * (extent.front - extent.back);
+}
+
+}  // namespace
+
+DepthExtent extent_along(const Geometry& geometry, const Vec3& towards) {
+    DepthExtent extent{std::numeric_limits<double>::max(), std::numeric_limits<double>::lowest()};
+    for (int corner = 0; corner < 8; ++corner) {
+        const Index3 side(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
+        const Index3 index = side.cwiseProduct(geometry.size - Index3::Ones());
+        const double depth = physical_from_index(geometry, index.cast<double>()).dot(towards);
+        extent.back = std::min(extent.back, depth);
+        extent.front = std::max(extent.front, depth);
+    }
+    return extent;
+}
+
+std::optional<Vec3> surface_under(const Field& field, double isovalue, const Vec3& at,
+                                  const Vec3& towards) {
+    const DepthExtent extent = extent_along(field.geometry(), towards);
+    const Vec3 from = at_depth(at, towards, front_of(extent));
+    const RayHit hit = cast_ray(field, isovalue, from, at_depth(at, towards, extent.back));
+    return hit.hit && hit.point != from ? std::optional(hit.point) : std::nullopt;
+}
+
+std::optional<Vec3> surface_in_view(const Field& field, double isovalue, const Vec3& towards,
+                                    const Vec3& up) {
+    const Geometry& g = field.geometry();
+    const Vec3 right = up.cross(towards).normalized(), above = towards.cross(right);
+    const DepthExtent wide = extent_along(g, right), high = extent_along(g, above);
+    std::vector<Vec3> offsets;
+    for (int i = 0; i < rays * rays; ++i) {
+        const double x = double(i % rays) / (rays - 1) - 0.5,
+                     y = double(i / rays) / (rays - 1) - 0.5;
+        offsets.emplace_back(x * (wide.front - wide.back) * right +
+                             y * (high.front - high.back) * above);
+    }
+    std::ranges::stable_sort(offsets, {}, [](const Vec3& offset) { return offset.norm(); });
+    for (const Vec3& offset : offsets) {
+        if (auto hit = surface_under(field, isovalue, physical_centre(g) + offset, towards)) {
+            return hit;
+        }
+    }
+    return std::nullopt;
+}
+
+std::vector<Vec3> route_in_front(const Geometry& geometry, const Vec3& from, const Vec3& to,
+                                 const Vec3& towards) {
+    const double depth = std::max(front_of(extent_along(geometry, towards)), from.dot(towards));
+    return {at_depth(from, towards, depth), at_depth(to, towards, depth), to};
+}
+
+}  // namespace palpate::viewer

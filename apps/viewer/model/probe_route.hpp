@@ -1,0 +1,33 @@
+// Where the surface is first met on the way into a picture, and how a hand goes there from in
+// front.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "palpate/field.hpp"
+
+namespace palpate::viewer {
+
+/// Distances of the grid's nearest and farthest corner from physical 0, along a unit vector [mm].
+struct DepthExtent {
+    double back = 0, front = 0;
+};
+DepthExtent extent_along(const Geometry& geometry, const Vec3& towards);
+
+/// Where the surface is first met under a point of the picture, seen from `towards` (a unit vector
+/// to the viewer) [mm, physical]. Nothing beside the surface, and where the solid reaches out of
+/// the grid towards the viewer.
+std::optional<Vec3> surface_under(const Field& field, double isovalue, const Vec3& at,
+                                  const Vec3& towards);
+
+/// The same, under the middle of the grid, or under the point nearest to it that has a surface.
+std::optional<Vec3> surface_in_view(const Field& field, double isovalue, const Vec3& towards,
+                                    const Vec3& up);
+
+/// The stops of a hand that draws back out of the grid towards the viewer, goes across in front of
+/// it, and forward to `to` [mm, physical].
+std::vector<Vec3> route_in_front(const Geometry& geometry, const Vec3& from, const Vec3& to,
+                                 const Vec3& towards);
+
+}  // namespace palpate::viewer

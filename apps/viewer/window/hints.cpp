@@ -1,0 +1,84 @@
+// Labels over the scene.
+#include "apps/viewer/window/hints.hpp"
+
+#include "apps/viewer/model/hand_state.hpp"
+#include "apps/viewer/panel/layout.hpp"
+#include "apps/viewer/scene/scene.hpp"
+#include "apps/viewer/window/content.hpp"
+#include "apps/viewer/window/recording_controller.hpp"
+
+namespace palpate::viewer {
+namespace {
+
+/// Why there is no force although the hand may expect one; empty: nothing holds it back.
+QString reason_of(const Snapshot& now) {
+    if (!now.forces_on) return "Forces are off: the space bar switches them on";
+    if (now.session.frozen) return "Frozen: F lets hand and proxy move again";
+    if (now.session.clutched) return "The volume hangs on the hand: C puts it down";
+    if (waits_for_hand(now)) return "Withdraw a little to feel forces again";
+    return {};
+}
+
+/// A label that lets the mouse through.
+QLabel* label_over(QWidget& owner, const char* name, const QString& style) {
+    auto* label = named(new QLabel(&owner), name);
+    label->setAttribute(Qt::WA_TransparentForMouseEvents);
+    label->setStyleSheet("QLabel { border-radius: 4px; padding: 3px 8px; " + style + " }");
+    label->hide();
+    return label;
+}
+
+/// Shows words with the label's middle there; hidden where there are none.
+void say(QLabel& label, const QString& words, const QPoint& middle) {
+    if (words.isEmpty()) return label.hide();
+    if (label.text() != words) {
+        label.setText(words);
+        label.adjustSize();
+    }
+    const QPoint corner = middle - label.rect().center();
+    if (label.pos() != corner) label.move(corner);
+    label.show();
+}
+
+}  // namespace
+
+Hints::Hints(const Content& content, const RecordingController& recordings, Scene& scene)
+    : content_(content),
+      recordings_(recordings),
+      scene_(scene),
+      reason_(label_over(scene, "hint", "background-color: #ffb000; color: black;")),
+      depth_(label_over(scene, "depth", "background-color: rgba(0, 0, 0, 150); color: white;")),
+      recording_(label_over(scene, "recording_clock",
+                            "background-color: rgba(0, 0, 0, 150); color: white;")) {
+    connect(&recordings, &RecordingController::changed, this, [this] { recorded_.start(); });
+}
+
+void Hints::observe(const std::optional<Snapshot>& now) {
+    const int line = 2 * scene_.fontMetrics().height();
+    const bool live = content_.live() && now;
+    say(*reason_, live ? reason_of(*now) : QString(), {scene_.width() / 2, line});
+    show_depth(live ? now : std::nullopt);
+    if (!recordings_.recording()) return recording_->hide();
+    const auto seconds = recorded_.elapsed() / 1000;
+    const QString clock = QString("<span style='color: #ff4040'>●</span> %1:%2")
+                              .arg(seconds / 60)
+                              .arg(seconds % 60, 2, 10, QChar('0'));
+    say(*recording_, clock, {scene_.width() - 3 * line, line});
+}
+
+/// Beside the hand, while it presses with the mouse.
+void Hints::show_depth(const std::optional<Snapshot>& now) {
+    const bool presses = now && content_.live()->mouse() &&
+                         now->session.tick.proxy.mode == Mode::constrained &&
+                         now->session.tick.proxy.hip.allFinite();
+    if (!presses) return depth_->hide();
+    const ProxyUpdate& proxy = now->session.tick.proxy;
+    const QString words = QString("%1 mm deep, %2 N")
+                              .arg((proxy.hip - proxy.scp).norm(), 0, 'f', 1)
+                              .arg(now->session.tick.force.norm(), 0, 'f', 1);
+    const Pixel hand = pixel_of(scene_.camera(), scene_.view_size(), proxy.hip);
+    const int line = scene_.fontMetrics().height();
+    say(*depth_, words, QPoint(int(hand.x), int(hand.y) + 3 * line));
+}
+
+}  // namespace palpate::viewer

@@ -1,0 +1,35 @@
+// Words over the scene, where the eye is: why there is no force, how deep the probe presses, and
+// that a recording runs.
+#pragma once
+
+#include <QElapsedTimer>
+#include <QLabel>
+#include <QObject>
+#include <optional>
+
+#include "palpate/servo.hpp"
+
+namespace palpate::viewer {
+
+class Content;
+class RecordingController;
+class Scene;
+
+class Hints : public QObject {
+  public:
+    Hints(const Content& content, const RecordingController& recordings, Scene& scene);
+
+    /// Often: shows what holds now. Nothing: no run is felt or played.
+    void observe(const std::optional<Snapshot>& now);
+
+  private:
+    void show_depth(const std::optional<Snapshot>& now);
+
+    const Content& content_;
+    const RecordingController& recordings_;
+    Scene& scene_;
+    QLabel *reason_, *depth_, *recording_;
+    QElapsedTimer recorded_;
+};
+
+}  // namespace palpate::viewer

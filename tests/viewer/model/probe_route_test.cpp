@@ -1,0 +1,56 @@
+// Where a click meets the surface, and the way there.
+#include "apps/viewer/model/probe_route.hpp"
+
+#include <gtest/gtest.h>
+
+#include "palpate/scenes/volumes.hpp"
+
+namespace palpate::viewer::test {
+namespace {
+
+const Vec3 towards = Vec3::UnitZ(), up = Vec3::UnitY();
+
+TEST(ProbeRoute, a_click_meets_the_surface_nearest_to_the_viewer) {
+    const scenes::Scene scene = scenes::make_volume("sphere:48x48x48");
+    const Field field(scene.volume);
+    const Vec3 centre = physical_centre(field.geometry());
+    const auto front = surface_under(field, scene.isovalue, centre, towards);
+    const auto back = surface_under(field, scene.isovalue, centre, -towards);
+    ASSERT_TRUE(front && back);
+    EXPECT_GT((*front - centre)[2], 5);
+    EXPECT_LT((*back - centre)[2], -5);
+    EXPECT_NEAR(((*front + *back) / 2 - centre).norm(), 0, 0.1);
+    const Vec3 corner = physical_from_index(field.geometry(), Vec3(1, 1, 20));
+    EXPECT_FALSE(surface_under(field, scene.isovalue, corner, towards)) << "beside the ball";
+    EXPECT_EQ(surface_in_view(field, scene.isovalue, towards, up), front);
+}
+
+TEST(ProbeRoute, beside_the_middle_the_nearest_surface_in_view_is_taken) {
+    const scenes::Scene scene = scenes::make_volume("torus:48x48x24");
+    const Field field(scene.volume);
+    const Vec3 centre = physical_centre(field.geometry());
+    ASSERT_FALSE(surface_under(field, scene.isovalue, centre, towards)) << "the hole";
+    const auto found = surface_in_view(field, scene.isovalue, towards, up);
+    ASSERT_TRUE(found);
+    EXPECT_GT((*found - centre)[2], 0);
+    EXPECT_FALSE(surface_in_view(field, 1e9, towards, up)) << "nothing is solid";
+}
+
+TEST(ProbeRoute, the_way_goes_round_the_grid_in_front) {
+    Geometry geometry{Index3(11, 11, 11)};
+    const Vec3 from(3, 4, 5), to(8, 1, 9);
+    const std::vector<Vec3> stops = route_in_front(geometry, from, to, towards);
+    ASSERT_EQ(stops.size(), 3U);
+    const double front = extent_along(geometry, towards).front;
+    EXPECT_EQ(stops[0].head<2>(), from.head<2>());
+    EXPECT_EQ(stops[1].head<2>(), to.head<2>());
+    EXPECT_GT(stops[0][2], front);
+    EXPECT_EQ(stops[1][2], stops[0][2]);
+    EXPECT_EQ(stops[2], to);
+    // A hand that is farther out already does not come nearer on its way across.
+    const Vec3 far(3, 4, 50);
+    EXPECT_EQ(route_in_front(geometry, far, to, towards)[1][2], 50);
+}
+
+}  // namespace
+}  // namespace palpate::viewer::test
