@@ -138,11 +138,12 @@ TEST_F(Window, forces_that_wait_say_so_where_the_eye_is) {
     QTest::keyClick(window_.get(), Qt::Key_Space);
     EXPECT_TRUE(wait_until([&] { return part<QLabel>("hint").text().contains("Withdraw"); }));
     EXPECT_TRUE(part<QLabel>("hint").isVisible());
-    EXPECT_TRUE(part<QPushButton>("forces").text().contains("WAIT"));
+    const auto button = [&] { return part<QPushButton>("forces").text(); };
+    EXPECT_TRUE(wait_until([&] { return button().contains("WAIT"); }));
     save("waiting");
     turn_wheel(window_->views().scene(), -15);
     EXPECT_TRUE(wait_until([&] { return !part<QLabel>("hint").isVisible(); }));
-    EXPECT_TRUE(part<QPushButton>("forces").text().contains("ON"));
+    EXPECT_TRUE(wait_until([&] { return button().contains("ON"); }));
 }
 
 TEST_F(Window, dragging_in_the_scene_moves_the_probe_in_the_plane_of_the_view) {
