@@ -39,6 +39,7 @@ struct Look {
     bool volume = false;  ///< volume rendering
     TransferFunction transfer;
     bool shading = true;                      ///< of the volume
+    bool maximum = false;                     ///< the volume as its maximum intensity projection
     bool slices = false;                      ///< three planes through the crosshair
     bool contact = true;                      ///< HIP, SCP, spring and force
     bool tetrahedra = false, planes = false;  ///< round the SCP: the paper's figures

@@ -34,6 +34,9 @@ DepthExtent extent_along(const Geometry& geometry, const Vec3& towards) {
         extent.back = std::min(extent.back, depth);
         extent.front = std::max(extent.front, depth);
     }
+    const double room = 2 * geometry.spacing.maxCoeff();
+    extent.back -= room;
+    extent.front += room;
     return extent;
 }
 

@@ -9,7 +9,8 @@
 
 namespace palpate::viewer {
 
-/// Distances of the grid's nearest and farthest corner from physical 0, along a unit vector [mm].
+/// How far the grid reaches along a unit vector, from physical 0 [mm], with two voxels of room: the
+/// surface at its border lies in the first.
 struct DepthExtent {
     double back = 0, front = 0;
 };

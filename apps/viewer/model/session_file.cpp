@@ -55,6 +55,7 @@ static void members(auto& v, Is<Look> auto& s) {
     v("volume", s.volume);
     v("transfer", s.transfer);
     v("shading", s.shading);
+    v("maximum", s.maximum);
     v("slices", s.slices);
     v("contact", s.contact);
     v("tetrahedra", s.tetrahedra);

@@ -63,10 +63,14 @@ QWidget* LookControls::make_volume() {
         add_switch("volume", "Volume", "Volume rendering by the transfer function", &Look::volume);
     auto* shading =
         add_switch("shading", "Shading", "Light on the volume, by its gradients", &Look::shading);
+    auto* maximum = add_switch("maximum", "Maximum",
+                               "Maximum intensity projection: the brightest sample along each "
+                               "line of sight, black to white over the levels below",
+                               &Look::maximum);
     for (NumberBox* box : {point_level_, point_opacity_}) {
         box->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
     }
-    return column_of({row_of({volume, shading, preset_}, 2), editor_,
+    return column_of({row_of({volume, shading, maximum}), preset_, editor_,
                       row_of({new QLabel("Point"), point_level_, point_opacity_, point_colour_})});
 }
 

@@ -18,7 +18,7 @@ Look rendered_part(Look look) {
     look.contact = look.tetrahedra = look.planes = look.orientation = look.scale_bar = false;
     if (!look.volume) {
         look.transfer = {};
-        look.shading = false;
+        look.shading = look.maximum = false;
     }
     return look;
 }

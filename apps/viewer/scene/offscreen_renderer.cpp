@@ -160,8 +160,7 @@ void OffscreenRenderer::show_volume(const RenderRequest& request) {
             std::make_unique<VolumePart>(volume, physical_centre(field.geometry()), hardware_);
         solid_->AddVolume(volume_->prop());
     }
-    volume_->set_look(request.look.transfer, request.look.shading,
-                      field.geometry().spacing.minCoeff());
+    volume_->set_look(request.look, field.geometry().spacing.minCoeff());
     const double spacing = volume.geometry().spacing.minCoeff();
     volume_->set_fineness(coarse ? coarseness_ * request.pixel_ratio / pixel_ : 1,
                           coarse ? spacing : 0.5 * spacing);

@@ -71,15 +71,21 @@ VolumePart::VolumePart(const Volume& volume, const Vec3& origin, bool hardware)
     p->SetSpecularPower(20);
 }
 
-void VolumePart::set_look(const TransferFunction& transfer, bool shading, double layer) {
+void VolumePart::set_look(const Look& look, double layer) {
     vtkVolumeProperty* const p = prop_->GetProperty();
+    const bool shading = look.shading && !look.maximum;
     if (p->GetShade() != int(shading)) p->SetShade(shading);
-    if (transfer == transfer_ && layer == layer_) return;
-    transfer_ = transfer;
+    if (look.transfer == transfer_ && look.maximum == maximum_ && layer == layer_) return;
+    transfer_ = look.transfer;
+    maximum_ = look.maximum;
     layer_ = layer;
+    maximum_ ? mapper_->SetBlendModeToMaximumIntensity() : mapper_->SetBlendModeToComposite();
     vtkNew<vtkColorTransferFunction> colour;
     vtkNew<vtkPiecewiseFunction> opacity;
-    for (const ControlPoint& point : transfer.points) {
+    std::vector<ControlPoint> points = transfer_.points;
+    if (maximum_)
+        points = {{points.front().level, {0, 0, 0}, 0}, {points.back().level, {1, 1, 1}, 1}};
+    for (const ControlPoint& point : points) {
         colour->AddRGBPoint(point.level, point.colour.red, point.colour.green, point.colour.blue);
         opacity->AddPoint(point.level, point.opacity);
     }

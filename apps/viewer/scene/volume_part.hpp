@@ -19,8 +19,9 @@ class VolumePart {
     vtkVolume* prop() const { return prop_; }
     /// True if this is the part for these samples.
     bool shows(const Volume& volume) const { return volume.data() == volume_.data(); }
-    /// Opacities are for a layer as thick as `layer` [mm].
-    void set_look(const TransferFunction& transfer, bool shading, double layer);
+    /// Opacities are for a layer as thick as `layer` [mm]. A maximum intensity projection goes from
+    /// black at the transfer function's first level to white at its last.
+    void set_look(const Look& look, double layer);
     /// The distance of the pixels that are cast (1: all), and how far apart the samples along
     /// a ray are [mm].
     void set_fineness(double pixels, double step);
@@ -30,6 +31,7 @@ class VolumePart {
     vtkSmartPointer<vtkVolume> prop_;
     vtkSmartPointer<vtkVolumeMapper> mapper_;
     TransferFunction transfer_;
+    bool maximum_ = false;
     double layer_ = 0;
     bool hardware_;
 };

@@ -62,7 +62,9 @@ void DisplayController::show_volume(const Field& field, double isovalue,
     show_field(field, isovalue);
     views_.scene().reset_camera();
     look_from_hand(transform);
-    if (const auto view = face_on(field.geometry())) views_.scene().look_from(*view);
+    if (const auto view = face_on(field.geometry())) {
+        views_.scene().set_camera(whole(field.geometry(), *view, views_.scene().view_size()));
+    }
     views_.set_window(content_.volume()->dark(), content_.volume()->bright());
 }
 

@@ -14,6 +14,7 @@
 #include "apps/viewer/window/content.hpp"
 #include "apps/viewer/window/file_dialogs.hpp"
 #include "apps/viewer/window/messages.hpp"
+#include "palpate/io/mesh_file.hpp"
 #include "palpate/io/raw_options.hpp"
 #include "palpate/io/written_formats.hpp"
 
@@ -128,6 +129,39 @@ void EditController::save(const QString& path, std::function<void()> then) {
             }
             messages_.show_done(QString("Saved %1").arg(path) + words);
             if (then) then();
+        });
+}
+
+void EditController::ask_save_surface() {
+    const QString base =
+        QFileInfo(QString::fromStdString(run::name_of(content_.source()))).completeBaseName();
+    const QString path = ask_save_name(window_, "Save the surface (.ply, .stl, .obj or .vtp)",
+                                       base.section(':', -1) + ".ply", "ply", true,
+                                       "Meshes (*.ply *.stl *.obj *.vtp)");
+    if (!path.isEmpty()) save_surface(path);
+}
+
+void EditController::save_surface(const QString& path) {
+    if (!content_.live() || saving()) return;
+    const std::filesystem::path file(path.toStdString());
+    if (!messages_.guarded([&] { (void)io::mesh_format_from(file); })) return;
+    auto triangles = std::make_shared<std::size_t>(0);
+    saving_.start(
+        QString("Saving %1").arg(path),
+        [file, triangles, field = content_.live()->field_now(),
+         isovalue = content_.live()->isovalue()](const io::Progress& progress) {
+            SurfaceOptions options;
+            options.normals = true;
+            options.progress = [&](double fraction) {
+                progress(fraction);
+                return true;
+            };
+            const SurfaceMesh mesh = extract_surface(field, isovalue, options);
+            io::write_mesh(mesh, file);
+            *triangles = mesh.triangles.size();
+        },
+        [this, path, triangles] {
+            messages_.show_done(QString("Saved %1, %L2 triangles").arg(path).arg(*triangles));
         });
 }
 

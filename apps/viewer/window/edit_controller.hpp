@@ -36,6 +36,10 @@ class EditController : public QObject {
     /// Saves the volume as it is now, edits included, in the background; what is felt then goes by
     /// this name. Errors are shown.
     void save(const QString& path, std::function<void()> then = {});
+    /// Asks for a name, and saves the surface that is felt as a watertight mesh (.ply, .stl, .obj,
+    /// .vtp) in the background. Errors are shown.
+    void ask_save_surface();
+    void save_surface(const QString& path);
     bool saving() const { return saving_.busy(); }
 
     /// True if there are no unsaved edits, or the user goes on without them. Offers to save them,

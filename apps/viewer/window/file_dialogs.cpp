@@ -35,8 +35,9 @@ QString ask_open_folder(QWidget* window) {
 }
 
 QString ask_save_name(QWidget* window, const QString& title, const QString& name,
-                      const QString& suffix, bool replaces) {
-    QFileDialog dialog(window, title, last_folder(), QString("*.%1 (*.%1)").arg(suffix));
+                      const QString& suffix, bool replaces, const QString& filter) {
+    const QString shown = filter.isEmpty() ? QString("*.%1 (*.%1)").arg(suffix) : filter;
+    QFileDialog dialog(window, title, last_folder(), shown);
     dialog.setAcceptMode(QFileDialog::AcceptSave);
     dialog.setDefaultSuffix(suffix);
     dialog.setOption(QFileDialog::DontConfirmOverwrite, !replaces);

@@ -14,9 +14,10 @@ QString ask_open_name(QWidget* window);
 QString ask_open_folder(QWidget* window);
 QString ask_open_raw_name(QWidget* window);
 /// A name without an extension gets `suffix`. `replaces`: the dialog asks before an existing file
-/// is replaced; false for files that are never replaced.
+/// is replaced; false for files that are never replaced. `filter`: of the
+/// files shown, without it those with the suffix.
 QString ask_save_name(QWidget* window, const QString& title, const QString& name,
-                      const QString& suffix, bool replaces = true);
+                      const QString& suffix, bool replaces = true, const QString& filter = {});
 
 /// The dialogs begin in the folder of this file.
 void remember_folder(const QString& path);

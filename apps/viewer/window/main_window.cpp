@@ -25,6 +25,7 @@
 #include "apps/viewer/window/menus.hpp"
 #include "apps/viewer/window/views.hpp"
 #include "apps/viewer/window/welcome.hpp"
+#include "palpate/density.hpp"
 #include "palpate/io/output.hpp"
 
 namespace palpate::viewer {
@@ -44,6 +45,7 @@ MainWindow::MainWindow(const RunRequest& request)
       welcome_(new Welcome(this)),
       panel_(new Panel(this)),
       timeline_(new Timeline(this)),
+      readout_(new QLabel),
       frame_time_(new QLabel),
       messages_(this),
       display_(content_, *views_, *panel_),
@@ -91,6 +93,9 @@ void MainWindow::build() {
     dock->setWidget(scroll);
     addDockWidget(Qt::RightDockWidgetArea, dock);
     panel_->clear();
+    readout_->setObjectName("readout");
+    readout_->setToolTip("The proxy: where it is (LPS) [mm], the sample there and its slope");
+    statusBar()->addPermanentWidget(readout_);
     frame_time_->setObjectName("frames");
     statusBar()->addPermanentWidget(frame_time_);
     statusBar()->showMessage("Open a volume, or drop one here (Ctrl+O); ? lists the shortcuts");
@@ -167,6 +172,7 @@ void MainWindow::tick() {
     hints_.observe(now);
     if (now && rounds_ % panel_rounds == 0) {
         panel_->show_snapshot(*now);
+        show_readout(*now);
         editing_.observe();
         playing_.observe();
     }
@@ -181,6 +187,19 @@ void MainWindow::tick() {
     const double seconds = views_->scene().frame_seconds();
     frame_time_->setText(seconds > 0 ? QString("%1 ms a frame").arg(1e3 * seconds, 0, 'f', 0)
                                      : QString());
+}
+
+/// Position, value and gradient at the proxy.
+void MainWindow::show_readout(const Snapshot& now) {
+    const Vec3& at = now.session.tick.proxy.scp;
+    if (!at.allFinite()) return readout_->clear();
+    const Field field = content_.field_at(now);
+    const QString units = QString::fromStdString(content_.volume()->loaded.values.units);
+    const auto number = [](double value) { return QString::number(value, 'f', 1); };
+    readout_->setText(QString("%1, %2, %3 mm   %4 %5   slope %6 /mm")
+                          .arg(number(at[0]), number(at[1]), number(at[2]),
+                               QString::number(value_at(field, at), 'g', 4), units,
+                               QString::number(gradient_at(field, at).norm(), 'g', 3)));
 }
 
 /// Looks less often at a hand that rests.

@@ -68,13 +68,14 @@ class MainWindow : public QMainWindow {
     void show_title();
     void restore_layout();
     void tick();
+    void show_readout(const Snapshot& now);
     void rest_or_wake(const std::optional<Snapshot>& now);
 
     Views* views_;
     Welcome* welcome_;
     Panel* panel_;
     Timeline* timeline_;
-    QLabel* frame_time_;
+    QLabel *readout_, *frame_time_;
     Messages messages_;
     Content content_;
     DisplayController display_;

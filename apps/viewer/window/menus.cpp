@@ -15,8 +15,8 @@
 #include "apps/viewer/window/actions.hpp"
 #include "apps/viewer/window/appearance.hpp"
 #include "apps/viewer/window/file_dialogs.hpp"
+#include "apps/viewer/window/help.hpp"
 #include "apps/viewer/window/main_window.hpp"
-#include "apps/viewer/window/shortcuts.hpp"
 #include "apps/viewer/window/views.hpp"
 
 namespace palpate::viewer {
@@ -175,6 +175,10 @@ void make_data_menu(MainWindow& window, Actions& actions) {
     actions.add(
         menu, "save_volume", "&Save the volume…", QKeySequence("Ctrl+Shift+S"),
         [&window] { window.editing().ask_save(); }, [&window] { return window.live() != nullptr; });
+    actions.add(
+        menu, "save_surface", "Save the surface as a &mesh…", {},
+        [&window] { window.editing().ask_save_surface(); },
+        [&window] { return window.live() != nullptr; });
     menu->addSeparator();
     actions.add(
         menu, "play_sequence", "&Play the sequence, or pause it", QKeySequence("K"),
@@ -245,6 +249,18 @@ void make_view_menu(MainWindow& window, Actions& actions) {
     add("dark", "&Dark", Appearance::dark);
 }
 
+void make_help_menu(MainWindow& window, Actions& actions) {
+    QMenu* help = window.menuBar()->addMenu("&Help");
+    actions.add(help, "first_steps_action", "&First steps", QKeySequence::HelpContents,
+                [&window] { make_first_steps_dialog(&window)->show(); });
+    actions
+        .add(help, "shortcuts_action", "&Shortcuts", QKeySequence("?"),
+             [&window] { make_shortcuts_dialog(&window)->show(); })
+        ->setShortcuts({QKeySequence("?"), QKeySequence("Shift+?")});
+    actions.add(help, "about_action", "&About Palpate", {},
+                [&window] { make_about_dialog(&window)->show(); });
+}
+
 }  // namespace
 
 void make_menus(MainWindow& window, Actions& actions) {
@@ -252,11 +268,7 @@ void make_menus(MainWindow& window, Actions& actions) {
     make_session_menu(window, actions);
     make_data_menu(window, actions);
     make_view_menu(window, actions);
-    QMenu* help = window.menuBar()->addMenu("&Help");
-    actions
-        .add(help, "shortcuts_action", "&Shortcuts", QKeySequence("?"),
-             [&window] { make_shortcuts_dialog(&window)->show(); })
-        ->setShortcuts({QKeySequence("?"), QKeySequence("Shift+?"), QKeySequence::HelpContents});
+    make_help_menu(window, actions);
     QToolBar* bar = window.addToolBar("Tools");
     bar->setObjectName("tools");
     for (const char* name :

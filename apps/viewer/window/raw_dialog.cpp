@@ -53,7 +53,7 @@ RawDialog::RawDialog(const QString& path, QWidget* parent)
     form->addRow(verdict_);
     auto* fields = new QWidget;
     fields->setLayout(form);
-    column_in(this, {row_of({fields, make_preview()}), buttons});
+    column_in(this, {row_of({fields, make_preview()}), buttons})->setContentsMargins(9, 9, 9, 9);
     judge();
 }
 
@@ -128,7 +128,10 @@ void RawDialog::judge() {
                               .arg(have, 0, 'f', 0)
                               .arg(std::abs(have - bytes), 0, 'f', 0)
                               .arg(have > bytes ? "more" : "fewer"));
-    slice_->setMaximum(layout.size[2] - 1);
+    if (slice_->maximum() != layout.size[2] - 1) {
+        slice_->setMaximum(layout.size[2] - 1);
+        slice_->setValue(layout.size[2] / 2);
+    }
     show_slice();
 }
 

@@ -36,6 +36,15 @@ TEST(ProbeRoute, beside_the_middle_the_nearest_surface_in_view_is_taken) {
     EXPECT_FALSE(surface_in_view(field, 1e9, towards, up)) << "nothing is solid";
 }
 
+TEST(ProbeRoute, a_single_slice_has_a_front) {
+    const Geometry geometry{Index3(9, 9, 1)};
+    const Field field(Volume(geometry, std::vector<std::uint8_t>(81, 200)), Solid::above, 0.0);
+    const auto surface = surface_in_view(field, 100, towards, up);
+    ASSERT_TRUE(surface);
+    EXPECT_GT((*surface)[2], 0);
+    EXPECT_LT((*surface)[2], 1);
+}
+
 TEST(ProbeRoute, the_way_goes_round_the_grid_in_front) {
     Geometry geometry{Index3(11, 11, 11)};
     const Vec3 from(3, 4, 5), to(8, 1, 9);

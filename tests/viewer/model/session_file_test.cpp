@@ -49,6 +49,7 @@ SessionFile some_session() {
     s.look.volume = true;
     s.look.transfer = {"CT \"bone\"", {{-5, {0, 0, 0}, 0}, {7.5, {1, 0.5, 0}, 0.25}}};
     s.look.shading = false;
+    s.look.maximum = true;
     s.look.slices = s.look.tetrahedra = s.look.planes = true;
     s.look.contact = s.look.box = s.look.orientation = s.look.scale_bar = false;
     s.camera = pictures::Camera{{1, 2, 3}, {0.5, 0.5, 0.1}, {0, 0, 2}, 123.456};

@@ -45,11 +45,17 @@ class Looks : public PanelFixture {
 
 TEST_F(Looks, each_switch_changes_its_own_and_nothing_else) {
     const std::pair<const char*, bool Look::*> switches[] = {
-        {"show_surface", &Look::surface},         {"show_volume", &Look::volume},
-        {"show_shading", &Look::shading},         {"show_slices", &Look::slices},
-        {"show_contact", &Look::contact},         {"show_tetrahedra", &Look::tetrahedra},
-        {"show_planes", &Look::planes},           {"show_box", &Look::box},
-        {"show_orientation", &Look::orientation}, {"show_scale_bar", &Look::scale_bar}};
+        {"show_surface", &Look::surface},
+        {"show_volume", &Look::volume},
+        {"show_shading", &Look::shading},
+        {"show_maximum", &Look::maximum},
+        {"show_slices", &Look::slices},
+        {"show_contact", &Look::contact},
+        {"show_tetrahedra", &Look::tetrahedra},
+        {"show_planes", &Look::planes},
+        {"show_box", &Look::box},
+        {"show_orientation", &Look::orientation},
+        {"show_scale_bar", &Look::scale_bar}};
     for (const auto& [name, member] : switches) {
         SCOPED_TRACE(name);
         panel.look_controls().set_look(look);

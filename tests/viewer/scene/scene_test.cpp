@@ -250,6 +250,43 @@ TEST(Scene, slices_cut_at_the_crosshair) {
     }
 }
 
+TEST(Scene, a_maximum_intensity_projection_shows_the_brightest_sample_of_each_line_of_sight) {
+    // A dim block, and behind it, hidden in every other way, a bright rod.
+    const Field field(
+        support::volume_of<std::uint8_t>(support::grid(support::cube(32)), [](const Index3& i) {
+            if (i[1] > 24 && std::abs(i[0] - 10) < 3) return 240;
+            return (i.array() > 3).all() && (i.array() < 28).all() ? 80 : 0;
+        }));
+    ShownScene shown;
+    Look look = bare();
+    look.surface = false;
+    look.volume = true;
+    look.maximum = true;
+    look.transfer.points = {{0, pictures::bone, 0}, {255, pictures::bone, 1}};
+    shown.scene.set_look(look);
+    shown.scene.set_field(field, 128);
+    shown.scene.look_from(pictures::view_named("front"));
+    const QImage image = shown.settled("maximum");
+    const auto grey = [&](const Vec3& at) {
+        const Pixel p = shown.at(at);
+        return qGray(image.pixel(int(p.x), int(p.y)));
+    };
+    const int rod = grey({10, 16, 16}), block = grey({22, 16, 16});
+    EXPECT_GT(rod, 200);
+    EXPECT_LT(block, rod - 60);
+    // Composed, the block hides the rod.
+    look.maximum = false;
+    look.transfer.points = {{0, pictures::bone, 0}, {60, pictures::bone, 1}, {255, {0, 0, 0}, 1}};
+    look.shading = false;
+    shown.scene.set_look(look);
+    const QImage composed = shown.settled();
+    const auto red = [&](const Vec3& at) {
+        const Pixel p = shown.at(at);
+        return qRed(composed.pixel(int(p.x), int(p.y)));
+    };
+    EXPECT_NEAR(red({10, 16, 16}), red({22, 16, 16}), 4);
+}
+
 TEST(Scene, can_be_destroyed_while_it_renders) {
     const Field noise(
         support::noise_volume<std::uint8_t>(support::grid(support::cube(128)), 3, 0, 256));

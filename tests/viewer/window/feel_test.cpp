@@ -8,6 +8,7 @@
 #include <QMessageBox>
 #include <QPushButton>
 #include <QSlider>
+#include <QTextBrowser>
 #include <QToolButton>
 
 #include "apps/viewer/model/probe_route.hpp"
@@ -330,6 +331,28 @@ TEST_F(Window, a_double_click_shows_a_pane_alone_and_again_all) {
     // Order, from above: axial, coronal, sagittal.
     EXPECT_LT(axial.y(), window_->views().slice(1).y());
     EXPECT_LT(window_->views().slice(1).y(), window_->views().slice(0).y());
+}
+
+TEST_F(Window, the_read_out_tells_place_value_and_slope_at_the_proxy) {
+    feel(large_sphere);
+    press_until_force();
+    const auto words = [&] { return part<QLabel>("readout").text(); };
+    const QString level = QString::number(window_->live()->isovalue(), 'g', 4);
+    EXPECT_TRUE(wait_until([&] { return words().contains("mm   " + level); }))
+        << words().toStdString();
+    EXPECT_TRUE(words().contains("slope"));
+}
+
+TEST_F(Window, help_has_first_steps_and_versions) {
+    for (const char* name : {"first_steps", "about"}) {
+        part<QAction>((std::string(name) + "_action").c_str()).trigger();
+        auto& dialog = part<QDialog>(name);
+        ASSERT_TRUE(wait_until([&] { return dialog.isVisible(); }));
+        EXPECT_TRUE(dialog.findChild<QTextBrowser*>()->toPlainText().contains(
+            QString(name) == "about" ? "VTK" : "Touch"));
+        dialog.grab().save(QString("%1/%2.png").arg(PALPATE_PICTURES, name));
+        dialog.close();
+    }
 }
 
 TEST_F(Window, question_mark_lists_every_shortcut) {

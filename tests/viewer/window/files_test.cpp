@@ -175,6 +175,24 @@ TEST_F(Files, a_raw_file_is_opened_once_the_dialog_knows_its_size) {
     EXPECT_EQ(volume.maximum(), 0x0201);
 }
 
+TEST_F(Files, the_surface_is_saved_as_a_mesh) {
+    feel("synthetic:sphere:32x32x32");
+    window_->editing().save_surface(scratch("ball.xyz"));
+    EXPECT_TRUE(window_->messages().problem().contains("ply"));
+    window_->editing().save_surface(scratch("ball.obj"));
+    ASSERT_TRUE(wait_until([&] { return !window_->editing().saving(); }));
+    std::ifstream file(scratch_.path() / "ball.obj");
+    int vertices = 0, normals = 0, triangles = 0;
+    for (std::string line; std::getline(file, line);) {
+        vertices += line.starts_with("v ");
+        normals += line.starts_with("vn ");
+        triangles += line.starts_with("f ");
+    }
+    EXPECT_GT(triangles, 1000);
+    EXPECT_EQ(vertices - triangles / 2, 2) << "a closed surface without handles";
+    EXPECT_EQ(normals, vertices);
+}
+
 TEST_F(Files, a_single_slice_is_seen_face_on) {
     Geometry geometry{Index3(24, 20, 1)};
     std::vector<std::uint8_t> disk(480);
