@@ -34,6 +34,20 @@ run::Source source_of(const QString& path, const Volume& volume) {
     return source;
 }
 
+/// Returns the number of triangles.
+std::size_t write_surface(const Field& field, double isovalue, const std::filesystem::path& file,
+                          const io::Progress& progress) {
+    SurfaceOptions options;
+    options.normals = true;
+    options.progress = [&](double fraction) {
+        progress(fraction);
+        return true;
+    };
+    const SurfaceMesh mesh = extract_surface(field, isovalue, options);
+    io::write_mesh(mesh, file);
+    return mesh.triangles.size();
+}
+
 }  // namespace
 
 EditController::EditController(Content& content, Panel& panel, Messages& messages, QWidget* window)
@@ -113,23 +127,22 @@ void EditController::save(const QString& path, std::function<void()> then) {
     const QString words = QString::fromStdString(io::opening_words(file, field.volume()));
     const run::Source source = source_of(path, field.volume());
     messages_.show_done(QString("Saving %1").arg(path));
-    saving_.start(
-        QString("Saving %1").arg(path),
-        [file, samples, moment = field.moment()](const io::Progress& progress) {
-            io::WriteOptions options;
-            options.progress = progress;
-            io::write_volume(flattened(*samples, moment), file, options);
-        },
-        [this, path, words, samples, source, then = std::move(then)] {
-            // Of a sequence only one frame was saved.
-            if (run::VolumeEditor* editor = content_.editor()) {
-                editor->set_saved(samples);
-                content_.set_saved(source);
-                remember_file(path);
-            }
-            messages_.show_done(QString("Saved %1").arg(path) + words);
-            if (then) then();
-        });
+    const auto write = [file, samples, moment = field.moment()](const io::Progress& progress) {
+        io::WriteOptions options;
+        options.progress = progress;
+        io::write_volume(flattened(*samples, moment), file, options);
+    };
+    saving_.start(QString("Saving %1").arg(path), write,
+                  [this, path, words, samples, source, then = std::move(then)] {
+                      // Of a sequence only one frame was saved.
+                      if (run::VolumeEditor* editor = content_.editor()) {
+                          editor->set_saved(samples);
+                          content_.set_saved(source);
+                          remember_file(path);
+                      }
+                      messages_.show_done(QString("Saved %1").arg(path) + words);
+                      if (then) then();
+                  });
 }
 
 void EditController::ask_save_surface() {
@@ -145,24 +158,15 @@ void EditController::save_surface(const QString& path) {
     if (!content_.live() || saving()) return;
     const std::filesystem::path file(path.toStdString());
     if (!messages_.guarded([&] { (void)io::mesh_format_from(file); })) return;
+    const Field field = content_.live()->field_now();
+    const double isovalue = content_.live()->isovalue();
     auto triangles = std::make_shared<std::size_t>(0);
-    saving_.start(
-        QString("Saving %1").arg(path),
-        [file, triangles, field = content_.live()->field_now(),
-         isovalue = content_.live()->isovalue()](const io::Progress& progress) {
-            SurfaceOptions options;
-            options.normals = true;
-            options.progress = [&](double fraction) {
-                progress(fraction);
-                return true;
-            };
-            const SurfaceMesh mesh = extract_surface(field, isovalue, options);
-            io::write_mesh(mesh, file);
-            *triangles = mesh.triangles.size();
-        },
-        [this, path, triangles] {
-            messages_.show_done(QString("Saved %1, %L2 triangles").arg(path).arg(*triangles));
-        });
+    const auto write = [=](const io::Progress& progress) {
+        *triangles = write_surface(field, isovalue, file, progress);
+    };
+    saving_.start(QString("Saving %1").arg(path), write, [this, path, triangles] {
+        messages_.show_done(QString("Saved %1, %L2 triangles").arg(path).arg(*triangles));
+    });
 }
 
 void EditController::settle_edits(const std::function<void()>& action) {
