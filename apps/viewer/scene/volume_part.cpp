@@ -12,6 +12,8 @@
 #include <vtkPointData.h>
 #include <vtkVolumeProperty.h>
 
+#include <cmath>
+
 namespace palpate::viewer {
 namespace {
 
@@ -37,6 +39,15 @@ vtkSmartPointer<vtkMatrix4x4> placed(const Geometry& g, const Vec3& origin) {
         matrix->SetElement(row, 3, g.origin[row] - origin[row]);
     }
     return matrix;
+}
+
+/// From black at the first level to white at the last, opaque but for what is as good as empty.
+std::vector<ControlPoint> projected(const std::vector<ControlPoint>& points) {
+    constexpr double empty = 0.03;
+    const double low = points.front().level, high = points.back().level;
+    return {{low, {0, 0, 0}, 0},
+            {std::lerp(low, high, empty), {empty, empty, empty}, 1},
+            {high, {1, 1, 1}, 1}};
 }
 
 }  // namespace
@@ -82,9 +93,8 @@ void VolumePart::set_look(const Look& look, double layer) {
     maximum_ ? mapper_->SetBlendModeToMaximumIntensity() : mapper_->SetBlendModeToComposite();
     vtkNew<vtkColorTransferFunction> colour;
     vtkNew<vtkPiecewiseFunction> opacity;
-    std::vector<ControlPoint> points = transfer_.points;
-    if (maximum_)
-        points = {{points.front().level, {0, 0, 0}, 0}, {points.back().level, {1, 1, 1}, 1}};
+    const std::vector<ControlPoint> points =
+        maximum_ ? projected(transfer_.points) : transfer_.points;
     for (const ControlPoint& point : points) {
         colour->AddRGBPoint(point.level, point.colour.red, point.colour.green, point.colour.blue);
         opacity->AddPoint(point.level, point.opacity);
