@@ -4,11 +4,14 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <new>
+#include <string>
+#include <vector>
 
 #include "io/helper/child.hpp"
 #include "io/helper/library_words.hpp"
@@ -51,16 +54,45 @@ std::string extension_of(const fs::path& path) {
     return ends_with(name, ".nii.gz") ? ".nii.gz" : lower(path.extension().string());
 }
 
+/// Whether a file of this name is a volume, whole.
+bool names_a_volume(const fs::path& path) {
+    const std::string extension = extension_of(path);
+    return std::ranges::any_of(
+        std::array{".nrrd", ".nhdr", ".mha", ".mhd", ".nii", ".nii.gz", ".vti"},
+        [&](const char* known) { return extension == known; });
+}
+
+/// "a.nrrd, b.nrrd and 3 more"
+std::string listed(std::vector<std::string> names) {
+    constexpr std::size_t most = 3;
+    std::ranges::sort(names);
+    std::string text;
+    for (std::size_t i = 0; i < std::min(most, names.size()); ++i) {
+        text += (i > 0 ? ", " : "") + names[i];
+    }
+    return names.size() > most ? text + " and " + std::to_string(names.size() - most) + " more"
+                               : text;
+}
+
 Result read_folder(const Request& request) {
-    bool dicom = false, tiff = false, folders = false;
+    int dicom = 0, tiff = 0;
+    bool folders = false;
+    std::vector<std::string> volumes;
     for (const auto& entry : fs::directory_iterator(request.path)) {
         folders |= entry.is_directory();
         if (!entry.is_regular_file()) continue;
-        dicom = dicom || looks_like_dicom(entry.path());
-        tiff = tiff || looks_like_tiff(entry.path());
+        if (names_a_volume(entry.path())) volumes.push_back(entry.path().filename().string());
+        // Not every one of ten thousand has to be looked into.
+        dicom += dicom < 2 && looks_like_dicom(entry.path());
+        tiff += dicom == 0 && tiff < 2 && looks_like_tiff(entry.path());
     }
-    if (dicom) return read_dicom_folder(request);
-    if (tiff) return read_tiff_folder(request);
+    if (!volumes.empty() && dicom + tiff <= 1) {
+        throw Failure(std::string("is a folder of volumes") +
+                      (dicom + tiff == 1 ? " with a single slice" : "") + ": give one of them (" +
+                      listed(volumes) + ")" + (dicom + tiff == 1 ? ", or the slice itself" : ""));
+    }
+    if (dicom > 0) return read_dicom_folder(request);
+    if (tiff > 0) return read_tiff_folder(request);
     throw Failure(std::string("is a folder with no DICOM or TIFF slices in it; ") +
                   (folders ? "give one of the folders in it, or a volume file"
                            : "give a volume file or another folder"));

@@ -55,6 +55,21 @@ TEST(dicom_folder, of_ten_thousand_slices_takes_time_in_proportion) {
     }
 }
 
+TEST(dicom_folder, a_single_slice_among_volumes_is_not_the_volume) {
+    const ScratchFolder folder;
+    for (const char* name : {"d.nii.gz", "a.nrrd", "c.mha", "b.NRRD", "e.vti"}) {
+        put_bytes(folder / name, "a volume");
+    }
+    EXPECT_TRUE(contains(refusal(folder.path()),
+                         "is a folder of volumes: give one of them (a.nrrd, b.NRRD, c.mha and 2 "
+                         "more)"));
+    put_slices(folder, 1);
+    EXPECT_TRUE(contains(refusal(folder.path()), "with a single slice"));
+    EXPECT_EQ(read_volume(folder / "0.dcm").volume.geometry().size, Index3(4, 3, 1));
+    put_slices(folder, 4);
+    EXPECT_EQ(read_volume(folder.path()).volume.geometry().size, Index3(4, 3, 4));
+}
+
 TEST(dicom_folder, with_copies_of_its_slices_is_the_series_without_them_and_that_is_said) {
     const ScratchFolder folder;
     put_slices(folder, 6);
