@@ -181,7 +181,9 @@ void MainWindow::tick() {
         actions_.refresh();
         setWindowModified(editing_.unsaved() != nullptr);
     }
-    if (rounds_ % report_rounds != 0) return;
+    // New numbers make the whole window be composed again, which takes software 30 ms.
+    const bool resting = at_rest_ > rounds_at_rest;
+    if (rounds_ % (resting ? 4 * report_rounds : report_rounds) != 0) return;
     run_.show_report();
     recordings_.check();
     const double seconds = views_->scene().frame_seconds();
