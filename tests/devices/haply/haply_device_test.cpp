@@ -211,6 +211,15 @@ TEST_F(HaplyTest, what_opening_needs_is_said) {
     EXPECT_NE(refusal().find("no WebSocket"), std::string::npos) << refusal();
 }
 
+TEST_F(HaplyTest, a_host_that_is_not_there_is_said_with_what_to_give) {
+    try {
+        open_haply(parse_device("haply:host=.."), {field, 0.5, 1000, {}});
+        ADD_FAILURE() << "no host has this name";
+    } catch (const DeviceError& error) {
+        EXPECT_NE(std::string(error.what()).find("no host '..'"), std::string::npos);
+    }
+}
+
 TEST_F(HaplyTest, where_nothing_listens_that_is_said_with_the_address) {
     std::uint16_t port = 0;
     {
