@@ -9,13 +9,9 @@ namespace palpate::io {
 
 /// Turns the bytes of each sample round; `each`: bytes of one sample.
 inline void swap_bytes(std::span<std::byte> samples, std::size_t each) {
-    const auto turn = [&]<std::size_t n>() {
-        for (std::size_t at = 0; at + n <= samples.size(); at += n) {
-            std::reverse(samples.data() + at, samples.data() + at + n);
-        }
-    };
-    if (each == 2) turn.template operator()<2>();
-    if (each == 4) turn.template operator()<4>();
+    for (std::size_t at = 0; each > 1 && at + each <= samples.size(); at += each) {
+        std::reverse(samples.data() + at, samples.data() + at + each);
+    }
 }
 
 }  // namespace palpate::io

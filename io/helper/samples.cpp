@@ -5,6 +5,7 @@
 #include <fstream>
 #include <limits>
 
+#include "io/byte_order.hpp"
 #include "io/helper/headers.hpp"
 
 namespace palpate::io {
@@ -30,9 +31,7 @@ class SampleBytes {
         held_.insert(held_.end(), bytes.data() + (begin - seen_), bytes.data() + (end - seen_));
         seen_ += bytes.size();
         const std::size_t whole = held_.size() / sample_bytes_ * sample_bytes_;
-        for (std::size_t at = 0; swapped_ && at < whole; at += sample_bytes_) {
-            std::reverse(held_.data() + at, held_.data() + at + sample_bytes_);
-        }
+        if (swapped_) swap_bytes({held_.data(), whole}, sample_bytes_);
         if (sink_ && whole > 0) sink_({held_.data(), whole});
         held_.erase(held_.begin(), held_.begin() + static_cast<std::ptrdiff_t>(whole));
         tell();

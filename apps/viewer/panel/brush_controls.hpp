@@ -37,6 +37,7 @@ class BrushControls : public QWidget {
     void set_history(std::size_t undo_steps, std::size_t redo_steps, bool changed);
     /// One sentence why nothing can be edited, which also shows the switch off. Empty: it can.
     void set_reason(const QString& why);
+    QString reason() const { return reason_->text(); }
     /// As if the switch was pressed.
     void toggle() { on_->click(); }
     /// Forgets requests that wait.

@@ -181,11 +181,11 @@ void MainWindow::tick() {
         actions_.refresh();
         setWindowModified(editing_.unsaved() != nullptr);
     }
+    if (rounds_ % report_rounds == 0) recordings_.check();
     // New numbers make the whole window be composed again, which takes software 30 ms.
     const bool resting = at_rest_ > rounds_at_rest;
     if (rounds_ % (resting ? 4 * report_rounds : report_rounds) != 0) return;
     run_.show_report();
-    recordings_.check();
     const double seconds = views_->scene().frame_seconds();
     frame_time_->setText(seconds > 0 ? QString("%1 ms a frame").arg(1e3 * seconds, 0, 'f', 0)
                                      : QString());

@@ -161,9 +161,8 @@ void make_data_menu(MainWindow& window, Actions& actions) {
     actions.add(
         menu, "brush_action", "&Brush at the probe", QKeySequence("B"),
         [&window] {
-            if (window.content().editor()) return window.panel().brush_controls().toggle();
-            window.messages().show_done(
-                "A sequence cannot be edited: open one frame of it (--time-step)");
+            BrushControls& brush = window.panel().brush_controls();
+            brush.reason().isEmpty() ? brush.toggle() : window.messages().show_done(brush.reason());
         },
         [&window] { return window.live() != nullptr; });
     actions.add(
