@@ -7,10 +7,8 @@
 namespace palpate::viewer {
 namespace {
 
-/// A box of a grid that has each `every`-th sample of another.
 struct Box {
     Index3 low, size;
-    int every;
 
     std::size_t place(const Index3& at) const {
         const Index3 in = at - low;
@@ -18,15 +16,9 @@ struct Box {
     }
 };
 
-/// The part of the box, in its own indices, that lies in `low` to `high` of the full grid.
+/// The part of the box that lies in `low` to `high`.
 SampleBox cut(const Box& box, const Index3& low, const Index3& high) {
-    SampleBox part;
-    for (int a = 0; a < 3; ++a) {
-        part.low[a] = std::max(box.low[a], (std::max(low[a], 0) + box.every - 1) / box.every);
-        part.high[a] =
-            high[a] < 0 ? -1 : std::min(box.low[a] + box.size[a] - 1, high[a] / box.every);
-    }
-    return part;
+    return {box.low.cwiseMax(low), (box.low + box.size - Index3::Ones()).cwiseMin(high)};
 }
 
 /// Calls f(to, from, count) for each row: `count` samples, the first at index `from` of the grid.
@@ -37,7 +29,7 @@ void for_rows(const Box& box, const SampleBox& part, F f) {
     for (int k = part.low[2]; k <= part.high[2]; ++k) {
         for (int j = part.low[1]; j <= part.high[1]; ++j) {
             const Index3 at(part.low[0], j, k);
-            f(box.place(at), Index3(at * box.every), count);
+            f(box.place(at), at, count);
         }
     }
 }
@@ -54,10 +46,9 @@ void copy_frames(const Field& field, const Box& box, float* out) {
              [&](std::size_t to, const Index3& from, int count) {
                  const auto at =
                      (static_cast<std::size_t>(from[2]) * size[1] + from[1]) * size[0] + from[0];
-                 const auto step = static_cast<std::size_t>(box.every);
                  float* const row = out + to;
                  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-                     const std::size_t s = at + i * step;
+                     const std::size_t s = at + i;
                      row[i] = weight > 0 ? static_cast<float>((1 - weight) * double(first[s]) +
                                                               weight * double(later[s]))
                                          : static_cast<float>(first[s]);
@@ -68,8 +59,8 @@ void copy_frames(const Field& field, const Box& box, float* out) {
 template <class T>
 void copy_bricks(const Field& field, const Bricks& bricks, const Box& box, float* out) {
     const Index3 last = field.geometry().size - Index3::Ones();
-    const Index3 from = (box.low * box.every).cwiseMax(0);
-    const Index3 to = ((box.low + box.size - Index3::Ones()) * box.every).cwiseMin(last);
+    const Index3 from = box.low.cwiseMax(0);
+    const Index3 to = (box.low + box.size - Index3::Ones()).cwiseMin(last);
     constexpr int n = Bricks::cells;
     for (int k = from[2] / n; k <= to[2] / n && to[2] >= 0; ++k) {
         for (int j = from[1] / n; j <= to[1] / n && to[1] >= 0; ++j) {
@@ -85,8 +76,7 @@ void copy_bricks(const Field& field, const Bricks& bricks, const Box& box, float
                     const T* const row =
                         brick + (in[2] * Bricks::samples + in[1]) * Bricks::samples + in[0];
                     for (int s = 0; s < count; ++s) {
-                        out[place + static_cast<std::size_t>(s)] =
-                            static_cast<float>(row[static_cast<std::ptrdiff_t>(s) * box.every]);
+                        out[place + static_cast<std::size_t>(s)] = static_cast<float>(row[s]);
                     }
                 });
             }
@@ -100,38 +90,15 @@ void copy(const Field& field, const Box& box, float* out) {
     if (const Bricks* bricks = field.samples().bricks()) copy_bricks<T>(field, *bricks, box, out);
 }
 
-template <class T>
-Volume thinned_in(const Field& field, const Geometry& geometry, int every) {
-    std::vector<T> samples;
-    samples.reserve(static_cast<std::size_t>(sample_count(geometry)));
-    for (int k = 0; k < geometry.size[2]; ++k) {  // a layer at a time: floats are not kept
-        const Index3 low(0, 0, k), size(geometry.size[0], geometry.size[1], 1);
-        for (const float value : sample_block(field, low, size, every)) {
-            samples.push_back(
-                static_cast<T>(std::is_integral_v<T> ? std::nearbyint(value) : value));
-        }
-    }
-    return Volume(geometry, std::move(samples));
-}
-
 }  // namespace
 
-std::vector<float> sample_block(const Field& field, const Index3& low, const Index3& size,
-                                int every) {
-    const Box box{low, size, every};
+std::vector<float> sample_block(const Field& field, const Index3& low, const Index3& size) {
+    const Box box{low, size};
     std::vector<float> values(static_cast<std::size_t>(size.cast<std::int64_t>().prod()),
                               static_cast<float>(field.background()));
     with_type(field.samples().type(),
               [&](auto zero) { copy<decltype(zero)>(field, box, values.data()); });
     return values;
-}
-
-Volume thinned(const Field& field, int every) {
-    Geometry geometry = field.geometry();
-    geometry.size = thinned_size(geometry.size, every);
-    geometry.spacing *= every;
-    return with_type(field.samples().type(),
-                     [&](auto zero) { return thinned_in<decltype(zero)>(field, geometry, every); });
 }
 
 bool same_samples(const Field& a, const Field& b) {

@@ -9,19 +9,8 @@
 namespace palpate::viewer {
 
 /// Samples [data units] at `low` + (0, 0, 0) to `size` - 1, x fastest, at the field's moment and
-/// with its edits. `every`: only each `every`-th sample of the grid along each axis (1: all); the
-/// box is in the indices of that thinned grid. Outside the grid they are background.
-std::vector<float> sample_block(const Field& field, const Index3& low, const Index3& size,
-                                int every = 1);
-
-/// How many samples along each axis are left of `size` if each `every`-th is taken.
-inline Index3 thinned_size(const Index3& size, int every) {
-    return (size.array() - 1) / every + 1;
-}
-
-/// The field as it is at its moment, thinned to each `every`-th sample, as a volume in the same
-/// type (between two frames rounded to it).
-Volume thinned(const Field& field, int every);
+/// with its edits. Outside the grid they are background.
+std::vector<float> sample_block(const Field& field, const Index3& low, const Index3& size);
 
 /// True if both are the same samples at the same moment.
 bool same_samples(const Field& a, const Field& b);

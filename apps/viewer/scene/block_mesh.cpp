@@ -100,15 +100,13 @@ std::uint8_t seams_of(const Vec3& index, const Vec3& low, int edge) {
     return static_cast<std::uint8_t>(seams);
 }
 
-/// From index space of the thinned grid to where it is drawn: physical axes, from the middle.
+/// From index space to where it is drawn: physical axes, from `middle`.
 struct Placing {
     Mat3 direction;
     Vec3 spacing, origin;
 
-    Placing(const Geometry& g, int every)
-        : direction(g.direction),
-          spacing(g.spacing * every),
-          origin(g.origin - physical_centre(g)) {}
+    Placing(const Geometry& g, const Vec3& middle)
+        : direction(g.direction), spacing(g.spacing), origin(g.origin - middle) {}
     Vec3 operator()(const Vec3& index) const {
         return origin + direction * spacing.cwiseProduct(index);
     }
@@ -123,14 +121,14 @@ std::vector<Vector3f> facet_normals(SurfaceMesh mesh, const Placing& place) {
 }  // namespace
 
 std::shared_ptr<const RenderMesh> block_mesh(const Field& field, double isovalue,
-                                             const Index3& cell, int edge, int every) {
+                                             const Index3& cell, int edge, const Vec3& middle) {
     // One more cell on every side; a cubic one, round a sample, has samples on both sides.
     const bool is_smooth = field.interpolation() == Interpolation::cubic;
     const int more = is_smooth ? 2 : 1;
     const double begin = is_smooth ? -0.5 : 0;
     const Index3 around = cell - Index3::Constant(more);
     const Index3 size = Index3::Constant(edge + (is_smooth ? 4 : 3));
-    const Corners corners{around, size, sample_block(field, around, size, every)};
+    const Corners corners{around, size, sample_block(field, around, size)};
     if (one_sided(corners.values, field, isovalue)) return nullptr;
 
     // In index space, so that a vertex between two blocks is the same number in both.
@@ -142,7 +140,7 @@ std::shared_ptr<const RenderMesh> block_mesh(const Field& field, double isovalue
     if (field.geometry().direction.determinant() < 0) {
         for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
     }
-    const Placing place(field.geometry(), every);
+    const Placing place(field.geometry(), middle);
     const std::vector<Vector3f> facets = facet_normals(mesh, place);
     drop_neighbours(mesh, cell, edge, begin);
     if (mesh.triangles.empty()) return nullptr;

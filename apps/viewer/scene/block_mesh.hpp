@@ -6,11 +6,10 @@
 
 namespace palpate::viewer {
 
-/// The isosurface in the `edge`^3 cells from `cell` on, of the field thinned to each `every`-th
-/// sample, in whose cells `cell` counts; positions from the middle of the full grid.
+/// The isosurface in the `edge`^3 cells from `cell` on; positions from `middle` [mm, physical].
 /// Normals as pictures::shaded_surface has them. Looks at samples from one before the cells to one
 /// behind their last. Null where nothing of the surface lies.
 std::shared_ptr<const RenderMesh> block_mesh(const Field& field, double isovalue,
-                                             const Index3& cell, int edge, int every);
+                                             const Index3& cell, int edge, const Vec3& middle);
 
 }  // namespace palpate::viewer

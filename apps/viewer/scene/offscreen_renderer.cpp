@@ -10,6 +10,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "apps/viewer/model/coarse_samples.hpp"
 #include "apps/viewer/model/sample_block.hpp"
 #include "apps/viewer/scene/static_actors.hpp"
 #include "apps/viewer/scene/view_space.hpp"
@@ -128,9 +129,9 @@ const Volume& OffscreenRenderer::volume_of(const Field& field, bool coarse) {
     const int every = samples > limit ? static_cast<int>(std::ceil(std::cbrt(samples / limit))) : 1;
     if (!cast_ || cast_->every != every || !same_samples(cast_->field, field)) {
         cast_.reset();
-        cast_.emplace(
-            Cast{field, every,
-                 every > 1 ? thinned(field, every) : flattened(field.samples(), field.moment())});
+        cast_.emplace(Cast{field, every,
+                           every > 1 ? coarse_volume(field, every, 0)
+                                     : flattened(field.samples(), field.moment())});
     }
     return cast_->volume;
 }

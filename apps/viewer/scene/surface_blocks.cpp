@@ -3,46 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
-#include <mutex>
-#include <thread>
 
-#include "apps/viewer/model/sample_block.hpp"
+#include "apps/viewer/model/at_once.hpp"
+#include "apps/viewer/model/coarse_samples.hpp"
 #include "apps/viewer/scene/block_mesh.hpp"
 
 namespace palpate::viewer {
 namespace {
-
-/// work(item) for all of them, in as many threads as there are processors, until one says no.
-/// Throws what one of them throws. Threads keep the caller's priority.
-bool for_each_at_once(const std::vector<std::size_t>& items,
-                      const std::function<bool(std::size_t)>& work) {
-    std::atomic<std::size_t> next{0};
-    std::atomic<bool> stopped{false};
-    std::mutex mutex;
-    std::exception_ptr error;
-    const auto run = [&] {
-        try {
-            for (std::size_t i = next++; i < items.size() && !stopped; i = next++) {
-                if (!work(items[i])) stopped = true;
-            }
-        } catch (...) {
-            const std::lock_guard lock(mutex);
-            error = std::current_exception();
-            stopped = true;
-        }
-    };
-    {
-        const std::size_t processors = std::max(1U, std::thread::hardware_concurrency());
-        std::vector<std::jthread> threads;
-        for (std::size_t t = 1; t < std::min(processors, items.size()); ++t) {
-            threads.emplace_back(run);
-        }
-        run();
-    }
-    if (error) std::rethrow_exception(error);
-    return !stopped;
-}
 
 std::vector<std::size_t> zeros_of(const std::vector<std::uint8_t>& flags) {
     std::vector<std::size_t> places;
@@ -57,7 +24,7 @@ std::vector<std::size_t> zeros_of(const std::vector<std::uint8_t>& flags) {
 SurfaceBlocks::SurfaceBlocks(const Geometry& geometry, int every, Interpolation interpolation)
     : geometry_(geometry), every_(every), reach_(interpolation == Interpolation::cubic ? 2 : 1) {
     // The cells of the ring count: from -1 to the last sample; round samples, to one after it.
-    const Index3 cells_there = thinned_size(geometry.size, every) + Index3::Constant(reach_);
+    const Index3 cells_there = coarse_size(geometry.size, every) + Index3::Constant(reach_);
     count_ = (cells_there.array() + cells - 1) / cells;
     const auto blocks = static_cast<std::size_t>(count_.cast<std::int64_t>().prod());
     meshes_.resize(blocks);
@@ -77,10 +44,10 @@ void SurfaceBlocks::mark(const SampleBox& changed) {
     if (changed.empty()) return;
     Index3 low, high;
     for (int a = 0; a < 3; ++a) {
-        // Samples of the thinned grid; a block looks at those from one before its first cell (two
+        // Samples of the coarse grid; a block looks at those from one before its first cell (two
         // on a cubic field) to two after its last.
-        const int first = (std::max(changed.low[a], 0) + every_ - 1) / every_;
-        const int last = std::min(changed.high[a], geometry_.size[a] - 1) / every_ + (reach_ - 1);
+        const SampleBox part = coarse_part(changed, geometry_.size, every_);
+        const int first = part.low[a], last = part.high[a] + (reach_ - 1);
         if (last < first || changed.high[a] < 0) return;
         low[a] = std::max(0, (first - cells) / cells);
         while ((low[a] + 1) * cells < first) ++low[a];  // its last sample: low * cells + cells
@@ -106,7 +73,7 @@ SurfaceBlocks::Outcome SurfaceBlocks::renew(const Field& field, double isovalue,
     std::atomic<bool> too_many{false};
     const bool all = for_each_at_once(zeros_of(fresh_), [&](std::size_t b) {
         if (!go_on()) return false;
-        auto mesh = block_mesh(field, isovalue, first_cell(b), cells, every_);
+        auto mesh = block_mesh(field, isovalue, first_cell(b), cells, physical_centre(geometry_));
         const auto count = [](const auto& m) { return m ? m->triangle_count() : 0; };
         triangles += count(mesh) - count(meshes_[b]);
         meshes_[b] = std::move(mesh);

@@ -11,14 +11,14 @@
 
 namespace palpate::viewer {
 
-/// The surface of a field thinned to each `every`-th sample along each axis; made piece by
-/// piece, by as many threads as there are processors. Blocks meet without cracks, simplified ones
-/// too, and do not depend on what was there before: the same field has the same blocks.
+/// The surface of a field, or of its coarse version (coarse_samples.hpp); made piece by piece, by
+/// as many threads as there are processors. Blocks meet without cracks, simplified ones too, and do
+/// not depend on what was there before: the same field has the same blocks.
 class SurfaceBlocks {
   public:
     static constexpr int cells = 32;  ///< along each axis of a block
 
-    /// Nothing is made yet. `every` at least 1.
+    /// Of the full grid. Nothing is made yet. `every`: of the coarse version; 1: the field itself.
     SurfaceBlocks(const Geometry& geometry, int every, Interpolation interpolation);
 
     int every() const { return every_; }
@@ -29,8 +29,9 @@ class SurfaceBlocks {
     std::size_t outdated() const;
 
     enum class Outcome : std::uint8_t { done, interrupted, too_many };
-    /// Makes what is to be made, as long as `go_on` (called from several threads) says so, and
-    /// until there are more than `most_triangles`. What was made stays made.
+    /// Makes what is to be made of this version of the field, or its coarse one, as long as `go_on`
+    /// (called from several threads) says so, and until there are more than `most_triangles`. What
+    /// was made stays made.
     Outcome renew(const Field& field, double isovalue, const std::function<bool()>& go_on,
                   std::size_t most_triangles);
 

@@ -9,6 +9,7 @@
 #include <new>
 #include <stdexcept>
 
+#include "apps/viewer/model/sample_block.hpp"
 #include "apps/viewer/scene/thread_priority.hpp"
 
 namespace palpate::viewer {
@@ -17,8 +18,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
-// A change of more blocks is shown coarsely first. So many take about a twentieth of a second.
-constexpr std::size_t few_blocks = 64;
 // Without a large change for so long, finer surfaces are worth it.
 constexpr auto still = 150ms;
 // The time for a surface while large changes come one after the other [s].
@@ -27,10 +26,6 @@ constexpr std::size_t no_limit = std::numeric_limits<std::size_t>::max();
 
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-bool is_small(const SurfaceBlocks& blocks) {
-    return blocks.outdated() <= few_blocks;
 }
 
 }  // namespace
@@ -116,7 +111,11 @@ void SurfaceExtractor::run(const std::stop_token& stop) {
 void SurfaceExtractor::take_up(Request request) {
     begun_ = Clock::now();
     const bool anew = request.anew || !shown_ || request.isovalue != request_->isovalue;
+    const bool other = !request_ || request_->field.geometry() != request.field.geometry();
+    const SampleBox changed = other ? SampleBox() : changed_between(request_->field, request.field);
     request_.emplace(std::move(request));
+    if (other) coarse_.clear();
+    for (auto& [step, samples] : coarse_) samples.mark(changed);
     const std::vector<int> steps = steps_for(request_->field.geometry().size);
     if (anew) {
         finer_.reset();
@@ -128,14 +127,19 @@ void SurfaceExtractor::take_up(Request request) {
     }
     shown_->mark(request_->changed);
     if (finer_) finer_->mark(request_->changed);
-    if (is_small(*shown_) && !(request_->changed == whole_box(request_->field.geometry()))) {
+    if (!(request_->changed == whole_box(request_->field.geometry()))) {
         streaming_ = false;
         return;
     }
     stream(steps);
 }
 
-/// A large change: the first surface is coarse enough to be shown at once. A finer one is kept and
+Field SurfaceExtractor::field_of(const SurfaceBlocks& blocks) {
+    if (blocks.every() == 1) return request_->field;
+    return coarse_.try_emplace(blocks.every(), blocks.every()).first->second.of(request_->field);
+}
+
+/// All has changed: the first surface is coarse enough to be shown at once. A finer one is kept and
 /// updated when there is time.
 void SurfaceExtractor::stream(const std::vector<int>& steps) {
     streaming_ = true;
@@ -171,7 +175,7 @@ void SurfaceExtractor::carry_out(const std::stop_token& stop) {
 bool SurfaceExtractor::make_first(const std::function<bool()>& go_on) {
     for (;;) {
         const bool coarse = shown_->triangles() == 0;
-        const auto outcome = shown_->renew(request_->field, request_->isovalue, go_on,
+        const auto outcome = shown_->renew(field_of(*shown_), request_->isovalue, go_on,
                                            coarse ? limits_.most_triangles : no_limit);
         if (outcome == SurfaceBlocks::Outcome::done) break;
         if (outcome == SurfaceBlocks::Outcome::interrupted) return false;
@@ -188,7 +192,7 @@ bool SurfaceExtractor::make_first(const std::function<bool()>& go_on) {
 bool SurfaceExtractor::make_finer(const std::function<bool()>& go_on) {
     const int step = finer_ ? finer_->every() : steps_.front();
     if (!finer_) finer_.emplace(request_->field.geometry(), step, request_->field.interpolation());
-    switch (finer_->renew(request_->field, request_->isovalue, go_on, limits_.most_triangles)) {
+    switch (finer_->renew(field_of(*finer_), request_->isovalue, go_on, limits_.most_triangles)) {
         case SurfaceBlocks::Outcome::interrupted:
             return false;
         case SurfaceBlocks::Outcome::too_many:

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -12,6 +13,7 @@
 #include <thread>
 #include <vector>
 
+#include "apps/viewer/model/coarse_samples.hpp"
 #include "apps/viewer/scene/surface_blocks.hpp"
 #include "palpate/field.hpp"
 
@@ -25,9 +27,9 @@ struct ExtractedSurface {
     /// the same place.
     MeshBlocks blocks;
     std::shared_ptr<const RenderMesh> moving;  ///< of few triangles; null: there are none
-    int every = 1;          ///< the stride of the samples sample it was made from
-    bool finished = false;  ///< no finer one comes
-    double seconds = 0;     ///< since it was begun
+    int every = 1;                             ///< made from one sample for so many along each axis
+    bool finished = false;                     ///< no finer one comes
+    double seconds = 0;                        ///< since it was begun
 };
 
 struct SurfaceLimits {
@@ -52,9 +54,9 @@ class SurfaceExtractor {
     void ask(std::uint64_t request, const Field& field, double isovalue);
     /// Another version of the data asked for last, on the same grid. `changed`: only these samples
     /// have changed since the last ask() or update(); changes of requests that are skipped add up.
-    /// A small change is made in the surface that is shown, coarse or fine, and in the finer one
-    /// that is being extracted. A large change is shown coarsely first, and finely once no versions
-    /// come.
+    /// An edit is made in the surface that is shown, coarse or fine, and in the finer one that is
+    /// being extracted. Where all has changed it is shown coarsely first, and finely once no
+    /// versions come.
     void update(std::uint64_t request, const Field& field, double isovalue,
                 const SampleBox& changed);
     /// Cancels all requests.
@@ -71,6 +73,7 @@ class SurfaceExtractor {
     void run(const std::stop_token& stop);
     void carry_out(const std::stop_token& stop);
     void take_up(Request request);
+    Field field_of(const SurfaceBlocks& blocks);
     void stream(const std::vector<int>& steps);
     bool make_first(const std::function<bool()>& go_on);
     bool make_finer(const std::function<bool()>& go_on);
@@ -86,17 +89,18 @@ class SurfaceExtractor {
     std::atomic<bool> waiting_{false}, forgotten_{false};
 
     // The working thread's.
-    std::optional<Request> request_;      // that is carried out
-    std::optional<SurfaceBlocks> shown_;  // what was published last, or is to be brought up to it
-    std::optional<SurfaceBlocks> finer_;  // under way
-    std::vector<int> steps_;              // still to come after shown_, finer_'s first
-    bool streaming_ = false;              // large changes come one after the other
-    int moving_step_ = 0;  // the stride of the samples sample those take; 0: not known
+    std::optional<Request> request_;       // that is carried out
+    std::optional<SurfaceBlocks> shown_;   // what was published last, or is to be brought up to it
+    std::optional<SurfaceBlocks> finer_;   // under way
+    std::map<int, CoarseSamples> coarse_;  // of the field of request_, by the step
+    std::vector<int> steps_;               // still to come after shown_, finer_'s first
+    bool streaming_ = false;               // large changes come one after the other
+    int moving_step_ = 0;                  // the step that those take; 0: not known
     std::chrono::steady_clock::time_point begun_;
     std::jthread thread_;
 };
 
-/// The strides of the steps from coarse to full, for a grid of this size.
+/// The steps from coarse to full, for a grid of this size: samples for one that is looked at.
 std::vector<int> steps_for(const Index3& size);
 
 }  // namespace palpate::viewer

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 
+#include "apps/viewer/model/coarse_samples.hpp"
 #include "apps/viewer/model/sample_block.hpp"
 #include "palpate/edit.hpp"
 #include "palpate/scenes/volumes.hpp"
@@ -27,9 +28,16 @@ Point point(const std::vector<float>& values, std::int32_t i) {
     return {values[at], values[at + 1], values[at + 2]};
 }
 
+/// The field itself, or its coarse version.
+Field version(const Field& field, CoarseSamples& samples, int every) {
+    return every == 1 ? field : samples.of(field);
+}
+
 SurfaceBlocks blocks_of(const Field& field, double isovalue, int every = 1) {
     SurfaceBlocks blocks(field.geometry(), every, field.interpolation());
-    EXPECT_EQ(blocks.renew(field, isovalue, always, all), SurfaceBlocks::Outcome::done);
+    CoarseSamples samples(every);
+    EXPECT_EQ(blocks.renew(version(field, samples, every), isovalue, always, all),
+              SurfaceBlocks::Outcome::done);
     return blocks;
 }
 
@@ -157,6 +165,8 @@ TEST(SurfaceBlocks, after_edits_are_those_of_the_flattened_volume) {
             Field now = *one;
             const double level = one == &field ? 350 : 128;
             SurfaceBlocks blocks = blocks_of(now, level, every);
+            CoarseSamples samples(every);
+            version(now, samples, every);
             for (int i = 0; i < 6; ++i) {
                 const Index3 size = now.geometry().size;
                 Index3 at;
@@ -167,12 +177,11 @@ TEST(SurfaceBlocks, after_edits_are_those_of_the_flattened_volume) {
                 const Edited after = edited(now.shared_samples(), stroke);
                 const Field before = now;
                 now.use(after.samples);
-                if (i % 3 == 2) {
-                    blocks.mark(changed_between(before, now));
-                } else {
-                    blocks.mark(after.changed);
-                }
-                ASSERT_EQ(blocks.renew(now, level, always, all), SurfaceBlocks::Outcome::done);
+                const SampleBox changed = i % 3 == 2 ? changed_between(before, now) : after.changed;
+                blocks.mark(changed);
+                samples.mark(changed);
+                ASSERT_EQ(blocks.renew(version(now, samples, every), level, always, all),
+                          SurfaceBlocks::Outcome::done);
             }
             const Field flat(flattened(now.samples()), now.solid(), now.background());
             expect_same(blocks, blocks_of(flat, level, every));
@@ -232,25 +241,76 @@ TEST(SampleBlock, is_what_the_samples_are_wherever_they_are_stored) {
         const edit::Fill fill{{Index3(14 + 9 * i, 3, 15), Index3(20 + 9 * i, 16, 17)}, 5.0 * i};
         field.use(edited(field.shared_samples(), fill).samples);
     }
-    for (const int every : {1, 2, 3, 5}) {
-        const Index3 low(-2, -1, -3), size(48, 24, 25),
-            there = thinned_size(field.geometry().size, every);
-        const std::vector<float> block = sample_block(field, low, size, every);
-        std::size_t n = 0;
-        for (int k = 0; k < size[2]; ++k) {
-            for (int j = 0; j < size[1]; ++j) {
-                for (int i = 0; i < size[0]; ++i, ++n) {
-                    const Index3 at = low + Index3(i, j, k);
-                    const bool in = (at.array() >= 0).all() && (at.array() < there.array()).all();
-                    ASSERT_EQ(block[n], in ? field.samples().sample(at * every) : -77);
-                }
+    const Index3 low(-2, -1, -3), size(48, 24, 25);
+    const std::vector<float> block = sample_block(field, low, size);
+    std::size_t n = 0;
+    for (int k = 0; k < size[2]; ++k) {
+        for (int j = 0; j < size[1]; ++j) {
+            for (int i = 0; i < size[0]; ++i, ++n) {
+                const Index3 at = low + Index3(i, j, k);
+                const bool in =
+                    (at.array() >= 0).all() && (at.array() < field.geometry().size.array()).all();
+                ASSERT_EQ(block[n], in ? field.samples().sample(at) : -77);
             }
         }
-        const Volume thin = thinned(field, every);
-        EXPECT_EQ(thin.geometry().size, there);
-        EXPECT_EQ(thin.type(), SampleType::int16);
-        EXPECT_EQ(thin.sample(there - Index3::Ones()),
-                  field.samples().sample((there - Index3::Ones()) * every));
+    }
+}
+
+TEST(CoarseSamples, are_between_mean_and_extreme_of_the_samples_round_them) {
+    for (const Solid solid : {Solid::above, Solid::below}) {
+        const Field field = noise(support::grid({23, 20, 18}, {1, 2, 0.5}), solid);
+        const Index3 last = field.geometry().size - Index3::Ones();
+        for (const int every : {2, 3, 4, 7}) {
+            const Volume coarse = coarse_volume(field, every, 0.25);
+            const Index3 size = coarse.geometry().size;
+            EXPECT_EQ(size, coarse_size(field.geometry().size, every));
+            EXPECT_EQ(coarse.geometry().spacing, every * field.geometry().spacing);
+            EXPECT_EQ(coarse.geometry().origin, field.geometry().origin);
+            const int half = every / 2, across = 2 * half + 1;
+            for (int n = 0; n < int(sample_count(coarse.geometry())); ++n) {
+                const Index3 at(n % size[0], n / size[0] % size[1], n / (size[0] * size[1]));
+                double sum = 0, weights = 0, most = -1e300;
+                for (int m = 0; m < across * across * across; ++m) {
+                    const Index3 by =
+                        Index3(m % across, m / across % across, m / (across * across)) -
+                        Index3::Constant(half);
+                    const double sample =
+                        field.samples().sample((every * at + by).cwiseMax(0).cwiseMin(last));
+                    // Half of a sample that lies half way along each axis.
+                    const auto halves = (2 * by.cwiseAbs().array() == every).count();
+                    const double weight = std::pow(0.5, double(halves));
+                    sum += weight * sample;
+                    weights += weight;
+                    most = std::max(most, field.sign() * sample);
+                }
+                ASSERT_NEAR(coarse.sample(at), 0.75 * sum / weights + 0.25 * field.sign() * most,
+                            1e-3);
+            }
+        }
+    }
+}
+
+TEST(CoarseSamples, that_a_box_changes_are_all_that_depend_on_it) {
+    support::Random random(5);
+    const Field field = noise(support::grid({33, 31, 34}));
+    for (int i = 0; i < 60; ++i) {
+        const int every = 1 + i % 9;
+        Index3 low;
+        for (int a = 0; a < 3; ++a) low[a] = int(random.uniform(0, 30));
+        const SampleBox box{low, low + Index3::Constant(i % 3)};
+        Field now = field;
+        now.use(edited(now.shared_samples(), edit::Fill{box, 999}).samples);
+        const Volume before = coarse_volume(field, every, 0.5),
+                     after = coarse_volume(now, every, 0.5);
+        const SampleBox part = coarse_part(box, field.geometry().size, every);
+        const Index3 size = before.geometry().size;
+        for (int n = 0; n < int(sample_count(before.geometry())); ++n) {
+            const Index3 at(n % size[0], n / size[0] % size[1], n / (size[0] * size[1]));
+            if (before.sample(at) == after.sample(at)) continue;
+            ASSERT_TRUE((at.array() >= part.low.array()).all() &&
+                        (at.array() <= part.high.array()).all())
+                << every << ": " << at.transpose();
+        }
     }
 }
 

@@ -1,0 +1,40 @@
+// A coarse version of a field, for previews. A surface of every fourth sample, say, is a heap of
+// shards where bone or a vessel is thin; here it stays whole and becomes thicker.
+#pragma once
+
+#include <optional>
+
+#include "palpate/field.hpp"
+
+namespace palpate::viewer {
+
+/// How many samples along each axis are left of `size` if there is one for each `every`.
+inline Index3 coarse_size(const Index3& size, int every) {
+    return (size.array() - 1) / every + 1;
+}
+
+/// The coarse samples that depend on these of the full grid.
+SampleBox coarse_part(const SampleBox& box, const Index3& size, int every);
+
+/// A sample for each `every`-th of the grid along each axis, in the same place, from those round
+/// it, up to half as far as the next one: their mean and, by `extreme`, 0 to 1, the most solid of
+/// them. At the field's moment, edits included. Reads all samples.
+Volume coarse_volume(const Field& field, int every, double extreme);
+
+/// Coarse volumes of the versions of a field, half mean and half extreme.
+class CoarseSamples {
+  public:
+    explicit CoarseSamples(int every) : every_(every) {}
+
+    /// These samples of the full grid are other ones.
+    void mark(const SampleBox& changed) { changed_ = united(changed_, changed); }
+    /// Of this version, made from the last one where samples have not been marked.
+    Field of(const Field& field);
+
+  private:
+    int every_;
+    std::optional<Volume> volume_;
+    SampleBox changed_;
+};
+
+}  // namespace palpate::viewer
