@@ -106,8 +106,8 @@ struct JsonReader {
         if (!found->is_array()) wrong_member(where + name, "a list");
         values.clear();
         for (const Json& value : *found) {
-            get(value, where + name + "[" + std::to_string(values.size()) + "]",
-                values.emplace_back());
+            const std::string item = where + name + "[" + std::to_string(values.size()) + "]";
+            get(value, item, values.emplace_back());
         }
     }
 };

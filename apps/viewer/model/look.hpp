@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "palpate/volume.hpp"
 #include "pictures/scene.hpp"
 
 namespace palpate::viewer {
@@ -31,11 +32,44 @@ struct TransferFunction {
 /// Of the brush round the proxy: orange (Okabe and Ito).
 inline constexpr pictures::Colour brush_colour{0.902, 0.624, 0};
 
+/// A surface that is seen beside the one that is felt.
+struct SeenSurface {
+    double level = 0;  ///< [data units]
+    Colour colour;     ///< sRGB
+    double opacity = 1;
+    bool shown = true;
+
+    bool operator==(const SeenSurface&) const = default;
+};
+/// Those beside the felt one are so many at most: each keeps a mesh in memory.
+inline constexpr std::size_t most_surfaces = 8;
+
+/// What is cut away of surfaces and volume, so that one sees into them.
+enum class Cut : std::uint8_t { nothing, plane, box };
+
+/// Cut away is the side to which the normal points.
+struct CutPlane {
+    Vec3 point = Vec3::Zero();  ///< [mm, physical]
+    Vec3 normal = -Vec3::UnitY();
+
+    bool operator==(const CutPlane&) const = default;
+};
+/// Cut away is what lies outside. Parts of the grid along each of its axes, 0 to 1.
+struct CutBox {
+    Vec3 low = Vec3::Zero(), high = Vec3::Ones();
+
+    bool operator==(const CutBox&) const = default;
+};
+
 /// What is in the scene and how it looks.
 struct Look {
     bool surface = true;  ///< the isosurface that is felt
     Colour surface_colour = pictures::bone;
     double surface_opacity = 1;
+    std::vector<SeenSurface> surfaces;  ///< beside the felt one
+    Cut cut = Cut::nothing;
+    CutPlane cut_plane;
+    CutBox cut_box;
     bool volume = false;  ///< volume rendering
     TransferFunction transfer;
     bool shading = true;                      ///< of the volume

@@ -2,6 +2,8 @@
 #include "apps/viewer/model/session_file.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <stdexcept>
@@ -48,10 +50,45 @@ static void members(auto& v, Is<TransferFunction> auto& s) {
     v("points", s.points);
 }
 
+static void members(auto& v, Is<SeenSurface> auto& s) {
+    v("level", s.level);
+    v("colour", s.colour);
+    v("opacity", s.opacity);
+    v("shown", s.shown);
+}
+
+static void members(auto& v, Is<CutPlane> auto& s) {
+    v("point", s.point);
+    v("normal", s.normal);
+}
+
+static void members(auto& v, Is<CutBox> auto& s) {
+    v("low", s.low);
+    v("high", s.high);
+}
+
+constexpr std::array<const char*, 3> cut_names{"nothing", "plane", "box"};
+
+static io::Json to_value(Cut cut) {
+    return cut_names[static_cast<std::size_t>(cut)];
+}
+
+static void from_value(const io::Json& json, const std::string& name, Cut& cut) {
+    std::string text;
+    io::from_value(json, name, text);
+    const auto at = std::ranges::find(cut_names, text);
+    if (at == cut_names.end()) io::wrong_member(name, "nothing, plane or box");
+    cut = static_cast<Cut>(at - cut_names.begin());
+}
+
 static void members(auto& v, Is<Look> auto& s) {
     v("surface", s.surface);
     v("surface_colour", s.surface_colour);
     v("surface_opacity", s.surface_opacity);
+    v("surfaces", s.surfaces);
+    v("cut", s.cut);
+    v("cut_plane", s.cut_plane);
+    v("cut_box", s.cut_box);
     v("volume", s.volume);
     v("transfer", s.transfer);
     v("shading", s.shading);
@@ -101,9 +138,30 @@ void check_finite(const std::string& name, double value) {
     if (!std::isfinite(value)) wrong(name, "must be a finite number");
 }
 
+void check_cut(const Look& look) {
+    if (!look.cut_plane.point.allFinite()) wrong("look.cut_plane.point", "must be finite");
+    if (!look.cut_plane.normal.allFinite() || !(look.cut_plane.normal.norm() > 0)) {
+        wrong("look.cut_plane.normal", "must be finite and not zero");
+    }
+    const auto& [low, high] = look.cut_box;
+    if (!(low.array() >= 0 && low.array() < high.array() && high.array() <= 1).all()) {
+        wrong("look.cut_box", "must have 0 <= low < high <= 1 along each axis");
+    }
+}
+
 void check_look(const Look& look) {
     check_colour("look.surface_colour", look.surface_colour);
     check_part("look.surface_opacity", look.surface_opacity);
+    if (look.surfaces.size() > most_surfaces) {
+        wrong("look.surfaces", "must not be more than " + std::to_string(most_surfaces));
+    }
+    for (std::size_t i = 0; i < look.surfaces.size(); ++i) {
+        const std::string name = "look.surfaces[" + std::to_string(i) + "].";
+        check_finite(name + "level", look.surfaces[i].level);
+        check_colour(name + "colour", look.surfaces[i].colour);
+        check_part(name + "opacity", look.surfaces[i].opacity);
+    }
+    check_cut(look);
     const auto& points = look.transfer.points;
     const std::string list = "look.transfer.points";
     if (points.size() == 1) wrong(list, "must be two points or more, or none");

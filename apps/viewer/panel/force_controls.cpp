@@ -5,6 +5,7 @@
 #include <array>
 
 #include "apps/viewer/panel/layout.hpp"
+#include "apps/viewer/panel/section.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -33,6 +34,10 @@ enum : std::size_t {
     peak = 8,
     limit = 9
 };
+/// Those that everybody needs; the others are advanced.
+constexpr bool is_plain(std::size_t row) {
+    return row == stiffness || row == static_friction || row == limit;
+}
 }  // namespace force_row
 
 constexpr std::array force_rows{
@@ -73,18 +78,25 @@ constexpr std::array force_rows{
 }  // namespace
 
 ForceControls::ForceControls() {
-    auto* form = new QFormLayout(this);
-    form->setContentsMargins(0, 0, 0, 0);
-    form->setVerticalSpacing(3);
+    auto *plain = new QWidget, *advanced = new QWidget;
+    auto *plain_form = new QFormLayout(plain), *advanced_form = new QFormLayout(advanced);
+    for (QFormLayout* form : {plain_form, advanced_form}) {
+        form->setContentsMargins(0, 0, 0, 0);
+        form->setVerticalSpacing(3);
+    }
     for (std::size_t i = 0; i < force_rows.size(); ++i) {
         const ForceRow& made = force_rows[i];
         auto* quantity = new Quantity(made.name, made.unit, 0, made.high, made.step);
         quantity->set_accessible_name(made.label);
-        add_row(*form, made.label, quantity, made.tip);
+        add_row(force_row::is_plain(i) ? *plain_form : *advanced_form, made.label, quantity,
+                made.tip);
         rows_.push_back(quantity);
         connect(quantity, &Quantity::wanted, this, [this, i](double value) { change(i, value); });
     }
     rows_[force_row::limit]->box().set_infinite(true);
+    auto* fold = new Section("Advanced", "force_advanced", advanced);
+    fold->set_open(false);
+    column_in(this, {plain, fold});
 }
 
 void ForceControls::change(std::size_t number, double value) {

@@ -50,6 +50,9 @@ IsovalueControls::IsovalueControls()
     smoothness_->addItems({"linear", "cubic"});
     let_wheel_pass(*solid_);
     let_wheel_pass(*smoothness_);
+    QSizePolicy keeps_room = overruled_->sizePolicy();  // so that what is below does not jump
+    keeps_room.setRetainSizeWhenHidden(true);
+    overruled_->setSizePolicy(keeps_room);
     felt_->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
     column_in(this,
               {chart_, slider_, row_of({box_, felt_}, 1),

@@ -39,6 +39,7 @@ LevelChart::LevelChart() {
     setToolTip(
         "Histogram of the data (logarithm of the counts).\n"
         "Drag: the isovalue. Arrow keys or wheel after a click: fine steps; Page keys: ten.\n"
+        "Squares on the lower edge: levels of the other surfaces, to drag.\n"
         "Ticks on the upper edge: levels that are likely worth feeling.\n"
         "Shift-drag: a new range of interest. Drag the strip below: move or resize it;\n"
         "right click or Del: delete it.\n"
@@ -56,6 +57,7 @@ void LevelChart::set_data(const run::Histogram& histogram, const std::vector<dou
 void LevelChart::clear() {
     set_data({}, {});
     bands_.clear();
+    marks_.clear();
     felt_ = std::numeric_limits<double>::quiet_NaN();
 }
 
@@ -78,6 +80,12 @@ void LevelChart::set_bands(const Ranges& bands) {
     if (drag_ == Drag::band) return;
     bands_ = bands;
     if (chosen_ >= static_cast<int>(bands_.size())) chosen_ = -1;
+    update();
+}
+
+void LevelChart::set_marks(const std::vector<LevelMark>& marks) {
+    if (drag_ == Drag::mark || marks == marks_) return;
+    marks_ = marks;
     update();
 }
 
@@ -151,6 +159,20 @@ int LevelChart::tick_at(const QPointF& at) const {
     return best;
 }
 
+/// The mark whose grip is under the pointer, or -1.
+int LevelChart::mark_at(const QPointF& at) const {
+    if (at.y() < plot().bottom() - 0.7 * text_height() || at.y() > plot().bottom() + 1) return -1;
+    int best = -1;
+    double nearest = reach + 1;
+    for (std::size_t i = 0; i < marks_.size(); ++i) {
+        const double off = std::abs(axis().x_of(marks_[i].level) - at.x());
+        if (off >= nearest) continue;
+        nearest = off;
+        best = static_cast<int>(i);
+    }
+    return best;
+}
+
 void LevelChart::press_strip(const QPointF& at) {
     grip_ = band_at(bands_, axis(), at.x(), reach);
     if (!editable_ && grip_.grip == Grip::whole) grip_ = {};
@@ -182,6 +204,11 @@ void LevelChart::mousePressEvent(QMouseEvent* event) {
         Q_EMIT level_settled();
         return;
     }
+    held_mark_ = mark_at(at);
+    if (held_mark_ >= 0) {
+        drag_ = Drag::mark;
+        return;
+    }
     drag_ = Drag::level;
     // Pressing on the line itself does not move it.
     if (std::abs(axis().x_of(level_) - at.x()) > 1.5) ask_level(axis().round_level_of(at.x()));
@@ -196,6 +223,11 @@ void LevelChart::mouseMoveEvent(QMouseEvent* event) {
             return;
         case Drag::level:
             ask_level(level);
+            return;
+        case Drag::mark:
+            marks_[static_cast<std::size_t>(held_mark_)].level = level;
+            update();
+            Q_EMIT mark_moved(held_mark_, level);
             return;
         case Drag::band: {
             DensityRange& band = bands_[static_cast<std::size_t>(grip_.band)];
@@ -229,7 +261,7 @@ void LevelChart::show_cursor(const QPointF& at) {
         const Grip grip = band_at(bands_, axis(), at.x(), reach).grip;
         if (grip == Grip::low || grip == Grip::high) shape = Qt::SizeHorCursor;
         if (grip == Grip::whole && editable_) shape = Qt::OpenHandCursor;
-    } else if (std::abs(axis().x_of(level_) - at.x()) < reach) {
+    } else if (std::abs(axis().x_of(level_) - at.x()) < reach || mark_at(at) >= 0) {
         shape = Qt::SplitHCursor;
     }
     setCursor(shape);
@@ -317,6 +349,19 @@ void LevelChart::paint_ticks(QPainter& painter, const LevelAxis& axis) const {
     }
 }
 
+void LevelChart::paint_marks(QPainter& painter, const LevelAxis& axis) const {
+    const QRectF p = plot();
+    const double half = 0.25 * text_height();
+    for (const LevelMark& mark : marks_) {
+        const double x = axis.x_of(mark.level);
+        painter.setPen(QPen(mark.colour, 1.5));
+        painter.drawLine(QPointF(x, p.top()), QPointF(x, p.bottom()));
+        painter.setPen(QPen(palette().color(QPalette::Text), 1));
+        painter.setBrush(mark.colour);
+        painter.drawRect(QRectF(x - half, p.bottom() - 2 * half, 2 * half, 2 * half));
+    }
+}
+
 /// The level asked for as a line with a grip, the level felt as a broken line with a drop below.
 void LevelChart::paint_markers(QPainter& painter, const LevelAxis& axis) const {
     const QRectF p = plot();
@@ -369,6 +414,7 @@ void LevelChart::paintEvent(QPaintEvent*) {
     if (drag_ == Drag::fresh) bands.push_back(fresh_);
     paint_bands(painter, bands, a, p, strip(), chosen_);
     paint_ticks(painter, a);
+    paint_marks(painter, a);
     paint_markers(painter, a);
     paint_ends(painter);
     painter.setBrush(Qt::NoBrush);

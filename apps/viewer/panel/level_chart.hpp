@@ -2,6 +2,7 @@
 // levels as ticks and ranges of interest as bands.
 #pragma once
 
+#include <QColor>
 #include <QWidget>
 
 #include <limits>
@@ -10,6 +11,14 @@
 #include "apps/viewer/panel/range_bands.hpp"
 
 namespace palpate::viewer {
+
+/// A level in the colour of its surface.
+struct LevelMark {
+    double level = 0;
+    QColor colour;
+
+    bool operator==(const LevelMark&) const = default;
+};
 
 /// Mouse: press or drag in the plot moves the level; a tick on the upper edge is taken exactly;
 /// bands are moved and resized by their strip on the lower edge; shift-drag makes a new one; right
@@ -32,6 +41,8 @@ class LevelChart : public QWidget {
     double felt() const { return felt_; }
     /// Bands; emits nothing. Ignored while a band is dragged.
     void set_bands(const Ranges& bands);
+    /// Further levels, as lines with a grip below; emits nothing. Ignored while one is dragged.
+    void set_marks(const std::vector<LevelMark>& marks);
     const Ranges& bands() const { return bands_; }
     /// Whether bands can be added, deleted and moved as a whole; else only their ends move.
     void set_editable(bool editable) { editable_ = editable; }
@@ -52,6 +63,7 @@ class LevelChart : public QWidget {
     void level_settled();  ///< the drag is over
     void bands_moved(const palpate::viewer::Ranges& bands);
     void bands_settled();
+    void mark_moved(int mark, double level);
     void band_added(const palpate::DensityRange& range);
     void band_deleted(int band);
     void band_chosen(int band);
@@ -66,7 +78,7 @@ class LevelChart : public QWidget {
     void wheelEvent(QWheelEvent* event) override;
 
   private:
-    enum class Drag { none, level, band, fresh };
+    enum class Drag { none, level, mark, band, fresh };
 
     QRectF plot() const;
     double text_height() const;
@@ -74,6 +86,8 @@ class LevelChart : public QWidget {
     void step_level(double steps);
     void press_strip(const QPointF& at);
     int tick_at(const QPointF& at) const;
+    int mark_at(const QPointF& at) const;
+    void paint_marks(QPainter& painter, const LevelAxis& axis) const;
     void show_cursor(const QPointF& at);
     void paint_ticks(QPainter& painter, const LevelAxis& axis) const;
     void paint_markers(QPainter& painter, const LevelAxis& axis) const;
@@ -87,7 +101,10 @@ class LevelChart : public QWidget {
     bool editable_ = true;
     int chosen_ = -1;
 
+    std::vector<LevelMark> marks_;
+
     Drag drag_ = Drag::none;
+    int held_mark_ = -1;
     BandGrip grip_;
     double held_at_ = 0;         // level under the pointer when the drag began
     DensityRange held_, fresh_;  // the band then; the one that is being made

@@ -5,6 +5,8 @@
 #include <QLabel>
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 
 #include "apps/viewer/panel/layout.hpp"
 
@@ -16,13 +18,17 @@ LookControls::LookControls()
       surface_opacity_(new Quantity("surface_opacity", "", 0, 1, 0.05)),
       preset_(named(new QComboBox, "preset",
                     "Transfer functions made for these data; choose one again to undo changes")),
+      surfaces_(new SurfaceList),
+      cut_(named(new QComboBox, "cut",
+                 "Cut surfaces and volume open, to see inside. Drag the blue balls in the scene.\n"
+                 "Choose the plane again to have it face you.")),
       editor_(new TransferEditor),
       point_level_(named(new NumberBox, "point_level", "Level of the chosen point [data units]")),
       point_opacity_(named(new NumberBox, "point_opacity",
                            "Opacity of the chosen point, 0 to 1, of a layer as thick as the "
                            "smallest spacing")),
       limiter_(this) {
-    column_in(this, {make_surface(), make_volume(), make_rest()});
+    column_in(this, {make_surface(), surfaces_, make_cut(), make_volume(), make_rest()});
     connect(surface_colour_, &ColourButton::wanted, this, [this](const Colour& colour) {
         look_.surface_colour = colour;
         changed();
@@ -32,6 +38,7 @@ LookControls::LookControls()
         surface_opacity_->set_value(look_.surface_opacity);
         changed();
     });
+    connect_surfaces();
     connect_transfer();
     set_look(look_);
     show_point(-1);
@@ -53,6 +60,76 @@ QWidget* LookControls::make_surface() {
     surface_opacity_->setToolTip("Opacity of the isosurface, 0 to 1");
     auto* surface = add_switch("surface", "Surface", "The isosurface that is felt", &Look::surface);
     return row_of({surface, surface_colour_, surface_opacity_}, 2);
+}
+
+QWidget* LookControls::make_cut() {
+    let_wheel_pass(*cut_);
+    cut_->addItems({"nothing", "by a plane", "to a box"});
+    cut_->setAccessibleName("Cut away");
+    connect(cut_, qOverload<int>(&QComboBox::activated), this,
+            [this](int at) { Q_EMIT cut_wanted(static_cast<Cut>(at)); });
+    auto* label = new QLabel("Cut away");
+    label->setBuddy(cut_);
+    return row_of({label, cut_}, 1);
+}
+
+void LookControls::connect_surfaces() {
+    connect(surfaces_, &SurfaceList::changed, this, [this](const SeenSurfaces& surfaces) {
+        look_.surfaces = surfaces;
+        changed();
+    });
+    connect(surfaces_, &SurfaceList::add_wanted, this, &LookControls::add_surface);
+    connect(surfaces_, &SurfaceList::feel_wanted, this, &LookControls::feel_wanted);
+}
+
+/// At a suggested level that is not shown yet, else in the middle of the data. What lies outside
+/// becomes glass, so that the inside is seen.
+void LookControls::add_surface() {
+    static constexpr Colour colours[] = {{0.84, 0.37, 0.25}, {0.34, 0.56, 0.75}, {0.93, 0.75, 0.62},
+                                         {0.45, 0.65, 0.35}, {0.80, 0.62, 0.80}, {0.90, 0.80, 0.35},
+                                         {0.40, 0.70, 0.70}, {0.60, 0.50, 0.45}};
+    constexpr double glass = 0.35;
+    std::vector<double> levels = run::suggested_isovalues(histogram_);
+    const double range = histogram_.high - histogram_.low;
+    levels.push_back(histogram_.low + 0.5 * range);
+    const auto is_new = [&](double level) {
+        const auto near = [&](double other) { return std::abs(other - level) < 0.02 * range; };
+        return !near(felt_) && std::ranges::none_of(look_.surfaces, [&](const SeenSurface& s) {
+            return near(s.level);
+        });
+    };
+    const auto found = std::ranges::find_if(levels, is_new);
+    SeenSurface added;
+    added.level = found == levels.end() ? levels.back() : *found;
+    added.colour = colours[look_.surfaces.size() % std::size(colours)];
+    const bool outside = solid_ == Solid::above ? added.level < felt_ : added.level > felt_;
+    if (outside) added.opacity = glass;
+    if (!outside && look_.surface_opacity == 1) look_.surface_opacity = glass;
+    look_.surfaces.push_back(added);
+    surfaces_->set_surfaces(look_.surfaces);
+    surface_opacity_->set_value(look_.surface_opacity);
+    changed();
+}
+
+void LookControls::set_felt(double isovalue, Solid solid) {
+    felt_ = isovalue;
+    solid_ = solid;
+}
+
+void LookControls::swap_felt(int row, double isovalue) {
+    SeenSurface& surface = look_.surfaces.at(static_cast<std::size_t>(row));
+    surface.level = isovalue;
+    std::swap(surface.colour, look_.surface_colour);
+    std::swap(surface.opacity, look_.surface_opacity);
+    const Look look = look_;
+    set_look(look);
+    changed();
+}
+
+void LookControls::move_surface(int row, double level) {
+    look_.surfaces.at(static_cast<std::size_t>(row)).level = level;
+    surfaces_->set_surfaces(look_.surfaces);
+    changed();
 }
 
 QWidget* LookControls::make_volume() {
@@ -136,6 +213,7 @@ void LookControls::set_data(const Volume& volume, const run::Histogram& histogra
     editor_->set_data(histogram);
     const LevelAxis axis = axis_of(histogram, QRectF(0, 0, 100, 1));
     point_level_->setSingleStep(axis.step());
+    surfaces_->set_step(axis.step());
 }
 
 void LookControls::clear() {
@@ -152,8 +230,11 @@ void LookControls::set_look(const Look& look) {
     surface_colour_->set_colour(look.surface_colour);
     surface_opacity_->drop();
     surface_opacity_->set_value(look.surface_opacity);
+    surfaces_->set_surfaces(look.surfaces);
+    cut_->setCurrentIndex(static_cast<int>(look.cut));
     editor_->set_transfer(look.transfer);
     show_preset();
+    Q_EMIT look_set();
 }
 
 /// The preset, or none for a function that was edited.

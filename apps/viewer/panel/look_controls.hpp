@@ -10,6 +10,7 @@
 
 #include "apps/viewer/panel/colour_button.hpp"
 #include "apps/viewer/panel/quantity.hpp"
+#include "apps/viewer/panel/surface_list.hpp"
 #include "apps/viewer/panel/transfer_editor.hpp"
 
 namespace palpate::viewer {
@@ -23,12 +24,24 @@ class LookControls : public QWidget {
     /// The data for which presets are made.
     void set_data(const Volume& volume, const run::Histogram& histogram);
     void clear();
-    /// Shows a look; emits nothing.
+    /// The level that is felt, and its side that is solid, for surfaces beside it.
+    void set_felt(double isovalue, Solid solid);
+    /// Surface `row` and the felt one, now at `isovalue` and soon at the surface's level, change
+    /// places.
+    void swap_felt(int row, double isovalue);
+    /// As by hand.
+    void move_surface(int row, double level);
+    /// Shows a look; emits look_set() alone.
     void set_look(const Look& look);
     const Look& look() const { return look_; }
 
   Q_SIGNALS:
     void look_changed(const palpate::viewer::Look& look);
+    void look_set();
+    /// This surface is to be felt: its level becomes the isovalue.
+    void feel_wanted(int row);
+    /// A cut of this kind, for the present view.
+    void cut_wanted(palpate::viewer::Cut cut);
 
   private:
     struct Switch {
@@ -40,6 +53,9 @@ class LookControls : public QWidget {
                           bool Look::*shown);
     QWidget* make_surface();
     QWidget* make_volume();
+    QWidget* make_cut();
+    void connect_surfaces();
+    void add_surface();
     QWidget* make_rest();
     void connect_transfer();
     void show_point(int point);
@@ -53,9 +69,13 @@ class LookControls : public QWidget {
     ColourButton *surface_colour_, *point_colour_;
     Quantity* surface_opacity_;
     QComboBox* preset_;
+    SurfaceList* surfaces_;
+    QComboBox* cut_;
     TransferEditor* editor_;
     NumberBox *point_level_, *point_opacity_;
     RateLimiter limiter_;
+    double felt_ = 0;
+    Solid solid_ = Solid::above;
 };
 
 }  // namespace palpate::viewer

@@ -1,6 +1,9 @@
 // Turns changes by the user into commands, and shows the settings in effect.
 #include "apps/viewer/panel/panel.hpp"
 
+#include <QScrollArea>
+#include <QScrollBar>
+#include <QTabWidget>
 #include <QVBoxLayout>
 
 #include <algorithm>
@@ -8,6 +11,7 @@
 #include <stdexcept>
 
 #include "apps/viewer/panel/brush_controls.hpp"
+#include "apps/viewer/panel/colours.hpp"
 #include "apps/viewer/panel/device_controls.hpp"
 #include "apps/viewer/panel/force_controls.hpp"
 #include "apps/viewer/panel/isovalue_controls.hpp"
@@ -19,6 +23,24 @@
 #include "apps/viewer/panel/session_bar.hpp"
 
 namespace palpate::viewer {
+namespace {
+
+/// Sections in a column that scrolls.
+QScrollArea* page_of(std::initializer_list<QWidget*> sections) {
+    auto* column = column_of(sections);
+    static_cast<QVBoxLayout*>(column->layout())->addStretch(1);
+    auto* page = new QScrollArea;
+    page->setWidget(column);
+    page->setWidgetResizable(true);
+    page->setFrameShape(QFrame::NoFrame);
+    page->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+    page->setMinimumWidth(column->minimumSizeHint().width() +
+                          page->verticalScrollBar()->sizeHint().width());
+    return page;
+}
+
+}  // namespace
+
 Panel::Panel(QWidget* parent)
     : QWidget(parent),
       isovalue_(new IsovalueControls),
@@ -28,7 +50,8 @@ Panel::Panel(QWidget* parent)
       device_(new DeviceControls),
       loop_(new LoopView),
       look_(new LookControls),
-      bar_(new SessionBar) {
+      bar_(new SessionBar),
+      tabs_(named(new QTabWidget, "tabs")) {
     setObjectName("panel");
     build();
     connect_sections();
@@ -46,14 +69,28 @@ void Panel::build() {
     edit_part_ = new Section("Edit", "edit_part", edit_);
     force_part_ = new Section("Force", "force_part", force_);
     device_part_ = new Section("Device", "device_part", device_);
-    loop_part_ = new Section("Servo loop", "loop_part", loop_);
+    loop_part_ = new Section("Advanced: servo loop", "loop_part", loop_);
     look_part_ = new Section("Look", "look_part", look_);
+    loop_part_->set_open(false);
+    sections_ = {session_part_, isovalue_part_, penetrability_part_, force_part_,
+                 look_part_,    edit_part_,     device_part_,        loop_part_};
+    tabs_->setDocumentMode(true);
+    tabs_->addTab(page_of({penetrability_part_, force_part_}), "Fee&l");
+    tabs_->addTab(page_of({look_part_}), "L&ook");
+    tabs_->addTab(page_of({edit_part_}), "D&ata");
+    tabs_->addTab(page_of({device_part_, loop_part_}), "Devi&ce");
     auto* column = new QVBoxLayout(this);
-    column->setContentsMargins(6, 6, 6, 6);
-    sections_ = {session_part_, isovalue_part_, penetrability_part_, edit_part_,
-                 force_part_,   device_part_,   loop_part_,          look_part_};
-    for (Section* part : sections_) column->addWidget(part);
-    column->addStretch(1);
+    column->setContentsMargins(6, 6, 6, 0);
+    column->addWidget(session_part_);
+    column->addWidget(isovalue_part_);
+    column->addWidget(tabs_, 1);
+}
+
+/// Shows the page that a section is on.
+void Panel::raise_page(const Section& section) {
+    for (int i = 0; i < tabs_->count(); ++i) {
+        if (tabs_->widget(i)->isAncestorOf(&section)) tabs_->setCurrentIndex(i);
+    }
 }
 
 void Panel::connect_sections() {
@@ -81,6 +118,28 @@ void Panel::connect_sections() {
     connect(bar_, &SessionBar::asked, this,
             [this](const Command& command) { ask(session_part_, command); });
     connect_edits();
+    connect_look();
+}
+
+/// Surfaces of the look are levels on the chart.
+void Panel::connect_look() {
+    connect(look_, &LookControls::look_changed, this, &Panel::show_marks);
+    connect(look_, &LookControls::look_set, this, &Panel::show_marks);
+    connect(&isovalue_->chart(), &LevelChart::mark_moved, look_, &LookControls::move_surface);
+    connect(look_, &LookControls::feel_wanted, this, [this](int row) {
+        const double felt = now_.isovalue;
+        const double level = look_->look().surfaces.at(static_cast<std::size_t>(row)).level;
+        ask(isovalue_part_, command::Isovalue{level});
+        if (now_.isovalue == level) look_->swap_felt(row, felt);
+    });
+}
+
+void Panel::show_marks() {
+    std::vector<LevelMark> marks;
+    for (const SeenSurface& surface : look_->look().surfaces) {
+        marks.push_back({surface.level, to_qt(surface.colour)});
+    }
+    isovalue_->chart().set_marks(marks);
 }
 
 void Panel::connect_edits() {
@@ -176,6 +235,8 @@ void Panel::show_effect() {
     isovalue_->set_isovalue(now_.isovalue);
     isovalue_->set_field(solid_, interpolation_);
     isovalue_->set_overruled(now_.settings.penetrability.on);
+    look_->set_felt(now_.isovalue, solid_);
+    show_marks();
     penetrability_->set_in_use(now_.settings.penetrability);
     force_->set_settings(now_.settings.force, now_.settings.proxy.friction, now_.settings.device);
     device_->set_scale(now_.settings.transform.scale);
@@ -254,6 +315,7 @@ void Panel::ask_penetrability(const PressThrough& next) {
 
 void Panel::refuse(Section* by, const QString& why) {
     by->say(why);
+    raise_page(*by);
     show_effect();
 }
 
@@ -262,6 +324,7 @@ void Panel::show_refused(const QString& why) {
     now_ = before_;
     Section* by = asked_by_ ? asked_by_ : session_part_;
     by->say(why);
+    raise_page(*by);
     if (!live_) return;
     show_effect();
     bar_->set_forces(now_.settings.forces_on);

@@ -1,4 +1,5 @@
-// The panel: all settings and readings of a live run, in sections that fold. It does not hold the
+// The panel: all settings and readings of a live run, in sections that fold; those that are needed
+// all the time above, the others on pages. It does not hold the
 // run: signals say what the user asks for, setters show what is in effect and emit nothing.
 #pragma once
 
@@ -11,6 +12,8 @@
 #include "palpate/devices/backend.hpp"
 #include "palpate/run/statistics.hpp"
 #include "palpate/servo.hpp"
+
+class QTabWidget;
 
 namespace palpate::viewer {
 
@@ -25,7 +28,7 @@ class Section;
 class SessionBar;
 struct PressThrough;
 
-/// Goes into a scroll area. GUI thread only.
+/// GUI thread only.
 class Panel : public QWidget {
     Q_OBJECT
 
@@ -86,8 +89,11 @@ class Panel : public QWidget {
     };
 
     void build();
+    void raise_page(const Section& section);
     void connect_sections();
     void connect_edits();
+    void connect_look();
+    void show_marks();
     void clear_edits();
     void begin_request(Section* by);
     void take(const Command& command);
@@ -105,6 +111,7 @@ class Panel : public QWidget {
     LoopView* loop_;
     LookControls* look_;
     SessionBar* bar_;
+    QTabWidget* tabs_;
     Section *session_part_, *isovalue_part_, *penetrability_part_, *edit_part_, *force_part_,
         *device_part_, *loop_part_, *look_part_;
     std::vector<Section*> sections_;  // all of them, from top to bottom

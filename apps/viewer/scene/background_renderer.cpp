@@ -1,12 +1,12 @@
 // Decides which render thread draws what, and which image is shown.
 #include "apps/viewer/scene/background_renderer.hpp"
 
-#include <QMetaObject>
-
-#include <cmath>
+#include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include "apps/viewer/model/sample_block.hpp"
+#include "apps/viewer/scene/hand_over.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -31,25 +31,15 @@ bool same_picture(const RenderRequest& a, const RenderRequest& b) {
            a.pixel_ratio == b.pixel_ratio;
 }
 
-/// Calls `work` on the thread of `object`, unless that was destroyed before.
-template <class Work>
-void hand_over(QObject* object, Work work) {
-    QMetaObject::invokeMethod(object, std::move(work), Qt::QueuedConnection);
-}
+/// Beside the felt one: several of them are in memory.
+constexpr SurfaceLimits limits_of_others{2'000'000, 20'000};
 
 }  // namespace
 
-BackgroundRenderer::BackgroundRenderer()
-    : extractor_({[this](ExtractedSurface surface) {
-                      hand_over(this, [this, surface] { take(surface); });
-                  },
-                  [this](std::uint64_t request, const std::string& what) {
-                      hand_over(this, [this, request, what] {
-                          if (request != surface_request_) return;
-                          extracting_ = false;
-                          Q_EMIT problem(QString::fromStdString(what));
-                      });
-                  }}) {
+BackgroundRenderer::BackgroundRenderer() {
+    connect(&felt_, &SurfaceSource::made, this, &BackgroundRenderer::paint);
+    connect(&felt_, &SurfaceSource::finished, this, [this] { announce_ = true; });
+    connect(&felt_, &SurfaceSource::problem, this, &BackgroundRenderer::problem);
     rest_.setSingleShot(true);
     rest_.setInterval(rest_ms);
     connect(&rest_, &QTimer::timeout, this, [this] {
@@ -62,7 +52,8 @@ BackgroundRenderer::BackgroundRenderer()
 
 BackgroundRenderer::~BackgroundRenderer() {
     // All are cancelled before the first is waited for.
-    extractor_.forget();
+    felt_.clear();
+    for (const auto& source : others_) source->clear();
     if (fine_) fine_->give_up();
     if (quick_) quick_->give_up();
 }
@@ -88,6 +79,7 @@ void BackgroundRenderer::paint() {
     if (request_.width < 1 || request_.height < 1 || broken_) return;
     if (!quick_) start_threads();
     fine_->give_up();
+    collect_surfaces();
     RenderRequest request = request_;
     request.moving = true;
     quick_->draw(std::move(request));
@@ -100,17 +92,62 @@ void BackgroundRenderer::request(const RenderRequest& request) {
     RenderRequest next = request;
     next.number = request_.number;
     next.field = request_.field;
-    next.surface = request_.surface;
     request_ = std::move(next);
+    match_sources();
+    paint();
+}
+
+/// One source a surface of the look: those that have its level already, then any.
+void BackgroundRenderer::match_sources() {
+    const auto& wanted = request_.look.surfaces;
+    auto old = std::exchange(others_, {});
+    others_.resize(wanted.size());
+    const auto claim = [&](auto fits) {
+        for (std::size_t i = 0; i < wanted.size(); ++i) {
+            if (others_[i]) continue;
+            const auto found = std::ranges::find_if(
+                old, [&](const auto& source) { return source && fits(*source, wanted[i]); });
+            if (found != old.end()) others_[i] = std::move(*found);
+        }
+    };
+    claim([](const SurfaceSource& s, const SeenSurface& w) { return s.level() == w.level; });
+    claim([](const SurfaceSource&, const SeenSurface&) { return true; });
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+        if (!others_[i]) {
+            others_[i] = std::make_unique<SurfaceSource>(limits_of_others);
+            connect(others_[i].get(), &SurfaceSource::made, this, &BackgroundRenderer::paint);
+            connect(others_[i].get(), &SurfaceSource::problem, this, &BackgroundRenderer::problem);
+            if (request_.field) others_[i]->set_field(*request_.field, wanted[i].level);
+        }
+        others_[i]->set_level(wanted[i].level);
+    }
+}
+
+void BackgroundRenderer::collect_surfaces() {
+    const Look& look = request_.look;
+    request_.surfaces.clear();
+    if (!request_.field) return;
+    request_.surfaces.push_back(
+        {felt_.surface(), look.surface_colour, look.surface ? look.surface_opacity : 0});
+    for (std::size_t i = 0; i < others_.size(); ++i) {
+        const SeenSurface& seen = look.surfaces[i];
+        request_.surfaces.push_back(
+            {others_[i]->surface(), seen.colour, seen.shown ? seen.opacity : 0});
+    }
+    request_.surfaces.insert(request_.surfaces.end(), labels_.begin(), labels_.end());
+}
+
+void BackgroundRenderer::set_labels(std::vector<DrawnSurface> labels) {
+    labels_ = std::move(labels);
     paint();
 }
 
 void BackgroundRenderer::set_field(const Field& field, double isovalue) {
     request_.field = field;
-    request_.surface = {};
-    oldest_surface_request_ = surface_request_ + 1;
-    isovalue_ = std::nan("");
-    set_isovalue(isovalue);
+    felt_.set_field(field, isovalue);
+    for (std::size_t i = 0; i < others_.size(); ++i) {
+        others_[i]->set_field(field, request_.look.surfaces[i].level);
+    }
     paint();
 }
 
@@ -122,41 +159,21 @@ void BackgroundRenderer::update_field(const Field& field, const std::optional<Sa
     const SampleBox box = edited && changed ? *changed : changed_between(*request_.field, field);
     request_.field = field;
     if (box.empty()) return;
-    if (std::isfinite(isovalue_)) {
-        extracting_ = true;
-        extractor_.update(++surface_request_, field, isovalue_, box);
-    }
+    felt_.update_field(field, box);
+    for (const auto& source : others_) source->update_field(field, box);
     if (request_.look.volume || request_.look.slices) paint();
 }
 
 void BackgroundRenderer::clear() {
     request_.field.reset();
-    request_.surface = {};
-    oldest_surface_request_ = surface_request_ + 1;
-    extracting_ = false;
-    extractor_.forget();
+    felt_.clear();
+    for (const auto& source : others_) source->clear();
+    labels_.clear();
     paint();
 }
 
 void BackgroundRenderer::set_isovalue(double isovalue) {
-    if (!request_.field || isovalue == isovalue_) return;
-    isovalue_ = isovalue;
-    extracting_ = asked_ = true;
-    extractor_.ask(++surface_request_, *request_.field, isovalue);
-}
-
-void BackgroundRenderer::take(ExtractedSurface surface) {
-    // Of an older request, too, while a newer one is not there: a level that is dragged is seen to
-    // move. Never of other data.
-    if (surface.request < oldest_surface_request_ || surface.request < request_.surface.request)
-        return;
-    if (surface.request == surface_request_ && surface.finished) {
-        extracting_ = false;
-        announce_ = announce_ || asked_;
-        asked_ = false;
-    }
-    request_.surface = std::move(surface);
-    paint();
+    felt_.set_level(isovalue);
 }
 
 void BackgroundRenderer::take(RenderedImage image) {
@@ -172,13 +189,15 @@ void BackgroundRenderer::take(RenderedImage image) {
     Q_EMIT painted();
     if (settled() && announce_) {
         announce_ = false;
-        Q_EMIT surface_ready(request_.surface.isovalue, request_.surface.seconds);
+        Q_EMIT surface_ready(felt_.surface().isovalue, felt_.surface().seconds);
     }
 }
 
 bool BackgroundRenderer::settled() const {
     if (broken_) return true;
-    return shown_ && shown_->number == request_.number && !shown_->moving && !extracting_;
+    const auto extracting = [](const auto& source) { return source->extracting(); };
+    return shown_ && shown_->number == request_.number && !shown_->moving && !felt_.extracting() &&
+           std::ranges::none_of(others_, extracting);
 }
 
 }  // namespace palpate::viewer

@@ -7,10 +7,11 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "apps/viewer/scene/render_request.hpp"
 #include "apps/viewer/scene/render_thread.hpp"
-#include "apps/viewer/scene/surface_extractor.hpp"
+#include "apps/viewer/scene/surface_source.hpp"
 
 namespace palpate::viewer {
 
@@ -27,7 +28,9 @@ class BackgroundRenderer : public QObject {
     void update_field(const Field& field, const std::optional<SampleBox>& changed);
     void clear();
     void set_isovalue(double isovalue);
-    /// Draws this, with the number, field and surface that are kept here, if it differs from the
+    /// Surfaces that do not depend on the field, drawn with it.
+    void set_labels(std::vector<DrawnSurface> labels);
+    /// Draws this, with the number, field and surfaces that are kept here, if it differs from the
     /// last request.
     void request(const RenderRequest& request);
 
@@ -45,20 +48,20 @@ class BackgroundRenderer : public QObject {
 
   private:
     void start_threads();
+    void match_sources();
+    void collect_surfaces();
     void paint();
     void take(RenderedImage image);
-    void take(ExtractedSurface surface);
 
     RenderRequest request_;
     std::shared_ptr<const RenderedImage> shown_;
-    std::uint64_t surface_request_ = 0, oldest_surface_request_ = 1;
-    bool extracting_ = false;
-    bool asked_ = false, announce_ = false;  // not by an update
-    double isovalue_ = 0;
+    bool announce_ = false;  // the felt surface is finished, but not yet drawn
     double frame_seconds_ = 0;
     bool broken_ = false;  // no render thread can draw
     QTimer rest_;
-    SurfaceExtractor extractor_;
+    SurfaceSource felt_;
+    std::vector<std::unique_ptr<SurfaceSource>> others_;  // as in the look
+    std::vector<DrawnSurface> labels_;
     std::unique_ptr<RenderThread> quick_, fine_;
 };
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/viewer/scene/block_mesh.hpp"
 #include "palpate/surface.hpp"
 
 namespace palpate::viewer {
@@ -134,6 +135,33 @@ std::vector<LocalTetrahedron> local_tetrahedra(const Field& field, const Lattice
         found.push_back(std::move(local));
     }
     return found;
+}
+
+std::shared_ptr<const RenderMesh> local_patch(const Field& field, const Vec3& physical,
+                                              double isovalue) {
+    constexpr int edge = 24;  // [cells]
+    const Geometry& g = field.geometry();
+    const Vec3 index = index_from_physical(g, physical);
+    if (!(index.cwiseAbs().maxCoeff() <= farthest_index)) return nullptr;
+    const Vec3 first = (index - Vec3::Constant(0.5 * edge)).array().round();
+    const Vec3 middle = physical_centre(g);
+    const auto block = block_mesh(field, isovalue, first.cast<int>(), edge, middle);
+    if (!block) return nullptr;
+    // Round, not a cube's shape.
+    const double radius = (0.5 * edge - 1) * g.spacing.minCoeff();
+    auto patch = std::make_shared<RenderMesh>(*block);
+    patch->triangles.clear();
+    const auto inside = [&](std::int32_t v) {
+        const float* const at = patch->positions.data() + 3 * static_cast<std::size_t>(v);
+        return (Vec3(at[0], at[1], at[2]) + middle - physical).norm() < radius;
+    };
+    for (std::size_t t = 0; t + 2 < block->triangles.size(); t += 3) {
+        const std::int32_t* const corners = block->triangles.data() + t;
+        if (std::all_of(corners, corners + 3, inside)) {
+            patch->triangles.insert(patch->triangles.end(), corners, corners + 3);
+        }
+    }
+    return patch->triangles.empty() ? nullptr : patch;
 }
 
 }  // namespace palpate::viewer

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <vector>
 
+#include "apps/viewer/scene/render_mesh.hpp"
 #include "palpate/density.hpp"
 
 namespace palpate::viewer {
@@ -28,5 +30,10 @@ struct LocalTetrahedron {
 /// All tetrahedra that contain the point.
 std::vector<LocalTetrahedron> local_tetrahedra(const Field& field, const LatticePoint& point,
                                                double isovalue);
+
+/// The isosurface within some voxels of the point, from the middle of the grid; null where there
+/// is none. A few milliseconds.
+std::shared_ptr<const RenderMesh> local_patch(const Field& field, const Vec3& physical,
+                                              double isovalue);
 
 }  // namespace palpate::viewer

@@ -92,12 +92,23 @@ std::optional<Contact> contact_of(const std::optional<Snapshot>& snapshot, const
     const SessionTick& tick = snapshot->session;
     const ProxyUpdate& proxy = tick.tick.proxy;
     if (!proxy.hip.allFinite() || !proxy.scp.allFinite()) return std::nullopt;
-    Contact contact{proxy.hip, proxy.scp, tick.transform.rotation * tick.tick.force, {}};
+    Contact contact;
+    contact.hip = proxy.hip;
+    contact.scp = proxy.scp;
+    contact.force = tick.transform.rotation * tick.tick.force;
     if (with_lattice) contact.lattice = local_tetrahedra(field, snapshot->scp, proxy.isovalue);
     return contact;
 }
 
-Markers::Markers(vtkRenderer& solid, vtkRenderer& overlay) : solid_(solid), overlay_(overlay) {
+Markers::Markers(vtkRenderer& solid, vtkRenderer& overlay)
+    : solid_(solid), overlay_(overlay), patch_actor_(vtkSmartPointer<vtkActor>::New()) {
+    vtkNew<vtkPolyDataMapper> mapper;
+    mapper->ScalarVisibilityOff();
+    patch_actor_->SetMapper(mapper);
+    patch_actor_->SetVisibility(false);
+    pictures::look_matt(*patch_actor_);
+    pictures::face_the_viewer(*patch_actor_);
+    solid_.AddActor(patch_actor_);
     const auto nothing = [] { return vtkSmartPointer<vtkPolyData>::New(); };
     edges_ = twin_of(pictures::spring_colour, nothing());
     spring_ = twin_of(pictures::spring_colour, nothing());
@@ -179,6 +190,15 @@ void Markers::show_probe(const Contact& contact, const Vec3& origin, double pixe
     }
 }
 
+void Markers::show_patch(const std::shared_ptr<const RenderMesh>& patch, const Colour& colour) {
+    patch_actor_->SetVisibility(patch != nullptr);
+    patch_actor_->GetProperty()->SetColor(colour.red, colour.green, colour.blue);
+    if (!patch || patch == patch_) return;
+    static_cast<vtkPolyDataMapper*>(patch_actor_->GetMapper())
+        ->SetInputData(pictures::mesh_of(patch->positions, patch->normals, patch->triangles));
+    patch_ = patch;
+}
+
 void Markers::show_lattice(const Contact& contact, const Look& look, const Vec3& origin,
                            double voxel) {
     set_visible(edges_, look.tetrahedra && !contact.lattice.empty());
@@ -199,6 +219,7 @@ void Markers::show(const std::optional<Contact>& contact, const Look& look, cons
     }
     patches_.solid->SetVisibility(false);
     discs_.solid->SetVisibility(false);
+    show_patch(contact ? contact->patch : nullptr, look.surface_colour);
     if (!contact) return;
     for (vtkActor* actor : edges_.actors()) {
         actor->GetProperty()->SetColor(ink.red, ink.green, ink.blue);

@@ -8,6 +8,7 @@
 #include <vtkSmartPointer.h>
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -22,7 +23,8 @@ struct Contact {
     Vec3 hip = Vec3::Zero(), scp = Vec3::Zero();  ///< [mm, physical]
     Vec3 force = Vec3::Zero();                    ///< [N] on the hand, physical axes
     std::vector<LocalTetrahedron> lattice;
-    double brush = 0;  ///< [mm] its radius round the proxy; 0: none
+    double brush = 0;                         ///< [mm] its radius round the proxy; 0: none
+    std::shared_ptr<const RenderMesh> patch;  ///< of the surface that is felt; null: none
 };
 /// Nothing while the device is not ready. The lattice only where it is asked for.
 std::optional<Contact> contact_of(const std::optional<Snapshot>& snapshot, const Field& field,
@@ -56,7 +58,11 @@ class Markers {
     void show_probe(const Contact& contact, const Vec3& origin, double pixel);
     void show_lattice(const Contact& contact, const Look& look, const Vec3& origin, double voxel);
 
+    void show_patch(const std::shared_ptr<const RenderMesh>& patch, const Colour& colour);
+
     vtkRenderer &solid_, &overlay_;
+    std::shared_ptr<const RenderMesh> patch_;  // whose memory the actor reads
+    vtkSmartPointer<vtkActor> patch_actor_;
     Twin hip_, scp_, spring_, arrow_, brush_, edges_, patches_, discs_, normals_;
 };
 

@@ -4,7 +4,9 @@
 #include <vtkCallbackCommand.h>
 #include <vtkCamera.h>
 #include <vtkNew.h>
+#include <vtkPlaneCollection.h>
 #include <vtkProperty.h>
+#include <vtkVolumeMapper.h>
 
 #include <algorithm>
 #include <chrono>
@@ -12,6 +14,8 @@
 
 #include "apps/viewer/model/coarse_samples.hpp"
 #include "apps/viewer/model/sample_block.hpp"
+#include "apps/viewer/scene/compose.hpp"
+#include "apps/viewer/scene/cut_planes.hpp"
 #include "apps/viewer/scene/static_actors.hpp"
 #include "apps/viewer/scene/view_space.hpp"
 #include "pictures/vtk/material.hpp"
@@ -51,7 +55,7 @@ OffscreenRenderer::OffscreenRenderer(const std::atomic<bool>& give_up, bool hard
       solid_(vtkSmartPointer<vtkRenderer>::New()),
       glass_(vtkSmartPointer<vtkRenderer>::New()),
       hardware_(hardware),
-      surface_(give_up, hardware) {
+      cut_(vtkSmartPointer<vtkPlaneCollection>::New()) {
     glass_->SetBackground(0, 0, 0);
     glass_->SetBackgroundAlpha(0);
     glass_->SetActiveCamera(solid_->GetActiveCamera());
@@ -67,28 +71,67 @@ OffscreenRenderer::~OffscreenRenderer() {
     window_->Finalize();
 }
 
-void OffscreenRenderer::show_surface(const RenderRequest& request) {
-    const bool quick = request.moving && !hardware_;
-    for (const auto& gone :
-         surface_.show(quick ? MeshBlocks{request.surface.moving} : request.surface.blocks)) {
+void OffscreenRenderer::drop(const std::vector<vtkSmartPointer<vtkActor>>& actors) {
+    for (const auto& gone : actors) {
         solid_->RemoveActor(gone);
         glass_->RemoveActor(gone);
         gone->ReleaseGraphicsResources(window_);
     }
-    const double opacity = std::clamp(request.look.surface_opacity, 0.0, 1.0);
+}
+
+void OffscreenRenderer::show_surfaces(const RenderRequest& request) {
+    const bool quick = request.moving && !hardware_;
+    while (surfaces_.size() > request.surfaces.size()) {
+        drop(surfaces_.back().show({}));
+        surfaces_.pop_back();
+    }
+    while (surfaces_.size() < request.surfaces.size()) {
+        surfaces_.emplace_back(give_up_, hardware_, cut_);
+    }
+    for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+        show_surface(surfaces_[i], request.surfaces[i], quick);
+    }
+}
+
+void OffscreenRenderer::show_surface(SurfacePart& part, const DrawnSurface& surface, bool quick) {
+    drop(part.show(quick ? MeshBlocks{surface.surface.moving} : surface.surface.blocks));
+    const double opacity = std::clamp(surface.opacity, 0.0, 1.0);
     vtkRenderer& in = opacity < 1 ? *glass_ : *solid_;
     vtkRenderer& out = opacity < 1 ? *solid_ : *glass_;
-    for (const auto& part : surface_.actors()) {
-        vtkActor* const actor = part.actor;
+    for (const auto& one : part.actors()) {
+        vtkActor* const actor = one.actor;
         if (!actor) continue;
-        const Colour& c = request.look.surface_colour;
+        const Colour& c = surface.colour;
         actor->GetProperty()->SetColor(c.red, c.green, c.blue);
-        actor->SetVisibility(request.look.surface && opacity > 0);
+        actor->SetVisibility(opacity > 0);
         if (actor->GetProperty()->GetOpacity() == opacity && in.HasViewProp(actor)) continue;
         pictures::set_glass(*actor, opacity);
         out.RemoveActor(actor);
         in.AddActor(actor);
     }
+}
+
+/// Each translucent surface is drawn alone, its nearest part, and these are put over each other
+/// where the solid does not hide them.
+Layer OffscreenRenderer::glass_layer(const RenderRequest& request, const Layer& solid) {
+    const auto is_glass = [](const DrawnSurface& s) { return s.opacity > 0 && s.opacity < 1; };
+    const auto set_visible = [&](std::size_t i, bool visible) {
+        for (const auto& part : surfaces_[i].actors()) {
+            if (part.actor) part.actor->SetVisibility(visible);
+        }
+    };
+    std::vector<Layer> layers;
+    for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+        if (is_glass(request.surfaces[i])) set_visible(i, false);
+    }
+    for (std::size_t i = 0; i < surfaces_.size() && !give_up_; ++i) {
+        if (!is_glass(request.surfaces[i])) continue;
+        set_visible(i, true);
+        layers.push_back(layer_of(*glass_));
+        set_visible(i, false);
+    }
+    if (give_up_) return {};
+    return composed(std::move(layers), solid);
 }
 
 void OffscreenRenderer::show_slices(const RenderRequest& request) {
@@ -159,6 +202,7 @@ void OffscreenRenderer::show_volume(const RenderRequest& request) {
     if (!volume_) {
         volume_ =
             std::make_unique<VolumePart>(volume, physical_centre(field.geometry()), hardware_);
+        volume_->prop()->GetMapper()->SetClippingPlanes(cut_);
         solid_->AddVolume(volume_->prop());
     }
     volume_->set_look(request.look, field.geometry().spacing.minCoeff());
@@ -173,7 +217,7 @@ void OffscreenRenderer::show(const RenderRequest& request) {
     if (!request.field) {
         solid_->RemoveAllViewProps();
         glass_->RemoveAllViewProps();
-        surface_.show({});
+        surfaces_.clear();
         slices_ = {};
         sliced_.reset();
         box_ = nullptr;
@@ -183,7 +227,8 @@ void OffscreenRenderer::show(const RenderRequest& request) {
         return;
     }
     const Geometry& geometry = request.field->geometry();
-    show_surface(request);
+    put_planes(*cut_, planes_of(request.look, geometry), physical_centre(geometry));
+    show_surfaces(request);
     show_slices(request);
     show_box(request);
     show_volume(request);
@@ -220,10 +265,9 @@ std::optional<RenderedImage> OffscreenRenderer::draw(const RenderRequest& reques
     image.moving = quick || cast_coarse_;
     image.hardware = hardware_;
     image.solid = layer_of(*solid_);
-    if (!give_up_ && request.field && request.look.surface && request.look.surface_opacity > 0 &&
-        request.look.surface_opacity < 1) {
+    if (!give_up_ && request.field) {
         window_->SetMultiSamples(0);
-        image.glass = layer_of(*glass_);
+        image.glass = glass_layer(request, image.solid);
     }
     if (give_up_) return std::nullopt;
     image.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

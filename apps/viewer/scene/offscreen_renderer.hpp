@@ -11,6 +11,7 @@
 #include <atomic>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "apps/viewer/scene/render_request.hpp"
 #include "apps/viewer/scene/surface_part.hpp"
@@ -30,7 +31,10 @@ class OffscreenRenderer {
 
   private:
     void show(const RenderRequest& request);
-    void show_surface(const RenderRequest& request);
+    void show_surfaces(const RenderRequest& request);
+    void show_surface(SurfacePart& part, const DrawnSurface& surface, bool quick);
+    void drop(const std::vector<vtkSmartPointer<vtkActor>>& actors);
+    Layer glass_layer(const RenderRequest& request, const Layer& solid);
     void show_slices(const RenderRequest& request);
     void show_box(const RenderRequest& request);
     void show_volume(const RenderRequest& request);
@@ -42,8 +46,9 @@ class OffscreenRenderer {
     vtkSmartPointer<vtkRenderer> solid_, glass_;
     bool hardware_;
 
-    SurfacePart surface_;
-    std::optional<Field> sliced_;  // what the slices show
+    vtkSmartPointer<vtkPlaneCollection> cut_;
+    std::vector<SurfacePart> surfaces_;  // as in the request
+    std::optional<Field> sliced_;        // what the slices show
     Vec3 crosshair_ = Vec3::Zero();
     std::array<vtkSmartPointer<vtkActor>, 3> slices_;
     std::optional<Geometry> boxed_;

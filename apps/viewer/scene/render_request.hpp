@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "apps/viewer/model/look.hpp"
 #include "apps/viewer/scene/surface_extractor.hpp"
@@ -12,11 +13,18 @@
 
 namespace palpate::viewer {
 
+/// A surface in the scene.
+struct DrawnSurface {
+    ExtractedSurface surface;
+    Colour colour;
+    double opacity = 1;  ///< 0: not drawn
+};
+
 /// The static part of the scene, which does not follow the hand, seen by one camera.
 struct RenderRequest {
-    std::uint64_t number = 0;    ///< rising with every change
-    std::optional<Field> field;  ///< nothing: an empty scene
-    ExtractedSurface surface;
+    std::uint64_t number = 0;            ///< rising with every change
+    std::optional<Field> field;          ///< nothing: an empty scene
+    std::vector<DrawnSurface> surfaces;  ///< the felt one first
     Look look;
     Vec3 crosshair = Vec3::Zero();  ///< [mm, physical]
     Colour background;
@@ -36,7 +44,7 @@ struct RenderedImage {
     pictures::Camera camera;
     double reach = 1;  ///< [mm] see reach_of(), of the volume that is shown
     Layer solid;
-    /// A translucent surface, with its opacity as alpha. Empty without one.
+    /// What is translucent, with its opacity as alpha. Empty without any.
     Layer glass;
     bool moving = false;
     double seconds = 0;     ///< that it took

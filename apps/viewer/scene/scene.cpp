@@ -20,6 +20,8 @@
 #include "apps/viewer/model/hand_state.hpp"
 #include "apps/viewer/scene/annotations.hpp"
 #include "apps/viewer/scene/background_renderer.hpp"
+#include "apps/viewer/scene/cut_handles.hpp"
+#include "apps/viewer/scene/cut_marks.hpp"
 #include "apps/viewer/scene/layer_prop.hpp"
 #include "apps/viewer/scene/markers.hpp"
 #include "apps/viewer/scene/view_space.hpp"
@@ -51,6 +53,10 @@ struct Scene::Parts {
     RenderRequest wanted;  // look, crosshair; changed() fills in the rest
     std::optional<Snapshot> snapshot;
     double brush = 0;
+    std::optional<double> pressed;  // to this level
+    std::shared_ptr<const RenderMesh> patch;
+    Vec3 patched = Vec3::Zero();  // where, and at which level
+    double patched_level = std::nan("");
     bool outdated = true;  // something was set since the layers were drawn
 
     vtkNew<vtkGenericOpenGLRenderWindow> window;
@@ -58,6 +64,7 @@ struct Scene::Parts {
     vtkNew<LayerProp> solid, glass;
     Annotations annotations{2};
     std::unique_ptr<Markers> markers;
+    std::unique_ptr<CutMarks> cut;
 
     Parts() {
         vtkTimerLog::LoggingOff();  // one log for all threads, unprotected; windows write into it
@@ -68,6 +75,7 @@ struct Scene::Parts {
         overlay->SetActiveCamera(front->GetActiveCamera());
         front->AddViewProp(solid);
         markers = std::make_unique<Markers>(*front, *overlay);
+        cut = std::make_unique<CutMarks>(*front);
         front->AddViewProp(glass);  // after all that it may cover
         for (vtkRenderer* renderer :
              {front.Get(), overlay.Get(), &annotations.writing(), &annotations.orientation()}) {
@@ -80,6 +88,7 @@ Scene::Scene(QWidget* parent) : QVTKOpenGLNativeWidget(parent), parts_(std::make
     setObjectName("scene");
     setFocusPolicy(Qt::StrongFocus);
     setMinimumSize(120, 90);
+    setMouseTracking(true);
     setRenderWindow(parts_->window.Get());
     // The widget handles mouse and keys itself.
     if (auto* const interactor = parts_->window->GetInteractor()) {
@@ -109,6 +118,8 @@ ViewSize Scene::view_size() const {
 
 void Scene::set_field(const Field& field, double isovalue) {
     parts_->snapshot.reset();
+    parts_->pressed.reset();
+    parts_->patched_level = std::nan("");
     parts_->wanted.crosshair = physical_centre(field.geometry());
     parts_->background.set_field(field, isovalue);
     reset_camera();
@@ -135,6 +146,14 @@ void Scene::set_look(const Look& look) {
     parts_->wanted.look = look;
     refresh();
     changed();
+}
+
+void Scene::set_pressed(const std::optional<double>& level) {
+    if (level == parts_->pressed) return;
+    const bool was = parts_->pressed.has_value();
+    parts_->pressed = level;
+    refresh();
+    if (was != level.has_value()) changed();
 }
 
 void Scene::show_snapshot(const std::optional<Snapshot>& snapshot) {
@@ -200,6 +219,10 @@ void Scene::changed() {
     request.background = background_of(palette());
     request.ink = ink_of(palette());
     request.camera = camera_;
+    constexpr double glass = 0.25;
+    if (parts_->pressed) {
+        request.look.surface_opacity = std::min(request.look.surface_opacity, glass);
+    }
     request.pixel_ratio = devicePixelRatioF();
     if (isVisible()) {
         request.width = static_cast<int>(std::lround(width() * request.pixel_ratio));
@@ -232,6 +255,24 @@ void Scene::refresh() {
     refresh_.start(0);
 }
 
+/// A patch stays until the proxy has moved by a part of a voxel.
+std::optional<Contact> Scene::contact(const Field& field) {
+    const Look& look = parts_->wanted.look;
+    auto contact = contact_of(parts_->snapshot, field, look.tetrahedra || look.planes);
+    if (!contact) return contact;
+    contact->brush = parts_->brush;
+    if (!parts_->pressed || !look.surface) return contact;
+    const double unmoved = 0.5 * field.geometry().spacing.minCoeff();
+    if (!((contact->scp - parts_->patched).norm() < unmoved) ||
+        parts_->patched_level != *parts_->pressed) {
+        parts_->patch = local_patch(field, contact->scp, *parts_->pressed);
+        parts_->patched = contact->scp;
+        parts_->patched_level = *parts_->pressed;
+    }
+    contact->patch = parts_->patch;
+    return contact;
+}
+
 void Scene::lay_out() {
     const auto& shown = parts_->background.shown();
     // The camera of the image shown: while that lags, the probe stays in place on the surface.
@@ -247,11 +288,12 @@ void Scene::lay_out() {
         const Vec3 origin = physical_centre(field->geometry());
         direct(*parts_->front->GetActiveCamera(), camera, origin, reach_of(field->geometry()));
         const double voxel = field->geometry().spacing.mean();
-        auto contact = contact_of(parts_->snapshot, *field, look.tetrahedra || look.planes);
-        if (contact) contact->brush = parts_->brush;
-        parts_->markers->show(contact, look, origin, mm_per_pixel(camera, view_size()), voxel, ink,
-                              ratio);
+        const auto contact = this->contact(*field);
+        const double pixel = mm_per_pixel(camera, view_size());
+        parts_->markers->show(contact, look, origin, pixel, voxel, ink, ratio);
+        parts_->cut->show(look, field->geometry(), origin, pixel, ratio, held_);
     } else {
+        parts_->cut->hide();
         parts_->markers->show({}, look, Vec3::Zero(), 1, 1, ink, ratio);
     }
     Annotations::Content annotations;
@@ -301,11 +343,69 @@ Scene::Drag Scene::drag_of(const QMouseEvent& event) const {
     }
 }
 
+/// Of the cut, near the pointer.
+std::optional<std::size_t> Scene::handle_at(const QPointF& at) const {
+    constexpr double reach_px = 10;
+    const auto& field = parts_->background.field();
+    if (!field) return std::nullopt;
+    const double arm = cut_arm_px * mm_per_pixel(camera_, view_size());
+    const auto handles = handles_of(parts_->wanted.look, field->geometry(), arm);
+    std::optional<std::size_t> nearest;
+    double least = reach_px;
+    for (std::size_t i = 0; i < handles.size(); ++i) {
+        const Pixel seen = pixel_of(camera_, view_size(), handles[i].at);
+        const double away = std::hypot(seen.x - at.x(), seen.y - at.y());
+        if (away >= least) continue;
+        least = away;
+        nearest = i;
+    }
+    return nearest;
+}
+
+void Scene::show_held(std::optional<std::size_t> handle) {
+    if (handle == held_) return;
+    held_ = handle;
+    refresh();
+}
+
+void Scene::hold_handle() {
+    const Geometry& geometry = parts_->background.field()->geometry();
+    const double arm = cut_arm_px * mm_per_pixel(camera_, view_size());
+    held_from_ = handles_of(parts_->wanted.look, geometry, arm).at(held_.value());
+    held_to_ = held_from_.at;
+    drag_ = Drag::handle;
+}
+
+/// Along its line as far as the pointer went along what is seen of that; freely in the view plane.
+void Scene::move_handle(const QPointF& by) {
+    const Geometry& geometry = parts_->background.field()->geometry();
+    const ViewSize size = view_size();
+    const double mm = mm_per_pixel(camera_, size);
+    const auto [at, along] = held_from_;
+    if (along.norm() == 0) {
+        held_to_ += in_view_plane(camera_, size, by.x(), by.y());
+    } else {
+        constexpr double end_on = 0.1;  // a line that points at the viewer moves with up and down
+        const Pixel from = pixel_of(camera_, size, at), tip = pixel_of(camera_, size, at + along);
+        const QPointF seen(mm * (tip.x - from.x), mm * (tip.y - from.y));
+        const double length = QPointF::dotProduct(seen, seen);
+        const double moved =
+            length > end_on * end_on ? QPointF::dotProduct(seen, by) / length : -by.y();
+        held_to_ += mm * moved * along;
+    }
+    set_look(with_handle_at(parts_->wanted.look, geometry, held_.value(), held_to_));
+    Q_EMIT cut_moved(parts_->wanted.look);
+}
+
 void Scene::mousePressEvent(QMouseEvent* event) {
     if (drag_ != Drag::none) return;  // one button after the other
     drag_ = drag_of(*event);
     drag_from_ = drag_start_ = event->localPos();
     event->accept();
+    if (event->button() == Qt::LeftButton) {
+        show_held(handle_at(drag_from_));
+        if (held_) hold_handle();
+    }
     const bool touches = drag_ == Drag::probe && !(event->modifiers() & Qt::ShiftModifier);
     if (touches && parts_->background.field()) {
         Q_EMIT probe_pressed(point_at(camera_, view_size(), {drag_from_.x(), drag_from_.y()}));
@@ -316,6 +416,7 @@ void Scene::mouseMoveEvent(QMouseEvent* event) {
     const QPointF by = event->localPos() - drag_from_;
     drag_from_ = event->localPos();
     if (by.isNull() || !parts_->background.field()) return;
+    if (drag_ == Drag::none) show_held(handle_at(drag_from_));
     const ViewSize size = view_size();
     switch (drag_) {
         case Drag::turn:
@@ -333,6 +434,9 @@ void Scene::mouseMoveEvent(QMouseEvent* event) {
             Q_EMIT probe_dragged(part * in_view_plane(camera_, size, by.x(), by.y()));
             break;
         }
+        case Drag::handle:
+            if (held_) move_handle(by);
+            break;
         case Drag::none:
             break;
     }

@@ -10,12 +10,15 @@
 #include <optional>
 
 #include "apps/viewer/model/look.hpp"
+#include "apps/viewer/scene/cut_handles.hpp"
 #include "apps/viewer/scene/navigation.hpp"
 #include "palpate/servo.hpp"
 #include "pictures/scene.hpp"
 #include "pictures/view.hpp"
 
 namespace palpate::viewer {
+
+struct Contact;
 
 /// Parallel projection. The static part (surface, volume, slices, box) is rendered on threads of
 /// its own, quickly while something changes and finely after that; the widget draws hand, proxy and
@@ -41,6 +44,9 @@ class Scene : public QVTKOpenGLNativeWidget {
     /// The surface is extracted again in the background, coarse first; the newest isovalue wins.
     void set_isovalue(double isovalue);
     void set_look(const Look& look);
+    /// The hand has pressed through the surface shown to another `level` [data units]: the surface
+    /// is shown as glass, and a patch of that level round the proxy. Nothing: not so.
+    void set_pressed(const std::optional<double>& level);
     /// As often as the screen shows; nothing: no probe.
     void show_snapshot(const std::optional<Snapshot>& snapshot);
     /// Where the three slices cut [mm, physical]; to begin with the middle of the grid.
@@ -78,6 +84,8 @@ class Scene : public QVTKOpenGLNativeWidget {
     void probe_pressed(const palpate::Vec3& at);
     void probe_released();
     void camera_moved();
+    /// The cut was moved with the mouse; it is shown already.
+    void cut_moved(const palpate::viewer::Look& look);
     /// The surface is shown as finely as it will be, `seconds` after it was asked for.
     void surface_ready(double isovalue, double seconds);
     void problem(const QString& what);
@@ -94,13 +102,18 @@ class Scene : public QVTKOpenGLNativeWidget {
 
   private:
     struct Parts;
-    enum class Drag { none, turn, pan, zoom, probe };
+    enum class Drag { none, turn, pan, zoom, probe, handle };
 
     Drag drag_of(const QMouseEvent& event) const;
+    std::optional<std::size_t> handle_at(const QPointF& at) const;
+    void show_held(std::optional<std::size_t> handle);
+    void hold_handle();
+    void move_handle(const QPointF& by);
     void move_camera(const pictures::Camera& camera);
     void changed();
     void refresh();
     void lay_out();
+    std::optional<Contact> contact(const Field& field);
 
     std::unique_ptr<Parts> parts_;
     QTimer refresh_;
@@ -109,6 +122,9 @@ class Scene : public QVTKOpenGLNativeWidget {
     Hand hand_ = Hand::camera;
     Drag drag_ = Drag::none;
     QPointF drag_from_, drag_start_;
+    std::optional<std::size_t> held_;  // the handle of the cut under the pointer
+    CutHandle held_from_;              // as it was when the drag began
+    Vec3 held_to_ = Vec3::Zero();      // where the drag has led
 };
 
 }  // namespace palpate::viewer

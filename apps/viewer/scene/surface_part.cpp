@@ -44,12 +44,14 @@ class InterruptibleActor : public vtkOpenGLActor {
 };
 
 vtkSmartPointer<vtkActor> actor_of(std::shared_ptr<const RenderMesh> mesh,
-                                   const std::atomic<bool>& give_up, bool waits) {
+                                   const std::atomic<bool>& give_up, bool waits,
+                                   vtkPlaneCollection* cut) {
     auto actor = vtkSmartPointer<InterruptibleActor>::New();
     vtkNew<vtkPolyDataMapper> mapper;
     mapper->SetInputData(pictures::mesh_of(mesh->positions, mesh->normals, mesh->triangles));
     mapper->ScalarVisibilityOff();
     mapper->StaticOn();
+    mapper->SetClippingPlanes(cut);
     actor->SetMapper(mapper);
     actor->give_up = &give_up;
     actor->waits = waits;
@@ -105,7 +107,9 @@ std::vector<vtkSmartPointer<vtkActor>> SurfacePart::show(const MeshBlocks& block
         const std::span part(blocks_.data() + actor.first, blocks_.data() + actor.last);
         // The only one is drawn at once in any case.
         const bool waits = !hardware_ && actors_.size() > 1;
-        if (auto mesh = joined(part)) actor.actor = actor_of(std::move(mesh), give_up_, waits);
+        if (auto mesh = joined(part)) {
+            actor.actor = actor_of(std::move(mesh), give_up_, waits, cut_);
+        }
     }
     return gone;
 }

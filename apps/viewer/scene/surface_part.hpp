@@ -2,6 +2,7 @@
 #pragma once
 
 #include <vtkActor.h>
+#include <vtkPlaneCollection.h>
 #include <vtkSmartPointer.h>
 
 #include <atomic>
@@ -19,9 +20,9 @@ class SurfacePart {
     };
 
     /// While `give_up` is true nothing is drawn; must outlive the actors. `hardware`: drawn by
-    /// graphics hardware.
-    SurfacePart(const std::atomic<bool>& give_up, bool hardware)
-        : give_up_(give_up), hardware_(hardware) {}
+    /// graphics hardware. `cut`: planes beyond which nothing is drawn.
+    SurfacePart(const std::atomic<bool>& give_up, bool hardware, vtkPlaneCollection* cut)
+        : give_up_(give_up), hardware_(hardware), cut_(cut) {}
 
     /// Shows other blocks. Actors whose blocks are the same stay; those that are no longer wanted
     /// are returned. If it is cancelled in the middle, the rest is made the next time.
@@ -33,6 +34,7 @@ class SurfacePart {
 
     const std::atomic<bool>& give_up_;
     bool hardware_;
+    vtkSmartPointer<vtkPlaneCollection> cut_;
     MeshBlocks blocks_;
     std::vector<Actor> actors_;
 };

@@ -9,6 +9,7 @@
 #include "apps/viewer/model/transfer.hpp"
 #include "apps/viewer/panel/look_controls.hpp"
 #include "apps/viewer/panel/panel.hpp"
+#include "apps/viewer/scene/cut_handles.hpp"
 #include "apps/viewer/scene/scene.hpp"
 #include "apps/viewer/window/content.hpp"
 #include "apps/viewer/window/views.hpp"
@@ -41,6 +42,8 @@ DisplayController::DisplayController(Content& content, Views& views, Panel& pane
         show_volume(content_.playback()->field(), head.isovalue, head.settings.transform);
     });
     connect(&panel.look_controls(), &LookControls::look_changed, &views, &Views::set_look);
+    connect(&panel.look_controls(), &LookControls::cut_wanted, this, &DisplayController::set_cut);
+    connect(&views.scene(), &Scene::cut_moved, &panel.look_controls(), &LookControls::set_look);
 }
 
 void DisplayController::clear() {
@@ -73,12 +76,21 @@ std::optional<Snapshot> DisplayController::observe() {
     views_.show_snapshot(now);
     if (!now) return now;
     observe_data(*now);
-    const double felt = now->session.tick.proxy.isovalue;
-    if (std::isfinite(felt) && isovalue_ != felt) {
-        isovalue_ = felt;
-        views_.set_isovalue(felt);
-    }
+    observe_level(*now);
     return now;
+}
+
+/// While the hand presses through one surface to the next, the first one stays.
+void DisplayController::observe_level(const Snapshot& now) {
+    const ProxyUpdate& proxy = now.session.tick.proxy;
+    const bool pressing = now.penetrability_on && proxy.mode == Mode::constrained && isovalue_ &&
+                          proxy.isovalue != *isovalue_;
+    if (std::isfinite(proxy.isovalue) && !pressing && isovalue_ != proxy.isovalue) {
+        isovalue_ = proxy.isovalue;
+        views_.set_isovalue(proxy.isovalue);
+    }
+    views_.set_pressed(pressing && std::isfinite(proxy.isovalue) ? std::optional(proxy.isovalue)
+                                                                 : std::nullopt);
 }
 
 void DisplayController::observe_data(const Snapshot& now) {
@@ -97,11 +109,19 @@ void DisplayController::set_look(const Look& look) {
     views_.set_look(look);
 }
 
+void DisplayController::set_cut(Cut cut) {
+    const Vec3 towards = views_.scene().camera().towards_viewer;
+    set_look(with_cut(panel_.look_controls().look(), cut, views_.crosshair(), towards));
+}
+
 void DisplayController::use_usual_look() {
     const Opened& opened = *content_.volume();
     const Volume& volume = opened.loaded.volume;
     Look look = panel_.look_controls().look();
     look.transfer = preset(suggested_preset(opened.histogram, volume), opened.histogram, volume);
+    // Of the volume before.
+    look.surfaces.clear();
+    look.cut = Cut::nothing;
     set_look(look);
 }
 

@@ -24,6 +24,8 @@ class DisplayController : public QObject {
     /// The level of the surface in the scene; nothing if no volume is open.
     const std::optional<double>& isovalue() const { return isovalue_; }
     void set_look(const Look& look);
+    /// Through the crosshair, facing the viewer.
+    void set_cut(Cut cut);
     /// The transfer function that the volume suggests.
     void use_usual_look();
     /// The whole volume as seen by the person who holds the device.
@@ -37,6 +39,7 @@ class DisplayController : public QObject {
     void show_field(const Field& field, double isovalue);
     void show_volume(const Field& field, double isovalue, const DeviceTransform& transform);
     void observe_data(const Snapshot& now);
+    void observe_level(const Snapshot& now);
     void clear();
 
     Content& content_;

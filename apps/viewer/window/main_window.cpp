@@ -11,7 +11,6 @@
 #include <QLabel>
 #include <QMimeData>
 #include <QScreen>
-#include <QScrollArea>
 #include <QSettings>
 #include <QStatusBar>
 
@@ -83,14 +82,9 @@ void MainWindow::build() {
     layout->setSpacing(0);
     layout->addWidget(make_progress_strip(files_.loader()));
     setCentralWidget(centre);
-    auto* scroll = new QScrollArea;
-    scroll->setWidget(panel_);
-    scroll->setWidgetResizable(true);
-    scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
-    scroll->setMinimumWidth(panel_->minimumSizeHint().width() + 24);
     auto* dock = new QDockWidget("Feel and look");
     dock->setObjectName("dock");
-    dock->setWidget(scroll);
+    dock->setWidget(panel_);
     addDockWidget(Qt::RightDockWidgetArea, dock);
     panel_->clear();
     readout_->setObjectName("readout");

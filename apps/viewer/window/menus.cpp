@@ -228,6 +228,15 @@ void make_view_menu(MainWindow& window, Actions& actions) {
     actions.add(
         view, "scene_alone", "Scene a&lone, or all panes", QKeySequence("F7"),
         [&views] { views.toggle_alone(&views.scene()); }, opened);
+    QMenu* cut = view->addMenu("Cut &away");
+    const auto add_cut = [&](const char* name, const QString& text, Cut kind,
+                             const QKeySequence& key) {
+        actions.add(
+            cut, name, text, key, [&window, kind] { window.display().set_cut(kind); }, opened);
+    };
+    add_cut("cut_nothing", "&Nothing", Cut::nothing, {});
+    add_cut("cut_plane", "By a &plane that faces you", Cut::plane, QKeySequence("V"));
+    add_cut("cut_box", "To a &box", Cut::box, QKeySequence("Shift+V"));
     QAction* follow = actions.add_switch(
         view, "follow", "&Crosshair follows the probe", QKeySequence("G"),
         [&views](bool on) { views.set_follow(on); }, [&views] { return views.follows(); });

@@ -84,6 +84,7 @@ void Views::show_panes() {
 }
 
 void Views::set_field(const Field& field, double isovalue) {
+    isovalue_ = isovalue;
     scene_->set_field(field, isovalue);
     for (SlicePane* pane : slices_) pane->set_field(field, isovalue);
     set_crosshair(physical_centre(field.geometry()));
@@ -100,7 +101,13 @@ void Views::clear() {
     for (SlicePane* pane : slices_) pane->clear();
 }
 
+void Views::set_pressed(const std::optional<double>& level) {
+    scene_->set_pressed(level);
+    for (SlicePane* pane : slices_) pane->set_isovalue(level.value_or(isovalue_));
+}
+
 void Views::set_isovalue(double isovalue) {
+    isovalue_ = isovalue;
     scene_->set_isovalue(isovalue);
     for (SlicePane* pane : slices_) pane->set_isovalue(isovalue);
 }

@@ -27,6 +27,8 @@ class Views : public QWidget {
     void clear();
     void set_isovalue(double isovalue);
     void set_look(const Look& look);
+    /// As Scene::set_pressed; the slices show the contour of that level.
+    void set_pressed(const std::optional<double>& level);
     /// Up to 60 times a second. Nothing: no hand is shown.
     void show_snapshot(const std::optional<Snapshot>& snapshot);
     /// True: the left button moves the probe, where the device is the mouse.
@@ -80,6 +82,7 @@ class Views : public QWidget {
     Vec3 crosshair_ = Vec3::Zero();
     bool follow_ = true, touched_ = false;
     double window_low_ = 0, window_high_ = 1;
+    double isovalue_ = 0;
 };
 
 }  // namespace palpate::viewer

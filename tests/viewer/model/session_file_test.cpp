@@ -46,6 +46,10 @@ SessionFile some_session() {
     s.look.surface = false;
     s.look.surface_colour = {0.1, 0.2, 0.3};
     s.look.surface_opacity = 0.4;
+    s.look.surfaces = {{1.5, {1, 0, 0.5}, 0.3, true}, {-4, {0.25, 0, 0}, 1, false}};
+    s.look.cut = Cut::box;
+    s.look.cut_plane = {{1, 2, 3}, {0, 0.6, 0.8}};
+    s.look.cut_box = {{0.1, 0, 0.2}, {0.9, 1, 0.3}};
     s.look.volume = true;
     s.look.transfer = {"CT \"bone\"", {{-5, {0, 0, 0}, 0}, {7.5, {1, 0.5, 0}, 0.25}}};
     s.look.shading = false;
@@ -187,6 +191,11 @@ TEST(SessionFile, an_error_is_one_line_with_file_and_member) {
     names("/settings/transform/rotation/0/0", 5, "rotat");
     names("/look/surface_colour", Json::array({1, 2}), "'look.surface_colour'");
     names("/look/surface_opacity", 1.5, "'look.surface_opacity'");
+    names("/look/surfaces/1/opacity", -1, "'look.surfaces[1].opacity'");
+    names("/look/surfaces/0/level", "high", "'look.surfaces[0].level'");
+    names("/look/cut", "sphere", "'look.cut'");
+    names("/look/cut_plane/normal", Json::array({0, 0, 0}), "'look.cut_plane.normal'");
+    names("/look/cut_box/high", Json::array({0.05, 1, 1}), "'look.cut_box'");
     names("/look/transfer/points/1/level", -6, "'look.transfer.points[1].level'");
     names("/look/transfer/points/0/colour/1", -1, "'look.transfer.points[0].colour'");
     names("/look/transfer/points", Json::array({Json::object()}), "'look.transfer.points'");
@@ -270,6 +279,9 @@ TEST(SessionFile, invalid_values_are_refused_before_anything_is_written) {
     refused([](SessionFile& s) { s.source = {}; });
     refused([](SessionFile& s) { s.device.name.clear(); });
     refused([](SessionFile& s) { s.look.surface_opacity = 2; });
+    refused([](SessionFile& s) { s.look.surfaces.resize(most_surfaces + 1); });
+    refused([](SessionFile& s) { s.look.surfaces[0].level = infinity; });
+    refused([](SessionFile& s) { s.look.cut_plane.normal = Vec3::Zero(); });
     refused([](SessionFile& s) { s.camera->half_height = std::nan(""); });
     SessionFile s = some_session();
     s.source = run::source_named("/data/\xff\xfe.nrrd");

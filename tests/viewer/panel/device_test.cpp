@@ -140,7 +140,7 @@ TEST_F(Devices, the_scale_of_the_hand_is_requested_and_followed) {
     type("scale", "-3");
     EXPECT_EQ(of<command::Scale>().size(), 1U);
     EXPECT_NE(message("device_part"), "");
-    area.setFocus();
+    panel.setFocus();
     Snapshot now;
     now.session.transform.scale = 1.75;
     panel.show_snapshot(now);

@@ -120,7 +120,7 @@ TEST_F(Isovalue, a_tick_of_a_suggested_level_is_taken_exactly) {
 
 TEST_F(Isovalue, arrow_keys_and_wheel_step_finely_once_the_chart_has_the_focus) {
     set();
-    area.setFocus();
+    panel.setFocus();
     wheel(chart(), 3);
     EXPECT_TRUE(levels().empty()) << "scrolling the panel must not change what is felt";
     chart()->setFocus();

@@ -9,6 +9,7 @@
 
 #include "apps/viewer/model/transfer.hpp"
 #include "apps/viewer/panel/colour_button.hpp"
+#include "apps/viewer/panel/level_chart.hpp"
 #include "apps/viewer/panel/number_box.hpp"
 #include "apps/viewer/panel/transfer_editor.hpp"
 #include "tests/viewer/transfer_function.hpp"
@@ -65,6 +66,59 @@ TEST_F(Looks, each_switch_changes_its_own_and_nothing_else) {
         EXPECT_EQ(last(), expected);
         EXPECT_EQ(panel.look_controls().look(), expected);
     }
+}
+
+TEST_F(Looks, surfaces_are_added_at_suggested_levels_as_glass_where_they_lie_outside) {
+    const auto suggested = run::suggested_isovalues(histogram);
+    ASSERT_EQ(suggested.size(), 2U);
+    press("add_surface");
+    Look now = last();
+    ASSERT_EQ(now.surfaces.size(), 1U);
+    EXPECT_EQ(now.surfaces[0].level, suggested[0]);
+    EXPECT_LT(now.surfaces[0].level, 300) << "below the level felt";
+    EXPECT_LT(now.surfaces[0].opacity, 1);
+    EXPECT_EQ(now.surface_opacity, 1);
+    press("add_surface");
+    now = last();
+    ASSERT_EQ(now.surfaces.size(), 2U);
+    EXPECT_EQ(now.surfaces[1].level, suggested[1]);
+    EXPECT_EQ(now.surfaces[1].opacity, 1);
+    EXPECT_LT(now.surface_opacity, 1) << "the one felt hides it";
+    EXPECT_NE(now.surfaces[0].colour, now.surfaces[1].colour);
+}
+
+TEST_F(Looks, a_surface_is_hidden_moved_made_glass_and_removed) {
+    look.surfaces = {{100, {1, 0, 0}, 1, true}, {700, {0, 1, 0}, 1, true}};
+    panel.look_controls().set_look(look);
+    find<QCheckBox>("surface_2")->click();
+    EXPECT_FALSE(last().surfaces[1].shown);
+    type("surface_1_level", "150");
+    EXPECT_EQ(last().surfaces[0].level, 150);
+    type("surface_1_opacity", "0.5");
+    EXPECT_EQ(last().surfaces[0].opacity, 0.5);
+    type("surface_1_opacity", "7");
+    EXPECT_EQ(last().surfaces[0].opacity, 1);
+    press("surface_1_remove");
+    ASSERT_EQ(last().surfaces.size(), 1U);
+    EXPECT_EQ(last().surfaces[0].level, 700);
+    EXPECT_FALSE(find<QCheckBox>("surface_2")->isVisible());
+}
+
+TEST_F(Looks, no_more_surfaces_than_there_is_room_for) {
+    for (std::size_t i = 0; i < most_surfaces + 2; ++i) press("add_surface");
+    EXPECT_EQ(last().surfaces.size(), most_surfaces);
+    EXPECT_FALSE(find<QPushButton>("add_surface")->isEnabled());
+}
+
+TEST_F(Looks, levels_of_surfaces_are_dragged_on_the_histogram) {
+    look.surfaces = {{800, {1, 0, 0}, 1, true}};
+    panel.look_controls().set_look(look);
+    auto* chart = find<LevelChart>("level_chart");
+    const LevelAxis axis = chart->axis();
+    const double y = chart->strip().top() - 3;
+    drag(chart, {axis.x_of(800), y}, {axis.x_of(1500), y});
+    EXPECT_NEAR(last().surfaces[0].level, 1500, 2 * (axis.high - axis.low) / chart->width());
+    EXPECT_EQ(find<NumberBox>("surface_1_level")->value(), last().surfaces[0].level);
 }
 
 TEST_F(Looks, a_look_that_is_set_is_shown_and_emits_nothing) {
@@ -231,6 +285,34 @@ TEST_F(Looks, random_edits_always_leave_a_valid_function) {
         ASSERT_TRUE(is_valid(editor()->transfer())) << i;
     }
     EXPECT_EQ(last().transfer, editor()->transfer());
+}
+
+using FeltSurfaces = PanelFixture;
+
+TEST_F(FeltSurfaces, another_surface_is_felt_and_the_one_before_takes_its_place) {
+    set();
+    Look look;
+    look.surfaces = {{700, {0, 1, 0}, 0.5, true}};
+    panel.look_controls().set_look(look);
+    press("surface_1_feel");
+    ASSERT_EQ(of<command::Isovalue>().size(), 1U);
+    EXPECT_EQ(of<command::Isovalue>()[0].isovalue, 700);
+    const Look& now = panel.look_controls().look();
+    EXPECT_EQ(now.surfaces[0].level, 300);
+    EXPECT_EQ(now.surfaces[0].colour, look.surface_colour);
+    EXPECT_EQ(now.surface_colour, look.surfaces[0].colour);
+    EXPECT_EQ(now.surface_opacity, 0.5);
+}
+
+TEST_F(FeltSurfaces, one_that_cannot_be_felt_stays_where_it_is) {
+    set();
+    Look look;
+    look.surfaces = {{700, {0, 1, 0}, 0.5, true}};
+    panel.look_controls().set_look(look);
+    refuse_with = "not now";
+    press("surface_1_feel");
+    EXPECT_EQ(panel.look_controls().look(), look);
+    EXPECT_EQ(message("isovalue_part"), "not now");
 }
 
 }  // namespace

@@ -6,8 +6,8 @@
 #include <QApplication>
 #include <QLabel>
 #include <QMouseEvent>
-#include <QScrollArea>
 #include <QSignalSpy>
+#include <QTabWidget>
 #include <QTest>
 
 #include <optional>
@@ -18,6 +18,7 @@
 #include "apps/viewer/panel/device_controls.hpp"
 #include "apps/viewer/panel/look_controls.hpp"
 #include "apps/viewer/panel/panel.hpp"
+#include "apps/viewer/panel/section.hpp"
 
 namespace palpate::viewer {
 
@@ -57,14 +58,12 @@ class PanelFixture : public testing::Test {
             commands.push_back(command);
             if (!refuse_with.isEmpty()) panel.show_refused(refuse_with);
         });
-        area.setWidgetResizable(true);
-        area.setWidget(&panel);
-        area.resize(400, 1450);
-        area.show();
-        QApplication::setActiveWindow(&area);
-        (void)QTest::qWaitForWindowExposed(&area);
+        for (Section* section : panel.findChildren<Section*>()) section->set_open(true);
+        panel.resize(400, 1450);
+        panel.show();
+        QApplication::setActiveWindow(&panel);
+        (void)QTest::qWaitForWindowExposed(&panel);
     }
-    ~PanelFixture() override { area.takeWidget(); }
 
     void set(const RendererSettings& settings = {}, double isovalue = 300,
              Solid solid = Solid::above) {
@@ -81,10 +80,15 @@ class PanelFixture : public testing::Test {
         QApplication::processEvents();
     }
 
+    /// On the page that is shown from now on.
     template <class T>
     T* find(const char* name) {
         T* found = panel.findChild<T*>(name);
         if (!found) throw std::runtime_error(std::string("no widget ") + name);
+        auto* tabs = panel.findChild<QTabWidget*>("tabs");
+        for (int i = 0; i < tabs->count(); ++i) {
+            if (tabs->widget(i)->isAncestorOf(found)) tabs->setCurrentIndex(i);
+        }
         return found;
     }
 
@@ -135,7 +139,6 @@ class PanelFixture : public testing::Test {
     RendererSettings session_settings;
     std::optional<Field> field;
     run::Histogram histogram;
-    QScrollArea area;
     Panel panel;
 };
 

@@ -72,7 +72,7 @@ class Pictures : public PanelFixture {
 
     /// The whole panel, as high as it likes to be.
     QImage picture(const QString& name) {
-        area.resize(area.width(), panel.sizeHint().height() + 10);
+        panel.resize(panel.width(), panel.sizeHint().height() + 10);
         QApplication::processEvents();
         const QImage image = panel.grab().toImage();
         QDir().mkpath(PALPATE_PICTURES);
@@ -103,7 +103,7 @@ TEST_F(Pictures, show_a_narrow_panel_with_a_threshold_and_refusals) {
     DeviceInfo info = desktop_device();
     panel.show_device(info, DeviceStatus::uncalibrated, "Put the handle into its holder once.");
     press("forces");
-    area.resize(panel.minimumSizeHint().width() + 4, 1700);
+    panel.resize(panel.minimumSizeHint().width() + 4, 1700);
     EXPECT_LE(panel.minimumSizeHint().width(), 26 * panel.fontMetrics().height());
     QApplication::processEvents();
     picture("panel_narrow");
