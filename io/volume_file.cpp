@@ -90,10 +90,18 @@ ValueInfo values_of(const nlohmann::json& j) {
     const auto word = [&](const char* name) {
         return one_line(j.at(name).get<std::string>().substr(0, 16));
     };
-    ValueInfo values{word("modality"), word("units"), {}, {}};
+    ValueInfo values;
+    values.modality = word("modality");
+    values.units = word("units");
     if (j.contains("padding")) values.padding = j["padding"].get<double>();
     if (j.contains("window")) {
         values.window = {j["window"].at(0).get<double>(), j["window"].at(1).get<double>()};
+    }
+    for (const nlohmann::json& label : j.value("labels", nlohmann::json::array())) {
+        constexpr std::size_t longest = 64;
+        values.labels.push_back({label.at("value").get<int>(),
+                                 one_line(label.at("name").get<std::string>().substr(0, longest)),
+                                 label.at("colour").get<std::array<double, 3>>()});
     }
     return values;
 }

@@ -47,6 +47,7 @@ Result read_with(VolumeHeader header, const Request& request) {
     Result result;
     result.geometry = header.geometry;
     result.type = kept_as(header.stored);
+    result.values = header.values;
     note_conversion(header.stored, header.notes);
     take_step(request, header.steps, header.times, result);
     const auto samples = shared_samples(static_cast<std::size_t>(sample_count(result.geometry)) *

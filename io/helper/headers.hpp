@@ -13,7 +13,8 @@ namespace palpate::io {
 /// A text header's fields, names in lower case.
 struct HeaderFields {
     std::map<std::string, std::string> values;
-    std::uint64_t data_offset = 0;  ///< of the first byte after the header
+    std::map<std::string, std::string> keys;  ///< NRRD's own pairs, "key:=value", as they are
+    std::uint64_t data_offset = 0;            ///< of the first byte after the header
 
     bool has(const std::string& name) const { return values.count(name) > 0; }
     /// Empty if there is no such field.
@@ -47,6 +48,7 @@ struct VolumeHeader : HeaderFacts {
     /// Samples of one volume that lie together, before those of the next volume: the whole volume
     /// where the volumes follow each other, 1 where the axis that counts them is the first.
     std::int64_t together = 1;
+    ValueInfo values;
 
     std::uint64_t samples() const;  ///< of all volumes
     std::uint64_t bytes() const { return samples() * size_of(stored); }

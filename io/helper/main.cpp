@@ -119,6 +119,10 @@ nlohmann::json json_of(const ValueInfo& values) {
     nlohmann::json json = {{"modality", values.modality}, {"units", values.units}};
     if (values.window) json["window"] = {values.window->centre, values.window->width};
     if (values.padding) json["padding"] = *values.padding;
+    for (const LabelName& label : values.labels) {
+        json["labels"].push_back(
+            {{"value", label.value}, {"name", label.name}, {"colour", label.colour}});
+    }
     return json;
 }
 

@@ -30,7 +30,11 @@ HeaderFields read_fields(const std::filesystem::path& path) {
             throw Failure("its header has no end; the file is damaged");
         }
         const auto colon = text.find(':');
-        if (text[0] == '#' || colon == std::string::npos || text.substr(colon, 2) == ":=") continue;
+        if (text[0] == '#' || colon == std::string::npos) continue;
+        if (text.substr(colon, 2) == ":=") {
+            fields.keys[text.substr(0, colon)] = text.substr(colon + 2);
+            continue;
+        }
         std::string name = lower(trimmed(text.substr(0, colon)));
         if (name == "datafile") name = "data file";
         if (name == "axismins") name = "axis mins";
@@ -345,6 +349,31 @@ std::vector<Axis> spatial_axes(const std::vector<Axis>& axes, VolumeHeader& head
     return spatial;
 }
 
+/// Of 3D Slicer's segmentations: "Segment0_LabelValue:=1", "Segment0_Name:=liver",
+/// "Segment0_Color:=0.5 0.2 0.1". Those that say no value, or nonsense, are passed over.
+std::vector<LabelName> labels_of(const HeaderFields& fields) {
+    constexpr int most = 4096;
+    std::vector<LabelName> labels;
+    for (int i = 0; i < most; ++i) {
+        const auto text = [&](const char* what) {
+            const auto found = fields.keys.find("Segment" + std::to_string(i) + "_" + what);
+            return found == fields.keys.end() ? std::string() : found->second;
+        };
+        if (text("ID").empty() && text("LabelValue").empty()) break;
+        LabelName label;
+        std::istringstream value(text("LabelValue"));
+        if (!(value >> label.value)) continue;
+        label.name = text("Name");
+        std::istringstream colour(text("Color"));
+        std::array<double, 3> rgb{};
+        if (colour >> rgb[0] >> rgb[1] >> rgb[2]) {
+            for (std::size_t c = 0; c < 3; ++c) label.colour[c] = std::clamp(rgb[c], 0.0, 1.0);
+        }
+        labels.push_back(label);
+    }
+    return labels;
+}
+
 /// A space has as many dimensions as there are axes, or lacks time.
 void check_dimensions(const Space& space, const std::vector<Axis>& spatial) {
     if (spatial.empty()) throw Failure("it has no axis of space; give a volume");
@@ -459,6 +488,7 @@ VolumeHeader nrrd_header(const Request& request) {
     check_dimensions(space, spatial);
     take_steps(spatial, header);
     header.geometry = geometry_of(fields, space, spatial);
+    header.values.labels = labels_of(fields);
     return header;
 }
 

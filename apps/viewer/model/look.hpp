@@ -1,6 +1,7 @@
 // How a scene is shown: plain values that panel and scene share and a session file keeps.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -61,6 +62,19 @@ struct CutBox {
     bool operator==(const CutBox&) const = default;
 };
 
+/// How an overlay is shown.
+struct OverlayLook {
+    bool shown = true;
+    double opacity = 0.5;         ///< in slices
+    std::string colours = "hot";  ///< the colour map of an image
+    bool surface = true;          ///< in the scene
+    double surface_opacity = 1;
+    std::optional<double> level;  ///< [data units] of an image's surface; nothing: suggested
+    std::vector<int> hidden;      ///< labels
+
+    bool operator==(const OverlayLook&) const = default;
+};
+
 /// What is in the scene and how it looks.
 struct Look {
     bool surface = true;  ///< the isosurface that is felt
@@ -70,6 +84,8 @@ struct Look {
     Cut cut = Cut::nothing;
     CutPlane cut_plane;
     CutBox cut_box;
+    std::string colours = "grey";  ///< the colour map of the slices
+    OverlayLook overlay;
     bool volume = false;  ///< volume rendering
     TransferFunction transfer;
     bool shading = true;                      ///< of the volume

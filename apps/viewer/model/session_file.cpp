@@ -8,6 +8,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "apps/viewer/model/colour_map.hpp"
 #include "io/json_members.hpp"
 #include "palpate/io/csv.hpp"
 #include "palpate/io/output.hpp"
@@ -67,6 +68,16 @@ static void members(auto& v, Is<CutBox> auto& s) {
     v("high", s.high);
 }
 
+static void members(auto& v, Is<OverlayLook> auto& s) {
+    v("shown", s.shown);
+    v("opacity", s.opacity);
+    v("colours", s.colours);
+    v("surface", s.surface);
+    v("surface_opacity", s.surface_opacity);
+    v("level", s.level);
+    v("hidden", s.hidden);
+}
+
 constexpr std::array<const char*, 3> cut_names{"nothing", "plane", "box"};
 
 static io::Json to_value(Cut cut) {
@@ -89,6 +100,8 @@ static void members(auto& v, Is<Look> auto& s) {
     v("cut", s.cut);
     v("cut_plane", s.cut_plane);
     v("cut_box", s.cut_box);
+    v("colours", s.colours);
+    v("overlay", s.overlay);
     v("volume", s.volume);
     v("transfer", s.transfer);
     v("shading", s.shading);
@@ -102,6 +115,25 @@ static void members(auto& v, Is<Look> auto& s) {
     v("scale_bar", s.scale_bar);
 }
 
+constexpr std::array<const char*, 2> measure_names{"length", "angle"};
+
+static io::Json to_value(Measure kind) {
+    return measure_names[static_cast<std::size_t>(kind)];
+}
+
+static void from_value(const io::Json& json, const std::string& name, Measure& kind) {
+    std::string text;
+    io::from_value(json, name, text);
+    const auto at = std::ranges::find(measure_names, text);
+    if (at == measure_names.end()) io::wrong_member(name, "length or angle");
+    kind = static_cast<Measure>(at - measure_names.begin());
+}
+
+static void members(auto& v, Is<Measurement> auto& s) {
+    v("kind", s.kind);
+    v("points", s.points);
+}
+
 /// The plain members after `device` and `method`.
 static void members(auto& v, Is<SessionFile> auto& s) {
     v("look", s.look);
@@ -111,6 +143,7 @@ static void members(auto& v, Is<SessionFile> auto& s) {
     v("window_low", s.window_low);
     v("window_high", s.window_high);
     v("slices_shown", s.slices_shown);
+    v("measurements", s.measurements);
 }
 
 namespace {
@@ -138,6 +171,20 @@ void check_finite(const std::string& name, double value) {
     if (!std::isfinite(value)) wrong(name, "must be a finite number");
 }
 
+void check_colours(const std::string& name, const std::string& colours) {
+    const auto known = colour_map_names();
+    if (std::ranges::count(known, colours) == 0) {
+        wrong(name, "must be one of the colour maps, such as grey");
+    }
+}
+
+void check_overlay(const OverlayLook& look) {
+    check_part("look.overlay.opacity", look.opacity);
+    check_part("look.overlay.surface_opacity", look.surface_opacity);
+    check_colours("look.overlay.colours", look.colours);
+    if (look.level) check_finite("look.overlay.level", *look.level);
+}
+
 void check_cut(const Look& look) {
     if (!look.cut_plane.point.allFinite()) wrong("look.cut_plane.point", "must be finite");
     if (!look.cut_plane.normal.allFinite() || !(look.cut_plane.normal.norm() > 0)) {
@@ -162,6 +209,8 @@ void check_look(const Look& look) {
         check_part(name + "opacity", look.surfaces[i].opacity);
     }
     check_cut(look);
+    check_overlay(look.overlay);
+    check_colours("look.colours", look.colours);
     const auto& points = look.transfer.points;
     const std::string list = "look.transfer.points";
     if (points.size() == 1) wrong(list, "must be two points or more, or none");
@@ -185,9 +234,24 @@ void check_camera(const pictures::Camera& camera) {
     if (!(side.norm() > 1e-6)) wrong("camera.up", "must not be along 'camera.towards_viewer'");
 }
 
+void check_measurements(const std::vector<Measurement>& measurements) {
+    constexpr std::size_t most = 1000;
+    if (measurements.size() > most) wrong("measurements", "must not be more than 1000");
+    for (std::size_t i = 0; i < measurements.size(); ++i) {
+        const auto& [kind, points] = measurements[i];
+        const std::string name = "measurements[" + std::to_string(i) + "].points";
+        const bool finite =
+            std::ranges::all_of(points, [](const Vec3& p) { return p.allFinite(); });
+        if (points.size() != points_of(kind) || !finite) {
+            wrong(name, "must be " + std::to_string(points_of(kind)) + " finite points");
+        }
+    }
+}
+
 /// Throws std::invalid_argument naming the member.
 void check_session(const SessionFile& s) {
     if (name_of(s.source).empty()) wrong("volume", "must have a name");
+    if (s.overlay && name_of(*s.overlay).empty()) wrong("overlay", "must have a name");
     check_finite("isovalue", s.isovalue);
     if (s.background) check_finite("background", *s.background);
     if (s.device.name.empty()) wrong("device", "must have a name");
@@ -197,20 +261,22 @@ void check_session(const SessionFile& s) {
     check(settings.penetrability, s.solid);
     check_look(s.look);
     if (s.camera) check_camera(*s.camera);
+    check_measurements(s.measurements);
     if (s.crosshair && !s.crosshair->allFinite()) wrong("crosshair", "must be finite");
     check_finite("window_low", s.window_low);
     check_finite("window_high", s.window_high);
     if (!(s.window_low <= s.window_high)) wrong("window_low", "must not be above 'window_high'");
 }
 
-run::Source source_from(const Json& json, const std::filesystem::path& folder) {
-    if (!json.is_object()) wrong("volume", "must be an object");
+run::Source source_from(const Json& json, const std::string& member,
+                        const std::filesystem::path& folder) {
+    if (!json.is_object()) wrong(member, "must be an object");
     std::map<std::string, std::string> names;
     for (const auto& [name, value] : json.items()) {
-        io::JsonReader::get(value, "volume." + name, names[name]);
+        io::JsonReader::get(value, member + "." + name, names[name]);
     }
     std::string& volume = names["volume"];
-    if (volume.empty()) wrong("volume.volume", "is missing");
+    if (volume.empty()) wrong(member + ".volume", "is missing");
     if (!volume.starts_with(synthetic_prefix)) {
         volume = (folder / volume).lexically_normal().string();
     }
@@ -252,7 +318,10 @@ void check_head(const Json& json) {
 SessionFile session_from(const Json& json, const std::filesystem::path& folder) {
     check_head(json);
     SessionFile session;
-    session.source = source_from(needed(json, "volume"), folder);
+    session.source = source_from(needed(json, "volume"), "volume", folder);
+    if (const auto overlay = json.find("overlay"); overlay != json.end()) {
+        session.overlay = source_from(*overlay, "overlay", folder);
+    }
     io::JsonReader::get(needed(json, "isovalue"), "isovalue", session.isovalue);
     io::JsonReader reader{json};
     std::string solid = "above";
@@ -301,12 +370,16 @@ SessionFile read_session(const std::filesystem::path& path) {
 
 void write_session(const std::filesystem::path& path, const SessionFile& session) {
     check_session(session);
-    auto volume = run::to_names(session.source);
-    volume["volume"] = name_from(volume["volume"], path.parent_path());
+    const auto names_of = [&](const run::Source& source) {
+        auto names = run::to_names(source);
+        names["volume"] = name_from(names["volume"], path.parent_path());
+        return names;
+    };
     io::JsonWriter writer;
     writer.json["format"] = format_name;
     writer.json["version"] = version;
-    writer.json["volume"] = volume;
+    writer.json["volume"] = names_of(session.source);
+    if (session.overlay) writer.json["overlay"] = names_of(*session.overlay);
     writer.json["solid"] = session.solid == Solid::above ? "above" : "below";
     writer.json["field"] = name_of(session.interpolation);
     writer.json["isovalue"] = session.isovalue;

@@ -4,8 +4,10 @@
 
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 #include "apps/viewer/model/look.hpp"
+#include "apps/viewer/model/measurement.hpp"
 #include "palpate/run/setup.hpp"
 
 namespace palpate::viewer {
@@ -22,11 +24,13 @@ struct SessionFile {
     /// penetrability function is code and is not kept. Nothing: the defaults for device and volume.
     std::optional<RendererSettings> settings;
     Look look;
+    std::optional<run::Source> overlay;      ///< a label map or image over the volume
     std::optional<pictures::Camera> camera;  ///< nothing: one that shows the whole volume
     std::optional<Vec3> crosshair;           ///< [mm, physical]; nothing: the middle
     bool follow = true;                      ///< the crosshair follows the hand
     double window_low = 0, window_high = 0;  ///< [data units] grey levels; equal: the usual ones
     bool slices_shown = true;                ///< the panes
+    std::vector<Measurement> measurements;   ///< complete ones
 };
 
 /// Reads a session. A name of a volume that is relative counts from the session's folder.

@@ -67,6 +67,7 @@ DeviceControls::DeviceControls()
       scale_(named(new NumberBox, "scale",
                    "Scale of the hand: mm in the volume for each mm of the hand. Changes about "
                    "the proxy, so that neither it nor the force moves")) {
+    options_->setAccessibleName("Options of the device");
     picker_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
     picker_->setMinimumContentsLength(12);
     let_wheel_pass(*picker_);

@@ -2,20 +2,33 @@
 // and form rows, without margins.
 #pragma once
 
+#include <QAbstractButton>
 #include <QFormLayout>
+#include <QLabel>
+#include <QRegularExpression>
 #include <QWidget>
 
 #include <initializer_list>
+#include <type_traits>
 
 class QBoxLayout;
 
 namespace palpate::viewer {
 
-/// Sets object name and tooltip; returns the widget.
+/// What a tip begins with, up to its first sign.
+inline QString first_words(const QString& tip) {
+    return tip.left(tip.indexOf(QRegularExpression("[.;:\\n]"))).trimmed();
+}
+
+/// Sets object name and tooltip, and by its first words the name for screen readers, which that of
+/// a button or a label overrides; returns the widget.
 template <class Widget>
 Widget* named(Widget* widget, const QString& name, const QString& tip = {}) {
     widget->setObjectName(name);
     widget->setToolTip(tip);
+    constexpr bool has_words =
+        std::is_base_of_v<QAbstractButton, Widget> || std::is_base_of_v<QLabel, Widget>;
+    if constexpr (!has_words) widget->setAccessibleName(first_words(tip));
     return widget;
 }
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "apps/viewer/model/colour_map.hpp"
 #include "apps/viewer/panel/layout.hpp"
 
 namespace palpate::viewer {
@@ -22,6 +23,7 @@ LookControls::LookControls()
       cut_(named(new QComboBox, "cut",
                  "Cut surfaces and volume open, to see inside. Drag the blue balls in the scene.\n"
                  "Choose the plane again to have it face you.")),
+      colours_(named(new QComboBox, "colours", "Colour map of the slices")),
       editor_(new TransferEditor),
       point_level_(named(new NumberBox, "point_level", "Level of the chosen point [data units]")),
       point_opacity_(named(new NumberBox, "point_opacity",
@@ -111,6 +113,11 @@ void LookControls::add_surface() {
     changed();
 }
 
+void LookControls::set_overlay_look(const OverlayLook& overlay) {
+    look_.overlay = overlay;
+    changed();
+}
+
 void LookControls::set_felt(double isovalue, Solid solid) {
     felt_ = isovalue;
     solid_ = solid;
@@ -169,7 +176,18 @@ QWidget* LookControls::make_rest() {
                    &Look::orientation),
         add_switch("scale_bar", "Scale bar", "A length in the picture [mm]", &Look::scale_bar)};
     for (int i = 0; i < 7; ++i) grid->addWidget(boxes[i], i / 2, i % 2);
-    return all;
+    for (const std::string& name : colour_map_names()) {
+        colours_->addItem(QString::fromStdString(name));
+    }
+    let_wheel_pass(*colours_);
+    colours_->setAccessibleName("Colour map of the slices");
+    connect(colours_, qOverload<int>(&QComboBox::activated), this, [this] {
+        look_.colours = colours_->currentText().toStdString();
+        changed();
+    });
+    auto* label = new QLabel("Slices' colours");
+    label->setBuddy(colours_);
+    return column_of({all, row_of({label, colours_}, 1)});
 }
 
 void LookControls::connect_transfer() {
@@ -232,6 +250,7 @@ void LookControls::set_look(const Look& look) {
     surface_opacity_->set_value(look.surface_opacity);
     surfaces_->set_surfaces(look.surfaces);
     cut_->setCurrentIndex(static_cast<int>(look.cut));
+    colours_->setCurrentText(QString::fromStdString(look.colours));
     editor_->set_transfer(look.transfer);
     show_preset();
     Q_EMIT look_set();

@@ -30,6 +30,7 @@ class LookControls : public QWidget {
     /// places.
     void swap_felt(int row, double isovalue);
     /// As by hand.
+    void set_overlay_look(const OverlayLook& overlay);
     void move_surface(int row, double level);
     /// Shows a look; emits look_set() alone.
     void set_look(const Look& look);
@@ -70,7 +71,7 @@ class LookControls : public QWidget {
     Quantity* surface_opacity_;
     QComboBox* preset_;
     SurfaceList* surfaces_;
-    QComboBox* cut_;
+    QComboBox *cut_, *colours_;
     TransferEditor* editor_;
     NumberBox *point_level_, *point_opacity_;
     RateLimiter limiter_;

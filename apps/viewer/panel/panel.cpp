@@ -18,6 +18,7 @@
 #include "apps/viewer/panel/layout.hpp"
 #include "apps/viewer/panel/look_controls.hpp"
 #include "apps/viewer/panel/loop_view.hpp"
+#include "apps/viewer/panel/overlay_controls.hpp"
 #include "apps/viewer/panel/penetrability_controls.hpp"
 #include "apps/viewer/panel/section.hpp"
 #include "apps/viewer/panel/session_bar.hpp"
@@ -50,6 +51,7 @@ Panel::Panel(QWidget* parent)
       device_(new DeviceControls),
       loop_(new LoopView),
       look_(new LookControls),
+      overlay_(new OverlayControls),
       bar_(new SessionBar),
       tabs_(named(new QTabWidget, "tabs")) {
     setObjectName("panel");
@@ -71,14 +73,20 @@ void Panel::build() {
     device_part_ = new Section("Device", "device_part", device_);
     loop_part_ = new Section("Advanced: servo loop", "loop_part", loop_);
     look_part_ = new Section("Look", "look_part", look_);
+    overlay_part_ = new Section("Overlay", "overlay_part", overlay_);
     loop_part_->set_open(false);
-    sections_ = {session_part_, isovalue_part_, penetrability_part_, force_part_,
-                 look_part_,    edit_part_,     device_part_,        loop_part_};
+    sections_ = {session_part_, isovalue_part_, penetrability_part_, force_part_, look_part_,
+                 edit_part_,    overlay_part_,  device_part_,        loop_part_};
     tabs_->setDocumentMode(true);
-    tabs_->addTab(page_of({penetrability_part_, force_part_}), "Fee&l");
-    tabs_->addTab(page_of({look_part_}), "L&ook");
-    tabs_->addTab(page_of({edit_part_}), "D&ata");
-    tabs_->addTab(page_of({device_part_, loop_part_}), "Devi&ce");
+    const auto add = [this](const QString& title, std::initializer_list<QWidget*> sections) {
+        QScrollArea* page = page_of(sections);
+        tabs_->addTab(page, title);
+        page->setAccessibleName(QString(title).remove('&'));
+    };
+    add("Fee&l", {penetrability_part_, force_part_});
+    add("L&ook", {look_part_});
+    add("D&ata", {edit_part_, overlay_part_});
+    add("Devi&ce", {device_part_, loop_part_});
     auto* column = new QVBoxLayout(this);
     column->setContentsMargins(6, 6, 6, 0);
     column->addWidget(session_part_);
@@ -125,6 +133,9 @@ void Panel::connect_sections() {
 void Panel::connect_look() {
     connect(look_, &LookControls::look_changed, this, &Panel::show_marks);
     connect(look_, &LookControls::look_set, this, &Panel::show_marks);
+    connect(look_, &LookControls::look_set, this,
+            [this] { overlay_->set_look(look_->look().overlay); });
+    connect(overlay_, &OverlayControls::look_changed, look_, &LookControls::set_overlay_look);
     connect(&isovalue_->chart(), &LevelChart::mark_moved, look_, &LookControls::move_surface);
     connect(look_, &LookControls::feel_wanted, this, [this](int row) {
         const double felt = now_.isovalue;
@@ -217,7 +228,8 @@ void Panel::clear() {
 
 void Panel::set_observing(bool observing) {
     for (Section* part : sections_) {
-        if (part != loop_part_ && part != look_part_) part->setEnabled(!observing);
+        const bool looks = part == look_part_ || part == overlay_part_;
+        if (part != loop_part_ && !looks) part->setEnabled(!observing);
     }
 }
 

@@ -23,6 +23,7 @@ class ForceControls;
 class IsovalueControls;
 class LookControls;
 class LoopView;
+class OverlayControls;
 class PenetrabilityControls;
 class Section;
 class SessionBar;
@@ -66,6 +67,7 @@ class Panel : public QWidget {
     /// Sections that controllers connect to directly.
     IsovalueControls& isovalue_controls() { return *isovalue_; }
     LookControls& look_controls() { return *look_; }
+    OverlayControls& overlay_controls() { return *overlay_; }
     BrushControls& brush_controls() { return *edit_; }
     DeviceControls& device_controls() { return *device_; }
 
@@ -110,10 +112,11 @@ class Panel : public QWidget {
     DeviceControls* device_;
     LoopView* loop_;
     LookControls* look_;
+    OverlayControls* overlay_;
     SessionBar* bar_;
     QTabWidget* tabs_;
     Section *session_part_, *isovalue_part_, *penetrability_part_, *edit_part_, *force_part_,
-        *device_part_, *loop_part_, *look_part_;
+        *device_part_, *loop_part_, *look_part_, *overlay_part_;
     std::vector<Section*> sections_;  // all of them, from top to bottom
 
     bool live_ = false;  // there is a session

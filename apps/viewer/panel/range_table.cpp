@@ -12,6 +12,7 @@
 namespace palpate::viewer {
 RangeTable::RangeTable() : QTableWidget(0, 2) {
     setObjectName("ranges");
+    setAccessibleName("Ranges of interest");
     setHorizontalHeaderLabels({"from", "to"});
     horizontalHeader()->setSectionResizeMode(QHeaderView::Stretch);
     verticalHeader()->setDefaultSectionSize(static_cast<int>(1.7 * fontMetrics().height()));

@@ -134,11 +134,11 @@ void BackgroundRenderer::collect_surfaces() {
         request_.surfaces.push_back(
             {others_[i]->surface(), seen.colour, seen.shown ? seen.opacity : 0});
     }
-    request_.surfaces.insert(request_.surfaces.end(), labels_.begin(), labels_.end());
+    request_.surfaces.insert(request_.surfaces.end(), overlay_.begin(), overlay_.end());
 }
 
-void BackgroundRenderer::set_labels(std::vector<DrawnSurface> labels) {
-    labels_ = std::move(labels);
+void BackgroundRenderer::set_overlay(std::vector<DrawnSurface> surfaces) {
+    overlay_ = std::move(surfaces);
     paint();
 }
 
@@ -168,7 +168,7 @@ void BackgroundRenderer::clear() {
     request_.field.reset();
     felt_.clear();
     for (const auto& source : others_) source->clear();
-    labels_.clear();
+    overlay_.clear();
     paint();
 }
 

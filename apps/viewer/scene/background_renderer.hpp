@@ -29,7 +29,7 @@ class BackgroundRenderer : public QObject {
     void clear();
     void set_isovalue(double isovalue);
     /// Surfaces that do not depend on the field, drawn with it.
-    void set_labels(std::vector<DrawnSurface> labels);
+    void set_overlay(std::vector<DrawnSurface> surfaces);
     /// Draws this, with the number, field and surfaces that are kept here, if it differs from the
     /// last request.
     void request(const RenderRequest& request);
@@ -61,7 +61,7 @@ class BackgroundRenderer : public QObject {
     QTimer rest_;
     SurfaceSource felt_;
     std::vector<std::unique_ptr<SurfaceSource>> others_;  // as in the look
-    std::vector<DrawnSurface> labels_;
+    std::vector<DrawnSurface> overlay_;
     std::unique_ptr<RenderThread> quick_, fine_;
 };
 

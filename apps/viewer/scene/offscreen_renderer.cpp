@@ -104,6 +104,7 @@ void OffscreenRenderer::show_surface(SurfacePart& part, const DrawnSurface& surf
         const Colour& c = surface.colour;
         actor->GetProperty()->SetColor(c.red, c.green, c.blue);
         actor->SetVisibility(opacity > 0);
+        actor->SetPosition(Vec3(surface.offset).data());
         if (actor->GetProperty()->GetOpacity() == opacity && in.HasViewProp(actor)) continue;
         pictures::set_glass(*actor, opacity);
         out.RemoveActor(actor);

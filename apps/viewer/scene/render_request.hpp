@@ -17,7 +17,8 @@ namespace palpate::viewer {
 struct DrawnSurface {
     ExtractedSurface surface;
     Colour colour;
-    double opacity = 1;  ///< 0: not drawn
+    double opacity = 1;          ///< 0: not drawn
+    Vec3 offset = Vec3::Zero();  ///< [mm] of its origin from the middle of the grid
 };
 
 /// The static part of the scene, which does not follow the hand, seen by one camera.

@@ -24,6 +24,7 @@
 #include "apps/viewer/scene/cut_marks.hpp"
 #include "apps/viewer/scene/layer_prop.hpp"
 #include "apps/viewer/scene/markers.hpp"
+#include "apps/viewer/scene/measure_marks.hpp"
 #include "apps/viewer/scene/view_space.hpp"
 #include "pictures/vtk/props.hpp"
 
@@ -53,6 +54,7 @@ struct Scene::Parts {
     RenderRequest wanted;  // look, crosshair; changed() fills in the rest
     std::optional<Snapshot> snapshot;
     double brush = 0;
+    std::vector<Measurement> measurements;
     std::optional<double> pressed;  // to this level
     std::shared_ptr<const RenderMesh> patch;
     Vec3 patched = Vec3::Zero();  // where, and at which level
@@ -65,6 +67,7 @@ struct Scene::Parts {
     Annotations annotations{2};
     std::unique_ptr<Markers> markers;
     std::unique_ptr<CutMarks> cut;
+    std::unique_ptr<MeasureMarks> measures;
 
     Parts() {
         vtkTimerLog::LoggingOff();  // one log for all threads, unprotected; windows write into it
@@ -76,6 +79,7 @@ struct Scene::Parts {
         front->AddViewProp(solid);
         markers = std::make_unique<Markers>(*front, *overlay);
         cut = std::make_unique<CutMarks>(*front);
+        measures = std::make_unique<MeasureMarks>(*overlay, annotations.writing());
         front->AddViewProp(glass);  // after all that it may cover
         for (vtkRenderer* renderer :
              {front.Get(), overlay.Get(), &annotations.writing(), &annotations.orientation()}) {
@@ -86,6 +90,7 @@ struct Scene::Parts {
 
 Scene::Scene(QWidget* parent) : QVTKOpenGLNativeWidget(parent), parts_(std::make_unique<Parts>()) {
     setObjectName("scene");
+    setAccessibleName("3-D view");
     setFocusPolicy(Qt::StrongFocus);
     setMinimumSize(120, 90);
     setMouseTracking(true);
@@ -176,6 +181,20 @@ void Scene::set_crosshair(const Vec3& physical) {
 void Scene::set_hand(Hand hand) {
     hand_ = hand;
     setCursor(hand == Hand::probe ? Qt::CrossCursor : Qt::ArrowCursor);
+}
+
+void Scene::set_measuring(bool measuring) {
+    measuring_ = measuring;
+    setCursor(measuring || hand_ == Hand::probe ? Qt::CrossCursor : Qt::ArrowCursor);
+}
+
+void Scene::set_measurements(const std::vector<Measurement>& measurements) {
+    parts_->measurements = measurements;
+    refresh();
+}
+
+void Scene::set_overlay(std::vector<DrawnSurface> surfaces) {
+    parts_->background.set_overlay(std::move(surfaces));
 }
 
 void Scene::set_brush(double radius) {
@@ -292,7 +311,10 @@ void Scene::lay_out() {
         const double pixel = mm_per_pixel(camera, view_size());
         parts_->markers->show(contact, look, origin, pixel, voxel, ink, ratio);
         parts_->cut->show(look, field->geometry(), origin, pixel, ratio, held_);
+        parts_->measures->show(parts_->measurements, {origin, camera, view_size(), ratio,
+                                                      ratio * QFontMetricsF(font()).ascent()});
     } else {
+        parts_->measures->show({}, {});
         parts_->cut->hide();
         parts_->markers->show({}, look, Vec3::Zero(), 1, 1, ink, ratio);
     }
@@ -402,6 +424,11 @@ void Scene::mousePressEvent(QMouseEvent* event) {
     drag_ = drag_of(*event);
     drag_from_ = drag_start_ = event->localPos();
     event->accept();
+    if (measuring_ && event->button() == Qt::LeftButton) {
+        drag_ = Drag::none;
+        if (const auto at = surface_at(drag_from_)) Q_EMIT point_chosen(*at);
+        return;
+    }
     if (event->button() == Qt::LeftButton) {
         show_held(handle_at(drag_from_));
         if (held_) hold_handle();
@@ -417,6 +444,9 @@ void Scene::mouseMoveEvent(QMouseEvent* event) {
     drag_from_ = event->localPos();
     if (by.isNull() || !parts_->background.field()) return;
     if (drag_ == Drag::none) show_held(handle_at(drag_from_));
+    if (drag_ == Drag::none && measuring_) {
+        if (const auto at = surface_at(drag_from_)) Q_EMIT point_pointed_at(*at);
+    }
     const ViewSize size = view_size();
     switch (drag_) {
         case Drag::turn:
@@ -447,30 +477,35 @@ void Scene::mouseReleaseEvent(QMouseEvent* event) {
     if (event->buttons() == Qt::NoButton) drag_ = Drag::none;
 }
 
-void Scene::mouseDoubleClickEvent(QMouseEvent* event) {
+/// By the depths of what is shown; nothing beside everything.
+std::optional<Vec3> Scene::surface_at(const QPointF& pixel) const {
     const auto& shown = parts_->background.shown();
     const auto& field = parts_->background.field();
-    const bool asked = event->button() == Qt::LeftButton && event->modifiers() & Qt::ShiftModifier;
-    if (!asked || !shown || !field) {
-        mousePressEvent(event);
-        return;
-    }
-    const auto x = static_cast<int>(event->localPos().x() * shown->width / width());
-    const int y =
-        shown->height - 1 - static_cast<int>(event->localPos().y() * shown->height / height());
-    if (x < 0 || y < 0 || x >= shown->width || y >= shown->height) return;
+    if (!shown || !field) return std::nullopt;
+    const auto x = static_cast<int>(pixel.x() * shown->width / width());
+    const int y = shown->height - 1 - static_cast<int>(pixel.y() * shown->height / height());
+    if (x < 0 || y < 0 || x >= shown->width || y >= shown->height) return std::nullopt;
     const auto depth_at = [&](const Layer& layer) {
         const std::size_t i = std::size_t(y) * std::size_t(shown->width) + std::size_t(x);
         return i < layer.depth.size() ? layer.depth[i] : 1.0F;
     };
     const float depth = std::min(depth_at(shown->solid), depth_at(shown->glass));
-    if (depth >= 1) return;  // beside everything
-    const Vec3 at =
-        point_at(shown->camera, view_size(), {event->localPos().x(), event->localPos().y()});
+    if (depth >= 1) return std::nullopt;
+    const Vec3 at = point_at(shown->camera, view_size(), {pixel.x(), pixel.y()});
     const Vec3 towards = axes_of(shown->camera).towards_viewer;
     const Vec3 origin = physical_centre(field->geometry());
+    return at + (height_of(depth, shown->reach) - towards.dot(at - origin)) * towards;
+}
+
+void Scene::mouseDoubleClickEvent(QMouseEvent* event) {
+    const bool asked = event->button() == Qt::LeftButton && event->modifiers() & Qt::ShiftModifier;
+    const auto at = surface_at(event->localPos());
+    if (!asked || !at) {
+        if (!asked) mousePressEvent(event);
+        return;
+    }
     pictures::Camera camera = camera_;
-    camera.focus = at + (height_of(depth, shown->reach) - towards.dot(at - origin)) * towards;
+    camera.focus = *at;
     move_camera(camera);
 }
 

@@ -8,8 +8,10 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "apps/viewer/model/look.hpp"
+#include "apps/viewer/model/measurement.hpp"
 #include "apps/viewer/scene/cut_handles.hpp"
 #include "apps/viewer/scene/navigation.hpp"
 #include "palpate/servo.hpp"
@@ -19,6 +21,7 @@
 namespace palpate::viewer {
 
 struct Contact;
+struct DrawnSurface;
 
 /// Parallel projection. The static part (surface, volume, slices, box) is rendered on threads of
 /// its own, quickly while something changes and finely after that; the widget draws hand, proxy and
@@ -55,6 +58,11 @@ class Scene : public QVTKOpenGLNativeWidget {
     /// What the left mouse button moves. docs/viewer.md has what all buttons do.
     enum class Hand { camera, probe };
     void set_hand(Hand hand);
+    /// True: the left button chooses points on what is seen, and moves nothing.
+    void set_measuring(bool measuring);
+    /// Surfaces of an overlay, from the middle of the grid. Until clear().
+    void set_overlay(std::vector<DrawnSurface> surfaces);
+    void set_measurements(const std::vector<Measurement>& measurements);
     /// [mm] Outlined round the proxy; 0: no brush.
     void set_brush(double radius);
 
@@ -84,6 +92,9 @@ class Scene : public QVTKOpenGLNativeWidget {
     void probe_pressed(const palpate::Vec3& at);
     void probe_released();
     void camera_moved();
+    /// While measuring: the point of a surface or volume under the pointer [mm, physical].
+    void point_chosen(const palpate::Vec3& at);
+    void point_pointed_at(const palpate::Vec3& at);
     /// The cut was moved with the mouse; it is shown already.
     void cut_moved(const palpate::viewer::Look& look);
     /// The surface is shown as finely as it will be, `seconds` after it was asked for.
@@ -105,6 +116,7 @@ class Scene : public QVTKOpenGLNativeWidget {
     enum class Drag { none, turn, pan, zoom, probe, handle };
 
     Drag drag_of(const QMouseEvent& event) const;
+    std::optional<Vec3> surface_at(const QPointF& at) const;
     std::optional<std::size_t> handle_at(const QPointF& at) const;
     void show_held(std::optional<std::size_t> handle);
     void hold_handle();
@@ -120,6 +132,7 @@ class Scene : public QVTKOpenGLNativeWidget {
     pictures::Camera camera_;
     bool fitted_ = true;  // the camera shows the whole volume, also after a change of size
     Hand hand_ = Hand::camera;
+    bool measuring_ = false;
     Drag drag_ = Drag::none;
     QPointF drag_from_, drag_start_;
     std::optional<std::size_t> held_;  // the handle of the cut under the pointer

@@ -22,7 +22,7 @@ SliceSamples::SliceSamples(Field field, const SlicePlane& plane)
 }
 
 void SliceSamples::forget_layers() {
-    for (Layer& layer : layers_) layer.number = nowhere;
+    for (SampleLayer& layer : layers_) layer.number = nowhere;
 }
 
 void SliceSamples::use(const Field& field) {
@@ -50,7 +50,7 @@ void SliceSamples::go_to(double position) {
 }
 
 void SliceSamples::load(int number) {
-    Layer& layer = layers_[place_of(number)];
+    SampleLayer& layer = layers_[place_of(number)];
     if (layer.number == number) return;
     layer.number = number;
     const std::size_t count = static_cast<std::size_t>(size_[0] + 2 * ring) *

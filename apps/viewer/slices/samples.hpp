@@ -11,7 +11,7 @@
 namespace palpate::viewer {
 
 /// One layer of samples along u and v, with a ring of background round it, two samples wide.
-struct Layer {
+struct SampleLayer {
     int number = 0;  ///< along the grid axis
     std::vector<float> values;
 };
@@ -55,7 +55,7 @@ class SliceSamples {
 
     /// Any three in succession have places of their own.
     std::size_t place_of(int number) const { return static_cast<std::size_t>(number + 3) % 3; }
-    const Layer& layer_numbered(int number) const { return layers_[place_of(number)]; }
+    const SampleLayer& layer_numbered(int number) const { return layers_[place_of(number)]; }
     void forget_layers();
     void load(int number);
 
@@ -64,7 +64,7 @@ class SliceSamples {
     std::array<int, 2> size_;
     double position_ = 0, fraction_ = 0;
     int before_ = 0;  // the last layer at or before the slice
-    std::array<Layer, 3> layers_;
+    std::array<SampleLayer, 3> layers_;
 };
 
 /// Grey levels [data units] that are shown black and white.

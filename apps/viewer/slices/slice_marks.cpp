@@ -154,6 +154,41 @@ void paint_brush(QPainter& painter, const SliceSheet& sheet, const Vec3& centre,
     painter.restore();
 }
 
+void paint_measurement(QPainter& painter, const SliceSheet& sheet, const Measurement& m) {
+    if (m.points.empty()) return;
+    const QColor yellow(242, 217, 26);
+    painter.save();
+    painter.setRenderHint(QPainter::Antialiasing);
+    double opacity = 1;
+    QPainterPath path(sheet.pixel(m.points.front()));
+    for (const Vec3& p : m.points) {
+        opacity = std::min(opacity, opacity_of(sheet, p));
+        path.lineTo(sheet.pixel(p));
+    }
+    QColor faint = yellow;
+    faint.setAlphaF(opacity);
+    painter.setPen(QPen(QColor::fromRgbF(0, 0, 0, 0.6 * opacity), 3.5));
+    painter.drawPath(path);
+    painter.setPen(QPen(faint, 1.5));
+    painter.drawPath(path);
+    for (const Vec3& p : m.points) {
+        QColor colour = yellow;
+        colour.setAlphaF(opacity_of(sheet, p));
+        dot(painter, sheet.pixel(p), colour, 3);
+    }
+    const std::string words = text_of(m);
+    if (!words.empty()) {
+        const QPointF at = m.kind == Measure::length
+                               ? 0.5 * (sheet.pixel(m.points[0]) + sheet.pixel(m.points[1]))
+                               : sheet.pixel(m.points[1]);
+        const double em = QFontMetricsF(painter.font()).height();
+        painter.setOpacity(opacity);
+        shadowed(painter, QRectF(at + QPointF(8, -1.2 * em), QSizeF(12 * em, em)),
+                 Qt::AlignLeft | Qt::AlignVCenter, QString::fromStdString(words));
+    }
+    painter.restore();
+}
+
 void paint_letters(QPainter& painter, const SliceSheet& sheet) {
     QFont font = painter.font();
     font.setBold(true);

@@ -4,6 +4,7 @@
 #include <QPainter>
 #include <QStringList>
 
+#include "apps/viewer/model/measurement.hpp"
 #include "apps/viewer/slices/slice_map.hpp"
 #include "palpate/servo.hpp"
 
@@ -33,6 +34,9 @@ void paint_probe(QPainter& painter, const SliceSheet& sheet, const Snapshot& sna
 
 /// Where the slice cuts a ball of this radius [mm] round a physical point.
 void paint_brush(QPainter& painter, const SliceSheet& sheet, const Vec3& centre, double radius);
+
+/// Points, lines between them and what they measure, paler off the slice.
+void paint_measurement(QPainter& painter, const SliceSheet& sheet, const Measurement& measurement);
 
 /// Which side of the body is at each edge.
 void paint_letters(QPainter& painter, const SliceSheet& sheet);

@@ -13,8 +13,10 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "apps/viewer/model/hand_state.hpp"
+#include "apps/viewer/slices/overlay_picture.hpp"
 #include "apps/viewer/slices/slice_marks.hpp"
 #include "apps/viewer/slices/slice_picture.hpp"
 #include "palpate/density.hpp"
@@ -77,7 +79,7 @@ void SlicePane::set_field(const Field& field, double isovalue) {
     const auto usual = same ? content_->usual : std::nullopt;
     content_ = std::make_unique<Content>(field, slice_plane(field.geometry(), axis_));
     content_->usual = usual;
-    isovalue_ = isovalue;
+    style_.isovalue = isovalue;
     if (!same) {
         low_ = whole_range(field).low;
         high_ = whole_range(field).high;
@@ -107,8 +109,21 @@ void SlicePane::clear() {
 }
 
 void SlicePane::set_isovalue(double isovalue) {
-    if (isovalue == isovalue_) return;
-    isovalue_ = isovalue;
+    if (isovalue == style_.isovalue) return;
+    style_.isovalue = isovalue;
+    picture_changed();
+}
+
+void SlicePane::set_look(const Look& look) {
+    const ColourTable colours = colour_table(look.colours);
+    if (colours == style_.colours && look.overlay == style_.overlay_look) return;
+    style_.colours = colours;
+    style_.overlay_look = look.overlay;
+    picture_changed();
+}
+
+void SlicePane::set_overlay(std::shared_ptr<const Overlay> overlay) {
+    style_.overlay = std::move(overlay);
     picture_changed();
 }
 
@@ -154,6 +169,11 @@ void SlicePane::set_hand(bool probe) {
 
 void SlicePane::set_brush(double radius) {
     brush_ = radius;
+    update();
+}
+
+void SlicePane::set_measurements(const std::vector<Measurement>& measurements) {
+    measurements_ = measurements;
     update();
 }
 
@@ -224,7 +244,9 @@ void SlicePane::make_picture(const SliceMap& where) {
     if (c.newer) c.samples.use(*c.newer);
     c.newer.reset();
     c.samples.go_to(layer());
-    c.picture = slice_picture(c.samples, where, {low_, high_}, isovalue_, size(), scale);
+    SliceStyle style = style_;
+    style.window = {low_, high_};
+    c.picture = slice_picture(c.samples, c.plane, where, style, size(), scale);
     c.took_ms = c.made.elapsed();
     c.made.start();
 }
@@ -246,6 +268,9 @@ void SlicePane::paintEvent(QPaintEvent*) {
     if (snapshot_) {
         paint_brush(painter, sheet, snapshot_->session.tick.proxy.scp, brush_);
         paint_probe(painter, sheet, *snapshot_);
+    }
+    for (const Measurement& measurement : measurements_) {
+        paint_measurement(painter, sheet, measurement);
     }
     paint_letters(painter, sheet);
     paint_words(painter);
@@ -276,9 +301,13 @@ void SlicePane::paint_words(QPainter& painter) const {
     const Vec3 index = index_from_physical(geometry(), at);
     if (!(index.cwiseAbs().maxCoeff() <= farthest_index)) return;
     const auto mm = [](double x) { return QString::number(x, 'f', 1); };
-    paint_corner(painter, size(), Qt::AlignLeft | Qt::AlignBottom,
-                 {QString("(%1, %2, %3) mm").arg(mm(at[0]), mm(at[1]), mm(at[2])),
-                  QString::number(value_at(samples.field(), at), 'g', 6)});
+    QStringList words{QString("(%1, %2, %3) mm").arg(mm(at[0]), mm(at[1]), mm(at[2])),
+                      QString::number(value_at(samples.field(), at), 'g', 6)};
+    if (style_.overlay && style_.overlay_look.shown) {
+        const QString there = overlay_words(*style_.overlay, at);
+        if (!there.isEmpty()) words.push_front(there);
+    }
+    paint_corner(painter, size(), Qt::AlignLeft | Qt::AlignBottom, words);
 }
 
 bool SlicePane::event(QEvent* event) {
@@ -361,7 +390,9 @@ void SlicePane::reset() {
 void SlicePane::mousePressEvent(QMouseEvent* event) {
     if (!content_ || drag_ != Drag::none) return;
     drag_from_ = event->localPos();
-    if (event->button() == Qt::LeftButton) {
+    if (event->button() == Qt::LeftButton && measuring_) {
+        Q_EMIT point_chosen(point_at(event->localPos()));
+    } else if (event->button() == Qt::LeftButton) {
         if (probe_ && !(event->modifiers() & Qt::ControlModifier)) {
             drag_ = Drag::probe;
             drag_layer_ = layer();
@@ -399,6 +430,7 @@ void SlicePane::mouseMoveEvent(QMouseEvent* event) {
             picture_changed();
             break;
         case Drag::none:
+            if (measuring_) Q_EMIT point_pointed_at(point_at(event->localPos()));
             break;
     }
     update();

@@ -7,8 +7,11 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
+#include "apps/viewer/model/measurement.hpp"
 #include "apps/viewer/slices/slice_map.hpp"
+#include "apps/viewer/slices/slice_picture.hpp"
 #include "palpate/servo.hpp"
 
 namespace palpate::viewer {
@@ -37,6 +40,10 @@ class SlicePane : public QWidget {
     void clear();
     /// The level of the contour [data units].
     void set_isovalue(double isovalue);
+    /// The colour map of the samples, and how an overlay is shown.
+    void set_look(const Look& look);
+    /// Null: none.
+    void set_overlay(std::shared_ptr<const Overlay> overlay);
     /// The slice goes through it. Not finite: nothing happens.
     void set_crosshair(const Vec3& physical);
     const Vec3& crosshair() const { return crosshair_; }
@@ -52,6 +59,9 @@ class SlicePane : public QWidget {
     void set_hand(bool probe);
     /// [mm] Radius of the brush that is outlined round the proxy; 0: none.
     void set_brush(double radius);
+    /// True: the left button chooses points of the slice, and moves nothing.
+    void set_measuring(bool measuring) { measuring_ = measuring; }
+    void set_measurements(const std::vector<Measurement>& measurements);
 
     /// Sagittal, Coronal or Axial; empty without a volume.
     QString title() const;
@@ -68,6 +78,9 @@ class SlicePane : public QWidget {
     /// The point to which the probe is asked to go.
     void probe_aimed(const palpate::Vec3& physical);
     void window_changed(double low, double high);
+    /// While measuring: under the pointer [mm, physical].
+    void point_chosen(const palpate::Vec3& at);
+    void point_pointed_at(const palpate::Vec3& at);
 
   protected:
     bool event(QEvent* event) override;
@@ -105,12 +118,14 @@ class SlicePane : public QWidget {
 
     const int axis_;
     std::unique_ptr<Content> content_;  // null without a volume
-    double isovalue_ = 0;
+    SliceStyle style_;                  // but for the window
     Vec3 crosshair_ = Vec3::Zero();
     std::optional<Snapshot> snapshot_;
     double low_ = 0, high_ = 1;
     bool probe_ = false;
     double brush_ = 0;
+    bool measuring_ = false;
+    std::vector<Measurement> measurements_;
     SliceView view_;
     Drag drag_ = Drag::none;
     double drag_layer_ = 0;  // of the slice that the probe is dragged in

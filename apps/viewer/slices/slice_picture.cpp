@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "apps/viewer/slices/line_mask.hpp"
+#include "apps/viewer/slices/overlay_picture.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -31,7 +32,8 @@ QRect seen(const SliceSamples& samples, const SliceMap& map, const QSize& size) 
     return wide;
 }
 
-QImage grey_image(const SliceSamples& samples, const QRect& part, const GreyWindow& window) {
+QImage grey_image(const SliceSamples& samples, const QRect& part, const SliceStyle& style) {
+    const GreyWindow& window = style.window;
     QImage image(part.size(), QImage::Format_RGB32);
     std::vector<float> values(static_cast<std::size_t>(samples.width()));
     const auto low = static_cast<float>(window.low);
@@ -42,17 +44,17 @@ QImage grey_image(const SliceSamples& samples, const QRect& part, const GreyWind
         const float* const from = values.data() + part.left();
         for (int x = 0; x < part.width(); ++x) {
             const float level = std::clamp((from[x] - low) * scale, 0.0F, 255.0F);
-            line[x] = 0xff000000U | 0x010101U * static_cast<unsigned>(level + 0.5F);
+            line[x] = style.colours[static_cast<std::size_t>(level + 0.5F)];
         }
     }
     return image;
 }
 
 void draw_grey(QImage& picture, const SliceSamples& samples, const SliceMap& map,
-               const GreyWindow& window, const QRect& cells) {
+               const SliceStyle& style, const QRect& cells) {
     const QRect part = cells & QRect(0, 0, samples.width(), samples.height());
     if (part.isEmpty() || !samples.in_data()) return;
-    QImage image = grey_image(samples, part, window);
+    QImage image = grey_image(samples, part, style);
     const QRectF target(map.pixel(part.left() - 0.5, part.top() - 0.5),
                         map.pixel(part.right() + 0.5, part.bottom() + 0.5));
     const double scale = picture.devicePixelRatio();
@@ -101,14 +103,18 @@ QColor contour_colour() {
     return {250, 120, 30};
 }
 
-QImage slice_picture(const SliceSamples& samples, const SliceMap& map, const GreyWindow& window,
-                     double isovalue, const QSize& size, double scale) {
+QImage slice_picture(const SliceSamples& samples, const SlicePlane& plane, const SliceMap& map,
+                     const SliceStyle& style, const QSize& size, double scale) {
     QImage picture((QSizeF(size) * scale).toSize().expandedTo(QSize(1, 1)), QImage::Format_RGB32);
     picture.setDevicePixelRatio(scale);
     picture.fill(Qt::black);
     const QRect cells = seen(samples, map, size);
-    draw_grey(picture, samples, map, window, cells);
-    draw_contour(picture, samples, map, isovalue, cells);
+    draw_grey(picture, samples, map, style, cells);
+    if (style.overlay && style.overlay_look.shown) {
+        draw_overlay(picture, plane, samples.field().geometry(), map, samples.position(),
+                     *style.overlay, style.overlay_look);
+    }
+    draw_contour(picture, samples, map, style.isovalue, cells);
     return picture;
 }
 

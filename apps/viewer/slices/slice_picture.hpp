@@ -4,6 +4,10 @@
 #include <QColor>
 #include <QImage>
 
+#include <memory>
+
+#include "apps/viewer/model/colour_map.hpp"
+#include "apps/viewer/model/overlay.hpp"
 #include "apps/viewer/slices/contour.hpp"
 #include "apps/viewer/slices/slice_map.hpp"
 
@@ -12,10 +16,19 @@ namespace palpate::viewer {
 /// The colour of the contour: a light vermilion, like the proxy's.
 QColor contour_colour();
 
+/// How a slice is shown.
+struct SliceStyle {
+    GreyWindow
+        window;  ///< levels up to window.low have the first colour, from window.high the last
+    ColourTable colours = colour_table("grey");
+    double isovalue = 0;                     ///< of the contour [data units]
+    std::shared_ptr<const Overlay> overlay;  ///< null: none
+    OverlayLook overlay_look;
+};
+
 /// The slice as it is seen through `map` in a widget of `size`, `scale` device pixels a pixel;
-/// black where there are no data. Levels up to window.low are black, from window.high white.
-/// Nothing is drawn beyond what is seen.
-QImage slice_picture(const SliceSamples& samples, const SliceMap& map, const GreyWindow& window,
-                     double isovalue, const QSize& size, double scale);
+/// black where there are no data. Nothing is drawn beyond what is seen.
+QImage slice_picture(const SliceSamples& samples, const SlicePlane& plane, const SliceMap& map,
+                     const SliceStyle& style, const QSize& size, double scale);
 
 }  // namespace palpate::viewer

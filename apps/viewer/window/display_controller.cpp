@@ -12,6 +12,8 @@
 #include "apps/viewer/scene/cut_handles.hpp"
 #include "apps/viewer/scene/scene.hpp"
 #include "apps/viewer/window/content.hpp"
+#include "apps/viewer/window/measure_controller.hpp"
+#include "apps/viewer/window/overlay_controller.hpp"
 #include "apps/viewer/window/views.hpp"
 
 namespace palpate::viewer {
@@ -28,8 +30,9 @@ std::optional<pictures::View> face_on(const Geometry& geometry) {
 
 }  // namespace
 
-DisplayController::DisplayController(Content& content, Views& views, Panel& panel)
-    : content_(content), views_(views), panel_(panel) {
+DisplayController::DisplayController(Content& content, Views& views, Panel& panel,
+                                     MeasureController& measuring, OverlayController& overlays)
+    : content_(content), views_(views), panel_(panel), measuring_(measuring), overlays_(overlays) {
     connect(&content, &Content::closed, this, &DisplayController::clear);
     connect(&content, &Content::run_started, this, [this] {
         const run::Run& live = *content_.live();
@@ -122,6 +125,7 @@ void DisplayController::use_usual_look() {
     // Of the volume before.
     look.surfaces.clear();
     look.cut = Cut::nothing;
+    look.overlay = {};
     set_look(look);
 }
 
@@ -137,6 +141,8 @@ void DisplayController::save_view(SessionFile& session) const {
     session.window_low = views_.window_low();
     session.window_high = views_.window_high();
     session.slices_shown = views_.slices_shown();
+    session.measurements = measuring_.measurements();
+    if (overlays_.overlay()) session.overlay = overlays_.overlay()->source;
 }
 
 void DisplayController::restore_view(const SessionFile& session) {
@@ -149,6 +155,8 @@ void DisplayController::restore_view(const SessionFile& session) {
     if (session.crosshair) views_.set_crosshair(*session.crosshair);
     views_.set_follow(session.follow);
     views_.show_slices(session.slices_shown);
+    measuring_.set_measurements(session.measurements);
+    if (session.overlay) overlays_.open(*session.overlay);
     if (session.camera) views_.scene().set_camera(*session.camera);
 }
 

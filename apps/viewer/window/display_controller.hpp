@@ -10,12 +10,15 @@
 namespace palpate::viewer {
 
 class Content;
+class MeasureController;
+class OverlayController;
 class Panel;
 class Views;
 
 class DisplayController : public QObject {
   public:
-    DisplayController(Content& content, Views& views, Panel& panel);
+    DisplayController(Content& content, Views& views, Panel& panel, MeasureController& measuring,
+                      OverlayController& overlays);
 
     /// Shows the newest snapshot, and its data where they have changed. Returns it.
     std::optional<Snapshot> observe();
@@ -45,6 +48,8 @@ class DisplayController : public QObject {
     Content& content_;
     Views& views_;
     Panel& panel_;
+    MeasureController& measuring_;
+    OverlayController& overlays_;
     std::optional<Snapshot> held_;
     std::optional<double> isovalue_;
     std::optional<Field> shown_;  // as it was given to the views last

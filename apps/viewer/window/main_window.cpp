@@ -8,6 +8,7 @@
 #include <QCloseEvent>
 #include <QDockWidget>
 #include <QDragEnterEvent>
+#include <QKeyEvent>
 #include <QLabel>
 #include <QMimeData>
 #include <QScreen>
@@ -47,7 +48,9 @@ MainWindow::MainWindow(const RunRequest& request)
       readout_(new QLabel),
       frame_time_(new QLabel),
       messages_(this),
-      display_(content_, *views_, *panel_),
+      measuring_(content_, *views_, messages_),
+      overlays_(content_, *views_, *panel_, messages_),
+      display_(content_, *views_, *panel_, measuring_, overlays_),
       run_(request, content_, *panel_, messages_),
       recordings_(content_, *panel_, messages_),
       probe_(content_, run_, *views_, messages_),
@@ -81,6 +84,7 @@ void MainWindow::build() {
     views_->hide();
     layout->setSpacing(0);
     layout->addWidget(make_progress_strip(files_.loader()));
+    layout->addWidget(make_progress_strip(overlays_.loader()));
     setCentralWidget(centre);
     auto* dock = new QDockWidget("Feel and look");
     dock->setObjectName("dock");
@@ -209,7 +213,7 @@ void MainWindow::rest_or_wake(const std::optional<Snapshot>& now) {
 }
 
 bool MainWindow::settled() const {
-    return !files_.loading() && !editing_.saving() && !probe_.travelling() &&
+    return !files_.loading() && !editing_.saving() && !probe_.travelling() && overlays_.settled() &&
            (!content_.volume() || views_->scene().settled());
 }
 
@@ -239,6 +243,11 @@ void MainWindow::closeEvent(QCloseEvent* event) {
     settings.setValue("state", saveState());
     recordings_.stop();
     event->accept();
+}
+
+void MainWindow::keyPressEvent(QKeyEvent* event) {
+    if (event->key() == Qt::Key_Escape && measuring_.cancel()) return;
+    QMainWindow::keyPressEvent(event);
 }
 
 void MainWindow::dragEnterEvent(QDragEnterEvent* event) {

@@ -11,7 +11,9 @@
 #include "apps/viewer/window/edit_controller.hpp"
 #include "apps/viewer/window/file_controller.hpp"
 #include "apps/viewer/window/hints.hpp"
+#include "apps/viewer/window/measure_controller.hpp"
 #include "apps/viewer/window/messages.hpp"
+#include "apps/viewer/window/overlay_controller.hpp"
 #include "apps/viewer/window/probe_controller.hpp"
 #include "apps/viewer/window/recording_controller.hpp"
 #include "apps/viewer/window/run_controller.hpp"
@@ -41,6 +43,8 @@ class MainWindow : public QMainWindow {
     RecordingController& recordings() { return recordings_; }
     EditController& editing() { return editing_; }
     ProbeController& probe() { return probe_; }
+    MeasureController& measuring() { return measuring_; }
+    OverlayController& overlays() { return overlays_; }
     DisplayController& display() { return display_; }
     Messages& messages() { return messages_; }
     Content& content() { return content_; }
@@ -60,6 +64,7 @@ class MainWindow : public QMainWindow {
     void closeEvent(QCloseEvent* event) override;
     void dragEnterEvent(QDragEnterEvent* event) override;
     void dropEvent(QDropEvent* event) override;
+    void keyPressEvent(QKeyEvent* event) override;
 
   private:
     void build();
@@ -78,6 +83,8 @@ class MainWindow : public QMainWindow {
     QLabel *readout_, *frame_time_;
     Messages messages_;
     Content content_;
+    MeasureController measuring_;
+    OverlayController overlays_;
     DisplayController display_;
     RunController run_;
     RecordingController recordings_;

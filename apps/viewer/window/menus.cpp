@@ -109,7 +109,9 @@ void add_recording_actions(MainWindow& window, Actions& actions, QMenu* menu) {
         [&window] { return window.live() != nullptr; });
     actions.add(
         menu, "leave_playback", "Leave the recording, &feel again", QKeySequence("Esc"),
-        [&window] { window.files().leave_playback(); },
+        [&window] {
+            if (!window.measuring().cancel()) window.files().leave_playback();
+        },
         [&window] { return window.playback() != nullptr; });
 }
 
@@ -178,6 +180,14 @@ void make_data_menu(MainWindow& window, Actions& actions) {
         menu, "save_surface", "Save the surface as a &mesh…", {},
         [&window] { window.editing().ask_save_surface(); },
         [&window] { return window.live() != nullptr; });
+    actions.add(
+        menu, "open_overlay_action", "Open an o&verlay: labels or another image…", {},
+        [&window] { window.overlays().ask_open(); },
+        [&window] { return window.content().volume() != nullptr; });
+    actions.add(
+        menu, "close_overlay_action", "&Close the overlay", {},
+        [&window] { window.overlays().close(); },
+        [&window] { return window.overlays().overlay() != nullptr; });
     menu->addSeparator();
     actions.add(
         menu, "play_sequence", "&Play the sequence, or pause it", QKeySequence("K"),
@@ -228,6 +238,23 @@ void make_view_menu(MainWindow& window, Actions& actions) {
     actions.add(
         view, "scene_alone", "Scene a&lone, or all panes", QKeySequence("F7"),
         [&views] { views.toggle_alone(&views.scene()); }, opened);
+    QMenu* measure = view->addMenu("&Measure");
+    MeasureController& measuring = window.measuring();
+    actions.add(
+        measure, "measure_length", "A &length", QKeySequence("M"),
+        [&measuring] { measuring.begin(Measure::length); }, opened);
+    actions.add(
+        measure, "measure_angle", "An &angle", QKeySequence("Shift+M"),
+        [&measuring] { measuring.begin(Measure::angle); }, opened);
+    const auto measured = [&measuring] {
+        return measuring.measuring() || !measuring.measurements().empty();
+    };
+    actions.add(
+        measure, "measure_remove_last", "&Remove the last", QKeySequence("Shift+Backspace"),
+        [&measuring] { measuring.remove_last(); }, measured);
+    actions.add(
+        measure, "measure_remove_all", "Remove a&ll", {}, [&measuring] { measuring.remove_all(); },
+        measured);
     QMenu* cut = view->addMenu("Cut &away");
     const auto add_cut = [&](const char* name, const QString& text, Cut kind,
                              const QKeySequence& key) {

@@ -36,10 +36,14 @@ Views::Views(QWidget* parent)
         connect(pane, &SlicePane::crosshair_chosen, this, &Views::choose_crosshair);
         connect(pane, &SlicePane::probe_aimed, this, &Views::probe_aimed);
         connect(pane, &SlicePane::window_changed, this, &Views::set_window);
+        connect(pane, &SlicePane::point_chosen, this, &Views::point_chosen);
+        connect(pane, &SlicePane::point_pointed_at, this, &Views::point_pointed_at);
     }
     connect(scene_, &Scene::probe_dragged, this, &Views::probe_dragged);
     connect(scene_, &Scene::probe_pressed, this, &Views::probe_pressed);
     connect(scene_, &Scene::probe_released, this, &Views::probe_released);
+    connect(scene_, &Scene::point_chosen, this, &Views::point_chosen);
+    connect(scene_, &Scene::point_pointed_at, this, &Views::point_pointed_at);
     arrange(Arrangement::beside);
 }
 
@@ -114,6 +118,11 @@ void Views::set_isovalue(double isovalue) {
 
 void Views::set_look(const Look& look) {
     scene_->set_look(look);
+    for (SlicePane* pane : slices_) pane->set_look(look);
+}
+
+void Views::set_overlay(const std::shared_ptr<const Overlay>& overlay) {
+    for (SlicePane* pane : slices_) pane->set_overlay(overlay);
 }
 
 void Views::show_snapshot(const std::optional<Snapshot>& snapshot) {
@@ -133,6 +142,16 @@ void Views::set_hand(bool probe) {
 void Views::set_brush(double radius) {
     scene_->set_brush(radius);
     for (SlicePane* pane : slices_) pane->set_brush(radius);
+}
+
+void Views::set_measuring(bool measuring) {
+    scene_->set_measuring(measuring);
+    for (SlicePane* pane : slices_) pane->set_measuring(measuring);
+}
+
+void Views::set_measurements(const std::vector<Measurement>& measurements) {
+    scene_->set_measurements(measurements);
+    for (SlicePane* pane : slices_) pane->set_measurements(measurements);
 }
 
 void Views::set_crosshair(const Vec3& physical) {

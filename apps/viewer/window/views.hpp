@@ -3,9 +3,12 @@
 
 #include <QWidget>
 #include <array>
+#include <memory>
 #include <optional>
 
 #include "apps/viewer/model/look.hpp"
+#include "apps/viewer/model/measurement.hpp"
+#include "apps/viewer/model/overlay.hpp"
 #include "palpate/servo.hpp"
 
 class QSplitter;
@@ -27,6 +30,8 @@ class Views : public QWidget {
     void clear();
     void set_isovalue(double isovalue);
     void set_look(const Look& look);
+    /// Null: none.
+    void set_overlay(const std::shared_ptr<const Overlay>& overlay);
     /// As Scene::set_pressed; the slices show the contour of that level.
     void set_pressed(const std::optional<double>& level);
     /// Up to 60 times a second. Nothing: no hand is shown.
@@ -35,6 +40,9 @@ class Views : public QWidget {
     void set_hand(bool probe);
     /// [mm] Radius of the brush that is outlined round the proxy; 0: none.
     void set_brush(double radius);
+    /// True: the left button chooses points, everywhere.
+    void set_measuring(bool measuring);
+    void set_measurements(const std::vector<Measurement>& measurements);
     void set_crosshair(const Vec3& physical);
     const Vec3& crosshair() const { return crosshair_; }
     /// The crosshair follows the probe, once it has touched something.
@@ -66,6 +74,9 @@ class Views : public QWidget {
     void probe_pressed(const palpate::Vec3& at);
     void probe_released();
     void follow_changed(bool follow);
+    /// While measuring.
+    void point_chosen(const palpate::Vec3& at);
+    void point_pointed_at(const palpate::Vec3& at);
 
   protected:
     bool eventFilter(QObject* watched, QEvent* event) override;

@@ -1,0 +1,26 @@
+// Lengths and angles between points of a volume.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "palpate/volume.hpp"
+
+namespace palpate::viewer {
+
+enum class Measure : std::uint8_t { length, angle };
+
+/// A length between two points, or the angle at the middle one of three.
+struct Measurement {
+    Measure kind = Measure::length;
+    std::vector<Vec3> points;  ///< [mm, physical] fewer than points_of(kind) while it is made
+
+    bool operator==(const Measurement&) const = default;
+};
+
+std::size_t points_of(Measure kind);
+/// "12.3 mm", or in smaller or larger units; "45.0°". Empty before all points are there, and for an
+/// angle without a side.
+std::string text_of(const Measurement& measurement);
+
+}  // namespace palpate::viewer

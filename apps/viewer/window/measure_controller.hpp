@@ -1,0 +1,45 @@
+// Measures lengths and angles by clicks in scene and slices.
+#pragma once
+
+#include <QObject>
+#include <optional>
+#include <vector>
+
+#include "apps/viewer/model/measurement.hpp"
+
+namespace palpate::viewer {
+
+class Content;
+class Messages;
+class Views;
+
+class MeasureController : public QObject {
+    Q_OBJECT
+
+  public:
+    MeasureController(Content& content, Views& views, Messages& messages);
+
+    /// The next clicks are its points.
+    void begin(Measure kind);
+    /// Gives up the one that is being made. False if there is none.
+    bool cancel();
+    bool measuring() const { return made_.has_value(); }
+    void remove_last();
+    void remove_all();
+
+    /// The complete ones.
+    const std::vector<Measurement>& measurements() const { return done_; }
+    void set_measurements(const std::vector<Measurement>& measurements);
+
+  private:
+    void add_point(const Vec3& at);
+    void show(const std::optional<Vec3>& pointed_at = {});
+
+    Content& content_;
+    Views& views_;
+    Messages& messages_;
+    std::vector<Measurement> done_;
+    std::optional<Measurement> made_;
+};
+
+}  // namespace palpate::viewer

@@ -1,0 +1,122 @@
+// Reads overlays in the background.
+#include "apps/viewer/window/overlay_controller.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "apps/viewer/panel/look_controls.hpp"
+#include "apps/viewer/panel/overlay_controls.hpp"
+#include "apps/viewer/panel/panel.hpp"
+#include "apps/viewer/scene/label_surfaces.hpp"
+#include "apps/viewer/scene/render_request.hpp"
+#include "apps/viewer/scene/scene.hpp"
+#include "apps/viewer/window/content.hpp"
+#include "apps/viewer/window/file_dialogs.hpp"
+#include "apps/viewer/window/messages.hpp"
+#include "apps/viewer/window/views.hpp"
+
+namespace palpate::viewer {
+
+OverlayController::OverlayController(Content& content, Views& views, Panel& panel,
+                                     Messages& messages)
+    : content_(content),
+      views_(views),
+      panel_(panel),
+      messages_(messages),
+      image_({2'000'000, 20'000}),
+      loader_(messages) {
+    connect(&content, &Content::closed, this, &OverlayController::close);
+    connect(&image_, &SurfaceSource::made, this, &OverlayController::show);
+    connect(&panel.look_controls(), &LookControls::look_changed, this, &OverlayController::show);
+    connect(&panel.look_controls(), &LookControls::look_set, this, &OverlayController::show);
+    OverlayControls& controls = panel.overlay_controls();
+    connect(&controls, &OverlayControls::open_wanted, this, &OverlayController::ask_open);
+    connect(&controls, &OverlayControls::close_wanted, this, &OverlayController::close);
+    connect(&controls, &OverlayControls::label_wanted, this, &OverlayController::go_to);
+}
+
+void OverlayController::ask_open() {
+    if (!content_.volume()) return;
+    const QString path = ask_open_name(messages_.window());
+    if (!path.isEmpty()) open(run::source_named(path.toStdString()));
+}
+
+void OverlayController::open(const run::Source& source) {
+    messages_.forget();
+    struct Read {
+        std::shared_ptr<const Overlay> overlay;
+        std::vector<ExtractedSurface> labels;
+    };
+    const auto read = std::make_shared<Read>();
+    const QString name = short_name(QString::fromStdString(run::name_of(source)));
+    loader_.start(
+        QString("Opening %1").arg(name),
+        [source, read](const io::Progress& progress) {
+            constexpr double reading = 0.6;
+            const run::LoadedVolume loaded =
+                run::load(source, [&](double part) { progress(reading * part); });
+            read->overlay = std::make_shared<const Overlay>(make_overlay(loaded, source));
+            read->labels = label_surfaces(
+                *read->overlay, [&](double part) { progress(reading + (1 - reading) * part); });
+        },
+        [this, read] { use(read->overlay, std::move(read->labels)); });
+}
+
+void OverlayController::use(std::shared_ptr<const Overlay> overlay,
+                            std::vector<ExtractedSurface> labels) {
+    if (!content_.volume()) return;
+    overlay_ = std::move(overlay);
+    labels_ = std::move(labels);
+    const std::optional<double> level = panel_.look_controls().look().overlay.level;
+    if (overlay_->is_label_map()) {
+        image_.clear();
+    } else {
+        image_.set_field(Field(overlay_->volume), level.value_or(overlay_->level));
+    }
+    panel_.overlay_controls().set_overlay(overlay_.get());
+    views_.set_overlay(overlay_);
+    show();
+}
+
+void OverlayController::close() {
+    loader_.abandon();
+    if (!overlay_) return;
+    overlay_.reset();
+    labels_.clear();
+    image_.clear();
+    panel_.overlay_controls().set_overlay(nullptr);
+    views_.set_overlay(nullptr);
+    views_.scene().set_overlay({});
+}
+
+void OverlayController::show() {
+    if (!overlay_ || !content_.volume()) return;
+    constexpr Colour image_colour{0.85, 0.35, 0.25};
+    const OverlayLook& look = panel_.look_controls().look().overlay;
+    const Vec3 offset = physical_centre(overlay_->volume.geometry()) -
+                        physical_centre(content_.volume()->loaded.volume.geometry());
+    const double opacity = look.surface ? look.surface_opacity : 0;
+    std::vector<DrawnSurface> surfaces;
+    if (overlay_->is_label_map()) {
+        for (std::size_t i = 0; i < labels_.size(); ++i) {
+            const Label& label = overlay_->labels[i];
+            const bool hidden = std::ranges::count(look.hidden, label.value) > 0;
+            surfaces.push_back({labels_[i], label.colour, hidden ? 0 : opacity, offset});
+        }
+    } else {
+        image_.set_level(look.level.value_or(overlay_->level));
+        surfaces.push_back({image_.surface(), image_colour, opacity, offset});
+    }
+    views_.scene().set_overlay(std::move(surfaces));
+}
+
+/// Slices through the middle of where the label lies.
+void OverlayController::go_to(int value) {
+    const auto label = std::ranges::find(overlay_->labels, value, &Label::value);
+    if (label == overlay_->labels.end()) return;
+    const Vec3 index = 0.5 * (label->box.low + label->box.high).cast<double>();
+    views_.set_follow(false);
+    views_.set_crosshair(physical_from_index(overlay_->volume.geometry(), index));
+}
+
+}  // namespace palpate::viewer

@@ -1,0 +1,52 @@
+// Opens an overlay over the volume, and shows it in slices and scene.
+#pragma once
+
+#include <QObject>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "apps/viewer/model/overlay.hpp"
+#include "apps/viewer/scene/surface_source.hpp"
+#include "apps/viewer/window/background_task.hpp"
+
+namespace palpate::viewer {
+
+class Content;
+class Messages;
+class Panel;
+class Views;
+
+class OverlayController : public QObject {
+    Q_OBJECT
+
+  public:
+    OverlayController(Content& content, Views& views, Panel& panel, Messages& messages);
+
+    /// By a dialog.
+    void ask_open();
+    /// Over the volume that is open, once it has been read. Errors are shown; the overlay before
+    /// stays then.
+    void open(const run::Source& source);
+    void close();
+    /// Null: none.
+    const std::shared_ptr<const Overlay>& overlay() const { return overlay_; }
+    bool settled() const { return !loader_.busy() && !image_.extracting(); }
+    BackgroundTask& loader() { return loader_; }
+
+  private:
+    void use(std::shared_ptr<const Overlay> overlay, std::vector<ExtractedSurface> labels);
+    void show();
+    void go_to(int label);
+
+    Content& content_;
+    Views& views_;
+    Panel& panel_;
+    Messages& messages_;
+    std::shared_ptr<const Overlay> overlay_;
+    std::vector<ExtractedSurface> labels_;
+    SurfaceSource image_;  // its surface
+    BackgroundTask loader_;
+};
+
+}  // namespace palpate::viewer

@@ -1,0 +1,255 @@
+// What a person looks at: several surfaces, cuts, measurements, overlays, by keys and mouse.
+#include <QAbstractScrollArea>
+#include <QAccessible>
+#include <QAction>
+#include <QCheckBox>
+#include <QComboBox>
+#include <QLabel>
+#include <QListWidget>
+#include <QPushButton>
+#include <QTabWidget>
+
+#include <fstream>
+
+#include "apps/viewer/panel/number_box.hpp"
+#include "palpate/io/sample_volume.hpp"
+#include "viewer/window/window_fixture.hpp"
+
+namespace palpate::viewer::test {
+namespace {
+
+class Looking : public InWindow {
+  protected:
+    /// The page of the panel with this widget, as a person would open it.
+    template <class Widget>
+    Widget& on_page(const char* name) {
+        auto& widget = part<Widget>(name);
+        auto& tabs = part<QTabWidget>("tabs");
+        for (int i = 0; i < tabs.count(); ++i) {
+            if (tabs.widget(i)->isAncestorOf(&widget)) tabs.setCurrentIndex(i);
+        }
+        QApplication::processEvents();
+        return widget;
+    }
+    const Look& look() { return window_->panel().look_controls().look(); }
+    bool settle() {
+        QTest::qWait(60);  // what limits the rate of changes lets the last one through
+        return wait_until([&] { return window_->settled(); });
+    }
+    QPoint middle(QWidget& widget) { return widget.rect().center(); }
+};
+
+TEST_F(Looking, skin_over_bone_is_two_clicks_and_either_is_felt) {
+    feel(io::sample_volume_path().string());
+    const double skin = window_->live()->isovalue();
+    QTest::mouseClick(&on_page<QPushButton>("add_surface"), Qt::LeftButton);
+    ASSERT_TRUE(settle());
+    ASSERT_EQ(look().surfaces.size(), 1U);
+    const double other = look().surfaces[0].level;
+    EXPECT_NE(other, skin);
+    save("two-surfaces");
+    QTest::mouseClick(&on_page<QPushButton>("surface_1_feel"), Qt::LeftButton);
+    ASSERT_TRUE(settle());
+    EXPECT_EQ(window_->live()->isovalue(), other);
+    EXPECT_EQ(look().surfaces[0].level, skin);
+}
+
+TEST_F(Looking, a_cut_by_key_faces_the_viewer_and_a_session_brings_it_back) {
+    feel("synthetic:sphere:48x48x48");
+    QTest::keyClick(window_.get(), Qt::Key_V);
+    ASSERT_TRUE(settle());
+    EXPECT_EQ(look().cut, Cut::plane);
+    const Vec3 towards = window_->views().scene().camera().towards_viewer.normalized();
+    EXPECT_LT((look().cut_plane.normal - towards).norm(), 1e-9);
+    EXPECT_EQ(part<QComboBox>("cut").currentIndex(), 1);
+    save("cut");
+    window_->files().save_session(scratch("s.json"));
+    QTest::keyClick(window_.get(), Qt::Key_V, Qt::ShiftModifier);
+    ASSERT_TRUE(settle());
+    EXPECT_EQ(look().cut, Cut::box);
+    window_->files().open_path(scratch("s.json"));
+    ASSERT_TRUE(wait_until([&] { return look().cut == Cut::plane; }));
+    ASSERT_TRUE(settle());
+}
+
+TEST_F(Looking, a_length_and_an_angle_are_measured_in_a_slice_and_kept) {
+    feel("synthetic:sphere:48x48x48");
+    SlicePane& pane = window_->views().slice(2);
+    const auto click = [&](const Vec3& at) {
+        QTest::mouseClick(&pane, Qt::LeftButton, {}, pane.pixel_of(at).toPoint());
+    };
+    const double mm = 1.0 / (pane.pixel_of({1, 0, 0}) - pane.pixel_of({0, 0, 0})).x();
+    const Vec3 before = window_->views().crosshair();
+    QTest::keyClick(window_.get(), Qt::Key_M);
+    EXPECT_TRUE(window_->measuring().measuring());
+    click({-10, 0, 0});
+    click({10, 0, 0});
+    EXPECT_FALSE(window_->measuring().measuring());
+    ASSERT_EQ(window_->measuring().measurements().size(), 1U);
+    const auto& length = window_->measuring().measurements()[0];
+    EXPECT_NEAR((length.points[1] - length.points[0]).norm(), 20, 1.5 * mm);
+    EXPECT_EQ(window_->views().crosshair(), before) << "a click while measuring moves nothing";
+    QTest::keyClick(window_.get(), Qt::Key_M, Qt::ShiftModifier);
+    click({0, 10, 0});
+    click({0, 0, 0});
+    click({10, 0, 0});
+    ASSERT_EQ(window_->measuring().measurements().size(), 2U);
+    EXPECT_NEAR(std::stod(text_of(window_->measuring().measurements()[1])), 90, 8);
+    ASSERT_TRUE(settle());
+    save("measured");
+    window_->files().save_session(scratch("s.json"));
+    const auto measured = window_->measuring().measurements();
+    window_->measuring().remove_all();
+    window_->files().open_path(scratch("s.json"));
+    EXPECT_TRUE(wait_until([&] { return window_->measuring().measurements() == measured; }));
+}
+
+TEST_F(Looking, a_length_on_the_surface_in_the_scene_and_escape_gives_up) {
+    feel("synthetic:sphere:48x48x48");
+    Scene& scene = window_->views().scene();
+    const auto camera = scene.camera();
+    QTest::keyClick(window_.get(), Qt::Key_M);
+    QTest::mouseClick(&scene, Qt::LeftButton, {}, middle(scene));
+    QTest::mouseClick(&scene, Qt::LeftButton, {}, QPoint(5, 5));  // beside everything
+    EXPECT_TRUE(window_->measuring().measuring());
+    QTest::mouseClick(&scene, Qt::LeftButton, {}, middle(scene) + QPoint(40, 0));
+    ASSERT_EQ(window_->measuring().measurements().size(), 1U);
+    const Field& field = window_->live()->field();
+    for (const Vec3& p : window_->measuring().measurements()[0].points) {
+        EXPECT_NEAR(value_at(field, p), window_->live()->isovalue(), 0.1 * field.range());
+    }
+    EXPECT_EQ(scene.camera().towards_viewer, camera.towards_viewer);
+    QTest::keyClick(window_.get(), Qt::Key_M);
+    QTest::keyClick(window_.get(), Qt::Key_Escape);
+    EXPECT_FALSE(window_->measuring().measuring());
+    EXPECT_EQ(window_->measuring().measurements().size(), 1U);
+    ASSERT_TRUE(settle());
+    save("measured");
+    ASSERT_TRUE(wait_until([&] { return part<QAction>("measure_remove_last").isEnabled(); }));
+    QTest::keyClick(window_.get(), Qt::Key_Backspace, Qt::ShiftModifier);
+    EXPECT_TRUE(window_->measuring().measurements().empty());
+}
+
+/// Two labels, half of a ball each, on a coarser grid than the ball's, as 3D Slicer writes them.
+void write_segmentation(const std::filesystem::path& path) {
+    std::ofstream out(path, std::ios::binary);
+    out << "NRRD0004\ntype: unsigned char\ndimension: 3\nspace: left-posterior-superior\n"
+           "sizes: 24 24 24\nspace directions: (2,0,0) (0,2,0) (0,0,2)\n"
+           "kinds: domain domain domain\nencoding: raw\nspace origin: (-23,-23,-23)\n"
+           "Segment0_ID:=Segment_1\nSegment0_LabelValue:=1\nSegment0_Name:=left half\n"
+           "Segment0_Color:=0.9 0.1 0.1\nSegment1_ID:=Segment_2\nSegment1_LabelValue:=7\n"
+           "Segment1_Name:=right half\nSegment1_Color:=0.1 0.2 0.9\n\n";
+    for (int i = 0; i < 24 * 24 * 24; ++i) {
+        const Vec3 at = Vec3(i % 24, i / 24 % 24, i / 576) - Vec3::Constant(11.5);
+        out.put(at.norm() > 8 ? '\0' : at[0] < 0 ? '\1' : '\7');
+    }
+}
+
+TEST_F(Looking, a_segmentation_lies_over_slices_and_scene_with_its_names_and_colours) {
+    feel("synthetic:sphere:48x48x48");
+    write_segmentation(scratch_.path() / "ball.seg.nrrd");
+    typing(scratch("ball.seg.nrrd"),
+           [&] { QTest::mouseClick(&on_page<QPushButton>("open_overlay"), Qt::LeftButton); });
+    ASSERT_TRUE(wait_until([&] { return window_->overlays().overlay() != nullptr; }))
+        << window_->messages().problem().toStdString();
+    ASSERT_TRUE(settle());
+    const Overlay& overlay = *window_->overlays().overlay();
+    ASSERT_EQ(overlay.labels.size(), 2U);
+    EXPECT_EQ(overlay.labels[0].name, "left half");
+    EXPECT_EQ(overlay.labels[1].value, 7);
+    auto& list = on_page<QListWidget>("overlay_labels");
+    ASSERT_EQ(list.count(), 2);
+    EXPECT_EQ(list.item(1)->text(), "right half");
+    SlicePane& pane = window_->views().slice(2);
+    const auto colour_at = [&](const Vec3& at) {
+        return pane.grab().toImage().pixel(
+            (pane.pixel_of(at) * pane.devicePixelRatioF()).toPoint());
+    };
+    window_->views().set_crosshair({3, 3, 3});
+    EXPECT_GT(qRed(colour_at({-8, 6, 3})), qBlue(colour_at({-8, 6, 3})) + 40);
+    EXPECT_GT(qBlue(colour_at({8, 6, 3})), qRed(colour_at({8, 6, 3})) + 40);
+    save("overlay");
+    list.item(1)->setCheckState(Qt::Unchecked);
+    QTest::qWait(60);
+    EXPECT_EQ(look().overlay.hidden, std::vector{7});
+    EXPECT_LT(qBlue(colour_at({8, 6, 3})), qRed(colour_at({8, 6, 3})) + 20);
+    window_->files().save_session(scratch("s.json"));
+    QTest::mouseClick(&part<QPushButton>("close_overlay"), Qt::LeftButton);
+    EXPECT_EQ(window_->overlays().overlay(), nullptr);
+    window_->files().open_path(scratch("s.json"));
+    ASSERT_TRUE(wait_until([&] { return window_->overlays().overlay() != nullptr; }));
+    EXPECT_EQ(look().overlay.hidden, std::vector{7});
+    ASSERT_TRUE(settle());
+}
+
+TEST_F(Looking, another_image_lies_over_the_slices_in_a_colour_map) {
+    feel("synthetic:sphere:48x48x48");
+    window_->overlays().open(run::source_named("synthetic:torus:40x40x40"));
+    ASSERT_TRUE(wait_until([&] { return window_->overlays().overlay() != nullptr; }));
+    EXPECT_FALSE(window_->overlays().overlay()->is_label_map());
+    ASSERT_TRUE(settle());
+    save("image");
+    auto& level = on_page<NumberBox>("overlay_level");
+    EXPECT_TRUE(level.isVisible());
+    EXPECT_FALSE(part<QListWidget>("overlay_labels").isVisible());
+    level.setValue(100);
+    ASSERT_TRUE(settle());
+    EXPECT_EQ(look().overlay.level, 100);
+}
+
+TEST_F(Looking, an_overlay_that_cannot_be_read_is_reported_and_the_one_before_stays) {
+    feel("synthetic:sphere:48x48x48");
+    write_segmentation(scratch_.path() / "ball.seg.nrrd");
+    window_->overlays().open(run::source_named((scratch_.path() / "ball.seg.nrrd").string()));
+    ASSERT_TRUE(wait_until([&] { return window_->overlays().overlay() != nullptr; }));
+    window_->overlays().open(run::source_named((scratch_.path() / "none.nrrd").string()));
+    ASSERT_TRUE(wait_until([&] { return !window_->messages().problem().isEmpty(); }));
+    EXPECT_NE(window_->overlays().overlay(), nullptr);
+    EXPECT_NE(window_->live(), nullptr);
+    feel("synthetic:torus:40x40x40");
+    EXPECT_EQ(window_->overlays().overlay(), nullptr) << "it belongs to the volume before";
+}
+
+TEST_F(Looking, pressing_through_shows_what_is_felt_and_not_a_body_in_pieces) {
+    feel("synthetic:sphere:48x48x48");
+    const double level = window_->display().isovalue().value();
+    window_->run().send(Command(penetrability_threshold(0.3, level)));
+    Scene& scene = window_->views().scene();
+    for (int i = 0; i < 200 && !(now().session.tick.proxy.isovalue > level + 20); ++i) {
+        turn_wheel(scene, 1);
+    }
+    ASSERT_GT(now().session.tick.proxy.isovalue, level + 20);
+    EXPECT_EQ(window_->display().isovalue(), level) << "the whole surface stays";
+    ASSERT_TRUE(settle());
+    save("pressed-through");
+    turn_wheel(scene, -60);
+    ASSERT_TRUE(wait_until([&] { return now().session.tick.proxy.mode == Mode::free; }));
+    ASSERT_TRUE(settle());
+}
+
+TEST_F(Looking, every_control_has_a_name_for_screen_readers) {
+    feel("synthetic:sphere:48x48x48");
+    int named = 0;
+    const auto has_name = [](const QWidget* widget) {
+        const QAccessibleInterface* const one =
+            QAccessible::queryAccessibleInterface(const_cast<QWidget*>(widget));
+        return one && !one->text(QAccessible::Name).trimmed().isEmpty();
+    };
+    for (QWidget* widget : window_->findChildren<QWidget*>()) {
+        const bool is_control = widget->focusPolicy() != Qt::NoFocus && !widget->focusProxy() &&
+                                !qobject_cast<QAbstractScrollArea*>(widget->parent()) &&
+                                !qobject_cast<QLabel*>(widget) && !widget->isWindow() &&
+                                !qobject_cast<QAbstractItemView*>(widget->parent()) &&
+                                !widget->inherits("QComboBoxListView") &&
+                                !widget->objectName().startsWith("qt_");
+        if (!is_control) continue;
+        ++named;
+        EXPECT_TRUE(has_name(widget))
+            << widget->metaObject()->className() << ' ' << widget->objectName().toStdString()
+            << " in " << widget->parentWidget()->objectName().toStdString();
+    }
+    EXPECT_GT(named, 100);
+}
+
+}  // namespace
+}  // namespace palpate::viewer::test
