@@ -1,6 +1,7 @@
 // Averages layers of samples, several at once.
 #include "apps/viewer/model/coarse_samples.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -14,71 +15,61 @@
 namespace palpate::viewer {
 namespace {
 
-/// Sums and extremes of samples that go into the same coarse ones.
+using Row = Eigen::ArrayXf;
+using RowView = Eigen::Map<const Row>;
+
+/// Of samples, times the sign of what is solid, that go into the same coarse ones.
 struct Sums {
-    std::vector<float> mean, most;
+    Row mean, most;
 
-    explicit Sums(std::size_t count)
-        : mean(count, 0), most(count, -std::numeric_limits<float>::infinity()) {}
-};
-
-struct Averaging {
-    int every;
-    float sign;  // of what is solid
-
-    int half() const { return every / 2; }
-    /// A sample half way to the next coarse one goes into both.
-    float weight(int offset) const {
-        const bool shared = 2 * std::abs(offset) == every;
-        return (shared ? 0.5F : 1.0F) / static_cast<float>(every);
-    }
-    /// Adds `count` values of a sample at `offset`.
-    void add(float* mean, float* most, int offset, const float* means, const float* mosts,
-             std::size_t count) const {
-        const float w = weight(offset);
-        for (std::size_t i = 0; i < count; ++i) mean[i] += w * means[i];
-        for (std::size_t i = 0; i < count; ++i) most[i] = std::max(most[i], mosts[i]);
+    explicit Sums(Eigen::Index count)
+        : mean(Row::Zero(count)),
+          most(Row::Constant(count, -std::numeric_limits<float>::infinity())) {}
+    template <class Means, class Mosts>
+    void add(float weight, const Means& means, const Mosts& mosts) {
+        mean += weight * means;
+        most = most.max(mosts);
     }
 };
 
-/// Calls f(offset, place) for the samples round coarse sample `at`; beyond the ends the last one
+/// Calls f(weight, place) for the samples round coarse sample `at`; beyond the ends the last one
 /// goes on.
 template <class F>
-void for_samples(const Averaging& averaging, int at, int count, F f) {
-    const int half = averaging.half();
+void for_samples(int every, int at, int count, F f) {
+    const int half = every / 2;
     for (int offset = -half; offset <= half; ++offset) {
-        f(offset,
-          static_cast<std::size_t>(std::clamp(at * averaging.every + offset, 0, count - 1)));
+        // A sample half way to the next coarse one goes into both.
+        const bool shared = 2 * std::abs(offset) == every;
+        f((shared ? 0.5F : 1.0F) / static_cast<float>(every),
+          std::clamp(at * every + offset, 0, count - 1));
     }
 }
 
 /// One layer of coarse samples.
-void average_layer(const Field& field, const Averaging& averaging, int layer, float extreme,
-                   float* coarse) {
+void average_layer(const Field& field, int every, int layer, float extreme, float* coarse) {
+    const auto sign = static_cast<float>(field.sign());
     const Index3 size = field.geometry().size;
-    const Index3 small = coarse_size(size, averaging.every);
-    const auto width = static_cast<std::size_t>(size[0]),
-               height = static_cast<std::size_t>(size[1]);
-    Sums plane(width * height);
-    for_samples(averaging, layer, size[2], [&](int offset, std::size_t z) {
-        auto samples = sample_block(field, {0, 0, static_cast<int>(z)}, {size[0], size[1], 1});
-        for (float& sample : samples) sample *= averaging.sign;
-        averaging.add(plane.mean.data(), plane.most.data(), offset, samples.data(), samples.data(),
-                      samples.size());
+    const Index3 small = coarse_size(size, every);
+    const Eigen::Index width = size[0];
+    Sums plane(width * size[1]);
+    for_samples(every, layer, size[2], [&](float weight, int z) {
+        const auto samples = sample_block(field, {0, 0, z}, {size[0], size[1], 1});
+        const RowView values(samples.data(), width * size[1]);
+        plane.add(sign * weight, values, sign * values);
     });
     for (int j = 0; j < small[1]; ++j) {
         Sums line(width);
-        for_samples(averaging, j, size[1], [&](int offset, std::size_t y) {
-            averaging.add(line.mean.data(), line.most.data(), offset, plane.mean.data() + y * width,
-                          plane.most.data() + y * width, width);
+        for_samples(every, j, size[1], [&](float weight, int y) {
+            line.add(weight, plane.mean.segment(y * width, width),
+                     plane.most.segment(y * width, width));
         });
         for (int i = 0; i < small[0]; ++i) {
-            Sums one(1);
-            for_samples(averaging, i, size[0], [&](int offset, std::size_t x) {
-                averaging.add(one.mean.data(), one.most.data(), offset, &line.mean[x],
-                              &line.most[x], 1);
+            float mean = 0, most = -std::numeric_limits<float>::infinity();
+            for_samples(every, i, size[0], [&](float weight, int x) {
+                mean += weight * line.mean[x];
+                most = std::max(most, line.most[x]);
             });
-            *coarse++ = averaging.sign * std::lerp(one.mean[0], one.most[0], extreme);
+            *coarse++ = sign * std::lerp(mean, most, extreme);
         }
     }
 }
@@ -89,14 +80,13 @@ Volume averaged(const Field& field, int every, double extreme, std::vector<float
     Geometry geometry = field.geometry();
     geometry.size = coarse_size(geometry.size, every);
     geometry.spacing *= every;
-    const Averaging averaging{every, static_cast<float>(field.sign())};
     const std::size_t layer =
         static_cast<std::size_t>(geometry.size[0]) * static_cast<std::size_t>(geometry.size[1]);
     samples.resize(static_cast<std::size_t>(sample_count(geometry)));
     std::vector<std::size_t> layers(static_cast<std::size_t>(std::max(0, last - first + 1)));
     std::iota(layers.begin(), layers.end(), static_cast<std::size_t>(first));
     for_each_at_once(layers, [&](std::size_t k) {
-        average_layer(field, averaging, static_cast<int>(k), static_cast<float>(extreme),
+        average_layer(field, every, static_cast<int>(k), static_cast<float>(extreme),
                       samples.data() + k * layer);
         return true;
     });

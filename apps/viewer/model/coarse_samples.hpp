@@ -30,6 +30,7 @@ class CoarseSamples {
     void mark(const SampleBox& changed) { changed_ = united(changed_, changed); }
     /// Of this version, made from the last one where samples have not been marked.
     Field of(const Field& field);
+    std::int64_t samples() const { return volume_ ? sample_count(volume_->geometry()) : 0; }
 
   private:
     int every_;

@@ -22,6 +22,8 @@ using namespace std::chrono_literals;
 constexpr auto still = 150ms;
 // The time for a surface while large changes come one after the other [s].
 constexpr double streaming_seconds = 0.04;
+// Coarse samples that stay for the next level, which the last and largest step can do without.
+constexpr std::int64_t most_kept = 4'000'000;
 constexpr std::size_t no_limit = std::numeric_limits<std::size_t>::max();
 
 double seconds_since(Clock::time_point start) {
@@ -169,6 +171,7 @@ void SurfaceExtractor::carry_out(const std::stop_token& stop) {
     while (!steps_.empty()) {
         if (!make_finer([&] { return wanted() && !waiting_; })) return;
     }
+    std::erase_if(coarse_, [](const auto& one) { return one.second.samples() > most_kept; });
 }
 
 /// The first picture that has the change in it; the newest request waits for it.

@@ -1,6 +1,8 @@
 // Builds the window, and updates it 60 times a second.
 #include "apps/viewer/window/main_window.hpp"
 
+#include <malloc.h>
+
 #include <QAction>
 #include <QApplication>
 #include <QBoxLayout>
@@ -37,6 +39,8 @@ constexpr int rounds_at_rest = 60, resting_frame_ms = 48;
 // [frames] Intervals of updates that change slowly or take long.
 constexpr int panel_rounds = 2, device_rounds = 8, report_rounds = 32;
 constexpr int message_ms = 10'000;
+// After a volume was closed the C library is asked to give its memory back to the system.
+constexpr int give_back_ms = 2'000;
 
 }  // namespace
 
@@ -118,6 +122,9 @@ void MainWindow::connect_parts() {
     connect(&content_, &Content::run_started, this, &MainWindow::show_title);
     connect(&content_, &Content::playback_started, this, &MainWindow::show_title);
     connect(&content_, &Content::renamed, this, &MainWindow::show_title);
+    // Once the threads that draw have let go of it.
+    connect(&content_, &Content::closed, this,
+            [this] { QTimer::singleShot(give_back_ms, this, [] { malloc_trim(0); }); });
     const auto refresh = [this] { actions_.refresh(); };
     connect(&content_, &Content::closed, this, refresh);
     connect(&content_, &Content::run_changed, this, refresh);
