@@ -23,7 +23,8 @@ MeshBlocks moved(const MeshBlocks& blocks, const Vec3& by) {
 
 }  // namespace
 
-std::vector<ExtractedSurface> label_surfaces(const Overlay& overlay, const io::Progress& progress) {
+std::vector<ExtractedSurface> label_surfaces(const Overlay& overlay,
+                                             const std::function<void(double)>& progress) {
     constexpr std::size_t most_triangles = 4'000'000, moving_triangles = 20'000;
     std::vector<ExtractedSurface> surfaces;
     for (const Label& label : overlay.labels) {

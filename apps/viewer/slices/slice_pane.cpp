@@ -1,14 +1,10 @@
-// The slice pane: its data, how it is painted, and input by mouse and keys.
+// The slice pane: its data, and how it is painted.
 #include "apps/viewer/slices/slice_pane.hpp"
 
-#include <QElapsedTimer>
 #include <QFontMetrics>
 #include <QHelpEvent>
-#include <QKeyEvent>
-#include <QMouseEvent>
 #include <QPainter>
 #include <QToolTip>
-#include <QWheelEvent>
 
 #include <algorithm>
 #include <cmath>
@@ -17,6 +13,7 @@
 
 #include "apps/viewer/model/hand_state.hpp"
 #include "apps/viewer/slices/overlay_picture.hpp"
+#include "apps/viewer/slices/slice_content.hpp"
 #include "apps/viewer/slices/slice_marks.hpp"
 #include "apps/viewer/slices/slice_picture.hpp"
 #include "palpate/density.hpp"
@@ -37,19 +34,6 @@ GreyWindow whole_range(const Field& field) {
 }
 
 }  // namespace
-
-/// The data of a volume that the pane holds.
-struct SlicePane::Content {
-    SlicePlane plane;
-    SliceSamples samples;
-    std::optional<GreyWindow> usual;  ///< the first that was set
-    QImage picture;                   ///< grey levels and contour; null: to be made
-    std::optional<Field> newer;       ///< not yet in samples: another version of the same grid
-    QElapsedTimer made;               ///< since then
-    qint64 took_ms = 0;
-
-    Content(const Field& field, const SlicePlane& across) : plane(across), samples(field, across) {}
-};
 
 SlicePane::SlicePane(int axis, QWidget* parent) : QWidget(parent), axis_(axis) {
     setObjectName(QStringLiteral("slice%1").arg(axis));
@@ -385,127 +369,6 @@ void SlicePane::reset() {
     use_window(usual.low, usual.high);
     picture_changed();
     Q_EMIT window_changed(low_, high_);
-}
-
-void SlicePane::mousePressEvent(QMouseEvent* event) {
-    if (!content_ || drag_ != Drag::none) return;
-    drag_from_ = event->localPos();
-    if (event->button() == Qt::LeftButton && measuring_) {
-        Q_EMIT point_chosen(point_at(event->localPos()));
-    } else if (event->button() == Qt::LeftButton) {
-        if (probe_ && !(event->modifiers() & Qt::ControlModifier)) {
-            drag_ = Drag::probe;
-            drag_layer_ = layer();
-            aim_at(event->localPos());
-        } else {
-            drag_ = Drag::crosshair;
-            choose_at(event->localPos());
-        }
-    } else if (event->button() == Qt::RightButton) {
-        drag_ = Drag::window;
-    } else if (event->button() == Qt::MiddleButton) {
-        drag_ = Drag::move;
-    } else {
-        event->ignore();
-    }
-}
-
-void SlicePane::mouseMoveEvent(QMouseEvent* event) {
-    if (!content_) return;
-    pointer_ = event->localPos();
-    const QPointF drag = event->localPos() - drag_from_;
-    drag_from_ = event->localPos();
-    switch (drag_) {
-        case Drag::crosshair:
-            choose_at(event->localPos());
-            break;
-        case Drag::probe:
-            aim_at(event->localPos());
-            break;
-        case Drag::window:
-            change_window(drag);
-            break;
-        case Drag::move:
-            view_.moved += drag / map().per_mm;
-            picture_changed();
-            break;
-        case Drag::none:
-            if (measuring_) Q_EMIT point_pointed_at(point_at(event->localPos()));
-            break;
-    }
-    update();
-}
-
-void SlicePane::mouseReleaseEvent(QMouseEvent* event) {
-    const bool left = drag_ == Drag::crosshair || drag_ == Drag::probe;
-    const Qt::MouseButton of_drag = left                    ? Qt::LeftButton
-                                    : drag_ == Drag::window ? Qt::RightButton
-                                                            : Qt::MiddleButton;
-    if (event->button() == of_drag) drag_ = Drag::none;
-}
-
-void SlicePane::mouseDoubleClickEvent(QMouseEvent*) {
-    if (content_) reset();
-}
-
-void SlicePane::wheelEvent(QWheelEvent* event) {
-    if (!content_) return;
-    event->accept();
-    const int turned = event->angleDelta().y();
-    if (event->modifiers() & Qt::ControlModifier) {
-        zoom_at(event->position(), std::pow(1.2, turned / 120.0));
-        return;
-    }
-    // Touch pads turn by less than a step at a time.
-    if (turned * wheel_ < 0) wheel_ = 0;
-    wheel_ += turned;
-    const int steps = wheel_ / 120;
-    wheel_ -= 120 * steps;
-    if (steps == 0) return;
-    if (drag_ == Drag::probe) {
-        drag_layer_ = next_layer(drag_layer_, steps);
-        aim_at(event->position());
-    } else {
-        step_slice(steps);
-    }
-}
-
-void SlicePane::keyPressEvent(QKeyEvent* event) {
-    if (!content_) return event->ignore();
-    const auto move = [&](double u, double v) {
-        const Vec3 index = index_from_physical(geometry(), crosshair_);
-        const Vec3 slice = slice_from_index(content_->plane, geometry(), index);
-        choose(physical_from_slice(in_data(slice + Vec3(u, v, 0))));
-    };
-    const QPointF middle = QRectF(rect()).center();
-    switch (event->key()) {
-        case Qt::Key_Left:
-            return move(-1, 0);
-        case Qt::Key_Right:
-            return move(1, 0);
-        case Qt::Key_Up:
-            return move(0, -1);
-        case Qt::Key_Down:
-            return move(0, 1);
-        case Qt::Key_PageUp:
-            return step_slice(1);
-        case Qt::Key_PageDown:
-            return step_slice(-1);
-        case Qt::Key_Plus:
-        case Qt::Key_Equal:
-            return zoom_at(middle, 1.2);
-        case Qt::Key_Minus:
-            return zoom_at(middle, 1 / 1.2);
-        case Qt::Key_Home:
-            return reset();
-        default:
-            event->ignore();
-    }
-}
-
-void SlicePane::leaveEvent(QEvent*) {
-    pointer_.reset();
-    update();
 }
 
 }  // namespace palpate::viewer

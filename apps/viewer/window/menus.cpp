@@ -220,6 +220,40 @@ void add_camera_actions(MainWindow& window, Actions& actions, QMenu* menu) {
     }
 }
 
+void add_measure_actions(MainWindow& window, Actions& actions, QMenu* view) {
+    const auto opened = [&window] { return window.content().volume() != nullptr; };
+    QMenu* measure = view->addMenu("&Measure");
+    MeasureController& measuring = window.measuring();
+    actions.add(
+        measure, "measure_length", "A &length", QKeySequence("M"),
+        [&measuring] { measuring.begin(Measure::length); }, opened);
+    actions.add(
+        measure, "measure_angle", "An &angle", QKeySequence("Shift+M"),
+        [&measuring] { measuring.begin(Measure::angle); }, opened);
+    const auto measured = [&measuring] {
+        return measuring.measuring() || !measuring.measurements().empty();
+    };
+    actions.add(
+        measure, "measure_remove_last", "&Remove the last", QKeySequence("Shift+Backspace"),
+        [&measuring] { measuring.remove_last(); }, measured);
+    actions.add(
+        measure, "measure_remove_all", "Remove a&ll", {}, [&measuring] { measuring.remove_all(); },
+        measured);
+}
+
+void add_cut_actions(MainWindow& window, Actions& actions, QMenu* view) {
+    const auto opened = [&window] { return window.content().volume() != nullptr; };
+    QMenu* cut = view->addMenu("Cut &away");
+    const auto add_cut = [&](const char* name, const QString& text, Cut kind,
+                             const QKeySequence& key) {
+        actions.add(
+            cut, name, text, key, [&window, kind] { window.display().set_cut(kind); }, opened);
+    };
+    add_cut("cut_nothing", "&Nothing", Cut::nothing, {});
+    add_cut("cut_plane", "By a &plane that faces you", Cut::plane, QKeySequence("V"));
+    add_cut("cut_box", "To a &box", Cut::box, QKeySequence("Shift+V"));
+}
+
 void make_view_menu(MainWindow& window, Actions& actions) {
     QMenu* view = window.menuBar()->addMenu("&View");
     add_camera_actions(window, actions, view);
@@ -238,32 +272,8 @@ void make_view_menu(MainWindow& window, Actions& actions) {
     actions.add(
         view, "scene_alone", "Scene a&lone, or all panes", QKeySequence("F7"),
         [&views] { views.toggle_alone(&views.scene()); }, opened);
-    QMenu* measure = view->addMenu("&Measure");
-    MeasureController& measuring = window.measuring();
-    actions.add(
-        measure, "measure_length", "A &length", QKeySequence("M"),
-        [&measuring] { measuring.begin(Measure::length); }, opened);
-    actions.add(
-        measure, "measure_angle", "An &angle", QKeySequence("Shift+M"),
-        [&measuring] { measuring.begin(Measure::angle); }, opened);
-    const auto measured = [&measuring] {
-        return measuring.measuring() || !measuring.measurements().empty();
-    };
-    actions.add(
-        measure, "measure_remove_last", "&Remove the last", QKeySequence("Shift+Backspace"),
-        [&measuring] { measuring.remove_last(); }, measured);
-    actions.add(
-        measure, "measure_remove_all", "Remove a&ll", {}, [&measuring] { measuring.remove_all(); },
-        measured);
-    QMenu* cut = view->addMenu("Cut &away");
-    const auto add_cut = [&](const char* name, const QString& text, Cut kind,
-                             const QKeySequence& key) {
-        actions.add(
-            cut, name, text, key, [&window, kind] { window.display().set_cut(kind); }, opened);
-    };
-    add_cut("cut_nothing", "&Nothing", Cut::nothing, {});
-    add_cut("cut_plane", "By a &plane that faces you", Cut::plane, QKeySequence("V"));
-    add_cut("cut_box", "To a &box", Cut::box, QKeySequence("Shift+V"));
+    add_measure_actions(window, actions, view);
+    add_cut_actions(window, actions, view);
     QAction* follow = actions.add_switch(
         view, "follow", "&Crosshair follows the probe", QKeySequence("G"),
         [&views](bool on) { views.set_follow(on); }, [&views] { return views.follows(); });

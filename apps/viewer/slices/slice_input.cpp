@@ -1,0 +1,133 @@
+// The slice pane's input by mouse and keys.
+#include <QKeyEvent>
+#include <QMouseEvent>
+#include <QWheelEvent>
+
+#include <cmath>
+
+#include "apps/viewer/slices/slice_content.hpp"
+
+namespace palpate::viewer {
+
+void SlicePane::mousePressEvent(QMouseEvent* event) {
+    if (!content_ || drag_ != Drag::none) return;
+    drag_from_ = event->localPos();
+    if (event->button() == Qt::LeftButton && measuring_) {
+        Q_EMIT point_chosen(point_at(event->localPos()));
+    } else if (event->button() == Qt::LeftButton) {
+        if (probe_ && !(event->modifiers() & Qt::ControlModifier)) {
+            drag_ = Drag::probe;
+            drag_layer_ = layer();
+            aim_at(event->localPos());
+        } else {
+            drag_ = Drag::crosshair;
+            choose_at(event->localPos());
+        }
+    } else if (event->button() == Qt::RightButton) {
+        drag_ = Drag::window;
+    } else if (event->button() == Qt::MiddleButton) {
+        drag_ = Drag::move;
+    } else {
+        event->ignore();
+    }
+}
+
+void SlicePane::mouseMoveEvent(QMouseEvent* event) {
+    if (!content_) return;
+    pointer_ = event->localPos();
+    const QPointF drag = event->localPos() - drag_from_;
+    drag_from_ = event->localPos();
+    switch (drag_) {
+        case Drag::crosshair:
+            choose_at(event->localPos());
+            break;
+        case Drag::probe:
+            aim_at(event->localPos());
+            break;
+        case Drag::window:
+            change_window(drag);
+            break;
+        case Drag::move:
+            view_.moved += drag / map().per_mm;
+            picture_changed();
+            break;
+        case Drag::none:
+            if (measuring_) Q_EMIT point_pointed_at(point_at(event->localPos()));
+            break;
+    }
+    update();
+}
+
+void SlicePane::mouseReleaseEvent(QMouseEvent* event) {
+    const bool left = drag_ == Drag::crosshair || drag_ == Drag::probe;
+    const Qt::MouseButton of_drag = left                    ? Qt::LeftButton
+                                    : drag_ == Drag::window ? Qt::RightButton
+                                                            : Qt::MiddleButton;
+    if (event->button() == of_drag) drag_ = Drag::none;
+}
+
+void SlicePane::mouseDoubleClickEvent(QMouseEvent*) {
+    if (content_) reset();
+}
+
+void SlicePane::wheelEvent(QWheelEvent* event) {
+    if (!content_) return;
+    event->accept();
+    const int turned = event->angleDelta().y();
+    if (event->modifiers() & Qt::ControlModifier) {
+        zoom_at(event->position(), std::pow(1.2, turned / 120.0));
+        return;
+    }
+    // Touch pads turn by less than a step at a time.
+    if (turned * wheel_ < 0) wheel_ = 0;
+    wheel_ += turned;
+    const int steps = wheel_ / 120;
+    wheel_ -= 120 * steps;
+    if (steps == 0) return;
+    if (drag_ == Drag::probe) {
+        drag_layer_ = next_layer(drag_layer_, steps);
+        aim_at(event->position());
+    } else {
+        step_slice(steps);
+    }
+}
+
+void SlicePane::keyPressEvent(QKeyEvent* event) {
+    if (!content_) return event->ignore();
+    const auto move = [&](double u, double v) {
+        const Vec3 index = index_from_physical(geometry(), crosshair_);
+        const Vec3 slice = slice_from_index(content_->plane, geometry(), index);
+        choose(physical_from_slice(in_data(slice + Vec3(u, v, 0))));
+    };
+    const QPointF middle = QRectF(rect()).center();
+    switch (event->key()) {
+        case Qt::Key_Left:
+            return move(-1, 0);
+        case Qt::Key_Right:
+            return move(1, 0);
+        case Qt::Key_Up:
+            return move(0, -1);
+        case Qt::Key_Down:
+            return move(0, 1);
+        case Qt::Key_PageUp:
+            return step_slice(1);
+        case Qt::Key_PageDown:
+            return step_slice(-1);
+        case Qt::Key_Plus:
+        case Qt::Key_Equal:
+            return zoom_at(middle, 1.2);
+        case Qt::Key_Minus:
+            return zoom_at(middle, 1 / 1.2);
+        case Qt::Key_Home:
+            return reset();
+        default:
+            event->ignore();
+    }
+}
+
+void SlicePane::leaveEvent(QEvent*) {
+    pointer_.reset();
+    update();
+}
+
+}  // namespace palpate::viewer
