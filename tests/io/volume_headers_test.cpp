@@ -86,6 +86,28 @@ TEST(nrrd, right_anterior_superior_becomes_left_posterior_superior) {
     EXPECT_EQ(g.direction, Mat3(Vec3(-1, -1, 1).asDiagonal()));
 }
 
+TEST(nrrd, names_and_colours_of_a_segmentation_are_read) {
+    const ScratchFolder folder;
+    const std::string head =
+        std::string(plain_nrrd) + "encoding: raw\n" +
+        "Segment0_ID:=Segment_1\nSegment0_LabelValue:=1\nSegment0_Name:=left kidney\n"
+        "Segment0_Color:=0.5 0.25 1.5\nSegment1_ID:=a\nSegment1_LabelValue:=none\n"
+        "Segment2_ID:=b\nSegment2_LabelValue:=7\nanything:=else\n";
+    const VolumeFile file = read_bytes(folder, "a.seg.nrrd", head + "\n" + counting(24));
+    expect_counting(file);
+    const auto& labels = file.values.labels;
+    ASSERT_EQ(labels.size(), 2U);
+    EXPECT_EQ(labels[0].value, 1);
+    EXPECT_EQ(labels[0].name, "left kidney");
+    EXPECT_EQ(labels[0].colour, (std::array{0.5, 0.25, 1.0}));
+    EXPECT_EQ(labels[1].value, 7);
+    EXPECT_TRUE(labels[1].name.empty());
+    const std::string bad = replaced(head, "left kidney", "\xff\xfe" + std::string(9000, 'x'));
+    const VolumeFile odd = read_bytes(folder, "b.seg.nrrd", bad + "\n" + counting(24));
+    ASSERT_EQ(odd.values.labels.size(), 2U);
+    EXPECT_LE(odd.values.labels[0].name.size(), 64U);
+}
+
 TEST(nrrd, headers_that_make_no_sense_are_refused) {
     const ScratchFolder folder;
     const std::string data = "encoding: raw\n\n" + counting(24);
