@@ -100,9 +100,13 @@ void SlicePane::set_isovalue(double isovalue) {
 
 void SlicePane::set_look(const Look& look) {
     const ColourTable colours = colour_table(look.colours);
-    if (colours == style_.colours && look.overlay == style_.overlay_look) return;
+    if (colours == style_.colours && look.overlay == style_.overlay_look &&
+        look.surfaces == style_.surfaces) {
+        return;
+    }
     style_.colours = colours;
     style_.overlay_look = look.overlay;
+    style_.surfaces = look.surfaces;
     picture_changed();
 }
 

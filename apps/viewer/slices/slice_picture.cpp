@@ -69,7 +69,7 @@ void draw_grey(QImage& picture, const SliceSamples& samples, const SliceMap& map
 }
 
 void draw_contour(QImage& picture, const SliceSamples& samples, const SliceMap& map,
-                  double isovalue, const QRect& part) {
+                  double isovalue, const QColor& colour, const QRect& part) {
     const double scale = picture.devicePixelRatio();
     const ContourDetail detail = std::min(map.per_u, map.per_v) * scale < smallest_exact_cell
                                      ? ContourDetail::cells
@@ -82,7 +82,6 @@ void draw_contour(QImage& picture, const SliceSamples& samples, const SliceMap& 
         const QPointF a = scale * map.pixel(p.u0, p.v0), b = scale * map.pixel(p.u1, p.v1);
         mask.draw(a.x(), a.y(), b.x(), b.y(), scale * contour_radius);
     }
-    const QColor colour = contour_colour();
     const std::array<int, 3> ink{colour.red(), colour.green(), colour.blue()};
     for (int y = 0; y < mask.height(); ++y) {
         const std::uint8_t* const covered = mask.row(y);
@@ -114,7 +113,13 @@ QImage slice_picture(const SliceSamples& samples, const SlicePlane& plane, const
         draw_overlay(picture, plane, samples.field().geometry(), map, samples.position(),
                      *style.overlay, style.overlay_look);
     }
-    draw_contour(picture, samples, map, style.isovalue, cells);
+    for (const SeenSurface& other : style.surfaces) {
+        const Colour& c = other.colour;
+        if (!other.shown) continue;
+        draw_contour(picture, samples, map, other.level,
+                     QColor::fromRgbF(c.red, c.green, c.blue).lighter(130), cells);
+    }
+    draw_contour(picture, samples, map, style.isovalue, contour_colour(), cells);
     return picture;
 }
 

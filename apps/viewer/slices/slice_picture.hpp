@@ -5,6 +5,7 @@
 #include <QImage>
 
 #include <memory>
+#include <vector>
 
 #include "apps/viewer/model/colour_map.hpp"
 #include "apps/viewer/model/overlay.hpp"
@@ -22,6 +23,7 @@ struct SliceStyle {
         window;  ///< levels up to window.low have the first colour, from window.high the last
     ColourTable colours = colour_table("grey");
     double isovalue = 0;                     ///< of the contour [data units]
+    std::vector<SeenSurface> surfaces;       ///< contours of others, in their colours
     std::shared_ptr<const Overlay> overlay;  ///< null: none
     OverlayLook overlay_look;
 };

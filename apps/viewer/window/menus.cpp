@@ -195,7 +195,7 @@ void make_data_menu(MainWindow& window, Actions& actions) {
     const auto step = [&window](int frames) {
         return [&window, frames] { window.timeline().step(frames); };
     };
-    actions.add(menu, "frame_back", "A frame &back", QKeySequence(","), step(-1), playable);
+    actions.add(menu, "frame_back", "A frame bac&k", QKeySequence(","), step(-1), playable);
     actions.add(menu, "frame_on", "A frame &on", QKeySequence("."), step(1), playable);
 }
 
@@ -243,7 +243,7 @@ void add_measure_actions(MainWindow& window, Actions& actions, QMenu* view) {
 
 void add_cut_actions(MainWindow& window, Actions& actions, QMenu* view) {
     const auto opened = [&window] { return window.content().volume() != nullptr; };
-    QMenu* cut = view->addMenu("Cut &away");
+    QMenu* cut = view->addMenu("Cut awa&y");
     const auto add_cut = [&](const char* name, const QString& text, Cut kind,
                              const QKeySequence& key) {
         actions.add(
@@ -272,6 +272,9 @@ void make_view_menu(MainWindow& window, Actions& actions) {
     actions.add(
         view, "scene_alone", "Scene a&lone, or all panes", QKeySequence("F7"),
         [&views] { views.toggle_alone(&views.scene()); }, opened);
+    actions.add(
+        view, "slice_alone", "A slice al&one, then the next", QKeySequence("F8"),
+        [&views] { views.show_next_slice(); }, opened);
     add_measure_actions(window, actions, view);
     add_cut_actions(window, actions, view);
     QAction* follow = actions.add_switch(

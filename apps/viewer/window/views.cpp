@@ -4,6 +4,7 @@
 #include <QBoxLayout>
 #include <QMouseEvent>
 #include <QSplitter>
+#include <algorithm>
 
 #include "apps/viewer/panel/layout.hpp"
 #include "apps/viewer/scene/scene.hpp"
@@ -60,6 +61,13 @@ bool Views::eventFilter(QObject* watched, QEvent* event) {
 
 void Views::toggle_alone(QWidget* pane) {
     alone_ = alone_ ? nullptr : pane;
+    show_panes();
+}
+
+void Views::show_next_slice() {
+    const auto at = std::ranges::find(slices_, alone_);
+    const auto now = at - slices_.begin();  // 3: none
+    alone_ = slices_[static_cast<std::size_t>((now + 2) % 3)];
     show_panes();
 }
 

@@ -60,6 +60,8 @@ class Views : public QWidget {
     void arrange(Arrangement arrangement);
     /// Shows this pane alone, or again all of them.
     void toggle_alone(QWidget* pane);
+    /// Shows a slice alone: the axial, or, where one is alone already, the next.
+    void show_next_slice();
     /// The pane that is shown alone, or null.
     const QWidget* alone() const { return alone_; }
 

@@ -4,6 +4,9 @@
 
 #include <cstdlib>
 
+#include "apps/viewer/scene/label_surfaces.hpp"
+#include "apps/viewer/scene/render_request.hpp"
+#include "palpate/edit.hpp"
 #include "palpate/scenes/volumes.hpp"
 #include "support/fields.hpp"
 #include "viewer/scene/shown_scene.hpp"
@@ -30,6 +33,12 @@ void expect_as_committed(const QImage& image, const std::string& name) {
         }
     }
     EXPECT_LT(others, image.width() * image.height() / 100) << name;
+}
+
+run::LoadedVolume loaded_from(const Overlay& overlay) {
+    run::LoadedVolume loaded = run::load(run::source_named("synthetic:sphere:8x8x8"));
+    loaded.volume = overlay.volume;
+    return loaded;
 }
 
 struct Torus : ShownScene {
@@ -100,6 +109,56 @@ TEST(SceneLooks, show_lattice_and_planes_round_the_proxy) {
     shown.scene.set_camera(camera);
     shown.scene.show_snapshot(snapshot);
     expect_as_committed(shown.settled("look_lattice"), "lattice");
+}
+
+TEST(SceneLooks, show_several_surfaces_cut_open) {
+    Look look;
+    look.surface_opacity = 0.35;
+    look.surfaces = {{200, {0.84, 0.37, 0.25}, 1, true}};
+    look.cut = Cut::plane;
+    look.cut_plane = {Vec3(0, 0, 0), Vec3(1, -0.3, 0.2).normalized()};
+    Torus shown(look);
+    expect_as_committed(shown.settled("look_surfaces"), "surfaces");
+}
+
+TEST(SceneLooks, show_labels_inside_glass) {
+    Look look;
+    look.surface_opacity = 0.35;
+    Torus shown(look);
+    Overlay overlay{run::source_named("synthetic:torus"),
+                    support::volume_of<std::uint8_t>(
+                        support::grid({24, 24, 16}, {2, 2, 2}, {-23, -23, -15}),
+                        [&](const Index3& i) {
+                            const Vec3 at = 2 * i.cast<double>() - Vec3(23, 23, 15);
+                            const bool inside = value_at(shown.field, at) > 190;
+                            return inside ? at[0] < 0 ? 1 : 2 : 0;
+                        }),
+                    {}};
+    overlay = make_overlay(loaded_from(overlay), overlay.source);
+    std::vector<DrawnSurface> surfaces;
+    for (const auto& surface : label_surfaces(overlay, [](double) {})) {
+        const Label& label = overlay.labels[surfaces.size()];
+        surfaces.push_back({surface, label.colour, 1,
+                            physical_centre(overlay.volume.geometry()) -
+                                physical_centre(shown.field.geometry())});
+    }
+    shown.scene.set_overlay(surfaces);
+    expect_as_committed(shown.settled("look_labels"), "labels");
+}
+
+TEST(SceneLooks, show_an_edit_while_the_brush_is_on) {
+    Torus shown{Look()};
+    const Snapshot pressed = shown.pressed();
+    edit::Stroke stroke;
+    stroke.brush = brush_for(BrushKind::carve, shown.field, shown.torus.isovalue, 5);
+    stroke.from = stroke.to = pressed.session.tick.proxy.scp;
+    Field field = shown.field;
+    field.use(edited(field.shared_samples(), stroke).samples);
+    shown.settled();
+    shown.scene.update_field(field);
+    shown.scene.set_brush(5);
+    shown.scene.show_snapshot(pressed);
+    expect_as_committed(shown.settled("look_edit"), "edit");
 }
 
 }  // namespace

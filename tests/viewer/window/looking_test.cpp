@@ -6,10 +6,12 @@
 #include <QComboBox>
 #include <QLabel>
 #include <QListWidget>
+#include <QMenu>
 #include <QPushButton>
 #include <QTabWidget>
 
 #include <fstream>
+#include <map>
 
 #include "apps/viewer/panel/number_box.hpp"
 #include "palpate/io/sample_volume.hpp"
@@ -225,6 +227,32 @@ TEST_F(Looking, pressing_through_shows_what_is_felt_and_not_a_body_in_pieces) {
     turn_wheel(scene, -60);
     ASSERT_TRUE(wait_until([&] { return now().session.tick.proxy.mode == Mode::free; }));
     ASSERT_TRUE(settle());
+}
+
+TEST_F(Looking, mnemonics_are_unique_in_each_menu) {
+    for (QMenu* menu : window_->findChildren<QMenu*>()) {
+        std::map<QString, QString> seen;
+        for (const QAction* action : menu->actions()) {
+            const auto at = action->text().indexOf('&');
+            if (at < 0) continue;
+            const QString key = action->text().mid(at + 1, 1).toLower();
+            EXPECT_TRUE(seen.emplace(key, action->text()).second)
+                << action->text().toStdString() << " and " << seen[key].toStdString();
+        }
+    }
+}
+
+TEST_F(Looking, a_slice_fills_the_window_and_then_the_next) {
+    feel("synthetic:sphere:48x48x48");
+    for (const int axis : {2, 1, 0, 2}) {
+        QTest::keyClick(window_.get(), Qt::Key_F8);
+        for (int other = 0; other < 3; ++other) {
+            EXPECT_EQ(window_->views().slice(other).isVisible(), other == axis);
+        }
+        EXPECT_FALSE(window_->views().scene().isVisible());
+    }
+    QTest::keyClick(window_.get(), Qt::Key_F5);
+    EXPECT_TRUE(window_->views().scene().isVisible());
 }
 
 TEST_F(Looking, every_control_has_a_name_for_screen_readers) {
