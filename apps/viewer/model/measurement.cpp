@@ -15,20 +15,31 @@ std::string number_with(double value, const char* unit) {
     return text;
 }
 
-std::string length_words(double mm) {
-    if (mm < 0.1) return number_with(1e3 * mm, " µm");
+}  // namespace
+
+std::string length_text(double mm, LengthUnit unit) {
+    switch (unit) {
+        case LengthUnit::automatic:
+            return length_text(mm, mm < 0.1 ? LengthUnit::micrometres : LengthUnit::millimetres);
+        case LengthUnit::micrometres:
+            return number_with(1e3 * mm, " µm");
+        case LengthUnit::millimetres:
+            break;
+        case LengthUnit::centimetres:
+            return number_with(0.1 * mm, " cm");
+        case LengthUnit::inches:
+            return number_with(mm / 25.4, " in");
+    }
     return number_with(mm, " mm");
 }
-
-}  // namespace
 
 std::size_t points_of(Measure kind) {
     return kind == Measure::length ? 2 : 3;
 }
 
-std::string text_of(const Measurement& m) {
+std::string text_of(const Measurement& m, LengthUnit unit) {
     if (m.points.size() < points_of(m.kind)) return {};
-    if (m.kind == Measure::length) return length_words((m.points[1] - m.points[0]).norm());
+    if (m.kind == Measure::length) return length_text((m.points[1] - m.points[0]).norm(), unit);
     const Vec3 a = m.points[0] - m.points[1], b = m.points[2] - m.points[1];
     if (a.norm() == 0 || b.norm() == 0) return {};
     const double angle = std::atan2(a.cross(b).norm(), a.dot(b)) * 180 / std::numbers::pi;

@@ -10,6 +10,11 @@ namespace palpate::viewer {
 
 enum class Measure : std::uint8_t { length, angle };
 
+/// Automatic: micrometres below a tenth of a millimetre, else millimetres.
+enum class LengthUnit : std::uint8_t { automatic, micrometres, millimetres, centimetres, inches };
+/// "12.3 mm".
+std::string length_text(double mm, LengthUnit unit);
+
 /// A length between two points, or the angle at the middle one of three.
 struct Measurement {
     Measure kind = Measure::length;
@@ -19,8 +24,7 @@ struct Measurement {
 };
 
 std::size_t points_of(Measure kind);
-/// "12.3 mm", or in smaller or larger units; "45.0°". Empty before all points are there, and for an
-/// angle without a side.
-std::string text_of(const Measurement& measurement);
+/// "12.3 mm", "45.0°". Empty before all points are there, and for an angle without a side.
+std::string text_of(const Measurement& measurement, LengthUnit unit = LengthUnit::automatic);
 
 }  // namespace palpate::viewer

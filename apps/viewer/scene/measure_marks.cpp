@@ -76,7 +76,7 @@ void MeasureMarks::put_words(const std::vector<Measurement>& all, const View& vi
     vtkRenderWindow* const window = writing_.GetRenderWindow();
     const double points = view.em * 72 / (window ? window->GetDPI() : 72);
     for (std::size_t i = 0; i < words_.size(); ++i) {
-        const std::string words = i < all.size() ? text_of(all[i]) : std::string();
+        const std::string words = i < all.size() ? text_of(all[i], view.unit) : std::string();
         words_[i]->SetVisibility(!words.empty());
         if (words.empty()) continue;
         const auto& p = all[i].points;

@@ -26,6 +26,7 @@ class MeasureMarks {
         ViewSize size;           ///< [logical pixels]
         double pixel_ratio = 1;  ///< device pixels a logical pixel
         double em = 12;          ///< [device pixels] height of the words
+        LengthUnit unit = LengthUnit::automatic;
     };
     void show(const std::vector<Measurement>& all, const View& view);
 

@@ -139,6 +139,15 @@ void Scene::set_measurements(const std::vector<Measurement>& measurements) {
     refresh();
 }
 
+void Scene::set_unit(LengthUnit unit) {
+    parts_->unit = unit;
+    refresh();
+}
+
+void Scene::set_most_triangles(std::size_t triangles) {
+    parts_->background.set_most_triangles(triangles);
+}
+
 void Scene::set_overlay(std::vector<DrawnSurface> surfaces) {
     parts_->background.set_overlay(std::move(surfaces));
 }
@@ -257,8 +266,9 @@ void Scene::lay_out() {
         const double pixel = mm_per_pixel(camera, view_size());
         parts_->markers->show(contact, look, origin, pixel, voxel, ink, ratio);
         parts_->cut->show(look, field->geometry(), origin, pixel, ratio, held_);
-        parts_->measures->show(parts_->measurements, {origin, camera, view_size(), ratio,
-                                                      ratio * QFontMetricsF(font()).ascent()});
+        parts_->measures->show(parts_->measurements,
+                               {origin, camera, view_size(), ratio,
+                                ratio * QFontMetricsF(font()).ascent(), parts_->unit});
     } else {
         parts_->measures->show({}, {});
         parts_->cut->hide();

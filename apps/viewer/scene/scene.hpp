@@ -63,6 +63,11 @@ class Scene : public QVTKOpenGLNativeWidget {
     /// Surfaces of an overlay, from the middle of the grid. Until clear().
     void set_overlay(std::vector<DrawnSurface> surfaces);
     void set_measurements(const std::vector<Measurement>& measurements);
+    void set_unit(LengthUnit unit);
+    /// How far a notch of the wheel moves the probe: as a drag of so many pixels.
+    void set_wheel_step(double pixels) { notch_px_ = pixels; }
+    /// Of the surface that is felt, from the next one on.
+    void set_most_triangles(std::size_t triangles);
     /// [mm] Outlined round the proxy; 0: no brush.
     void set_brush(double radius);
 
@@ -133,6 +138,7 @@ class Scene : public QVTKOpenGLNativeWidget {
     bool fitted_ = true;  // the camera shows the whole volume, also after a change of size
     Hand hand_ = Hand::camera;
     bool measuring_ = false;
+    double notch_px_ = 15;
     Drag drag_ = Drag::none;
     QPointF drag_from_, drag_start_;
     std::optional<std::size_t> held_;  // the handle of the cut under the pointer

@@ -12,7 +12,6 @@ namespace palpate::viewer {
 namespace {
 
 constexpr double finer = 0.2;        // of the distance dragged, with Shift held
-constexpr double notch_px = 15;      // a notch of the wheel in depth, as if dragged so far
 constexpr double notch_zoom = 1.15;  // a notch of the wheel
 constexpr double zoom_px = 150;      // dragged so far the scale doubles or halves
 
@@ -185,7 +184,7 @@ void Scene::wheelEvent(QWheelEvent* event) {
     const ViewSize size = view_size();
     if (hand_ == Hand::probe && !(event->modifiers() & Qt::ControlModifier)) {
         const double part = event->modifiers() & Qt::ShiftModifier ? finer : 1;
-        const double into = part * notches * notch_px * mm_per_pixel(camera_, size);
+        const double into = part * notches * notch_px_ * mm_per_pixel(camera_, size);
         Q_EMIT probe_dragged(-into * axes_of(camera_).towards_viewer);
         return;
     }

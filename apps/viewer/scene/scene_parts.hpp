@@ -28,6 +28,7 @@ struct Scene::Parts {
     std::optional<Snapshot> snapshot;
     double brush = 0;
     std::vector<Measurement> measurements;
+    LengthUnit unit = LengthUnit::automatic;
     std::optional<double> pressed;  // to this level
     std::shared_ptr<const RenderMesh> patch;
     Vec3 patched = Vec3::Zero();  // where, and at which level

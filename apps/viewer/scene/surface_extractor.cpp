@@ -56,7 +56,7 @@ SurfaceExtractor::~SurfaceExtractor() {
 void SurfaceExtractor::ask(std::uint64_t request, const Field& field, double isovalue) {
     {
         const std::lock_guard lock(mutex_);
-        next_.emplace(Request{request, field, isovalue, true, {}});
+        next_.emplace(Request{request, field, isovalue, true, limits_.most_triangles, {}});
         waiting_ = true;
     }
     changed_.notify_all();
@@ -68,10 +68,15 @@ void SurfaceExtractor::update(std::uint64_t request, const Field& field, double 
         const std::lock_guard lock(mutex_);
         const bool anew = next_ && next_->anew;
         const SampleBox all = next_ ? united(next_->changed, changed) : changed;
-        next_.emplace(Request{request, field, isovalue, anew, all});
+        next_.emplace(Request{request, field, isovalue, anew, limits_.most_triangles, all});
         waiting_ = true;
     }
     changed_.notify_all();
+}
+
+void SurfaceExtractor::set_most_triangles(std::size_t triangles) {
+    const std::lock_guard lock(mutex_);
+    limits_.most_triangles = triangles;
 }
 
 void SurfaceExtractor::forget() {
@@ -179,7 +184,7 @@ bool SurfaceExtractor::make_first(const std::function<bool()>& go_on) {
     for (;;) {
         const bool coarse = shown_->triangles() == 0;
         const auto outcome = shown_->renew(field_of(*shown_), request_->isovalue, go_on,
-                                           coarse ? limits_.most_triangles : no_limit);
+                                           coarse ? request_->most_triangles : no_limit);
         if (outcome == SurfaceBlocks::Outcome::done) break;
         if (outcome == SurfaceBlocks::Outcome::interrupted) return false;
         shown_.emplace(request_->field.geometry(), shown_->every() + 1,
@@ -195,7 +200,7 @@ bool SurfaceExtractor::make_first(const std::function<bool()>& go_on) {
 bool SurfaceExtractor::make_finer(const std::function<bool()>& go_on) {
     const int step = finer_ ? finer_->every() : steps_.front();
     if (!finer_) finer_.emplace(request_->field.geometry(), step, request_->field.interpolation());
-    switch (finer_->renew(field_of(*finer_), request_->isovalue, go_on, limits_.most_triangles)) {
+    switch (finer_->renew(field_of(*finer_), request_->isovalue, go_on, request_->most_triangles)) {
         case SurfaceBlocks::Outcome::interrupted:
             return false;
         case SurfaceBlocks::Outcome::too_many:

@@ -59,6 +59,8 @@ class SurfaceExtractor {
     /// versions come.
     void update(std::uint64_t request, const Field& field, double isovalue,
                 const SampleBox& changed);
+    /// Of surfaces asked for from now on.
+    void set_most_triangles(std::size_t triangles);
     /// Cancels all requests.
     void forget();
 
@@ -67,7 +69,8 @@ class SurfaceExtractor {
         std::uint64_t number;
         Field field;
         double isovalue;
-        bool anew;          // or only `changed`
+        bool anew;  // or only `changed`
+        std::size_t most_triangles;
         SampleBox changed;  // since the last request that was taken up
     };
     void run(const std::stop_token& stop);

@@ -23,6 +23,8 @@ class SurfaceSource : public QObject {
     /// Extracted again, coarse first; the newest level wins. Without a field it does nothing.
     void set_level(double level);
     void clear();
+    /// From the next surface on.
+    void set_most_triangles(std::size_t triangles) { extractor_.set_most_triangles(triangles); }
 
     double level() const { return level_; }
     /// Of the newest level that is there: one that is dragged is seen to move.

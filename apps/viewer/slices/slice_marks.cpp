@@ -154,7 +154,8 @@ void paint_brush(QPainter& painter, const SliceSheet& sheet, const Vec3& centre,
     painter.restore();
 }
 
-void paint_measurement(QPainter& painter, const SliceSheet& sheet, const Measurement& m) {
+void paint_measurement(QPainter& painter, const SliceSheet& sheet, const Measurement& m,
+                       LengthUnit unit) {
     if (m.points.empty()) return;
     const QColor yellow(242, 217, 26);
     painter.save();
@@ -176,7 +177,7 @@ void paint_measurement(QPainter& painter, const SliceSheet& sheet, const Measure
         colour.setAlphaF(opacity_of(sheet, p));
         dot(painter, sheet.pixel(p), colour, 3);
     }
-    const std::string words = text_of(m);
+    const std::string words = text_of(m, unit);
     if (!words.empty()) {
         const QPointF at = m.kind == Measure::length
                                ? 0.5 * (sheet.pixel(m.points[0]) + sheet.pixel(m.points[1]))

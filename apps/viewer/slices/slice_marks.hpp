@@ -36,7 +36,8 @@ void paint_probe(QPainter& painter, const SliceSheet& sheet, const Snapshot& sna
 void paint_brush(QPainter& painter, const SliceSheet& sheet, const Vec3& centre, double radius);
 
 /// Points, lines between them and what they measure, paler off the slice.
-void paint_measurement(QPainter& painter, const SliceSheet& sheet, const Measurement& measurement);
+void paint_measurement(QPainter& painter, const SliceSheet& sheet, const Measurement& measurement,
+                       LengthUnit unit);
 
 /// Which side of the body is at each edge.
 void paint_letters(QPainter& painter, const SliceSheet& sheet);

@@ -165,6 +165,11 @@ void SlicePane::set_measurements(const std::vector<Measurement>& measurements) {
     update();
 }
 
+void SlicePane::set_unit(LengthUnit unit) {
+    unit_ = unit;
+    update();
+}
+
 QString SlicePane::title() const {
     return content_ ? QString::fromStdString(content_->plane.title) : QString();
 }
@@ -258,7 +263,7 @@ void SlicePane::paintEvent(QPaintEvent*) {
         paint_probe(painter, sheet, *snapshot_);
     }
     for (const Measurement& measurement : measurements_) {
-        paint_measurement(painter, sheet, measurement);
+        paint_measurement(painter, sheet, measurement, unit_);
     }
     paint_letters(painter, sheet);
     paint_words(painter);

@@ -62,6 +62,7 @@ class SlicePane : public QWidget {
     /// True: the left button chooses points of the slice, and moves nothing.
     void set_measuring(bool measuring) { measuring_ = measuring; }
     void set_measurements(const std::vector<Measurement>& measurements);
+    void set_unit(LengthUnit unit);
 
     /// Sagittal, Coronal or Axial; empty without a volume.
     QString title() const;
@@ -126,6 +127,7 @@ class SlicePane : public QWidget {
     double brush_ = 0;
     bool measuring_ = false;
     std::vector<Measurement> measurements_;
+    LengthUnit unit_ = LengthUnit::automatic;
     SliceView view_;
     Drag drag_ = Drag::none;
     double drag_layer_ = 0;  // of the slice that the probe is dragged in

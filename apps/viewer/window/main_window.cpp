@@ -71,6 +71,7 @@ MainWindow::MainWindow(const RunRequest& request)
     connect_parts();
     connect_welcome();
     restore_layout();
+    use(saved_preferences());
     run_.find_devices();
     timer_.start(frame_ms);
 }
@@ -166,6 +167,26 @@ void MainWindow::restore_layout() {
         resize(QSize(1360, 860).boundedTo(0.9 * screen()->availableSize()));
     }
     restoreState(settings.value("state").toByteArray());
+}
+
+/// But for the appearance, which is the application's.
+void MainWindow::use(const Preferences& preferences) {
+    views_->set_unit(preferences.unit);
+    measuring_.set_unit(preferences.unit);
+    views_->scene().set_wheel_step(preferences.wheel_px);
+    views_->scene().set_most_triangles(
+        static_cast<std::size_t>(1e6 * preferences.surface_millions));
+}
+
+void MainWindow::ask_preferences() {
+    auto* dialog = new PreferencesDialog(saved_preferences(), this);
+    dialog->setAttribute(Qt::WA_DeleteOnClose);
+    connect(dialog, &PreferencesDialog::changed, this, [this](const Preferences& preferences) {
+        if (preferences.appearance != last_appearance()) set_appearance(preferences.appearance);
+        save_preferences(preferences);
+        use(preferences);
+    });
+    dialog->open();  // does not block the live run
 }
 
 void MainWindow::tick() {

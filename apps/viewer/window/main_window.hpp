@@ -14,6 +14,7 @@
 #include "apps/viewer/window/measure_controller.hpp"
 #include "apps/viewer/window/messages.hpp"
 #include "apps/viewer/window/overlay_controller.hpp"
+#include "apps/viewer/window/preferences.hpp"
 #include "apps/viewer/window/probe_controller.hpp"
 #include "apps/viewer/window/recording_controller.hpp"
 #include "apps/viewer/window/run_controller.hpp"
@@ -55,6 +56,8 @@ class MainWindow : public QMainWindow {
     Timeline& timeline() { return *timeline_; }
     TimelineController& playing() { return playing_; }
 
+    /// Opens the dialog; changes are seen at once, and kept.
+    void ask_preferences();
     /// Throws io::OutputError.
     void save_picture(const QString& path, bool whole_window);
     /// Nothing is being loaded, saved or drawn.
@@ -72,6 +75,7 @@ class MainWindow : public QMainWindow {
     void connect_welcome();
     void show_title();
     void restore_layout();
+    void use(const Preferences& preferences);
     void tick();
     void show_readout(const Snapshot& now);
     void rest_or_wake(const std::optional<Snapshot>& now);

@@ -42,7 +42,7 @@ void MeasureController::add_point(const Vec3& at) {
     if (made_->points.size() == points_of(made_->kind)) {
         done_.push_back(*std::exchange(made_, std::nullopt));
         views_.set_measuring(false);
-        messages_.show_done(QString::fromStdString(text_of(done_.back())));
+        messages_.show_done(QString::fromStdString(text_of(done_.back(), unit_)));
     }
     show();
 }

@@ -26,6 +26,7 @@ class MeasureController : public QObject {
     bool measuring() const { return made_.has_value(); }
     void remove_last();
     void remove_all();
+    void set_unit(LengthUnit unit) { unit_ = unit; }
 
     /// The complete ones.
     const std::vector<Measurement>& measurements() const { return done_; }
@@ -40,6 +41,7 @@ class MeasureController : public QObject {
     Messages& messages_;
     std::vector<Measurement> done_;
     std::optional<Measurement> made_;
+    LengthUnit unit_ = LengthUnit::automatic;
 };
 
 }  // namespace palpate::viewer

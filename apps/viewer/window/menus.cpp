@@ -92,6 +92,8 @@ void make_file_menu(MainWindow& window, Actions& actions) {
     file->addSeparator();
     add_save_actions(window, actions, file);
     file->addSeparator();
+    actions.add(file, "ask_preferences", "Pr&eferences…", QKeySequence("Ctrl+,"),
+                [&window] { window.ask_preferences(); });
     actions.add(file, "quit", "&Quit", QKeySequence("Ctrl+Q"), [&window] { window.close(); });
 }
 

@@ -162,6 +162,11 @@ void Views::set_measurements(const std::vector<Measurement>& measurements) {
     for (SlicePane* pane : slices_) pane->set_measurements(measurements);
 }
 
+void Views::set_unit(LengthUnit unit) {
+    scene_->set_unit(unit);
+    for (SlicePane* pane : slices_) pane->set_unit(unit);
+}
+
 void Views::set_crosshair(const Vec3& physical) {
     if (crosshair_ == physical) return;
     crosshair_ = physical;

@@ -43,6 +43,7 @@ class Views : public QWidget {
     /// True: the left button chooses points, everywhere.
     void set_measuring(bool measuring);
     void set_measurements(const std::vector<Measurement>& measurements);
+    void set_unit(LengthUnit unit);
     void set_crosshair(const Vec3& physical);
     const Vec3& crosshair() const { return crosshair_; }
     /// The crosshair follows the probe, once it has touched something.

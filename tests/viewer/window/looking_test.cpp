@@ -4,10 +4,12 @@
 #include <QAction>
 #include <QCheckBox>
 #include <QComboBox>
+#include <QDoubleSpinBox>
 #include <QLabel>
 #include <QListWidget>
 #include <QMenu>
 #include <QPushButton>
+#include <QSettings>
 #include <QTabWidget>
 
 #include <fstream>
@@ -227,6 +229,34 @@ TEST_F(Looking, pressing_through_shows_what_is_felt_and_not_a_body_in_pieces) {
     turn_wheel(scene, -60);
     ASSERT_TRUE(wait_until([&] { return now().session.tick.proxy.mode == Mode::free; }));
     ASSERT_TRUE(settle());
+}
+
+TEST_F(Looking, preferences_are_used_at_once_and_kept) {
+    feel("synthetic:sphere:48x48x48");
+    QTest::keyClick(window_.get(), Qt::Key_Comma, Qt::ControlModifier);
+    ASSERT_TRUE(wait_until([&] { return window_->findChild<QDialog*>("preferences"); }));
+    save("preferences");
+    auto& unit = part<QComboBox>("preferred_unit");
+    QTest::keyClick(&unit, Qt::Key_Down);
+    QTest::keyClick(&unit, Qt::Key_Down);
+    QTest::keyClick(&unit, Qt::Key_Down);
+    part<QDoubleSpinBox>("preferred_wheel").setValue(30);
+    part<QDoubleSpinBox>("preferred_triangles").setValue(0.1);
+    part<QDialog>("preferences").close();
+    Preferences wanted;
+    wanted.unit = LengthUnit::centimetres;
+    wanted.wheel_px = 30;
+    wanted.surface_millions = 0.1;
+    EXPECT_EQ(saved_preferences(), wanted);
+    // Twice as far as by default.
+    Scene& scene = window_->views().scene();
+    Vec3 dragged = Vec3::Zero();
+    QObject::connect(&scene, &Scene::probe_dragged, [&](const Vec3& by) { dragged += by; });
+    const ViewSize size = scene.view_size();
+    turn_wheel(scene, 1);
+    EXPECT_NEAR(dragged.norm(), 30 * mm_per_pixel(scene.camera(), size), 1e-9);
+    QSettings().setValue("preferences/wheel_px", "nonsense");
+    EXPECT_EQ(saved_preferences().wheel_px, Preferences().wheel_px);
 }
 
 TEST_F(Looking, mnemonics_are_unique_in_each_menu) {
