@@ -19,7 +19,6 @@ void add_render(CLI::App& app);
 void add_demo(CLI::App& app);
 void add_demo_sculpt(CLI::App& demo);
 void add_demo_beating(CLI::App& demo);
-void add_evaluate(CLI::App& app);
 
 /// Thrown by evaluate when all results are written: exit status 1.
 struct ClaimsDoNotHold {

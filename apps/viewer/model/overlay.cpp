@@ -110,9 +110,13 @@ Volume label_mask(const Overlay& overlay, const Label& label) {
             }
         }
     }
+    const std::vector<float> sharp = mask;
     for (int i = 0; i < rounds; ++i) {
         for (int axis = 0; axis < 3; ++axis) smooth_along(mask, part.size, axis);
     }
+    // A vessel that is a sample wide would be smoothed away.
+    constexpr float kept = 0.75F;
+    for (std::size_t i = 0; i < mask.size(); ++i) mask[i] = std::max(mask[i], kept * sharp[i]);
     return Volume(part, std::move(mask));
 }
 

@@ -30,7 +30,7 @@ struct Overlay {
 Overlay make_overlay(const run::LoadedVolume& loaded, const run::Source& source);
 
 /// The mask of a label on its part of the grid and a little more, smoothed, so that its surface at
-/// 0.5 has no steps.
+/// 0.5 has small steps; also of a label that is a sample wide.
 Volume label_mask(const Overlay& overlay, const Label& label);
 
 }  // namespace palpate::viewer

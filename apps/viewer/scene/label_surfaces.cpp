@@ -29,7 +29,8 @@ std::vector<ExtractedSurface> label_surfaces(const Overlay& overlay,
     std::vector<ExtractedSurface> surfaces;
     for (const Label& label : overlay.labels) {
         progress(double(surfaces.size()) / double(overlay.labels.size()));
-        const Field field(label_mask(overlay, label), Solid::above, 0, Interpolation::cubic);
+        // Linear: what is a sample wide stays whole.
+        const Field field(label_mask(overlay, label), Solid::above, 0, Interpolation::linear);
         SurfaceBlocks blocks(field.geometry(), 1, field.interpolation());
         (void)blocks.renew(
             field, 0.5, [] { return true; }, most_triangles);

@@ -44,7 +44,7 @@ void add_open_actions(MainWindow& window, Actions& actions, QMenu* menu) {
     actions.add(menu, "open", "&Open…", QKeySequence::Open, open(ask_open_name));
     actions.add(menu, "open_folder", "Open a &folder (DICOM, TIFF)…", QKeySequence("Ctrl+Shift+O"),
                 open(ask_open_folder));
-    actions.add(menu, "open_raw", "Open ra&w data…", {}, [&window] {
+    actions.add(menu, "open_raw", "Open raw &data…", {}, [&window] {
         window.editing().settle_edits([&window] {
             const QString path = ask_open_raw_name(&window);
             if (!path.isEmpty()) window.files().ask_layout(run::source_named(path.toStdString()));
@@ -110,7 +110,7 @@ void add_recording_actions(MainWindow& window, Actions& actions, QMenu* menu) {
         [&window] { return window.recordings().recording(); },
         [&window] { return window.live() != nullptr; });
     actions.add(
-        menu, "leave_playback", "Leave the recording, &feel again", QKeySequence("Esc"),
+        menu, "leave_playback", "Leave the recordin&g, feel again", QKeySequence("Esc"),
         [&window] {
             if (!window.measuring().cancel()) window.files().leave_playback();
         },
@@ -239,7 +239,7 @@ void add_measure_actions(MainWindow& window, Actions& actions, QMenu* view) {
         measure, "measure_remove_last", "&Remove the last", QKeySequence("Shift+Backspace"),
         [&measuring] { measuring.remove_last(); }, measured);
     actions.add(
-        measure, "measure_remove_all", "Remove a&ll", {}, [&measuring] { measuring.remove_all(); },
+        measure, "measure_remove_all", "R&emove all", {}, [&measuring] { measuring.remove_all(); },
         measured);
 }
 

@@ -130,7 +130,7 @@ TEST(SceneLooks, show_labels_inside_glass) {
                         support::grid({24, 24, 16}, {2, 2, 2}, {-23, -23, -15}),
                         [&](const Index3& i) {
                             const Vec3 at = 2 * i.cast<double>() - Vec3(23, 23, 15);
-                            const bool inside = value_at(shown.field, at) > 190;
+                            const bool inside = value_at(shown.field, at) > 150;
                             return inside ? at[0] < 0 ? 1 : 2 : 0;
                         }),
                     {}};
@@ -138,9 +138,9 @@ TEST(SceneLooks, show_labels_inside_glass) {
     std::vector<DrawnSurface> surfaces;
     for (const auto& surface : label_surfaces(overlay, [](double) {})) {
         const Label& label = overlay.labels[surfaces.size()];
-        surfaces.push_back({surface, label.colour, 1,
-                            physical_centre(overlay.volume.geometry()) -
-                                physical_centre(shown.field.geometry())});
+        surfaces.push_back(
+            {surface, label.colour, 1,
+             physical_centre(overlay.volume.geometry()) - physical_centre(shown.field.geometry())});
     }
     shown.scene.set_overlay(surfaces);
     expect_as_committed(shown.settled("look_labels"), "labels");

@@ -1,4 +1,5 @@
-// palpate evaluate: experiments, each with a table, figures, a paragraph and checked claims.
+// palpate-evaluate, the program of palpate evaluate: experiments, each with a table, figures, a
+// paragraph and checked claims.
 #include <fmt/format.h>
 
 #include <cstdlib>
@@ -8,7 +9,9 @@
 
 #include "apps/options/source_options.hpp"
 #include "apps/palpate/commands.hpp"
+#include "apps/palpate/evaluation.hpp"
 #include "apps/palpate/outputs.hpp"
+#include "apps/palpate/program.hpp"
 #include "apps/palpate/progress.hpp"
 #include "apps/palpate/result_folder.hpp"
 #include "evaluation/machine.hpp"
@@ -140,10 +143,9 @@ void evaluate(EvaluateOptions& options) {
 
 }  // namespace
 
-void add_evaluate(CLI::App& app) {
+static void add_evaluate(CLI::App& app) {
     auto options = std::make_shared<EvaluateOptions>();
-    CLI::App* command = app.add_subcommand(
-        "evaluate", "Run experiments; each gives a table, figures and checked claims");
+    CLI::App* command = app.add_subcommand(std::string(evaluation_command), evaluation_description);
     command->footer(
         "all runs every experiment and adds report.html, which needs no other file.\n"
         "Exit status 1: a claim does not hold.\n\n"
@@ -181,3 +183,7 @@ void add_evaluate(CLI::App& app) {
 }
 
 }  // namespace palpate::app
+
+int main(int argc, char** argv) {
+    return palpate::app::run_program(argc, argv, palpate::app::add_evaluate);
+}

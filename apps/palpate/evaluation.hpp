@@ -1,0 +1,20 @@
+// palpate evaluate is a program of its own, palpate-evaluate: the other commands are built sooner
+// without its experiments.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string_view>
+
+namespace palpate::app {
+
+inline constexpr std::string_view evaluation_command = "evaluate";
+inline constexpr const char* evaluation_description =
+    "Run experiments; each gives a table, figures and checked claims";
+
+/// Goes on as that program, with the same words. Returns if it is not there.
+void become_evaluation(char** argv);
+
+/// Stands for the command in the list of all, and says that it is missing where it is called.
+void add_missing_evaluation(CLI::App& app);
+
+}  // namespace palpate::app

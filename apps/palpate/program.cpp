@@ -1,0 +1,130 @@
+// Turns every failure into one clear line and the exit status of the contract.
+#include "apps/palpate/program.hpp"
+
+#include <fcntl.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <iostream>
+#include <string>
+
+#include "apps/options/exit_status.hpp"
+#include "apps/options/impossible_values.hpp"
+#include "apps/palpate/commands.hpp"
+
+namespace {
+
+using namespace palpate::app;
+
+volatile std::sig_atomic_t stop_signal = 0;
+
+void on_signal(int number) {
+    stop_signal = number;
+}
+
+/// A standard stream that is closed would give its number, and then its text, to the next file that
+/// is opened. In its place: one that cannot be written, so that this is an error and no damage.
+void occupy_closed_streams() {
+    for (int number = 0; number < 3; ++number) {
+        if (::fcntl(number, F_GETFD) >= 0) continue;
+        (void)::open("/dev/null", number == 0 ? O_WRONLY : O_RDONLY);  // takes the lowest number
+    }
+}
+
+int finish_output() {
+    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return done;
+    return fail("standard output: could not be written", bad_output);
+}
+
+/// What is wrong with the command line. CLI11 calls a misspelt command or option a missing one.
+std::string complaint(const CLI::App& app, const CLI::ParseError& error) {
+    const auto chosen = app.get_subcommands();
+    const auto left = app.remaining(true);
+    std::string text = error.what();
+    const bool misnamed = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr ||
+                          dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
+    if (misnamed && !left.empty()) {
+        const std::string& word = left.front();
+        if (word.size() > 1 && word[0] == '-') {
+            text = "there is no option " + word;
+        } else if (chosen.empty()) {
+            text = "there is no command '" + word + "'";
+        } else {
+            text = "'" + word + "' is one argument too many";
+        }
+    } else if (chosen.empty() && misnamed) {
+        text = "a command is needed, as in palpate demo";
+    }
+    return text + " (see palpate " + (chosen.empty() ? "" : chosen.front()->get_name() + " ") +
+           "--help)";
+}
+
+int run(int argc, char** argv, const std::function<void(CLI::App&)>& add_commands) {
+    CLI::App app(
+        "Feel the surfaces inside volumetric data.\n\n"
+        "VOLUME is a file (NRRD, MetaImage, NIfTI, TIFF, VTI, DICOM, raw), a folder with a DICOM "
+        "series or a TIFF stack,\nor synthetic:NAME[:WxHxD].",
+        "palpate");
+    app.set_version_flag("--version", "palpate " PALPATE_VERSION);
+    app.require_subcommand(1);
+    app.footer(
+        "First steps:\n"
+        "  palpate demo                             a simulated hand explores a CT of a head\n"
+        "  palpate info head.nrrd                   describes a volume and suggests levels to "
+        "feel\n"
+        "  palpate COMMAND --help                   options and an example of each command");
+    add_commands(app);
+    for (CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+        command->set_version_flag("--version", "palpate " PALPATE_VERSION);
+    }
+    try {
+        refuse_impossible_values(app, argc, argv);
+        app.parse(argc, argv);
+    } catch (const CLI::Success& e) {  // --help, --version
+        (void)app.exit(e);
+        std::cout.flush();
+        return finish_output();
+    } catch (const CLI::ParseError& e) {
+        return fail(complaint(app, e), wrong_use);
+    }
+    return finish_output();
+}
+
+}  // namespace
+
+namespace palpate::app {
+
+bool interrupted() {
+    return stop_signal != 0;
+}
+
+void stop_if_interrupted() {
+    if (interrupted()) throw Interrupted{};
+}
+
+int run_program(int argc, char** argv, const std::function<void(CLI::App&)>& add_commands) {
+    occupy_closed_streams();
+    // A closed terminal and Ctrl-\ too: a session lets go of its forces on the way out.
+    for (const int s : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) std::signal(s, on_signal);
+    std::signal(SIGXFSZ, SIG_IGN);  // a failed write, told as such
+    std::signal(SIGPIPE, SIG_IGN);  // a reader that has gone is a failed write, cleaned up after
+    try {
+        return run(argc, argv, add_commands);
+    } catch (const ClaimsDoNotHold& broken) {
+        return fail(std::to_string(broken.count) + " of the claims do not hold (see above)",
+                    claims_broken);
+    } catch (const Interrupted&) {
+        return fail("interrupted", status_of_signal(stop_signal));
+    } catch (const std::exception& e) {
+        const Failure failure = failure_of(e);
+        // Ctrl-C reaches the helper process as well, and its end may be seen first.
+        if (failure.status == bad_input && interrupted())
+            return fail("interrupted", status_of_signal(stop_signal));
+        if (std::ferror(stdout) != 0) return finish_output();
+        return fail(failure.text, failure.status);
+    }
+}
+
+}  // namespace palpate::app
