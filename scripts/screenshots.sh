@@ -52,6 +52,13 @@ screenshot lobster 2 '"volume": {"volume": "DATA/lobster.nrrd"}, "isovalue": 35,
         "towards_viewer": [0.25, 0.35, 0.9], "half_height": 170}'
 screenshot daisy 2 '"volume": {"volume": "DATA/daisy_pollen.nrrd"}, "isovalue": 60,
     "device": "simulated:hand=slide", "look": {"surface": false, "volume": true}'
+screenshot surfaces 2 '"volume": {"volume": "DATA/cthead_unc.nrrd"}, "isovalue": 500,
+    "device": "simulated:hand=press", "look": {"box": false, "surface_opacity": 0.35,
+        "surfaces": [{"level": 1150, "colour": [0.84, 0.37, 0.25], "opacity": 1, "shown": true}],
+        "cut": "plane", "cut_plane": {"point": [127.5, 127.5, 60], "normal": [0, 0, -1]}},
+    "measurements": [{"kind": "length", "points": [[62, 127, 112], [190, 127, 112]]}],
+    "camera": {"focus": [127.5, 127.5, 112], "up": [0, 0, -1],
+        "towards_viewer": [-0.6, -0.6, -0.5], "half_height": 130}'
 screenshot local 2 '"volume": {"volume": "synthetic:sphere:14x14x14"}, "isovalue": 100,
     "device": "simulated:hand=press", "slices_shown": false,
     "look": {"surface_opacity": 0.4, "tetrahedra": true, "planes": true},
