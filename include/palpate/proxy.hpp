@@ -4,6 +4,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 
 #include "palpate/cubic.hpp"
 #include "palpate/density.hpp"
@@ -31,6 +32,11 @@ struct Proxy {
     LatticePoint scp;                  ///< surface contact point, of the lattice of `interpolation`
     Vec3 scp_physical = Vec3::Zero();  ///< the same [mm]
     double isovalue = 0;               ///< [data units]
+    /// A second level, on the free side of the isovalue: the SCP stays between the two and feels
+    /// this one from its solid side. Nothing: all of the free side is open. For update_exact() and
+    /// update_straight().
+    std::optional<double> behind;
+    bool turned = false;  ///< the last surface met was that of `behind`
     Mode mode = Mode::free;
     Interpolation interpolation = Interpolation::linear;  ///< of the field of the last update
     bool placed = false;        ///< false: the next update starts at its HIP
@@ -51,7 +57,8 @@ struct Friction {
 };
 
 struct ProxySettings {
-    Friction friction;
+    Friction friction = {};
+    Friction behind = {};  ///< at the level behind
     /// Most straight pieces (tetrahedra entered) an update may use. 4096 are 500 voxels of travel,
     /// far more than a hand moves in a tick. At worst (all of it along a surface) they take some
     /// 0.3 ms, a third of a tick at 1 kHz; faster loops need a smaller budget.
@@ -86,7 +93,8 @@ struct ProxyUpdate {
     Vec3 hip = Vec3::Zero();  ///< [mm, physical]
     Vec3 scp = Vec3::Zero();  ///< [mm, physical]; equal to hip bit for bit when it was reached
     double density = 0;       ///< f(SCP) [data units]
-    double isovalue = 0;      ///< [data units]
+    double isovalue = 0;      ///< [data units] of the surface felt; free: of the one ahead
+    bool behind = false;      ///< the surface felt is that of Proxy::behind
     int tetrahedra = 0;       ///< number of them that the SCP moved through
 };
 
@@ -106,6 +114,11 @@ using ProxyMethod = ProxyUpdate (*)(Proxy& proxy, const Field& field, const Vec3
 ProxyUpdate update_exact(Proxy& proxy, const Field& field, const Vec3& hip,
                          const ProxySettings& settings = {}, StepObserver observer = {});
 
+/// Straight to the HIP, as far as the surface lets the proxy: what does not slide, like the tip of
+/// a needle. Keeps G1, G2, G4 and G5. No friction.
+ProxyUpdate update_straight(Proxy& proxy, const Field& field, const Vec3& hip,
+                            const ProxySettings& settings = {}, StepObserver observer = {});
+
 /// The paper's method as published (Fig. 4): constraint planes of all tetrahedra at the SCP, one
 /// goal that satisfies all of them, walked to tetrahedron by tetrahedron. Keeps G1, G2 and G5;
 /// sticks on convex ridges, where it breaks G3. No friction. For comparison. Refuses cubic fields.
@@ -123,7 +136,8 @@ bool place(Proxy& proxy, const Field& field, const Vec3& hip, double isovalue,
 void field_will_change(Proxy& proxy, const Field& field);
 
 /// Unit normal of the level set at the SCP, out of the solid, physical axes; zero where the field
-/// is constant. On a wall it is that of one of the tetrahedra that meet there.
+/// is constant. At the level behind it points into the layer that the SCP is in. On a wall it is
+/// that of one of the tetrahedra that meet there.
 Vec3 normal_at(const Proxy& proxy, const Field& field);
 
 /// Where a straight segment first meets the isosurface, walking the lattice exactly.

@@ -66,12 +66,19 @@ double certified_part(const Bernstein& bernstein, double tolerance) {
 }
 
 CubicSite::CubicSite(const Field& f, double level, double s, const LatticePoint& at)
-    : field(f), sign(s), point(at), range(cubic::scale * f.range()) {
-    set_isovalue(level);
-}
+    : field(f),
+      isovalue(within_reach(f, level)),
+      sign(s),
+      point(at),
+      range(cubic::scale * f.range()) {}
 
 CubicSite::CubicSite(const Proxy& proxy, const Field& f, const LatticePoint& at)
     : CubicSite(f, proxy.isovalue - f.offset(), f.sign(), at) {
+    if (proxy.behind) {
+        behind = within_reach(f, *proxy.behind - f.offset());
+        thickness = cubic::scale * std::max(0.0, sign * (isovalue - behind));
+        if (proxy.turned) exchange_levels();
+    }
     const cubic::KeptPiece& last = proxy.kept;
     made = last.isovalue == isovalue && last.sign == sign &&
            same_frame(last.tetrahedron, at.tetrahedron) &&
@@ -79,14 +86,20 @@ CubicSite::CubicSite(const Proxy& proxy, const Field& f, const LatticePoint& at)
                return proxy.kept_samples.are(centre, row, slice);
            });
     if (made) kept = last;
-    if (kept.most == std::numeric_limits<double>::infinity()) look_at_cube();
+    if (is_layer() || kept.most == std::numeric_limits<double>::infinity()) look_at_cube();
 }
 
-void CubicSite::set_isovalue(double level) {
-    // A level far beyond the data separates them as one just beyond them does.
-    const double low = std::min(field.samples().minimum(), field.background()) - field.offset();
-    const double high = std::max(field.samples().maximum(), field.background()) - field.offset();
-    isovalue = std::clamp(level, low - field.range(), high + field.range());
+void CubicSite::exchange_levels() {
+    std::swap(isovalue, behind);
+    sign = -sign;
+    turned = !turned;
+}
+
+void CubicSite::turn() {
+    exchange_levels();
+    made = false;
+    expanded = false;
+    look_at_cube();
 }
 
 double CubicSite::density() {
@@ -105,12 +118,15 @@ void CubicSite::move_to(const LatticePoint& at) {
     point = at;
     made = made && same_frame(kept.tetrahedron, at.tetrahedron);
     kept.most = std::numeric_limits<double>::infinity();
+    if (is_layer()) room = -kept.most;
     expanded = false;
 }
 
 void CubicSite::return_to(const CubicSite& before) {
     point = before.point;
+    if (turned != before.turned) exchange_levels();
     kept = before.kept;
+    room = before.room;
     at_point = before.at_point;
     made = before.made;
     expanded = before.expanded;
@@ -124,7 +140,8 @@ void CubicSite::cross(unsigned wall) {
 }
 
 void CubicSite::look_at_cube() {
-    const auto greatest = [&](const auto* centre, std::ptrdiff_t row, std::ptrdiff_t slice) {
+    const auto greatest = [&](double s, const auto* centre, std::ptrdiff_t row,
+                              std::ptrdiff_t slice) {
         const auto best = [&](auto better) {
             auto found = *centre;
             for (const std::ptrdiff_t z : {-slice, std::ptrdiff_t{0}, slice}) {
@@ -134,10 +151,17 @@ void CubicSite::look_at_cube() {
             }
             return found;
         };
-        return sign > 0 ? best([](auto a, auto b) { return std::max(a, b); }) - isovalue
-                        : isovalue - best([](auto a, auto b) { return std::min(a, b); });
+        return s > 0 ? best([](auto a, auto b) { return std::max(a, b); }) - isovalue
+                     : isovalue - best([](auto a, auto b) { return std::min(a, b); });
     };
-    kept.most = cubic::scale * field.visit_around(point.tetrahedron.cell, greatest);
+    const auto most = [&](double s) {
+        return cubic::scale * field.visit_around(point.tetrahedron.cell,
+                                                 [&](const auto* centre, auto row, auto slice) {
+                                                     return greatest(s, centre, row, slice);
+                                                 });
+    };
+    kept.most = most(sign);
+    if (is_layer()) room = thickness - most(-sign);
     kept_is_new = true;
 }
 
@@ -174,7 +198,16 @@ double CubicSite::advance(const Vec3& step, double level, unsigned walls) {
     const double third_c1 = (1.0 / 3) * c1, third_c2 = (1.0 / 3) * c2;
     const Bernstein b{c0, c0 + third_c1, c0 + 2 * third_c1 + third_c2, c0 + (c1 + c2 + c3)};
     const bool free = b[1] <= 0 && b[2] <= 0 && b[3] <= 0;
-    const double t = free ? 1 : certified_part(b, 1e-13 * range);
+    double t = free ? 1 : certified_part(b, 1e-13 * range);
+    bool at_behind = false;
+    if (reaches_behind()) {
+        const double to_behind = -level - thickness - this->level();
+        const double part =
+            certified_part({to_behind - b[0], to_behind - b[1], to_behind - b[2], to_behind - b[3]},
+                           1e-13 * range);
+        at_behind = part < t;
+        t = std::min(t, part);
+    }
     if (t == 1) jump(step, walls);
     if (t == 1 && walls != 0) return t;  // the next tetrahedron has another piece
     if (t < 1) point.folded = snap(point.folded + t * step, 0);
@@ -185,6 +218,7 @@ double CubicSite::advance(const Vec3& step, double level, unsigned walls) {
     from.hessian.e += t * third.e;
     from.hessian.ee += t * third.ee;
     expanded = true;
+    if (at_behind) this->turn();
     return t;
 }
 
@@ -214,7 +248,7 @@ WalkEnd walk(CubicSite& site, const Vec3& displacement, double level, Progress& 
         const Vec3 step = exit.t * direction;
         const bool at_wall = exit.wall != no_wall;
         const unsigned walls = at_wall ? 1U << exit.wall : 0;
-        if (site.reaches(level)) {
+        if (site.reaches(level) || site.reaches_behind()) {
             const double t = site.advance(step, level, walls);
             progress.tetrahedra += t * exit.t > 0;
             if (t < 1) return WalkEnd::surface;

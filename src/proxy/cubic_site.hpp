@@ -20,7 +20,11 @@ struct CubicSite {
     double isovalue;
     double sign;
     LatticePoint point;
-    double range;           // of the field, scaled like the excess
+    double range;  // of the field, scaled like the excess
+    // A layer, as a Site has it; the thickness is scaled like the excess.
+    double behind = 0;
+    double thickness = std::numeric_limits<double>::infinity();
+    bool turned = false;
     cubic::KeptPiece kept;  // its `most` is that of the point's cube; its piece may be another's
 
     static CubicSite of(const Proxy& proxy, const Field& f, const LatticePoint& at) {
@@ -44,9 +48,13 @@ struct CubicSite {
     double level() const { return 1e-11 * range; }
     double slide_level() const { return 1.2e-11 * range; }
     bool is_inside() { return reaches(2e-11 * range) && excess() > 2e-11 * range; }
+    bool is_beyond_behind() { return is_layer() && excess() < -thickness - 2e-11 * range; }
     bool in_contact() { return reaches(0.95e-11 * range) && excess() >= 0.95e-11 * range; }
     /// False if nothing in the cube lies above the level.
     bool reaches(double at) const { return kept.most > at; }
+    bool reaches_behind() const { return room < -level(); }
+    bool is_layer() const { return thickness < std::numeric_limits<double>::infinity(); }
+    void turn();
     CubicSite at(const Vec3& index) const { return {field, isovalue, sign, located(index)}; }
     CubicSite turned_at(const Vec3& index) const {
         return {field, isovalue, -sign, located(index)};
@@ -66,20 +74,23 @@ struct CubicSite {
         point.folded = snap(point.folded + step, walls);
         expanded = false;
     }
-    /// The same, as far as the excess certainly stays below the level. Returns which part of it.
+    /// The same, as far as the excess certainly stays below the level, and in a layer above the
+    /// level behind. Returns which part of it. Where that ends at the level behind, the site turns.
     double advance(const Vec3& step, double level, unsigned walls);
     /// Same point, seen from across the wall that it is on.
     void cross(unsigned wall);
 
   private:
-    void set_isovalue(double level);
-    /// Finds `most`.
+    void exchange_levels();
+    /// Finds `most` and, in a layer, `room`.
     void look_at_cube();
     /// Piece and expansion at the point.
     void expand();
     void make_piece();
 
     cubic::Expansion at_point;
+    // By how much the lowest sample of the point's cube lies above the level behind.
+    double room = std::numeric_limits<double>::infinity();
     bool made = false;         // `kept.piece` is that of the point's tetrahedron
     bool expanded = false;     // `at_point` is that at the point
     bool kept_is_new = false;  // not what the proxy has

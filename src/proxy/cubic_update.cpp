@@ -81,15 +81,15 @@ Foot foot_of(const Contact& c, const Curvature& k, double least, double longest)
 /// An update that is under way.
 class CubicDescent {
   public:
-    CubicDescent(CubicSite& site, Progress& progress, const Friction& friction, Proxy& proxy)
+    CubicDescent(CubicSite& site, Progress& progress, const ProxySettings& settings, Proxy& proxy)
         : site_(site),
           progress_(progress),
-          friction_(friction),
+          settings_(settings),
           proxy_(proxy),
           hip_(progress.target),
           range_(site.range),
           shortest_(progress.geometry.spacing.minCoeff()),
-          friction_pending_(friction.static_coefficient > 0 || friction.dynamic_coefficient > 0) {}
+          friction_pending_(has_friction(settings.friction) || has_friction(settings.behind)) {}
 
     Rest run() {
         int failures = 0;
@@ -221,11 +221,12 @@ class CubicDescent {
     /// Moves the target back against the direction in which the SCP would slide, so that the SCP
     /// ends up trailing the hand at the friction angle. False if the SCP sticks.
     bool apply_friction(const Contact& c) {
+        const Friction& friction = site_.turned ? settings_.behind : settings_.friction;
         const double mu =
-            proxy_.sliding ? friction_.dynamic_coefficient : friction_.static_coefficient;
+            proxy_.sliding ? friction.dynamic_coefficient : friction.static_coefficient;
         proxy_.sliding = c.aside > mu * c.depth;
         if (!proxy_.sliding) return false;
-        const double back = std::min(c.aside, friction_.dynamic_coefficient * c.depth);
+        const double back = std::min(c.aside, friction.dynamic_coefficient * c.depth);
         progress_.target -=
             unfold(site_.point.tetrahedron, (back * c.along).cwiseProduct(per_mm()));
         return true;
@@ -269,7 +270,7 @@ class CubicDescent {
 
     CubicSite& site_;
     Progress& progress_;
-    const Friction& friction_;
+    const ProxySettings& settings_;
     Proxy& proxy_;
     const Vec3 hip_;
     const double range_;     // scaled like the site's excess
@@ -285,7 +286,7 @@ ProxyUpdate update_cubic(Proxy& proxy, const Field& field, const Vec3& hip,
     if (!accepts(proxy, field, target)) return refuse_update(proxy, field, hip);
     Update<CubicSite> update(proxy, field, target, settings, observer);
     if (update.recovering) return finish_update(proxy, update, hip, Rest::recovering);
-    const Rest rest = CubicDescent(update.site, update.progress, settings.friction, proxy).run();
+    const Rest rest = CubicDescent(update.site, update.progress, settings, proxy).run();
     if (rest == Rest::at_target) proxy.sliding = false;
     return finish_update(proxy, update, hip, rest);
 }

@@ -58,14 +58,17 @@ std::optional<Move> move_from_corner(Site& site, unsigned on, const Progress& pr
     return move;
 }
 
-Rest descend(Site& site, Progress& progress, const Friction& friction, Proxy& proxy) {
+Rest descend(Site& site, Progress& progress, const ProxySettings& settings, Proxy& proxy) {
     const Vec3& spacing = progress.geometry.spacing;
     const double shortest = spacing.minCoeff();
     const double enough = least_gain * shortest * shortest;
     const double enough_at_corner = least_corner_gain * shortest * shortest;
     std::optional<Move> from_corner;
     const Vec3 hip = progress.target;
-    bool friction_pending = friction.static_coefficient > 0 || friction.dynamic_coefficient > 0;
+    const auto friction = [&]() -> const Friction& {
+        return site.turned ? settings.behind : settings.friction;
+    };
+    bool friction_pending = has_friction(settings.friction) || has_friction(settings.behind);
     while (progress.budget > 0) {
         const unsigned on = walls_at(site.point.folded);
         const bool contact = site.excess() >= -site.field.tolerance();
@@ -86,7 +89,7 @@ Rest descend(Site& site, Progress& progress, const Friction& friction, Proxy& pr
         }
         if (friction_pending) {
             friction_pending = false;
-            if (!apply_friction(friction, proxy, site, move, progress)) return Rest::on_surface;
+            if (!apply_friction(friction(), proxy, site, move, progress)) return Rest::on_surface;
             continue;
         }
         if (move.gain <= enough) {
@@ -117,7 +120,7 @@ ProxyUpdate update_exact(Proxy& proxy, const Field& field, const Vec3& hip,
     if (!accepts(proxy, field, target)) return refuse_update(proxy, field, hip);
     Update<Site> update(proxy, field, target, settings, observer);
     if (update.recovering) return finish_update(proxy, update, hip, Rest::recovering);
-    const Rest rest = descend(update.site, update.progress, settings.friction, proxy);
+    const Rest rest = descend(update.site, update.progress, settings, proxy);
     if (rest == Rest::at_target) proxy.sliding = false;
     return finish_update(proxy, update, hip, rest);
 }

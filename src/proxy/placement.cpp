@@ -51,7 +51,8 @@ std::optional<LatticePoint> first_hit(const Field& field, double isovalue, const
 }  // namespace
 
 Vec3 normal_at(const Proxy& proxy, const Field& field) {
-    return normal_of(field, scp_in(field, proxy));
+    const Vec3 normal = normal_of(field, scp_in(field, proxy));
+    return proxy.behind && proxy.turned ? Vec3(-normal) : normal;
 }
 
 void field_will_change(Proxy& proxy, const Field& field) {

@@ -42,6 +42,13 @@ WalkEnd walk(Site& site, const Vec3& displacement, Progress& progress) {
             progress.tetrahedra += hit > 0;
             return WalkEnd::surface;
         }
+        if (-slope * exit.t > site.thickness - room) {
+            const double hit = std::max(0.0, (site.thickness - room) / -slope);
+            site.point.folded = snap(site.point.folded + hit * direction, 0);
+            progress.tetrahedra += hit > 0;
+            site.turn();
+            return WalkEnd::surface;
+        }
         progress.tetrahedra += exit.t > 0;
         if (exit.wall == no_wall) {
             site.point.folded = snap(site.point.folded + exit.t * direction, 0);
@@ -60,6 +67,16 @@ bool slide(Site& site, const Vec3& step, unsigned on, unsigned walls, Progress& 
     --progress.budget;
     const Vec3 from = site.point.folded;
     const Exit exit = first_exit(from, step, 1.0, on);
+    // A slide along walls falls from the surface, and in a layer may fall on the other one.
+    if (site.is_layer()) {
+        const double fall = -site.slope(step), room = site.thickness + site.excess();
+        if (fall * exit.t > room) {
+            site.point.folded = snap(from + std::max(0.0, room / fall) * step, walls);
+            ++progress.tetrahedra;
+            site.turn();
+            return false;
+        }
+    }
     const unsigned met = exit.wall == no_wall ? 0U : 1U << exit.wall;
     site.point.folded = snap(from + exit.t * step, walls | met);
     progress.tetrahedra += exit.t > 0;

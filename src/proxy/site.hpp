@@ -2,15 +2,28 @@
 // and the straight walk from tetrahedron to tetrahedron that every method uses.
 #pragma once
 
+#include <algorithm>
 #include <bit>
+#include <limits>
+#include <utility>
 
 #include "palpate/proxy.hpp"
 #include "proxy/cone.hpp"
 
 namespace palpate {
 
+/// A level far beyond the data separates them as one just beyond them does, and leaves digits to
+/// the distance between two.
+inline double within_reach(const Field& field, double level) {
+    const double low = std::min(field.samples().minimum(), field.background()) - field.offset();
+    const double high = std::max(field.samples().maximum(), field.background()) - field.offset();
+    return std::clamp(level, low - field.range(), high + field.range());
+}
+
 /// A lattice point with the samples of its cell and the linear field of its tetrahedron, both less
 /// the field's offset, like the isovalue. Its excess, sign * (f - isovalue), is > 0 in the solid.
+/// Of a layer (Proxy::behind) the excess stays above -thickness; a site that is turned looks at it
+/// from the other side.
 struct Site {
     Site(const Field& f, double level, double s, const LatticePoint& at)
         : field(f),
@@ -26,10 +39,28 @@ struct Site {
     LatticePoint point;
     CellSamples samples;
     LinearPiece piece;
+    double behind = 0;
+    double thickness = std::numeric_limits<double>::infinity();
+    bool turned = false;
 
     /// The proxy, at a point, and what an update keeps of it for the next one: nothing.
     static Site of(const Proxy& proxy, const Field& f, const LatticePoint& at) {
-        return {f, proxy.isovalue - f.offset(), f.sign(), at};
+        Site site{f, proxy.isovalue - f.offset(), f.sign(), at};
+        if (proxy.behind) site.bound(*proxy.behind - f.offset(), proxy.turned);
+        return site;
+    }
+    /// Keeps the site on the solid side of a second level, towards which it may be turned.
+    void bound(double level, bool turn_to_it) {
+        isovalue = within_reach(field, isovalue);
+        behind = within_reach(field, level);
+        thickness = std::max(0.0, sign * (isovalue - behind));
+        if (turn_to_it) turn();
+    }
+    bool is_layer() const { return thickness < std::numeric_limits<double>::infinity(); }
+    void turn() {
+        std::swap(isovalue, behind);
+        sign = -sign;
+        turned = !turned;
     }
     void keep(Proxy&) const {}
 
@@ -41,6 +72,7 @@ struct Site {
     /// The excess up to which a point is free.
     double level() const { return 0; }
     bool is_inside() const { return excess() > field.tolerance(); }
+    bool is_beyond_behind() const { return excess() < -thickness - field.tolerance(); }
     bool in_contact() const { return excess() >= -field.tolerance(); }
     /// The vector to a point in index space, folded [voxel].
     Vec3 folded_to(const Vec3& to) const {

@@ -28,7 +28,8 @@ void prefer_free_hip(AnySite& site, Progress& progress, const Vec3& start_index)
     const Vec3 to_hip = (progress.target - start_index).cwiseProduct(spacing);
     if (!(dot(out, out) > dot(to_hip, to_hip))) return;
     AnySite at_hip = site.at(progress.target);
-    if (at_hip.excess() > site.level()) return;
+    const double excess = at_hip.excess();
+    if (excess > site.level() || excess < -site.thickness) return;
     site.move_to(at_hip.point);
     progress.report(StepKind::recover, site);
 }
@@ -98,12 +99,13 @@ Update<AnySite>::Update(Proxy& proxy, const Field& field, const Vec3& hip_index,
                        proxy.placed ? scp_in(field, proxy) : AnySite::located(hip_index))),
       progress{field.geometry(), observer, hip_index, settings.step_budget} {
     if (!proxy.placed) progress.report(StepKind::place, site);
+    if (site.is_beyond_behind()) site.turn();
     if (!site.is_inside()) {
         proxy.recovery_reach = 0;
         return;
     }
     const Vec3 start = site.index();
-    recovering = !recover(site, progress, proxy.recovery_reach);
+    recovering = !recover(site, progress, proxy.recovery_reach) || site.is_beyond_behind();
     if (recovering) return;
     if (!proxy.ahead.isZero(0) && push_ahead(site, progress, start, proxy.ahead)) return;
     prefer_free_hip(site, progress, start);
@@ -118,6 +120,7 @@ ProxyUpdate finish_update(Proxy& proxy, Update<AnySite>& update, const Vec3& hip
     proxy.placed = true;
     proxy.scp = site.point;
     proxy.interpolation = site.field.interpolation();
+    proxy.turned = site.turned;
     if (rest != Rest::recovering) proxy.ahead.setZero();
     proxy.scp_physical =
         rest == Rest::at_target ? hip : physical_from_index(update.progress.geometry, site.index());
@@ -125,6 +128,7 @@ ProxyUpdate finish_update(Proxy& proxy, Update<AnySite>& update, const Vec3& hip
                          (rest == Rest::out_of_budget && site.in_contact())
                      ? Mode::constrained
                      : Mode::free;
+    const bool behind = site.turned && proxy.mode == Mode::constrained;
     const double density = site.density();
     site.keep(proxy);
     return {.status = rest == Rest::recovering      ? UpdateStatus::recovering
@@ -134,7 +138,8 @@ ProxyUpdate finish_update(Proxy& proxy, Update<AnySite>& update, const Vec3& hip
             .hip = hip,
             .scp = proxy.scp_physical,
             .density = density,
-            .isovalue = proxy.isovalue,
+            .isovalue = behind ? *proxy.behind : proxy.isovalue,
+            .behind = behind,
             .tetrahedra = update.progress.tetrahedra};
 }
 

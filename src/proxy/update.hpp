@@ -30,6 +30,10 @@ struct Update {
     bool recovering = false;
 };
 
+inline bool has_friction(const Friction& friction) {
+    return friction.static_coefficient > 0 || friction.dynamic_coefficient > 0;
+}
+
 /// How a method's own part ended.
 enum class Rest { at_target, on_surface, out_of_budget, recovering };
 

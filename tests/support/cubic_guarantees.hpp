@@ -109,23 +109,33 @@ class CubicGuarantees {
     }
 
   private:
-    /// In parts of the range, by the reference.
-    long double excess(const Vec3l& index, const Proxy& proxy) const {
-        const auto sample = [&](const Index3& at) { return paper_sample(field_, at); };
-        return field_.sign() * (cubic_value(index, sample).value - (long double)(proxy.isovalue)) /
-               field_.range();
+    /// The field by the reference.
+    long double reference(const Vec3l& index) const {
+        return cubic_value(index, [&](const Index3& at) { return paper_sample(field_, at); }).value;
     }
-    /// By the field itself: quicker, for most of the samples.
-    long double quick_excess(const Vec3l& index, const Proxy& proxy) const {
-        const Vec3 at = index.cast<double>();
-        return field_.sign() * (value_at(field_, cubic::locate(at)) - proxy.isovalue) /
-               field_.range();
+    /// The same by the field itself: quicker, for most of the samples.
+    long double quick(const Vec3l& index) const {
+        return value_at(field_, cubic::locate(index.cast<double>()));
+    }
+    /// Of a density that a surface stops where it rises, in parts of the range.
+    long double excess(long double density, double level, double sign) const {
+        return sign * field_.sign() * (density - (long double)(level)) / field_.range();
+    }
+    /// Of the surface that is exceeded most: that ahead or that behind.
+    long double excess(const Vec3l& index, const Proxy& proxy) const {
+        const long double density = reference(index);
+        const long double ahead = excess(density, proxy.isovalue, 1);
+        return proxy.behind ? std::max(ahead, excess(density, *proxy.behind, -1)) : ahead;
     }
     long double greatest(const Vec3& a, const Vec3& b, const Proxy& proxy) {
         const bool slow = random_.chance(0.05);
-        return greatest_on_cubic_segment(a, b, [&](const Vec3l& index) {
-            return slow ? excess(index, proxy) : quick_excess(index, proxy);
-        });
+        const auto of_level = [&](double level, double sign) {
+            return greatest_on_cubic_segment(a, b, [&](const Vec3l& index) {
+                return excess(slow ? reference(index) : quick(index), level, sign);
+            });
+        };
+        const long double ahead = of_level(proxy.isovalue, 1);
+        return proxy.behind ? std::max(ahead, of_level(*proxy.behind, -1)) : ahead;
     }
 
     void check(const Proxy& before, const Proxy& proxy, const Vec3& hip, const ProxyUpdate& r) {

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <string>
@@ -86,7 +87,9 @@ class Guarantees {
 
   private:
     double excess(double density, const Proxy& proxy) const {
-        return field_.sign() * (density - proxy.isovalue) / field_.range();
+        const double ahead = field_.sign() * (density - proxy.isovalue) / field_.range();
+        if (!proxy.behind) return ahead;
+        return std::max(ahead, field_.sign() * (*proxy.behind - density) / field_.range());
     }
     double excess_at(const Vec3& physical, const Proxy& proxy) const {
         return excess(value_at(field_, physical), proxy);
@@ -229,11 +232,14 @@ class Guarantees {
         // A plane met at this angle would still hold the motion within the tolerance of `free`.
         if (closer <= 1e-5) return;
         const Geometry& geometry = field_.geometry();
-        const double greatest = greatest_on_segment(
-            index_from_physical(geometry, from), index_from_physical(geometry, from + motion),
-            field_.sign(),
-            [&](const Vec3& index) { return value_at(field_, locate(index)) - proxy.isovalue; });
-        if (greatest / field_.range() > 1e-9) return;
+        const auto greatest = [&](double level, double sign) {
+            return greatest_on_segment(
+                index_from_physical(geometry, from), index_from_physical(geometry, from + motion),
+                sign * field_.sign(),
+                [&](const Vec3& index) { return value_at(field_, locate(index)) - level; });
+        };
+        if (greatest(proxy.isovalue, 1) / field_.range() > 1e-9) return;
+        if (proxy.behind && greatest(*proxy.behind, -1) / field_.range() > 1e-9) return;
         tally_.worst_g3 = std::max(tally_.worst_g3, closer);
         ADD_FAILURE() << "G3: a free motion of 1e-3 voxel leads closer by " << closer
                       << " of its length";
