@@ -27,7 +27,18 @@ double distance_to_surface(const Field& field, const ProxyUpdate& at, const Vec3
     return ray.hit ? (ray.point - at.scp).norm() : -1;
 }
 
-ForceInput force_input(const Renderer& renderer, const DeviceState& device, const ProxyUpdate& at) {
+bool knows_layers(ProxyMethod method) {
+    return method == &update_exact || method == &update_straight;
+}
+
+/// What moved the proxy in a tick, and what the force is made of.
+struct Moved {
+    ProxyUpdate proxy;
+    std::optional<LayersUpdate> layers;
+};
+
+ForceInput force_input(const Renderer& renderer, const DeviceState& device, const Moved& moved) {
+    const ProxyUpdate& at = moved.proxy;
     const DeviceTransform& transform = renderer.settings.transform;
     const ForceSettings& force = renderer.settings.force;
     const Mat3 to_device = transform.rotation.transpose();
@@ -39,6 +50,10 @@ ForceInput force_input(const Renderer& renderer, const DeviceState& device, cons
     input.constrained = at.mode == Mode::constrained;
     input.hand = device.position;
     input.pull = to_device * (at.scp - at.hip) / transform.scale;
+    if (moved.layers) {
+        input.constrained = moved.layers->pulls;
+        input.pull = to_device * moved.layers->pull;
+    }
     if (input.constrained) {
         input.texture_slope = to_device * texture_slope(force.texture, at.scp);
     } else if (force.magnet.distance > 0 && force.magnet.peak > 0) {
@@ -49,6 +64,31 @@ ForceInput force_input(const Renderer& renderer, const DeviceState& device, cons
         input.surface_distance = distance / transform.scale;
     }
     return input;
+}
+
+/// The proxy's part of a tick, with what may press it through surfaces.
+Moved move_proxy(Renderer& renderer, const DeviceState& device, const Vec3& hip,
+                 StepObserver observer) {
+    const RendererSettings& settings = renderer.settings;
+    // A position that is not trusted moves nothing.
+    if (!device.valid) return {refuse_update(renderer.proxy, renderer.field, hip), {}};
+    if (!settings.layers) {
+        return {settings.method(renderer.proxy, renderer.field, hip, settings.proxy, observer), {}};
+    }
+    const DeviceTransform& transform = settings.transform;
+    const LayerInput input{.method = settings.method,
+                           .hip = hip,
+                           .proxy = settings.proxy,
+                           .force = settings.force,
+                           .limits = settings.device,
+                           .device_per_volume = 1 / transform.scale,
+                           .time = device.time,
+                           .pointing = transform.rotation * device.pointing};
+    Moved moved;
+    moved.layers = update_layers(*settings.layers, renderer.layers, renderer.proxy, renderer.field,
+                                 input, observer);
+    moved.proxy = moved.layers->proxy;
+    return moved;
 }
 
 }  // namespace
@@ -68,6 +108,9 @@ double scale_for_voxels_per_mm(const Geometry& geometry, double voxels) {
 void check(const RendererSettings& s) {
     if (!s.method) throw std::invalid_argument("no proxy method is set");
     check(s.force, s.device);
+    if (s.layers && !s.layers->layers.empty() && !knows_layers(s.method)) {
+        throw std::invalid_argument("layers need the method exact");
+    }
     const auto& ranges = s.penetrability.ranges;
     const bool falling = s.penetrability.range_count > 1 && ranges[1].low < ranges[0].low;
     check(s.penetrability, falling ? Solid::below : Solid::above);
@@ -105,6 +148,7 @@ void check_isovalue(double isovalue, Solid solid) {
 Renderer make_renderer(Field field, double isovalue, const RendererSettings& settings) {
     check(settings);
     check(settings.penetrability, field.solid());
+    if (settings.layers) check(*settings.layers, field.solid());
     check_isovalue(isovalue, field.solid());
     Renderer renderer{std::move(field), settings, {}, {}};
     renderer.proxy.isovalue = isovalue;
@@ -133,19 +177,27 @@ Tick render(Renderer& renderer, const DeviceState& device, StepObserver observer
     tick.time = device.time;
     const std::int64_t begin = clock ? clock() : 0;
     const Proxy before = renderer.proxy;
-    tick.proxy = device.valid ? settings.method(renderer.proxy, renderer.field, hip, settings.proxy,
-                                                observer)
-                              // The position is not trusted: nothing moves.
-                              : refuse_update(renderer.proxy, renderer.field, hip);
+    Moved moved = move_proxy(renderer, device, hip, observer);
     if (!is_finite(renderer.proxy)) {
         renderer.proxy = before;
-        tick.proxy = refuse_update(before, renderer.field, hip, UpdateStatus::not_finite);
+        renderer.layers = {};
+        moved = {refuse_update(before, renderer.field, hip, UpdateStatus::not_finite), {}};
     }
     tick.update_ns = clock ? clock() - begin : 0;
-    apply_penetrability(settings.penetrability, renderer.field, 1 / settings.transform.scale,
-                        renderer.proxy, tick.proxy, observer);
-    const ForceResult force = render_force(renderer.force, settings.force, settings.device,
-                                           force_input(renderer, device, tick.proxy));
+    const bool has_surfaces = settings.layers && !settings.layers->layers.empty();
+    if (!has_surfaces) {
+        apply_penetrability(settings.penetrability, renderer.field, 1 / settings.transform.scale,
+                            renderer.proxy, moved.proxy, observer);
+    }
+    if (moved.layers && settings.penetrability.on && !has_surfaces) {
+        moved.layers->pulls = moved.proxy.mode == Mode::constrained;
+        moved.layers->pull = (moved.proxy.scp - moved.proxy.hip) / settings.transform.scale;
+    }
+    const ForceResult force =
+        render_force(renderer.force, moved.layers ? moved.layers->force : settings.force,
+                     settings.device, force_input(renderer, device, moved));
+    tick.proxy = moved.proxy;
+    if (moved.layers) tick.layers = moved.layers->felt;
     tick.force = force.force;
     tick.force_flags = force.flags;
     if (tick.proxy.status == UpdateStatus::not_finite) tick.force_flags |= force_not_finite;

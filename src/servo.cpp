@@ -125,7 +125,7 @@ Servo::Servo(Session session, Device& device, const ServoSettings& settings)
       settings_(settings),
       geometry_(session_.renderer.field.geometry()),
       solid_(session_.renderer.field.solid()),
-      held_{session_.renderer.field.shared_samples()} {
+      held_{session_.renderer.field.shared_samples(), session_.renderer.settings.layers} {
     // What no device can render is refused, not lowered.
     check(session_.renderer.settings);
     keep_device_limits(device.info().limits);
@@ -182,10 +182,11 @@ void Servo::stop() noexcept {
 
 bool Servo::send(const Command& command) {
     const CheckedCommand checked(command, start_, solid_, geometry_);
-    if (const auto* samples = std::get_if<command::Samples>(&command)) {  // all others own nothing
+    if (const auto* samples = std::get_if<command::Samples>(&command)) {
         hold(samples->samples);
         hold(samples->recipe);
     }
+    if (const auto* layers = std::get_if<command::UseLayers>(&command)) hold(layers->layers);
     sent_.fetch_add(1, std::memory_order_relaxed);  // before the servo thread can count it
     if (commands_.push(checked)) return true;
     sent_.fetch_sub(1, std::memory_order_relaxed);

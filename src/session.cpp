@@ -57,6 +57,19 @@ void scale_about_scp(Renderer& renderer, double scale) {
     transform.scale = scale;
 }
 
+/// Without layers the surface that was next is felt, or the first of them where none was.
+void use_layers(Renderer& renderer, const std::shared_ptr<const Layers>& layers) noexcept {
+    const std::shared_ptr<const Layers>& before = renderer.settings.layers;
+    if (!layers) {
+        renderer.layers = {};
+        renderer.proxy.behind.reset();
+        if (before && !before->layers.empty() && !std::isfinite(renderer.proxy.isovalue)) {
+            renderer.proxy.isovalue = before->layers.front().level;
+        }
+    }
+    renderer.settings.layers = layers;
+}
+
 /// Moves a playing sequence on with the time of the ticks, within its frames.
 void play(Session& session, double time) {
     Field& field = session.renderer.field;
@@ -105,6 +118,10 @@ void check(const Command& command, const RendererSettings& settings, Solid solid
             if (!(std::abs(to.speed) <= 1000)) {
                 throw std::invalid_argument("a sequence is played at most 1000 times as fast");
             }
+        },
+        [&](const command::UseLayers& to) {
+            if (to.layers) check(*to.layers, solid);
+            changed.layers = to.layers;
         },
         [&](const ForceSettings& to) { changed.force = to; },
         [&](const Friction& to) { changed.proxy.friction = to; },
@@ -157,6 +174,7 @@ void apply(Session& session,  // NOLINT(bugprone-exception-escape)
             field.set_time(field.samples().within(to.time));
         },
         [&](const command::Speed& to) { session.speed = to.speed; },
+        [&](const command::UseLayers& to) { use_layers(renderer, to.layers); },
         [&](const ForceSettings& to) { settings.force = stable(to, settings.device); },
         [&](const Friction& to) { settings.proxy.friction = to; },
         [&](const Penetrability& to) { settings.penetrability = to; },
@@ -208,6 +226,10 @@ SessionTick advance(Session& session, double time, const DeviceReading& reading,
     }
     session.holding = hangs && (state.valid || session.holding);
     state.position = session.frozen ? session.frozen_hand : reading.position;
+    // Devices without an orientation give the identity.
+    if (!reading.orientation.isIdentity(0) && is_rotation(reading.orientation)) {
+        state.pointing = -reading.orientation.col(2);
+    }
     play(session, time);
     SessionTick result;
     result.tick = render(session.renderer, state, {}, clock);

@@ -1,4 +1,4 @@
-// Stage 15, device: the interface of a haptic device, which gives positions and takes forces.
+// Stage 16, device: the interface of a haptic device, which gives positions and takes forces.
 // Backends for real and simulated devices are in the folder devices/.
 #pragma once
 

@@ -1,7 +1,7 @@
 // Includes the whole core, in the order of the flow of data. One tick:
 //
 //   volume -> samples -> field -> lattice --+
-//      edit, editor --^     penetrability --+--> proxy -> force -> device
+//      edit, editor --^     penetrability --+--> proxy -> force, layers -> device
 //                                 renderer: one call for proxy..force
 //
 // surface (the whole isosurface as a mesh) observes volume, field and lattice.
@@ -20,6 +20,7 @@
 #include "palpate/proxy.hpp"
 #include "palpate/penetrability.hpp"
 #include "palpate/force.hpp"
+#include "palpate/layers.hpp"
 #include "palpate/renderer.hpp"
 #include "palpate/exchange.hpp"
 #include "palpate/latency.hpp"

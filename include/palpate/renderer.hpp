@@ -1,10 +1,11 @@
-// Stage 12, renderer: one call renders a tick, from the device's state to proxy and force. A
+// Stage 13, renderer: one call renders a tick, from the device's state to proxy and force. A
 // renderer is a value that can be copied. render() does not allocate, lock, do I/O, read clocks or
 // throw.
 #pragma once
 
-#include "palpate/force.hpp"
-#include "palpate/penetrability.hpp"
+#include <memory>
+
+#include "palpate/layers.hpp"
 
 namespace palpate {
 
@@ -27,12 +28,17 @@ struct DeviceState {
     bool valid = true;             ///< false: stale or broken input; no force, proxy stays
     bool armed = true;             ///< false: a dead-man switch is open; no force at once
     bool released = false;         ///< true: no force, see ForceInput::released
+    /// Unit, device axes, from the hand to the tool's tip; zero: not known.
+    Vec3 pointing = Vec3::Zero();
 };
 
 struct RendererSettings {
     ProxyMethod method = &update_exact;
     ProxySettings proxy;
     Penetrability penetrability;
+    /// With layers, what they say of surfaces and forces counts in place of penetrability, friction
+    /// and force; without any surface of their own, penetrability stays.
+    std::shared_ptr<const Layers> layers;
     ForceSettings force;
     DeviceLimits device;
     DeviceTransform transform;
@@ -46,6 +52,7 @@ struct Renderer {
     RendererSettings settings;
     Proxy proxy;
     ForceState force;
+    LayerState layers = {};
 };
 
 /// A monotonic clock of the caller's [ns]. The core reads none of its own.
@@ -57,12 +64,13 @@ struct Tick {
     ProxyUpdate proxy;             ///< HIP, SCP, mode, density, isovalue, ... in physical space
     Vec3 force = Vec3::Zero();     ///< [N], device axes
     std::uint8_t force_flags = 0;  ///< ForceFlag bits
-    std::int64_t update_ns = 0;    ///< [ns] the proxy update alone, by the caller's clock; 0: none
+    LayersFelt layers;
+    std::int64_t update_ns = 0;  ///< [ns] the proxy update alone, by the caller's clock; 0: none
 };
 
 /// Throws std::invalid_argument, saying what is wrong, for settings that cannot be rendered.
-/// Whether several ranges of interest are in the order of the field's solid side is left to
-/// check(Penetrability, Solid), which make_renderer() calls as well.
+/// Whether ranges of interest and layers are in the order of the field's solid side is left to
+/// their own check(), which make_renderer() calls as well.
 void check(const RendererSettings& settings);
 /// Throws std::invalid_argument for an isovalue that is NaN, or infinite so that all of space is
 /// solid. The other infinity leaves all of space free.

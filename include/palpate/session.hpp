@@ -1,4 +1,4 @@
-// Stage 16, session: one tick of a live session, which is everything between reading a device and
+// Stage 17, session: one tick of a live session, which is everything between reading a device and
 // writing to it. A session is a value without clock or thread, so a recording of its input gives
 // the same ticks again.
 #pragma once
@@ -68,6 +68,10 @@ struct Moment {
 struct Speed {
     double speed;
 };
+/// Layers from the next tick on; null: none, and the isovalue is felt again.
+struct UseLayers {
+    std::shared_ptr<const Layers> layers;
+};
 /// Scales the volume about the SCP, which changes neither the proxy nor the force.
 struct Scale {
     double scale;  ///< physical mm per device mm, > 0
@@ -78,7 +82,8 @@ struct Scale {
 /// own limits the session keeps the smaller, for good (keep_within()).
 using Command = std::variant<command::Isovalue, command::Freeze, command::Clutch, command::Forces,
                              command::Scale, command::Samples, command::Moment, command::Speed,
-                             ForceSettings, Friction, Penetrability, DeviceTransform, DeviceLimits>;
+                             command::UseLayers, ForceSettings, Friction, Penetrability,
+                             DeviceTransform, DeviceLimits>;
 
 /// One callable of several, for std::visit over a Command: an alternative that is left out does not
 /// compile.

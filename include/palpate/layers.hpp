@@ -1,0 +1,177 @@
+// Stage 12, layers: several surfaces in one stroke, each with its own character. A haptic transfer
+// function gives stiffness, friction and so on by density; surfaces are levels of it, from outside
+// in, and give way when they are pressed hard enough. (What Corenthy et al. 2012, section 7, leave
+// open: penetrability made for an application.) Model, energy and limits: docs/layers.md.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "palpate/force.hpp"
+#include "palpate/penetrability.hpp"
+
+namespace palpate {
+
+/// What a haptic transfer function gives.
+enum class HapticProperty : std::uint8_t {
+    stiffness,         ///< [N/mm] of a surface
+    static_friction,   ///< coefficients of a surface; dynamic counts as at most static
+    dynamic_friction,  ///
+    damping,           ///< [N s/mm] of a surface
+    viscosity,         ///< [N s/mm] inside, behind the surface
+    puncture_force,    ///< [N] at which a surface gives way; infinity: never
+    drag,              ///< [N/mm] rubbing on a needle's shaft per mm (physical) of it inside
+};
+inline constexpr int haptic_property_count = 7;
+
+/// A piecewise linear function: knots in rising order, constant beyond both ends. Without knots it
+/// says nothing.
+struct Curve {
+    struct Knot {
+        double at, value;
+    };
+    std::vector<Knot> knots;
+
+    /// Not for a curve without knots.
+    double operator()(double at) const noexcept;
+};
+
+/// A property of a place: a value over its density [data units] and a factor over the gradient's
+/// magnitude there [data units / mm].
+struct PropertyCurves {
+    Curve density, gradient;
+};
+
+/// A surface and what lies behind it.
+struct Layer {
+    std::string name;
+    double level = 0;  ///< isovalue [data units]
+    /// For looking: red, green and blue, 0 to 1.
+    std::array<double, 3> colour{0.8, 0.8, 0.8};
+    double opacity = 1;
+    /// What is given here counts in place of the curve over density.
+    std::array<std::optional<double>, haptic_property_count> own{};
+
+    std::optional<double>& operator[](HapticProperty p) { return own[static_cast<int>(p)]; }
+    const std::optional<double>& operator[](HapticProperty p) const {
+        return own[static_cast<int>(p)];
+    }
+};
+
+/// A hand that holds a needle: after the first puncture it moves along a line.
+struct Needle {
+    double lateral_stiffness = 0.3;  ///< [N/mm] towards the line
+    double static_ratio = 1.2;       ///< friction along the shaft at rest, of that in motion
+    /// [mm/s] Slower than this along the line, the shaft sticks (Karnopp 1985).
+    double stick_speed = 1;
+};
+
+/// A haptic transfer function. What neither a layer nor a curve gives is as the session's settings
+/// have it; without a puncture force surfaces never give way.
+struct Layers {
+    static constexpr int most_layers = 16;
+
+    std::string name;
+    std::array<PropertyCurves, haptic_property_count> curves;
+    /// In the order in which a hand from outside meets them: levels rise, or fall where the solid
+    /// is below. None: the session's isovalue, with the properties that the curves give there.
+    std::vector<Layer> layers;
+    /// [mm, physical] A surface that gave way closes when the SCP is farther than this from where
+    /// it did. Then it is felt from its other side.
+    double closing = 1;
+    std::optional<Needle> needle;
+
+    const PropertyCurves& operator[](HapticProperty p) const { return curves[static_cast<int>(p)]; }
+    PropertyCurves& operator[](HapticProperty p) { return curves[static_cast<int>(p)]; }
+};
+
+/// Throws std::invalid_argument, naming layer or curve, for more than 16 layers, levels out of
+/// order or not finite, names missing or given twice, knots out of order, and values that are NaN,
+/// negative or (but for puncture forces) infinite.
+void check(const Layers& layers, Solid solid);
+
+/// A property in a layer (by number from 0; -1: outside of all), at a density [data units] and
+/// gradient magnitude [data units / mm]; `otherwise` if nothing says it.
+double property_of(const Layers& layers, int layer, HapticProperty property, double density,
+                   double gradient, double otherwise) noexcept;
+
+/// What a tick felt of layers.
+struct LayersFelt {
+    std::int8_t touched = -1;   ///< layer whose surface is touched; -1: none
+    std::int8_t inside = 0;     ///< the SCP is inside this many layers: 0 .. inside - 1
+    std::int8_t punctured = 0;  ///< surfaces that gave way in this tick
+};
+
+/// The contact's spring. Where its stiffness changes, on the way along a surface or from one to the
+/// next, it never gains energy: it takes on a rest length [device mm].
+struct ContactSpring {
+    bool touching = false;
+    double stiffness = 0;
+    double rest = 0;
+
+    /// The force [N] at this distance between SCP and HIP [device mm].
+    double move(double distance, double to_stiffness) noexcept;
+};
+
+/// Where a needle's shaft goes through a surface: `at` [mm, physical] along the line.
+struct Crossing {
+    double at = 0;
+    std::int8_t surface = 0;
+    bool inward = true;
+};
+struct NeedleState {
+    static constexpr int most_crossings = 64;
+
+    bool inserted = false;
+    Vec3 entry = Vec3::Zero();  ///< [mm, physical]
+    Vec3 axis = Vec3::Zero();   ///< unit, physical axes, into the tissue
+    double hand = 0;            ///< [mm, physical] along the line
+    double anchor = 0;          ///< where friction holds the shaft [mm, physical]
+    bool slipping = false;
+    int crossing_count = 0;
+    std::array<Crossing, most_crossings> crossings{};
+};
+
+/// Everything that layers keep between two ticks.
+struct LayerState {
+    int layer_count = -1;  ///< of the layers in use
+    /// The SCP may be anywhere from inside `outer` layers to inside `inner` ones: the surfaces
+    /// between them gave way, at `opening` [mm, physical], and have not closed yet.
+    int outer = 0, inner = 0;
+    std::array<Vec3, Layers::most_layers> opening{};
+    ContactSpring spring;
+    NeedleState needle;
+    bool moved = false;       ///< there was a tick
+    double time = 0;          ///< [s] of the last tick
+    Vec3 hip = Vec3::Zero();  ///< of the last tick [mm, physical]
+};
+
+/// Input to layers in one tick.
+struct LayerInput {
+    ProxyMethod method = &update_exact;  ///< that knows levels behind
+    Vec3 hip = Vec3::Zero();             ///< [mm, physical]
+    ProxySettings proxy;
+    ForceSettings force;
+    DeviceLimits limits;
+    double device_per_volume = 1;  ///< device mm per mm of physical space
+    double time = 0;               ///< [s]
+    Vec3 pointing = Vec3::Zero();  ///< unit, physical axes, to the tool's tip; zero: not known
+};
+struct LayersUpdate {
+    ProxyUpdate proxy;
+    ForceSettings force;       ///< of what is touched and of what the SCP is in, stable
+    bool pulls = false;        ///< there is a spring's force on the hand
+    Vec3 pull = Vec3::Zero();  ///< that force / force.stiffness [device mm], physical axes
+    LayersFelt felt;
+};
+
+/// One tick: moves the proxy, in place of a ProxyMethod and of penetrability. Never through a
+/// surface that did not give way, from either side (G1, G2 for all of them; docs/layers.md). A
+/// surface gives way where on the hand's way its spring reached the puncture force; the SCP then
+/// goes on towards the hand in the same tick, at most through eight surfaces.
+LayersUpdate update_layers(const Layers& layers, LayerState& state, Proxy& proxy,
+                           const Field& field, const LayerInput& input, StepObserver observer = {});
+
+}  // namespace palpate

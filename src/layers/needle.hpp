@@ -1,0 +1,24 @@
+// A needle in tissue: a line, the surfaces that its shaft goes through, and what rubs on it.
+#pragma once
+
+#include "palpate/layers.hpp"
+
+namespace palpate {
+
+/// Puts the needle in at a point of its first surface.
+void insert(NeedleState& needle, const Vec3& entry, const Vec3& axis);
+/// The hand's place along the line [mm, physical].
+double along_line(const NeedleState& needle, const Vec3& point);
+Vec3 on_line(const NeedleState& needle, double at);
+/// The shaft goes through one more surface. Without room for it false, and nothing has changed.
+bool cross(NeedleState& needle, int surface, bool inward, const Vec3& point);
+/// True where the tip is at the surface that it crossed last: its channel is open.
+bool is_in_channel(const NeedleState& needle, int surface, const Vec3& tip, double closing);
+/// The tip came back out of the surfaces that it left by `closing`.
+void withdraw(NeedleState& needle, const Vec3& tip, double closing);
+/// Friction along the shaft (Karnopp 1985) in a tick of this length [s]: the force on the hand
+/// along the line [N].
+double shaft_friction(NeedleState& needle, const Layers& layers, const LayerInput& input,
+                      double period);
+
+}  // namespace palpate
