@@ -38,7 +38,41 @@ namespace palpate::viewer {
 
 using io::Is;
 
-// The lists of members. Not in an unnamed namespace, where io::JsonWriter would not find them.
+// The lists of members, and the names of an enum's values in their order. Not in an unnamed
+// namespace, where io::JsonWriter would not find them.
+
+static constexpr std::array<const char*, 3> value_names(Cut) {
+    return {"nothing", "plane", "box"};
+}
+
+static constexpr std::array<const char*, 2> value_names(Measure) {
+    return {"length", "angle"};
+}
+
+template <class T>
+concept Named = requires(T value) {
+    value_names(value);
+};
+
+static io::Json to_value(Named auto value) {
+    return value_names(value)[static_cast<std::size_t>(value)];
+}
+
+template <Named T>
+static void from_value(const io::Json& json, const std::string& name, T& value) {
+    std::string text;
+    io::from_value(json, name, text);
+    const auto names = value_names(value);
+    const auto at = std::ranges::find(names, text);
+    if (at == names.end()) {
+        std::string wanted = names.front();
+        for (std::size_t i = 1; i < names.size(); ++i) {
+            wanted.append(i + 1 < names.size() ? ", " : " or ").append(names[i]);
+        }
+        io::wrong_member(name, wanted);
+    }
+    value = static_cast<T>(at - names.begin());
+}
 
 static void members(auto& v, Is<ControlPoint> auto& s) {
     v("level", s.level);
@@ -78,20 +112,6 @@ static void members(auto& v, Is<OverlayLook> auto& s) {
     v("hidden", s.hidden);
 }
 
-constexpr std::array<const char*, 3> cut_names{"nothing", "plane", "box"};
-
-static io::Json to_value(Cut cut) {
-    return cut_names[static_cast<std::size_t>(cut)];
-}
-
-static void from_value(const io::Json& json, const std::string& name, Cut& cut) {
-    std::string text;
-    io::from_value(json, name, text);
-    const auto at = std::ranges::find(cut_names, text);
-    if (at == cut_names.end()) io::wrong_member(name, "nothing, plane or box");
-    cut = static_cast<Cut>(at - cut_names.begin());
-}
-
 static void members(auto& v, Is<Look> auto& s) {
     v("surface", s.surface);
     v("surface_colour", s.surface_colour);
@@ -113,20 +133,6 @@ static void members(auto& v, Is<Look> auto& s) {
     v("box", s.box);
     v("orientation", s.orientation);
     v("scale_bar", s.scale_bar);
-}
-
-constexpr std::array<const char*, 2> measure_names{"length", "angle"};
-
-static io::Json to_value(Measure kind) {
-    return measure_names[static_cast<std::size_t>(kind)];
-}
-
-static void from_value(const io::Json& json, const std::string& name, Measure& kind) {
-    std::string text;
-    io::from_value(json, name, text);
-    const auto at = std::ranges::find(measure_names, text);
-    if (at == measure_names.end()) io::wrong_member(name, "length or angle");
-    kind = static_cast<Measure>(at - measure_names.begin());
 }
 
 static void members(auto& v, Is<Measurement> auto& s) {

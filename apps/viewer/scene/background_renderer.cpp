@@ -16,6 +16,10 @@ constexpr int rest_ms = 150;  // without a change: a fine picture
 /// The part of the look that is rendered here; the window draws the rest over it.
 Look rendered_part(Look look) {
     look.contact = look.tetrahedra = look.planes = look.orientation = look.scale_bar = false;
+    // Of the slices beside the scene: those in it are grey, and an overlay's surfaces come with
+    // set_overlay(), coloured already.
+    look.colours = {};
+    look.overlay = {};
     if (!look.volume) {
         look.transfer = {};
         look.shading = look.maximum = false;
@@ -138,6 +142,7 @@ void BackgroundRenderer::collect_surfaces() {
 }
 
 void BackgroundRenderer::set_overlay(std::vector<DrawnSurface> surfaces) {
+    if (surfaces == overlay_) return;
     overlay_ = std::move(surfaces);
     paint();
 }

@@ -29,7 +29,7 @@ class BackgroundRenderer : public QObject {
     void clear();
     void set_isovalue(double isovalue);
     void set_most_triangles(std::size_t triangles) { felt_.set_most_triangles(triangles); }
-    /// Surfaces that do not depend on the field, drawn with it.
+    /// Surfaces that do not depend on the field, drawn with it. The same again draw nothing anew.
     void set_overlay(std::vector<DrawnSurface> surfaces);
     /// Draws this, with the number, field and surfaces that are kept here, if it differs from the
     /// last request.

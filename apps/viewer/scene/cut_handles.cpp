@@ -88,9 +88,9 @@ Look with_handle_at(const Look& look, const Geometry& geometry, std::size_t hand
         const double part = index[axis] / std::max(1, geometry.size[axis] - 1);
         double &low = moved.cut_box.low[axis], &high = moved.cut_box.high[axis];
         if (handle % 2 == 0) {
-            low = std::clamp(part, 0.0, high - narrowest);
+            low = std::clamp(part, 0.0, std::max(0.0, high - narrowest));
         } else {
-            high = std::clamp(part, low + narrowest, 1.0);
+            high = std::clamp(part, std::min(1.0, low + narrowest), 1.0);
         }
     }
     return moved;

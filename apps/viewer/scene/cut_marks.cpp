@@ -4,9 +4,10 @@
 #include <vtkCellArray.h>
 #include <vtkNew.h>
 #include <vtkPoints.h>
-#include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
 #include <vtkSphereSource.h>
+
+#include "apps/viewer/scene/flat_actor.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -14,17 +15,6 @@ namespace {
 constexpr Colour cut_colour{0.337, 0.706, 0.914};   // sky blue (Okabe and Ito)
 constexpr Colour held_colour{0.941, 0.894, 0.259};  // yellow
 constexpr double ball_px = 6;
-
-vtkSmartPointer<vtkActor> plain_actor(vtkPolyData* data) {
-    vtkNew<vtkPolyDataMapper> mapper;
-    mapper->SetInputData(data);
-    auto actor = vtkSmartPointer<vtkActor>::New();
-    actor->SetMapper(mapper);
-    actor->GetProperty()->LightingOff();
-    actor->GetProperty()->SetColor(cut_colour.red, cut_colour.green, cut_colour.blue);
-    actor->SetVisibility(false);
-    return actor;
-}
 
 void put_lines(vtkPolyData& data, const std::vector<std::array<Vec3, 2>>& lines,
                const Vec3& origin) {
@@ -50,11 +40,12 @@ CutMarks::CutMarks(vtkRenderer& renderer) : outline_(vtkSmartPointer<vtkPolyData
     ball->SetPhiResolution(16);
     ball->Update();
     for (auto& actor : balls_) {
-        actor = plain_actor(ball->GetOutput());
+        actor = flat_actor(ball->GetOutput(), cut_colour);
         renderer.AddActor(actor);
     }
-    lines_ = plain_actor(outline_);
+    lines_ = flat_actor(outline_, cut_colour);
     renderer.AddActor(lines_);
+    hide();
 }
 
 void CutMarks::hide() {

@@ -4,28 +4,19 @@
 #include <vtkCellArray.h>
 #include <vtkNew.h>
 #include <vtkPoints.h>
-#include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
 #include <vtkRenderWindow.h>
 #include <vtkTextProperty.h>
 
 #include <cmath>
 
+#include "apps/viewer/scene/flat_actor.hpp"
+
 namespace palpate::viewer {
 namespace {
 
 constexpr pictures::Colour colour{0.95, 0.85, 0.1};
 constexpr double dot_px = 7, line_px = 2;
-
-vtkSmartPointer<vtkActor> flat_actor(vtkPolyData* data) {
-    vtkNew<vtkPolyDataMapper> mapper;
-    mapper->SetInputData(data);
-    auto actor = vtkSmartPointer<vtkActor>::New();
-    actor->SetMapper(mapper);
-    actor->GetProperty()->LightingOff();
-    actor->GetProperty()->SetColor(colour.red, colour.green, colour.blue);
-    return actor;
-}
 
 }  // namespace
 
@@ -34,8 +25,8 @@ MeasureMarks::MeasureMarks(vtkRenderer& overlay, vtkRenderer& writing)
       writing_(writing),
       line_data_(vtkSmartPointer<vtkPolyData>::New()),
       dot_data_(vtkSmartPointer<vtkPolyData>::New()) {
-    lines_ = flat_actor(line_data_);
-    dots_ = flat_actor(dot_data_);
+    lines_ = flat_actor(line_data_, colour);
+    dots_ = flat_actor(dot_data_, colour);
     dots_->GetProperty()->RenderPointsAsSpheresOn();
     overlay_.AddActor(lines_);
     overlay_.AddActor(dots_);

@@ -19,6 +19,8 @@ struct DrawnSurface {
     Colour colour;
     double opacity = 1;          ///< 0: not drawn
     Vec3 offset = Vec3::Zero();  ///< [mm] of its origin from the middle of the grid
+
+    bool operator==(const DrawnSurface&) const = default;
 };
 
 /// The static part of the scene, which does not follow the hand, seen by one camera.

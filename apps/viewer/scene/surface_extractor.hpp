@@ -30,6 +30,9 @@ struct ExtractedSurface {
     int every = 1;                             ///< made from one sample for so many along each axis
     bool finished = false;                     ///< no finer one comes
     double seconds = 0;                        ///< since it was begun
+
+    /// The very same meshes, not others like them.
+    bool operator==(const ExtractedSurface&) const = default;
 };
 
 struct SurfaceLimits {

@@ -62,6 +62,8 @@ SessionFile some_session() {
     s.window_low = -100.5;
     s.window_high = 900;
     s.slices_shown = false;
+    s.measurements = {{Measure::length, {{1, 2, 3}, {4.5, 5, 6}}},
+                      {Measure::angle, {{1, 0, 0}, {0, 0, 0}, {0, 0.1, 0}}}};
     return s;
 }
 
@@ -103,6 +105,7 @@ void expect_same(const SessionFile& a, const SessionFile& b) {
     EXPECT_EQ(a.window_low, b.window_low);
     EXPECT_EQ(a.window_high, b.window_high);
     EXPECT_EQ(a.slices_shown, b.slices_shown);
+    EXPECT_EQ(a.measurements, b.measurements);
 }
 
 TEST(SessionFile, everything_comes_back_bit_for_bit) {
@@ -193,7 +196,9 @@ TEST(SessionFile, an_error_is_one_line_with_file_and_member) {
     names("/look/surface_opacity", 1.5, "'look.surface_opacity'");
     names("/look/surfaces/1/opacity", -1, "'look.surfaces[1].opacity'");
     names("/look/surfaces/0/level", "high", "'look.surfaces[0].level'");
-    names("/look/cut", "sphere", "'look.cut'");
+    names("/look/cut", "sphere", "'look.cut' must be nothing, plane or box");
+    names("/measurements/1/kind", "area", "'measurements[1].kind' must be length or angle");
+    names("/measurements/1/kind", "length", "'measurements[1].points'");
     names("/look/cut_plane/normal", Json::array({0, 0, 0}), "'look.cut_plane.normal'");
     names("/look/cut_box/high", Json::array({0.05, 1, 1}), "'look.cut_box'");
     names("/look/transfer/points/1/level", -6, "'look.transfer.points[1].level'");

@@ -200,6 +200,21 @@ TEST(SceneCut, handles_move_faces_of_the_box_within_the_grid_and_past_no_other) 
     EXPECT_NEAR(shown.now.cut_box.high[2], shown.now.cut_box.low[2] + 0.01, 1e-9);
 }
 
+TEST(CutHandles, of_a_box_at_the_edge_thinner_than_they_make_one_leave_it_within_the_grid) {
+    const Geometry g = support::grid(support::cube(11));
+    Look look;
+    look.cut = Cut::box;
+    look.cut_box = {{0, 0.995, 0}, {0.005, 1, 1}};  // as a session may hold it
+    for (const double to : {-3.0, 0.02, 5.0, 9.99, 13.0}) {
+        const CutBox low = with_handle_at(look, g, 0, Vec3::Constant(to)).cut_box;
+        EXPECT_EQ(low.low[0], 0) << to;
+        EXPECT_EQ(low.high[0], 0.005) << to;
+        const CutBox high = with_handle_at(look, g, 3, Vec3::Constant(to)).cut_box;
+        EXPECT_EQ(high.low[1], 0.995) << to;
+        EXPECT_EQ(high.high[1], 1) << to;
+    }
+}
+
 TEST(CutPlanes, of_a_box_are_those_of_the_ends_that_cut) {
     Look look;
     look.cut = Cut::box;
