@@ -6,6 +6,7 @@
 
 #include <concepts>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -32,6 +33,7 @@ inline Json to_value(double value) {
 }
 Json to_value(const Vec3& value);
 Json to_value(const Mat3& value);  ///< rows
+Json to_value(const Layers& layers);
 
 /// `name` is for errors: std::invalid_argument.
 void from_value(const Json& json, const std::string& name, bool& value);
@@ -41,6 +43,7 @@ void from_value(const Json& json, const std::string& name, int& value);
 void from_value(const Json& json, const std::string& name, std::uint32_t& value);
 void from_value(const Json& json, const std::string& name, Vec3& value);
 void from_value(const Json& json, const std::string& name, Mat3& value);
+void from_value(const Json& json, const std::string& name, Layers& layers);
 
 struct JsonWriter {
     Json json = Json::object();
@@ -62,6 +65,10 @@ struct JsonWriter {
     /// Nothing is left out.
     template <class T>
     void operator()(const std::string& name, const std::optional<T>& value) {
+        if (value) json[name] = of(*value);
+    }
+    template <class T>
+    void operator()(const std::string& name, const std::shared_ptr<const T>& value) {
         if (value) json[name] = of(*value);
     }
     template <class T>
@@ -98,6 +105,14 @@ struct JsonReader {
     template <class T>
     void operator()(const std::string& name, std::optional<T>& value) {
         if (const Json* const found = find(name)) get(*found, where + name, value.emplace());
+    }
+    template <class T>
+    void operator()(const std::string& name, std::shared_ptr<const T>& value) {
+        const Json* const found = find(name);
+        if (!found) return;
+        T read;
+        get(*found, where + name, read);
+        value = std::make_shared<const T>(std::move(read));
     }
     template <class T>
     void operator()(const std::string& name, std::vector<T>& values) {

@@ -55,8 +55,9 @@ struct RecordingReader::Rows {
     TraceColumns trace;
     VectorColumns position;
     std::size_t status, force_flags, device_status, buttons, age, frozen, clutched;
-    std::optional<std::size_t> moment, samples;  // of format 1, fixed samples may lack them
-    std::optional<std::size_t> number, crc32;    // format 1 does
+    std::optional<std::size_t> moment, samples;        // of format 1, fixed samples may lack them
+    std::optional<std::array<std::size_t, 3>> layers;  // from format 3 on
+    std::optional<std::size_t> number, crc32;          // format 1 does
     std::array<std::size_t, 9> tool;
 
     Rows(std::string whole, std::string called, int format)
@@ -75,6 +76,10 @@ struct RecordingReader::Rows {
         // A misspelt one must not count as one that is not there.
         if (format > 1 || csv.has_column("moment")) moment = csv.column("moment");
         if (format > 1 || csv.has_column("samples")) samples = csv.column("samples");
+        if (format > 2) {
+            layers = {csv.column("layer_touched"), csv.column("layers_inside"),
+                      csv.column("layers_punctured")};
+        }
         if (format > 1) {
             number = csv.column("tick");
             crc32 = csv.column("crc32");
@@ -156,19 +161,32 @@ struct RecordingReader::Rows {
         return value;
     }
 
+    /// None is touched: -1.
+    std::int8_t layer_number(std::size_t column, int least) const {
+        const std::int64_t value = csv.integer(column);
+        if (value < least || value > Layers::most_layers) {
+            csv.fail(quoted(csv.cell(column)) + " is no number of layers: at most 16");
+        }
+        return static_cast<std::int8_t>(value);
+    }
+    LayersFelt layers_felt() const {
+        return {layer_number((*layers)[0], -1), layer_number((*layers)[1], 0),
+                layer_number((*layers)[2], 0)};
+    }
+
     SessionTick tick() const {
         const TraceRow row = trace.read(csv);
         SessionTick result;
         Tick& tick = result.tick;
         tick.time = row.t;
-        tick.proxy = {static_cast<UpdateStatus>(
-                          code(status, static_cast<std::int64_t>(UpdateStatus::not_finite))),
-                      row.constrained ? Mode::constrained : Mode::free,
-                      row.hip,
-                      row.scp,
-                      row.density,
-                      row.isovalue,
-                      row.tetrahedra};
+        tick.proxy.status = static_cast<UpdateStatus>(
+            code(status, static_cast<std::int64_t>(UpdateStatus::not_finite)));
+        tick.proxy.mode = row.constrained ? Mode::constrained : Mode::free;
+        tick.proxy.hip = row.hip;
+        tick.proxy.scp = row.scp;
+        tick.proxy.density = row.density;
+        tick.proxy.isovalue = row.isovalue;
+        tick.proxy.tetrahedra = row.tetrahedra;
         tick.force = row.force;
         tick.force_flags = static_cast<std::uint8_t>(code(force_flags, 255));
         tick.update_ns = row.update_ns;
@@ -188,6 +206,7 @@ struct RecordingReader::Rows {
             result.version = static_cast<std::uint64_t>(
                 code(*samples, std::numeric_limits<std::int64_t>::max()));
         }
+        if (layers) tick.layers = layers_felt();
         return result;
     }
 };

@@ -22,7 +22,7 @@ constexpr std::size_t most_buffered = std::size_t{1} << 20;
 constexpr std::string_view session_columns =
     ",status,force_flags,device_status,device_x,device_y,device_z,buttons,age,"
     "tool_xx,tool_xy,tool_xz,tool_yx,tool_yy,tool_yz,tool_zx,tool_zy,tool_zz,frozen,clutched,"
-    "moment,samples,tick,crc32";
+    "moment,samples,layer_touched,layers_inside,layers_punctured,tick,crc32";
 
 /// The cells of a tick that the session gave, without the end of the line.
 void append_session(std::string& text, const SessionTick& tick) {
@@ -38,6 +38,9 @@ void append_session(std::string& text, const SessionTick& tick) {
     append_cell(text, static_cast<std::int64_t>(tick.clutched));
     append_cell(text, tick.moment);
     append_cell(text, static_cast<std::int64_t>(tick.version));
+    append_cell(text, std::int64_t{tick.tick.layers.touched});
+    append_cell(text, std::int64_t{tick.tick.layers.inside});
+    append_cell(text, std::int64_t{tick.tick.layers.punctured});
 }
 
 std::string head_text(const RecordingHead& head) {

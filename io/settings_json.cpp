@@ -8,6 +8,7 @@
 #include <string>
 
 #include "io/json_members.hpp"
+#include "io/layers_json.hpp"
 #include "io/samples_json.hpp"
 
 namespace palpate::io {
@@ -76,6 +77,14 @@ void from_value(const Json& json, const std::string& name, Mat3& value) {
         from_value(json[std::size_t(r)], name, row);
         value.row(r) = row;
     }
+}
+
+Json to_value(const Layers& layers) {
+    return to_json(layers);
+}
+
+void from_value(const Json& json, const std::string&, Layers& layers) {
+    layers = layers_from_json(json);
 }
 
 // The lists of members. Not in an unnamed namespace, where JsonWriter would not find them.
@@ -148,6 +157,7 @@ static void members(auto& v, Is<RendererSettings> auto& s) {
     v("friction", s.proxy.friction);
     v("step_budget", s.proxy.step_budget);
     v("penetrability", s.penetrability);
+    v("layers", s.layers);
     v("force", s.force);
     v("device", s.device);
     v("transform", s.transform);
@@ -170,6 +180,9 @@ static void members(auto& v, Is<command::Scale> auto& s) {
     v("scale", s.scale);
 }
 
+static void members(auto& v, Is<command::UseLayers> auto& s) {
+    v("layers", s.layers);
+}
 static void members(auto& v, Is<command::Moment> auto& s) {
     v("time", s.time);
 }
@@ -190,9 +203,9 @@ Json written(const command::Samples& samples) {
 }
 
 /// The name of each alternative of Command, in its order.
-constexpr std::array command_names{"isovalue",      "freeze",    "clutch", "forces", "scale",
-                                   "samples",       "moment",    "speed",  "force",  "friction",
-                                   "penetrability", "transform", "limits"};
+constexpr std::array command_names{"isovalue", "freeze",        "clutch",    "forces", "scale",
+                                   "samples",  "moment",        "speed",     "layers", "force",
+                                   "friction", "penetrability", "transform", "limits"};
 static_assert(command_names.size() == std::variant_size_v<Command>);
 
 template <std::size_t i = 0>

@@ -21,6 +21,25 @@ void write_comments(PendingFile& file, const std::vector<std::string>& comments)
     }
 }
 
+/// A name as a cell: in quotes where it would not be one without.
+std::string cell_of(const std::string& name) {
+    if (name.find_first_of(",\"\n\r") == std::string::npos) return name;
+    std::string text = "\"";
+    for (const char c : name) text += c == '"' ? "\"\"" : std::string(1, c);
+    return text + '"';
+}
+
+void append_layers(std::string& line, const LayersFelt& felt,
+                   const std::vector<std::string>& names) {
+    line += ',';
+    if (felt.touched >= 0) line += cell_of(names[static_cast<std::size_t>(felt.touched)]);
+    std::string inside;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(felt.inside); ++i) {
+        inside += (i == 0 ? "" : "+") + names[i];
+    }
+    line += ',' + cell_of(inside);
+}
+
 }  // namespace
 
 TraceRow trace_row(const Tick& tick) {
@@ -32,19 +51,22 @@ TraceRow trace_row(const Tick& tick) {
             tick.proxy.isovalue,
             tick.proxy.mode == Mode::constrained,
             tick.proxy.tetrahedra,
-            tick.update_ns};
+            tick.update_ns,
+            tick.layers};
 }
 
 TraceWriter::TraceWriter(const std::filesystem::path& path,
-                         const std::vector<std::string>& comments)
-    : file_(path) {
+                         const std::vector<std::string>& comments,
+                         std::vector<std::string> layer_names)
+    : file_(path), layer_names_(std::move(layer_names)) {
     write_comments(file_, comments);
-    file_.write(std::string(trace_header) + "\n");
+    file_.write(std::string(trace_header) + (layer_names_.empty() ? "\n" : ",layer,inside\n"));
 }
 
 void TraceWriter::add(const TraceRow& row) {
     line_.clear();
     append_row(line_, row);
+    if (!layer_names_.empty()) append_layers(line_, row.layers, layer_names_);
     line_ += '\n';
     file_.write(line_);
 }

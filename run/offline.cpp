@@ -74,7 +74,9 @@ void finish(OfflineSummary& summary, std::vector<std::int64_t>& times) {
 OfflineSummary render_offline(Renderer& renderer, const io::Trajectory& trajectory,
                               const OfflineSinks& sinks) {
     const Vec3& first = trajectory.position.front();
-    if (!place(renderer.proxy, renderer.field, first, renderer.proxy.isovalue)) {
+    const auto& layers = renderer.settings.layers;
+    const bool has_surfaces = layers && !layers->layers.empty();  // they place the proxy themselves
+    if (!has_surfaces && !place(renderer.proxy, renderer.field, first, renderer.proxy.isovalue)) {
         throw std::invalid_argument(
             "no free space was found at this isovalue: everything is solid; choose another "
             "isovalue or background");
@@ -85,7 +87,7 @@ OfflineSummary render_offline(Renderer& renderer, const io::Trajectory& trajecto
     PathTap tap{&sinks};
     const StepObserver observer =
         sinks.corner ? StepObserver{&PathTap::on_step, &tap} : StepObserver{};
-    if (sinks.corner) sinks.corner(0, renderer.proxy.scp_physical);
+    if (sinks.corner && !has_surfaces) sinks.corner(0, renderer.proxy.scp_physical);
     const auto count = static_cast<std::int64_t>(trajectory.time.size());
     for (std::int64_t i = 0; i < count; ++i) {
         tap.tick = i;

@@ -113,6 +113,10 @@ std::optional<Difference> difference(const SessionTick& recorded, const SessionT
     compare("tetrahedra", a.tetrahedra, b.tetrahedra);
     compare("force", recorded.tick.force, again.tick.force);
     compare("force flags", recorded.tick.force_flags, again.tick.force_flags);
+    const LayersFelt &p = recorded.tick.layers, &q = again.tick.layers;
+    compare("layer touched", p.touched, q.touched);
+    compare("layers inside", p.inside, q.inside);
+    compare("layers punctured", p.punctured, q.punctured);
     compare("frozen", recorded.frozen, again.frozen);
     compare("clutched", recorded.clutched, again.clutched);
     compare("moment", recorded.moment, again.moment);

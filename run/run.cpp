@@ -75,7 +75,7 @@ Run::Run(std::shared_ptr<Data> data, const Setup& setup)
     : data_(std::move(data)),
       setup_(setup),
       field_(make_field(data_->start(), setup.field, setup.render.method.method)) {
-    const double isovalue = isovalue_of(data_->loaded(), setup.field);
+    const double isovalue = isovalue_of(data_->loaded(), setup);
     auto device = open_for(field_, isovalue, setup);
     take(make_session(field_, isovalue, device->info(), setup));
     hold(std::move(device));
@@ -212,7 +212,7 @@ void Run::use_device(const devices::DeviceChoice& device) {
     setup.device = device;
     // A simulated hand goes for the surface that is felt now.
     const double isovalue =
-        std::isfinite(isovalue_) ? isovalue_ : isovalue_of(data_->loaded(), setup_.field);
+        std::isfinite(isovalue_) ? isovalue_ : isovalue_of(data_->loaded(), setup_);
     auto opened = open_for(field_, isovalue, setup);
     const Session fitted = make_session(field_, isovalue, opened->info(), setup);
     const RendererSettings& fit = fitted.renderer.settings;
@@ -238,6 +238,7 @@ void Run::use_field(Solid solid, Interpolation interpolation, std::optional<doub
     Field field(data_->start(), solid, background, interpolation);
     stop_recording();
     stop_servo();
+    if (solid != field_.solid()) settings_.layers = nullptr;  // their order is that of the side
     field_ = std::move(field);
     settings_.penetrability = no_penetrability();
     launch(session_stopped());

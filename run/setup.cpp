@@ -82,6 +82,33 @@ double isovalue_of(const LoadedVolume& loaded, const FieldSetup& setup) {
     throw std::invalid_argument(loaded.name + ": the data are constant, there is nothing to feel");
 }
 
+double isovalue_of(const LoadedVolume& loaded, const Setup& setup) {
+    if (setup.render.layers && !setup.render.layers->layers.layers.empty()) {
+        if (setup.field.isovalue) {
+            throw std::invalid_argument(
+                "an isovalue does nothing with layers, whose surfaces have levels of their own");
+        }
+        return io::layers_for(*setup.render.layers, loaded.volume).layers.front().level;
+    }
+    return isovalue_of(loaded, setup.field);
+}
+
+std::string layers_warning(const io::LayersFile& file, const LoadedVolume& loaded) {
+    const std::string& units = loaded.values.units;
+    if (!file.units.empty() && file.units != "%" && file.units != units) {
+        return "the layers are in " + file.units + "; " + loaded.name +
+               (units.empty() ? " does not say what its densities are in" : " is in " + units);
+    }
+    std::string empty;
+    for (const Layer& layer : io::layers_for(file, loaded.volume).layers) {
+        if (layer.level > loaded.volume.minimum() && layer.level < loaded.volume.maximum())
+            continue;
+        empty += (empty.empty() ? "" : ", ") + layer.name;
+    }
+    if (empty.empty()) return {};
+    return "these layers lie outside the densities of " + loaded.name + ": " + empty;
+}
+
 RendererSettings render_settings(const RenderSetup& setup, const Field& field, double isovalue,
                                  const DeviceLimits& limits) {
     if (setup.friction && setup.method.method != &update_exact) {
@@ -96,6 +123,10 @@ RendererSettings render_settings(const RenderSetup& setup, const Field& field, d
     settings.proxy.step_budget = setup.step_budget.value_or(settings.proxy.step_budget);
     settings.proxy.friction = setup.friction.value_or(settings.proxy.friction);
     settings.penetrability = std::visit(MakePenetrability{field, isovalue}, setup.penetrability);
+    if (setup.layers) {
+        settings.layers =
+            std::make_shared<const Layers>(io::layers_for(*setup.layers, field.volume()));
+    }
     settings.force = setup.force;
     settings.force.limit = setup.limit.value_or(settings.force.limit);
     settings.force.stiffness = setup.stiffness.value_or(settings.force.stiffness);

@@ -48,6 +48,11 @@ void RenderOptions::add_to(CLI::App& command) {
         ->check(CLI::IsMember(baselines::method_names()))
         ->default_str(given.method.name);
     add_penetrability_to(command);
+    command
+        .add_option_function<std::string>(
+            "--layers", [this](const std::string& text) { given.layers = io::layers_named(text); },
+            "Several surfaces, each with its own feel: a file, or the name of a built-in set")
+        ->type_name("FILE|NAME");
     add_force_to(command);
     command.add_option("--rate", given.rate, "Rate of the loop the forces are meant for [Hz]")
         ->capture_default_str();
@@ -126,6 +131,11 @@ run::RenderSetup RenderOptions::setup() const {
     }
     if (minimum && penetrability != Penetrability::threshold) refuse("--minimum", "threshold");
     if (!ranges.empty() && penetrability != Penetrability::ranges) refuse("--range", "ranges");
+    if (given.layers && !given.layers->layers.layers.empty() &&
+        penetrability != Penetrability::off) {
+        throw std::invalid_argument(
+            "--penetrability does nothing with --layers, whose surfaces give way by themselves");
+    }
     run::RenderSetup setup = given;
     if (penetrability == Penetrability::threshold) {
         setup.penetrability = run::ThresholdSetup{threshold.value_or(1), minimum};

@@ -118,6 +118,11 @@ void warn_of_isovalue(const Field& field, double isovalue) {
                volume.minimum(), volume.maximum(), warning);
 }
 
+void warn_of_layers(const io::LayersFile& layers, const run::LoadedVolume& loaded) {
+    const std::string warning = run::layers_warning(layers, loaded);
+    if (!warning.empty()) fmt::print(stderr, "palpate: warning: {}\n", warning);
+}
+
 double required_isovalue(const run::LoadedVolume& loaded, const Field& field,
                          const run::FieldSetup& setup) {
     if (!setup.isovalue && !loaded.isovalue) {
@@ -127,6 +132,17 @@ double required_isovalue(const run::LoadedVolume& loaded, const Field& field,
                         loaded.name, loaded.name));
     }
     return suggested_isovalue(loaded, field, setup);
+}
+
+double required_isovalue(const run::LoadedVolume& loaded, const Field& field,
+                         const run::FieldSetup& setup, const run::RenderSetup& render) {
+    const auto& layers = render.layers;
+    if (!layers || layers->layers.layers.empty()) return required_isovalue(loaded, field, setup);
+    warn_of_layers(*layers, loaded);
+    run::Setup all;
+    all.field = setup;
+    all.render = render;
+    return run::isovalue_of(loaded, all);
 }
 
 double suggested_isovalue(const run::LoadedVolume& loaded, const Field& field,

@@ -41,6 +41,9 @@ std::string flaw_in_count(const std::string& text);
 
 /// The isovalue asked for, else the synthetic volume's own; std::invalid_argument if there is none.
 /// Prints a warning on standard error where there is nothing to feel at it.
+/// With layers, their outermost level.
+double required_isovalue(const run::LoadedVolume& loaded, const Field& field,
+                         const run::FieldSetup& setup, const run::RenderSetup& render);
 double required_isovalue(const run::LoadedVolume& loaded, const Field& field,
                          const run::FieldSetup& setup);
 /// The same, but of a file without --isovalue the first level that its histogram suggests.

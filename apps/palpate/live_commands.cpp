@@ -10,6 +10,7 @@
 #include "apps/palpate/commands.hpp"
 #include "io/number.hpp"
 #include "palpate/io/csv.hpp"
+#include "palpate/io/layers_file.hpp"
 #include "palpate/io/level.hpp"
 
 namespace palpate::app {
@@ -17,6 +18,7 @@ namespace palpate::app {
 LiveCommands::LiveCommands(const Field& field, double isovalue, const RendererSettings& settings)
     : field_(field), isovalue_(isovalue), settings_(settings) {
     if (settings.penetrability.on) penetrability_ = settings.penetrability;
+    last_layers_ = settings.layers;
 }
 
 Penetrability LiveCommands::penetrability_from(const CommandWords& words) const {
@@ -38,6 +40,25 @@ Penetrability LiveCommands::penetrability_from(const CommandWords& words) const 
     return penetrability_ranges(threshold, ranges, field_.solid());
 }
 
+Command LiveCommands::use_layers(std::shared_ptr<const Layers> layers) {
+    const Command command = command::UseLayers{layers};
+    check(command, settings_, field_.solid(), field_.geometry());
+    if (layers) last_layers_ = layers;
+    settings_.layers = std::move(layers);
+    return command;
+}
+
+Command LiveCommands::layers_from(const CommandWords& words) {
+    const std::string name = words.expect(2)[1];
+    if (name == "off") return use_layers(nullptr);
+    try {
+        return use_layers(std::make_shared<const Layers>(
+            io::layers_for(io::layers_named(name), field_.volume())));
+    } catch (const io::InputError& e) {
+        throw std::invalid_argument(e.what());
+    }
+}
+
 /// A command that changes one setting.
 Command LiveCommands::setting_from(const CommandWords& words, RendererSettings& next) const {
     const std::string& name = words.name();
@@ -54,8 +75,9 @@ Command LiveCommands::setting_from(const CommandWords& words, RendererSettings& 
     if (name == "scale") return command::Scale{words.expect(2).number(1)};
     throw std::invalid_argument(
         "there is no command '" + name +
-        "'; there are isovalue, stiffness, damping, viscosity, friction, penetrability, forces, "
-        "freeze, clutch, scale, brush, carve, add, smooth, paint, fill, undo, redo, save, play, "
+        "'; there are isovalue, stiffness, damping, viscosity, friction, penetrability, layers, "
+        "forces, freeze, clutch, scale, brush, carve, add, smooth, paint, fill, undo, redo, save, "
+        "play, "
         "pause, step, seek, loop, quit");
 }
 
@@ -88,6 +110,7 @@ Request LiveCommands::from_words(std::string_view line) {
         if (asked.on) penetrability_ = asked;
         return Command(asked);
     }
+    if (name == "layers") return layers_from(words.as("layers off, a file or the name of a set"));
     if (name == "isovalue") {
         isovalue_ = io::level_from_text(words.expect(2)[1], field_.volume());
         return command::Isovalue{isovalue_};
@@ -122,6 +145,9 @@ std::optional<Request> LiveCommands::from_key(char key, const Snapshot& now) {
             // From what is felt now, unless something else was asked for before.
             return Command(
                 penetrability_.value_or(penetrability_threshold(1, isovalue, field_.solid())));
+        case 'l':
+            if (!last_layers_) return std::nullopt;
+            return use_layers(settings_.layers ? nullptr : last_layers_);
         case 'b':
             if (brush_) return take_up(std::nullopt);
             return take_up(last_brush_.value_or(run::usual_brush(field_.geometry())));
@@ -146,7 +172,8 @@ std::optional<Request> LiveCommands::from_key(char key, const Snapshot& now) {
 
 std::string LiveCommands::key_help() {
     return "keys: space forces on/off, f freeze, c clutch (the volume follows the hand), + - "
-           "isovalue by 1 %, [ ] scale, p penetrability, b brush on/off, u undo, r redo, k play or "
+           "isovalue by 1 %, [ ] scale, p penetrability, l layers, b brush on/off, u undo, r redo, "
+           "k play or "
            "pause a sequence, , . a frame back or on, q quit, ? this";
 }
 

@@ -24,9 +24,9 @@ class LiveCommands {
 
     /// `isovalue 300`, `isovalue 53%`, `stiffness 0.5`, `damping 0.001`, `viscosity 0`,
     /// `friction 0.3,0.2`, `penetrability off`, `penetrability threshold PT [MINIMUM]`,
-    /// `penetrability ranges PT LOW:HIGH ...`, `forces on|off`, `freeze on|off`, `clutch on|off`,
-    /// `scale 1.5`, `quit`; and those of data_commands.hpp. Throws std::invalid_argument, saying
-    /// what was expected.
+    /// `penetrability ranges PT LOW:HIGH ...`, `layers off`, `layers FILE|NAME`, `forces on|off`,
+    /// `freeze on|off`, `clutch on|off`, `scale 1.5`, `quit`; and those of data_commands.hpp.
+    /// Throws std::invalid_argument, saying what was expected.
     Request from_words(std::string_view line);
 
     /// The request of a key; nothing for a key without a meaning. See key_help().
@@ -35,6 +35,8 @@ class LiveCommands {
 
   private:
     Penetrability penetrability_from(const CommandWords& words) const;
+    Command layers_from(const CommandWords& words);
+    Command use_layers(std::shared_ptr<const Layers> layers);
     Command setting_from(const CommandWords& words, RendererSettings& next) const;
     DataRequest take_up(const std::optional<run::HandBrush>& brush);
 
@@ -42,6 +44,7 @@ class LiveCommands {
     double isovalue_;
     RendererSettings settings_;
     std::optional<Penetrability> penetrability_;  // to switch on again; nothing: a plain threshold
+    std::shared_ptr<const Layers> last_layers_;   // to switch on again
     std::optional<run::HandBrush> brush_;         // in use
     std::optional<run::HandBrush> last_brush_;    // to take up again
 };

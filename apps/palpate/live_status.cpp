@@ -18,15 +18,29 @@ nlohmann::ordered_json json_of(const LatencySummary& s) {
     return {{"p50", s.p50}, {"p99", s.p99}, {"p99.9", s.p999}, {"max", s.max}};
 }
 
+/// " bone" where a layer is touched, " in skin" where the SCP is in one.
+std::string layer_words(const LayersFelt& felt, const Layers* layers) {
+    if (!layers) return {};
+    const auto name = [&](int layer) {
+        return layers->layers[static_cast<std::size_t>(layer)].name;
+    };
+    const int count = static_cast<int>(layers->layers.size());
+    if (felt.touched >= 0 && felt.touched < count) return ' ' + name(felt.touched);
+    if (felt.inside > 0 && felt.inside <= count) return " in " + name(felt.inside - 1);
+    return {};
+}
+
 }  // namespace
 
-std::string status_line(const Snapshot& now, const ServoReport& report, std::size_t columns) {
+std::string status_line(const Snapshot& now, const Layers* layers, const ServoReport& report,
+                        std::size_t columns) {
     const Tick& tick = now.session.tick;
     const bool ready = now.session.device.status == DeviceStatus::ready;
     std::string words = force_words(tick);
     if (!words.empty()) words = " (" + words + ")";
     std::string state = ready ? tick.proxy.mode == Mode::constrained ? "contact" : "free"
                               : name_of(now.session.device.status);
+    if (ready) state += layer_words(tick.layers, layers);
     if (now.session.frozen) state = "frozen";
     if (now.session.clutched) state = "clutch";
     std::string line =

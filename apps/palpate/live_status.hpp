@@ -11,7 +11,8 @@ namespace palpate::app {
 
 /// One line, cut to `columns`, the most needed first: time, device or contact, force, isovalue,
 /// missed deadlines, compute time, lateness.
-std::string status_line(const Snapshot& now, const ServoReport& report, std::size_t columns);
+std::string status_line(const Snapshot& now, const Layers* layers, const ServoReport& report,
+                        std::size_t columns);
 
 /// Several lines for people; JSON, one object, for scripts. `seconds`: how long the session ran.
 std::string report_text(const ServoReport& report, double seconds);

@@ -2,6 +2,8 @@
 // validates a recording.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -95,6 +97,12 @@ void refuse_other_options(const CLI::App& command) {
     }
 }
 
+std::vector<std::string> names_of(const std::shared_ptr<const Layers>& layers) {
+    std::vector<std::string> names;
+    if (layers) std::ranges::transform(layers->layers, std::back_inserter(names), &Layer::name);
+    return names;
+}
+
 void replay(const ReplayOptions& options) {
     if (options.validate) {
         return validate(options.source.name(), options.recorded_volume, options.source.quiet);
@@ -116,11 +124,12 @@ void replay(const ReplayOptions& options) {
     const run::LoadedVolume loaded = load_for_terminal(options.source);
     const Field field =
         run::make_field(loaded.volume, options.field, options.render.given.method.method);
-    const double isovalue = required_isovalue(loaded, field, options.field);
-    Renderer renderer = make_renderer(
-        field, isovalue, run::offline_settings(options.render.setup(), field, isovalue));
+    const run::RenderSetup render = options.render.setup();
+    const double isovalue = required_isovalue(loaded, field, options.field, render);
+    Renderer renderer =
+        make_renderer(field, isovalue, run::offline_settings(render, field, isovalue));
 
-    io::TraceWriter trace(options.output);
+    io::TraceWriter trace(options.output, {}, names_of(renderer.settings.layers));
     std::optional<io::PathWriter> path;
     if (!options.path.empty()) path.emplace(options.path);
     ProgressBar bar("replaying", options.source.quiet);

@@ -63,7 +63,8 @@ class Terminal {
         watch_files();
         if (line_ && rounds_ % 20 == 0) {
             fmt::print(stderr, "\r\033[K{}",
-                       status_line(*now, run_.report(), terminal_columns() - 1));
+                       status_line(*now, run_.settings().layers.get(), run_.report(),
+                                   terminal_columns() - 1));
         }
         const bool over = options_.seconds > 0 && now->session.tick.time >= options_.seconds;
         return !over && now->session.device.status != DeviceStatus::finished;

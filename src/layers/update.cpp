@@ -58,14 +58,26 @@ class LayersTick {
         }
         return inside;
     }
-    /// Forgets what gave way: the SCP is where it is.
+    /// Forgets what gave way: the SCP is where it is. A hand that starts inside starts there, but
+    /// in nothing whose surface never gives way.
     void begin() {
         state_.layer_count = count_;
-        state_.inner = proxy_.placed ? inside_at(value_at(field_, scp_of(proxy_))) : 0;
+        state_.inner = proxy_.placed ? inside_at(value_at(field_, scp_of(proxy_))) : first_inside();
         state_.outer = state_.inner;
         state_.spring = {};
         state_.needle = {};
         if (count_ == 0) proxy_.behind.reset();
+    }
+    int first_inside() const {
+        if (!input_.hip.allFinite()) return 0;
+        const int inside = inside_at(value_at(field_, input_.hip));
+        for (int layer = 0; layer < inside; ++layer) {
+            if (!std::isfinite(puncture_force_of(layer))) return layer;
+        }
+        return inside;
+    }
+    double puncture_force_of(int layer) const {
+        return of_surface(layer, puncture_force, std::numeric_limits<double>::infinity());
     }
     static const Vec3& scp_of(const Proxy& proxy) { return proxy.scp_physical; }
 
@@ -155,8 +167,7 @@ class LayersTick {
     std::optional<double> gives_way(const Vec3& from) const {
         const int layer = touched();
         if (layer < 0 || !(distance_ > 0)) return std::nullopt;
-        const double most =
-            of_surface(layer, puncture_force, std::numeric_limits<double>::infinity());
+        const double most = puncture_force_of(layer);
         if (!(spring_force_ >= most)) return std::nullopt;
         const Vec3 pull = (update_.scp - update_.hip).normalized();
         // Friction pulls aside; only what presses counts.

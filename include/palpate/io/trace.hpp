@@ -26,6 +26,7 @@ struct TraceRow {
     bool constrained = false;    ///< mode: constrained or free
     int tetrahedra = 0;          ///< how many the SCP moved through
     std::int64_t update_ns = 0;  ///< time of this proxy update alone
+    LayersFelt layers = {};
 };
 
 TraceRow trace_row(const Tick& tick);
@@ -34,8 +35,11 @@ TraceRow trace_row(const Tick& tick);
 class TraceWriter {
   public:
     /// Each comment, at the head of the file, is one or more lines of text without the #.
+    /// With names of layers there are columns `layer` (the one touched) and `inside` (those that
+    /// the SCP is in, outermost first, joined by +).
     explicit TraceWriter(const std::filesystem::path& path,
-                         const std::vector<std::string>& comments = {});
+                         const std::vector<std::string>& comments = {},
+                         std::vector<std::string> layer_names = {});
     void add(const TraceRow& row);
     void commit() { file_.commit(); }
     /// For PendingFile::commit_together().
@@ -43,6 +47,7 @@ class TraceWriter {
 
   private:
     PendingFile file_;
+    std::vector<std::string> layer_names_;
     std::string line_;
 };
 

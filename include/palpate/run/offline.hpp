@@ -36,8 +36,9 @@ struct OfflineSinks {
 };
 
 /// Renders each position of the trajectory (physical space) in order. The proxy begins at the first
-/// position if that is free, else where recovery finds free space. Throws std::invalid_argument if
-/// there is none at this isovalue. What a sink throws is passed on.
+/// position if that is free, else where recovery finds free space; with layers, inside whatever is
+/// there that can give way. Throws std::invalid_argument if all of space is solid. What a sink
+/// throws is passed on.
 OfflineSummary render_offline(Renderer& renderer, const io::Trajectory& trajectory,
                               const OfflineSinks& sinks);
 

@@ -82,9 +82,9 @@ class Run {
     void use_device(const devices::DeviceChoice& device);
     /// Goes on with this side solid, this interpolation, this background outside the grid. The
     /// session starts anew with everything that was asked for except penetrability, which is
-    /// switched off. A recording is finished before; if that fails, io::OutputError says so and the
-    /// field stays. Throws std::invalid_argument for a background that is not finite; then nothing
-    /// has changed.
+    /// switched off, and of layers where the other side becomes solid. A recording is finished
+    /// before; if that fails, io::OutputError says so and the field stays. Throws
+    /// std::invalid_argument for a background that is not finite; then nothing has changed.
     void use_field(Solid solid, Interpolation interpolation, std::optional<double> background = {});
 
     /// Records from start() on, or from now on: then the session starts anew (forces ramp up) with

@@ -12,6 +12,7 @@
 #include "palpate/baselines/methods.hpp"
 #include "palpate/devices/options.hpp"
 #include "palpate/io/frame_loader.hpp"
+#include "palpate/io/layers_file.hpp"
 #include "palpate/io/level.hpp"
 #include "palpate/run/source.hpp"
 #include "palpate/session.hpp"
@@ -43,6 +44,7 @@ using PenetrabilitySetup = std::variant<std::monostate, ThresholdSetup, RangesSe
 struct RenderSetup {
     baselines::NamedMethod method = baselines::methods().front();
     PenetrabilitySetup penetrability;
+    std::optional<io::LayersFile> layers;
     std::optional<Friction> friction;
     ForceSettings force;          ///< `limit` and `stiffness` only where the next two are absent
     std::optional<double> limit;  ///< [N] nothing: the device's
@@ -90,6 +92,13 @@ Field make_field(const Volume& volume, const FieldSetup& setup, ProxyMethod meth
 /// The level asked for, else the volume's own, else the first that the histogram suggests. Throws
 /// std::invalid_argument for constant data without a level.
 double isovalue_of(const LoadedVolume& loaded, const FieldSetup& setup);
+/// The same, but with layers their outermost level. Throws std::invalid_argument if an isovalue is
+/// asked for, too.
+double isovalue_of(const LoadedVolume& loaded, const Setup& setup);
+
+/// What a person should know who feels these layers in this volume: that the volume does not say it
+/// is in their units, or has no densities at some levels. Empty: nothing.
+std::string layers_warning(const io::LayersFile& layers, const LoadedVolume& loaded);
 
 /// The settings asked for. `isovalue` is the least level felt where no minimum is given, `limits`
 /// are the device's. Throws std::invalid_argument, through check(), for what cannot be rendered.

@@ -1,0 +1,45 @@
+// Layers as JSON files (schema, units and sources of the built-in sets: docs/layers.md).
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "palpate/io/error.hpp"
+#include "palpate/layers.hpp"
+
+namespace palpate::io {
+
+struct LayersFile {
+    Layers layers;
+    /// Of levels and of what curves are over: "HU", ...; "%": percent of the data's range. Empty:
+    /// the data's own.
+    std::string units;
+    std::string about;  ///< for people: what it is for, and where its numbers come from
+};
+
+/// Throws InputError: no such file, no JSON, a member that there is not or of the wrong kind, or
+/// layers that check() refuses on either side.
+LayersFile read_layers(const std::filesystem::path& path);
+/// The same from text that errors call `name`.
+LayersFile layers_from_text(std::string_view text, const std::string& name);
+/// Reads back as the same, bit for bit.
+std::string text_of(const LayersFile& file);
+/// Throws OutputError.
+void write_layers(const std::filesystem::path& path, const LayersFile& file);
+
+/// With percents in the units of this volume.
+Layers layers_for(const LayersFile& file, const Volume& volume);
+
+/// A set that comes with Palpate.
+struct LayersPreset {
+    std::string name;  ///< as it is asked for: "ct-soft-tissue-and-bone"
+    LayersFile file;
+};
+/// All of them, by name. Throws InputError if their folder is not found.
+std::vector<LayersPreset> layers_presets();
+/// A file, or the name of a built-in set. Throws InputError.
+LayersFile layers_named(const std::string& file_or_name);
+
+}  // namespace palpate::io

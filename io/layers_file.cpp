@@ -1,0 +1,124 @@
+// Reads and writes layer files, and finds those that come with Palpate.
+#include "palpate/io/layers_file.hpp"
+
+#include <algorithm>
+#include <system_error>
+
+#include "io/helper_folders.hpp"
+#include "io/layers_json.hpp"
+#include "palpate/io/csv.hpp"
+#include "palpate/io/output.hpp"
+
+namespace palpate::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int format = 1;
+
+/// Takes a member of text out of the file's object.
+std::string text_member(Json& json, const char* name) {
+    const auto found = json.find(name);
+    if (found == json.end()) return {};
+    if (!found->is_string()) {
+        throw std::invalid_argument(std::string("'") + name + "' must be text");
+    }
+    std::string text = found->get<std::string>();
+    json.erase(found);
+    return text;
+}
+
+/// The side does not matter to a file: levels may rise or fall.
+void check_on_either_side(const Layers& layers) {
+    const auto& list = layers.layers;
+    const bool falls = list.size() > 1 && list[1].level < list[0].level;
+    check(layers, falls ? Solid::below : Solid::above);
+}
+
+fs::path preset_folder() {
+    std::error_code error;
+    for (const auto& folder : helper_folders()) {
+        const auto found = (folder / PALPATE_DATA_FROM_LIBEXEC / "layers").lexically_normal();
+        if (fs::is_directory(found, error)) return found;
+    }
+    throw InputError("the built-in layers were not found; reinstall Palpate, or name a file");
+}
+
+}  // namespace
+
+LayersFile layers_from_text(std::string_view text, const std::string& name) {
+    try {
+        Json json = Json::parse(text, nullptr, true, true);
+        if (!json.is_object() || json.value("palpate_layers", 0) != format) {
+            throw std::invalid_argument("no layers: it must begin with \"palpate_layers\": 1");
+        }
+        json.erase("palpate_layers");
+        LayersFile file;
+        file.units = text_member(json, "units");
+        file.about = text_member(json, "about");
+        file.layers = layers_from_json(json);
+        check_on_either_side(file.layers);
+        return file;
+    } catch (const nlohmann::json::exception& e) {
+        throw InputError(name + ": no valid JSON: " + e.what());
+    } catch (const std::invalid_argument& e) {
+        throw InputError(name + ": " + e.what());
+    }
+}
+
+LayersFile read_layers(const fs::path& path) {
+    return layers_from_text(read_text(path), path.string());
+}
+
+std::string text_of(const LayersFile& file) {
+    Json json;
+    json["palpate_layers"] = format;
+    if (!file.units.empty()) json["units"] = file.units;
+    if (!file.about.empty()) json["about"] = file.about;
+    json.update(to_json(file.layers));
+    return json.dump(2) + '\n';
+}
+
+void write_layers(const fs::path& path, const LayersFile& file) {
+    PendingFile out(path);
+    out.write(text_of(file));
+    out.commit();
+}
+
+Layers layers_for(const LayersFile& file, const Volume& volume) {
+    Layers layers = file.layers;
+    if (file.units != "%") return layers;
+    const double low = volume.minimum(), per_cent = 0.01 * (volume.maximum() - volume.minimum());
+    for (Layer& layer : layers.layers) layer.level = low + layer.level * per_cent;
+    for (PropertyCurves& curves : layers.curves) {
+        for (Curve::Knot& knot : curves.density.knots) knot.at = low + knot.at * per_cent;
+        for (Curve::Knot& knot : curves.gradient.knots) knot.at *= per_cent;
+    }
+    return layers;
+}
+
+std::vector<LayersPreset> layers_presets() {
+    std::vector<LayersPreset> presets;
+    for (const auto& entry : fs::directory_iterator(preset_folder())) {
+        if (entry.path().extension() != ".json") continue;
+        presets.push_back({entry.path().stem().string(), read_layers(entry.path())});
+    }
+    std::ranges::sort(presets, {}, &LayersPreset::name);
+    return presets;
+}
+
+LayersFile layers_named(const std::string& file_or_name) {
+    std::error_code error;
+    if (file_or_name.find_first_of("./") != std::string::npos || fs::exists(file_or_name, error)) {
+        return read_layers(file_or_name);
+    }
+    std::string names;
+    for (LayersPreset& preset : layers_presets()) {
+        if (preset.name == file_or_name) return std::move(preset.file);
+        names += (names.empty() ? "" : ", ") + preset.name;
+    }
+    throw InputError(io::quoted(file_or_name) +
+                     ": no layers of this name, and no such file; built in are " + names);
+}
+
+}  // namespace palpate::io
