@@ -76,6 +76,7 @@ std::string text_of(const LayersFile& file) {
     if (!file.units.empty()) json["units"] = file.units;
     if (!file.about.empty()) json["about"] = file.about;
     json.update(to_json(file.layers));
+    json.erase("label_volume");  // of a session, not of the set
     return json.dump(2) + '\n';
 }
 
@@ -87,7 +88,7 @@ void write_layers(const fs::path& path, const LayersFile& file) {
 
 Layers layers_for(const LayersFile& file, const Volume& volume) {
     Layers layers = file.layers;
-    if (file.units != "%") return layers;
+    if (file.units != "%" || layers.by_label) return layers;
     const double low = volume.minimum(), per_cent = 0.01 * (volume.maximum() - volume.minimum());
     for (Layer& layer : layers.layers) layer.level = low + layer.level * per_cent;
     for (PropertyCurves& curves : layers.curves) {

@@ -135,6 +135,8 @@ Json to_json(const Layers& layers) {
     }
     if (!curves.empty()) json["curves"] = curves;
     json["closing"] = layers.closing;
+    if (layers.by_label) json["by_label"] = true;
+    if (!layers.label_volume.empty()) json["label_volume"] = layers.label_volume;
     if (layers.needle) {
         json["needle"] = {{"lateral_stiffness", layers.needle->lateral_stiffness},
                           {"static_ratio", layers.needle->static_ratio},
@@ -164,6 +166,8 @@ Layers layers_from_json(const Json& json) {
         curves.finish();
     }
     members.take("closing", layers.closing);
+    members.take("by_label", layers.by_label);
+    members.take("label_volume", layers.label_volume);
     if (const auto needle = members.take("needle")) layers.needle = needle_from(*needle);
     members.finish();
     return layers;

@@ -1,6 +1,8 @@
 // Volume and session from a recording's head, and its ticks again.
 #include "palpate/run/replay.hpp"
 
+#include "palpate/run/labels.hpp"
+
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -90,6 +92,7 @@ Session recorded_session(const io::RecordingHead& head, const LoadedVolume& load
     try {
         RendererSettings settings = head.settings;
         settings.method = baselines::method_named(head.method);
+        settings.layers = with_labels(settings.layers, recording);
         check(head.session);
         return {make_renderer(Field(loaded.volume, head.solid, head.background, head.interpolation),
                               head.isovalue, settings),
@@ -133,7 +136,10 @@ Replay::Replay(io::RecordingReader& reader, const LoadedVolume& loaded, std::str
 
 void Replay::carry_out(const Command& recorded) {
     try {
-        const Command command = samples_.whole(recorded);
+        Command command = samples_.whole(recorded);
+        if (auto* layers = std::get_if<command::UseLayers>(&command)) {
+            layers->layers = with_labels(layers->layers, recording_);
+        }
         if (const auto* limits = std::get_if<DeviceLimits>(&command)) {
             keep_within(session_, *limits);  // a device may have declared any
         } else {

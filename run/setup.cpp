@@ -83,6 +83,10 @@ double isovalue_of(const LoadedVolume& loaded, const FieldSetup& setup) {
 }
 
 double isovalue_of(const LoadedVolume& loaded, const Setup& setup) {
+    if (setup.render.layers && setup.render.layers->layers.by_label) {
+        return setup.field.isovalue ? isovalue_of(loaded, setup.field)
+                                    : loaded.isovalue.value_or(loaded.volume.minimum());
+    }
     if (setup.render.layers && !setup.render.layers->layers.layers.empty()) {
         if (setup.field.isovalue) {
             throw std::invalid_argument(
@@ -99,6 +103,7 @@ std::string layers_warning(const io::LayersFile& file, const LoadedVolume& loade
         return "the layers are in " + file.units + "; " + loaded.name +
                (units.empty() ? " does not say what its densities are in" : " is in " + units);
     }
+    if (file.layers.by_label) return {};
     std::string empty;
     for (const Layer& layer : io::layers_for(file, loaded.volume).layers) {
         if (layer.level > loaded.volume.minimum() && layer.level < loaded.volume.maximum())

@@ -77,6 +77,28 @@ void Field::set_time(double time) noexcept {
     look();
 }
 
+void Field::show_labels(std::uint32_t labels) noexcept {
+    shows_labels_ = true;
+    labels_ = labels;
+    look();
+}
+
+std::uint32_t Field::labels_around(const Index3& at) const noexcept {
+    std::uint32_t labels = 0;
+    for (int i = 0; i < 27; ++i) {
+        const Index3 one = at + Index3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+        const bool in_grid = (one.array() >= 0).all() && (one.array() < size_.array()).all();
+        const double label = in_grid ? samples_->sample(one, moment_) : 0;
+        labels |= std::uint32_t{1} << static_cast<unsigned>(label);
+    }
+    return labels;
+}
+
+/// A sample as it is felt.
+double Field::shown(double sample) const {
+    return shows_labels_ ? labels_ >> static_cast<unsigned>(sample) & 1U : sample;
+}
+
 /// Updates what is derived from samples and time.
 void Field::look() noexcept {
     moment_ = samples_->moment_at(time_);
@@ -94,6 +116,12 @@ void Field::look() noexcept {
     const bool changing = samples_->bricks() || moment_.weight > 0 || offset_ != 0;
     plain_ = changing ? Index3(Index3::Zero()) : Index3(size_ - Index3::Ones());
     tolerance_ = std::max(1e-12 * range_, 8 * std::numeric_limits<double>::epsilon() * largest);
+    if (!shows_labels_) return;
+    background_ = shown(0);
+    range_ = 1;
+    offset_ = 0;
+    tolerance_ = 1e-12;
+    plain_.setZero();
 }
 
 CellSamples Field::other_cell(const Index3& cell) const {
@@ -119,6 +147,19 @@ Neighbours Field::around(const Index3& at) const {
 
 Neighbours Field::other_around(const Index3& at) const {
     Neighbours samples;
+    const bool dense = shows_labels_ && !samples_->bricks() && type_ == SampleType::uint8 &&
+                       (at.array() > 0).all() && (at.array() < size_.array() - 1).all();
+    if (dense) {
+        const auto* centre =
+            static_cast<const std::uint8_t*>(data_) + at[0] + at[1] * row_ + at[2] * slice_;
+        double* out = samples.data();
+        for (const std::ptrdiff_t z : {-slice_, std::ptrdiff_t{0}, slice_}) {
+            for (const std::ptrdiff_t y : {z - row_, z, z + row_}) {
+                for (int x = -1; x <= 1; ++x) *out++ = labels_ >> centre[y + x] & 1U;
+            }
+        }
+        return samples;
+    }
     // By the eight cells that meet at the sample: they know bricks, moments and the background.
     for (unsigned octant = 0; octant < 8; ++octant) {
         const Index3 side(octant & 1, octant >> 1 & 1, octant >> 2 & 1);
@@ -141,10 +182,18 @@ CellSamples Field::absolute_cell(const Index3& cell) const {
         for (int corner = 0; corner < 8; ++corner) {
             const Index3 at = cell + Index3(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
             const bool in_grid = (at.array() >= 0).all() && (at.array() < size_.array()).all();
-            samples[corner] = in_grid ? samples_->sample(at, moment_) : background_;
+            samples[corner] = in_grid ? shown(samples_->sample(at, moment_)) : background_;
         }
         return samples;
     }
+    CellSamples samples = stored_cell(cell);
+    if (shows_labels_)
+        std::ranges::transform(samples, samples.begin(), [this](double s) { return shown(s); });
+    return samples;
+}
+
+/// Of a cell inside the grid, as they are stored.
+CellSamples Field::stored_cell(const Index3& cell) const {
     if (const Bricks* bricks = samples_->bricks()) {
         if (const std::byte* brick = bricks->of_cell(cell)) {
             constexpr std::ptrdiff_t row = Bricks::samples, slice = row * Bricks::samples;

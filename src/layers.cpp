@@ -44,7 +44,14 @@ void check_layer(const Layers& all, std::size_t number, double sign) {
     for (std::size_t i = 0; i < number; ++i) {
         if (all.layers[i].name == layer.name) refuse(where + " is there twice");
     }
-    if (number > 0 && !(sign * all.layers[number - 1].level < sign * layer.level)) {
+    if (all.by_label) {
+        if (!(layer.level >= 1 && layer.level <= 65535 && layer.level == std::floor(layer.level))) {
+            refuse(where + ": its label must be a whole number from 1 to 65535");
+        }
+        for (std::size_t i = 0; i < number; ++i) {
+            if (all.layers[i].level == layer.level) refuse(where + ": its label is another's, too");
+        }
+    } else if (number > 0 && !(sign * all.layers[number - 1].level < sign * layer.level)) {
         refuse(where + ": levels must " + (sign > 0 ? "rise" : "fall") +
                " from layer to layer, from outside in");
     }
@@ -92,6 +99,22 @@ void check(const Layers& layers, Solid solid) {
         refuse("the needle's static friction must be at least that in motion");
     }
     if (!(needle.stick_speed >= 0)) refuse("the needle's stick speed must be at least 0 mm/s");
+}
+
+std::shared_ptr<const Field> numbered_labels(const Volume& labels, std::span<const Layer> layers) {
+    if (layers.size() > Layers::most_layers) refuse("more than 16 layers");
+    std::vector<std::uint8_t> numbers(static_cast<std::size_t>(sample_count(labels.geometry())));
+    with_type(labels.type(), [&](auto zero) {
+        const auto* samples = static_cast<const decltype(zero)*>(labels.data());
+        for (std::size_t i = 0; i < numbers.size(); ++i) {
+            for (std::size_t k = 0; k < layers.size(); ++k) {
+                if (double(samples[i]) == layers[k].level) {
+                    numbers[i] = static_cast<std::uint8_t>(k + 1);
+                }
+            }
+        }
+    });
+    return std::make_shared<const Field>(Volume(labels.geometry(), std::move(numbers)));
 }
 
 double property_of(const Layers& layers, int layer, HapticProperty property, double density,

@@ -111,6 +111,9 @@ void check(const RendererSettings& s) {
     if (s.layers && !s.layers->layers.empty() && !knows_layers(s.method)) {
         throw std::invalid_argument("layers need the method exact");
     }
+    if (s.layers && s.layers->by_label && !s.layers->labels) {
+        throw std::invalid_argument("these layers are by label: name a label volume");
+    }
     const auto& ranges = s.penetrability.ranges;
     const bool falling = s.penetrability.range_count > 1 && ranges[1].low < ranges[0].low;
     check(s.penetrability, falling ? Solid::below : Solid::above);

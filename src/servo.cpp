@@ -80,7 +80,9 @@ Snapshot snapshot_of(const Session& session, const SessionTick& tick, std::int64
     snapshot.session = tick;
     snapshot.scp = renderer.proxy.scp;
     snapshot.interpolation = renderer.proxy.interpolation;
-    snapshot.normal = normal_at(renderer.proxy, renderer.field);
+    const LayerState& layers = renderer.layers;
+    snapshot.normal = layers.labels ? normal_at(layers.label_proxy, *layers.labels)
+                                    : normal_at(renderer.proxy, renderer.field);
     snapshot.stiffness = renderer.settings.force.stiffness;
     snapshot.penetrability_on = renderer.settings.penetrability.on;
     snapshot.speed = session.speed;

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "io/number.hpp"
+#include "palpate/run/labels.hpp"
 
 namespace palpate::app {
 namespace {
@@ -53,6 +54,10 @@ void RenderOptions::add_to(CLI::App& command) {
             "--layers", [this](const std::string& text) { given.layers = io::layers_named(text); },
             "Several surfaces, each with its own feel: a file, or the name of a built-in set")
         ->type_name("FILE|NAME");
+    command
+        .add_option("--labels", labels,
+                    "Layers by place: a label volume (a segmentation) on its own grid")
+        ->type_name("VOLUME");
     add_force_to(command);
     command.add_option("--rate", given.rate, "Rate of the loop the forces are meant for [Hz]")
         ->capture_default_str();
@@ -137,6 +142,9 @@ run::RenderSetup RenderOptions::setup() const {
             "--penetrability does nothing with --layers, whose surfaces give way by themselves");
     }
     run::RenderSetup setup = given;
+    if (!labels.empty()) {
+        setup.layers = run::layers_by_label(run::load(run::source_named(labels)), setup.layers);
+    }
     if (penetrability == Penetrability::threshold) {
         setup.penetrability = run::ThresholdSetup{threshold.value_or(1), minimum};
     }

@@ -17,10 +17,11 @@ struct RenderOptions {
     std::optional<double> threshold;  ///< PT [device mm]
     std::optional<io::Level> minimum;
     std::vector<run::LevelRange> ranges;
+    std::string labels;  ///< the name of a label volume
 
     void add_to(CLI::App& command);
-    /// Once the command line has been read. Throws std::invalid_argument for an option that would
-    /// do nothing.
+    /// Once the command line has been read; reads the label volume. Throws std::invalid_argument
+    /// for an option that would do nothing, io::InputError for a volume that cannot be read.
     run::RenderSetup setup() const;
 
   private:

@@ -52,6 +52,12 @@ class Field {
     void use(const std::shared_ptr<const Samples>& samples) noexcept;
     /// Goes to a time of a sequence [s], see Samples::moment_at().
     void set_time(double time) noexcept;
+    /// From now on the field is 1 in samples whose label, from 0 to 31, is one of these bits and 0
+    /// in all others; outside the grid is label 0. Of samples of whole numbers in that range, not
+    /// between frames.
+    void show_labels(std::uint32_t labels) noexcept;
+    /// Bits of the labels of the sample `at` and its neighbours, whether they are shown or not.
+    std::uint32_t labels_around(const Index3& at) const noexcept;
     /// Feels the same samples in another way from now on.
     void set_interpolation(Interpolation to) noexcept { interpolation_ = to; }
 
@@ -115,6 +121,8 @@ class Field {
     CellSamples other_cell(const Index3& cell) const;
     Neighbours other_around(const Index3& at) const;
     CellSamples absolute_cell(const Index3& cell) const;
+    CellSamples stored_cell(const Index3& cell) const;
+    double shown(double sample) const;
     void look() noexcept;
 
     std::shared_ptr<const Samples> samples_;
@@ -134,6 +142,8 @@ class Field {
     SampleType type_ = SampleType::uint8;
     Solid solid_ = Solid::above;
     Interpolation interpolation_ = Interpolation::linear;
+    bool shows_labels_ = false;
+    std::uint32_t labels_ = 0;  // that are 1
 };
 
 template <class T>

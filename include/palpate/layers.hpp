@@ -5,7 +5,9 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -47,7 +49,7 @@ struct PropertyCurves {
 /// A surface and what lies behind it.
 struct Layer {
     std::string name;
-    double level = 0;  ///< isovalue [data units]
+    double level = 0;  ///< isovalue [data units]; with labels, the label's number
     /// For looking: red, green and blue, 0 to 1.
     std::array<double, 3> colour{0.8, 0.8, 0.8};
     double opacity = 1;
@@ -82,14 +84,23 @@ struct Layers {
     /// it did. Then it is felt from its other side.
     double closing = 1;
     std::optional<Needle> needle;
+    /// Tissue by place: a layer is where the label volume has its number, in place of densities. A
+    /// surface between two layers is that of the later one. Curves still take the densities there.
+    bool by_label = false;
+    std::shared_ptr<const Field> labels;  ///< from numbered_labels()
+    std::string label_volume;             ///< where they come from, for recordings
 
     const PropertyCurves& operator[](HapticProperty p) const { return curves[static_cast<int>(p)]; }
     PropertyCurves& operator[](HapticProperty p) { return curves[static_cast<int>(p)]; }
 };
 
+/// A label volume for layers: samples are k + 1 where this volume has the label levels[k], else 0.
+/// Throws std::invalid_argument for more than 16 levels.
+std::shared_ptr<const Field> numbered_labels(const Volume& labels, std::span<const Layer> layers);
+
 /// Throws std::invalid_argument, naming layer or curve, for more than 16 layers, levels out of
-/// order or not finite, names missing or given twice, knots out of order, and values that are NaN,
-/// negative or (but for puncture forces) infinite.
+/// order or not finite (labels: not whole, below 1 or given twice), names missing or given twice,
+/// knots out of order, and values that are NaN, negative or (but for puncture forces) infinite.
 void check(const Layers& layers, Solid solid);
 
 /// A property in a layer (by number from 0; -1: outside of all), at a density [data units] and
@@ -99,8 +110,9 @@ double property_of(const Layers& layers, int layer, HapticProperty property, dou
 
 /// What a tick felt of layers.
 struct LayersFelt {
-    std::int8_t touched = -1;   ///< layer whose surface is touched; -1: none
-    std::int8_t inside = 0;     ///< the SCP is inside this many layers: 0 .. inside - 1
+    std::int8_t touched = -1;  ///< layer whose surface is touched; -1: none
+    /// The SCP is inside this many layers, 0 .. inside - 1; by labels, in layer inside - 1 alone.
+    std::int8_t inside = 0;
     std::int8_t punctured = 0;  ///< surfaces that gave way in this tick
 };
 
@@ -119,7 +131,7 @@ struct ContactSpring {
 struct Crossing {
     double at = 0;
     std::int8_t surface = 0;
-    bool inward = true;
+    std::int8_t layer = -1;  ///< beyond it; -1: none
 };
 struct NeedleState {
     static constexpr int most_crossings = 64;
@@ -137,10 +149,17 @@ struct NeedleState {
 /// Everything that layers keep between two ticks.
 struct LayerState {
     int layer_count = -1;  ///< of the layers in use
+    /// By labels: which layers (bit k + 1; bit 0: none of them) the SCP may be in, the field of all
+    /// others, and the proxy on its lattice.
+    std::uint32_t open = 1;
+    std::optional<Field> labels;
+    Proxy label_proxy;
     /// The SCP may be anywhere from inside `outer` layers to inside `inner` ones: the surfaces
-    /// between them gave way, at `opening` [mm, physical], and have not closed yet.
+    /// between them gave way, at `opening` [mm, physical], and have not closed yet. By labels only
+    /// the first opening is used, the last that gave way.
     int outer = 0, inner = 0;
     std::array<Vec3, Layers::most_layers> opening{};
+    int touched = -1;  ///< the layer whose surface was touched last; -1: none
     ContactSpring spring;
     NeedleState needle;
     bool moved = false;       ///< there was a tick

@@ -14,10 +14,9 @@ double drag_up_to(const NeedleState& needle, const Layers& layers, double tip) {
         const Crossing& c = needle.crossings[i];
         const double end =
             i + 1 < needle.crossing_count ? std::min(tip, needle.crossings[i + 1].at) : tip;
-        const int layer = c.inward ? c.surface : c.surface - 1;
-        if (layer < 0 || !(end > c.at)) continue;
-        sum += (end - c.at) *
-               property_of(layers, layer, HapticProperty::drag, layers.layers[layer].level, 0, 0);
+        if (c.layer < 0 || !(end > c.at)) continue;
+        sum += (end - c.at) * property_of(layers, c.layer, HapticProperty::drag,
+                                          layers.layers[c.layer].level, 0, 0);
     }
     return sum;
 }
@@ -40,11 +39,10 @@ Vec3 on_line(const NeedleState& needle, double at) {
     return needle.entry + at * needle.axis;
 }
 
-bool cross(NeedleState& needle, int surface, bool inward, const Vec3& point) {
-    if (needle.crossing_count == NeedleState::most_crossings) return false;
+void cross(NeedleState& needle, int surface, int layer, const Vec3& point) {
     needle.crossings[needle.crossing_count++] = {along_line(needle, point),
-                                                 static_cast<std::int8_t>(surface), inward};
-    return true;
+                                                 static_cast<std::int8_t>(surface),
+                                                 static_cast<std::int8_t>(layer)};
 }
 
 bool is_in_channel(const NeedleState& needle, int surface, const Vec3& tip, double closing) {

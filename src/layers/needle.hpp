@@ -10,8 +10,11 @@ void insert(NeedleState& needle, const Vec3& entry, const Vec3& axis);
 /// The hand's place along the line [mm, physical].
 double along_line(const NeedleState& needle, const Vec3& point);
 Vec3 on_line(const NeedleState& needle, double at);
-/// The shaft goes through one more surface. Without room for it false, and nothing has changed.
-bool cross(NeedleState& needle, int surface, bool inward, const Vec3& point);
+inline bool has_room(const NeedleState& needle) {
+    return needle.crossing_count < NeedleState::most_crossings;
+}
+/// The shaft goes through one more surface, into a layer (-1: out of all). Needs has_room().
+void cross(NeedleState& needle, int surface, int layer, const Vec3& point);
 /// True where the tip is at the surface that it crossed last: its channel is open.
 bool is_in_channel(const NeedleState& needle, int surface, const Vec3& tip, double closing);
 /// The tip came back out of the surfaces that it left by `closing`.

@@ -1,10 +1,10 @@
-// A tick of layers: which surfaces hold the proxy, what they feel like, which of them give way and
-// close again.
+// A tick of layers: what the surfaces feel like that hold the proxy, and when they give way.
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "layers/needle.hpp"
+#include "layers/tissues.hpp"
 #include "palpate/density.hpp"
 
 namespace palpate {
@@ -12,25 +12,23 @@ namespace {
 
 /// Surfaces that may give way in one tick.
 constexpr int most_punctures = 8;
-/// Closer to a level than this [range], the SCP counts as outside of it.
-constexpr double at_level = 1e-9;
 
 using enum HapticProperty;
 
+template <class Tissues>
 class LayersTick {
   public:
-    LayersTick(const Layers& layers, LayerState& state, Proxy& proxy, const Field& field,
+    LayersTick(const Layers& layers, LayerState& state, const Field& density, Tissues tissues,
                const LayerInput& input, StepObserver observer)
         : layers_(layers),
-          count_(static_cast<int>(layers.layers.size())),
           state_(state),
-          proxy_(proxy),
-          field_(field),
+          density_(density),
+          tissues_(tissues),
           input_(input),
           observer_(observer) {}
 
     LayersUpdate run() {
-        if (state_.layer_count != count_) begin();
+        if (tissues_.is_stale()) begin();
         Vec3 from = state_.moved ? state_.hip : input_.hip;
         move_to(input_.hip);
         while (update_.status == UpdateStatus::done && felt_.punctured < most_punctures) {
@@ -44,52 +42,43 @@ class LayersTick {
         }
         if (update_.status == UpdateStatus::recovering) begin();
         if (update_.status == UpdateStatus::done) close();
+        tissues_.finish();
         return result();
     }
 
   private:
-    double level(int layer) const { return layers_.layers[layer].level; }
-    /// How many layers a density lies inside of.
-    int inside_at(double density) const {
-        int inside = 0;
-        while (inside < count_ &&
-               field_.sign() * (density - level(inside)) > at_level * field_.range()) {
-            ++inside;
-        }
-        return inside;
-    }
     /// Forgets what gave way: the SCP is where it is. A hand that starts inside starts there, but
     /// in nothing whose surface never gives way.
     void begin() {
-        state_.layer_count = count_;
-        state_.inner = proxy_.placed ? inside_at(value_at(field_, scp_of(proxy_))) : first_inside();
-        state_.outer = state_.inner;
+        tissues_.begin(0);
+        const Proxy& proxy = tissues_.proxy();
+        const Vec3& at = proxy.placed ? proxy.scp_physical : input_.hip;
+        int inside = at.allFinite() ? tissues_.inside_at(at) : 0;
+        if (!proxy.placed) {
+            for (int layer = 0; layer < inside; ++layer) {
+                if (std::isfinite(puncture_force_of(layer))) continue;
+                inside = layer;
+            }
+        }
+        tissues_.begin(inside);
+        state_.touched = -1;
         state_.spring = {};
         state_.needle = {};
-        if (count_ == 0) proxy_.behind.reset();
     }
-    int first_inside() const {
-        if (!input_.hip.allFinite()) return 0;
-        const int inside = inside_at(value_at(field_, input_.hip));
-        for (int layer = 0; layer < inside; ++layer) {
-            if (!std::isfinite(puncture_force_of(layer))) return layer;
-        }
-        return inside;
-    }
-    double puncture_force_of(int layer) const {
-        return of_surface(layer, puncture_force, std::numeric_limits<double>::infinity());
-    }
-    static const Vec3& scp_of(const Proxy& proxy) { return proxy.scp_physical; }
 
-    double gradient() const {
+    double gradient() {
         const bool asked = std::ranges::any_of(
             layers_.curves, [](const PropertyCurves& c) { return !c.gradient.knots.empty(); });
-        return asked && proxy_.placed ? gradient_at(field_, scp_of(proxy_)).norm() : 0;
+        const Proxy& proxy = tissues_.proxy();
+        return asked && proxy.placed ? gradient_at(density_, proxy.scp_physical).norm() : 0;
     }
     /// Of a surface; without layers, of the level that the session feels.
     double of_surface(int layer, HapticProperty property, double otherwise) const {
-        const double density = layer >= 0 ? level(layer) : proxy_.isovalue;
-        return property_of(layers_, layer, property, density, gradient_, otherwise);
+        return property_of(layers_, layer, property, tissues_.density_at_surface(layer), gradient_,
+                           otherwise);
+    }
+    double puncture_force_of(int layer) const {
+        return of_surface(layer, puncture_force, std::numeric_limits<double>::infinity());
     }
     Friction friction_of(int layer) const {
         const Friction& usual = input_.proxy.friction;
@@ -100,41 +89,21 @@ class LayersTick {
                      of_surface(layer, dynamic_friction, usual.dynamic_coefficient));
         return friction;
     }
-    /// What the hand feels of a surface and of what the SCP is in.
-    ForceSettings force_of(int layer) const {
+    /// What the hand feels of the surface touched and of what the SCP is in.
+    ForceSettings force_now() const {
         ForceSettings force = input_.force;
-        force.stiffness = of_surface(layer, stiffness, force.stiffness);
-        force.damping = of_surface(layer, damping, force.damping);
-        force.viscosity = property_of(layers_, inside() - 1, viscosity, update_.density, gradient_,
-                                      force.viscosity);
+        force.stiffness = of_surface(state_.touched, stiffness, force.stiffness);
+        force.damping = of_surface(state_.touched, damping, force.damping);
+        force.viscosity = property_of(layers_, tissues_.inside(update_) - 1, viscosity,
+                                      tissues_.density_at_scp(update_), gradient_, force.viscosity);
         return stable(force, input_.limits);
     }
 
-    /// The surface that is touched; -1: none, or one that is not of a layer.
-    int touched() const {
-        if (update_.mode != Mode::constrained || count_ == 0) return -1;
-        if (update_.behind) return state_.outer - 1;
-        return state_.inner < count_ ? state_.inner : -1;
-    }
-    int inside() const {
-        if (update_.mode == Mode::constrained) return update_.behind ? state_.outer : state_.inner;
-        return std::clamp(inside_at(update_.density), state_.outer, state_.inner);
-    }
-
-    ProxySettings put_levels() {
+    ProxySettings bound() {
+        const NextLayers next = tissues_.bound();
         ProxySettings settings = input_.proxy;
-        if (count_ == 0) {
-            settings.friction = friction_of(-1);
-            return settings;
-        }
-        const double beyond = field_.sign() * std::numeric_limits<double>::infinity();
-        proxy_.isovalue = state_.inner < count_ ? level(state_.inner) : beyond;
-        proxy_.behind.reset();
-        if (state_.inner < count_) settings.friction = friction_of(state_.inner);
-        if (state_.outer > 0) {
-            proxy_.behind = level(state_.outer - 1);
-            settings.behind = friction_of(state_.outer - 1);
-        }
+        settings.friction = friction_of(next.ahead);
+        if (next.behind >= 0) settings.behind = friction_of(next.behind);
         return settings;
     }
 
@@ -146,90 +115,78 @@ class LayersTick {
 
     void move_to(const Vec3& hand) {
         gradient_ = gradient();
-        const ProxySettings settings = put_levels();
+        const ProxySettings settings = bound();
         const ProxyMethod method = state_.needle.inserted ? &update_straight : input_.method;
         const int before = update_.tetrahedra;
-        update_ = method(proxy_, field_, target_of(hand), settings, observer_);
+        update_ = method(tissues_.proxy(), tissues_.field(), target_of(hand), settings, observer_);
         update_.tetrahedra += before;
-        if (state_.needle.inserted && touched() >= 0 && came_to_channel()) {
-            open_surface(update_.behind);
+        state_.touched = tissues_.touched(update_);
+        if (came_to_channel()) {
+            tissues_.open(update_, update_.scp);
             return move_to(hand);
         }
-        state_.spring.touching &= update_.mode == Mode::constrained;
-        if (update_.mode != Mode::constrained) return;
-        force_ = force_of(touched());
+        const bool touching = update_.mode == Mode::constrained;
+        state_.spring.touching &= touching;
+        if (!touching) return;
         distance_ = (update_.scp - update_.hip).norm() * input_.device_per_volume;
-        spring_force_ = state_.spring.move(distance_, force_.stiffness);
-        state_.spring.touching = true;
+        spring_force_ = state_.spring.move(distance_, force_now().stiffness);
     }
 
     /// Whether the surface touched gave way on the hand's last way, and at which part of it.
-    std::optional<double> gives_way(const Vec3& from) const {
-        const int layer = touched();
-        if (layer < 0 || !(distance_ > 0)) return std::nullopt;
-        const double most = puncture_force_of(layer);
+    std::optional<double> gives_way(const Vec3& from) {
+        if (state_.touched < 0 || !(distance_ > 0)) return std::nullopt;
+        const double most = puncture_force_of(state_.touched);
         if (!(spring_force_ >= most)) return std::nullopt;
         const Vec3 pull = (update_.scp - update_.hip).normalized();
         // Friction pulls aside; only what presses counts.
-        const double along =
-            state_.needle.inserted ? 1 : std::abs(pull.dot(normal_at(proxy_, field_)));
+        const double along = state_.needle.inserted ? 1 : std::abs(pull.dot(normal()));
         if (!(spring_force_ * along >= most)) return std::nullopt;
         const double then = state_.spring.rest + most / (along * state_.spring.stiffness);
         const double before = (update_.scp - target_of(from)).dot(pull) * input_.device_per_volume;
         if (!(distance_ > before)) return 0.0;
         return std::clamp((then - before) / (distance_ - before), 0.0, 1.0);
     }
+    Vec3 normal() { return normal_at(tissues_.proxy(), tissues_.field()); }
 
     /// The surface touched gives way. False if there is no room to remember that.
     bool open() {
-        const int layer = touched();
         NeedleState& needle = state_.needle;
         if (layers_.needle) {
             if (!needle.inserted) insert_needle();
-            if (!cross(needle, layer, !update_.behind, update_.scp)) return false;
+            if (!has_room(needle)) return false;
+            cross(needle, state_.touched, tissues_.beyond(update_), update_.scp);
         }
-        state_.opening[layer] = update_.scp;
-        open_surface(update_.behind);
+        tissues_.open(update_, update_.scp);
         return true;
     }
-    void open_surface(bool behind) { behind ? --state_.outer : ++state_.inner; }
 
     void insert_needle() {
         const Vec3 pull = (update_.hip - update_.scp).normalized();
-        const Vec3 into = -normal_at(proxy_, field_);
         // A tool that points along the surface or out of it says nothing.
-        const bool points = input_.pointing.dot(into) > 0.2;
+        const bool points = input_.pointing.dot(-normal()) > 0.2;
         insert(state_.needle, update_.scp, points ? input_.pointing : pull);
         state_.needle.hand = along_line(state_.needle, state_.moved ? state_.hip : input_.hip);
     }
     bool came_to_channel() const {
-        return is_in_channel(state_.needle, touched(), update_.scp, layers_.closing);
+        return state_.needle.inserted && state_.touched >= 0 &&
+               is_in_channel(state_.needle, state_.touched, update_.scp, layers_.closing);
     }
 
     /// Surfaces that gave way close when the SCP has left their openings.
     void close() {
-        if (state_.needle.inserted) {
-            withdraw(state_.needle, update_.scp, layers_.closing);
-        }
-        for (int layer = state_.inner - 1; layer >= state_.outer; --layer) {
-            if ((update_.scp - state_.opening[layer]).norm() <= layers_.closing) continue;
-            if (inside() > layer) {
-                state_.outer = layer + 1;
-                return;
-            }
-            state_.inner = layer;
-        }
+        if (state_.needle.inserted) withdraw(state_.needle, update_.scp, layers_.closing);
+        tissues_.close(update_, layers_.closing);
     }
 
     LayersUpdate result() {
         update_.hip = input_.hip;
         LayersUpdate r;
         r.proxy = update_;
-        felt_.touched = static_cast<std::int8_t>(touched());
-        felt_.inside = static_cast<std::int8_t>(inside());
+        felt_.touched = static_cast<std::int8_t>(state_.touched);
+        felt_.inside = static_cast<std::int8_t>(tissues_.inside(update_));
         r.felt = felt_;
+        r.force = force_now();
         const bool touching = update_.mode == Mode::constrained;
-        r.force = force_of(touched());
         Vec3 force = Vec3::Zero();
         if (touching && distance_ > 0) {
             const Vec3 pull = (update_.scp - target_of(input_.hip)) * input_.device_per_volume;
@@ -258,15 +215,13 @@ class LayersTick {
     }
 
     const Layers& layers_;
-    const int count_;
     LayerState& state_;
-    Proxy& proxy_;
-    const Field& field_;
+    const Field& density_;
+    Tissues tissues_;
     const LayerInput& input_;
     const StepObserver observer_;
     ProxyUpdate update_;
     LayersFelt felt_;
-    ForceSettings force_;
     double gradient_ = 0;      // magnitude at the SCP [data units / mm]
     double distance_ = 0;      // of SCP and HIP [device mm]
     double spring_force_ = 0;  // [N]
@@ -276,7 +231,14 @@ class LayersTick {
 
 LayersUpdate update_layers(const Layers& layers, LayerState& state, Proxy& proxy,
                            const Field& field, const LayerInput& input, StepObserver observer) {
-    return LayersTick(layers, state, proxy, field, input, observer).run();
+    if (layers.by_label && layers.labels) {
+        return LayersTick(layers, state, field, LabelTissues(layers, state, proxy, field), input,
+                          observer)
+            .run();
+    }
+    return LayersTick(layers, state, field, LevelTissues(layers, state, proxy, field), input,
+                      observer)
+        .run();
 }
 
 }  // namespace palpate

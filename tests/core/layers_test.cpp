@@ -31,7 +31,7 @@ Layer layer(const std::string& name, double level, double k, double force) {
 /// Five surfaces on the ramp, whose density is the depth in mm.
 Layers five_layers() {
     Layers layers;
-    layers.layers = {layer("skin", 10, 0.4, 1.2), layer("fat", 16, 0.2, 0.7),
+    layers.layers = {layer("skin", 10, 0.4, 1.2013), layer("fat", 16, 0.2, 0.7013),
                      layer("fascia", 30, 0.9, 2.0), layer("muscle", 33.5, 0.5, 1.0713),
                      layer("bone", 60, 1.5, infinity)};
     return layers;

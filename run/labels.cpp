@@ -1,0 +1,124 @@
+// Layers from label volumes.
+#include "palpate/run/labels.hpp"
+
+#include <algorithm>
+#include <set>
+#include <stdexcept>
+
+#include "palpate/io/error.hpp"
+
+namespace palpate::run {
+namespace {
+
+/// [N] at which a surface gives way where no layers say it.
+constexpr double usual_puncture_force = 1.5;
+
+/// The numbers above 0 that the volume has, no more than one beyond those that can be layers.
+std::set<int> numbers_in(const Volume& volume) {
+    std::set<int> numbers;
+    with_type(volume.type(), [&](auto zero) {
+        const auto* samples = static_cast<const decltype(zero)*>(volume.data());
+        const auto count = sample_count(volume.geometry());
+        auto last = zero;
+        for (std::int64_t i = 0; i < count; ++i) {
+            if (samples[i] == last) continue;
+            last = samples[i];
+            if (last > 0) numbers.insert(static_cast<int>(last));
+            if (numbers.size() > Layers::most_layers) return;
+        }
+    });
+    return numbers;
+}
+
+std::string names_in(const LoadedVolume& labels) {
+    std::string names;
+    for (const io::LabelName& label : labels.values.labels) {
+        names += (names.empty() ? "" : ", ") + label.name;
+    }
+    return names.empty() ? "its labels have no names" : "it has " + names;
+}
+
+Layers a_layer_for_each(const LoadedVolume& labels) {
+    const std::set<int> numbers = numbers_in(labels.volume);
+    if (numbers.empty()) throw std::invalid_argument(labels.name + ": has no label above 0");
+    if (numbers.size() > Layers::most_layers) {
+        throw std::invalid_argument(labels.name +
+                                    ": has more than 16 labels: choose some in a file of layers");
+    }
+    Layers layers;
+    layers.name = "Labels";
+    for (const int number : numbers) {
+        Layer layer;
+        layer.name = "label " + std::to_string(number);
+        layer.level = number;
+        layer[HapticProperty::puncture_force] = usual_puncture_force;
+        const auto& known = labels.values.labels;
+        const auto named = std::ranges::find(known, number, &io::LabelName::value);
+        if (named != known.end()) {
+            layer.name = named->name;
+            layer.colour = named->colour;
+        }
+        layers.layers.push_back(layer);
+    }
+    return layers;
+}
+
+/// Numbers in place of levels, by name.
+void number_by_name(Layers& layers, const LoadedVolume& labels) {
+    for (Layer& layer : layers.layers) {
+        const auto& known = labels.values.labels;
+        const auto named = std::ranges::find(known, layer.name, &io::LabelName::name);
+        if (named == known.end()) {
+            throw std::invalid_argument(labels.name + ": has no label '" + layer.name + "'; " +
+                                        names_in(labels));
+        }
+        layer.level = named->value;
+    }
+}
+
+void attach(Layers& layers, const LoadedVolume& labels) {
+    if (labels.volume.type() == SampleType::float32) {
+        throw std::invalid_argument(labels.name + ": labels are whole numbers, these are not");
+    }
+    if (labels.time_steps > 1) {
+        throw std::invalid_argument(labels.name + ": is a sequence; labels must stand still");
+    }
+    layers.by_label = true;
+    layers.label_volume = labels.name;
+    layers.labels = numbered_labels(labels.volume, layers.layers);
+}
+
+}  // namespace
+
+io::LayersFile layers_by_label(const LoadedVolume& labels,
+                               const std::optional<io::LayersFile>& like) {
+    io::LayersFile file;
+    if (like) {
+        file = *like;
+        if (!file.layers.by_label) number_by_name(file.layers, labels);
+    } else {
+        file.layers = a_layer_for_each(labels);
+    }
+    attach(file.layers, labels);
+    return file;
+}
+
+std::shared_ptr<const Layers> with_labels(std::shared_ptr<const Layers> layers,
+                                          const std::filesystem::path& recording) {
+    if (!layers || !layers->by_label || layers->labels) return layers;
+    std::filesystem::path path = layers->label_volume;
+    std::error_code error;
+    if (path.is_relative() && !std::filesystem::exists(path, error)) {
+        path = recording.parent_path() / path;
+    }
+    Layers complete = *layers;
+    try {
+        attach(complete, load(source_named(path.string())));
+    } catch (const std::invalid_argument& e) {
+        throw io::InputError(recording.string() + ": its labels: " + e.what());
+    }
+    complete.label_volume = layers->label_volume;
+    return std::make_shared<const Layers>(std::move(complete));
+}
+
+}  // namespace palpate::run

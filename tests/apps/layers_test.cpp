@@ -1,0 +1,158 @@
+// Layers from the command line: --layers, --labels, live commands, and the columns of a trace.
+#include <algorithm>
+
+#include "apps/program.hpp"
+#include "palpate/io/trace.hpp"
+#include "support/recordings.hpp"
+
+namespace palpate::app::test {
+namespace {
+
+using support::put_bytes;
+
+/// Straight down z through the middle of the sphere (density 1 at its middle, 0 from radius 12 on)
+/// and back.
+void put_stroke(const ScratchFolder& folder) {
+    std::string text = "t,x,y,z\n";
+    for (int i = 0; i <= 200; ++i) {
+        const double z = -3 + 0.15 * std::min(i, 200 - i);
+        text += std::to_string(i * 0.001) + ",11.6,11.4," + std::to_string(z) + "\n";
+    }
+    put_bytes(folder / "t.csv", text);
+}
+
+const char* two_layers = R"({"palpate_layers": 1, "units": "%", "layers": [
+    {"name": "shell", "level": 20, "stiffness": 0.5, "puncture_force": 0.5},
+    {"name": "core, inner", "level": 60, "stiffness": 1, "puncture_force": "inf"}]})";
+
+struct Row {
+    std::string layer, inside;
+    double force = 0;
+};
+
+/// The last two columns, which may be quoted, and the force along z.
+std::vector<Row> rows_of(const std::filesystem::path& path) {
+    io::CsvReader csv(io::read_text(path), path.string());
+    const auto layer = csv.column("layer"), inside = csv.column("inside"),
+               force = csv.column("force_z");
+    std::vector<Row> rows;
+    while (csv.next()) {
+        rows.push_back(
+            {std::string(csv.cell(layer)), std::string(csv.cell(inside)), csv.number(force)});
+    }
+    return rows;
+}
+
+std::vector<std::string> story_of(const std::vector<Row>& rows) {
+    std::vector<std::string> story;
+    for (const Row& row : rows) {
+        const std::string now = row.layer + "|" + row.inside;
+        if (story.empty() || story.back() != now) story.push_back(now);
+    }
+    return story;
+}
+
+const std::string stroke = "replay synthetic:sphere:24x24x24 --trajectory t.csv -o a.csv ";
+
+TEST(LayersOption, names_in_a_trace_what_is_touched_and_what_the_hand_is_in) {
+    const ScratchFolder folder;
+    put_stroke(folder);
+    put_bytes(folder / "two.json", two_layers);
+    const Outcome done = palpate(folder, stroke + "--layers two.json");
+    ASSERT_EQ(done.status, 0) << done.err;
+    const std::vector<Row> rows = rows_of(folder / "a.csv");
+    const std::vector<std::string> begin{"|", "shell|", "|shell", "core, inner|shell"};
+    const std::vector<std::string> story = story_of(rows);
+    ASSERT_GE(story.size(), 4U);
+    EXPECT_TRUE(std::equal(begin.begin(), begin.end(), story.begin()));
+    EXPECT_EQ(story.back(), "|") << "and out again";
+    const auto most = std::ranges::max(
+        rows, {}, [](const Row& r) { return r.layer == "shell" ? std::abs(r.force) : 0; });
+    EXPECT_LT(std::abs(most.force), 0.5 + 1e-9);
+    EXPECT_GT(std::abs(most.force), 0.4);
+    // What reads traces reads these as well.
+    EXPECT_EQ(io::read_trace(folder / "a.csv").size(), rows.size());
+}
+
+TEST(LayersOption, refuses_what_does_not_fit) {
+    const ScratchFolder folder;
+    put_stroke(folder);
+    put_bytes(folder / "two.json", two_layers);
+    put_bytes(folder / "bad.json", "{\"palpate_layers\": 1, \"layers\": [{\"nam\": 1}]}");
+    const auto expect = [&](const std::string& options, int status, const std::string& words) {
+        const Outcome done = palpate(folder, stroke + options);
+        EXPECT_EQ(done.status, status) << options << ": " << done.err;
+        EXPECT_TRUE(contains(done.err, words)) << options << ": " << done.err;
+        EXPECT_FALSE(std::filesystem::exists(folder / "a.csv"));
+    };
+    expect("--layers none-such", 3, "built in are ct-bone-drilling");
+    expect("--layers bad.json", 3, "bad.json");
+    expect("--layers two.json --isovalue 0.5", 2, "an isovalue does nothing with layers");
+    expect("--layers two.json --penetrability threshold", 2, "--penetrability does nothing");
+    expect("--layers two.json --method paper", 2, "layers need the method exact");
+    expect("--layers two.json --solid below", 2, "levels must fall");
+    expect("--labels none.nrrd", 3, "none.nrrd");
+}
+
+TEST(LayersOption, warns_of_units_that_the_volume_does_not_have) {
+    const ScratchFolder folder;
+    put_stroke(folder);
+    const Outcome done = palpate(folder, stroke + "--layers ct-needle");
+    EXPECT_EQ(done.status, 0) << done.err;
+    EXPECT_TRUE(contains(done.err, "the layers are in HU")) << done.err;
+}
+
+/// A slab of label 4 from z = 8 on, called "plate", as 3D Slicer writes it.
+void put_segmentation(const ScratchFolder& folder) {
+    std::string text =
+        "NRRD0004\ntype: uint8\ndimension: 3\nspace: left-posterior-superior\nsizes: 12 12 12\n"
+        "space directions: (2,0,0) (0,2,0) (0,0,2)\nspace origin: (0,0,0)\nencoding: raw\n"
+        "Segment0_ID:=s\nSegment0_Name:=plate\nSegment0_LabelValue:=4\nSegment0_Layer:=0\n"
+        "Segment0_Color:=0.2 0.4 0.6\n\n";
+    for (int i = 0; i < 12 * 12 * 12; ++i) text += i / 144 >= 4 ? '\4' : '\0';
+    put_bytes(folder / "s.seg.nrrd", text);
+}
+
+TEST(LabelsOption, feels_the_segments_of_a_segmentation_by_name) {
+    const ScratchFolder folder;
+    put_stroke(folder);
+    put_segmentation(folder);
+    const Outcome done = palpate(folder, stroke + "--labels s.seg.nrrd");
+    ASSERT_EQ(done.status, 0) << done.err;
+    const std::vector<std::string> story = story_of(rows_of(folder / "a.csv"));
+    ASSERT_GE(story.size(), 3U);
+    EXPECT_EQ(story[1], "plate|");
+    EXPECT_EQ(story[2], "|plate");
+    put_bytes(folder / "named.json",
+              "{\"palpate_layers\": 1, \"layers\": [{\"name\": \"plate\", \"level\": 0}]}");
+    EXPECT_EQ(palpate(folder, stroke + "--labels s.seg.nrrd --layers named.json").status, 0);
+    EXPECT_EQ(story_of(rows_of(folder / "a.csv")).size(), 3U)
+        << "without a puncture force it holds";
+    put_bytes(folder / "other.json",
+              "{\"palpate_layers\": 1, \"layers\": [{\"name\": \"bolt\", \"level\": 0}]}");
+    const Outcome other = palpate(folder, stroke + "--labels s.seg.nrrd --layers other.json");
+    EXPECT_EQ(other.status, 2);
+    EXPECT_TRUE(contains(other.err, "has no label 'bolt'; it has plate")) << other.err;
+}
+
+TEST(LayersOption, are_recorded_and_replayed_bit_for_bit) {
+    const ScratchFolder folder;
+    put_bytes(folder / "two.json", two_layers);
+    put_segmentation(folder);
+    put_bytes(folder / "c.txt", "0.3 layers off\n0.5 layers microscopy\n0.9 layers two.json\n");
+    for (const std::string from : {"--layers two.json", "--labels s.seg.nrrd"}) {
+        const Outcome done =
+            palpate(folder,
+                    "touch synthetic:sphere:32x32x32 --device simulated:hand=press "
+                    "--seconds 1.5 --commands c.txt --record r.csv " +
+                        from);
+        ASSERT_EQ(done.status, 0) << done.err;
+        const Outcome valid = palpate(folder, "replay r.csv --validate");
+        EXPECT_EQ(valid.status, 0) << valid.err;
+        EXPECT_TRUE(contains(valid.out, "the same bit for bit")) << valid.out;
+        std::filesystem::remove(folder / "r.csv");
+    }
+}
+
+}  // namespace
+}  // namespace palpate::app::test
