@@ -151,6 +151,13 @@ class LayersTick {
         state_.spring.touching = true;
     }
 
+    /// Friction pulls aside; only what presses counts. In grooves and corners the normal is that of
+    /// one of their sides, but nowhere do less than the friction cone's walls press.
+    double pressing_part(int layer, const Vec3& pull) const {
+        const double mu = friction_of(layer).static_coefficient;
+        return std::max(std::abs(pull.dot(normal_at(proxy_, field_))), 1 / std::sqrt(1 + mu * mu));
+    }
+
     /// Whether the surface touched gave way on the hand's last way, and at which part of it.
     std::optional<double> gives_way(const Vec3& from) const {
         const int layer = touched();
@@ -159,9 +166,7 @@ class LayersTick {
             of_surface(layer, puncture_force, std::numeric_limits<double>::infinity());
         if (!(spring_force_ >= most)) return std::nullopt;
         const Vec3 pull = (update_.scp - update_.hip).normalized();
-        // Friction pulls aside; only what presses counts.
-        const double along =
-            state_.needle.inserted ? 1 : std::abs(pull.dot(normal_at(proxy_, field_)));
+        const double along = state_.needle.inserted ? 1 : pressing_part(layer, pull);
         if (!(spring_force_ * along >= most)) return std::nullopt;
         const double then = state_.spring.rest + most / (along * state_.spring.stiffness);
         const double before = (update_.scp - target_of(from)).dot(pull) * input_.device_per_volume;

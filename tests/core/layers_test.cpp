@@ -246,3 +246,23 @@ TEST(Layers, begin_anew_where_the_proxy_is_when_others_take_their_place) {
     EXPECT_EQ(tick.layers.inside, 1);
     EXPECT_EQ(tick.force.norm(), 0);
 }
+
+TEST(Layers, give_way_at_their_force_in_grooves_and_corners_too) {
+    // A groove along y at x = 4, whose sides press under 63 degrees; and a corner.
+    const auto groove = [](const Index3& i) { return i[2] + 2 * std::abs(i[0] - 4); };
+    const auto corner = [](const Index3& i) {
+        return i[2] + 2 * std::abs(i[0] - 4) + 3 * std::abs(i[1] - 4);
+    };
+    Layers layers;
+    layers.layers = {layer("skin", 30, 0.5, 1)};
+    for (const bool is_corner : {false, true}) {
+        const Volume volume = is_corner ? volume_of<float>(grid({9, 9, 101}), corner)
+                                        : volume_of<float>(grid({9, 9, 101}), groove);
+        LayeredHand hand{renderer_of(Field(volume), layers)};
+        const double gives_way = 30 + 1 / 0.5;
+        for (double z = 20; z < gives_way - 0.01; z += 0.05) {
+            ASSERT_EQ(hand.to({4, 4, z}).layers.punctured, 0) << z;
+        }
+        EXPECT_EQ(hand.to({4, 4, gives_way + 0.01}).layers.punctured, 1);
+    }
+}
