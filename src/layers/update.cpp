@@ -31,9 +31,11 @@ class LayersTick {
 
     LayersUpdate run() {
         if (state_.layer_count != count_) begin();
+        if (state_.needle.inserted && !layers_.needle) state_.needle = {};
         Vec3 from = state_.moved ? state_.hip : input_.hip;
         move_to(input_.hip);
-        while (update_.status == UpdateStatus::done && felt_.punctured < most_punctures) {
+        while (update_.status == UpdateStatus::done && felt_.punctured < most_punctures &&
+               update_.tetrahedra < input_.proxy.step_budget) {
             const std::optional<double> share = gives_way(from);
             if (!share || !open()) break;
             ++felt_.punctured;
@@ -68,6 +70,11 @@ class LayersTick {
         if (count_ == 0) proxy_.behind.reset();
     }
     static const Vec3& scp_of(const Proxy& proxy) { return proxy.scp_physical; }
+    /// False where the proxy did not take the hand's position: then nothing here changes either.
+    bool moved() const {
+        return update_.status != UpdateStatus::refused &&
+               update_.status != UpdateStatus::not_finite;
+    }
 
     double gradient() const {
         const bool asked = std::ranges::any_of(
@@ -134,12 +141,16 @@ class LayersTick {
 
     void move_to(const Vec3& hand) {
         gradient_ = gradient();
-        const ProxySettings settings = put_levels();
+        ProxySettings settings = put_levels();
         const ProxyMethod method = state_.needle.inserted ? &update_straight : input_.method;
+        // The tick has one budget, however many surfaces give way in it.
         const int before = update_.tetrahedra;
+        settings.step_budget = std::max(1, settings.step_budget - before);
         update_ = method(proxy_, field_, target_of(hand), settings, observer_);
         update_.tetrahedra += before;
+        if (!moved()) return;
         if (state_.needle.inserted && touched() >= 0 && came_to_channel()) {
+            state_.opening[touched()] = update_.scp;
             open_surface(update_.behind);
             return move_to(hand);
         }
@@ -168,7 +179,8 @@ class LayersTick {
         const Vec3 pull = (update_.scp - update_.hip).normalized();
         const double along = state_.needle.inserted ? 1 : pressing_part(layer, pull);
         if (!(spring_force_ * along >= most)) return std::nullopt;
-        const double then = state_.spring.rest + most / (along * state_.spring.stiffness);
+        const double then =
+            state_.spring.rest + (most > 0 ? most / (along * state_.spring.stiffness) : 0);
         const double before = (update_.scp - target_of(from)).dot(pull) * input_.device_per_volume;
         if (!(distance_ > before)) return 0.0;
         return std::clamp((then - before) / (distance_ - before), 0.0, 1.0);
@@ -222,6 +234,7 @@ class LayersTick {
         felt_.touched = static_cast<std::int8_t>(touched());
         felt_.inside = static_cast<std::int8_t>(inside());
         r.felt = felt_;
+        if (!moved()) return r;
         const bool touching = update_.mode == Mode::constrained;
         r.force = force_of(touched());
         Vec3 force = Vec3::Zero();
