@@ -206,7 +206,16 @@ class LayersTick {
         // A tool that points along the surface or out of it says nothing.
         const bool points = input_.pointing.dot(into) > 0.2;
         insert(state_.needle, update_.scp, points ? input_.pointing : pull);
-        state_.needle.hand = along_line(state_.needle, state_.moved ? state_.hip : input_.hip);
+        NeedleState& needle = state_.needle;
+        needle.hand = along_line(needle, state_.moved ? state_.hip : input_.hip);
+        needle.anchor = along_line(needle, input_.hip);
+        // Of what the surface's spring has stored this takes on its part, and no more.
+        const double part = aside_of(input_.hip).norm() / distance_;
+        needle.aside = {true, state_.spring.stiffness, part * state_.spring.rest};
+    }
+    /// From the hand to the needle's line [device mm].
+    Vec3 aside_of(const Vec3& hand) const {
+        return (target_of(hand) - hand) * input_.device_per_volume;
     }
     bool came_to_channel() const {
         return is_in_channel(state_.needle, touched(), update_.scp, layers_.closing);
@@ -221,9 +230,13 @@ class LayersTick {
             if ((update_.scp - state_.opening[layer]).norm() <= layers_.closing) continue;
             if (inside() > layer) {
                 state_.outer = layer + 1;
-                return;
+                break;
             }
             state_.inner = layer;
+        }
+        const bool is_open = state_.outer < state_.inner;
+        if (state_.needle.inserted && !is_open) {
+            count_surfaces(state_.needle, inside(), update_.scp);
         }
     }
 
@@ -258,10 +271,13 @@ class LayersTick {
 
     /// Towards the line, and along it what the shaft feels.
     Vec3 needle_force() {
-        const Vec3 aside = (target_of(input_.hip) - input_.hip) * input_.device_per_volume;
-        return layers_.needle->lateral_stiffness * aside +
-               shaft_friction(state_.needle, layers_, input_, input_.time - state_.time) *
-                   state_.needle.axis;
+        NeedleState& needle = state_.needle;
+        const Vec3 aside = aside_of(input_.hip);
+        const double length = aside.norm();
+        const double force = needle.aside.move(length, layers_.needle->lateral_stiffness);
+        const double period = input_.time - state_.time;
+        const double along = shaft_friction(needle, layers_, input_, update_.scp, period);
+        return (length > 0 ? force / length : 0) * aside + along * needle.axis;
     }
 
     const Layers& layers_;
