@@ -57,15 +57,17 @@ void scale_about_scp(Renderer& renderer, double scale) {
     transform.scale = scale;
 }
 
-/// Without layers the surface that was next is felt, or the first of them where none was.
+/// Without surfaces of layers the one that was next is felt, or the first of them where none was.
 void use_layers(Renderer& renderer, const std::shared_ptr<const Layers>& layers) noexcept {
     const std::shared_ptr<const Layers>& before = renderer.settings.layers;
     if (!layers) {
         renderer.layers = {};
         renderer.proxy.behind.reset();
-        if (before && !before->layers.empty() && !std::isfinite(renderer.proxy.isovalue)) {
-            renderer.proxy.isovalue = before->layers.front().level;
-        }
+    }
+    const bool has_surfaces = layers && !layers->layers.empty();
+    if (!has_surfaces && before && !before->layers.empty() &&
+        !std::isfinite(renderer.proxy.isovalue)) {
+        renderer.proxy.isovalue = before->layers.front().level;
     }
     renderer.settings.layers = layers;
 }

@@ -141,6 +141,7 @@ struct NeedleState {
     Vec3 axis = Vec3::Zero();   ///< unit, physical axes, into the tissue
     double hand = 0;            ///< [mm, physical] along the line
     double anchor = 0;          ///< where friction holds the shaft [mm, physical]
+    ContactSpring aside;        ///< between hand and line
     bool slipping = false;
     int crossing_count = 0;
     std::array<Crossing, most_crossings> crossings{};

@@ -60,14 +60,26 @@ void withdraw(NeedleState& needle, const Vec3& tip, double closing) {
     needle.inserted = needle.crossing_count > 0;
 }
 
+void count_surfaces(NeedleState& needle, int inside, bool nested, const Vec3& tip) {
+    if (needle.crossing_count == 0) return;
+    const Crossing& last = needle.crossings[needle.crossing_count - 1];
+    if (!(along_line(needle, tip) > last.at)) return;
+    int known = last.layer + 1;  // as the SCP's `inside`
+    while (known != inside && has_room(needle)) {
+        const int next = !nested ? inside : known < inside ? known + 1 : known - 1;
+        cross(needle, std::max(known, next) - 1, next - 1, tip);
+        known = next;
+    }
+}
+
 double shaft_friction(NeedleState& needle, const Layers& layers, const LayerInput& input,
-                      double period) {
+                      const Vec3& tip, double period) {
     const double hand = along_line(needle, input.hip);
     const double speed =
         period > 0 ? std::abs(hand - needle.hand) * input.device_per_volume / period : 0;
     needle.hand = hand;
     if (speed < layers.needle->stick_speed) needle.slipping = false;
-    const double in_motion = drag_up_to(needle, layers, hand);
+    const double in_motion = drag_up_to(needle, layers, along_line(needle, tip));
     const double most = needle.slipping ? in_motion : in_motion * layers.needle->static_ratio;
     // The tissue that sticks to the shaft gives a little, as stiff as a surface.
     const double stiffness = input.force.stiffness * input.device_per_volume;

@@ -19,9 +19,13 @@ void cross(NeedleState& needle, int surface, int layer, const Vec3& point);
 bool is_in_channel(const NeedleState& needle, int surface, const Vec3& tip, double closing);
 /// The tip came back out of the surfaces that it left by `closing`.
 void withdraw(NeedleState& needle, const Vec3& tip, double closing);
-/// Friction along the shaft (Karnopp 1985) in a tick of this length [s]: the force on the hand
-/// along the line [N].
+/// Friction along the shaft (Karnopp 1985), which is in the tissue up to the tip, in a tick of this
+/// length [s]: the force on the hand along the line [N].
 double shaft_friction(NeedleState& needle, const Layers& layers, const LayerInput& input,
-                      double period);
+                      const Vec3& tip, double period);
+/// The tip is inside this many layers (not nested: in layer inside - 1 alone), and all surfaces are
+/// closed: those that it went through while they were open, like both sides of a thin sheet, are
+/// crossed where the tip is. At most a closing distance and a tick's way too late.
+void count_surfaces(NeedleState& needle, int inside, bool nested, const Vec3& tip);
 
 }  // namespace palpate

@@ -14,6 +14,9 @@ struct NextLayers {
 /// Surfaces are levels in order, so the SCP lies between two of them.
 class LevelTissues {
   public:
+    /// Inside a layer is inside all before it.
+    static constexpr bool nested = true;
+
     LevelTissues(const Layers& layers, LayerState& state, Proxy& proxy, const Field& field);
 
     const Field& field() const { return field_; }
@@ -34,6 +37,8 @@ class LevelTissues {
     void open(const ProxyUpdate& update, const Vec3& at);
     /// Closes what gave way and is farther than this [mm] from the SCP.
     void close(const ProxyUpdate& update, double farthest);
+    /// True while a surface that gave way has not closed.
+    bool is_open() const { return state_.outer < state_.inner; }
     /// Density at a surface [data units].
     double density_at_surface(int layer) const;
     double density_at_scp(const ProxyUpdate& update) const { return update.density; }
@@ -54,6 +59,8 @@ class LevelTissues {
 /// in, 0 in the others.
 class LabelTissues {
   public:
+    static constexpr bool nested = false;
+
     LabelTissues(const Layers& layers, LayerState& state, Proxy& proxy, const Field& density);
 
     const Field& field() const { return *state_.labels; }
@@ -68,6 +75,7 @@ class LabelTissues {
     int beyond(const ProxyUpdate& update) const;
     void open(const ProxyUpdate& update, const Vec3& at);
     void close(const ProxyUpdate& update, double farthest);
+    bool is_open() const { return (state_.open & (state_.open - 1)) != 0; }
     double density_at_surface(int layer) const;
     double density_at_scp(const ProxyUpdate& update) const;
     /// Puts the proxy, which was moved on the lattice of the labels, on that of the data.

@@ -29,9 +29,11 @@ class LayersTick {
 
     LayersUpdate run() {
         if (tissues_.is_stale()) begin();
+        if (state_.needle.inserted && !layers_.needle) state_.needle = {};
         Vec3 from = state_.moved ? state_.hip : input_.hip;
         move_to(input_.hip);
-        while (update_.status == UpdateStatus::done && felt_.punctured < most_punctures) {
+        while (update_.status == UpdateStatus::done && felt_.punctured < most_punctures &&
+               update_.tetrahedra < input_.proxy.step_budget) {
             const std::optional<double> share = gives_way(from);
             if (!share || !open()) break;
             ++felt_.punctured;
@@ -64,6 +66,11 @@ class LayersTick {
         state_.touched = -1;
         state_.spring = {};
         state_.needle = {};
+    }
+    /// False where the proxy did not take the hand's position: then nothing here changes either.
+    bool moved() const {
+        return update_.status != UpdateStatus::refused &&
+               update_.status != UpdateStatus::not_finite;
     }
 
     double gradient() {
@@ -115,11 +122,14 @@ class LayersTick {
 
     void move_to(const Vec3& hand) {
         gradient_ = gradient();
-        const ProxySettings settings = bound();
+        ProxySettings settings = bound();
         const ProxyMethod method = state_.needle.inserted ? &update_straight : input_.method;
+        // The tick has one budget, however many surfaces give way in it.
         const int before = update_.tetrahedra;
+        settings.step_budget = std::max(1, settings.step_budget - before);
         update_ = method(tissues_.proxy(), tissues_.field(), target_of(hand), settings, observer_);
         update_.tetrahedra += before;
+        if (!moved()) return;
         state_.touched = tissues_.touched(update_);
         if (came_to_channel()) {
             tissues_.open(update_, update_.scp);
@@ -132,16 +142,23 @@ class LayersTick {
         spring_force_ = state_.spring.move(distance_, force_now().stiffness);
     }
 
+    /// Friction pulls aside; only what presses counts. In grooves and corners the normal is that of
+    /// one of their sides, but nowhere do less than the friction cone's walls press.
+    double pressing_part(const Vec3& pull) {
+        const double mu = friction_of(state_.touched).static_coefficient;
+        return std::max(std::abs(pull.dot(normal())), 1 / std::sqrt(1 + mu * mu));
+    }
+
     /// Whether the surface touched gave way on the hand's last way, and at which part of it.
     std::optional<double> gives_way(const Vec3& from) {
         if (state_.touched < 0 || !(distance_ > 0)) return std::nullopt;
         const double most = puncture_force_of(state_.touched);
         if (!(spring_force_ >= most)) return std::nullopt;
         const Vec3 pull = (update_.scp - update_.hip).normalized();
-        // Friction pulls aside; only what presses counts.
-        const double along = state_.needle.inserted ? 1 : std::abs(pull.dot(normal()));
+        const double along = state_.needle.inserted ? 1 : pressing_part(pull);
         if (!(spring_force_ * along >= most)) return std::nullopt;
-        const double then = state_.spring.rest + most / (along * state_.spring.stiffness);
+        const double then =
+            state_.spring.rest + (most > 0 ? most / (along * state_.spring.stiffness) : 0);
         const double before = (update_.scp - target_of(from)).dot(pull) * input_.device_per_volume;
         if (!(distance_ > before)) return 0.0;
         return std::clamp((then - before) / (distance_ - before), 0.0, 1.0);
@@ -165,7 +182,16 @@ class LayersTick {
         // A tool that points along the surface or out of it says nothing.
         const bool points = input_.pointing.dot(-normal()) > 0.2;
         insert(state_.needle, update_.scp, points ? input_.pointing : pull);
-        state_.needle.hand = along_line(state_.needle, state_.moved ? state_.hip : input_.hip);
+        NeedleState& needle = state_.needle;
+        needle.hand = along_line(needle, state_.moved ? state_.hip : input_.hip);
+        needle.anchor = along_line(needle, input_.hip);
+        // Of what the surface's spring has stored this takes on its part, and no more.
+        const double part = aside_of(input_.hip).norm() / distance_;
+        needle.aside = {true, state_.spring.stiffness, part * state_.spring.rest};
+    }
+    /// From the hand to the needle's line [device mm].
+    Vec3 aside_of(const Vec3& hand) const {
+        return (target_of(hand) - hand) * input_.device_per_volume;
     }
     bool came_to_channel() const {
         return state_.needle.inserted && state_.touched >= 0 &&
@@ -174,8 +200,12 @@ class LayersTick {
 
     /// Surfaces that gave way close when the SCP has left their openings.
     void close() {
-        if (state_.needle.inserted) withdraw(state_.needle, update_.scp, layers_.closing);
+        NeedleState& needle = state_.needle;
+        if (needle.inserted) withdraw(needle, update_.scp, layers_.closing);
         tissues_.close(update_, layers_.closing);
+        if (needle.inserted && !tissues_.is_open()) {
+            count_surfaces(needle, tissues_.inside(update_), Tissues::nested, update_.scp);
+        }
     }
 
     LayersUpdate result() {
@@ -185,6 +215,7 @@ class LayersTick {
         felt_.touched = static_cast<std::int8_t>(state_.touched);
         felt_.inside = static_cast<std::int8_t>(tissues_.inside(update_));
         r.felt = felt_;
+        if (!moved()) return r;
         r.force = force_now();
         const bool touching = update_.mode == Mode::constrained;
         Vec3 force = Vec3::Zero();
@@ -208,10 +239,13 @@ class LayersTick {
 
     /// Towards the line, and along it what the shaft feels.
     Vec3 needle_force() {
-        const Vec3 aside = (target_of(input_.hip) - input_.hip) * input_.device_per_volume;
-        return layers_.needle->lateral_stiffness * aside +
-               shaft_friction(state_.needle, layers_, input_, input_.time - state_.time) *
-                   state_.needle.axis;
+        NeedleState& needle = state_.needle;
+        const Vec3 aside = aside_of(input_.hip);
+        const double length = aside.norm();
+        const double force = needle.aside.move(length, layers_.needle->lateral_stiffness);
+        const double period = input_.time - state_.time;
+        const double along = shaft_friction(needle, layers_, input_, update_.scp, period);
+        return (length > 0 ? force / length : 0) * aside + along * needle.axis;
     }
 
     const Layers& layers_;

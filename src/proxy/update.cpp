@@ -67,7 +67,8 @@ ProxyUpdate refuse_update(const Proxy& proxy, const Field& field, const Vec3& hi
     result.mode = proxy.mode;
     result.hip = hip;
     result.scp = proxy.scp_physical;
-    result.isovalue = proxy.isovalue;
+    result.behind = proxy.mode == Mode::constrained && proxy.behind && proxy.turned;
+    result.isovalue = result.behind ? *proxy.behind : proxy.isovalue;
     if (proxy.placed) result.density = value_at(field, scp_in(field, proxy));
     return result;
 }

@@ -17,7 +17,7 @@ using enum HapticProperty;
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double holds = std::numeric_limits<double>::infinity();
 
 Layer layer(const std::string& name, double level, double k, double force) {
     Layer made;
@@ -33,7 +33,7 @@ Layers five_layers() {
     Layers layers;
     layers.layers = {layer("skin", 10, 0.4, 1.2013), layer("fat", 16, 0.2, 0.7013),
                      layer("fascia", 30, 0.9, 2.0), layer("muscle", 33.5, 0.5, 1.0713),
-                     layer("bone", 60, 1.5, infinity)};
+                     layer("bone", 60, 1.5, holds)};
     return layers;
 }
 
@@ -80,12 +80,12 @@ struct LayeredHand {
 }  // namespace
 
 TEST(Curve, is_linear_between_its_knots_and_constant_beyond) {
-    const Curve curve{{{0, 1}, {2, 5}, {3, infinity}}};
+    const Curve curve{{{0, 1}, {2, 5}, {3, holds}}};
     EXPECT_EQ(curve(-7), 1);
     EXPECT_EQ(curve(0.5), 2);
     EXPECT_EQ(curve(2), 5);
-    EXPECT_EQ(curve(2.5), infinity);
-    EXPECT_EQ(curve(9), infinity);
+    EXPECT_EQ(curve(2.5), holds);
+    EXPECT_EQ(curve(9), holds);
 }
 
 TEST(Layers, say_what_is_wrong_with_them) {
@@ -131,7 +131,7 @@ TEST(Layers, give_the_force_of_the_closed_form_at_every_speed) {
             LayeredHand hand{renderer_of(field, layers)};
             int punctured = 0, ticks = 0;
             double squares = 0;
-            for (double depth = 0.3; depth < 70; depth += speed / 1000) {
+            for (double depth = 0.30013; depth < 70; depth += speed / 1000) {
                 const Tick tick = hand.to(at_depth(depth));
                 punctured += tick.layers.punctured;
                 const double off = -tick.force[2] - closed_form(layers, depth);
@@ -148,7 +148,7 @@ TEST(Layers, give_the_force_of_the_closed_form_at_every_speed) {
 
 TEST(Layers, are_felt_from_inside_after_they_closed) {
     Layers layers;
-    layers.layers = {layer("vessel", 20, 0.5, 1), layer("core", 40, 0.5, infinity)};
+    layers.layers = {layer("vessel", 20, 0.5, 1), layer("core", 40, 0.5, holds)};
     LayeredHand hand{renderer_of(ramp_field(), layers)};
     double depth = 15;
     for (; depth < 25; depth += 0.1) hand.to(at_depth(depth));
@@ -190,7 +190,7 @@ TEST(Layers, stay_open_near_where_they_gave_way) {
 
 TEST(Layers, take_properties_from_curves_over_density_and_gradient) {
     Layers layers;
-    layers.layers = {layer("own", 20, 0.3, infinity)};
+    layers.layers = {layer("own", 20, 0.3, holds)};
     layers[stiffness].density.knots = {{0, 0}, {40, 0.8}};
     layers[stiffness].gradient.knots = {{0, 0}, {2, 1}};  // the ramp's is 1
     {
@@ -215,7 +215,7 @@ TEST(Layers, without_surfaces_give_the_isovalue_its_properties) {
 
 TEST(Layers, slow_a_hand_by_the_viscosity_of_what_it_is_in) {
     Layers layers;
-    layers.layers = {layer("gel", 20, 0.5, 0.1), layer("core", 80, 0.5, infinity)};
+    layers.layers = {layer("gel", 20, 0.5, 0.1), layer("core", 80, 0.5, holds)};
     layers.layers[0][viscosity] = 1e-3;
     LayeredHand hand{renderer_of(ramp_field(), layers)};
     Tick tick;
@@ -227,7 +227,7 @@ TEST(Layers, slow_a_hand_by_the_viscosity_of_what_it_is_in) {
 
 TEST(Layers, never_render_more_stiffness_than_the_device_takes) {
     Layers layers;
-    layers.layers = {layer("bone", 20, 50, infinity)};
+    layers.layers = {layer("bone", 20, 50, holds)};
     Renderer renderer = renderer_of(ramp_field(), layers);
     renderer.settings.device.rate = 1000;
     renderer.settings.device.physical_damping = 1e-3;
@@ -240,9 +240,29 @@ TEST(Layers, begin_anew_where_the_proxy_is_when_others_take_their_place) {
     LayeredHand hand{renderer_of(ramp_field(), five_layers())};
     for (double depth = 5; depth < 29; depth += 0.1) hand.to(at_depth(depth));
     Layers two;
-    two.layers = {layer("a", 20, 0.5, infinity), layer("b", 40, 0.5, infinity)};
+    two.layers = {layer("a", 20, 0.5, holds), layer("b", 40, 0.5, holds)};
     hand.renderer.settings.layers = std::make_shared<Layers>(two);
     const Tick tick = hand.to(at_depth(29));
     EXPECT_EQ(tick.layers.inside, 1);
     EXPECT_EQ(tick.force.norm(), 0);
+}
+
+TEST(Layers, give_way_at_their_force_in_grooves_and_corners_too) {
+    // A groove along y at x = 4, whose sides press under 63 degrees; and a corner.
+    const auto groove = [](const Index3& i) { return i[2] + 2 * std::abs(i[0] - 4); };
+    const auto corner = [](const Index3& i) {
+        return i[2] + 2 * std::abs(i[0] - 4) + 3 * std::abs(i[1] - 4);
+    };
+    Layers layers;
+    layers.layers = {layer("skin", 30, 0.5, 1)};
+    for (const bool is_corner : {false, true}) {
+        const Volume volume = is_corner ? volume_of<float>(grid({9, 9, 101}), corner)
+                                        : volume_of<float>(grid({9, 9, 101}), groove);
+        LayeredHand hand{renderer_of(Field(volume), layers)};
+        const double gives_way = 30 + 1 / 0.5;
+        for (double z = 20; z < gives_way - 0.01; z += 0.05) {
+            ASSERT_EQ(hand.to({4, 4, z}).layers.punctured, 0) << z;
+        }
+        EXPECT_EQ(hand.to({4, 4, gives_way + 0.01}).layers.punctured, 1);
+    }
 }

@@ -50,7 +50,10 @@ long double greatest_on_cubic_segment(const Vec3& a, const Vec3& b, Value&& valu
         const long double rate = form.cast<long double>().dot(along);
         if (rate == 0) continue;
         const long double low = std::min(begin, begin + rate), high = std::max(begin, begin + rate);
-        for (long double k = std::ceil(low); k <= high; ++k) cuts.push_back((k - begin) / rate);
+        // Rounding puts cuts of a segment along a wall beyond its ends.
+        for (long double k = std::ceil(low); k <= high; ++k) {
+            cuts.push_back(std::clamp((k - begin) / rate, 0.0L, 1.0L));
+        }
     }
     std::ranges::sort(cuts);
     long double greatest = -std::numeric_limits<long double>::infinity();

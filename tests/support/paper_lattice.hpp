@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
@@ -147,7 +148,8 @@ double greatest_on_segment(const Vec3& a, const Vec3& b, double sign, Value&& va
         const double high = std::max(from, to);
         for (double k = std::ceil(low); k <= high; ++k) {
             if (from == to) break;
-            const Vec3 at = a + (k - from) / (to - from) * (b - a);
+            // Rounding puts walls along which the segment runs beyond its ends.
+            const Vec3 at = a + std::clamp((k - from) / (to - from), 0.0, 1.0) * (b - a);
             greatest = std::max(greatest, sign * value(at));
         }
     }
