@@ -9,6 +9,7 @@
 
 #include "benchmarks/hand.hpp"
 #include "palpate/baselines/methods.hpp"
+#include "palpate/layers.hpp"
 
 using namespace palpate;
 using namespace palpate::benchmarks;
@@ -19,6 +20,8 @@ struct Case {
     const char* name;
     const char* method;
     Touch (*touch)();
+    int layers = 0;  ///< of which the middle one is touched
+    bool by_label = false;
 };
 
 template <SampleType type, int tenths_voxel_per_mm, int depth>
@@ -53,6 +56,15 @@ constexpr Case cases[] = {
      [] { return smooth(cylinder<SampleType::float32, 30, 1>()); }},
     {"smooth/free/uint8/3", "exact", [] { return smooth(cylinder<SampleType::uint8, 30, -3>()); }},
     {"smooth/noise/float32/3", "exact", [] { return smooth(noise_touch(SampleType::float32, 3)); }},
+    {"layers/1/smooth/contact/uint8/3", "exact",
+     [] { return smooth(cylinder<SampleType::uint8, 30, 1>()); }, 1},
+    {"layers/5/smooth/contact/uint8/3", "exact",
+     [] { return smooth(cylinder<SampleType::uint8, 30, 1>()); }, 5},
+    {"labels/5/smooth/contact/uint8/3", "exact",
+     [] { return smooth(cylinder<SampleType::uint8, 30, 1>()); }, 5, true},
+    {"layers/1/contact/uint8/3", "exact", cylinder<SampleType::uint8, 30, 1>, 1},
+    {"layers/5/contact/uint8/3", "exact", cylinder<SampleType::uint8, 30, 1>, 5},
+    {"labels/5/contact/uint8/3", "exact", cylinder<SampleType::uint8, 30, 1>, 5, true},
     {"paper/uint8/0.5", "paper", cylinder<SampleType::uint8, 5, 1>},
     {"gradient/uint8/0.5", "gradient", cylinder<SampleType::uint8, 5, 1>},
     {"gradient-improved/uint8/0.5", "gradient-improved", cylinder<SampleType::uint8, 5, 1>},
@@ -65,6 +77,45 @@ void mix(std::uint64_t& hash, const Vec3& point) {
     }
 }
 
+/// Levels a tenth of the range apart, or the bodies that they bound as labels.
+Layers layers_round(const Touch& touch, int count, bool by_label) {
+    Layers layers;
+    const auto level = [&](int i) {
+        return touch.isovalue + (i - count / 2) * 0.1 * touch.field.range();
+    };
+    for (int i = 0; i < count; ++i) {
+        layers.layers.push_back({.name = std::to_string(i), .level = by_label ? i + 1 : level(i)});
+    }
+    if (!by_label) return layers;
+    const Volume& volume = touch.field.volume();
+    std::vector<std::uint8_t> labels(static_cast<std::size_t>(sample_count(volume.geometry())));
+    with_type(volume.type(), [&](auto zero) {
+        const auto* samples = static_cast<const decltype(zero)*>(volume.data());
+        for (std::size_t s = 0; s < labels.size(); ++s) {
+            while (labels[s] < count && samples[s] > level(labels[s])) ++labels[s];
+        }
+    });
+    layers.by_label = true;
+    layers.labels = numbered_labels(Volume(volume.geometry(), std::move(labels)), layers.layers);
+    return layers;
+}
+
+/// The same updates through a tick of layers.
+void run_layers(const Case& chosen, const Touch& touch, Proxy proxy, long updates) {
+    const Layers layers = layers_round(touch, chosen.layers, chosen.by_label);
+    LayerState state;
+    LayerInput input{.method = baselines::method_named(chosen.method)};
+    HandMotion hand(touch.path);
+    std::uint64_t hash = 0xcbf29ce484222325U;
+    for (long i = 0; i < updates; ++i) {
+        input.hip = hand.next();
+        input.time += 0.001;
+        mix(hash, update_layers(layers, state, proxy, touch.field, input).proxy.scp);
+    }
+    std::printf("%-28s %ld updates, hash of the SCPs %016llx\n", chosen.name, updates,
+                static_cast<unsigned long long>(hash));
+}
+
 void run(const Case& chosen, long updates) {
     const Touch touch = chosen.touch();
     const bool idle = std::strcmp(chosen.method, "nothing") == 0;
@@ -72,6 +123,7 @@ void run(const Case& chosen, long updates) {
     Proxy proxy;
     proxy.isovalue = touch.isovalue;
     place(proxy, touch.field, touch.path.front(), touch.isovalue);
+    if (chosen.layers > 0) return run_layers(chosen, touch, proxy, updates);
     HandMotion hand(touch.path);
     std::uint64_t hash = 0xcbf29ce484222325U;
     for (long i = 0; i < updates; ++i) {

@@ -78,19 +78,39 @@ void Field::set_time(double time) noexcept {
 }
 
 void Field::show_labels(std::uint32_t labels) noexcept {
-    shows_labels_ = true;
     labels_ = labels;
+    background_ = labels & 1U;
+    if (shows_labels_) return;
+    shows_labels_ = true;
     look();
+}
+
+/// Visits the labels of a sample and its neighbours, whose places Neighbours has.
+template <class Visit>
+void Field::for_each_label(const Index3& at, Visit&& visit) const {
+    const bool dense = type_ == SampleType::uint8 && !samples_->bricks() && at[0] > 0 &&
+                       at[1] > 0 && at[2] > 0 && at[0] < size_[0] - 1 && at[1] < size_[1] - 1 &&
+                       at[2] < size_[2] - 1;
+    if (!dense) {
+        for (int i = 0; i < 27; ++i) {
+            const Index3 one(at[0] + i % 3 - 1, at[1] + i / 3 % 3 - 1, at[2] + i / 9 - 1);
+            const bool in_grid = (one.array() >= 0).all() && (one.array() < size_.array()).all();
+            visit(in_grid ? static_cast<unsigned>(samples_->sample(one, moment_)) : 0U);
+        }
+        return;
+    }
+    const auto* centre =
+        static_cast<const std::uint8_t*>(data_) + at[0] + at[1] * row_ + at[2] * slice_;
+    for (const std::ptrdiff_t z : {-slice_, std::ptrdiff_t{0}, slice_}) {
+        for (const std::ptrdiff_t y : {z - row_, z, z + row_}) {
+            for (int x = -1; x <= 1; ++x) visit(unsigned{centre[y + x]});
+        }
+    }
 }
 
 std::uint32_t Field::labels_around(const Index3& at) const noexcept {
     std::uint32_t labels = 0;
-    for (int i = 0; i < 27; ++i) {
-        const Index3 one = at + Index3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
-        const bool in_grid = (one.array() >= 0).all() && (one.array() < size_.array()).all();
-        const double label = in_grid ? samples_->sample(one, moment_) : 0;
-        labels |= std::uint32_t{1} << static_cast<unsigned>(label);
-    }
+    for_each_label(at, [&](unsigned label) { labels |= std::uint32_t{1} << label; });
     return labels;
 }
 
@@ -117,7 +137,6 @@ void Field::look() noexcept {
     plain_ = changing ? Index3(Index3::Zero()) : Index3(size_ - Index3::Ones());
     tolerance_ = std::max(1e-12 * range_, 8 * std::numeric_limits<double>::epsilon() * largest);
     if (!shows_labels_) return;
-    background_ = shown(0);
     range_ = 1;
     offset_ = 0;
     tolerance_ = 1e-12;
@@ -147,17 +166,9 @@ Neighbours Field::around(const Index3& at) const {
 
 Neighbours Field::other_around(const Index3& at) const {
     Neighbours samples;
-    const bool dense = shows_labels_ && !samples_->bricks() && type_ == SampleType::uint8 &&
-                       (at.array() > 0).all() && (at.array() < size_.array() - 1).all();
-    if (dense) {
-        const auto* centre =
-            static_cast<const std::uint8_t*>(data_) + at[0] + at[1] * row_ + at[2] * slice_;
+    if (shows_labels_) {
         double* out = samples.data();
-        for (const std::ptrdiff_t z : {-slice_, std::ptrdiff_t{0}, slice_}) {
-            for (const std::ptrdiff_t y : {z - row_, z, z + row_}) {
-                for (int x = -1; x <= 1; ++x) *out++ = labels_ >> centre[y + x] & 1U;
-            }
-        }
+        for_each_label(at, [&](unsigned label) { *out++ = labels_ >> label & 1U; });
         return samples;
     }
     // By the eight cells that meet at the sample: they know bricks, moments and the background.

@@ -123,6 +123,8 @@ class Field {
     CellSamples absolute_cell(const Index3& cell) const;
     CellSamples stored_cell(const Index3& cell) const;
     double shown(double sample) const;
+    template <class Visit>
+    void for_each_label(const Index3& at, Visit&& visit) const;
     void look() noexcept;
 
     std::shared_ptr<const Samples> samples_;

@@ -90,7 +90,11 @@ double LevelTissues::density_at_surface(int layer) const {
 
 LabelTissues::LabelTissues(const Layers& layers, LayerState& state, Proxy& proxy,
                            const Field& density)
-    : layers_(layers), state_(state), data_proxy_(proxy), density_(density) {
+    : layers_(layers),
+      state_(state),
+      open_label_(std::countr_zero(state.open)),
+      data_proxy_(proxy),
+      density_(density) {
     if (is_stale()) return;
     state_.labels->set_interpolation(density.interpolation());
 }
@@ -109,10 +113,11 @@ double LabelTissues::share(const Vec3& physical, std::uint32_t labels) const {
 }
 
 int LabelTissues::largest(const Vec3& physical, std::uint32_t among) const {
+    if (std::has_single_bit(among)) return std::countr_zero(among);
     const Vec3 index = index_from_physical(state_.labels->geometry(), physical);
     among &= state_.labels->labels_around((index.array() + 0.5).floor().matrix().cast<int>());
     if (among == 0) return -1;
-    if ((among & (among - 1)) == 0) return std::countr_zero(among);
+    if (std::has_single_bit(among)) return std::countr_zero(among);
     int best = -1;
     double most = 0;
     for (int label = 0; label <= static_cast<int>(layers_.layers.size()); ++label) {
@@ -147,31 +152,34 @@ NextLayers LabelTissues::bound() {
     return {state_.touched, -1};
 }
 
+void LabelTissues::look(const ProxyUpdate& update) {
+    const bool constrained = update.mode == Mode::constrained;
+    open_label_ = std::max(0, largest(update.scp, state_.open));
+    closed_label_ = constrained ? largest(update.scp, all() & ~state_.open) : -1;
+}
+
 int LabelTissues::touched(const ProxyUpdate& update) const {
-    if (update.mode != Mode::constrained) return -1;
+    if (update.mode != Mode::constrained || closed_label_ < 0) return -1;
     // Between two layers it is the surface of the later one.
-    return std::max(largest(update.scp, all() & ~state_.open), largest(update.scp, state_.open)) -
-           1;
+    return std::max(closed_label_, open_label_) - 1;
 }
 
-int LabelTissues::inside(const ProxyUpdate& update) const {
-    return std::max(0, largest(update.scp, state_.open));
+int LabelTissues::inside(const ProxyUpdate&) const {
+    return open_label_;
 }
 
-int LabelTissues::beyond(const ProxyUpdate& update) const {
-    return largest(update.scp, all() & ~state_.open) - 1;
+int LabelTissues::beyond(const ProxyUpdate&) const {
+    return closed_label_ - 1;
 }
 
-void LabelTissues::open(const ProxyUpdate& update, const Vec3& at) {
-    const int entered = beyond(update) + 1;
-    state_.open |= std::uint32_t{1} << entered;
+void LabelTissues::open(const ProxyUpdate&, const Vec3& at) {
+    state_.open |= std::uint32_t{1} << closed_label_;
     state_.opening[0] = at;
     state_.labels->show_labels(all() & ~state_.open);
 }
 
 void LabelTissues::close(const ProxyUpdate& update, double farthest) {
-    const bool one = (state_.open & (state_.open - 1)) == 0;
-    if (one || (update.scp - state_.opening[0]).norm() <= farthest) return;
+    if (!is_open() || (update.scp - state_.opening[0]).norm() <= farthest) return;
     const std::uint32_t here = std::uint32_t{1} << inside(update);
     // Where three layers meet none may have half: there they stay open.
     if (share(update.scp, all() & ~here) > 0.5) return;

@@ -29,6 +29,8 @@ class LevelTissues {
     void begin(int inside);
     /// Writes into the proxy what it may not leave.
     NextLayers bound();
+    /// To be called with each new update, before what follows.
+    void look(const ProxyUpdate&) {}
     int touched(const ProxyUpdate& update) const;
     int inside(const ProxyUpdate& update) const;
     /// The layer on the other side of the surface touched; -1: none.
@@ -70,6 +72,7 @@ class LabelTissues {
     int inside_at(const Vec3& physical) const;
     void begin(int inside);
     NextLayers bound();
+    void look(const ProxyUpdate& update);
     int touched(const ProxyUpdate& update) const;
     int inside(const ProxyUpdate& update) const;
     int beyond(const ProxyUpdate& update) const;
@@ -89,6 +92,8 @@ class LabelTissues {
 
     const Layers& layers_;
     LayerState& state_;
+    int open_label_ = 0;     // of those that the SCP may be in the one with the largest share
+    int closed_label_ = -1;  // of the others; -1: nothing is touched
     Proxy& data_proxy_;
     const Field& density_;
 };

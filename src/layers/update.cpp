@@ -81,8 +81,9 @@ class LayersTick {
     }
     /// Of a surface; without layers, of the level that the session feels.
     double of_surface(int layer, HapticProperty property, double otherwise) const {
-        return property_of(layers_, layer, property, tissues_.density_at_surface(layer), gradient_,
-                           otherwise);
+        const bool asks = !layers_[property].density.knots.empty();
+        return property_of(layers_, layer, property, asks ? tissues_.density_at_surface(layer) : 0,
+                           gradient_, otherwise);
     }
     double puncture_force_of(int layer) const {
         return of_surface(layer, puncture_force, std::numeric_limits<double>::infinity());
@@ -101,8 +102,10 @@ class LayersTick {
         ForceSettings force = input_.force;
         force.stiffness = of_surface(state_.touched, stiffness, force.stiffness);
         force.damping = of_surface(state_.touched, damping, force.damping);
-        force.viscosity = property_of(layers_, tissues_.inside(update_) - 1, viscosity,
-                                      tissues_.density_at_scp(update_), gradient_, force.viscosity);
+        const bool asks = !layers_[viscosity].density.knots.empty();
+        force.viscosity =
+            property_of(layers_, tissues_.inside(update_) - 1, viscosity,
+                        asks ? tissues_.density_at_scp(update_) : 0, gradient_, force.viscosity);
         return stable(force, input_.limits);
     }
 
@@ -130,6 +133,7 @@ class LayersTick {
         update_ = method(tissues_.proxy(), tissues_.field(), target_of(hand), settings, observer_);
         update_.tetrahedra += before;
         if (!moved()) return;
+        tissues_.look(update_);
         state_.touched = tissues_.touched(update_);
         if (came_to_channel()) {
             tissues_.open(update_, update_.scp);
