@@ -4,10 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "palpate/renderer.hpp"
+#include "support/constants.hpp"
 #include "support/fields.hpp"
 #include "support/press.hpp"
 
@@ -16,8 +16,6 @@ using namespace palpate::support;
 using enum HapticProperty;
 
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 Layer layer(const std::string& name, double level, double k, double force) {
     Layer made;
