@@ -21,16 +21,16 @@ Proxy in_layer(const TestField& test, double half) {
     return proxy;
 }
 
-struct Met {
+struct SidesMet {
     int ahead = 0, behind = 0, both = 0;  ///< both: changed in one update
 };
 
 template <class Checked>
-Met run(Checked& checked, const TestField& test, double half, std::uint64_t seed,
-        const HandStyle& style) {
+SidesMet run_between(Checked& checked, const TestField& test, double half, std::uint64_t seed,
+                     const HandStyle& style) {
     Hand hand(test.field.geometry(), seed, style);
     Proxy proxy = in_layer(test, half);
-    Met met;
+    SidesMet met;
     bool was_behind = false;
     const int count = scaled_or_asked(20000);
     for (int i = 0; i < count; ++i) {
@@ -47,7 +47,7 @@ Met run(Checked& checked, const TestField& test, double half, std::uint64_t seed
     return met;
 }
 
-void expect_both_sides(const Met& met) {
+void expect_both_sides(const SidesMet& met) {
     EXPECT_GT(met.ahead, 500);
     EXPECT_GT(met.behind, 500);
     EXPECT_GT(met.both, 100);
@@ -56,7 +56,7 @@ void expect_both_sides(const Met& met) {
 void keeps_on_linear(const TestField& test, double half, std::uint64_t seed,
                      const HandStyle& style = {}) {
     Guarantees checked(test.field, &update_exact);
-    expect_both_sides(run(checked, test, half, seed, style));
+    expect_both_sides(run_between(checked, test, half, seed, style));
     EXPECT_EQ(checked.tally().out_of_budget, 0);
 }
 
@@ -64,7 +64,7 @@ void keeps_on_smooth(const TestField& test, double half, std::uint64_t seed,
                      const HandStyle& style = {}) {
     const TestField smoothed{test.name, smooth(test.field), test.isovalue};
     CubicGuarantees checked(smoothed.field);
-    expect_both_sides(run(checked, smoothed, half, seed, style));
+    expect_both_sides(run_between(checked, smoothed, half, seed, style));
     EXPECT_EQ(checked.tally().out_of_budget, 0);
 }
 

@@ -47,6 +47,16 @@ double slab(double z) {
     return 10 - std::abs(z - 30);
 }
 
+/// One body from 20 to 40 mm and another from there on, apart by the gap, in samples of 0.2 mm.
+Field bodies_apart(double gap) {
+    const auto density = [gap](const Index3& i) {
+        const double z = 0.2 * i[2];
+        return std::min(z - 20, std::abs(z - 40 - 0.5 * gap) - 0.5 * gap);
+    };
+    return Field(volume_of<float>(grid({7, 7, 400}, Vec3::Constant(0.2)), density), Solid::above,
+                 -20);
+}
+
 struct NeedleHand {
     Renderer renderer;
     double time = 0, depth = 0;
@@ -184,16 +194,8 @@ TEST(Needle, goes_out_of_the_far_side_of_a_body_and_all_the_way_back) {
 
 TEST(Needle, rubs_in_two_bodies_in_a_row_however_near_they_are) {
     for (const double gap : {6.0, 0.6}) {
-        // Bodies from 20 to 40 and from there on, apart by the gap.
-        const auto two = [gap](double z) { return std::abs(z - 40 - 0.5 * gap) - 0.5 * gap; };
+        const Field field = bodies_apart(gap);
         for (const double speed : {5.0, 1000.0}) {
-            // Finer than the gap: one sample is 0.2 mm.
-            Field field(volume_of<float>(grid({7, 7, 400}, Vec3::Constant(0.2)),
-                                         [&](const Index3& i) {
-                                             const double z = 0.2 * i[2];
-                                             return std::min(z - 20, two(z));
-                                         }),
-                        Solid::above, -20);
             Layers layers = one_skin(0.02);
             layers.layers[0][puncture_force] = 0.05;
             NeedleHand hand(field, layers, 15);

@@ -33,7 +33,7 @@ Layers layers_of(const TestField& test, std::initializer_list<double> parts,
     return layers;
 }
 
-Renderer renderer_of(const Field& field, const Layers& layers) {
+Renderer loop_renderer(const Field& field, const Layers& layers) {
     RendererSettings settings = at_once();
     settings.layers = std::make_shared<Layers>(layers);
     settings.force.limit = settings.device.maximum_force = 1e6;
@@ -77,7 +77,7 @@ Balance work_of(const TestField& test, const Layers& layers, int loops, int step
     const Geometry& geometry = test.field.geometry();
     const Vec3 size = geometry.size.cast<double>();
     for (int i = 0; i < loops; ++i) {
-        Renderer renderer = renderer_of(test.field, layers);
+        Renderer renderer = loop_renderer(test.field, layers);
         const Vec3 index(random.uniform(0, size[0]), random.uniform(0, size[1]),
                          random.uniform(0, size[2]));
         const Loop loop(random, physical_from_index(geometry, index), 3);

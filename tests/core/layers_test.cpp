@@ -4,10 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "palpate/renderer.hpp"
+#include "support/constants.hpp"
 #include "support/fields.hpp"
 #include "support/press.hpp"
 
@@ -16,8 +16,6 @@ using namespace palpate::support;
 using enum HapticProperty;
 
 namespace {
-
-constexpr double holds = std::numeric_limits<double>::infinity();
 
 Layer layer(const std::string& name, double level, double k, double force) {
     Layer made;
@@ -31,9 +29,9 @@ Layer layer(const std::string& name, double level, double k, double force) {
 /// Five surfaces on the ramp, whose density is the depth in mm.
 Layers five_layers() {
     Layers layers;
-    layers.layers = {layer("skin", 10, 0.4, 1.2013), layer("fat", 16, 0.2, 0.7013),
+    layers.layers = {layer("skin", 10, 0.4, 1.2), layer("fat", 16, 0.2, 0.7),
                      layer("fascia", 30, 0.9, 2.0), layer("muscle", 33.5, 0.5, 1.0713),
-                     layer("bone", 60, 1.5, holds)};
+                     layer("bone", 60, 1.5, infinity)};
     return layers;
 }
 
@@ -80,12 +78,12 @@ struct LayeredHand {
 }  // namespace
 
 TEST(Curve, is_linear_between_its_knots_and_constant_beyond) {
-    const Curve curve{{{0, 1}, {2, 5}, {3, holds}}};
+    const Curve curve{{{0, 1}, {2, 5}, {3, infinity}}};
     EXPECT_EQ(curve(-7), 1);
     EXPECT_EQ(curve(0.5), 2);
     EXPECT_EQ(curve(2), 5);
-    EXPECT_EQ(curve(2.5), holds);
-    EXPECT_EQ(curve(9), holds);
+    EXPECT_EQ(curve(2.5), infinity);
+    EXPECT_EQ(curve(9), infinity);
 }
 
 TEST(Layers, say_what_is_wrong_with_them) {
@@ -148,7 +146,7 @@ TEST(Layers, give_the_force_of_the_closed_form_at_every_speed) {
 
 TEST(Layers, are_felt_from_inside_after_they_closed) {
     Layers layers;
-    layers.layers = {layer("vessel", 20, 0.5, 1), layer("core", 40, 0.5, holds)};
+    layers.layers = {layer("vessel", 20, 0.5, 1), layer("core", 40, 0.5, infinity)};
     LayeredHand hand{renderer_of(ramp_field(), layers)};
     double depth = 15;
     for (; depth < 25; depth += 0.1) hand.to(at_depth(depth));
@@ -190,7 +188,7 @@ TEST(Layers, stay_open_near_where_they_gave_way) {
 
 TEST(Layers, take_properties_from_curves_over_density_and_gradient) {
     Layers layers;
-    layers.layers = {layer("own", 20, 0.3, holds)};
+    layers.layers = {layer("own", 20, 0.3, infinity)};
     layers[stiffness].density.knots = {{0, 0}, {40, 0.8}};
     layers[stiffness].gradient.knots = {{0, 0}, {2, 1}};  // the ramp's is 1
     {
@@ -215,7 +213,7 @@ TEST(Layers, without_surfaces_give_the_isovalue_its_properties) {
 
 TEST(Layers, slow_a_hand_by_the_viscosity_of_what_it_is_in) {
     Layers layers;
-    layers.layers = {layer("gel", 20, 0.5, 0.1), layer("core", 80, 0.5, holds)};
+    layers.layers = {layer("gel", 20, 0.5, 0.1), layer("core", 80, 0.5, infinity)};
     layers.layers[0][viscosity] = 1e-3;
     LayeredHand hand{renderer_of(ramp_field(), layers)};
     Tick tick;
@@ -227,7 +225,7 @@ TEST(Layers, slow_a_hand_by_the_viscosity_of_what_it_is_in) {
 
 TEST(Layers, never_render_more_stiffness_than_the_device_takes) {
     Layers layers;
-    layers.layers = {layer("bone", 20, 50, holds)};
+    layers.layers = {layer("bone", 20, 50, infinity)};
     Renderer renderer = renderer_of(ramp_field(), layers);
     renderer.settings.device.rate = 1000;
     renderer.settings.device.physical_damping = 1e-3;
@@ -240,7 +238,7 @@ TEST(Layers, begin_anew_where_the_proxy_is_when_others_take_their_place) {
     LayeredHand hand{renderer_of(ramp_field(), five_layers())};
     for (double depth = 5; depth < 29; depth += 0.1) hand.to(at_depth(depth));
     Layers two;
-    two.layers = {layer("a", 20, 0.5, holds), layer("b", 40, 0.5, holds)};
+    two.layers = {layer("a", 20, 0.5, infinity), layer("b", 40, 0.5, infinity)};
     hand.renderer.settings.layers = std::make_shared<Layers>(two);
     const Tick tick = hand.to(at_depth(29));
     EXPECT_EQ(tick.layers.inside, 1);

@@ -48,13 +48,50 @@ Field ramp_of(double unit, Solid solid) {
 }
 constexpr double units[] = {1, std::numeric_limits<float>::denorm_min(), 3e36};
 
+/// Layers with `value` in each of their numbers, one at a time. A needle goes in at 0.1 N.
+std::vector<Command> layers_with(double value, double isovalue) {
+    Layers usual;
+    usual.layers.resize(2);
+    for (int i = 0; i < 2; ++i) {
+        Layer& layer = usual.layers[std::size_t(i)];
+        layer.name = std::to_string(i);
+        layer.level = isovalue * (1 + 0.01 * i);
+        layer[HapticProperty::puncture_force] = 0.1;
+        layer[HapticProperty::drag] = 0.01;
+    }
+    usual.needle = Needle{};
+    std::vector<Command> commands;
+    const auto with = [&](auto&& change) {
+        auto layers = std::make_shared<Layers>(usual);
+        change(*layers);
+        commands.emplace_back(command::UseLayers{std::move(layers)});
+    };
+    for (std::size_t i = 0; i < 2; ++i) {
+        with([&](Layers& l) { l.layers[i].level = value; });
+        for (int p = 0; p < haptic_property_count; ++p) {
+            with([&](Layers& l) { l.layers[i].own[std::size_t(p)] = value; });
+        }
+    }
+    for (int p = 0; p < haptic_property_count; ++p) {
+        with([&](Layers& l) { l.curves[std::size_t(p)].gradient.knots = {{0, 1}, {1, value}}; });
+        with([&](Layers& l) { l.curves[std::size_t(p)].gradient.knots = {{value, 1}}; });
+    }
+    with([&](Layers& l) { l.closing = value; });
+    with([&](Layers& l) { l.needle->lateral_stiffness = value; });
+    with([&](Layers& l) { l.needle->static_ratio = value; });
+    with([&](Layers& l) { l.needle->stick_speed = value; });
+    return commands;
+}
+
 /// Every command with `value` wherever it has a number.
-std::vector<Command> commands_with(double value, const Field& field) {
-    std::vector<Command> commands{command::Isovalue{value}, command::Freeze{true},
-                                  command::Clutch{true},    command::Forces{false},
-                                  command::Scale{value},    command::Samples{},
-                                  command::Moment{value},   command::Speed{value},
-                                  Friction{value, value},   Friction{value, 0}};
+std::vector<Command> commands_with(double value, const Field& field, double isovalue) {
+    std::vector<Command> commands = layers_with(value, isovalue);
+    const std::initializer_list<Command> simple{command::Isovalue{value}, command::Freeze{true},
+                                                command::Clutch{true},    command::Forces{false},
+                                                command::Scale{value},    command::Samples{},
+                                                command::Moment{value},   command::Speed{value},
+                                                Friction{value, value},   Friction{value, 0}};
+    commands.insert(commands.end(), simple);
     commands.emplace_back(command::Samples{field.shared_samples(), 1});
     for (double ForceSettings::*member :
          {&ForceSettings::stiffness, &ForceSettings::damping, &ForceSettings::viscosity,
@@ -105,15 +142,23 @@ std::vector<Command> commands_with(double value, const Field& field) {
     return commands;
 }
 
+bool is_finite(const LayerState& s) {
+    const NeedleState& n = s.needle;
+    return s.hip.allFinite() && std::isfinite(s.spring.stiffness) && std::isfinite(s.spring.rest) &&
+           n.entry.allFinite() && n.axis.allFinite() && std::isfinite(n.hand) &&
+           std::isfinite(n.anchor) && std::isfinite(n.aside.rest);
+}
+
 bool is_finite(const Session& s) {
     const Renderer& r = s.renderer;
     const DeviceTransform& t = r.settings.transform;
-    return r.proxy.scp.folded.allFinite() && r.proxy.scp_physical.allFinite() &&
-           r.proxy.ahead.allFinite() && std::isfinite(r.proxy.recovery_reach) &&
-           !std::isnan(r.proxy.isovalue) && r.force.force.allFinite() &&
-           r.force.velocity.allFinite() && r.force.hand.allFinite() && t.rotation.allFinite() &&
-           t.translation.allFinite() && std::isfinite(t.scale) && std::isfinite(r.field.time()) &&
-           s.hand.allFinite() && s.held_hip.allFinite() && s.held_tool.allFinite();
+    return is_finite(r.layers) && r.proxy.scp.folded.allFinite() &&
+           r.proxy.scp_physical.allFinite() && r.proxy.ahead.allFinite() &&
+           std::isfinite(r.proxy.recovery_reach) && !std::isnan(r.proxy.isovalue) &&
+           r.force.force.allFinite() && r.force.velocity.allFinite() && r.force.hand.allFinite() &&
+           t.rotation.allFinite() && t.translation.allFinite() && std::isfinite(t.scale) &&
+           std::isfinite(r.field.time()) && s.hand.allFinite() && s.held_hip.allFinite() &&
+           s.held_tool.allFinite();
 }
 
 /// A hand that presses into level 30, moves in and out, and turns.
@@ -141,6 +186,7 @@ struct Presser {
     /// Takes back whatever a command may have changed, but for the device's limits, which only
     /// fall.
     void restore(const Field& field, double isovalue) {
+        apply(session, command::UseLayers{nullptr});
         apply(session, command::Isovalue{isovalue});
         apply(session, command::Freeze{false});
         apply(session, command::Clutch{false});
@@ -164,7 +210,7 @@ TEST(SessionExtremes, no_command_with_any_value_leaves_what_is_not_finite_or_las
             const Field field = ramp_of(unit, solid);
             const double isovalue = (solid == Solid::above ? 30 : -30) * unit;
             for (const double value : extremes) {
-                for (const Command& command : commands_with(value, field)) {
+                for (const Command& command : commands_with(value, field, isovalue)) {
                     SCOPED_TRACE(testing::Message() << "unit " << unit << ", value " << value
                                                     << ", command " << command.index());
                     Presser presser(field, isovalue);

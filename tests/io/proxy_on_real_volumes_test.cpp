@@ -11,6 +11,7 @@
 #include "support/fields.hpp"
 #include "support/guarantees.hpp"
 #include "support/hand.hpp"
+#include "support/layer_order.hpp"
 
 using namespace palpate;
 using namespace palpate::support;
@@ -66,6 +67,56 @@ TEST_P(ProxyOnRealVolumes, keeps_its_guarantees_on_the_smooth_field) {
     checked.print(scan.file);
     EXPECT_GT(checked.tally().constrained, count / 50);
     EXPECT_EQ(checked.tally().out_of_budget, 0);
+}
+
+TEST_P(ProxyOnRealVolumes, keeps_the_order_of_layers) {
+    const ProxyScan scan = GetParam();
+    const auto path = io::test::real_volume(scan.file);
+    if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
+    const Volume volume = io::read_volume(path).volume;
+    for (const bool cubic : {false, true}) {
+        TestField test{scan.file, Field(volume, scan.solid), scan.isovalue};
+        if (cubic) test = {test.name + " smooth", smooth(test.field), test.isovalue};
+        // The isovalue is among five levels; the innermost holds.
+        const Layers layers = planned_layers(test, {.parts = {-0.03, 0, 0.05, 0.1, 0.3},
+                                                    .forces = {0.2, 0.4, 0.3, 0.5, HUGE_VAL},
+                                                    .stiffnesses = {0.5, 0.5, 0.5, 0.5, 0.5}});
+        LayerOrder order(test.field, layers);
+        Hand hand(test.field.geometry(), 7, {.slide = 4, .sweep = 5, .jump = 1, .margin = -1});
+        const int count = scaled_or_asked(cubic ? 3000 : 20000);
+        for (int i = 0; i < count && !HasFailure(); ++i) {
+            SCOPED_TRACE(test.name + " tick " + std::to_string(i));
+            order.tick(hand.next());
+        }
+        order.print(test.name);
+        EXPECT_GT(order.tally().ahead, count / 500);
+        EXPECT_GT(order.tally().punctures, count / 500);
+        EXPECT_LE(order.tally().out_of_budget, count / 1000) << "jumps across all of it";
+    }
+}
+
+TEST(LayersOnTheHead, keep_their_order_from_skin_to_bone) {
+    const auto path = io::test::real_volume("head");
+    for (const bool cubic : {false, true}) {
+        TestField test{"skin and bone", Field(io::read_volume(path).volume), 0};
+        if (cubic) test = {test.name + " smooth", smooth(test.field), 0};
+        Layers layers = planned_layers(
+            test, {.parts = {0, 0, 0}, .forces = {0.4, 0.3, 1.5}, .stiffnesses = {0.3, 0.5, 1.2}});
+        layers.layers[0].level = io::sample_volume_skin;
+        layers.layers[1].level = 0.5 * (io::sample_volume_skin + io::sample_volume_bone);
+        layers.layers[2].level = io::sample_volume_bone;
+        LayerOrder order(test.field, layers);
+        Hand hand(test.field.geometry(), 8, {.slide = 5, .sweep = 5, .jump = 1, .margin = 2});
+        const int count = scaled_or_asked(cubic ? 10000 : 50000);
+        for (int i = 0; i < count && !testing::Test::HasFailure(); ++i) {
+            SCOPED_TRACE(test.name + " tick " + std::to_string(i));
+            order.tick(hand.next());
+        }
+        order.print(test.name);
+        EXPECT_GT(order.tally().behind, count / 500);
+        EXPECT_GT(order.tally().punctures, count / 500);
+        EXPECT_GT(order.tally().outward, count / 5000);
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(
