@@ -73,5 +73,6 @@ Result fidelity(const Options& options);
 Result stability(const Options& options);
 Result walk_through(const Options& options);
 Result penetration(const Options& options);
+Result layers(const Options& options);
 
 }  // namespace palpate::evaluation

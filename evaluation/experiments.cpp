@@ -14,6 +14,7 @@ std::span<const Experiment> experiments() {
         {"stability", "How stiff may a surface be before it buzzes?", &stability},
         {"walk-through", "How does a proxy move, step by step?", &walk_through},
         {"penetration", "What is felt from the skin into the brain?", &penetration},
+        {"layers", "What is felt of several surfaces in one stroke?", &layers},
     };
     return all;
 }
