@@ -39,7 +39,7 @@ LevelChart::LevelChart() {
     setToolTip(
         "Histogram of the data (logarithm of the counts).\n"
         "Drag: the isovalue. Arrow keys or wheel after a click: fine steps; Page keys: ten.\n"
-        "Squares on the lower edge: levels of the other surfaces, to drag.\n"
+        "Squares on the lower edge: levels of layers and of other surfaces, to drag.\n"
         "Ticks on the upper edge: levels that are likely worth feeling.\n"
         "Shift-drag: a new range of interest. Drag the strip below: move or resize it;\n"
         "right click or Del: delete it.\n"
@@ -58,6 +58,7 @@ void LevelChart::clear() {
     set_data({}, {});
     bands_.clear();
     marks_.clear();
+    level_shown_ = true;
     felt_ = std::numeric_limits<double>::quiet_NaN();
 }
 
@@ -86,6 +87,12 @@ void LevelChart::set_bands(const Ranges& bands) {
 void LevelChart::set_marks(const std::vector<LevelMark>& marks) {
     if (drag_ == Drag::mark || marks == marks_) return;
     marks_ = marks;
+    update();
+}
+
+void LevelChart::set_level_shown(bool shown) {
+    if (shown == level_shown_) return;
+    level_shown_ = shown;
     update();
 }
 
@@ -140,6 +147,7 @@ void LevelChart::ask_level(double level) {
 }
 
 void LevelChart::step_level(double steps) {
+    if (!level_shown_) return;
     const LevelAxis a = whole_axis();
     const double from = std::isfinite(level_) ? level_ : a.low;
     ask_level(std::clamp(from + steps * fine_step(), a.low, a.high));
@@ -161,7 +169,8 @@ int LevelChart::tick_at(const QPointF& at) const {
 
 /// The mark whose grip is under the pointer, or -1.
 int LevelChart::mark_at(const QPointF& at) const {
-    if (at.y() < plot().bottom() - 0.7 * text_height() || at.y() > plot().bottom() + 1) return -1;
+    const double top = level_shown_ ? plot().bottom() - 0.7 * text_height() : plot().top();
+    if (at.y() < top || at.y() > plot().bottom() + 1) return -1;
     int best = -1;
     double nearest = reach + 1;
     for (std::size_t i = 0; i < marks_.size(); ++i) {
@@ -199,7 +208,7 @@ void LevelChart::mousePressEvent(QMouseEvent* event) {
         press_strip(at);
         return;
     }
-    if (const int tick = tick_at(at); tick >= 0) {
+    if (const int tick = tick_at(at); tick >= 0 && level_shown_) {
         ask_level(suggested_[static_cast<std::size_t>(tick)]);
         Q_EMIT level_settled();
         return;
@@ -207,8 +216,10 @@ void LevelChart::mousePressEvent(QMouseEvent* event) {
     held_mark_ = mark_at(at);
     if (held_mark_ >= 0) {
         drag_ = Drag::mark;
+        Q_EMIT mark_chosen(held_mark_);
         return;
     }
+    if (!level_shown_) return;
     drag_ = Drag::level;
     // Pressing on the line itself does not move it.
     if (std::abs(axis().x_of(level_) - at.x()) > 1.5) ask_level(axis().round_level_of(at.x()));
@@ -224,11 +235,13 @@ void LevelChart::mouseMoveEvent(QMouseEvent* event) {
         case Drag::level:
             ask_level(level);
             return;
-        case Drag::mark:
-            marks_[static_cast<std::size_t>(held_mark_)].level = level;
+        case Drag::mark: {
+            LevelMark& mark = marks_[static_cast<std::size_t>(held_mark_)];
+            mark.level = std::clamp(level, mark.low, mark.high);
             update();
-            Q_EMIT mark_moved(held_mark_, level);
+            Q_EMIT mark_moved(held_mark_, mark.level);
             return;
+        }
         case Drag::band: {
             DensityRange& band = bands_[static_cast<std::size_t>(grip_.band)];
             const DensityRange moved = dragged(held_, grip_.grip, held_at_, level, whole_axis());
@@ -261,7 +274,8 @@ void LevelChart::show_cursor(const QPointF& at) {
         const Grip grip = band_at(bands_, axis(), at.x(), reach).grip;
         if (grip == Grip::low || grip == Grip::high) shape = Qt::SizeHorCursor;
         if (grip == Grip::whole && editable_) shape = Qt::OpenHandCursor;
-    } else if (std::abs(axis().x_of(level_) - at.x()) < reach || mark_at(at) >= 0) {
+    } else if ((level_shown_ && std::abs(axis().x_of(level_) - at.x()) < reach) ||
+               mark_at(at) >= 0) {
         shape = Qt::SplitHCursor;
     }
     setCursor(shape);
@@ -301,10 +315,10 @@ void LevelChart::keyPressEvent(QKeyEvent* event) {
             step_level(10);
             break;
         case Qt::Key_Home:
-            ask_level(whole_axis().low);
+            if (level_shown_) ask_level(whole_axis().low);
             break;
         case Qt::Key_End:
-            ask_level(whole_axis().high);
+            if (level_shown_) ask_level(whole_axis().high);
             break;
         case Qt::Key_0:
             if (!(event->modifiers() & Qt::ControlModifier)) return event->ignore();
@@ -352,13 +366,22 @@ void LevelChart::paint_ticks(QPainter& painter, const LevelAxis& axis) const {
 void LevelChart::paint_marks(QPainter& painter, const LevelAxis& axis) const {
     const QRectF p = plot();
     const double half = 0.25 * text_height();
+    int row = 0;
     for (const LevelMark& mark : marks_) {
         const double x = axis.x_of(mark.level);
-        painter.setPen(QPen(mark.colour, 1.5));
+        // Pale colours would vanish on white.
+        const bool pale = !is_dark(palette()) && mark.colour.lightnessF() > 0.7;
+        painter.setPen(QPen(pale ? mark.colour.darker(160) : mark.colour, 1.5));
         painter.drawLine(QPointF(x, p.top()), QPointF(x, p.bottom()));
         painter.setPen(QPen(palette().color(QPalette::Text), 1));
         painter.setBrush(mark.colour);
         painter.drawRect(QRectF(x - half, p.bottom() - 2 * half, 2 * half, 2 * half));
+        if (mark.name.isEmpty()) continue;
+        const double wide = fontMetrics().horizontalAdvance(mark.name);
+        const double left = x + 3 + wide > p.right() ? x - 3 - wide : x + 3;
+        // One below the other, so that names of near levels do not meet.
+        const double top = p.top() + 1 + (row++ % 3) * text_height();
+        painter.drawText(QRectF(left, top, wide + 1, text_height()), Qt::AlignLeft, mark.name);
     }
 }
 
@@ -373,6 +396,7 @@ void LevelChart::paint_markers(QPainter& painter, const LevelAxis& axis) const {
         const double half = 0.28 * text_height();
         painter.fillPath(triangle(x, p.bottom() - 1, p.bottom() + 1.6 * half, half), colour);
     }
+    if (!level_shown_) return;
     const QColor colour = palette().color(hasFocus() ? QPalette::Highlight : QPalette::Text);
     const double x = axis.x_of(level_);
     painter.setPen(QPen(colour, 2));

@@ -16,6 +16,11 @@ namespace palpate::viewer {
 struct LevelMark {
     double level = 0;
     QColor colour;
+    /// Stands beside its line; empty: nothing.
+    QString name = {};
+    /// It is dragged between these.
+    double low = -std::numeric_limits<double>::infinity();
+    double high = std::numeric_limits<double>::infinity();
 
     bool operator==(const LevelMark&) const = default;
 };
@@ -43,6 +48,8 @@ class LevelChart : public QWidget {
     void set_bands(const Ranges& bands);
     /// Further levels, as lines with a grip below; emits nothing. Ignored while one is dragged.
     void set_marks(const std::vector<LevelMark>& marks);
+    /// False: there is no isovalue to drag, and marks are held by their whole lines.
+    void set_level_shown(bool shown);
     const Ranges& bands() const { return bands_; }
     /// Whether bands can be added, deleted and moved as a whole; else only their ends move.
     void set_editable(bool editable) { editable_ = editable; }
@@ -63,6 +70,7 @@ class LevelChart : public QWidget {
     void level_settled();  ///< the drag is over
     void bands_moved(const palpate::viewer::Ranges& bands);
     void bands_settled();
+    void mark_chosen(int mark);
     void mark_moved(int mark, double level);
     void band_added(const palpate::DensityRange& range);
     void band_deleted(int band);
@@ -102,6 +110,7 @@ class LevelChart : public QWidget {
     int chosen_ = -1;
 
     std::vector<LevelMark> marks_;
+    bool level_shown_ = true;
 
     Drag drag_ = Drag::none;
     int held_mark_ = -1;
