@@ -12,6 +12,7 @@
 #include "apps/viewer/panel/layer_editor.hpp"
 #include "apps/viewer/panel/layout.hpp"
 #include "apps/viewer/panel/level_axis.hpp"
+#include "apps/viewer/panel/number_box.hpp"
 #include "apps/viewer/panel/section.hpp"
 #include "apps/viewer/panel/stroke_plot.hpp"
 
@@ -199,6 +200,11 @@ void LayersControls::move_level(int layer, double level) {
     });
 }
 
+void LayersControls::set_stiffness_curve(const std::vector<Curve::Knot>& knots) {
+    change(QString("curve %1").arg(knots.size()),
+           [&knots](Layers& layers) { layers[HapticProperty::stiffness].density.knots = knots; });
+}
+
 void LayersControls::add_layer() {
     if (!have_surfaces(layers_)) {
         Layers first = first_layer(std::clamp(isovalue_, low_, high_));
@@ -235,6 +241,11 @@ void LayersControls::step(bool back) {
 int LayersControls::chosen() const {
     const int count = layers_ ? static_cast<int>(layers_->layers.size()) : 0;
     return std::min(list_->currentRow(), count - 1);
+}
+
+std::optional<double> LayersControls::chosen_level() const {
+    if (chosen() < 0) return std::nullopt;
+    return layers_->layers[static_cast<std::size_t>(chosen())].level;
 }
 
 void LayersControls::choose_layer(int layer) {

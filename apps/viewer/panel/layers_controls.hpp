@@ -11,6 +11,7 @@
 #include <QWidget>
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "apps/viewer/model/layer_set.hpp"
@@ -44,11 +45,14 @@ class LayersControls : public QWidget {
     /// Shows the layers in effect; emits nothing. With none, one can be added at `isovalue`.
     void set_layers(const RendererSettings& settings, double isovalue);
     const SharedLayers& layers() const { return layers_; }
+    /// Of the layer that is chosen; nothing: there is none.
+    std::optional<double> chosen_level() const;
     /// What a file that was opened says; shown until another set is chosen.
     void say(const QString& note);
     /// As by hand.
     void use(const SharedLayers& layers);
     void move_level(int layer, double level);
+    void set_stiffness_curve(const std::vector<Curve::Knot>& knots);
     void choose_layer(int layer);
     LevelRoom room(int layer) const;
     void show_snapshot(const Snapshot& now);

@@ -136,6 +136,8 @@ void Panel::connect_sections() {
 /// Levels of layers are the first marks on the chart.
 void Panel::connect_layers() {
     connect(layers_, &LayersControls::wanted, this, &Panel::ask_layers);
+    connect(&isovalue_->chart(), &LevelChart::curve_changed, layers_,
+            &LayersControls::set_stiffness_curve);
     connect(&isovalue_->chart(), &LevelChart::mark_chosen, layers_, &LayersControls::choose_layer);
     connect(&isovalue_->chart(), &LevelChart::mark_moved, this, [this](int mark, double level) {
         const auto& layers = now_.settings.layers;
@@ -183,6 +185,8 @@ void Panel::show_marks() {
         marks.push_back(mark);
     }
     isovalue_->chart().set_marks(marks);
+    isovalue_->chart().set_curve(layers ? (*layers)[HapticProperty::stiffness].density.knots
+                                        : Knots());
 }
 
 void Panel::connect_edits() {

@@ -1,6 +1,7 @@
 // Layers in the panel: choice, list, editor, plot.
 #include <QAbstractButton>
 #include <QComboBox>
+#include <QContextMenuEvent>
 #include <QDir>
 #include <QLineEdit>
 #include <QListWidget>
@@ -190,6 +191,50 @@ TEST_F(LayersPart, a_drag_of_a_slider_is_one_step_to_undo) {
     EXPECT_EQ(layer(0)[stiffness], 0.3);
     press("redo_layers");
     EXPECT_NE(layer(0)[stiffness], 0.3);
+}
+
+TEST_F(LayersPart, the_curve_of_stiffness_is_dragged_and_gets_and_loses_points) {
+    Layers layers = *choices[0].layers;
+    layers.layers[0][stiffness].reset();
+    layers[stiffness].density.knots = {{-500, 0.2}, {1000, 1}};
+    choices[0].layers = std::make_shared<const Layers>(layers);
+    panel.layers_controls().set_choices(choices);
+    choose(1);
+    LevelChart& chart = panel.isovalue_controls().chart();
+    const LevelAxis axis = chart.axis();
+    const auto knots = [&] { return (*asked())[stiffness].density.knots; };
+    const auto place = [&](int knot) {
+        const double bottom = chart.strip().top();
+        const Curve::Knot& at = chart.curve().knots[std::size_t(knot)];
+        const double top = 0.5 * chart.fontMetrics().height() + 2;
+        return QPointF(axis.x_of(at.at), bottom - at.value / chart.curve().top * (bottom - top));
+    };
+    drag(&chart, place(1), place(1) + QPointF(40, 20));
+    settle();
+    ASSERT_EQ(knots().size(), 2U);
+    EXPECT_GT(knots()[1].at, 1100);
+    EXPECT_LT(knots()[1].value, 0.95);
+    EXPECT_EQ(knots()[0].value, 0.2);
+    drag(&chart, place(1), {axis.x_of(-900), place(1).y()});
+    settle();
+    EXPECT_GT(knots()[1].at, -500) << "not past its neighbour";
+    const QPoint between(int(axis.x_of(0)), int(place(0).y()) - 20);
+    QTest::mouseDClick(&chart, Qt::LeftButton, {}, between);
+    settle();
+    ASSERT_EQ(knots().size(), 3U);
+    EXPECT_NO_THROW(check(*asked(), Solid::above));
+    QDir().mkpath(PALPATE_PICTURES);
+    panel.grab().save(QString(PALPATE_PICTURES) + "/layers_curve.png");
+    chart.setFocus();
+    QTest::keyClick(&chart, Qt::Key_Delete);
+    settle();
+    EXPECT_EQ(knots().size(), 2U);
+    QContextMenuEvent right(QContextMenuEvent::Mouse, place(0).toPoint());
+    QApplication::sendEvent(&chart, &right);
+    settle();
+    EXPECT_EQ(knots().size(), 1U);
+    press("undo_layers");
+    EXPECT_EQ(knots().size(), 2U);
 }
 
 TEST_F(LayersPart, what_is_touched_is_named_and_plotted) {
