@@ -175,7 +175,11 @@ void FileController::leave_playback() {
     SessionFile session = session_now();
     session.isovalue = display_.isovalue().value_or(session.isovalue);
     session.settings.reset();  // the recorded device's
+    const SharedLayers layers = content_.layers();
     feel_session(content_.volume(), session, run_.take_request());
+    if (!layers || !content_.live()) return;
+    run_.send(command::UseLayers{layers});
+    Q_EMIT content_.run_changed();
 }
 
 SessionFile FileController::session_now() const {

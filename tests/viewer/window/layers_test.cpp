@@ -200,6 +200,24 @@ TEST_F(LayersInWindow, a_recording_names_the_layers_that_were_felt) {
     EXPECT_TRUE(wait_until([&] { return part<QLabel>("readout").text().contains("on skin"); }))
         << part<QLabel>("readout").text().toStdString();
     EXPECT_EQ(window_->display().isovalue(), -300);
+    QTest::keyClick(window_.get(), Qt::Key_Escape);
+    ASSERT_TRUE(wait_until([&] { return window_->live() && layers(); })) << "felt again, with them";
+    EXPECT_EQ(part<QComboBox>("layers").currentText(), ct_set);
+}
+
+TEST_F(LayersInWindow, of_the_command_line_are_for_the_first_volume) {
+    io::write_volume(ct_ball(), scratch_.path() / "ct.nrrd");
+    run::Setup setup;
+    setup.device = devices::parse_device("mouse");
+    setup.real_time = false;
+    setup.render.layers = io::layers_named("ct-soft-tissue-and-bone");
+    window_ = std::make_unique<MainWindow>(RunRequest{setup, {}, {}});
+    window_->show();
+    feel((scratch_.path() / "ct.nrrd").string());
+    ASSERT_TRUE(layers());
+    EXPECT_EQ(part<QComboBox>("layers").currentText(), ct_set);
+    feel("synthetic:sphere:48x48x48");
+    EXPECT_TRUE(wait_until([&] { return window_->live() && !layers(); }));
 }
 
 TEST_F(LayersInWindow, sets_that_do_not_suit_the_solid_side_cannot_be_picked) {
