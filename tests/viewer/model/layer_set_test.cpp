@@ -15,7 +15,7 @@
 namespace palpate::viewer {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double never = std::numeric_limits<double>::infinity();
 
 Layers skin_and_bone() {
     Layers layers;
@@ -72,10 +72,10 @@ TEST(LayerSet, words_name_what_is_touched_and_what_the_proxy_is_in) {
 TEST(LayerSet, a_level_stays_between_its_neighbours) {
     const Layers layers = skin_and_bone();
     const LevelRoom skin = room_of(layers, 0, 10), bone = room_of(layers, 1, 10);
-    EXPECT_EQ(skin.low, -infinity);
+    EXPECT_EQ(skin.low, -never);
     EXPECT_EQ(skin.high, 240);
     EXPECT_EQ(bone.low, -290);
-    EXPECT_EQ(bone.high, infinity);
+    EXPECT_EQ(bone.high, never);
     EXPECT_EQ(room_of(layers, 0, 1000).high, -300) << "no room: it stays";
 }
 
@@ -120,7 +120,7 @@ TEST(LayerSet, properties_come_from_the_layer_else_its_curve_else_the_settings) 
     EXPECT_EQ(property_at(layers, 0, stiffness, settings), 0.7);
     layers[stiffness].density.knots = {{-300, 0.1}, {250, 0.9}};
     EXPECT_EQ(property_at(layers, 0, stiffness, settings), 0.1);
-    EXPECT_EQ(property_at(layers, 1, puncture_force, settings), infinity);
+    EXPECT_EQ(property_at(layers, 1, puncture_force, settings), never);
     EXPECT_EQ(property_at(layers, 1, drag, settings), 0);
 }
 
