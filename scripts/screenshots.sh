@@ -52,6 +52,9 @@ screenshot lobster 2 '"volume": {"volume": "DATA/lobster.nrrd"}, "isovalue": 35,
         "towards_viewer": [0.25, 0.35, 0.9], "half_height": 170}'
 screenshot daisy 2 '"volume": {"volume": "DATA/daisy_pollen.nrrd"}, "isovalue": 60,
     "device": "simulated:hand=slide", "look": {"surface": false, "volume": true}'
+echo "== viewer-layers.png"
+scripts/with_display.sh "$program" data/visible_human_head.nrrd --layers sample-head \
+    --device simulated:hand=press --after 3 --window 1400x880 --screenshot docs/images/viewer-layers.png
 screenshot surfaces 2 '"volume": {"volume": "DATA/cthead_unc.nrrd"}, "isovalue": 500,
     "device": "simulated:hand=press", "look": {"box": false, "surface_opacity": 0.35,
         "surfaces": [{"level": 1150, "colour": [0.84, 0.37, 0.25], "opacity": 1, "shown": true}],

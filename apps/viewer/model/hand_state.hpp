@@ -9,7 +9,7 @@ namespace palpate::viewer {
 inline bool waits_for_hand(const Snapshot& now) {
     return now.forces_on && !now.session.frozen && !now.session.clutched &&
            now.session.device.status == DeviceStatus::ready &&
-           now.session.tick.proxy.mode == Mode::constrained &&
+           now.session.tick.proxy.mode == palpate::Mode::constrained &&
            (now.session.tick.force_flags & force_waiting) != 0;
 }
 

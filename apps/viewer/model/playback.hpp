@@ -3,6 +3,7 @@
 
 #include <deque>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -66,6 +67,8 @@ class Playback {
     const Overview& overview() const { return overview_; }
     /// The field that was felt, as it was at the start.
     const Field& field() const { return field_; }
+    /// The layers in use at this time; null: none.
+    std::shared_ptr<const Layers> layers_at(double time) const;
     /// The field at a snapshot: with the edits up to then, some of which may have to be repeated,
     /// or at the moment of the sequence.
     Field field_at(const Snapshot& snapshot);
@@ -81,7 +84,12 @@ class Playback {
     Field field_;
     std::optional<run::RecordedSamples> samples_;  // once all is read
     std::deque<Snapshot> snapshots_;               // grows without a copy of all of it
-    double interval_ = least_interval;             // [s] between snapshots
+    struct LayersFrom {
+        double time;  // [s]
+        std::shared_ptr<const Layers> layers;
+    };
+    std::vector<LayersFrom> layers_;    // each from its time on
+    double interval_ = least_interval;  // [s] between snapshots
     std::size_t ticks_ = 0, different_ = 0;
     bool complete_ = false;
     Overview overview_;

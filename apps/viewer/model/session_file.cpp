@@ -265,6 +265,7 @@ void check_session(const SessionFile& s) {
     settings.method = s.method.method;
     check(settings);
     check(settings.penetrability, s.solid);
+    if (settings.layers) check(*settings.layers, s.solid);
     check_look(s.look);
     if (s.camera) check_camera(*s.camera);
     check_measurements(s.measurements);

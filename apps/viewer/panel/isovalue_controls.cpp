@@ -129,7 +129,19 @@ void IsovalueControls::set_overruled(bool overruled) {
     overruled_->say(overruled ? "The level felt follows the hand: pressing through is on." : "");
 }
 
+void IsovalueControls::set_layered(bool layered) {
+    layered_ = layered;
+    for (QWidget* one : std::initializer_list<QWidget*>{slider_, box_}) one->setEnabled(!layered);
+    chart_->set_level_shown(!layered);
+    if (layered) overruled_->say("Layers have levels of their own: drag their squares.");
+    if (layered) warning_->say({});
+}
+
 void IsovalueControls::show_felt(double isovalue, bool penetrability_on) {
+    if (layered_) {
+        chart_->set_felt(std::nan(""));
+        return felt_->clear();
+    }
     // Just after a command the snapshots still have the old level.
     differing_ = isovalue == isovalue_ ? 0 : differing_ + 1;
     const bool apart = penetrability_on || differing_ > snapshots_of_grace;

@@ -32,6 +32,8 @@ class IsovalueControls : public QWidget {
     void set_dequantized(bool on, bool possible, const QString& reason);
     /// Whether penetrability sets the level felt.
     void set_overruled(bool overruled);
+    /// Layers have levels of their own: the isovalue does nothing. After set_overruled().
+    void set_layered(bool layered);
     /// The level felt now; shown separately where it differs from the level asked for.
     void show_felt(double isovalue, bool penetrability_on);
     LevelChart& chart() { return *chart_; }
@@ -55,6 +57,7 @@ class IsovalueControls : public QWidget {
     QCheckBox* dequantize_;
     QLabel* felt_;
     Note *warning_, *overruled_, *terraces_;
+    bool layered_ = false;
     RateLimiter limiter_;
     double isovalue_ = 0;
     int differing_ = 0;  // consecutive snapshots with another level

@@ -1,32 +1,21 @@
-// Input and drawing of the level chart.
+// Input of the level chart.
 #include "apps/viewer/panel/level_chart.hpp"
 
 #include <QContextMenuEvent>
 #include <QKeyEvent>
 #include <QMenu>
 #include <QMouseEvent>
-#include <QPainter>
-#include <QPainterPath>
 #include <QWheelEvent>
 
 #include <algorithm>
 #include <cmath>
 
-#include "apps/viewer/panel/colours.hpp"
 #include "apps/viewer/panel/number_box.hpp"
 
 namespace palpate::viewer {
 namespace {
 
 constexpr double reach = 5;  // [logical pixels] distance within which the pointer takes hold
-
-QPainterPath triangle(double x, double tip, double base, double half) {
-    QPainterPath path(QPointF(x, tip));
-    path.lineTo(x - half, base);
-    path.lineTo(x + half, base);
-    path.closeSubpath();
-    return path;
-}
 
 }  // namespace
 
@@ -39,7 +28,9 @@ LevelChart::LevelChart() {
     setToolTip(
         "Histogram of the data (logarithm of the counts).\n"
         "Drag: the isovalue. Arrow keys or wheel after a click: fine steps; Page keys: ten.\n"
-        "Squares on the lower edge: levels of the other surfaces, to drag.\n"
+        "Squares on the lower edge: levels of layers and of other surfaces, to drag.\n"
+        "Points of the curve of stiffness: drag; double click adds one, right click or Del "
+        "deletes.\n"
         "Ticks on the upper edge: levels that are likely worth feeling.\n"
         "Shift-drag: a new range of interest. Drag the strip below: move or resize it;\n"
         "right click or Del: delete it.\n"
@@ -58,6 +49,8 @@ void LevelChart::clear() {
     set_data({}, {});
     bands_.clear();
     marks_.clear();
+    set_curve({});
+    level_shown_ = true;
     felt_ = std::numeric_limits<double>::quiet_NaN();
 }
 
@@ -86,6 +79,19 @@ void LevelChart::set_bands(const Ranges& bands) {
 void LevelChart::set_marks(const std::vector<LevelMark>& marks) {
     if (drag_ == Drag::mark || marks == marks_) return;
     marks_ = marks;
+    update();
+}
+
+void LevelChart::set_level_shown(bool shown) {
+    if (shown == level_shown_) return;
+    level_shown_ = shown;
+    update();
+}
+
+void LevelChart::set_curve(const Knots& knots) {
+    if (drag_ == Drag::knot) return;
+    if (held_knot_ >= static_cast<int>(knots.size())) held_knot_ = -1;
+    curve_ = line_of(knots);
     update();
 }
 
@@ -140,6 +146,7 @@ void LevelChart::ask_level(double level) {
 }
 
 void LevelChart::step_level(double steps) {
+    if (!level_shown_) return;
     const LevelAxis a = whole_axis();
     const double from = std::isfinite(level_) ? level_ : a.low;
     ask_level(std::clamp(from + steps * fine_step(), a.low, a.high));
@@ -161,7 +168,8 @@ int LevelChart::tick_at(const QPointF& at) const {
 
 /// The mark whose grip is under the pointer, or -1.
 int LevelChart::mark_at(const QPointF& at) const {
-    if (at.y() < plot().bottom() - 0.7 * text_height() || at.y() > plot().bottom() + 1) return -1;
+    const double top = level_shown_ ? plot().bottom() - 0.7 * text_height() : plot().top();
+    if (at.y() < top || at.y() > plot().bottom() + 1) return -1;
     int best = -1;
     double nearest = reach + 1;
     for (std::size_t i = 0; i < marks_.size(); ++i) {
@@ -199,7 +207,13 @@ void LevelChart::mousePressEvent(QMouseEvent* event) {
         press_strip(at);
         return;
     }
-    if (const int tick = tick_at(at); tick >= 0) {
+    held_knot_ = curve_.knot_at(at, axis(), plot(), reach);
+    update();
+    if (held_knot_ >= 0) {
+        drag_ = Drag::knot;
+        return;
+    }
+    if (const int tick = tick_at(at); tick >= 0 && level_shown_) {
         ask_level(suggested_[static_cast<std::size_t>(tick)]);
         Q_EMIT level_settled();
         return;
@@ -207,8 +221,10 @@ void LevelChart::mousePressEvent(QMouseEvent* event) {
     held_mark_ = mark_at(at);
     if (held_mark_ >= 0) {
         drag_ = Drag::mark;
+        Q_EMIT mark_chosen(held_mark_);
         return;
     }
+    if (!level_shown_) return;
     drag_ = Drag::level;
     // Pressing on the line itself does not move it.
     if (std::abs(axis().x_of(level_) - at.x()) > 1.5) ask_level(axis().round_level_of(at.x()));
@@ -224,11 +240,18 @@ void LevelChart::mouseMoveEvent(QMouseEvent* event) {
         case Drag::level:
             ask_level(level);
             return;
-        case Drag::mark:
-            marks_[static_cast<std::size_t>(held_mark_)].level = level;
+        case Drag::knot:
+            curve_.move(static_cast<std::size_t>(held_knot_), event->localPos(), a, plot());
             update();
-            Q_EMIT mark_moved(held_mark_, level);
+            Q_EMIT curve_changed(curve_.knots);
             return;
+        case Drag::mark: {
+            LevelMark& mark = marks_[static_cast<std::size_t>(held_mark_)];
+            mark.level = std::clamp(level, mark.low, mark.high);
+            update();
+            Q_EMIT mark_moved(held_mark_, mark.level);
+            return;
+        }
         case Drag::band: {
             DensityRange& band = bands_[static_cast<std::size_t>(grip_.band)];
             const DensityRange moved = dragged(held_, grip_.grip, held_at_, level, whole_axis());
@@ -245,10 +268,33 @@ void LevelChart::mouseMoveEvent(QMouseEvent* event) {
     }
 }
 
+/// Another knot of the curve.
+void LevelChart::mouseDoubleClickEvent(QMouseEvent* event) {
+    const QPointF at = event->localPos();
+    if (curve_.knots.empty() || event->button() != Qt::LeftButton || !plot().contains(at) ||
+        curve_.knot_at(at, axis(), plot(), reach) >= 0) {
+        return mousePressEvent(event);
+    }
+    held_knot_ = curve_.add(curve_.knot_of(at, axis(), plot()));
+    if (held_knot_ < 0) return;
+    update();
+    Q_EMIT curve_changed(curve_.knots);
+}
+
+/// The last one stays: a curve without knots says nothing.
+void LevelChart::remove_knot(int knot) {
+    if (knot < 0 || curve_.knots.size() < 2) return;
+    curve_.knots.erase(curve_.knots.begin() + knot);
+    held_knot_ = -1;
+    update();
+    Q_EMIT curve_changed(curve_.knots);
+}
+
 void LevelChart::mouseReleaseEvent(QMouseEvent* event) {
     if (event->button() != Qt::LeftButton) return;
     const Drag drag = std::exchange(drag_, Drag::none);
     update();
+    if (drag == Drag::knot) curve_ = line_of(curve_.knots);  // with room above again
     if (drag == Drag::level) Q_EMIT level_settled();
     if (drag == Drag::band) Q_EMIT bands_settled();
     // A click makes no range.
@@ -261,7 +307,10 @@ void LevelChart::show_cursor(const QPointF& at) {
         const Grip grip = band_at(bands_, axis(), at.x(), reach).grip;
         if (grip == Grip::low || grip == Grip::high) shape = Qt::SizeHorCursor;
         if (grip == Grip::whole && editable_) shape = Qt::OpenHandCursor;
-    } else if (std::abs(axis().x_of(level_) - at.x()) < reach || mark_at(at) >= 0) {
+    } else if (curve_.knot_at(at, axis(), plot(), reach) >= 0) {
+        shape = Qt::SizeAllCursor;
+    } else if ((level_shown_ && std::abs(axis().x_of(level_) - at.x()) < reach) ||
+               mark_at(at) >= 0) {
         shape = Qt::SplitHCursor;
     }
     setCursor(shape);
@@ -269,6 +318,9 @@ void LevelChart::show_cursor(const QPointF& at) {
 
 void LevelChart::contextMenuEvent(QContextMenuEvent* event) {
     const QPointF at = event->pos();
+    if (const int knot = curve_.knot_at(at, axis(), plot(), reach); knot >= 0) {
+        return remove_knot(knot);
+    }
     const int band = band_at(bands_, axis(), at.x(), reach).band;
     if (!editable_ || band < 0) return;
     choose_band(band);
@@ -301,10 +353,10 @@ void LevelChart::keyPressEvent(QKeyEvent* event) {
             step_level(10);
             break;
         case Qt::Key_Home:
-            ask_level(whole_axis().low);
+            if (level_shown_) ask_level(whole_axis().low);
             break;
         case Qt::Key_End:
-            ask_level(whole_axis().high);
+            if (level_shown_) ask_level(whole_axis().high);
             break;
         case Qt::Key_0:
             if (!(event->modifiers() & Qt::ControlModifier)) return event->ignore();
@@ -313,6 +365,7 @@ void LevelChart::keyPressEvent(QKeyEvent* event) {
             break;
         case Qt::Key_Delete:
         case Qt::Key_Backspace:
+            if (held_knot_ >= 0) return remove_knot(held_knot_);
             if (editable_ && chosen_ >= 0) Q_EMIT band_deleted(chosen_);
             break;
         default:
@@ -333,93 +386,6 @@ void LevelChart::wheelEvent(QWheelEvent* event) {
     const int steps = wheel_ / 120;  // touch pads send parts of a step
     wheel_ -= 120 * steps;
     if (steps != 0) step_level(steps);
-}
-
-void LevelChart::paint_ticks(QPainter& painter, const LevelAxis& axis) const {
-    const QRectF p = plot();
-    const double half = 0.2 * text_height();
-    for (const double level : suggested_) {
-        const double x = axis.x_of(level);
-        painter.fillPath(triangle(x, p.top() - 1, p.top() - 2 * half, half),
-                         palette().color(QPalette::Text));
-        QColor faint = palette().color(QPalette::Text);
-        faint.setAlphaF(0.35);
-        painter.setPen(QPen(faint, 1, Qt::DotLine));
-        painter.drawLine(QPointF(x, p.top()), QPointF(x, p.bottom()));
-    }
-}
-
-void LevelChart::paint_marks(QPainter& painter, const LevelAxis& axis) const {
-    const QRectF p = plot();
-    const double half = 0.25 * text_height();
-    for (const LevelMark& mark : marks_) {
-        const double x = axis.x_of(mark.level);
-        painter.setPen(QPen(mark.colour, 1.5));
-        painter.drawLine(QPointF(x, p.top()), QPointF(x, p.bottom()));
-        painter.setPen(QPen(palette().color(QPalette::Text), 1));
-        painter.setBrush(mark.colour);
-        painter.drawRect(QRectF(x - half, p.bottom() - 2 * half, 2 * half, 2 * half));
-    }
-}
-
-/// The level asked for as a line with a grip, the level felt as a broken line with a drop below.
-void LevelChart::paint_markers(QPainter& painter, const LevelAxis& axis) const {
-    const QRectF p = plot();
-    if (!std::isnan(felt_)) {
-        const QColor colour = readable(to_qt(pictures::scp_colour), palette());
-        const double x = axis.x_of(felt_);
-        painter.setPen(QPen(colour, 2, Qt::DashLine));
-        painter.drawLine(QPointF(x, p.top()), QPointF(x, p.bottom()));
-        const double half = 0.28 * text_height();
-        painter.fillPath(triangle(x, p.bottom() - 1, p.bottom() + 1.6 * half, half), colour);
-    }
-    const QColor colour = palette().color(hasFocus() ? QPalette::Highlight : QPalette::Text);
-    const double x = axis.x_of(level_);
-    painter.setPen(QPen(colour, 2));
-    painter.drawLine(QPointF(x, p.top() - 1), QPointF(x, p.bottom()));
-    const double half = 0.3 * text_height();
-    painter.setPen(Qt::NoPen);
-    painter.setBrush(colour);
-    painter.drawRoundedRect(QRectF(x - half, p.top() - 1, 2 * half, 1.6 * half), 2, 2);
-}
-
-void LevelChart::paint_ends(QPainter& painter) const {
-    const QRectF p = plot();
-    const QRectF below(p.left(), strip().bottom() + 1, p.width(), text_height());
-    painter.setPen(palette().color(QPalette::PlaceholderText));
-    const LevelAxis a = axis();
-    painter.drawText(below, Qt::AlignLeft | Qt::AlignVCenter, number_text(a.low));
-    painter.drawText(below, Qt::AlignRight | Qt::AlignVCenter, number_text(a.high));
-    if (!std::isfinite(felt_) && !std::isnan(felt_)) {
-        painter.setPen(readable(to_qt(pictures::scp_colour), palette()));
-        painter.drawText(below, Qt::AlignHCenter | Qt::AlignVCenter, "nothing is felt here");
-    }
-}
-
-void LevelChart::paintEvent(QPaintEvent*) {
-    QPainter painter(this);
-    painter.setRenderHint(QPainter::Antialiasing);
-    const QRectF p = plot();
-    painter.fillRect(p, palette().color(QPalette::Base));
-    if (histogram_.counts.empty()) {
-        painter.setPen(palette().color(QPalette::PlaceholderText));
-        painter.drawText(p, Qt::AlignCenter, "no volume");
-        return;
-    }
-    const LevelAxis a = axis();
-    QColor bars = palette().color(QPalette::Text);
-    bars.setAlphaF(isEnabled() ? 0.42 : 0.2);
-    paint_histogram(painter, histogram_, a, p, bars);
-    Ranges bands = bands_;
-    if (drag_ == Drag::fresh) bands.push_back(fresh_);
-    paint_bands(painter, bands, a, p, strip(), chosen_);
-    paint_ticks(painter, a);
-    paint_marks(painter, a);
-    paint_markers(painter, a);
-    paint_ends(painter);
-    painter.setBrush(Qt::NoBrush);
-    painter.setPen(QPen(palette().color(hasFocus() ? QPalette::Highlight : QPalette::Mid), 1));
-    painter.drawRect(p);
 }
 
 }  // namespace palpate::viewer

@@ -8,6 +8,7 @@
 #include <limits>
 #include <vector>
 
+#include "apps/viewer/panel/curve_line.hpp"
 #include "apps/viewer/panel/range_bands.hpp"
 
 namespace palpate::viewer {
@@ -16,6 +17,11 @@ namespace palpate::viewer {
 struct LevelMark {
     double level = 0;
     QColor colour;
+    /// Stands beside its line; empty: nothing.
+    QString name = {};
+    /// It is dragged between these.
+    double low = -std::numeric_limits<double>::infinity();
+    double high = std::numeric_limits<double>::infinity();
 
     bool operator==(const LevelMark&) const = default;
 };
@@ -43,6 +49,12 @@ class LevelChart : public QWidget {
     void set_bands(const Ranges& bands);
     /// Further levels, as lines with a grip below; emits nothing. Ignored while one is dragged.
     void set_marks(const std::vector<LevelMark>& marks);
+    /// A curve of stiffness [N/mm] over levels, with knots to drag; emits nothing. Ignored while
+    /// one is dragged. No knots: none.
+    void set_curve(const Knots& knots);
+    const CurveLine& curve() const { return curve_; }
+    /// False: there is no isovalue to drag, and marks are held by their whole lines.
+    void set_level_shown(bool shown);
     const Ranges& bands() const { return bands_; }
     /// Whether bands can be added, deleted and moved as a whole; else only their ends move.
     void set_editable(bool editable) { editable_ = editable; }
@@ -63,7 +75,9 @@ class LevelChart : public QWidget {
     void level_settled();  ///< the drag is over
     void bands_moved(const palpate::viewer::Ranges& bands);
     void bands_settled();
+    void mark_chosen(int mark);
     void mark_moved(int mark, double level);
+    void curve_changed(const palpate::viewer::Knots& knots);
     void band_added(const palpate::DensityRange& range);
     void band_deleted(int band);
     void band_chosen(int band);
@@ -73,12 +87,13 @@ class LevelChart : public QWidget {
     void mousePressEvent(QMouseEvent* event) override;
     void mouseMoveEvent(QMouseEvent* event) override;
     void mouseReleaseEvent(QMouseEvent* event) override;
+    void mouseDoubleClickEvent(QMouseEvent* event) override;
     void contextMenuEvent(QContextMenuEvent* event) override;
     void keyPressEvent(QKeyEvent* event) override;
     void wheelEvent(QWheelEvent* event) override;
 
   private:
-    enum class Drag { none, level, mark, band, fresh };
+    enum class Drag { none, level, mark, knot, band, fresh };
 
     QRectF plot() const;
     double text_height() const;
@@ -87,6 +102,7 @@ class LevelChart : public QWidget {
     void press_strip(const QPointF& at);
     int tick_at(const QPointF& at) const;
     int mark_at(const QPointF& at) const;
+    void remove_knot(int knot);
     void paint_marks(QPainter& painter, const LevelAxis& axis) const;
     void show_cursor(const QPointF& at);
     void paint_ticks(QPainter& painter, const LevelAxis& axis) const;
@@ -102,9 +118,11 @@ class LevelChart : public QWidget {
     int chosen_ = -1;
 
     std::vector<LevelMark> marks_;
+    CurveLine curve_;
+    bool level_shown_ = true;
 
     Drag drag_ = Drag::none;
-    int held_mark_ = -1;
+    int held_mark_ = -1, held_knot_ = -1;
     BandGrip grip_;
     double held_at_ = 0;         // level under the pointer when the drag began
     DensityRange held_, fresh_;  // the band then; the one that is being made

@@ -15,6 +15,7 @@
 #include "apps/viewer/panel/device_controls.hpp"
 #include "apps/viewer/panel/force_controls.hpp"
 #include "apps/viewer/panel/isovalue_controls.hpp"
+#include "apps/viewer/panel/layers_controls.hpp"
 #include "apps/viewer/panel/layout.hpp"
 #include "apps/viewer/panel/look_controls.hpp"
 #include "apps/viewer/panel/loop_view.hpp"
@@ -45,6 +46,7 @@ QScrollArea* page_of(std::initializer_list<QWidget*> sections) {
 Panel::Panel(QWidget* parent)
     : QWidget(parent),
       isovalue_(new IsovalueControls),
+      layers_(new LayersControls),
       penetrability_(new PenetrabilityControls(isovalue_->chart())),
       edit_(new BrushControls),
       force_(new ForceControls),
@@ -66,6 +68,7 @@ Panel::~Panel() = default;
 void Panel::build() {
     session_part_ = new Section("Session", "session_part", bar_);
     isovalue_part_ = new Section("Isovalue", "isovalue_part", isovalue_);
+    layers_part_ = new Section("Layers", "layers_part", layers_);
     penetrability_part_ =
         new Section("Pressing through (penetrability)", "penetrability_part", penetrability_);
     edit_part_ = new Section("Edit", "edit_part", edit_);
@@ -75,15 +78,15 @@ void Panel::build() {
     look_part_ = new Section("Look", "look_part", look_);
     overlay_part_ = new Section("Overlay", "overlay_part", overlay_);
     loop_part_->set_open(false);
-    sections_ = {session_part_, isovalue_part_, penetrability_part_, force_part_, look_part_,
-                 edit_part_,    overlay_part_,  device_part_,        loop_part_};
+    sections_ = {session_part_, isovalue_part_, layers_part_,  penetrability_part_, force_part_,
+                 look_part_,    edit_part_,     overlay_part_, device_part_,        loop_part_};
     tabs_->setDocumentMode(true);
     const auto add = [this](const QString& title, std::initializer_list<QWidget*> sections) {
         QScrollArea* page = page_of(sections);
         tabs_->addTab(page, title);
         page->setAccessibleName(QString(title).remove('&'));
     };
-    add("Fee&l", {penetrability_part_, force_part_});
+    add("Fee&l", {layers_part_, penetrability_part_, force_part_});
     add("L&ook", {look_part_});
     add("D&ata", {edit_part_, overlay_part_});
     add("Devi&ce", {device_part_, loop_part_});
@@ -125,8 +128,30 @@ void Panel::connect_sections() {
     });
     connect(bar_, &SessionBar::asked, this,
             [this](const Command& command) { ask(session_part_, command); });
+    connect_layers();
     connect_edits();
     connect_look();
+}
+
+/// Levels of layers are the first marks on the chart.
+void Panel::connect_layers() {
+    connect(layers_, &LayersControls::wanted, this, &Panel::ask_layers);
+    connect(&isovalue_->chart(), &LevelChart::curve_changed, layers_,
+            &LayersControls::set_stiffness_curve);
+    connect(&isovalue_->chart(), &LevelChart::mark_chosen, layers_, &LayersControls::choose_layer);
+    connect(&isovalue_->chart(), &LevelChart::mark_moved, this, [this](int mark, double level) {
+        const auto& layers = now_.settings.layers;
+        const int count = layers ? static_cast<int>(layers->layers.size()) : 0;
+        if (mark < count) return layers_->move_level(mark, level);
+        look_->move_surface(mark - count, level);
+    });
+}
+
+/// Without layers the isovalue that was asked for before is felt again.
+void Panel::ask_layers(const SharedLayers& layers) {
+    const bool end = have_surfaces(now_.settings.layers) && !have_surfaces(layers);
+    ask(layers_part_, command::UseLayers{layers});
+    if (end && !refused_ && live_) ask(layers_part_, command::Isovalue{now_.isovalue});
 }
 
 /// Surfaces of the look are levels on the chart.
@@ -136,7 +161,6 @@ void Panel::connect_look() {
     connect(look_, &LookControls::look_set, this,
             [this] { overlay_->set_look(look_->look().overlay); });
     connect(overlay_, &OverlayControls::look_changed, look_, &LookControls::set_overlay_look);
-    connect(&isovalue_->chart(), &LevelChart::mark_moved, look_, &LookControls::move_surface);
     connect(look_, &LookControls::feel_wanted, this, [this](int row) {
         const double felt = now_.isovalue;
         const double level = look_->look().surfaces.at(static_cast<std::size_t>(row)).level;
@@ -147,10 +171,22 @@ void Panel::connect_look() {
 
 void Panel::show_marks() {
     std::vector<LevelMark> marks;
+    const SharedLayers& layers = layers_->layers();
+    for (int i = 0; layers && i < static_cast<int>(layers->layers.size()); ++i) {
+        const Layer& layer = layers->layers[static_cast<std::size_t>(i)];
+        const auto [low, high] = layers_->room(i);
+        marks.push_back({layer.level, to_qt({layer.colour[0], layer.colour[1], layer.colour[2]}),
+                         QString::fromStdString(layer.name), low, high});
+    }
     for (const SeenSurface& surface : look_->look().surfaces) {
-        marks.push_back({surface.level, to_qt(surface.colour)});
+        LevelMark mark;
+        mark.level = surface.level;
+        mark.colour = to_qt(surface.colour);
+        marks.push_back(mark);
     }
     isovalue_->chart().set_marks(marks);
+    isovalue_->chart().set_curve(layers ? (*layers)[HapticProperty::stiffness].density.knots
+                                        : Knots());
 }
 
 void Panel::connect_edits() {
@@ -176,6 +212,7 @@ void Panel::connect_edits() {
 void Panel::set_session(const Field& field, const run::Histogram& histogram, double isovalue,
                         const RendererSettings& settings, const DeviceInfo& device) {
     isovalue_->drop();
+    layers_->drop();
     force_->drop();
     live_ = true;
     solid_ = field.solid();
@@ -192,6 +229,8 @@ void Panel::set_session(const Field& field, const run::Histogram& histogram, dou
     }
     isovalue_->set_data(field, histogram);
     isovalue_->show_felt(isovalue, false);
+    layers_->set_data(field.volume().minimum(), field.volume().minimum() + field.volume().range(),
+                      field.solid());
     penetrability_->set_session(settings.penetrability, solid_, isovalue, field.volume().minimum(),
                                 field.volume().minimum() + field.volume().range());
     look_->set_data(field.volume(), histogram);
@@ -211,9 +250,12 @@ void Panel::clear() {
     live_ = false;
     last_.reset();
     isovalue_->clear();
+    layers_->clear();
+    isovalue_->set_layered(false);
     penetrability_->drop();
     force_->drop();
     clear_edits();
+    now_.settings.layers = nullptr;
     now_.brush = before_.brush = edit_->choice();
     unedited_.reset();
     bar_->clear();
@@ -247,6 +289,8 @@ void Panel::show_effect() {
     isovalue_->set_isovalue(now_.isovalue);
     isovalue_->set_field(solid_, interpolation_);
     isovalue_->set_overruled(now_.settings.penetrability.on);
+    isovalue_->set_layered(have_surfaces(now_.settings.layers));
+    layers_->set_layers(now_.settings, now_.isovalue);
     look_->set_felt(now_.isovalue, solid_);
     show_marks();
     penetrability_->set_in_use(now_.settings.penetrability);
@@ -279,6 +323,7 @@ void Panel::take(const Command& command) {
                           [&](const ForceSettings& force) { settings.force = force; },
                           [&](const Friction& friction) { settings.proxy.friction = friction; },
                           [&](const Penetrability& given) { settings.penetrability = given; },
+                          [&](const command::UseLayers& c) { settings.layers = c.layers; },
                           [&](const command::Forces& forces) { settings.forces_on = forces.on; },
                           [&](const command::Freeze& freeze) { now_.frozen = freeze.on; },
                           [&](const command::Clutch& clutch) { now_.clutched = clutch.on; },
@@ -357,6 +402,10 @@ void Panel::show_snapshot(const Snapshot& snapshot) {
     isovalue_->show_felt(snapshot.session.tick.proxy.isovalue, snapshot.penetrability_on);
     device_->show_status(snapshot.session.device.status);
     device_->show_scale(snapshot.session.transform.scale);
+}
+
+void Panel::show_stroke(const Snapshot& snapshot) {
+    if (live_) layers_->show_snapshot(snapshot);
 }
 
 void Panel::show_report(const ServoReport& report, double rate) {

@@ -21,6 +21,7 @@ class BrushControls;
 class DeviceControls;
 class ForceControls;
 class IsovalueControls;
+class LayersControls;
 class LookControls;
 class LoopView;
 class OverlayControls;
@@ -52,6 +53,8 @@ class Panel : public QWidget {
 
     /// About thirty times a second.
     void show_snapshot(const Snapshot& snapshot);
+    /// The same for what moves fast: the force along a stroke. About sixty times a second.
+    void show_stroke(const Snapshot& snapshot);
     /// About twice a second; `rate` [Hz] as measured.
     void show_report(const ServoReport& report, double rate);
     /// `problem`: what is wrong with the device and what to do, or empty.
@@ -68,6 +71,7 @@ class Panel : public QWidget {
     IsovalueControls& isovalue_controls() { return *isovalue_; }
     LookControls& look_controls() { return *look_; }
     OverlayControls& overlay_controls() { return *overlay_; }
+    LayersControls& layers_controls() { return *layers_; }
     BrushControls& brush_controls() { return *edit_; }
     DeviceControls& device_controls() { return *device_; }
 
@@ -95,6 +99,8 @@ class Panel : public QWidget {
     void connect_sections();
     void connect_edits();
     void connect_look();
+    void connect_layers();
+    void ask_layers(const std::shared_ptr<const Layers>& layers);
     void show_marks();
     void clear_edits();
     void begin_request(Section* by);
@@ -106,6 +112,7 @@ class Panel : public QWidget {
     void show_fitting();
 
     IsovalueControls* isovalue_;
+    LayersControls* layers_;
     PenetrabilityControls* penetrability_;
     BrushControls* edit_;
     ForceControls* force_;
@@ -115,8 +122,8 @@ class Panel : public QWidget {
     OverlayControls* overlay_;
     SessionBar* bar_;
     QTabWidget* tabs_;
-    Section *session_part_, *isovalue_part_, *penetrability_part_, *edit_part_, *force_part_,
-        *device_part_, *loop_part_, *look_part_, *overlay_part_;
+    Section *session_part_, *isovalue_part_, *layers_part_, *penetrability_part_, *edit_part_,
+        *force_part_, *device_part_, *loop_part_, *look_part_, *overlay_part_;
     std::vector<Section*> sections_;  // all of them, from top to bottom
 
     bool live_ = false;  // there is a session

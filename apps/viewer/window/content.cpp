@@ -63,6 +63,16 @@ run::Player* Content::player() const {
     return live_ && live_->data().is_sequence() ? &live_->data().player() : nullptr;
 }
 
+SharedLayers Content::layers() const {
+    if (live_) return live_->settings().layers;
+    return playback_ ? playback_->layers_at(time_) : nullptr;
+}
+
+double Content::outer_level() const {
+    const SharedLayers now = layers();
+    return have_surfaces(now) ? now->layers.front().level : live_->isovalue();
+}
+
 std::optional<Snapshot> Content::snapshot() const {
     if (live_) return live_->snapshot();
     if (playback_) return playback_->at(time_);

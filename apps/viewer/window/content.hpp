@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 
+#include "apps/viewer/model/layer_set.hpp"
 #include "apps/viewer/model/opening.hpp"
 #include "apps/viewer/model/playback.hpp"
 #include "palpate/run/run.hpp"
@@ -52,6 +53,11 @@ class Content : public QObject {
     double time() const { return time_; }
     void set_time(double time) { time_ = time; }
 
+    /// The layers in use now, or at the time shown; null: none.
+    SharedLayers layers() const;
+    /// The level of the outermost surface that is felt: of the layers, else the run's isovalue. For
+    /// a live run.
+    double outer_level() const;
     /// What is felt now, or was at the time shown. Nothing before the first tick.
     std::optional<Snapshot> snapshot() const;
     /// The data of such a snapshot.

@@ -44,7 +44,8 @@ DisplayController::DisplayController(Content& content, Views& views, Panel& pane
         const io::RecordingHead& head = content_.playback()->head();
         show_volume(content_.playback()->field(), head.isovalue, head.settings.transform);
     });
-    connect(&panel.look_controls(), &LookControls::look_changed, &views, &Views::set_look);
+    connect(&panel.look_controls(), &LookControls::look_changed, this,
+            &DisplayController::show_look);
     connect(&panel.look_controls(), &LookControls::cut_wanted, this, &DisplayController::set_cut);
     connect(&views.scene(), &Scene::cut_moved, &panel.look_controls(), &LookControls::set_look);
 }
@@ -53,6 +54,8 @@ void DisplayController::clear() {
     held_.reset();
     isovalue_.reset();
     shown_.reset();
+    layers_.reset();
+    next_level_.reset();
     views_.clear();
     panel_.clear();
 }
@@ -79,12 +82,39 @@ std::optional<Snapshot> DisplayController::observe() {
     views_.show_snapshot(now);
     if (!now) return now;
     observe_data(*now);
+    observe_layers();
     observe_level(*now);
     return now;
 }
 
+/// Their surfaces are seen with the look.
+void DisplayController::observe_layers() {
+    const SharedLayers layers = content_.layers();
+    if (layers == layers_) return;
+    layers_ = layers;
+    show_look();
+}
+
+void DisplayController::show_look() {
+    views_.set_look(panel_.look_controls().look(), layers_);
+}
+
+/// The scene's surface is the outermost; the slices tell which one the hand meets next.
+void DisplayController::observe_layer_level(const Snapshot& now) {
+    const double outer = layers_->layers.front().level;
+    if (isovalue_ != outer) {
+        isovalue_ = outer;
+        views_.set_isovalue(outer);
+    }
+    const double next = now.session.tick.proxy.isovalue;
+    if (std::isfinite(next)) next_level_ = next;
+    views_.set_next_level(next_level_.value_or(outer));
+}
+
 /// While the hand presses through one surface to the next, the first one stays.
 void DisplayController::observe_level(const Snapshot& now) {
+    if (have_surfaces(layers_)) return observe_layer_level(now);
+    next_level_.reset();
     const ProxyUpdate& proxy = now.session.tick.proxy;
     const bool pressing = now.penetrability_on && proxy.mode == Mode::constrained && isovalue_ &&
                           proxy.isovalue != *isovalue_;
@@ -109,7 +139,7 @@ void DisplayController::hold() {
 
 void DisplayController::set_look(const Look& look) {
     panel_.look_controls().set_look(look);
-    views_.set_look(look);
+    show_look();
 }
 
 void DisplayController::set_cut(Cut cut) {

@@ -4,6 +4,7 @@
 #include <QObject>
 #include <optional>
 
+#include "apps/viewer/model/layer_set.hpp"
 #include "apps/viewer/model/session_file.hpp"
 #include "palpate/servo.hpp"
 
@@ -43,6 +44,9 @@ class DisplayController : public QObject {
     void show_volume(const Field& field, double isovalue, const DeviceTransform& transform);
     void observe_data(const Snapshot& now);
     void observe_level(const Snapshot& now);
+    void observe_layers();
+    void observe_layer_level(const Snapshot& now);
+    void show_look();
     void clear();
 
     Content& content_;
@@ -52,7 +56,9 @@ class DisplayController : public QObject {
     OverlayController& overlays_;
     std::optional<Snapshot> held_;
     std::optional<double> isovalue_;
-    std::optional<Field> shown_;  // as it was given to the views last
+    SharedLayers layers_;               // as they are shown
+    std::optional<double> next_level_;  // of layers
+    std::optional<Field> shown_;        // as it was given to the views last
 };
 
 }  // namespace palpate::viewer

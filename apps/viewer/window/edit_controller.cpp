@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "apps/viewer/panel/brush_controls.hpp"
+#include "apps/viewer/panel/layers_controls.hpp"
 #include "apps/viewer/panel/panel.hpp"
 #include "apps/viewer/window/content.hpp"
 #include "apps/viewer/window/file_dialogs.hpp"
@@ -159,7 +160,8 @@ void EditController::save_surface(const QString& path) {
     const std::filesystem::path file(path.toStdString());
     if (!messages_.guarded([&] { (void)io::mesh_format_from(file); })) return;
     const Field field = content_.live()->field_now();
-    const double isovalue = content_.live()->isovalue();
+    const double isovalue =
+        panel_.layers_controls().chosen_level().value_or(content_.live()->isovalue());
     auto triangles = std::make_shared<std::size_t>(0);
     const auto write = [=](const io::Progress& progress) {
         *triangles = write_surface(field, isovalue, file, progress);

@@ -105,7 +105,10 @@ void FileController::open_volume(const run::Source& source) {
     messages_.forget();
     load(source, [this, request = run_.take_request()](std::shared_ptr<Opened> opened) mutable {
         request.setup.device = run_.device();
-        if (!request.setup.field.isovalue) request.setup.field.isovalue = first_isovalue(*opened);
+        run::Setup& setup = request.setup;
+        if (!setup.field.isovalue && !setup.render.layers) {
+            setup.field.isovalue = first_isovalue(*opened);
+        }
         feel(std::move(opened), request);
         display_.use_usual_look();
     });
@@ -172,7 +175,11 @@ void FileController::leave_playback() {
     SessionFile session = session_now();
     session.isovalue = display_.isovalue().value_or(session.isovalue);
     session.settings.reset();  // the recorded device's
+    const SharedLayers layers = content_.layers();
     feel_session(content_.volume(), session, run_.take_request());
+    if (!layers || !content_.live()) return;
+    run_.send(command::UseLayers{layers});
+    Q_EMIT content_.run_changed();
 }
 
 SessionFile FileController::session_now() const {
@@ -231,6 +238,7 @@ void FileController::feel_session(std::shared_ptr<Opened> opened, const SessionF
     setup.field = {session.solid, session.background, session.isovalue, session.interpolation};
     setup.device = request.device.value_or(session.device);
     setup.render.method = session.method;
+    setup.render.layers.reset();  // the session's are in its settings
     try {
         feel(opened, request);
         run_.set_device(setup.device);

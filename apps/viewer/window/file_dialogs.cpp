@@ -51,6 +51,11 @@ QString ask_open_raw_name(QWidget* window) {
     return QFileDialog::getOpenFileName(window, "Open raw data", last_folder(), "All files (*)");
 }
 
+QString ask_open_layers_name(QWidget* window) {
+    return QFileDialog::getOpenFileName(window, "Open layers", last_folder(),
+                                        "Layers (*.json);;All files (*)");
+}
+
 void remember_folder(const QString& path) {
     if (!is_synthetic(path)) QSettings().setValue("folder", QFileInfo(path).absolutePath());
 }

@@ -13,6 +13,7 @@ namespace palpate::viewer {
 QString ask_open_name(QWidget* window);
 QString ask_open_folder(QWidget* window);
 QString ask_open_raw_name(QWidget* window);
+QString ask_open_layers_name(QWidget* window);
 /// A name without an extension gets `suffix`. `replaces`: the dialog asks before an existing file
 /// is replaced; false for files that are never replaced. `filter`: of the
 /// files shown, without it those with the suffix.

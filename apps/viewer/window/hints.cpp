@@ -73,9 +73,11 @@ void Hints::show_depth(const std::optional<Snapshot>& now) {
                          now->session.tick.proxy.hip.allFinite();
     if (!presses) return depth_->hide();
     const ProxyUpdate& proxy = now->session.tick.proxy;
-    const QString words = QString("%1 mm deep, %2 N")
-                              .arg((proxy.hip - proxy.scp).norm(), 0, 'f', 1)
-                              .arg(now->session.tick.force.norm(), 0, 'f', 1);
+    const std::string felt = felt_words(now->session.tick.layers, content_.layers());
+    const QString layer = felt.empty() ? QString() : QString::fromStdString(felt) + ": ";
+    const QString words = layer + QString("%1 mm deep, %2 N")
+                                      .arg((proxy.hip - proxy.scp).norm(), 0, 'f', 1)
+                                      .arg(now->session.tick.force.norm(), 0, 'f', 1);
     const Pixel hand = pixel_of(scene_.camera(), scene_.view_size(), proxy.hip);
     const int line = scene_.fontMetrics().height();
     say(*depth_, words, QPoint(int(hand.x), int(hand.y) + 3 * line));

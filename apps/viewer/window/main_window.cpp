@@ -56,6 +56,7 @@ MainWindow::MainWindow(const RunRequest& request)
       overlays_(content_, *views_, *panel_, messages_),
       display_(content_, *views_, *panel_, measuring_, overlays_),
       run_(request, content_, *panel_, messages_),
+      layers_(content_, *panel_, messages_),
       recordings_(content_, *panel_, messages_),
       probe_(content_, run_, *views_, messages_),
       editing_(content_, *panel_, messages_, this),
@@ -196,6 +197,7 @@ void MainWindow::tick() {
     rest_or_wake(now);
     probe_.observe();
     hints_.observe(now);
+    if (now) panel_->show_stroke(*now);
     if (now && rounds_ % panel_rounds == 0) {
         panel_->show_snapshot(*now);
         show_readout(*now);
@@ -224,10 +226,12 @@ void MainWindow::show_readout(const Snapshot& now) {
     const Field field = content_.field_at(now);
     const QString units = QString::fromStdString(content_.volume()->loaded.values.units);
     const auto number = [](double value) { return QString::number(value, 'f', 1); };
-    readout_->setText(QString("%1, %2, %3 mm   %4 %5   slope %6 /mm")
-                          .arg(number(at[0]), number(at[1]), number(at[2]),
-                               QString::number(value_at(field, at), 'g', 4), units,
-                               QString::number(gradient_at(field, at).norm(), 'g', 3)));
+    QString felt = QString::fromStdString(felt_words(now.session.tick.layers, content_.layers()));
+    if (!felt.isEmpty()) felt += "   ";
+    readout_->setText(felt + QString("%1, %2, %3 mm   %4 %5   slope %6 /mm")
+                                 .arg(number(at[0]), number(at[1]), number(at[2]),
+                                      QString::number(value_at(field, at), 'g', 4), units,
+                                      QString::number(gradient_at(field, at).norm(), 'g', 3)));
 }
 
 /// Looks less often at a hand that rests.

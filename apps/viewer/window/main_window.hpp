@@ -11,6 +11,7 @@
 #include "apps/viewer/window/edit_controller.hpp"
 #include "apps/viewer/window/file_controller.hpp"
 #include "apps/viewer/window/hints.hpp"
+#include "apps/viewer/window/layers_controller.hpp"
 #include "apps/viewer/window/measure_controller.hpp"
 #include "apps/viewer/window/messages.hpp"
 #include "apps/viewer/window/overlay_controller.hpp"
@@ -41,6 +42,7 @@ class MainWindow : public QMainWindow {
 
     FileController& files() { return files_; }
     RunController& run() { return run_; }
+    LayersController& layers() { return layers_; }
     RecordingController& recordings() { return recordings_; }
     EditController& editing() { return editing_; }
     ProbeController& probe() { return probe_; }
@@ -91,6 +93,7 @@ class MainWindow : public QMainWindow {
     OverlayController overlays_;
     DisplayController display_;
     RunController run_;
+    LayersController layers_;
     RecordingController recordings_;
     ProbeController probe_;
     EditController editing_;

@@ -128,7 +128,7 @@ void ProbeController::touch(const Vec3& at) {
     const double grab = grab_px * mm_per_pixel(views_.scene().camera(), views_.scene().view_size());
     if (aside.norm() <= grab && now->session.tick.proxy.mode == Mode::constrained) return;
     const Field field = content_.live()->field_now();
-    const auto surface = surface_under(field, content_.live()->isovalue(), at, towards);
+    const auto surface = surface_under(field, content_.outer_level(), at, towards);
     if (!surface) return;
     const double stiffness = content_.live()->settings().force.stiffness;
     const double depth = transform.scale * std::min(touch_newtons / stiffness, deepest_touch);
@@ -154,7 +154,7 @@ void ProbeController::approach(const Snapshot& now) {
     const pictures::Camera camera = views_.scene().camera();
     const Vec3 towards = axes_of(camera).towards_viewer;
     const Field field = content_.live()->field_now();
-    const auto surface = surface_in_view(field, content_.live()->isovalue(), towards, camera.up);
+    const auto surface = surface_in_view(field, content_.outer_level(), towards, camera.up);
     if (!surface) return;
     const Vec3 off = off_voxels * field.geometry().spacing.maxCoeff() * towards;
     const DeviceTransform& transform = now.session.transform;

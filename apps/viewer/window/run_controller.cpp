@@ -26,12 +26,15 @@ RunController::RunController(const RunRequest& request, Content& content, Panel&
 RunRequest RunController::take_request() {
     RunRequest request = request_;
     request_.setup.field.isovalue.reset();
+    request_.setup.render.layers.reset();
     request_.record.clear();
     return request;
 }
 
 void RunController::set_first_isovalue(double isovalue) {
-    if (!request_.setup.field.isovalue) request_.setup.field.isovalue = isovalue;
+    const run::Setup& setup = request_.setup;
+    if (setup.field.isovalue || setup.render.layers) return;  // layers have levels of their own
+    request_.setup.field.isovalue = isovalue;
 }
 
 QString RunController::device_words() const {
@@ -75,6 +78,7 @@ void RunController::restore(const RendererSettings& settings) {
     send(settings.force);
     send(settings.proxy.friction);
     send(settings.penetrability);
+    if (settings.layers) send(command::UseLayers{settings.layers});
     send(settings.transform);
     send(command::Forces{settings.forces_on});
     Q_EMIT content_.run_changed();
@@ -83,6 +87,9 @@ void RunController::restore(const RendererSettings& settings) {
 void RunController::raise_isovalue(double percent) {
     const run::Run* live = content_.live();
     if (!live) return;
+    if (have_surfaces(live->settings().layers)) {
+        return messages_.show_done("Layers have levels of their own: drag one on the histogram");
+    }
     const double step = 0.01 * percent * live->field().volume().range();
     send(command::Isovalue{live->isovalue() + step});
 }

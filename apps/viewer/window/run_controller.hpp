@@ -35,8 +35,8 @@ class RunController : public QObject {
     /// `request`: the command line's, for the runs to come.
     RunController(const RunRequest& request, Content& content, Panel& panel, Messages& messages);
 
-    /// The request for another run. The level and the recording of the command line are for the
-    /// first one only.
+    /// The request for another run. The level, the layers and the recording of the command line are
+    /// for the first one only.
     RunRequest take_request();
     /// The level of the next run, unless the command line gave one.
     void set_first_isovalue(double isovalue);

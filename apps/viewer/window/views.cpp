@@ -118,15 +118,20 @@ void Views::set_pressed(const std::optional<double>& level) {
     for (SlicePane* pane : slices_) pane->set_isovalue(level.value_or(isovalue_));
 }
 
+void Views::set_next_level(double level) {
+    scene_->set_pressed(std::nullopt);
+    for (SlicePane* pane : slices_) pane->set_isovalue(level);
+}
+
 void Views::set_isovalue(double isovalue) {
     isovalue_ = isovalue;
     scene_->set_isovalue(isovalue);
     for (SlicePane* pane : slices_) pane->set_isovalue(isovalue);
 }
 
-void Views::set_look(const Look& look) {
-    scene_->set_look(look);
-    for (SlicePane* pane : slices_) pane->set_look(look);
+void Views::set_look(const Look& look, const SharedLayers& layers) {
+    scene_->set_look(scene_look(look, layers));
+    for (SlicePane* pane : slices_) pane->set_look(slice_look(look, layers));
 }
 
 void Views::set_overlay(const std::shared_ptr<const Overlay>& overlay) {

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "apps/viewer/model/layer_set.hpp"
 #include "apps/viewer/model/look.hpp"
 #include "apps/viewer/model/measurement.hpp"
 #include "apps/viewer/model/overlay.hpp"
@@ -29,11 +30,14 @@ class Views : public QWidget {
     void update_field(const Field& field);
     void clear();
     void set_isovalue(double isovalue);
-    void set_look(const Look& look);
+    /// `layers` are seen with it; null: none.
+    void set_look(const Look& look, const SharedLayers& layers);
     /// Null: none.
     void set_overlay(const std::shared_ptr<const Overlay>& overlay);
     /// As Scene::set_pressed; the slices show the contour of that level.
     void set_pressed(const std::optional<double>& level);
+    /// With layers: the level of the surface that is next, whose contour the slices show.
+    void set_next_level(double level);
     /// Up to 60 times a second. Nothing: no hand is shown.
     void show_snapshot(const std::optional<Snapshot>& snapshot);
     /// True: the left button moves the probe, where the device is the mouse.

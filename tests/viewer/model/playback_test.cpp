@@ -30,7 +30,8 @@ struct Recorded {
     run::LoadedVolume loaded;
     std::vector<SessionTick> ticks;
 
-    explicit Recorded(int count, const std::function<double(int)>& time = {})
+    /// From tick `layers_from` on with layers.
+    explicit Recorded(int count, const std::function<double(int)>& time = {}, int layers_from = -1)
         : loaded(run::load(volume())) {
         const Field field(loaded.volume);
         RendererSettings settings;
@@ -41,6 +42,15 @@ struct Recorded {
         for (int i = 0; i < count; ++i) {
             if (i % 1500 == 700) {
                 const Command command = command::Isovalue{70.0 + i % 11};
+                apply(session, command);
+                events.emplace_back(command);
+            }
+            if (i == layers_from) {
+                Layers layers;
+                layers.layers.resize(1);
+                layers.layers[0].name = "shell";
+                layers.layers[0].level = 80;
+                const Command command = command::UseLayers{std::make_shared<const Layers>(layers)};
                 apply(session, command);
                 events.emplace_back(command);
             }
@@ -93,6 +103,17 @@ TEST(Playback, any_moment_shows_a_tick_at_or_just_before_it_as_it_was) {
         if (tick.tick.force.norm() > 0.1) ++pressed;
     }
     EXPECT_GT(pressed, 30);
+}
+
+TEST(Playback, knows_the_layers_at_any_time) {
+    const Recorded recorded(3000, {}, 1000);
+    const Playback playback = recorded.play();
+    EXPECT_EQ(playback.different(), 0U);
+    EXPECT_EQ(playback.layers_at(0.5), nullptr);
+    EXPECT_EQ(playback.layers_at(-1), nullptr);
+    ASSERT_TRUE(playback.layers_at(1.5));
+    EXPECT_EQ(playback.layers_at(1.5)->layers.front().name, "shell");
+    EXPECT_EQ(playback.layers_at(9), playback.layers_at(1.5));
 }
 
 TEST(Playback, its_ends_are_the_first_and_the_last_tick_and_so_is_what_lies_beyond) {

@@ -6,6 +6,7 @@
 #include <QApplication>
 #include <QLabel>
 #include <QMouseEvent>
+#include <QScrollArea>
 #include <QSignalSpy>
 #include <QTabWidget>
 #include <QTest>
@@ -87,7 +88,10 @@ class PanelFixture : public testing::Test {
         if (!found) throw std::runtime_error(std::string("no widget ") + name);
         auto* tabs = panel.findChild<QTabWidget*>("tabs");
         for (int i = 0; i < tabs->count(); ++i) {
-            if (tabs->widget(i)->isAncestorOf(found)) tabs->setCurrentIndex(i);
+            if (!tabs->widget(i)->isAncestorOf(found)) continue;
+            tabs->setCurrentIndex(i);
+            QApplication::processEvents();
+            qobject_cast<QScrollArea*>(tabs->widget(i))->ensureWidgetVisible(found);
         }
         return found;
     }

@@ -1,0 +1,351 @@
+// Keeps choice, list and editor of layers in step.
+#include "apps/viewer/panel/layers_controls.hpp"
+
+#include <QBoxLayout>
+#include <QSignalBlocker>
+#include <QStandardItemModel>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "apps/viewer/panel/layer_editor.hpp"
+#include "apps/viewer/panel/layout.hpp"
+#include "apps/viewer/panel/level_axis.hpp"
+#include "apps/viewer/panel/number_box.hpp"
+#include "apps/viewer/panel/section.hpp"
+#include "apps/viewer/panel/stroke_plot.hpp"
+
+namespace palpate::viewer {
+namespace {
+
+/// Changes of the same thing within so long are one step.
+constexpr int one_step_ms = 1000;
+/// [range] Levels stay so far apart.
+constexpr double least_gap = 1e-3;
+constexpr int most_rows = 6;  // of the list without scrolling
+
+/// Long tips in lines.
+QString wrapped(const QString& text) {
+    return "<p>" + text.toHtmlEscaped() + "</p>";
+}
+
+}  // namespace
+
+LayersControls::LayersControls()
+    : choice_(named(new QComboBox, "layers", "Layers: several surfaces in one stroke")),
+      open_(named(new QPushButton("Open…"), "open_layers", "A set of layers from a file (JSON)")),
+      save_(named(new QPushButton("Save as…"), "save_layers",
+                  "This set of layers to a file (JSON), for these and other data")),
+      undo_(named(new QPushButton("↶"), "undo_layers", "Undo the last change of layers")),
+      redo_(
+          named(new QPushButton("↷"), "redo_layers", "Redo the change of layers that was undone")),
+      add_(named(new QPushButton("Add"), "add_layer",
+                 "Another layer, where levels leave the most room; the first at the isovalue")),
+      remove_(named(new QPushButton("Remove"), "remove_layer", "Remove the chosen layer")),
+      note_(new Note("layers_note", Note::Kind::plain)),
+      touched_(named(new QLabel, "touched_layers",
+                     "The layer that is touched, and those that the proxy is in")),
+      list_(named(new QListWidget, "layer_list",
+                  "Layers from outside in; choose one to change it. Their levels are lines to drag "
+                  "on the histogram")),
+      needle_(named(new QCheckBox("Needle"), "needle",
+                    "The hand holds a needle: after the first puncture it moves along a line")),
+      editor_(new LayerEditor),
+      plot_(new StrokePlot),
+      limiter_(this) {
+    setObjectName("layers_controls");
+    undo_->setAccessibleName("Undo, layers");
+    redo_->setAccessibleName("Redo, layers");
+    add_->setAccessibleName("Add a layer");
+    remove_->setAccessibleName("Remove the layer");
+    open_->setAccessibleName("Open layers");
+    save_->setAccessibleName("Save layers");
+    touched_->setTextFormat(Qt::PlainText);
+    touched_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Fixed);
+    body_ = column_of({make_stroke(), make_list()});
+    column_in(this, {make_choice(), note_, body_});
+    connect_inputs();
+    show();
+}
+
+QWidget* LayersControls::make_choice() {
+    let_wheel_pass(*choice_);
+    choice_->setAccessibleName("Layers");
+    choice_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+    choice_->setMinimumContentsLength(12);
+    for (QPushButton* one : {undo_, redo_}) one->setMaximumWidth(2 * fontMetrics().height());
+    return column_of({choice_, row_of({open_, save_, add_, undo_, redo_}, 1)});
+}
+
+/// What is touched, and the force so far.
+QWidget* LayersControls::make_stroke() {
+    auto* clear =
+        named(new QPushButton("Clear"), "clear_stroke", "Clear the plot of force by depth");
+    connect(clear, &QPushButton::clicked, plot_, &StrokePlot::clear);
+    clear->setAccessibleName("Clear the plot");
+    return column_of({row_of({touched_, clear}, 0), plot_});
+}
+
+QWidget* LayersControls::make_list() {
+    list_->setAccessibleName("Layers, from outside in");
+    list_->setUniformItemSizes(true);
+    return column_of({list_, row_of({remove_, needle_}, 1), editor_});
+}
+
+void LayersControls::connect_inputs() {
+    connect(choice_, qOverload<int>(&QComboBox::activated), this, [this](int at) {
+        const auto set = static_cast<std::size_t>(at) - 1;
+        if (at == 0) return use(nullptr);
+        if (set >= choices_.size()) return;  // the one in use
+        use(choices_[set].layers);
+    });
+    connect(open_, &QPushButton::clicked, this, &LayersControls::open_wanted);
+    connect(save_, &QPushButton::clicked, this, &LayersControls::save_wanted);
+    connect(undo_, &QPushButton::clicked, this, [this] { step(true); });
+    connect(redo_, &QPushButton::clicked, this, [this] { step(false); });
+    connect(add_, &QPushButton::clicked, this, &LayersControls::add_layer);
+    connect(remove_, &QPushButton::clicked, this, &LayersControls::remove_layer);
+    connect(list_, &QListWidget::currentRowChanged, this, [this] { show(); });
+    connect(needle_, &QCheckBox::clicked, this, [this](bool on) {
+        change("needle", [on](Layers& layers) {
+            layers.needle = on ? std::optional<Needle>(Needle{}) : std::nullopt;
+        });
+    });
+    connect(editor_, &LayerEditor::changed, this,
+            [this](const QString& key, const LayerEditor::Change& how) {
+                const int row = chosen();
+                if (row < 0) return;
+                change(QString("%1 %2").arg(key).arg(row),
+                       [&](Layers& layers) { how(layers.layers[static_cast<std::size_t>(row)]); });
+            });
+    connect(editor_, &LayerEditor::level_wanted, this, [this](double level) {
+        if (chosen() >= 0) move_level(chosen(), level);
+    });
+}
+
+void LayersControls::set_data(double low, double high, Solid solid) {
+    low_ = low;
+    high_ = high;
+    solid_ = solid;
+    history_.clear();
+    note_->say({});
+    plot_->clear();
+}
+
+void LayersControls::clear() {
+    limiter_.drop();
+    layers_.reset();
+    history_.clear();
+    choices_.clear();
+    note_->say({});
+    plot_->clear();
+    show();
+}
+
+void LayersControls::set_choices(std::vector<LayersChoice> choices) {
+    choices_ = std::move(choices);
+    show_choice();
+}
+
+void LayersControls::set_layers(const RendererSettings& settings, double isovalue) {
+    settings_ = settings;
+    isovalue_ = isovalue;
+    const bool others = settings.layers != layers_;
+    layers_ = settings.layers;
+    if (others && !layers_) plot_->clear();
+    show();
+}
+
+void LayersControls::say(const QString& note) {
+    note_->say(note);
+}
+
+/// A change that continues the last one is one step with it.
+void LayersControls::edit(const SharedLayers& next, const QString& key) {
+    const bool goes_on = !key.isEmpty() && key == last_key_ && since_edit_.isValid() &&
+                         since_edit_.elapsed() < one_step_ms;
+    history_.keep(layers_, goes_on);
+    last_key_ = key;
+    since_edit_.start();
+    layers_ = next;
+    show();
+    limiter_.put([this, next] { Q_EMIT wanted(next); });
+}
+
+void LayersControls::change(const QString& key, const std::function<void(Layers&)>& how) {
+    if (!layers_) return;
+    Layers next = *layers_;
+    how(next);
+    edit(std::make_shared<const Layers>(std::move(next)), key);
+}
+
+void LayersControls::use(const SharedLayers& layers) {
+    const auto known = std::ranges::find(choices_, layers, &LayersChoice::layers);
+    note_->say(layers && known != choices_.end() ? known->note : QString());
+    edit(layers, {});
+    choose_layer(0);
+}
+
+LevelRoom LayersControls::room(int layer) const {
+    return room_of(*layers_, static_cast<std::size_t>(layer), least_gap * (high_ - low_));
+}
+
+void LayersControls::move_level(int layer, double level) {
+    if (!layers_ || layer < 0 || layer >= static_cast<int>(layers_->layers.size())) return;
+    const auto [low, high] = room(layer);
+    const double within = std::isfinite(level) ? std::clamp(level, low, high) : level;
+    change(QString("level %1").arg(layer), [layer, within](Layers& layers) {
+        layers.layers[static_cast<std::size_t>(layer)].level = within;
+    });
+}
+
+void LayersControls::set_stiffness_curve(const std::vector<Curve::Knot>& knots) {
+    change(QString("curve %1").arg(knots.size()),
+           [&knots](Layers& layers) { layers[HapticProperty::stiffness].density.knots = knots; });
+}
+
+void LayersControls::add_layer() {
+    if (!have_surfaces(layers_)) {
+        Layers first = first_layer(std::clamp(isovalue_, low_, high_));
+        if (layers_) {  // curves without a surface
+            Layers next = *layers_;
+            next.layers = first.layers;
+            first = std::move(next);
+        }
+        return use(std::make_shared<const Layers>(std::move(first)));
+    }
+    auto [next, at] = with_another(*layers_, solid_, low_, high_);
+    edit(std::make_shared<const Layers>(std::move(next)), {});
+    choose_layer(static_cast<int>(at));
+}
+
+void LayersControls::remove_layer() {
+    const int row = chosen();
+    if (row < 0) return;
+    if (layers_->layers.size() == 1) return use(nullptr);
+    change({}, [row](Layers& layers) { layers.layers.erase(layers.layers.begin() + row); });
+}
+
+void LayersControls::step(bool back) {
+    const auto next = back ? history_.undo(layers_) : history_.redo(layers_);
+    if (!next) return show();
+    last_key_.clear();
+    layers_ = *next;
+    note_->say({});
+    show();
+    limiter_.drop();
+    Q_EMIT wanted(*next);
+}
+
+int LayersControls::chosen() const {
+    const int count = layers_ ? static_cast<int>(layers_->layers.size()) : 0;
+    return std::min(list_->currentRow(), count - 1);
+}
+
+std::optional<double> LayersControls::chosen_level() const {
+    if (chosen() < 0) return std::nullopt;
+    return layers_->layers[static_cast<std::size_t>(chosen())].level;
+}
+
+void LayersControls::choose_layer(int layer) {
+    last_key_.clear();  // what comes next is another step
+    if (layer < list_->count()) list_->setCurrentRow(layer);
+}
+
+void LayersControls::show() {
+    show_choice();
+    show_list();
+    undo_->setEnabled(history_.can_undo());
+    redo_->setEnabled(history_.can_redo());
+    save_->setEnabled(layers_ != nullptr);
+    body_->setVisible(layers_ != nullptr);
+    add_->setEnabled(!layers_ || layers_->layers.size() < Layers::most_layers);
+    const int row = chosen();
+    remove_->setEnabled(row >= 0);
+    editor_->setVisible(row >= 0);
+    if (!layers_) return;
+    needle_->setChecked(layers_->needle.has_value());
+    if (row < 0) return;
+    editor_->show_layer(*layers_, static_cast<std::size_t>(row), settings_,
+                        rounded_to(least_gap * (high_ - low_), 1e-6));
+}
+
+/// None, the sets that can be had, and the one in use where it is none of them.
+void LayersControls::show_choice() {
+    const QSignalBlocker quiet(choice_);
+    choice_->clear();
+    choice_->addItem("No layers: one surface");
+    choice_->setItemData(0, wrapped("The surface of the isovalue is felt"), Qt::ToolTipRole);
+    int now = 0;
+    for (const LayersChoice& one : choices_) {
+        choice_->addItem(QString::fromStdString(one.layers->name));
+        const int at = choice_->count() - 1;
+        choice_->setItemData(at,
+                             wrapped(one.note.isEmpty() ? one.about : one.note + ". " + one.about),
+                             Qt::ToolTipRole);
+        auto* model = qobject_cast<QStandardItemModel*>(choice_->model());
+        if (!one.possible) model->item(at)->setEnabled(false);
+        if (layers_ && now == 0 && same(one.layers, layers_)) now = at;
+    }
+    if (layers_ && now == 0) {
+        const auto made_from = std::ranges::find_if(choices_, [this](const LayersChoice& one) {
+            return one.layers->name == layers_->name;
+        });
+        QString name = QString::fromStdString(layers_->name.empty() ? "Own layers" : layers_->name);
+        if (made_from != choices_.end()) name += " (changed)";
+        choice_->addItem(name);
+        now = choice_->count() - 1;
+    }
+    choice_->setCurrentIndex(now);
+    choice_->setToolTip(now == 0 ? wrapped("Several surfaces in one stroke, each with its own "
+                                           "stiffness, friction and puncture force")
+                                 : choice_->itemData(now, Qt::ToolTipRole).toString());
+}
+
+/// With a mark where the device cannot render what a layer asks for.
+void LayersControls::show_list() {
+    const QSignalBlocker quiet(list_);
+    const int count = layers_ ? static_cast<int>(layers_->layers.size()) : 0;
+    const int row = std::clamp(list_->currentRow(), count > 0 ? 0 : -1, count - 1);
+    while (list_->count() > count) delete list_->takeItem(list_->count() - 1);
+    while (list_->count() < count) list_->addItem("");
+    for (int i = 0; i < count; ++i) {
+        const auto at = static_cast<std::size_t>(i);
+        const Layer& layer = layers_->layers[at];
+        QListWidgetItem& item = *list_->item(i);
+        QPixmap colour(16, 16);
+        colour.fill(QColor::fromRgbF(layer.colour[0], layer.colour[1], layer.colour[2]));
+        QIcon icon(colour);
+        icon.addPixmap(colour, QIcon::Selected);  // not tinted
+        item.setIcon(icon);
+        QString text =
+            QString("%1   %2").arg(QString::fromStdString(layer.name), number_text(layer.level));
+        const auto lowered = lowered_stiffness(*layers_, at, settings_);
+        if (lowered) {
+            text += QString("   ⚠ rendered at %1 N/mm").arg(number_text(*lowered, 3));
+        }
+        item.setText(text);
+        item.setToolTip(
+            lowered
+                ? QString("The device cannot render %1 N/mm stably with this "
+                          "damping and viscosity: it renders %2 N/mm")
+                      .arg(number_text(
+                               property_at(*layers_, at, HapticProperty::stiffness, settings_), 3),
+                           number_text(*lowered, 3))
+                : QString());
+    }
+    list_->setCurrentRow(row);
+    const int rows = std::clamp(count, 2, most_rows);
+    list_->setFixedHeight(rows * (fontMetrics().height() + 4) + 6);
+}
+
+void LayersControls::show_snapshot(const Snapshot& now) {
+    if (!layers_) return;
+    plot_->add(now, layers_);
+    const QString words = QString::fromStdString(felt_words(now.session.tick.layers, layers_));
+    const QString text = words.isEmpty() ? "touches no layer" : words;
+    if (touched_->text() != text) touched_->setText(text);
+}
+
+}  // namespace palpate::viewer

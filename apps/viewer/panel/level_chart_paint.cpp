@@ -1,0 +1,122 @@
+// Drawing of the level chart.
+#include <QPainter>
+#include <QPainterPath>
+
+#include <cmath>
+
+#include "apps/viewer/panel/colours.hpp"
+#include "apps/viewer/panel/level_chart.hpp"
+#include "apps/viewer/panel/number_box.hpp"
+
+namespace palpate::viewer {
+namespace {
+
+QPainterPath triangle(double x, double tip, double base, double half) {
+    QPainterPath path(QPointF(x, tip));
+    path.lineTo(x - half, base);
+    path.lineTo(x + half, base);
+    path.closeSubpath();
+    return path;
+}
+
+}  // namespace
+
+void LevelChart::paint_ticks(QPainter& painter, const LevelAxis& axis) const {
+    const QRectF p = plot();
+    const double half = 0.2 * text_height();
+    for (const double level : suggested_) {
+        const double x = axis.x_of(level);
+        painter.fillPath(triangle(x, p.top() - 1, p.top() - 2 * half, half),
+                         palette().color(QPalette::Text));
+        QColor faint = palette().color(QPalette::Text);
+        faint.setAlphaF(0.35);
+        painter.setPen(QPen(faint, 1, Qt::DotLine));
+        painter.drawLine(QPointF(x, p.top()), QPointF(x, p.bottom()));
+    }
+}
+
+void LevelChart::paint_marks(QPainter& painter, const LevelAxis& axis) const {
+    const QRectF p = plot();
+    const double half = 0.25 * text_height();
+    int row = 0;
+    for (const LevelMark& mark : marks_) {
+        const double x = axis.x_of(mark.level);
+        // Pale colours would vanish on white.
+        const bool pale = !is_dark(palette()) && mark.colour.lightnessF() > 0.7;
+        painter.setPen(QPen(pale ? mark.colour.darker(160) : mark.colour, 1.5));
+        painter.drawLine(QPointF(x, p.top()), QPointF(x, p.bottom()));
+        painter.setPen(QPen(palette().color(QPalette::Text), 1));
+        painter.setBrush(mark.colour);
+        painter.drawRect(QRectF(x - half, p.bottom() - 2 * half, 2 * half, 2 * half));
+        if (mark.name.isEmpty()) continue;
+        const double wide = fontMetrics().horizontalAdvance(mark.name);
+        const double left = x + 3 + wide > p.right() ? x - 3 - wide : x + 3;
+        // One below the other, so that names of near levels do not meet.
+        const double top = p.top() + 1 + (row++ % 3) * text_height();
+        painter.drawText(QRectF(left, top, wide + 1, text_height()), Qt::AlignLeft, mark.name);
+    }
+}
+
+/// The level asked for as a line with a grip, the level felt as a broken line with a drop below.
+void LevelChart::paint_markers(QPainter& painter, const LevelAxis& axis) const {
+    const QRectF p = plot();
+    if (!std::isnan(felt_)) {
+        const QColor colour = readable(to_qt(pictures::scp_colour), palette());
+        const double x = axis.x_of(felt_);
+        painter.setPen(QPen(colour, 2, Qt::DashLine));
+        painter.drawLine(QPointF(x, p.top()), QPointF(x, p.bottom()));
+        const double half = 0.28 * text_height();
+        painter.fillPath(triangle(x, p.bottom() - 1, p.bottom() + 1.6 * half, half), colour);
+    }
+    if (!level_shown_) return;
+    const QColor colour = palette().color(hasFocus() ? QPalette::Highlight : QPalette::Text);
+    const double x = axis.x_of(level_);
+    painter.setPen(QPen(colour, 2));
+    painter.drawLine(QPointF(x, p.top() - 1), QPointF(x, p.bottom()));
+    const double half = 0.3 * text_height();
+    painter.setPen(Qt::NoPen);
+    painter.setBrush(colour);
+    painter.drawRoundedRect(QRectF(x - half, p.top() - 1, 2 * half, 1.6 * half), 2, 2);
+}
+
+void LevelChart::paint_ends(QPainter& painter) const {
+    const QRectF p = plot();
+    const QRectF below(p.left(), strip().bottom() + 1, p.width(), text_height());
+    painter.setPen(palette().color(QPalette::PlaceholderText));
+    const LevelAxis a = axis();
+    painter.drawText(below, Qt::AlignLeft | Qt::AlignVCenter, number_text(a.low));
+    painter.drawText(below, Qt::AlignRight | Qt::AlignVCenter, number_text(a.high));
+    if (!std::isfinite(felt_) && !std::isnan(felt_)) {
+        painter.setPen(readable(to_qt(pictures::scp_colour), palette()));
+        painter.drawText(below, Qt::AlignHCenter | Qt::AlignVCenter, "nothing is felt here");
+    }
+}
+
+void LevelChart::paintEvent(QPaintEvent*) {
+    QPainter painter(this);
+    painter.setRenderHint(QPainter::Antialiasing);
+    const QRectF p = plot();
+    painter.fillRect(p, palette().color(QPalette::Base));
+    if (histogram_.counts.empty()) {
+        painter.setPen(palette().color(QPalette::PlaceholderText));
+        painter.drawText(p, Qt::AlignCenter, "no volume");
+        return;
+    }
+    const LevelAxis a = axis();
+    QColor bars = palette().color(QPalette::Text);
+    bars.setAlphaF(isEnabled() ? 0.42 : 0.2);
+    paint_histogram(painter, histogram_, a, p, bars);
+    Ranges bands = bands_;
+    if (drag_ == Drag::fresh) bands.push_back(fresh_);
+    paint_bands(painter, bands, a, p, strip(), chosen_);
+    paint_ticks(painter, a);
+    paint_marks(painter, a);
+    curve_.paint(painter, a, p, readable(QColor(0, 114, 178), palette()), held_knot_);
+    paint_markers(painter, a);
+    paint_ends(painter);
+    painter.setBrush(Qt::NoBrush);
+    painter.setPen(QPen(palette().color(hasFocus() ? QPalette::Highlight : QPalette::Mid), 1));
+    painter.drawRect(p);
+}
+
+}  // namespace palpate::viewer

@@ -1,0 +1,276 @@
+// Layers in the panel: choice, list, editor, plot.
+#include <QAbstractButton>
+#include <QComboBox>
+#include <QContextMenuEvent>
+#include <QDir>
+#include <QLineEdit>
+#include <QListWidget>
+
+#include <limits>
+
+#include "apps/viewer/panel/isovalue_controls.hpp"
+#include "apps/viewer/panel/layers_controls.hpp"
+#include "apps/viewer/panel/stroke_plot.hpp"
+#include "palpate/io/layers_file.hpp"
+#include "tests/viewer/panel/panel_fixture.hpp"
+
+namespace palpate::viewer {
+namespace {
+
+using enum HapticProperty;
+
+class LayersPart : public PanelFixture {
+  protected:
+    LayersPart() {
+        set();
+        for (const char* name : {"ct-soft-tissue-and-bone", "ct-needle"}) {
+            const io::LayersFile file = io::layers_named(name);
+            choices.push_back({std::make_shared<const Layers>(file.layers),
+                               QString::fromStdString(file.about),
+                               {},
+                               true});
+        }
+        choices.back().note = "These are for CT";
+        panel.layers_controls().set_choices(choices);
+    }
+    /// As by the keys of someone who has tabbed there.
+    void choose(int row) {
+        auto* box = find<QComboBox>("layers");
+        box->setFocus();
+        while (box->currentIndex() < row) QTest::keyClick(box, Qt::Key_Down);
+        while (box->currentIndex() > row) QTest::keyClick(box, Qt::Key_Up);
+        settle();
+    }
+    /// Only a check box's own words take clicks, not all of its row.
+    void tick(const char* name) {
+        auto* box = find<QWidget>(name);
+        QTest::mouseClick(box, Qt::LeftButton, {}, QPoint(8, box->height() / 2));
+        settle();
+    }
+    SharedLayers asked() {
+        const auto all = of<command::UseLayers>();
+        return all.empty() ? nullptr : all.back().layers;
+    }
+    const Layer& layer(std::size_t number) { return asked()->layers.at(number); }
+
+    std::vector<LayersChoice> choices;
+};
+
+TEST_F(LayersPart, a_choice_is_one_command_and_none_goes_back_to_the_isovalue) {
+    choose(1);
+    ASSERT_EQ(of<command::UseLayers>().size(), 1U);
+    EXPECT_EQ(asked(), choices[0].layers);
+    EXPECT_TRUE(of<command::Isovalue>().empty());
+    EXPECT_FALSE(find<QWidget>("isovalue_box")->isEnabled());
+    choose(2);
+    EXPECT_EQ(asked(), choices[1].layers);
+    EXPECT_EQ(find<QLabel>("layers_note")->text(), "These are for CT");
+    choose(0);
+    EXPECT_EQ(of<command::UseLayers>().back().layers, nullptr);
+    ASSERT_EQ(of<command::Isovalue>().size(), 1U);
+    EXPECT_EQ(of<command::Isovalue>()[0].isovalue, 300);
+    EXPECT_TRUE(find<QWidget>("isovalue_box")->isEnabled());
+    EXPECT_TRUE(find<QLabel>("layers_note")->text().isEmpty());
+}
+
+TEST_F(LayersPart, a_refused_set_is_not_shown_as_chosen) {
+    refuse_with = "layers need the method exact";
+    choose(1);
+    EXPECT_EQ(find<QComboBox>("layers")->currentIndex(), 0);
+    EXPECT_EQ(message("layers_part"), refuse_with);
+    EXPECT_FALSE(panel.settings().layers);
+}
+
+TEST_F(LayersPart, each_property_of_the_chosen_layer_can_be_set) {
+    choose(1);
+    find<QListWidget>("layer_list")->setCurrentRow(1);
+    type("layer_level", "400");
+    EXPECT_EQ(layer(1).level, 400);
+    const std::pair<const char*, HapticProperty> properties[] = {
+        {"layer_stiffness_box", stiffness},
+        {"layer_static_friction_box", static_friction},
+        {"layer_dynamic_friction_box", dynamic_friction},
+        {"layer_viscosity_box", viscosity},
+        {"layer_drag_box", HapticProperty::drag}};
+    double value = 0.0001;
+    for (const auto& [box, property] : properties) {
+        value += 0.0001;
+        type(box, QString::number(value));
+        EXPECT_NEAR(layer(1)[property].value_or(-1), value, 1e-9) << box;
+    }
+    type("layer_opacity_box", "0.5");
+    EXPECT_EQ(layer(1).opacity, 0.5);
+    EXPECT_EQ(layer(0).level, -300);
+    EXPECT_NO_THROW(check(*asked(), Solid::above));
+}
+
+TEST_F(LayersPart, a_puncture_force_may_be_never) {
+    choose(1);
+    EXPECT_FALSE(find<QAbstractButton>("layer_never")->isChecked());
+    tick("layer_never");
+    EXPECT_EQ(layer(0)[puncture_force], std::numeric_limits<double>::infinity());
+    settle();
+    EXPECT_FALSE(find<QWidget>("layer_puncture_force_box")->isEnabled());
+    tick("layer_never");
+    EXPECT_EQ(layer(0)[puncture_force], 1.2) << "as it was";
+    tick("needle");
+    EXPECT_TRUE(asked()->needle);
+}
+
+TEST_F(LayersPart, a_name_twice_is_refused_with_the_reason) {
+    choose(1);
+    auto* name = find<QLineEdit>("layer_name");
+    name->setFocus();
+    name->selectAll();
+    QTest::keyClicks(name, "bone");
+    QTest::keyClick(name, Qt::Key_Return);
+    settle();
+    EXPECT_TRUE(message("layers_part").contains("twice")) << message("layers_part").toStdString();
+    EXPECT_EQ(layer(0).name, "skin");
+    EXPECT_EQ(find<QListWidget>("layer_list")->item(0)->text().section(' ', 0, 0), "skin");
+}
+
+TEST_F(LayersPart, layers_are_added_and_removed_and_the_last_one_ends_it) {
+    press("add_layer");
+    ASSERT_EQ(asked()->layers.size(), 1U);
+    EXPECT_EQ(layer(0).level, 300) << "at the isovalue";
+    choose(1);
+    press("add_layer");
+    ASSERT_EQ(asked()->layers.size(), 3U);
+    EXPECT_EQ(find<QListWidget>("layer_list")->count(), 3);
+    for (int left = 2; left > 0; --left) {
+        press("remove_layer");
+        EXPECT_EQ(asked()->layers.size(), std::size_t(left));
+    }
+    press("remove_layer");
+    EXPECT_EQ(of<command::UseLayers>().back().layers, nullptr);
+    press("undo_layers");
+    EXPECT_EQ(asked()->layers.size(), 1U);
+    for (int i = 0; i < 3; ++i) press("undo_layers");
+    EXPECT_EQ(of<command::UseLayers>().back().layers, choices[0].layers);
+}
+
+TEST_F(LayersPart, marks_on_the_histogram_are_layers_first_then_other_surfaces) {
+    choose(1);
+    Look look;
+    look.surfaces = {{1000, {0, 0, 1}, 0.5, true}};
+    panel.look_controls().set_look(look);
+    LevelChart& chart = panel.isovalue_controls().chart();
+    const LevelAxis axis = chart.axis();
+    const double y = chart.strip().top() - 4;
+    drag(&chart, {axis.x_of(1000), y}, {axis.x_of(1500), y});
+    settle();
+    EXPECT_NEAR(panel.look_controls().look().surfaces[0].level, 1500, 30);
+    EXPECT_EQ(of<command::UseLayers>().size(), 1U);
+    drag(&chart, {axis.x_of(-300), y}, {axis.x_of(2500), y});
+    EXPECT_LT(layer(0).level, 250);
+    EXPECT_GT(layer(0).level, 200) << "up to its neighbour";
+}
+
+TEST_F(LayersPart, what_the_device_cannot_render_is_marked_with_what_it_renders) {
+    choose(1);
+    auto* list = find<QListWidget>("layer_list");
+    EXPECT_FALSE(list->item(0)->text().contains("rendered"));
+    type("layer_stiffness_box", "20");
+    settle();
+    EXPECT_TRUE(list->item(0)->text().contains("rendered at"))
+        << list->item(0)->text().toStdString();
+    EXPECT_TRUE(list->item(0)->toolTip().contains("20"));
+    EXPECT_EQ(layer(0)[stiffness], 20) << "as it was asked for";
+}
+
+TEST_F(LayersPart, a_drag_of_a_slider_is_one_step_to_undo) {
+    choose(1);
+    auto* slider = find<QSlider>("layer_stiffness_slider");
+    for (const int place : {200, 300, 400}) {
+        slider->setValue(place);
+        QTest::qWait(20);
+    }
+    EXPECT_NE(layer(0)[stiffness], 0.3);
+    press("undo_layers");
+    EXPECT_EQ(layer(0)[stiffness], 0.3);
+    press("redo_layers");
+    EXPECT_NE(layer(0)[stiffness], 0.3);
+}
+
+TEST_F(LayersPart, the_curve_of_stiffness_is_dragged_and_gets_and_loses_points) {
+    Layers layers = *choices[0].layers;
+    layers.layers[0][stiffness].reset();
+    layers[stiffness].density.knots = {{-500, 0.2}, {1000, 1}};
+    choices[0].layers = std::make_shared<const Layers>(layers);
+    panel.layers_controls().set_choices(choices);
+    choose(1);
+    LevelChart& chart = panel.isovalue_controls().chart();
+    const LevelAxis axis = chart.axis();
+    const auto knots = [&] { return (*asked())[stiffness].density.knots; };
+    const auto place = [&](int knot) {
+        const double bottom = chart.strip().top();
+        const Curve::Knot& at = chart.curve().knots[std::size_t(knot)];
+        const double top = 0.5 * chart.fontMetrics().height() + 2;
+        return QPointF(axis.x_of(at.at), bottom - at.value / chart.curve().top * (bottom - top));
+    };
+    drag(&chart, place(1), place(1) + QPointF(40, 20));
+    settle();
+    ASSERT_EQ(knots().size(), 2U);
+    EXPECT_GT(knots()[1].at, 1100);
+    EXPECT_LT(knots()[1].value, 0.95);
+    EXPECT_EQ(knots()[0].value, 0.2);
+    drag(&chart, place(1), {axis.x_of(-900), place(1).y()});
+    settle();
+    EXPECT_GT(knots()[1].at, -500) << "not past its neighbour";
+    const QPoint between(int(axis.x_of(0)), int(place(0).y()) - 20);
+    QTest::mouseDClick(&chart, Qt::LeftButton, {}, between);
+    settle();
+    ASSERT_EQ(knots().size(), 3U);
+    EXPECT_NO_THROW(check(*asked(), Solid::above));
+    QDir().mkpath(PALPATE_PICTURES);
+    panel.grab().save(QString(PALPATE_PICTURES) + "/layers_curve.png");
+    chart.setFocus();
+    QTest::keyClick(&chart, Qt::Key_Delete);
+    settle();
+    EXPECT_EQ(knots().size(), 2U);
+    QContextMenuEvent right(QContextMenuEvent::Mouse, place(0).toPoint());
+    QApplication::sendEvent(&chart, &right);
+    settle();
+    EXPECT_EQ(knots().size(), 1U);
+    press("undo_layers");
+    EXPECT_EQ(knots().size(), 2U);
+}
+
+TEST_F(LayersPart, what_is_touched_is_named_and_plotted) {
+    choose(1);
+    Snapshot now;
+    now.normal = Vec3(0, 0, 1);
+    for (int i = 0; i < 60; ++i) {
+        const bool through = i >= 30;
+        now.session.tick.time = 0.03 * i;
+        now.session.tick.proxy.hip = Vec3(0, 0, -0.1 * i);
+        now.session.tick.force = Vec3(0, 0, 0.04 * (through ? 1.5 * (i - 30) : i));
+        now.session.tick.layers = {std::int8_t(through ? 1 : 0), std::int8_t(through ? 1 : 0), 0};
+        panel.show_stroke(now);
+    }
+    EXPECT_EQ(find<QLabel>("touched_layers")->text(), "on bone, in skin");
+    EXPECT_EQ(find<StrokePlot>("stroke_plot")->stroke().points().size(), 60U);
+    for (const bool dark : {false, true}) {
+        const QPalette usual = QApplication::palette();
+        QPalette palette(QColor(58, 58, 62), QColor(45, 45, 48));
+        palette.setColor(QPalette::Base, QColor(28, 28, 30));
+        if (dark) QApplication::setPalette(palette);
+        panel.resize(panel.width(), 1450);
+        QApplication::processEvents();
+        QDir().mkpath(PALPATE_PICTURES);
+        panel.grab().save(QString(PALPATE_PICTURES) + (dark ? "/layers_dark" : "/layers_light") +
+                          ".png");
+        QApplication::setPalette(usual);
+    }
+    press("clear_stroke");
+    EXPECT_TRUE(find<StrokePlot>("stroke_plot")->stroke().points().empty());
+}
+
+TEST_F(LayersPart, the_panel_stays_narrow) {
+    choose(2);
+    EXPECT_LE(panel.minimumSizeHint().width(), 26 * panel.fontMetrics().height());
+}
+
+}  // namespace
+}  // namespace palpate::viewer
