@@ -45,9 +45,7 @@ class NeedleForce {
         double sum = 0;
         for (std::size_t i = 0; i + 1 < layers_.layers.size(); ++i) {
             const double begin = layers_.layers[i].level;
-            const double end = i + 2 < layers_.layers.size()
-                                   ? std::min(depth, layers_.layers[i + 1].level)
-                                   : depth;
+            const double end = std::min(depth, layers_.layers[i + 1].level);
             sum += std::max(0.0, end - begin) * *layers_.layers[i][HapticProperty::drag];
         }
         return sum;

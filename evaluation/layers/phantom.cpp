@@ -121,9 +121,9 @@ double drag_at(const Layers& layers, double depth) {
     };
     double sum = 0;
     for (std::size_t i = 0; i < layers.layers.size() && gave_way(i); ++i) {
-        const bool is_innermost = i + 1 == layers.layers.size() || !gave_way(i + 1);
-        // The shaft reaches to the hand, also where a surface holds the tip.
-        const double end = is_innermost ? depth : layers.layers[i + 1].level;
+        // The shaft reaches to the tip, which the next surface may hold.
+        const bool is_innermost = i + 1 == layers.layers.size();
+        const double end = is_innermost ? depth : std::min(depth, layers.layers[i + 1].level);
         sum += (end - layers.layers[i].level) * *layers.layers[i][HapticProperty::drag];
     }
     return sum;

@@ -6,7 +6,7 @@
 
 namespace palpate::support {
 
-/// A recording of format 2 as format 1 had it: without tick numbers and checksums.
+/// A recording as format 1 had it: without tick numbers and checksums.
 inline std::string as_format_1(const std::string& text) {
     std::istringstream lines(text);
     std::string changed, line;
@@ -15,7 +15,7 @@ inline std::string as_format_1(const std::string& text) {
         table = table || line.starts_with("t,");
         if (table && !line.starts_with('#')) {
             line.erase(line.rfind(',', line.rfind(',') - 1));
-        } else if (line.starts_with("# palpate recording 2")) {
+        } else if (line.starts_with("# palpate recording 3")) {
             line = "# palpate recording 1";
         } else if (line.starts_with("# end ")) {
             line.replace(line.find(",\"crc32\""), std::string::npos, "}");
