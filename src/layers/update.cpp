@@ -57,9 +57,9 @@ class LayersTick {
         const Vec3& at = proxy.placed ? proxy.scp_physical : input_.hip;
         int inside = at.allFinite() ? tissues_.inside_at(at) : 0;
         if (!proxy.placed) {
-            for (int layer = 0; layer < inside; ++layer) {
-                if (std::isfinite(puncture_force_of(layer))) continue;
-                inside = layer;
+            for (int layer = Tissues::nested ? 0 : inside - 1; layer < inside; ++layer) {
+                if (layer < 0 || std::isfinite(puncture_force_of(layer))) continue;
+                inside = Tissues::nested ? layer : 0;
             }
         }
         tissues_.begin(inside);
@@ -129,7 +129,11 @@ class LayersTick {
         const ProxyMethod method = state_.needle.inserted ? &update_straight : input_.method;
         // The tick has one budget, however many surfaces give way in it.
         const int before = update_.tetrahedra;
-        settings.step_budget = std::max(1, settings.step_budget - before);
+        settings.step_budget -= before;
+        if (before > 0 && settings.step_budget < 1) {
+            update_.status = UpdateStatus::out_of_budget;
+            return;
+        }
         update_ = method(tissues_.proxy(), tissues_.field(), target_of(hand), settings, observer_);
         update_.tetrahedra += before;
         if (!moved()) return;

@@ -32,7 +32,8 @@ struct Row {
 
 /// The last two columns, which may be quoted, and the force along z.
 std::vector<Row> rows_of(const std::filesystem::path& path) {
-    io::CsvReader csv(io::read_text(path), path.string());
+    const std::string text = io::read_text(path), name = path.string();
+    io::CsvReader csv(text, name);
     const auto layer = csv.column("layer"), inside = csv.column("inside"),
                force = csv.column("force_z");
     std::vector<Row> rows;

@@ -164,6 +164,19 @@ TEST(LabelLayers, are_never_passed_while_they_hold) {
     }
 }
 
+TEST(LabelLayers, begin_where_the_hand_is_but_in_nothing_that_never_gives_way) {
+    Layers layers = three_labels();
+    layers.layers[0][puncture_force] = never;  // label 7: nobody is in it; behind it one may be
+    {
+        LabelHand hand{labelled(ramp_field(), layers, slabs())};
+        EXPECT_EQ(hand.to(at_depth(30)).layers.inside, 0);
+        EXPECT_NEAR(hand.renderer.proxy.scp_physical[2], 19, 1e-6);
+    }
+    LabelHand hand{labelled(ramp_field(), layers, slabs())};
+    EXPECT_EQ(hand.to(at_depth(50)).layers.inside, 2);
+    EXPECT_EQ(hand.to(at_depth(50)).force.norm(), 0);
+}
+
 TEST(LabelLayers, need_a_label_volume_and_good_numbers) {
     Layers layers = three_labels();
     RendererSettings settings;

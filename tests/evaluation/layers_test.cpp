@@ -100,7 +100,8 @@ TEST(ClosedForm, of_drag_is_drag_times_length_in_what_gave_way) {
     const Layers layers = needle_tissues();
     EXPECT_EQ(drag_at(layers, 12.9), 0) << "the skin still holds";
     EXPECT_NEAR(drag_at(layers, 13.1), 0.03 * 3.1, 1e-12);
-    EXPECT_NEAR(drag_at(layers, 61), 0.03 * 6 + 0.01 * 14 + 0.05 * 3.5 + 0.03 * 27.5, 1e-12);
+    EXPECT_NEAR(drag_at(layers, 61), 0.03 * 6 + 0.01 * 14 + 0.05 * 3.5 + 0.03 * 26.5, 1e-12)
+        << "the bone at 60 holds the tip";
 }
 
 }  // namespace
