@@ -1,6 +1,7 @@
 // Writes and reads traces and paths, with doubles that read back to the bit.
 #include "palpate/io/trace.hpp"
 
+#include <algorithm>
 #include <array>
 
 #include "io/trace_columns.hpp"
@@ -21,23 +22,25 @@ void write_comments(PendingFile& file, const std::vector<std::string>& comments)
     }
 }
 
-/// A name as a cell: in quotes where it would not be one without.
-std::string cell_of(const std::string& name) {
-    if (name.find_first_of(",\"\n\r") == std::string::npos) return name;
-    std::string text = "\"";
-    for (const char c : name) text += c == '"' ? "\"\"" : std::string(1, c);
-    return text + '"';
+/// A name as a bare word of a table: what would end a cell or join two names becomes _.
+std::string word_of(const std::string& name) {
+    std::string word = name;
+    std::ranges::replace_if(
+        word,
+        [](char c) { return c == ',' || c == '+' || c == '"' || c == '#' || (c >= 0 && c < ' '); },
+        '_');
+    return word;
 }
 
 void append_layers(std::string& line, const LayersFelt& felt,
                    const std::vector<std::string>& names) {
     line += ',';
-    if (felt.touched >= 0) line += cell_of(names[static_cast<std::size_t>(felt.touched)]);
+    if (felt.touched >= 0) line += word_of(names[static_cast<std::size_t>(felt.touched)]);
     std::string inside;
     for (std::size_t i = 0; i < static_cast<std::size_t>(felt.inside); ++i) {
-        inside += (i == 0 ? "" : "+") + names[i];
+        inside += (i == 0 ? "" : "+") + word_of(names[i]);
     }
-    line += ',' + cell_of(inside);
+    line += ',' + inside;
 }
 
 }  // namespace

@@ -10,13 +10,12 @@ namespace {
 
 using support::put_bytes;
 
-/// Straight down z through the middle of the sphere (density 1 at its middle, 0 from radius 12 on)
-/// and back.
+/// Along z into the middle of the sphere (density 1 at its middle, which lies at 0) and back.
 void put_stroke(const ScratchFolder& folder) {
     std::string text = "t,x,y,z\n";
     for (int i = 0; i <= 200; ++i) {
-        const double z = -3 + 0.15 * std::min(i, 200 - i);
-        text += std::to_string(i * 0.001) + ",11.6,11.4," + std::to_string(z) + "\n";
+        const double z = -14.5 + 0.15 * std::min(i, 200 - i);
+        text += std::to_string(i * 0.001) + ",0.1,-0.1," + std::to_string(z) + "\n";
     }
     put_bytes(folder / "t.csv", text);
 }
@@ -30,7 +29,7 @@ struct Row {
     double force = 0;
 };
 
-/// The last two columns, which may be quoted, and the force along z.
+/// The last two columns and the force along z.
 std::vector<Row> rows_of(const std::filesystem::path& path) {
     const std::string text = io::read_text(path), name = path.string();
     io::CsvReader csv(text, name);
@@ -62,7 +61,7 @@ TEST(LayersOption, names_in_a_trace_what_is_touched_and_what_the_hand_is_in) {
     const Outcome done = palpate(folder, stroke + "--layers two.json");
     ASSERT_EQ(done.status, 0) << done.err;
     const std::vector<Row> rows = rows_of(folder / "a.csv");
-    const std::vector<std::string> begin{"|", "shell|", "|shell", "core, inner|shell"};
+    const std::vector<std::string> begin{"|", "shell|", "|shell", "core_ inner|shell"};
     const std::vector<std::string> story = story_of(rows);
     ASSERT_GE(story.size(), 4U);
     EXPECT_TRUE(std::equal(begin.begin(), begin.end(), story.begin()));
@@ -103,11 +102,11 @@ TEST(LayersOption, warns_of_units_that_the_volume_does_not_have) {
     EXPECT_TRUE(contains(done.err, "the layers are in HU")) << done.err;
 }
 
-/// A slab of label 4 from z = 8 on, called "plate", as 3D Slicer writes it.
+/// A slab of label 4 from z = -4 on, called "plate", as 3D Slicer writes it.
 void put_segmentation(const ScratchFolder& folder) {
     std::string text =
         "NRRD0004\ntype: uint8\ndimension: 3\nspace: left-posterior-superior\nsizes: 12 12 12\n"
-        "space directions: (2,0,0) (0,2,0) (0,0,2)\nspace origin: (0,0,0)\nencoding: raw\n"
+        "space directions: (2,0,0) (0,2,0) (0,0,2)\nspace origin: (-12,-12,-12)\nencoding: raw\n"
         "Segment0_ID:=s\nSegment0_Name:=plate\nSegment0_LabelValue:=4\nSegment0_Layer:=0\n"
         "Segment0_Color:=0.2 0.4 0.6\n\n";
     for (int i = 0; i < 12 * 12 * 12; ++i) text += i / 144 >= 4 ? '\4' : '\0';

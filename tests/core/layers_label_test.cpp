@@ -169,7 +169,7 @@ TEST(LabelLayers, begin_where_the_hand_is_but_in_nothing_that_never_gives_way) {
     layers.layers[0][puncture_force] = never;  // label 7: nobody is in it; behind it one may be
     {
         LabelHand hand{labelled(ramp_field(), layers, slabs())};
-        EXPECT_EQ(hand.to(at_depth(30)).layers.inside, 0);
+        EXPECT_EQ(hand.to(at_depth(25)).layers.inside, 0);
         EXPECT_NEAR(hand.renderer.proxy.scp_physical[2], 19, 1e-6);
     }
     LabelHand hand{labelled(ramp_field(), layers, slabs())};

@@ -36,7 +36,7 @@ class TraceWriter {
   public:
     /// Each comment, at the head of the file, is one or more lines of text without the #.
     /// With names of layers there are columns `layer` (the one touched) and `inside` (those that
-    /// the SCP is in, outermost first, joined by +).
+    /// the SCP is in, outermost first, joined by +; _ in place of what would break a table).
     explicit TraceWriter(const std::filesystem::path& path,
                          const std::vector<std::string>& comments = {},
                          std::vector<std::string> layer_names = {});
