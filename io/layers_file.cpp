@@ -49,7 +49,8 @@ fs::path preset_folder() {
 LayersFile layers_from_text(std::string_view text, const std::string& name) {
     try {
         Json json = Json::parse(text, nullptr, true, true);
-        if (!json.is_object() || json.value("palpate_layers", 0) != format) {
+        if (!json.is_object() || !json.contains("palpate_layers") ||
+            json["palpate_layers"] != format) {
             throw std::invalid_argument("no layers: it must begin with \"palpate_layers\": 1");
         }
         json.erase("palpate_layers");
