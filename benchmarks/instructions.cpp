@@ -104,7 +104,8 @@ Layers layers_round(const Touch& touch, int count, bool by_label) {
 void run_layers(const Case& chosen, const Touch& touch, Proxy proxy, long updates) {
     const Layers layers = layers_round(touch, chosen.layers, chosen.by_label);
     LayerState state;
-    LayerInput input{.method = baselines::method_named(chosen.method)};
+    LayerInput input;
+    input.method = baselines::method_named(chosen.method);
     HandMotion hand(touch.path);
     std::uint64_t hash = 0xcbf29ce484222325U;
     for (long i = 0; i < updates; ++i) {
