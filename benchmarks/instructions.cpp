@@ -85,6 +85,7 @@ Layers layers_round(const Touch& touch, int count, bool by_label) {
     };
     for (int i = 0; i < count; ++i) {
         layers.layers.push_back({.name = std::to_string(i), .level = by_label ? i + 1 : level(i)});
+        if (by_label) layers.layers.back()[HapticProperty::puncture_force] = 1e9;
     }
     if (!by_label) return layers;
     const Volume& volume = touch.field.volume();
@@ -106,6 +107,12 @@ void run_layers(const Case& chosen, const Touch& touch, Proxy proxy, long update
     LayerState state;
     LayerInput input;
     input.method = baselines::method_named(chosen.method);
+    // By labels a hand starts in the layer that it is in, which here has to be the one outside of
+    // the middle one, and not where recovery finds the nearest way out of all of them.
+    if (chosen.by_label) {
+        input.hip = proxy.scp_physical + normal_at(proxy, touch.field);
+        update_layers(layers, state, proxy, touch.field, input);
+    }
     HandMotion hand(touch.path);
     std::uint64_t hash = 0xcbf29ce484222325U;
     for (long i = 0; i < updates; ++i) {

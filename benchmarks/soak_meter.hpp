@@ -57,8 +57,8 @@ class Meter final : public Device {
         now.lateness.add(static_cast<std::int64_t>(late));
         return device_.read(time);
     }
-    void write(const Vec3& force, double time) noexcept override {
-        device_.write(force, time);
+    void write(const Wrench& wrench, double time) noexcept override {
+        device_.write(wrench, time);
         // Ticks have their places on a grid from time 0 on; those that were slept through are not
         // made up.
         const double end = 1e9 * time + static_cast<double>(now_ns(CLOCK_MONOTONIC) - start_);

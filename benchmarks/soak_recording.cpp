@@ -55,7 +55,7 @@ ReadBack read_back(const std::filesystem::path& path, const Field& field) {
     LatencyHistogram update, again;
     while (const auto event = reader.next()) {
         if (const auto* command = std::get_if<Command>(&*event)) {
-            check(*command, session.renderer.settings, field.solid(), field.geometry());
+            check(*command, session.renderer.settings, kind_of(field));
             apply(session, *command);
             ++result.commands;
             continue;

@@ -1,4 +1,4 @@
-// Stores the newest reading and the newest force with their ages.
+// Stores the newest reading and the newest wrench with their ages.
 #include "devices/link.hpp"
 
 #include <pthread.h>
@@ -51,8 +51,9 @@ DeviceReading Link::read() const noexcept {
     return reading;
 }
 
-void Link::write(const Vec3& force) noexcept {
-    force_.put({{force[0], force[1], force[2]}, monotonic_ns()});
+void Link::write(const Wrench& wrench) noexcept {
+    const auto& [f, t] = wrench;
+    wrench_.put({{f[0], f[1], f[2]}, {t[0], t[1], t[2]}, monotonic_ns()});
 }
 
 void Link::report(const DeviceReading& reading) noexcept {
@@ -68,16 +69,18 @@ void Link::report(DeviceStatus status) noexcept {
     reading_.put({last_, monotonic_ns()});
 }
 
-Vec3 Link::force() const noexcept {
+Wrench Link::wrench() const noexcept {
     if (stopped()) {
         if (zeros_.load(std::memory_order_relaxed) < 2) zeros_.fetch_add(1);
-        return Vec3::Zero();
+        return {};
     }
-    const auto newest = force_.get();
-    if (!newest) return Vec3::Zero();
+    const auto newest = wrench_.get();
+    if (!newest) return {};
     const double age = 1e-9 * static_cast<double>(monotonic_ns() - newest->at);
-    const Vec3 force(newest->force[0], newest->force[1], newest->force[2]);
-    return age <= Device::longest_force && force.allFinite() ? force : Vec3(Vec3::Zero());
+    const Wrench wrench{Vec3(newest->force), Vec3(newest->torque)};
+    const bool good =
+        age <= Device::longest_force && wrench.force.allFinite() && wrench.torque.allFinite();
+    return good ? wrench : Wrench{};
 }
 
 void Link::stop() noexcept {

@@ -19,8 +19,8 @@ class Link {
     /// The newest reading with its age. A reading older than `Device::longest_force` is stale,
     /// whatever its status.
     DeviceReading read() const noexcept;
-    /// Sets the force [N, device axes].
-    void write(const Vec3& force) noexcept;
+    /// Sets force and torque (device axes).
+    void write(const Wrench& wrench) noexcept;
 
     // The backend's side, one thread.
 
@@ -29,24 +29,24 @@ class Link {
     /// Reports that the device is not ready and has no position: starting, lost, ... The last
     /// position stays.
     void report(DeviceStatus status) noexcept;
-    /// The force to send now: zero if none was set, if the last one is older than
-    /// `Device::longest_force` (the servo has stalled or stopped), if it is not finite, or after
-    /// stop(). A backend sends it at least every 5 ms, changed or not, and takes no locks and
+    /// The force and torque to send now: zero if none was set, if the last one is older than
+    /// `Device::longest_force` (the servo has stalled or stopped), if a number is not finite, or
+    /// after stop(). A backend sends it at least every 5 ms, changed or not, and takes no locks and
     /// allocates nothing in doing so.
-    Vec3 force() const noexcept;
+    Wrench wrench() const noexcept;
 
     // Either side.
 
-    /// From now on force() returns zero. Safe in a signal handler.
+    /// From now on wrench() returns zero. Safe in a signal handler.
     void stop() noexcept;
     bool stopped() const noexcept;
     /// True from stop() until the backend has come back from sending the zero: it has asked for the
-    /// force twice. For Device::is_stopping().
+    /// wrench twice. For Device::is_stopping().
     bool stopping() const noexcept;
 
   private:
-    struct Force {
-        double force[3];
+    struct Sent {
+        double force[3], torque[3];
         std::int64_t at;  // [ns] monotonic
     };
     struct Report {
@@ -54,7 +54,7 @@ class Link {
         std::int64_t at;
     };
     Newest<Report> reading_;
-    Newest<Force> force_;
+    Newest<Sent> wrench_;
     DeviceReading last_;  // the backend's
     std::atomic<bool> stopped_{false};
     mutable std::atomic<int> zeros_{0};  // asked for since stop(), 2 at most

@@ -47,6 +47,8 @@ class VendorLibrary {
 
 /// Whether this can be a device's position [device mm]: finite, at most 10 m from its origin.
 bool is_position(const Vec3& position) noexcept;
+/// Whether this is a proper rotation, to 0.001 in every number of m m^T.
+bool is_rotation(const Mat3& m) noexcept;
 
 /// Passes a force only after the device has been ready without a break for as long as a link keeps
 /// a force, so that every force that passes was written by a servo that saw the device ready. For
@@ -56,7 +58,7 @@ class ForceGate {
     /// Notes whether the device is ready at this time [ns, monotonic], after the calls that showed
     /// it. A longer time without a note is a break, so a slow call is one, too.
     void note(bool ready, std::int64_t now) noexcept;
-    /// `force` limited to `most` [N], or zero.
+    /// `force` limited to `most` [N], or zero. The same for a torque [N mm].
     Vec3 pass(const Vec3& force, double most, std::int64_t now) const noexcept;
 
   private:

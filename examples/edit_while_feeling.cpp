@@ -21,7 +21,7 @@ class RestingHand : public Device {
         reading.position = {16, 16, 20};
         return reading;
     }
-    void write(const Vec3&, double) noexcept override {}  // a device would push here
+    void write(const Wrench&, double) noexcept override {}  // a device would push here
     void stop() noexcept override {}
 };
 

@@ -32,7 +32,7 @@ class FallingMass : public Device {
         reading.status = DeviceStatus::ready;
         return reading;
     }
-    void write(const Vec3& force, double) noexcept override { force_ = force[1]; }
+    void write(const Wrench& wrench, double) noexcept override { force_ = wrench.force[1]; }
     void stop() noexcept override { stopped_ = true; }
 
   private:

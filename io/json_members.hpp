@@ -34,6 +34,7 @@ inline Json to_value(double value) {
 Json to_value(const Vec3& value);
 Json to_value(const Mat3& value);  ///< rows
 Json to_value(const Layers& layers);
+Json to_value(const Tool& tool);
 
 /// `name` is for errors: std::invalid_argument.
 void from_value(const Json& json, const std::string& name, bool& value);
@@ -44,6 +45,7 @@ void from_value(const Json& json, const std::string& name, std::uint32_t& value)
 void from_value(const Json& json, const std::string& name, Vec3& value);
 void from_value(const Json& json, const std::string& name, Mat3& value);
 void from_value(const Json& json, const std::string& name, Layers& layers);
+void from_value(const Json& json, const std::string& name, Tool& tool);
 
 struct JsonWriter {
     Json json = Json::object();

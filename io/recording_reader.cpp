@@ -57,7 +57,13 @@ struct RecordingReader::Rows {
     std::size_t status, force_flags, device_status, buttons, age, frozen, clutched;
     std::optional<std::size_t> moment, samples;        // of format 1, fixed samples may lack them
     std::optional<std::array<std::size_t, 3>> layers;  // from format 3 on
-    std::optional<std::size_t> number, crc32;          // format 1 does
+    struct ToolColumns {
+        QuaternionColumns hand, proxy;
+        VectorColumns torque;
+        std::size_t contacts;
+    };
+    std::optional<ToolColumns> felt_tool;      // from format 4 on
+    std::optional<std::size_t> number, crc32;  // format 1 does
     std::array<std::size_t, 9> tool;
 
     Rows(std::string whole, std::string called, int format)
@@ -79,6 +85,10 @@ struct RecordingReader::Rows {
         if (format > 2) {
             layers = {csv.column("layer_touched"), csv.column("layers_inside"),
                       csv.column("layers_punctured")};
+        }
+        if (format > 3) {
+            felt_tool = ToolColumns{QuaternionColumns(csv, ""), QuaternionColumns(csv, "proxy_"),
+                                    VectorColumns(csv, "torque"), csv.column("contacts")};
         }
         if (format > 1) {
             number = csv.column("tick");
@@ -207,6 +217,11 @@ struct RecordingReader::Rows {
                 code(*samples, std::numeric_limits<std::int64_t>::max()));
         }
         if (layers) tick.layers = layers_felt();
+        if (felt_tool) {
+            tick.tool = {felt_tool->hand.read(csv), felt_tool->proxy.read(csv),
+                         static_cast<int>(code(felt_tool->contacts, most_tool_contacts))};
+            tick.torque = felt_tool->torque.read(csv);
+        }
         return result;
     }
 };

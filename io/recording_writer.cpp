@@ -22,7 +22,8 @@ constexpr std::size_t most_buffered = std::size_t{1} << 20;
 constexpr std::string_view session_columns =
     ",status,force_flags,device_status,device_x,device_y,device_z,buttons,age,"
     "tool_xx,tool_xy,tool_xz,tool_yx,tool_yy,tool_yz,tool_zx,tool_zy,tool_zz,frozen,clutched,"
-    "moment,samples,layer_touched,layers_inside,layers_punctured,tick,crc32";
+    "moment,samples,layer_touched,layers_inside,layers_punctured";
+constexpr std::string_view check_columns = ",tick,crc32";
 
 /// The cells of a tick that the session gave, without the end of the line.
 void append_session(std::string& text, const SessionTick& tick) {
@@ -41,6 +42,7 @@ void append_session(std::string& text, const SessionTick& tick) {
     append_cell(text, std::int64_t{tick.tick.layers.touched});
     append_cell(text, std::int64_t{tick.tick.layers.inside});
     append_cell(text, std::int64_t{tick.tick.layers.punctured});
+    append_tool(text, trace_row(tick.tick));
 }
 
 std::string head_text(const RecordingHead& head) {
@@ -56,6 +58,8 @@ std::string head_text(const RecordingHead& head) {
     text += '\n';
     text += trace_header;
     text += session_columns;
+    text += tool_header;
+    text += check_columns;
     return text + '\n';
 }
 

@@ -87,6 +87,28 @@ void from_value(const Json& json, const std::string&, Layers& layers) {
     layers = layers_from_json(json);
 }
 
+Json to_value(const Tool& tool) {
+    Json points = Json::array();
+    for (const Vec3& point : tool.points()) points.push_back(to_value(point));
+    return {{"points", points}, {"gyration", tool.gyration()}, {"turns", tool.turns()}};
+}
+
+void from_value(const Json& json, const std::string& name, Tool& tool) {
+    const Json& list = member(json, "points");
+    if (!list.is_array() || list.size() > most_tool_points) {
+        wrong_member(name + ".points", "a list of at most 20000 points");
+    }
+    std::vector<Vec3> points(list.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        from_value(list[i], name + ".points", points[i]);
+    }
+    double gyration = 0;
+    bool turns = true;
+    from_value(member(json, "gyration"), name + ".gyration", gyration);
+    from_value(member(json, "turns"), name + ".turns", turns);
+    tool = Tool(std::move(points), gyration, turns);
+}
+
 // The lists of members. Not in an unnamed namespace, where JsonWriter would not find them.
 
 static void members(auto& v, Is<Friction> auto& s) {
@@ -115,12 +137,18 @@ static void members(auto& v, Is<ForceSettings> auto& s) {
     v("ramp", s.ramp);
     v("stale_after", s.stale_after);
     v("start_below", s.start_below);
+    v("rotational_stiffness", s.rotational_stiffness);
+    v("rotational_damping", s.rotational_damping);
+    v("torque_limit", s.torque_limit);
+    v("torque_rate_limit", s.torque_rate_limit);
 }
 
 static void members(auto& v, Is<DeviceLimits> auto& s) {
     v("maximum_force", s.maximum_force);
     v("rate", s.rate);
     v("physical_damping", s.physical_damping);
+    v("maximum_torque", s.maximum_torque);
+    v("physical_rotational_damping", s.physical_rotational_damping);
 }
 
 static void members(auto& v, Is<DeviceTransform> auto& s) {
@@ -158,6 +186,7 @@ static void members(auto& v, Is<RendererSettings> auto& s) {
     v("step_budget", s.proxy.step_budget);
     v("penetrability", s.penetrability);
     v("layers", s.layers);
+    v("tool", s.tool);
     v("force", s.force);
     v("device", s.device);
     v("transform", s.transform);
@@ -183,6 +212,9 @@ static void members(auto& v, Is<command::Scale> auto& s) {
 static void members(auto& v, Is<command::UseLayers> auto& s) {
     v("layers", s.layers);
 }
+static void members(auto& v, Is<command::UseTool> auto& s) {
+    v("tool", s.tool);
+}
 static void members(auto& v, Is<command::Moment> auto& s) {
     v("time", s.time);
 }
@@ -203,9 +235,9 @@ Json written(const command::Samples& samples) {
 }
 
 /// The name of each alternative of Command, in its order.
-constexpr std::array command_names{"isovalue", "freeze",        "clutch",    "forces", "scale",
-                                   "samples",  "moment",        "speed",     "layers", "force",
-                                   "friction", "penetrability", "transform", "limits"};
+constexpr std::array command_names{"isovalue", "freeze",   "clutch",        "forces",    "scale",
+                                   "samples",  "moment",   "speed",         "layers",    "tool",
+                                   "force",    "friction", "penetrability", "transform", "limits"};
 static_assert(command_names.size() == std::variant_size_v<Command>);
 
 template <std::size_t i = 0>

@@ -55,21 +55,26 @@ TraceRow trace_row(const Tick& tick) {
             tick.proxy.mode == Mode::constrained,
             tick.proxy.tetrahedra,
             tick.update_ns,
-            tick.layers};
+            tick.layers,
+            tick.tool,
+            tick.torque};
 }
 
 TraceWriter::TraceWriter(const std::filesystem::path& path,
-                         const std::vector<std::string>& comments,
-                         std::vector<std::string> layer_names)
-    : file_(path), layer_names_(std::move(layer_names)) {
+                         const std::vector<std::string>& comments, TraceExtras extras)
+    : file_(path), extras_(std::move(extras)) {
     write_comments(file_, comments);
-    file_.write(std::string(trace_header) + (layer_names_.empty() ? "\n" : ",layer,inside\n"));
+    file_.write(trace_header);
+    if (!extras_.layer_names.empty()) file_.write(",layer,inside");
+    if (extras_.tool) file_.write(tool_header);
+    file_.write("\n");
 }
 
 void TraceWriter::add(const TraceRow& row) {
     line_.clear();
     append_row(line_, row);
-    if (!layer_names_.empty()) append_layers(line_, row.layers, layer_names_);
+    if (!extras_.layer_names.empty()) append_layers(line_, row.layers, extras_.layer_names);
+    if (extras_.tool) append_tool(line_, row);
     line_ += '\n';
     file_.write(line_);
 }
@@ -84,6 +89,19 @@ void PathWriter::add(std::int64_t tick, const Vec3& corner) {
     line_.clear();
     append_cell(line_, tick);
     append_cells(line_, corner);
+    line_ += '\n';
+    file_.write(line_);
+}
+
+PosesWriter::PosesWriter(const std::filesystem::path& path) : file_(path) {
+    file_.write("tick,x,y,z,qw,qx,qy,qz\n");
+}
+
+void PosesWriter::add(std::int64_t tick, const Pose& pose) {
+    line_.clear();
+    append_cell(line_, tick);
+    append_cells(line_, pose.position);
+    append_cells(line_, pose.orientation);
     line_ += '\n';
     file_.write(line_);
 }

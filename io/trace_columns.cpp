@@ -31,6 +31,23 @@ Vec3 VectorColumns::read(const CsvReader& rows) const {
     return {rows.number(x), rows.number(y), rows.number(z)};
 }
 
+QuaternionColumns::QuaternionColumns(const CsvReader& rows, const std::string& prefix)
+    : w(rows.column(prefix + "qw")),
+      x(rows.column(prefix + "qx")),
+      y(rows.column(prefix + "qy")),
+      z(rows.column(prefix + "qz")) {}
+
+Quaternion QuaternionColumns::read(const CsvReader& rows) const {
+    return {rows.number(w), rows.number(x), rows.number(y), rows.number(z)};
+}
+
+void append_tool(std::string& text, const TraceRow& row) {
+    append_cells(text, row.tool.hand);
+    append_cells(text, row.tool.proxy);
+    append_cells(text, row.torque);
+    append_cell(text, std::int64_t{row.tool.contacts});
+}
+
 void append_row(std::string& text, const TraceRow& row) {
     append_cell(text, row.t);
     append_cells(text, row.hip);

@@ -1,10 +1,28 @@
 // Reads trajectories: rows of a CSV table whose times must increase.
 #include "palpate/io/trajectory.hpp"
 
+#include <cmath>
+#include <optional>
+
 #include "io/number.hpp"
+#include "io/trace_columns.hpp"
 #include "palpate/io/csv.hpp"
 
 namespace palpate::io {
+namespace {
+
+/// Unit to all digits; what is so already stays, to the bit.
+Quaternion orientation_from(const CsvReader& rows, const QuaternionColumns& columns) {
+    Quaternion q = columns.read(rows);
+    const double squared = q.squaredNorm();
+    if (!(std::abs(squared - 1) <= 2e-3)) {
+        rows.fail("qw, qx, qy, qz are no orientation: a quaternion of length 1 is needed");
+    }
+    if (std::abs(squared - 1) > 1e-14) q.normalize();
+    return q;
+}
+
+}  // namespace
 
 Trajectory parse_trajectory(std::string_view text, const std::string& name) {
     CsvReader rows(text, name);
@@ -14,6 +32,11 @@ Trajectory parse_trajectory(std::string_view text, const std::string& name) {
     const std::size_t x = rows.column(prefix + "x");
     const std::size_t y = rows.column(prefix + "y");
     const std::size_t z = rows.column(prefix + "z");
+    // One of them alone is a mistake, which column() tells.
+    std::optional<QuaternionColumns> turn;
+    for (const char* part : {"qw", "qx", "qy", "qz"}) {
+        if (!turn && rows.has_column(part)) turn.emplace(rows, "");
+    }
 
     Trajectory trajectory;
     while (rows.next()) {
@@ -27,6 +50,7 @@ Trajectory parse_trajectory(std::string_view text, const std::string& name) {
         trajectory.time.push_back(t);
         trajectory.position.emplace_back(rows.finite_number(x), rows.finite_number(y),
                                          rows.finite_number(z));
+        if (turn) trajectory.orientation.push_back(orientation_from(rows, *turn));
     }
     if (trajectory.time.empty()) {
         throw InputError(name + ": has a header and no rows: add at least one position");

@@ -38,6 +38,10 @@ std::string names_in(const LoadedVolume& labels) {
     return names.empty() ? "its labels have no names" : "it has " + names;
 }
 
+io::LabelName unnamed(int number) {
+    return {number, "label " + std::to_string(number), Layer{}.colour};
+}
+
 Layers a_layer_for_each(const LoadedVolume& labels) {
     const std::set<int> numbers = numbers_in(labels.volume);
     if (numbers.empty()) throw std::invalid_argument(labels.name + ": has no label above 0");
@@ -45,22 +49,13 @@ Layers a_layer_for_each(const LoadedVolume& labels) {
         throw std::invalid_argument(labels.name +
                                     ": has more than 16 labels: choose some in a file of layers");
     }
-    Layers layers;
-    layers.name = "Labels";
+    std::vector<io::LabelName> names;
     for (const int number : numbers) {
-        Layer layer;
-        layer.name = "label " + std::to_string(number);
-        layer.level = number;
-        layer[HapticProperty::puncture_force] = usual_puncture_force;
         const auto& known = labels.values.labels;
         const auto named = std::ranges::find(known, number, &io::LabelName::value);
-        if (named != known.end()) {
-            layer.name = named->name;
-            layer.colour = named->colour;
-        }
-        layers.layers.push_back(layer);
+        names.push_back(named != known.end() ? *named : unnamed(number));
     }
-    return layers;
+    return layers_of(names).layers;
 }
 
 /// Numbers in place of levels, by name.
@@ -89,6 +84,21 @@ void attach(Layers& layers, const LoadedVolume& labels) {
 }
 
 }  // namespace
+
+io::LayersFile layers_of(std::span<const io::LabelName> labels) {
+    io::LayersFile file;
+    file.layers.name = "Labels";
+    file.layers.by_label = true;
+    for (const io::LabelName& label : labels) {
+        Layer layer;
+        layer.name = label.name;
+        layer.level = label.value;
+        layer.colour = label.colour;
+        layer[HapticProperty::puncture_force] = usual_puncture_force;
+        file.layers.layers.push_back(layer);
+    }
+    return file;
+}
 
 io::LayersFile layers_by_label(const LoadedVolume& labels,
                                const std::optional<io::LayersFile>& like) {

@@ -5,7 +5,10 @@
 #include <chrono>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <stdexcept>
+
+#include "palpate/density.hpp"
 
 namespace palpate::run {
 namespace {
@@ -36,7 +39,36 @@ struct PathTap {
     }
 };
 
-void add_to_summary(OfflineSummary& summary, const Tick& tick, double range) {
+/// Passes the poses of a tool's proxy on, and their places as corners.
+struct PoseTap {
+    const OfflineSinks* sinks;
+    std::int64_t tick = 0;
+    std::optional<Pose> last = {};
+
+    static void on_pose(const Pose& pose, void* context) {
+        auto& tap = *static_cast<PoseTap*>(context);
+        tap.last = pose;
+        if (tap.sinks->pose) tap.sinks->pose(tap.tick, pose);
+        if (tap.sinks->corner) tap.sinks->corner(tap.tick, pose.position);
+    }
+};
+
+/// Largest |f - isovalue| at what touches [data units].
+double surface_error(const Renderer& renderer, const Tick& tick) {
+    if (!renderer.settings.tool) return std::abs(tick.proxy.density - tick.proxy.isovalue);
+    const ToolProxy& proxy = *renderer.tool_proxy;
+    double most = 0;
+    for (const ToolContact& contact :
+         std::span(proxy.contacts.data(), std::size_t(proxy.contact_count))) {
+        if (!(contact.pressure > 0)) continue;
+        const Vec3& point = proxy.tool().points()[std::size_t(contact.point)];
+        const double density = value_at(renderer.field, physical_from_tool(proxy.pose, point));
+        most = std::max(most, std::abs(density - tick.proxy.isovalue));
+    }
+    return most;
+}
+
+void add_to_summary(OfflineSummary& summary, const Tick& tick, const Renderer& renderer) {
     ++summary.ticks;
     summary.out_of_budget += tick.proxy.status == UpdateStatus::out_of_budget;
     summary.recovering += tick.proxy.status == UpdateStatus::recovering;
@@ -45,13 +77,14 @@ void add_to_summary(OfflineSummary& summary, const Tick& tick, double range) {
     summary.mean_tetrahedra += tick.proxy.tetrahedra;
     summary.mean_ns += static_cast<double>(tick.update_ns);
     summary.largest_force = std::max(summary.largest_force, tick.force.norm());
+    summary.largest_torque = std::max(summary.largest_torque, tick.torque.norm());
+    summary.most_contacts = std::max(summary.most_contacts, std::int64_t{tick.tool.contacts});
     const bool felt =
         tick.proxy.status == UpdateStatus::done || tick.proxy.status == UpdateStatus::out_of_budget;
     if (felt && tick.proxy.mode == Mode::constrained) {
         ++summary.constrained;
-        summary.worst_surface_error =
-            std::max(summary.worst_surface_error,
-                     std::abs(tick.proxy.density - tick.proxy.isovalue) / range);
+        summary.worst_surface_error = std::max(
+            summary.worst_surface_error, surface_error(renderer, tick) / renderer.field.range());
     }
 }
 
@@ -85,28 +118,41 @@ OfflineSummary render_offline(Renderer& renderer, const io::Trajectory& trajecto
     std::vector<std::int64_t> times;
     times.reserve(trajectory.time.size());
     PathTap tap{&sinks};
+    PoseTap pose_tap{&sinks};
     const StepObserver observer =
         sinks.corner ? StepObserver{&PathTap::on_step, &tap} : StepObserver{};
-    if (sinks.corner && !has_surfaces) sinks.corner(0, renderer.proxy.scp_physical);
+    const PoseObserver pose_observer{&PoseTap::on_pose, &pose_tap};
+    const bool has_tool = renderer.settings.tool != nullptr;
+    const bool watches = has_tool ? sinks.corner || sinks.pose : bool(sinks.corner);
+    if (sinks.corner && !has_surfaces && !has_tool) sinks.corner(0, renderer.proxy.scp_physical);
     const auto count = static_cast<std::int64_t>(trajectory.time.size());
     for (std::int64_t i = 0; i < count; ++i) {
-        tap.tick = i;
+        tap.tick = pose_tap.tick = i;
         const auto at = static_cast<std::size_t>(i);
         const Vec3 hand =
             device_from_physical(renderer.settings.transform, trajectory.position[at]);
         if (sinks.change) sinks.change(renderer, i);
-        const DeviceState device{trajectory.time[at], hand, true};
+        DeviceState device{trajectory.time[at], hand, true};
+        if (!trajectory.orientation.empty()) {
+            device.orientation = renderer.settings.transform.rotation.transpose() *
+                                 trajectory.orientation[at].toRotationMatrix();
+        }
         // A renderer is a value: a copy of it is watched, so that the time of the update is that of
         // the update and nothing else.
-        if (sinks.corner) {
+        if (watches) {
             Renderer watched = renderer;
-            render(watched, device, observer);
+            render(watched, device, observer, nullptr, pose_observer);
+            // A tick without motion has a pose, too: that of the one before.
+            if (has_tool && !pose_tap.last) {
+                pose_tap.on_pose(watched.tool_proxy->pose, &pose_tap);
+            }
+            pose_tap.last.reset();
         }
         const Tick tick = render(renderer, device, {}, &steady_ns);
         tap.end_tick(tick.proxy.scp);
         if (sinks.row) sinks.row(io::trace_row(tick));
         times.push_back(tick.update_ns);
-        add_to_summary(summary, tick, renderer.field.range());
+        add_to_summary(summary, tick, renderer);
         if (sinks.progress && i % ticks_between_progress == 0) {
             sinks.progress(static_cast<double>(i) / static_cast<double>(count));
         }

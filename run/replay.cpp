@@ -30,6 +30,9 @@ bool same(double a, double b) {
 bool same(const Vec3& a, const Vec3& b) {
     return same(a[0], b[0]) && same(a[1], b[1]) && same(a[2], b[2]);
 }
+bool same(const Quaternion& a, const Quaternion& b) {
+    return same(a.w(), b.w()) && same(a.x(), b.x()) && same(a.y(), b.y()) && same(a.z(), b.z());
+}
 template <class T>
 bool same(const T& a, const T& b) {
     return a == b;
@@ -42,6 +45,10 @@ std::string text_of(double value) {
 }
 std::string text_of(const Vec3& v) {
     return "(" + text_of(v[0]) + ", " + text_of(v[1]) + ", " + text_of(v[2]) + ")";
+}
+std::string text_of(const Quaternion& q) {
+    return "(" + text_of(q.w()) + ", " + text_of(q.x()) + ", " + text_of(q.y()) + ", " +
+           text_of(q.z()) + ")";
 }
 std::string text_of(bool value) {
     return value ? "true" : "false";
@@ -94,9 +101,12 @@ Session recorded_session(const io::RecordingHead& head, const LoadedVolume& load
         settings.method = baselines::method_named(head.method);
         settings.layers = with_labels(settings.layers, recording);
         check(head.session);
-        return {make_renderer(Field(loaded.volume, head.solid, head.background, head.interpolation),
-                              head.isovalue, settings),
-                head.session};
+        Session session{
+            make_renderer(Field(loaded.volume, head.solid, head.background, head.interpolation),
+                          head.isovalue, settings),
+            head.session};
+        make_room_for_tools(session.renderer);
+        return session;
     } catch (const std::invalid_argument& e) {
         throw io::InputError(recording +
                              ": the head asks for what cannot be rendered: " + e.what());
@@ -115,6 +125,10 @@ std::optional<Difference> difference(const SessionTick& recorded, const SessionT
     compare("isovalue", a.isovalue, b.isovalue);
     compare("tetrahedra", a.tetrahedra, b.tetrahedra);
     compare("force", recorded.tick.force, again.tick.force);
+    compare("torque", recorded.tick.torque, again.tick.torque);
+    compare("hand orientation", recorded.tick.tool.hand, again.tick.tool.hand);
+    compare("proxy orientation", recorded.tick.tool.proxy, again.tick.tool.proxy);
+    compare("contacts", recorded.tick.tool.contacts, again.tick.tool.contacts);
     compare("force flags", recorded.tick.force_flags, again.tick.force_flags);
     const LayersFelt &p = recorded.tick.layers, &q = again.tick.layers;
     compare("layer touched", p.touched, q.touched);
@@ -145,7 +159,7 @@ void Replay::carry_out(const Command& recorded) {
         } else {
             // As the servo did: against the settings of the start.
             const Field& field = session_.renderer.field;
-            apply(session_, CheckedCommand(command, start_, field.solid(), field.geometry()));
+            apply(session_, CheckedCommand(command, start_, kind_of(field)));
         }
     } catch (const std::invalid_argument& e) {
         throw io::InputError(recording_ + ", before tick " + std::to_string(ticks_) +

@@ -50,6 +50,11 @@ void tell(io::RecordingWriter& recording, const std::vector<Command>& commands) 
     }
 }
 
+/// Layers have levels of their own: the isovalue that was asked for waits until they are gone.
+bool isovalue_waits(const RendererSettings& settings) {
+    return settings.layers && !settings.layers->layers.empty();
+}
+
 }  // namespace
 
 io::RecordingHead recording_head(const Session& session, const DeviceInfo& device,
@@ -147,7 +152,8 @@ Session Run::session_from(double isovalue, const DeviceTransform& transform,
                           std::int64_t last) const {
     RendererSettings settings = settings_;
     settings.transform = transform;
-    Session session{make_renderer(field_, std::isfinite(isovalue) ? isovalue : isovalue_, settings),
+    const bool known = std::isfinite(isovalue) && !isovalue_waits(settings);
+    Session session{make_renderer(field_, known ? isovalue : isovalue_, settings),
                     session_settings_};
     for (const Sent& sent : sent_) {
         // Only what the servo may not have carried out; everything else is in settings_.
@@ -170,7 +176,8 @@ std::int64_t Run::last_tick() const {
 /// As the servo that has stopped left it.
 Session Run::session_stopped() const {
     const Renderer& last = servo_->session().renderer;
-    return session_from(last.proxy.isovalue, last.settings.transform, last_tick());
+    const double level = isovalue_waits(last.settings) ? isovalue_ : last.proxy.isovalue;
+    return session_from(level, last.settings.transform, last_tick());
 }
 
 /// As the running servo has it now, or as the first one will begin.
@@ -192,6 +199,7 @@ std::string Run::device_problem() const {
 }
 
 void Run::send(const Command& command) {
+    const bool waited = isovalue_waits(settings_);
     const std::int64_t after = last_tick();
     if (!servo_->send(command)) {
         throw QueueFull("too many commands at once: one was left out");
@@ -205,6 +213,8 @@ void Run::send(const Command& command) {
     settings_ = changed.renderer.settings;
     isovalue_ = changed.renderer.proxy.isovalue;
     frozen_ = changed.frozen;
+    // Without this the session would stay at the level of a layer.
+    if (waited && !isovalue_waits(settings_)) send(command::Isovalue{isovalue_});
 }
 
 void Run::use_device(const devices::DeviceChoice& device) {

@@ -5,12 +5,14 @@
 #include <limits>
 #include <stdexcept>
 
+#include "io/number.hpp"
 #include "palpate/run/statistics.hpp"
 
 namespace palpate::run {
 namespace {
 
 constexpr int bins = 256;
+constexpr double most_torque = 1e9;  // [N mm] of no device: no limit
 
 std::optional<double> background_in(const Volume& volume, const FieldSetup& setup) {
     if (!setup.background) return std::nullopt;
@@ -38,6 +40,19 @@ std::uint32_t bit_of(const ButtonSetup& setup, const char* purpose, int buttons)
                                     " buttons");
     }
     return std::uint32_t{1} << (number - 1);
+}
+
+/// Throws std::invalid_argument.
+std::shared_ptr<const Tool> tool_for(const RenderSetup& setup, const Geometry& geometry) {
+    const double spacing = setup.tool_spacing.value_or(io::usual_spacing(geometry));
+    try {
+        return io::make_tool(setup.tool, spacing);
+    } catch (const std::invalid_argument& e) {
+        std::string apart;
+        io::append_number(apart, spacing);
+        throw std::invalid_argument(std::string("--tool: ") + e.what() + " (they are " + apart +
+                                    " mm apart: --tool-spacing)");
+    }
 }
 
 struct MakePenetrability {
@@ -132,6 +147,7 @@ RendererSettings render_settings(const RenderSetup& setup, const Field& field, d
         settings.layers =
             std::make_shared<const Layers>(io::layers_for(*setup.layers, field.volume()));
     }
+    settings.tool = tool_for(setup, field.geometry());
     settings.force = setup.force;
     settings.force.limit = setup.limit.value_or(settings.force.limit);
     settings.force.stiffness = setup.stiffness.value_or(settings.force.stiffness);
@@ -145,6 +161,7 @@ RendererSettings render_settings(const RenderSetup& setup, const Field& field, d
 RendererSettings offline_settings(const RenderSetup& setup, const Field& field, double isovalue) {
     RendererSettings settings = render_settings(setup, field, isovalue);
     settings.device.maximum_force = std::max(settings.device.maximum_force, settings.force.limit);
+    settings.device.maximum_torque = std::min(settings.force.torque_limit, most_torque);
     settings.force.stale_after = std::numeric_limits<double>::infinity();
     return settings;
 }

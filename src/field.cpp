@@ -85,38 +85,58 @@ void Field::show_labels(std::uint32_t labels) noexcept {
     look();
 }
 
-/// Visits the labels of a sample and its neighbours, whose places Neighbours has.
-template <class Visit>
-void Field::for_each_label(const Index3& at, Visit&& visit) const {
-    const bool dense = type_ == SampleType::uint8 && !samples_->bricks() && at[0] > 0 &&
-                       at[1] > 0 && at[2] > 0 && at[0] < size_[0] - 1 && at[1] < size_[1] - 1 &&
-                       at[2] < size_[2] - 1;
-    if (!dense) {
-        for (int i = 0; i < 27; ++i) {
-            const Index3 one(at[0] + i % 3 - 1, at[1] + i / 3 % 3 - 1, at[2] + i / 9 - 1);
-            const bool in_grid = (one.array() >= 0).all() && (one.array() < size_.array()).all();
-            visit(in_grid ? static_cast<unsigned>(samples_->sample(one, moment_)) : 0U);
+/// Visits the labels of `count` samples along each axis, from `low` on, x fastest.
+template <int count, class Visit>
+void Field::for_each_label(const Index3& low, Visit&& visit) const {
+    const auto is_inside = [&](int a) { return low[a] >= 0 && low[a] <= size_[a] - count; };
+    const auto* labels = static_cast<const std::uint8_t*>(data_);
+    if (is_inside(0) && is_inside(1) && is_inside(2)) {
+        labels += low[0] + low[1] * row_ + low[2] * slice_;
+        for (int z = 0; z < count; ++z, labels += slice_) {
+            const std::uint8_t* row = labels;
+            for (int y = 0; y < count; ++y, row += row_) {
+                visit(row[0]);
+                visit(row[1]);
+                if constexpr (count == 3) visit(row[2]);
+            }
         }
         return;
     }
-    const auto* centre =
-        static_cast<const std::uint8_t*>(data_) + at[0] + at[1] * row_ + at[2] * slice_;
-    for (const std::ptrdiff_t z : {-slice_, std::ptrdiff_t{0}, slice_}) {
-        for (const std::ptrdiff_t y : {z - row_, z, z + row_}) {
-            for (int x = -1; x <= 1; ++x) visit(unsigned{centre[y + x]});
+    // Not negative and below the size, in one comparison.
+    const auto is_in_grid = [&](int a, int i) {
+        return static_cast<unsigned>(i) < static_cast<unsigned>(size_[a]);
+    };
+    for (int z = low[2]; z < low[2] + count; ++z) {
+        for (int y = low[1]; y < low[1] + count; ++y) {
+            const bool row_in_grid = is_in_grid(1, y) && is_in_grid(2, z);
+            for (int x = low[0]; x < low[0] + count; ++x) {
+                const bool in_grid = row_in_grid && is_in_grid(0, x);
+                visit(in_grid ? labels[x + y * row_ + z * slice_] : std::uint8_t{0});
+            }
         }
     }
 }
 
 std::uint32_t Field::labels_around(const Index3& at) const noexcept {
     std::uint32_t labels = 0;
-    for_each_label(at, [&](unsigned label) { labels |= std::uint32_t{1} << label; });
+    for_each_label<3>(at - Index3::Ones(),
+                      [&](std::uint8_t label) { labels |= std::uint32_t{1} << label; });
     return labels;
 }
 
-/// A sample as it is felt.
-double Field::shown(double sample) const {
-    return shows_labels_ ? labels_ >> static_cast<unsigned>(sample) & 1U : sample;
+CellSamples Field::shown_cell(const Index3& cell) const {
+    CellSamples samples;
+    double* out = samples.data();
+    for_each_label<2>(cell, [&](std::uint8_t label) { *out++ = labels_ >> label & 1U; });
+    return samples;
+}
+
+std::array<std::uint8_t, 27> Field::shown_around(const Index3& at) const {
+    std::array<std::uint8_t, 27> samples;
+    std::uint8_t* out = samples.data();
+    for_each_label<3>(at - Index3::Ones(),
+                      [&, shown = labels_](std::uint8_t label) { *out++ = shown >> label & 1U; });
+    return samples;
 }
 
 /// Updates what is derived from samples and time.
@@ -144,6 +164,7 @@ void Field::look() noexcept {
 }
 
 CellSamples Field::other_cell(const Index3& cell) const {
+    if (shows_labels_) return shown_cell(cell);
     CellSamples samples = absolute_cell(cell);
     if (offset_ != 0) {
         for (double& sample : samples) sample -= offset_;
@@ -166,11 +187,6 @@ Neighbours Field::around(const Index3& at) const {
 
 Neighbours Field::other_around(const Index3& at) const {
     Neighbours samples;
-    if (shows_labels_) {
-        double* out = samples.data();
-        for_each_label(at, [&](unsigned label) { *out++ = labels_ >> label & 1U; });
-        return samples;
-    }
     // By the eight cells that meet at the sample: they know bricks, moments and the background.
     for (unsigned octant = 0; octant < 8; ++octant) {
         const Index3 side(octant & 1, octant >> 1 & 1, octant >> 2 & 1);
@@ -193,14 +209,11 @@ CellSamples Field::absolute_cell(const Index3& cell) const {
         for (int corner = 0; corner < 8; ++corner) {
             const Index3 at = cell + Index3(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
             const bool in_grid = (at.array() >= 0).all() && (at.array() < size_.array()).all();
-            samples[corner] = in_grid ? shown(samples_->sample(at, moment_)) : background_;
+            samples[corner] = in_grid ? samples_->sample(at, moment_) : background_;
         }
         return samples;
     }
-    CellSamples samples = stored_cell(cell);
-    if (shows_labels_)
-        std::ranges::transform(samples, samples.begin(), [this](double s) { return shown(s); });
-    return samples;
+    return stored_cell(cell);
 }
 
 /// Of a cell inside the grid, as they are stored.

@@ -18,6 +18,7 @@ constexpr double velocity_filter = 1 / (2 * std::numbers::pi * 100);
 /// Greatest velocity that counts [mm/s]. What measures faster is a glitch; without this bound one
 /// false position would keep the filtered velocity high for tens of ticks.
 constexpr double fastest_hand = 1e4;
+constexpr double fastest_turn = 100;  // [rad/s] the same
 
 std::string text_of(double value) {
     std::array<char, 32> text;
@@ -45,7 +46,15 @@ void require_positive(const char* setting, double value) {
 
 ForceResult stop(ForceState& state, std::uint8_t why) {
     state = ForceState{};
-    return {Vec3::Zero(), why};
+    return {Vec3::Zero(), Vec3::Zero(), why};
+}
+
+/// The start, or the first tick after a pause: the ramp begins here, from zero.
+void begin(ForceState& state, const ForceInput& input) {
+    state = ForceState{};
+    state.started = true;
+    state.time = state.ramp_begin = input.time;
+    state.hand = input.hand;
 }
 
 /// The contact force: the spring, turned by the texture, damped along the normal but never pulling
@@ -69,25 +78,42 @@ Vec3 magnet_force(const Magnet& magnet, const ForceInput& input) {
     return -input.normal * (magnet.peak * 4 * along * (1 - along));
 }
 
+/// The spring of rotation, damped but never turning the hand further out of equilibrium.
+Vec3 contact_torque(const ForceSettings& settings, const ForceInput& input,
+                    const Vec3& angular_velocity) {
+    Vec3 torque = input.rotational_stiffness * input.turn;
+    const double strength = torque.norm();
+    if (strength == 0) return torque;
+    const Vec3 axis = torque / strength;
+    const double against = -settings.rotational_damping * angular_velocity.dot(axis);
+    return torque + axis * std::max(against, -strength);
+}
+
+/// What a force or a torque may be.
+struct Bounds {
+    double limit, maximum;  // as set, and of the device
+    double rate;            // a second
+    double ramp;            // share of it, at most 1
+};
+
 /// The ramp, the maximum and the rate. A setting that is NaN or negative, which check() refuses,
 /// gives no force or a NaN that the caller catches, never a larger force.
-Vec3 within_limits(Vec3 force, const ForceState& state, const ForceSettings& settings,
-                   const DeviceLimits& limits, double since, double step, std::uint8_t& flags) {
-    if (!(since >= settings.ramp)) {
-        force *= since / settings.ramp;
+Vec3 within(Vec3 force, const Vec3& before, const Bounds& bounds, double step,
+            std::uint8_t& flags) {
+    if (!(bounds.ramp >= 1)) {
+        force *= bounds.ramp;
         flags |= force_ramping;
     }
-    const double least = std::min(settings.limit, limits.maximum_force);
-    const double most = least > 0 && limits.maximum_force > 0 ? least : 0;
+    const double least = std::min(bounds.limit, bounds.maximum);
+    const double most = least > 0 && bounds.maximum > 0 ? least : 0;
     if (force.norm() > most) {
         force *= most / force.norm();
         flags |= force_limited;
     }
-    const Vec3 change = force - state.force;
-    const double most_change =
-        std::isfinite(settings.rate_limit) ? settings.rate_limit * step : settings.rate_limit;
+    const Vec3 change = force - before;
+    const double most_change = std::isfinite(bounds.rate) ? bounds.rate * step : bounds.rate;
     if (!(change.norm() <= most_change)) {
-        force = state.force + change * (std::max(most_change, 0.0) / change.norm());
+        force = before + change * (std::max(most_change, 0.0) / change.norm());
         flags |= force_rate_limited;
     }
     // Again, because the rate limit keeps a force above a limit that has just been lowered.
@@ -95,14 +121,34 @@ Vec3 within_limits(Vec3 force, const ForceState& state, const ForceSettings& set
     return force;
 }
 
-/// Filters the velocity; `step` is the time since the last tick [s].
-void update_velocity(ForceState& state, const Vec3& hand, double step) {
-    Vec3 measured = (hand - state.hand) / step;
+/// Filters a velocity; `step` is the time since the last tick [s].
+void filter(Vec3& velocity, const Vec3& way, double step, double fastest) {
+    Vec3 measured = way / step;
     const double speed = measured.stableNorm();
-    if (!(speed <= fastest_hand)) {
-        measured = std::isfinite(speed) ? Vec3(measured * (fastest_hand / speed)) : Vec3::Zero();
+    if (!(speed <= fastest)) {
+        measured = std::isfinite(speed) ? Vec3(measured * (fastest / speed)) : Vec3::Zero();
     }
-    state.velocity += (measured - state.velocity) * (step / (step + velocity_filter));
+    velocity += (measured - velocity) * (step / (step + velocity_filter));
+}
+
+void update_velocities(ForceState& state, const ForceInput& input, double step) {
+    filter(state.velocity, input.hand - state.hand, step, fastest_hand);
+    if (!(input.rotational_stiffness > 0) || !state.turns) return;
+    const Vec3 way = rotation_between(state.orientation, input.orientation);
+    filter(state.angular_velocity, way, step, fastest_turn);
+}
+
+bool is_finite(const ForceInput& input) {
+    return std::isfinite(input.time) && input.hand.allFinite() && input.pull.allFinite() &&
+           input.turn.allFinite() && input.orientation.coeffs().allFinite();
+}
+
+/// One factor <= 1 for a spring and its dampers, with which k / (2 rate) + damping <= physical
+/// damping holds by more than rounding.
+double stable_part(double stiffness, double damping, double rate, double physical_damping) {
+    const double used = stiffness / (2 * rate) + damping;
+    const double part = physical_damping / used * (1 - 1e-9);
+    return part > 0 && part < 1 ? part : 0;
 }
 
 }  // namespace
@@ -111,23 +157,42 @@ double greatest_stiffness(const DeviceLimits& limits, double damping) {
     return std::max(0.0, 2 * limits.rate * (limits.physical_damping - damping));
 }
 
+/// [N mm/rad] with this damping [N mm s/rad].
+static double greatest_rotational_stiffness(const DeviceLimits& limits, double damping) {
+    return std::max(0.0, 2 * limits.rate * (limits.physical_rotational_damping - damping));
+}
+
+double rotational_stiffness(const ForceSettings& s, const DeviceLimits& limits, double gyration) {
+    const double wanted =
+        s.rotational_stiffness > 0 ? s.rotational_stiffness : s.stiffness * gyration * gyration;
+    if (!(limits.maximum_torque > 0)) return wanted;
+    return std::min(wanted, greatest_rotational_stiffness(limits, s.rotational_damping));
+}
+
 DeviceLimits smaller(const DeviceLimits& one, const DeviceLimits& other) noexcept {
     const auto least = [](double a, double b) { return a >= 0 && b >= 0 ? std::min(a, b) : 0.0; };
     return {least(one.maximum_force, other.maximum_force), least(one.rate, other.rate),
-            least(one.physical_damping, other.physical_damping)};
+            least(one.physical_damping, other.physical_damping),
+            least(one.maximum_torque, other.maximum_torque),
+            least(one.physical_rotational_damping, other.physical_rotational_damping)};
 }
 
 ForceSettings stable(ForceSettings s, const DeviceLimits& limits) noexcept {
     const double damping = s.damping + s.viscosity;
     if (!(damping < limits.physical_damping) ||
         !(s.stiffness <= greatest_stiffness(limits, damping))) {
-        // k / (2 rate) + damping <= physical damping, and below it by more than rounding.
-        const double used = s.stiffness / (2 * limits.rate) + damping;
-        const double part = limits.physical_damping / used * (1 - 1e-9);
-        const double factor = part > 0 && part < 1 ? part : 0;
+        const double factor =
+            stable_part(s.stiffness, damping, limits.rate, limits.physical_damping);
         s.stiffness *= factor;
         s.damping *= factor;
         s.viscosity *= factor;
+    }
+    if (!(s.rotational_damping < limits.physical_rotational_damping) ||
+        !(s.rotational_stiffness <= greatest_rotational_stiffness(limits, s.rotational_damping))) {
+        const double factor = stable_part(s.rotational_stiffness, s.rotational_damping, limits.rate,
+                                          limits.physical_rotational_damping);
+        s.rotational_stiffness *= factor;
+        s.rotational_damping *= factor;
     }
     const double peak = greatest_stiffness(limits, s.damping + s.viscosity) * s.magnet.distance / 4;
     if (s.magnet.distance > 0 && !(s.magnet.peak <= peak)) s.magnet.peak = peak;
@@ -138,6 +203,28 @@ void check(const DeviceLimits& limits) {
     require(limits.rate >= 1 && limits.rate <= 1e5, "rate [Hz]", limits.rate, "1 to 100000");
     require_positive("maximum force [N]", limits.maximum_force);
     require_positive("physical damping [N s/mm]", limits.physical_damping);
+    require_not_negative("maximum torque [N mm]", limits.maximum_torque);
+    require_positive("physical rotational damping [N mm s/rad]",
+                     limits.physical_rotational_damping);
+}
+
+static void check_rotation(const ForceSettings& s, const DeviceLimits& limits) {
+    require_not_negative("rotational stiffness [N mm/rad]", s.rotational_stiffness);
+    require_not_negative("rotational damping [N mm s/rad]", s.rotational_damping);
+    require(s.torque_limit >= 0, "torque limit [N mm]", s.torque_limit, "at least 0 (inf: none)");
+    require(s.torque_rate_limit > 0, "torque rate limit [N mm/s]", s.torque_rate_limit,
+            "above 0 (inf: none)");
+    if (!(s.rotational_damping < limits.physical_rotational_damping)) {
+        refuse("rotational damping [N mm s/rad]", s.rotational_damping,
+               "below the physical rotational damping of device and hand, " +
+                   text_of(limits.physical_rotational_damping));
+    }
+    const double most = greatest_rotational_stiffness(limits, s.rotational_damping);
+    if (!(s.rotational_stiffness <= most)) {
+        refuse("rotational stiffness [N mm/rad]", s.rotational_stiffness,
+               "at most " + text_of(most) + " at " + text_of(limits.rate) +
+                   " Hz to be rendered stably");
+    }
 }
 
 void check(const ForceSettings& s, const DeviceLimits& limits) {
@@ -167,6 +254,7 @@ void check(const ForceSettings& s, const DeviceLimits& limits) {
                "at most " + text_of(most) + " at " + text_of(limits.rate) +
                    " Hz to be rendered stably");
     }
+    check_rotation(s, limits);
     // 4 peak / distance is the magnet's own stiffness where it is steepest.
     if (s.magnet.distance > 0 && !(4 * s.magnet.peak <= most * s.magnet.distance)) {
         refuse("magnet peak [N]", s.magnet.peak,
@@ -178,46 +266,56 @@ ForceResult render_force(ForceState& state, const ForceSettings& settings,
                          const DeviceLimits& limits, const ForceInput& input) {
     if (!input.enabled) return stop(state, force_off);
     if (!input.valid) return stop(state, force_stale);
-    if (!std::isfinite(input.time) || !input.hand.allFinite() || !input.pull.allFinite()) {
-        return stop(state, force_not_finite);
-    }
+    if (!is_finite(input)) return stop(state, force_not_finite);
     double step = input.time - state.time;
     std::uint8_t flags = 0;
     if (!state.started || !(step <= settings.stale_after)) {
-        // The start, or the first tick after a pause: the ramp begins here, from zero.
         if (state.started) flags |= force_stale;
-        state = ForceState{};
-        state.started = true;
-        state.time = state.ramp_begin = input.time;
-        state.hand = input.hand;
+        begin(state, input);
         step = 0;
     } else if (!(step > 0)) {
         return stop(state, force_stale);
     } else {
-        update_velocity(state, input.hand, step);
+        update_velocities(state, input, step);
     }
 
     Vec3 force = input.constrained ? contact_force(settings, input, state.velocity)
                                    : magnet_force(settings.magnet, input);
     force -= settings.viscosity * state.velocity;
+    Vec3 torque = Vec3::Zero();
+    const bool turns = input.rotational_stiffness > 0 && limits.maximum_torque > 0;
+    if (turns && input.constrained) {
+        torque = contact_torque(settings, input, state.angular_velocity);
+    }
     // A force whose square overflows has neither a length nor a direction.
-    if (!std::isfinite(force.squaredNorm())) return stop(state, force_not_finite);
+    if (!std::isfinite(force.squaredNorm()) || !std::isfinite(torque.squaredNorm())) {
+        return stop(state, force_not_finite);
+    }
     state.waiting |= input.released;
     if (state.waiting) {
         state.ramp_begin = input.time;
         state.waiting = input.released || !(force.norm() <= settings.start_below);
         if (state.waiting) {
             force.setZero();
+            torque.setZero();
             flags |= force_waiting;
         }
     }
-    force =
-        within_limits(force, state, settings, limits, input.time - state.ramp_begin, step, flags);
-    if (!force.allFinite()) return stop(state, force_not_finite);
+    const double since = input.time - state.ramp_begin;
+    const double ramp = since >= settings.ramp ? 1 : since / settings.ramp;
+    const Bounds of_force{settings.limit, limits.maximum_force, settings.rate_limit, ramp};
+    const Bounds of_torque{settings.torque_limit, limits.maximum_torque, settings.torque_rate_limit,
+                           ramp};
+    force = within(force, state.force, of_force, step, flags);
+    if (turns) torque = within(torque, state.torque, of_torque, step, flags);
+    if (!force.allFinite() || !torque.allFinite()) return stop(state, force_not_finite);
     state.time = input.time;
     state.hand = input.hand;
     state.force = force;
-    return {force, flags};
+    state.turns = input.rotational_stiffness > 0;
+    state.orientation = input.orientation;
+    state.torque = torque;
+    return {force, torque, flags};
 }
 
 Vec3 texture_slope(const Texture& texture, const Vec3& p) {

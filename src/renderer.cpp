@@ -1,6 +1,7 @@
 // Renderer: one tick, from the device's state by HIP, proxy and penetrability to the force.
 #include "palpate/renderer.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -14,6 +15,10 @@ namespace {
 /// range has to hold what follows from them.
 constexpr double most_scale = 1e30;
 constexpr double farthest_translation = 1e60;
+
+/// A tool's metric differs from its own by no more than this: beyond, one of the springs is nothing
+/// beside the other.
+constexpr double most_gyration_ratio = 1e3;
 
 /// Step budget of the magnet's search for a surface.
 constexpr int magnet_budget = 512;
@@ -91,6 +96,62 @@ Moved move_proxy(Renderer& renderer, const DeviceState& device, const Vec3& hip,
     return moved;
 }
 
+/// A tick of a tool: six degrees of freedom.
+Tick render_with_tool(Renderer& renderer, const DeviceState& device, Clock clock,
+                      PoseObserver observer) {
+    const RendererSettings& settings = renderer.settings;
+    const DeviceTransform& transform = settings.transform;
+    const Mat3 to_device = transform.rotation.transpose();
+    ToolProxy& proxy = *renderer.tool_proxy;
+    const double gyration = settings.tool->gyration() / transform.scale;
+    const double turning = rotational_stiffness(settings.force, settings.device, gyration);
+    const double stiffness = settings.force.stiffness;
+    ToolSettings asked{.friction = settings.proxy.friction};
+    // With this the proxy's pose is the equilibrium of the springs that are rendered.
+    if (stiffness > 0 && turning > 0) {
+        const double own = settings.tool->gyration();
+        asked.gyration = std::clamp(transform.scale * std::sqrt(turning / stiffness),
+                                    own / most_gyration_ratio, own * most_gyration_ratio);
+    }
+    const Pose hand{physical_from_device(transform, device.position),
+                    Quaternion(transform.rotation * device.orientation).normalized()};
+    Tick tick;
+    tick.time = device.time;
+    const std::int64_t begin = clock ? clock() : 0;
+    proxy.isovalue = renderer.proxy.isovalue;
+    ToolUpdate update{
+        .status = UpdateStatus::refused, .mode = proxy.mode, .hand = hand, .proxy = proxy.pose};
+    // A pose that is not trusted moves nothing.
+    if (device.valid) update = update_tool(proxy, renderer.field, hand, asked, observer);
+    tick.update_ns = clock ? clock() - begin : 0;
+    tick.proxy.status = update.status;
+    tick.proxy.mode = update.mode;
+    tick.proxy.hip = update.hand.position;
+    tick.proxy.scp = update.proxy.position;
+    tick.proxy.isovalue = proxy.isovalue;
+    tick.proxy.tetrahedra = update.work;
+    if (proxy.placed) tick.proxy.density = value_at(renderer.field, update.proxy.position);
+    tick.tool = {update.hand.orientation, update.proxy.orientation, update.contacts};
+
+    ForceInput input;
+    input.time = device.time;
+    input.enabled = settings.forces_on && device.armed;
+    input.released = device.released;
+    input.valid =
+        update.status == UpdateStatus::done || update.status == UpdateStatus::out_of_budget;
+    input.constrained = update.mode == Mode::constrained;
+    input.hand = device.position;
+    input.pull = to_device * (update.proxy.position - update.hand.position) / transform.scale;
+    input.rotational_stiffness = settings.tool->turns() ? turning : 0;
+    input.orientation = Quaternion(device.orientation);
+    input.turn = to_device * rotation_between(update.hand.orientation, update.proxy.orientation);
+    const ForceResult force = render_force(renderer.force, settings.force, settings.device, input);
+    tick.force = force.force;
+    tick.torque = force.torque;
+    tick.force_flags = force.flags;
+    return tick;
+}
+
 }  // namespace
 
 Vec3 physical_from_device(const DeviceTransform& t, const Vec3& device) {
@@ -105,12 +166,25 @@ double scale_for_voxels_per_mm(const Geometry& geometry, double voxels) {
     return voxels * geometry.spacing.minCoeff();
 }
 
+static void check_with_tool(const RendererSettings& s) {
+    const char* wrong = s.layers                         ? "layers"
+                        : s.penetrability.on             ? "penetrability"
+                        : s.force.magnet.distance > 0    ? "a magnet"
+                        : s.force.texture.amplitude != 0 ? "a texture"
+                                                         : nullptr;
+    if (wrong) {
+        throw std::invalid_argument(std::string(wrong) +
+                                    " can be felt with a point only: take the tool point");
+    }
+}
+
 void check(const RendererSettings& s) {
     if (!s.method) throw std::invalid_argument("no proxy method is set");
     check(s.force, s.device);
     if (s.layers && !s.layers->layers.empty() && !knows_layers(s.method)) {
         throw std::invalid_argument("layers need the method exact");
     }
+    if (s.tool) check_with_tool(s);
     if (s.layers && s.layers->by_label && !s.layers->labels) {
         throw std::invalid_argument("these layers are by label: name a label volume");
     }
@@ -140,6 +214,19 @@ void check(const RendererSettings& s) {
     }
 }
 
+FieldKind kind_of(const Field& field) {
+    return {field.geometry(), field.solid(), field.interpolation()};
+}
+
+void check_tool(const Tool* tool, ProxyMethod method, const FieldKind& field) {
+    if (!tool) return;
+    if (field.interpolation != Interpolation::cubic) {
+        throw std::invalid_argument(
+            "tools need the cubic field: a linear one is felt with a point");
+    }
+    if (method != &update_exact) throw std::invalid_argument("tools need the method exact");
+}
+
 void check_isovalue(double isovalue, Solid solid) {
     const double s = solid == Solid::above ? 1 : -1;
     if (!(s * isovalue > -std::numeric_limits<double>::infinity())) {
@@ -153,9 +240,43 @@ Renderer make_renderer(Field field, double isovalue, const RendererSettings& set
     check(settings.penetrability, field.solid());
     if (settings.layers) check(*settings.layers, field.solid());
     check_isovalue(isovalue, field.solid());
+    check_tool(settings.tool.get(), settings.method, kind_of(field));
     Renderer renderer{std::move(field), settings, {}, {}};
     renderer.proxy.isovalue = isovalue;
+    if (settings.tool) renderer.tool_proxy.emplace(settings.tool);
     return renderer;
+}
+
+void make_room_for_tools(Renderer& renderer) {
+    std::optional<ToolProxy>& proxy = renderer.tool_proxy;
+    if (!proxy) proxy.emplace(std::make_shared<const Tool>(point_tool()));
+    proxy->make_room(most_tool_points);
+}
+
+void use_tool(Renderer& renderer, std::shared_ptr<const Tool> tool,
+              const Mat3& orientation) noexcept {
+    RendererSettings& settings = renderer.settings;
+    std::optional<ToolProxy>& proxy = renderer.tool_proxy;
+    if (tool && !(proxy && proxy->use(tool))) return;
+    if (tool && !settings.tool) {
+        proxy->pose = {renderer.proxy.scp_physical,
+                       Quaternion(settings.transform.rotation * orientation).normalized()};
+        proxy->placed = renderer.proxy.placed;
+        proxy->mode = Mode::free;
+    }
+    if (!tool && settings.tool) {
+        // The point starts where the tool was, and is brought out there if that is inside.
+        Proxy point;
+        point.isovalue = renderer.proxy.isovalue;
+        point.placed = proxy->placed;
+        point.scp_physical = proxy->pose.position;
+        point.interpolation = renderer.field.interpolation();
+        point.scp = locate(point.interpolation,
+                           index_from_physical(renderer.field.geometry(), point.scp_physical));
+        renderer.proxy = point;
+    }
+    settings.tool = std::move(tool);
+    renderer.force.waiting = true;
 }
 
 std::string isovalue_warning(const Field& field, double isovalue) {
@@ -173,8 +294,10 @@ std::string isovalue_warning(const Field& field, double isovalue) {
     return {};
 }
 
-Tick render(Renderer& renderer, const DeviceState& device, StepObserver observer, Clock clock) {
+Tick render(Renderer& renderer, const DeviceState& device, StepObserver observer, Clock clock,
+            PoseObserver pose_observer) {
     const RendererSettings& settings = renderer.settings;
+    if (settings.tool) return render_with_tool(renderer, device, clock, pose_observer);
     const Vec3 hip = physical_from_device(settings.transform, device.position);
     Tick tick;
     tick.time = device.time;

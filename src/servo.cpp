@@ -83,6 +83,11 @@ Snapshot snapshot_of(const Session& session, const SessionTick& tick, std::int64
     const LayerState& layers = renderer.layers;
     snapshot.normal = layers.labels ? normal_at(layers.label_proxy, *layers.labels)
                                     : normal_at(renderer.proxy, renderer.field);
+    if (renderer.settings.tool) {
+        snapshot.contacts = renderer.tool_proxy->contacts;
+        snapshot.contact_count = renderer.tool_proxy->contact_count;
+        snapshot.normal.setZero();
+    }
     snapshot.stiffness = renderer.settings.force.stiffness;
     snapshot.penetrability_on = renderer.settings.penetrability.on;
     snapshot.speed = session.speed;
@@ -125,15 +130,16 @@ Servo::Servo(Session session, Device& device, const ServoSettings& settings)
       session_(std::move(session)),
       device_(std::make_unique<WatchedDevice>(device)),
       settings_(settings),
-      geometry_(session_.renderer.field.geometry()),
-      solid_(session_.renderer.field.solid()),
-      held_{session_.renderer.field.shared_samples(), session_.renderer.settings.layers} {
+      field_(kind_of(session_.renderer.field)),
+      held_{session_.renderer.field.shared_samples(), session_.renderer.settings.layers,
+            session_.renderer.settings.tool} {
     // What no device can render is refused, not lowered.
     check(session_.renderer.settings);
     keep_device_limits(device.info().limits);
     start_ = session_.renderer.settings;
     check(start_);
     check(session_.settings);
+    make_room_for_tools(session_.renderer);
     if (!(settings.rate >= 250 && settings.rate <= 8000)) {
         throw std::invalid_argument("the servo's rate must be 250 to 8000 Hz");
     }
@@ -183,12 +189,13 @@ void Servo::stop() noexcept {
 }
 
 bool Servo::send(const Command& command) {
-    const CheckedCommand checked(command, start_, solid_, geometry_);
+    const CheckedCommand checked(command, start_, field_);
     if (const auto* samples = std::get_if<command::Samples>(&command)) {
         hold(samples->samples);
         hold(samples->recipe);
     }
     if (const auto* layers = std::get_if<command::UseLayers>(&command)) hold(layers->layers);
+    if (const auto* tool = std::get_if<command::UseTool>(&command)) hold(tool->tool);
     sent_.fetch_add(1, std::memory_order_relaxed);  // before the servo thread can count it
     if (commands_.push(checked)) return true;
     sent_.fetch_sub(1, std::memory_order_relaxed);
@@ -251,7 +258,7 @@ void Servo::run() noexcept {
         sleep_until(clock.due);
         tick(clock);
     }
-    device_->write(Vec3::Zero(), 1e-9 * static_cast<double>(monotonic_ns() - clock.zero));
+    device_->write({}, 1e-9 * static_cast<double>(monotonic_ns() - clock.zero));
     state_.store(State::ended, std::memory_order_release);
 }
 
@@ -273,7 +280,7 @@ void Servo::tick(Clock& clock) noexcept {
         let_go(session_, result);
         add(overruns_, 1);
     }
-    device_->write(result.tick.force, time);
+    device_->write({result.tick.force, result.tick.torque}, time);
     const std::int64_t after_write = monotonic_ns();
     if (device_->failure() != DeviceFailure::none) return show_failure();
     publish(number, result);

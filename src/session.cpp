@@ -50,8 +50,9 @@ void hold(Session& session, const Mat3& tool, const Vec3& position) {
 /// Scales about the SCP: its device position stays, and with it the pull in device mm.
 void scale_about_scp(Renderer& renderer, double scale) {
     DeviceTransform& transform = renderer.settings.transform;
-    if (renderer.proxy.placed) {
-        const Vec3& scp = renderer.proxy.scp_physical;
+    const bool tool = renderer.settings.tool != nullptr;
+    if (tool ? renderer.tool_proxy->placed : renderer.proxy.placed) {
+        const Vec3& scp = tool ? renderer.tool_proxy->pose.position : renderer.proxy.scp_physical;
         transform.translation = scp + scale / transform.scale * (transform.translation - scp);
     }
     transform.scale = scale;
@@ -97,8 +98,8 @@ void check(const SessionSettings& s) {
     }
 }
 
-void check(const Command& command, const RendererSettings& settings, Solid solid,
-           const Geometry& geometry) {
+void check(const Command& command, const RendererSettings& settings, const FieldKind& field) {
+    const Solid solid = field.solid;
     RendererSettings changed = settings;
     const Overloaded check_one{
         [&](const command::Isovalue& to) { check_isovalue(to.isovalue, solid); },
@@ -108,7 +109,7 @@ void check(const Command& command, const RendererSettings& settings, Solid solid
         [&](const command::Scale& to) { changed.transform.scale = to.scale; },
         [&](const command::Samples& to) {
             if (!to.samples) throw std::invalid_argument("no samples are given");
-            if (!(to.samples->geometry() == geometry)) {
+            if (!(to.samples->geometry() == field.geometry)) {
                 throw std::invalid_argument(
                     "the samples do not lie on the grid of those that are felt");
             }
@@ -125,6 +126,7 @@ void check(const Command& command, const RendererSettings& settings, Solid solid
             if (to.layers) check(*to.layers, solid);
             changed.layers = to.layers;
         },
+        [&](const command::UseTool& to) { check_tool(to.tool.get(), changed.method, field); },
         [&](const ForceSettings& to) { changed.force = to; },
         [&](const Friction& to) { changed.proxy.friction = to; },
         [&](const Penetrability& to) { check(to, solid); },
@@ -132,19 +134,21 @@ void check(const Command& command, const RendererSettings& settings, Solid solid
         [](const DeviceLimits& to) { check(to); },
     };
     std::visit(check_one, command);
+    changed.tool.reset();  // beside one, other things rest
     check(changed);
 }
 
-CheckedCommand::CheckedCommand(Command command, const RendererSettings& settings, Solid solid,
-                               const Geometry& geometry)
+CheckedCommand::CheckedCommand(Command command, const RendererSettings& settings,
+                               const FieldKind& field)
     : command_(std::move(command)) {
-    check(command_, settings, solid, geometry);
+    check(command_, settings, field);
 }
 
 void apply(Session& session, const Command& command) {
-    const Renderer& renderer = session.renderer;
-    apply(session, CheckedCommand(command, renderer.settings, renderer.field.solid(),
-                                  renderer.field.geometry()));
+    Renderer& renderer = session.renderer;
+    const CheckedCommand checked(command, renderer.settings, kind_of(renderer.field));
+    if (std::holds_alternative<command::UseTool>(command)) make_room_for_tools(renderer);
+    apply(session, checked);
 }
 
 // std::visit throws only for a variant without a value, and check() has visited this one.
@@ -156,7 +160,10 @@ void apply(Session& session,  // NOLINT(bugprone-exception-escape)
     const Overloaded apply_one{
         [&](const command::Isovalue& to) { renderer.proxy.isovalue = to.isovalue; },
         [&](const command::Freeze& to) {
-            if (to.on && !session.frozen) session.frozen_hand = session.hand;
+            if (to.on && !session.frozen) {
+                session.frozen_hand = session.hand;
+                session.frozen_tool = session.tool;
+            }
             session.frozen = to.on;
         },
         [&](const command::Clutch& to) { session.clutched = to.on; },
@@ -177,6 +184,7 @@ void apply(Session& session,  // NOLINT(bugprone-exception-escape)
         },
         [&](const command::Speed& to) { session.speed = to.speed; },
         [&](const command::UseLayers& to) { use_layers(renderer, to.layers); },
+        [&](const command::UseTool& to) { use_tool(renderer, to.tool, session.tool); },
         [&](const ForceSettings& to) { settings.force = stable(to, settings.device); },
         [&](const Friction& to) { settings.proxy.friction = to; },
         [&](const Penetrability& to) { settings.penetrability = to; },
@@ -215,19 +223,21 @@ SessionTick advance(Session& session, double time, const DeviceReading& reading,
     state.released = session.frozen || clutched;
 
     if (state.valid) {
-        if (!session.seen) session.frozen_hand = reading.position;
+        // An orientation that is not a rotation is ignored: the last one stays.
+        if (is_rotation(reading.orientation)) session.tool = reading.orientation;
+        if (!session.seen) {
+            session.frozen_hand = reading.position;
+            session.frozen_tool = session.tool;
+        }
         session.seen = true;
         session.seen_at = time;
         session.hand = reading.position;
     }
     const bool hangs = clutched && !session.frozen;
-    if (hangs && state.valid) {
-        // An orientation that is not a rotation is ignored: the last one stays.
-        if (is_rotation(reading.orientation)) session.tool = reading.orientation;
-        hold(session, session.tool, reading.position);
-    }
+    if (hangs && state.valid) hold(session, session.tool, reading.position);
     session.holding = hangs && (state.valid || session.holding);
     state.position = session.frozen ? session.frozen_hand : reading.position;
+    state.orientation = session.frozen ? session.frozen_tool : session.tool;
     // Devices without an orientation give the identity.
     if (!reading.orientation.isIdentity(0) && is_rotation(reading.orientation)) {
         state.pointing = -reading.orientation.col(2);
@@ -247,6 +257,7 @@ SessionTick advance(Session& session, double time, const DeviceReading& reading,
 void let_go(Session& session, SessionTick& tick) noexcept {
     session.renderer.force = ForceState{};
     tick.tick.force.setZero();
+    tick.tick.torque.setZero();
     tick.tick.force_flags |= force_overrun;
 }
 

@@ -58,6 +58,17 @@ void RenderOptions::add_to(CLI::App& command) {
         .add_option("--labels", labels,
                     "Layers by place: a label volume (a segmentation) on its own grid")
         ->type_name("VOLUME");
+    command
+        .add_option_function<std::string>(
+            "--tool", [this](const std::string& text) { given.tool = io::tool_spec_from(text); },
+            "Feel with a rigid tool: sphere:R, rod:L, needle[:L,R], burr:R, box:X,Y,Z, fingertip "
+            "[mm], or a file of points (.csv)")
+        ->type_name("TOOL")
+        ->default_str("point");
+    command
+        .add_option("--tool-spacing", given.tool_spacing,
+                    "Distance of the tool's points [mm] (default: half a voxel)")
+        ->check(CLI::PositiveNumber);
     add_force_to(command);
     command.add_option("--rate", given.rate, "Rate of the loop the forces are meant for [Hz]")
         ->capture_default_str();
@@ -115,6 +126,11 @@ void RenderOptions::add_force_to(CLI::App& command) {
     add_pair("--magnet", force.magnet, "Snap to near surfaces: DISTANCE [mm],PEAK [N]")
         ->type_name("D,P");
     add_pair("--texture", force.texture, "Bumps: AMPLITUDE,WAVELENGTH [mm]")->type_name("A,W");
+    command.add_option("--rotational-stiffness", force.rotational_stiffness,
+                       "Of a tool [N mm/rad] (default: from stiffness and the tool's gyration)");
+    command.add_option("--rotational-damping", force.rotational_damping, "Of a tool [N mm s/rad]");
+    command.add_option("--torque-limit", force.torque_limit, "Largest torque [N mm]")
+        ->capture_default_str();
     command.add_option("--force-limit", given.limit, "Largest force [N]")
         ->default_str(fmt::format("{}", force.limit));
     command.add_option("--force-rate", force.rate_limit, "Largest change of force [N/s]")

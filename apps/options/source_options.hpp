@@ -41,11 +41,11 @@ std::string flaw_in_count(const std::string& text);
 
 /// The isovalue asked for, else the synthetic volume's own; std::invalid_argument if there is none.
 /// Prints a warning on standard error where there is nothing to feel at it.
-/// With layers, their outermost level.
-double required_isovalue(const run::LoadedVolume& loaded, const Field& field,
-                         const run::FieldSetup& setup, const run::RenderSetup& render);
 double required_isovalue(const run::LoadedVolume& loaded, const Field& field,
                          const run::FieldSetup& setup);
+/// With layers, their outermost level; warns where their numbers are not in the data's unit.
+double required_isovalue(const run::LoadedVolume& loaded, const Field& field,
+                         const run::FieldSetup& setup, const run::RenderSetup& render);
 /// The same, but of a file without --isovalue the first level that its histogram suggests.
 double suggested_isovalue(const run::LoadedVolume& loaded, const Field& field,
                           const run::FieldSetup& setup);

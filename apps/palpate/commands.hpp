@@ -16,6 +16,7 @@ void add_devices(CLI::App& app);
 void add_replay(CLI::App& app);
 void add_extract(CLI::App& app);
 void add_render(CLI::App& app);
+void add_tool(CLI::App& app);
 void add_demo(CLI::App& app);
 void add_demo_sculpt(CLI::App& demo);
 void add_demo_beating(CLI::App& demo);

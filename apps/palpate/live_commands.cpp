@@ -42,7 +42,7 @@ Penetrability LiveCommands::penetrability_from(const CommandWords& words) const 
 
 Command LiveCommands::use_layers(std::shared_ptr<const Layers> layers) {
     const Command command = command::UseLayers{layers};
-    check(command, settings_, field_.solid(), field_.geometry());
+    check(command, settings_, kind_of(field_));
     if (layers) last_layers_ = layers;
     settings_.layers = std::move(layers);
     return command;
@@ -77,8 +77,7 @@ Command LiveCommands::setting_from(const CommandWords& words, RendererSettings& 
         "there is no command '" + name +
         "'; there are isovalue, stiffness, damping, viscosity, friction, penetrability, layers, "
         "forces, freeze, clutch, scale, brush, carve, add, smooth, paint, fill, undo, redo, save, "
-        "play, "
-        "pause, step, seek, loop, quit");
+        "play, pause, step, seek, loop, quit");
 }
 
 DataRequest LiveCommands::take_up(const std::optional<run::HandBrush>& brush) {
@@ -117,7 +116,7 @@ Request LiveCommands::from_words(std::string_view line) {
     }
     RendererSettings next = settings_;
     const Command command = setting_from(words, next);
-    check(command, settings_, field_.solid(), field_.geometry());
+    check(command, settings_, kind_of(field_));
     settings_ = next;
     return command;
 }
@@ -173,8 +172,7 @@ std::optional<Request> LiveCommands::from_key(char key, const Snapshot& now) {
 std::string LiveCommands::key_help() {
     return "keys: space forces on/off, f freeze, c clutch (the volume follows the hand), + - "
            "isovalue by 1 %, [ ] scale, p penetrability, l layers, b brush on/off, u undo, r redo, "
-           "k play or "
-           "pause a sequence, , . a frame back or on, q quit, ? this";
+           "k play or pause a sequence, , . a frame back or on, q quit, ? this";
 }
 
 std::vector<TimedRequest> read_commands(const std::string& path, LiveCommands& commands) {

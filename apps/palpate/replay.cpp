@@ -27,7 +27,7 @@ struct ReplayOptions {
     SourceOptions source;
     run::FieldSetup field;
     RenderOptions render;
-    std::string trajectory, output, path;
+    std::string trajectory, output, path, poses;
     bool json = false, validate = false;
     std::string recorded_volume;
 };
@@ -112,9 +112,11 @@ void replay(const ReplayOptions& options) {
     }
     if (options.trajectory.empty()) throw std::invalid_argument("--trajectory is required");
     if (options.output.empty()) throw std::invalid_argument("--output is required");
-    check_outputs({options.source.name(), options.trajectory}, {options.output, options.path});
-    const bool table_on_standard_output =
-        is_standard_output(options.output) || is_standard_output(options.path);
+    check_outputs({options.source.name(), options.trajectory},
+                  {options.output, options.path, options.poses});
+    const bool table_on_standard_output = is_standard_output(options.output) ||
+                                          is_standard_output(options.path) ||
+                                          is_standard_output(options.poses);
     if (options.json && table_on_standard_output) {
         throw std::invalid_argument(
             "--json and a table would both go to standard output: give the table a file");
@@ -129,18 +131,26 @@ void replay(const ReplayOptions& options) {
     Renderer renderer =
         make_renderer(field, isovalue, run::offline_settings(render, field, isovalue));
 
-    io::TraceWriter trace(options.output, {}, names_of(renderer.settings.layers));
+    const bool has_tool = renderer.settings.tool != nullptr;
+    io::TraceWriter trace(options.output, {}, {names_of(renderer.settings.layers), has_tool});
     std::optional<io::PathWriter> path;
     if (!options.path.empty()) path.emplace(options.path);
+    std::optional<io::PosesWriter> poses;
+    if (!options.poses.empty()) {
+        if (!has_tool) throw std::invalid_argument("--poses does nothing without --tool");
+        poses.emplace(options.poses);
+    }
     ProgressBar bar("replaying", options.source.quiet);
     run::OfflineSinks sinks;
     sinks.row = [&](const io::TraceRow& row) { trace.add(row); };
     if (path) sinks.corner = [&](std::int64_t tick, const Vec3& p) { path->add(tick, p); };
+    if (poses) sinks.pose = [&](std::int64_t tick, const Pose& p) { poses->add(tick, p); };
     sinks.progress = [&](double fraction) { bar.at(fraction); };
     const run::OfflineSummary summary = run::render_offline(renderer, trajectory, sinks);
     stop_if_interrupted();
     std::vector<io::PendingFile*> files{&trace.file()};
     if (path) files.push_back(&path->file());
+    if (poses) files.push_back(&poses->file());
     io::PendingFile::commit_together(files);
     if (options.json) {
         print_json(summary_json(summary));
@@ -155,9 +165,9 @@ void add_replay(CLI::App& app) {
     auto options = std::make_shared<ReplayOptions>();
     CLI::App* command = app.add_subcommand("replay", "Render a recorded motion of the hand");
     command->footer(
-        "The trajectory is CSV with columns t,x,y,z (s, mm in the volume's physical space); a "
-        "trace "
-        "serves too.\nThe ramp and the limit on the change of force, which a live session has, are "
+        "The trajectory is CSV with columns t,x,y,z (s, mm in the volume's physical space), and "
+        "for a tool its orientation qw,qx,qy,qz; a trace serves too.\nThe ramp and the limit on "
+        "the change of force, which a live session has, are "
         "off unless asked for.\n\n"
         "Example:\n  palpate replay head.nrrd --trajectory hand.csv --isovalue 500 --output "
         "trace.csv --path path.csv\n  palpate replay session.csv --validate");
@@ -167,6 +177,7 @@ void add_replay(CLI::App& app) {
     command->add_option("--trajectory", options->trajectory, "Motion of the hand (CSV)");
     command->add_option("-o,--output", options->output, "Trace to write (CSV; - for standard out)");
     command->add_option("--path", options->path, "Path of the SCP to write (CSV)");
+    command->add_option("--poses", options->poses, "Poses of a tool's proxy to write (CSV)");
     add_field_options(*command, options->field);
     options->render.add_to(*command);
     command->add_flag("--validate", options->validate,

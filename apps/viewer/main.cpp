@@ -5,6 +5,7 @@
 #include <QApplication>
 #include <QSurfaceFormat>
 #include <QTimer>
+#include <clocale>
 #include <csignal>
 
 #include "apps/options/exit_status.hpp"
@@ -12,6 +13,7 @@
 #include "apps/options/view_options.hpp"
 #include "apps/viewer/model/raw_preview.hpp"
 #include "apps/viewer/window/appearance.hpp"
+#include "apps/viewer/window/language.hpp"
 #include "apps/viewer/window/main_window.hpp"
 #include "apps/viewer/window/screenshot.hpp"
 
@@ -91,6 +93,9 @@ int main(int argc, char** argv) {
     QApplication application(qt_arguments, argv);
     QCoreApplication::setOrganizationName("palpate");
     QCoreApplication::setApplicationName("palpate");
+    // Qt has taken the system's; files are read with strtod, whose point must stay a point.
+    std::setlocale(LC_NUMERIC, "C");
+    const viewer::Translation translation(viewer::chosen_language());
     viewer::set_appearance(viewer::last_appearance());
     try {
         return show(application, options);

@@ -18,25 +18,25 @@ std::vector<std::string> names(const std::string& path) {
 
 // clang-format off
 constexpr Model models[] = {
-    // type            N  N/mm   mm
-    {33,  "omega.3",  12, 5,     55, false},
-    {34,  "omega.6",  12, 5,     55, true},
-    {36,  "omega.6",  12, 5,     55, true},
-    {35,  "omega.7",  12, 5,     55, true},
-    {37,  "omega.7",  12, 5,     55, true},
-    {60,  "Falcon",    8, 3,     40, false},
-    {63,  "delta.3",  20, 5,    100, false},
-    {64,  "delta.6",  20, 5,    100, true},
-    {104, "sigma.7",  12, 4,     55, true},
-    {105, "sigma.7",  12, 4,     55, true},
-    {108, "lambda.7", 12, 4,     55, true},
-    {109, "lambda.7", 12, 4,     55, true},
-    {203, "lambda.3", 12, 4,     55, false},
-    {206, "sigma.3",  12, 4,     55, false},
+    // type            N  N/mm   mm         N mm
+    {33,  "omega.3",  12, 5,     55, false, 0},
+    {34,  "omega.6",  12, 5,     55, true,  0},
+    {36,  "omega.6",  12, 5,     55, true,  0},
+    {35,  "omega.7",  12, 5,     55, true,  0},
+    {37,  "omega.7",  12, 5,     55, true,  0},
+    {60,  "Falcon",    8, 3,     40, false, 0},
+    {63,  "delta.3",  20, 5,    100, false, 0},
+    {64,  "delta.6",  20, 5,    100, true,  150},
+    {104, "sigma.7",  12, 4,     55, true,  400},
+    {105, "sigma.7",  12, 4,     55, true,  400},
+    {108, "lambda.7", 12, 4,     55, true,  150},
+    {109, "lambda.7", 12, 4,     55, true,  150},
+    {203, "lambda.3", 12, 4,     55, false, 0},
+    {206, "sigma.3",  12, 4,     55, false, 0},
 };
 // clang-format on
 /// For unknown models: the least that any of them can do.
-constexpr Model any_model{0, "Force Dimension device", 8, 3, 40, false};
+constexpr Model any_model{0, "Force Dimension device", 8, 3, 40, false, 0};
 
 }  // namespace
 
@@ -65,12 +65,22 @@ Dhd::Dhd(const std::string& path) : library(names(path), install) {
     library.take(get_serial_number, "dhdGetSerialNumber");
     library.take(get_version, "dhdGetSDKVersion");
     library.take(set_max_force, "dhdSetMaxForce");
+    library.take(has_active_wrist, "dhdHasActiveWrist");
+    library.take(set_all, "dhdSetForceAndTorqueAndGripperForce");
+    library.take(set_force_and_torque, "dhdSetForceAndTorque");
+    library.take(set_max_torque, "dhdSetMaxTorque");
     library.take(set_watchdog, "dhdSetWatchdog");
     library.take(get_watchdog, "dhdGetWatchdog");
     library.take(drd_open, "drdOpenID");
     library.take(drd_close, "drdClose");
     library.take(drd_is_initialised, "drdIsInitialized");
     library.take(drd_initialise, "drdAutoInit");
+    library.take(drd_start, "drdStart");
+    library.take(drd_stop, "drdStop");
+    library.take(drd_regulate_position, "drdRegulatePos");
+    library.take(drd_regulate_rotation, "drdRegulateRot");
+    library.take(drd_regulate_gripper, "drdRegulateGrip");
+    library.take(drd_turn_to, "drdMoveToRot");
 }
 
 std::string Dhd::error_words() const {

@@ -61,6 +61,7 @@ DeviceStatus status_of(Trouble::Kind kind) {
             return DeviceStatus::ready;
         case Trouble::Kind::initialising:
         case Trouble::Kind::uninitialised:
+        case Trouble::Kind::wrist_uninitialised:
             return DeviceStatus::uncalibrated;
         case Trouble::Kind::lost:
             return DeviceStatus::lost;
@@ -97,19 +98,32 @@ DhdDevice::DhdDevice(const std::string& library, const Settings& settings)
       opened_(dhd_, settings.index),
       id_(opened_.id()),
       model_(model_of(dhd_.get_system_type(id_))),
+      renders_torque_(renders_torque()),
       info_(ask(settings)) {
     if (settings.initialise && !dhd_.has_drd()) {
         throw DeviceError("autoinit=yes: " + dhd_.library.path() +
                           " cannot initialise devices: install libdrd.so.3 beside it, or "
                           "library=PATH of that one");
     }
-    thread_ = std::thread([this, itself = settings.initialise] { run(itself); });
+    if (settings.centre && !(renders_torque_ && dhd_.can_centre())) {
+        throw DeviceError(renders_torque_
+                              ? "centre=yes: " + dhd_.library.path() +
+                                    " cannot move devices: install libdrd.so.3 beside it, or "
+                                    "library=PATH of that one"
+                              : "centre=yes: " + info_.model + " has no motors at its wrist");
+    }
+    thread_ = std::thread([this, settings] { run(settings); });
 }
 
 DhdDevice::~DhdDevice() {
     link_.stop();
     quit_.store(true);
     thread_.join();
+}
+
+bool DhdDevice::renders_torque() const {
+    if (!model_.has_wrist || !(model_.torque > 0) || !dhd_.has_torque()) return false;
+    return !dhd_.has_active_wrist || dhd_.has_active_wrist(id_);
 }
 
 DeviceInfo DhdDevice::ask(const Settings& settings) const {
@@ -127,29 +141,64 @@ DeviceInfo DhdDevice::ask(const Settings& settings) const {
     info.workspace_low = Vec3::Constant(-model_.reach);
     info.workspace_high = Vec3::Constant(model_.reach);
     info.has_orientation = model_.has_wrist;
+    info.renders_torque = renders_torque_;
+    info.limits.maximum_torque = renders_torque_ ? model_.torque : 0;
     info.buttons = model_.type == 60 ? 4 : 1;
     return info;
 }
 
-void DhdDevice::run(bool itself) {
+void DhdDevice::run(const Settings& settings) {
     prepare_device_thread();
-    if (itself) initialise();
+    if (settings.initialise) initialise();
+    is_to_centre_ = settings.centre;
     std::int64_t next = monotonic_ns();
     while (!quit_) {
         tick();
         next = std::max(next + period, monotonic_ns());
         sleep_until(next);
     }
-    dhd_.set_force(0, 0, 0, id_);
+    send({});
     if (old_watchdog_) dhd_.set_watchdog(*old_watchdog_, id_);
 }
 
 void DhdDevice::initialise() {
-    if (dhd_.drd_is_initialised(id_)) return;
+    std::array<int, status::count> told{};
+    const bool wrist = !renders_torque_ || (dhd_.get_status(told.data(), id_) >= 0 &&
+                                            told[status::wrist_initialised] != 0);
+    if (wrist && dhd_.drd_is_initialised(id_)) return;
+    moves_by_itself();
+    if (dhd_.drd_initialise(id_) < 0) init_words_ = clipped(dhd_.error_words());
+}
+
+void DhdDevice::moves_by_itself() {
     Trouble trouble;
     trouble.kind = Trouble::Kind::initialising;
     trouble_.report(link_, trouble, {});
-    if (dhd_.drd_initialise(id_) < 0) init_words_ = clipped(dhd_.error_words());
+}
+
+/// The library regulates the wrist alone until it is straight, and lets go of it again: torques
+/// are felt at axes that are not regulated only.
+void DhdDevice::centre_wrist() {
+    is_to_centre_ = false;
+    moves_by_itself();
+    dhd_.drd_regulate_position(false, id_);
+    dhd_.drd_regulate_gripper(false, id_);
+    dhd_.drd_regulate_rotation(true, id_);
+    if (dhd_.drd_start(id_) >= 0) dhd_.drd_turn_to(0, 0, 0, true, id_);
+    dhd_.drd_stop(true, id_);
+    dhd_.drd_regulate_rotation(false, id_);
+}
+
+int DhdDevice::send(const Wrench& wrench) noexcept {
+    const Vec3 f = axes().transpose() * wrench.force;
+    if (!renders_torque_) return dhd_.set_force(f[0], f[1], f[2], id_);
+    const Vec3 t = axes().transpose() * wrench.torque * 1e-3;  // [N m]
+    const int result = dhd_.set_all
+                           ? dhd_.set_all(f[0], f[1], f[2], t[0], t[1], t[2], 0, id_)
+                           : dhd_.set_force_and_torque(f[0], f[1], f[2], t[0], t[1], t[2], id_);
+    // What was not taken must not leave the force before it.
+    if (result < 0) dhd_.set_force(0, 0, 0, id_);
+    return result;
 }
 
 void DhdDevice::tick() noexcept {
@@ -164,9 +213,10 @@ void DhdDevice::tick() noexcept {
 
     const std::int64_t now = monotonic_ns();
     gate_.note(trouble.kind == Trouble::Kind::none, now);
-    const Vec3 force = axes().transpose() * gate_.pass(link_.force(), model_.force, now);
-    if (dhd_.set_force(force[0], force[1], force[2], id_) < 0 &&
-        trouble.kind == Trouble::Kind::none) {
+    const Wrench wanted = link_.wrench();
+    const Wrench passed{gate_.pass(wanted.force, model_.force, now),
+                        gate_.pass(wanted.torque, info_.limits.maximum_torque, now)};
+    if (send(passed) < 0 && trouble.kind == Trouble::Kind::none) {
         trouble = failure();
         gate_.note(false, now);
     }
@@ -189,9 +239,17 @@ void DhdDevice::look_after_device() noexcept {
         state_.words = init_words_;
         return;
     }
+    // Without its reference the orientation is wrong, and a torque would turn it somewhere.
+    if (renders_torque_ && told[status::wrist_initialised] == 0) {
+        is_on_ = false;
+        state_.kind = Trouble::Kind::wrist_uninitialised;
+        state_.words = init_words_;
+        return;
+    }
     if (!is_on_) {
         is_on_ = switch_on();
         if (!is_on_) state_ = failure();
+        if (is_on_ && is_to_centre_) centre_wrist();
         return;
     }
     // A device that does not report why its force is off may not report its force at all.
@@ -205,6 +263,7 @@ void DhdDevice::look_after_device() noexcept {
 bool DhdDevice::switch_on() noexcept {
     // A model refuses calls for features it lacks; only the force itself is needed.
     if (dhd_.set_max_force) dhd_.set_max_force(model_.force, id_);
+    if (renders_torque_ && dhd_.set_max_torque) dhd_.set_max_torque(1e-3 * model_.torque, id_);
     dhd_.set_brakes(0, id_);
     if (dhd_.enable_force(1, id_) < 0) return false;
     dhd_.set_gravity_compensation(1, id_);
@@ -221,6 +280,7 @@ Trouble DhdDevice::read_device(DeviceReading& reading) noexcept {
     constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
     double x = unknown, y = unknown, z = unknown;
     if (dhd_.get_position(&x, &y, &z, id_) < 0) return failure();
+    Trouble trouble;
     reading.position = 1000 * (axes() * Vec3(x, y, z));
     if (model_.has_wrist) {
         double rows[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -229,10 +289,13 @@ Trouble DhdDevice::read_device(DeviceReading& reading) noexcept {
         for (int row = 0; row < 3; ++row) {
             for (int column = 0; column < 3; ++column) frame(row, column) = rows[row][column];
         }
-        if (frame.allFinite()) reading.orientation = axes() * frame * axes().transpose();
+        if (is_rotation(frame)) {
+            reading.orientation = axes() * frame * axes().transpose();
+        } else {
+            trouble.kind = Trouble::Kind::not_a_rotation;
+        }
     }
     reading.buttons = dhd_.get_buttons(id_) & 0xFFFFU;
-    Trouble trouble;
     if (!is_position(reading.position)) trouble.kind = Trouble::Kind::not_a_position;
     return trouble;
 }
@@ -260,7 +323,13 @@ std::string DhdDevice::problem() const {
     const std::string words = trouble.words.data();
     switch (trouble.kind) {
         case Trouble::Kind::initialising:
-            return "the device is initialising itself: it moves; keep your hands off";
+            return "the device finds its reference or centres its wrist: it moves by itself; keep "
+                   "your hands off";
+        case Trouble::Kind::wrist_uninitialised:
+            return "the wrist is not initialised" +
+                   (words.empty() ? "" : " (it could not do so itself: " + words + ")") +
+                   ": initialise it as the device's manual says, or open it with autoinit=yes, "
+                   "which moves it";
         case Trouble::Kind::uninitialised:
             return (words.empty() ? "not initialised"
                                   : "it could not initialise itself (" + words + ")") +
@@ -269,6 +338,8 @@ std::string DhdDevice::problem() const {
                    "with autoinit=yes, which moves it";
         case Trouble::Kind::not_a_position:
             return "the library tells a position that cannot be: initialise the device again";
+        case Trouble::Kind::not_a_rotation:
+            return "the library tells an orientation that cannot be: initialise the device again";
         case Trouble::Kind::force_off:
             return words_of(trouble.cause);
         case Trouble::Kind::error:

@@ -16,6 +16,7 @@ namespace palpate::devices::forcedimension {
 struct Settings {
     int index = 0;            ///< of the device, as the library counts them
     bool initialise = false;  ///< let it find its reference by itself; it moves to do so
+    bool centre = false;      ///< let it turn its wrist straight by itself
     double rate = 1000;       ///< [Hz] of the servo
 };
 
@@ -23,9 +24,11 @@ struct Settings {
 struct Trouble {
     enum class Kind : std::uint8_t {
         none,
-        initialising,    ///< it is moving by itself
-        uninitialised,   ///< `words`: why its own attempt failed, if there was one
+        initialising,   ///< it is moving by itself
+        uninitialised,  ///< `words`: why its own attempt failed, if there was one
+        wrist_uninitialised,
         not_a_position,  ///< the library returns an impossible position
+        not_a_rotation,  ///< the same of the orientation
         force_off,       ///< the device has switched its force off
         error,           ///< a call failed: `words`
         lost,            ///< a call failed because the device does not answer
@@ -61,19 +64,23 @@ class DhdDevice final : public Device {
     DeviceInfo info() const override { return info_; }
     std::string problem() const override;
     DeviceReading read(double) noexcept override { return link_.read(); }
-    void write(const Vec3& force, double) noexcept override { link_.write(force); }
+    void write(const Wrench& wrench, double) noexcept override { link_.write(wrench); }
     void stop() noexcept override { link_.stop(); }
     bool is_stopping() const noexcept override { return link_.stopping(); }
 
   private:
     DeviceInfo ask(const Settings& settings) const;
+    bool renders_torque() const;
 
     // Called by the thread only.
-    void run(bool initialise);
+    void run(const Settings& settings);
     void initialise();
+    void centre_wrist();
+    void moves_by_itself();
     void tick() noexcept;
     void look_after_device() noexcept;
     bool switch_on() noexcept;
+    int send(const Wrench& wrench) noexcept;
     Trouble read_device(DeviceReading& reading) noexcept;
     Trouble failure() const noexcept;
 
@@ -81,6 +88,7 @@ class DhdDevice final : public Device {
     const Opened opened_;
     const char id_;
     const Model model_;
+    const bool renders_torque_;
     const DeviceInfo info_;
     Link link_;
     LatestTrouble<Trouble> trouble_;
@@ -91,6 +99,7 @@ class DhdDevice final : public Device {
     Trouble state_;  // found by look_after_device()
     std::array<char, 128> init_words_{};
     bool is_on_ = false;          // brakes off, force on
+    bool is_to_centre_ = false;   // once it is on
     std::int64_t next_look_ = 0;  // [ns]
     std::optional<unsigned char> old_watchdog_;
 

@@ -21,7 +21,7 @@ std::string version_of(const forcedimension::Dhd& dhd) {
 DeviceFinding forcedimension::find(const std::string& library) {
     DeviceFinding finding;
     finding.name = "forcedimension";
-    finding.options = "index=0,autoinit=no,library=libdrd.so.3 or libdhd.so.3";
+    finding.options = "index=0,autoinit=no,centre=no,library=libdrd.so.3 or libdhd.so.3";
     try {
         const Dhd dhd(library);
         const std::string sdk = "Force Dimension SDK" + version_of(dhd) + ", " + dhd.library.path();
@@ -54,6 +54,7 @@ std::unique_ptr<Device> open_forcedimension(const DeviceChoice& choice, const De
     forcedimension::Settings settings;
     settings.index = static_cast<int>(index);
     settings.initialise = options.flag("autoinit", false);
+    settings.centre = options.flag("centre", false);
     settings.rate = scene.rate;
     const std::string library = options.text("library", "");
     options.finish();

@@ -223,7 +223,7 @@ bool Inverse3::ask(Talk& talk, Questions& questions) {
 /// The link's, if the gate lets it through and the newest position is not stale.
 Vec3 Inverse3::force(Clock::time_point now) {
     if (now - measured_at_ > longest_age) gate_.note(false, monotonic_ns());
-    return gate_.pass(link_.force(), maximum_force, monotonic_ns());
+    return gate_.pass(link_.wrench().force, maximum_force, monotonic_ns());
 }
 
 void Inverse3::take(Talk& talk, const Received& received, Clock::time_point asked) {

@@ -61,7 +61,7 @@ class Inverse3 final : public Device {
     DeviceInfo info() const override;
     std::string problem() const override;
     DeviceReading read(double) noexcept override { return link_.read(); }
-    void write(const Vec3& force, double) noexcept override { link_.write(force); }
+    void write(const Wrench& wrench, double) noexcept override { link_.write(wrench); }
     void stop() noexcept override { link_.stop(); }
     bool is_stopping() const noexcept override { return link_.stopping(); }
 

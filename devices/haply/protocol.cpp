@@ -128,8 +128,12 @@ void take_grip(Grip& grip, const Json& message) {
             grip.id = id_of(list->front());
         }
         const Json* entry = entry_of(*list, grip.id, grip.place);
-        if (!entry) {  // out of reach, out of battery or unplugged: nothing is held any more
+        if (!entry) {
+            // Out of reach, out of battery or unplugged: nothing is held any more. The orientation
+            // stays, for a tool that snapped straight would jump in the hand.
+            const Mat3 last = grip.orientation;
             grip = {};
+            grip.orientation = last;
             return;
         }
         const Json* state = member(entry, "state");

@@ -23,7 +23,7 @@ Mat3 orientation_of(const double (&transform)[16]) {
     for (int column = 0; column < 3; ++column) {
         for (int row = 0; row < 3; ++row) axes(row, column) = transform[4 * column + row];
     }
-    return axes.allFinite() ? axes : Mat3(Mat3::Identity());
+    return axes;
 }
 
 }  // namespace
@@ -38,6 +38,7 @@ DeviceStatus status_of(Trouble::Kind kind) {
         case Trouble::Kind::lost:
             return DeviceStatus::lost;
         case Trouble::Kind::not_a_position:
+        case Trouble::Kind::not_a_rotation:
         case Trouble::Kind::passing:
         case Trouble::Kind::broken:
             break;
@@ -67,8 +68,13 @@ unsigned int Frames::frame() noexcept {
     }
     if (error_.kind != Trouble::Kind::none) trouble = error_;
     gate_.note(trouble.kind == Trouble::Kind::none && !last, now);
-    const Vec3 force = gate_.pass(link_.force(), setup_.most_force, now);
+    const Wrench wanted = link_.wrench();
+    const Vec3 force = gate_.pass(wanted.force, setup_.most_force, now);
     hd_.set_double(parameter::force, force.data());
+    if (setup_.most_torque > 0) {
+        const Vec3 torque = gate_.pass(wanted.torque, setup_.most_torque, now);  // N mm are mN m
+        hd_.set_double(parameter::torque, torque.data());
+    }
     hd_.end_frame(setup_.device);
 
     take_errors();
@@ -95,7 +101,9 @@ Trouble Frames::read_device(DeviceReading& reading) noexcept {
     hd_.get_double(parameter::transform, transform);
     hd_.get_int(parameter::buttons, &buttons);
     reading.position = Vec3(position[0], position[1], position[2]);
-    reading.orientation = orientation_of(transform);
+    const Mat3 orientation = orientation_of(transform);
+    const bool turned = !setup_.has_orientation || is_rotation(orientation);
+    if (setup_.has_orientation && turned) reading.orientation = orientation;
     reading.buttons = static_cast<std::uint32_t>(buttons) & 0xFU;
 
     const unsigned int calibration = hd_.check_calibration();
@@ -107,7 +115,8 @@ Trouble Frames::read_device(DeviceReading& reading) noexcept {
                                                          : Trouble::Kind::needs_person,
                 0};
     }
-    return {is_position(reading.position) ? Trouble::Kind::none : Trouble::Kind::not_a_position, 0};
+    if (!is_position(reading.position)) return {Trouble::Kind::not_a_position, 0};
+    return {turned ? Trouble::Kind::none : Trouble::Kind::not_a_rotation, 0};
 }
 
 bool Frames::for_good() const noexcept {

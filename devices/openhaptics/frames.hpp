@@ -1,4 +1,5 @@
-// The callback that runs in the driver's servo loop: each call is one frame, reading in, force out.
+// The callback that runs in the driver's servo loop: each call is one frame, reading in, force and
+// torque out.
 #pragma once
 
 #include <atomic>
@@ -17,6 +18,7 @@ struct Trouble {
         needs_update,    ///< calibration that waits for the driver
         needs_person,    ///< calibration that waits for a person
         not_a_position,  ///< the driver returns an impossible position
+        not_a_rotation,  ///< the same of the orientation
         passing,         ///< an error; over when it has not recurred for a while
         lost,            ///< communication has ended; permanent
         broken,          ///< the device reports a fault; permanent
@@ -32,7 +34,9 @@ class Frames {
   public:
     struct Setup {
         Handle device = no_handle;
-        double most_force = 0;    ///< [N]
+        double most_force = 0;   ///< [N]
+        double most_torque = 0;  ///< [N mm] 0: it has none, and is never sent one
+        bool has_orientation = false;
         unsigned int styles = 0;  ///< of calibration, bits
     };
     Frames(std::shared_ptr<const Hd> hd, const Setup& setup)

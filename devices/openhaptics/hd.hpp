@@ -31,11 +31,14 @@ constexpr unsigned int transform = 0x2052;  // 16 double, column after column
 constexpr unsigned int model = 0x2501, driver_version = 0x2502, serial_number = 0x2504;  // string
 constexpr unsigned int usable_workspace = 0x2551;       // 6 double: low corner, high corner [mm]
 constexpr unsigned int input_dof = 0x2553;              // int
+constexpr unsigned int output_dof = 0x2554;             // int, 6 with torque
 constexpr unsigned int calibration_style = 0x2555;      // int, bits
 constexpr unsigned int update_rate = 0x2600;            // int [Hz]
 constexpr unsigned int nominal_max_stiffness = 0x2602;  // double [N/mm]
 constexpr unsigned int nominal_max_force = 0x2603;      // double [N]
+constexpr unsigned int nominal_max_torque = 0x2622;     // double [mN m]
 constexpr unsigned int force = 0x2700;                  // 3 double [N]
+constexpr unsigned int torque = 0x2701;                 // 3 double [mN m], axes of the device
 }  // namespace parameter
 
 constexpr unsigned int force_output = 0x4000;  // capability

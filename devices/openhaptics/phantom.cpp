@@ -17,7 +17,8 @@ using namespace std::chrono_literals;
 
 std::atomic<bool> attached{false};  // the driver has one loop per process, so there is one of these
 
-constexpr auto longest_wait = 500ms;  // for the last frame
+constexpr double weakest_torque = 48;  // [N mm] where the driver tells none
+constexpr auto longest_wait = 500ms;   // for the last frame
 
 const char* const how_to_attach =
     "connect and switch on the device and set it up with the vendor's program (its name there, if "
@@ -72,6 +73,12 @@ DeviceInfo ask(const Hd& hd, double servo_rate) {
     info.limits.rate = std::min<double>(servo_rate, rate);
     set_workspace(hd, info);
     info.has_orientation = whole_number(hd, parameter::input_dof, 1, 7, 6) >= 6;
+    info.renders_torque =
+        info.has_orientation && whole_number(hd, parameter::output_dof, 1, 7, 3) >= 6;
+    if (info.renders_torque) {
+        info.limits.maximum_torque =
+            number(hd, parameter::nominal_max_torque, 1, 1000, weakest_torque);
+    }
     info.buttons = 4;  // as many as the interface has bits
     return info;
 }
@@ -139,7 +146,8 @@ Phantom::Phantom(std::unique_ptr<Attachment> attachment, const Settings& setting
     }
     frames_ = std::make_shared<Frames>(
         attachment_->shared_hd(),
-        Frames::Setup{attachment_->device(), info_.limits.maximum_force, styles_});
+        Frames::Setup{attachment_->device(), info_.limits.maximum_force,
+                      info_.limits.maximum_torque, info_.has_orientation, styles_});
     try {
         start();
     } catch (...) {
@@ -216,6 +224,9 @@ std::string Phantom::problem() const {
         case Trouble::Kind::not_a_position:
             return "the driver tells a position that cannot be: calibrate the device, or switch it "
                    "off and on";
+        case Trouble::Kind::not_a_rotation:
+            return "the driver tells an orientation that cannot be: calibrate the device, or "
+                   "switch it off and on";
         case Trouble::Kind::passing:
             return driver_says(advice(trouble.code));
         case Trouble::Kind::lost:

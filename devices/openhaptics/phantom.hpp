@@ -42,7 +42,7 @@ class Phantom final : public Device {
     DeviceInfo info() const override { return info_; }
     std::string problem() const override;
     DeviceReading read(double) noexcept override { return frames_->link().read(); }
-    void write(const Vec3& force, double) noexcept override { frames_->link().write(force); }
+    void write(const Wrench& wrench, double) noexcept override { frames_->link().write(wrench); }
     void stop() noexcept override { frames_->link().stop(); }
     bool is_stopping() const noexcept override { return frames_->link().stopping(); }
 

@@ -47,7 +47,7 @@ class Recorded final : public Device {
         return reading;
     }
 
-    void write(const Vec3& /*force*/, double /*time*/) noexcept override {}
+    void write(const Wrench& /*wrench*/, double /*time*/) noexcept override {}
     void stop() noexcept override {}
 
   private:

@@ -1,4 +1,4 @@
-// The implicit step of the dynamics, quantisation by motors and encoders, and delayed forces.
+// The implicit step of the dynamics, quantisation by motors and encoders, and delayed wrenches.
 #include "devices/simulated/dynamics.hpp"
 
 #include <algorithm>
@@ -17,6 +17,32 @@ Vec3 in_steps(const Vec3& v, double step, Rounding rounding) {
     return Vec3(rounding(v[0] / step), rounding(v[1] / step), rounding(v[2] / step)) * step;
 }
 
+/// What a motor gives for a commanded force or torque.
+Vec3 limited_in_steps(Vec3 wanted, double maximum, double step) {
+    if (!wanted.allFinite()) return Vec3::Zero();  // stableNorm() of (0, NaN, 0) is 0
+    const double strength = wanted.stableNorm();
+    if (strength > maximum) wanted *= maximum / strength;
+    if (!(step > 0)) return wanted;
+    const Vec3 nearest = in_steps(wanted, step, [](double v) { return std::round(v); });
+    if (nearest.norm() <= maximum) return nearest;
+    return in_steps(wanted, step, [](double v) { return std::trunc(v); });
+}
+
+/// The velocity at the end of an implicit step, of translation or rotation alike. `mass` is M or J
+/// as force by acceleration; `to_target` the way, or the rotation, to the target. With
+/// x = x_before + dt v the step reads (weight) v + dt friction(v) = momentum.
+template <class System>
+Vec3 velocity_after(const System& s, double mass, const Vec3& to_target,
+                    const Vec3& target_velocity, const Vec3& motors, double dt) {
+    const double weight = mass + dt * (s.damping + s.hand_damping) + dt * dt * s.hand_stiffness;
+    const Vec3 momentum = mass * s.velocity + dt * (motors + s.hand_damping * target_velocity +
+                                                    s.hand_stiffness * to_target);
+    const double strength = momentum.norm();
+    const double held = dt * s.friction;
+    if (strength <= held) return Vec3::Zero();
+    return momentum * ((1 - held / strength) / weight);
+}
+
 }  // namespace
 
 HandAndDevice hand_and_device(const DeviceProfile& device, const HandGrip& hand,
@@ -30,33 +56,38 @@ HandAndDevice hand_and_device(const DeviceProfile& device, const HandGrip& hand,
             .velocity = Vec3::Zero()};
 }
 
+TurningHandAndDevice turning_hand_and_device(const DeviceProfile& device, const HandGrip& hand,
+                                             const Quaternion& orientation) {
+    return {.inertia = device.inertia + hand.inertia,
+            .damping = device.rotational_damping,
+            .friction = device.rotational_friction,
+            .hand_damping = hand.rotational_damping,
+            .hand_stiffness = hand.rotational_stiffness,
+            .orientation = orientation,
+            .velocity = Vec3::Zero()};
+}
+
 void advance(HandAndDevice& s, const Vec3& target, const Vec3& target_velocity,
              const Vec3& motor_force, double dt) noexcept {
     const double mass = 1e-3 * s.mass;  // [N s^2/mm]
-    // With x' = x + dt v', the step reads (weight) v' + dt friction(v') = momentum.
-    const double weight = mass + dt * (s.damping + s.hand_damping) + dt * dt * s.hand_stiffness;
-    const Vec3 momentum = mass * s.velocity + dt * (motor_force + s.hand_damping * target_velocity +
-                                                    s.hand_stiffness * (target - s.position));
-    const double strength = momentum.norm();
-    const double held = dt * s.friction;
-    if (strength <= held) {
-        s.velocity.setZero();
-        return;
-    }
-    s.velocity = momentum * ((1 - held / strength) / weight);
+    s.velocity = velocity_after(s, mass, target - s.position, target_velocity, motor_force, dt);
     s.position += dt * s.velocity;
 }
 
+void advance(TurningHandAndDevice& s, const Quaternion& target, const Vec3& target_velocity,
+             const Vec3& motor_torque, double dt) noexcept {
+    const double inertia = 1e-3 * s.inertia;  // [N mm s^2]
+    const Vec3 to_target = rotation_between(s.orientation, target);
+    s.velocity = velocity_after(s, inertia, to_target, target_velocity, motor_torque, dt);
+    if (!s.velocity.isZero(0)) s.orientation = turned(s.orientation, dt * s.velocity);
+}
+
 Vec3 motor_force(const DeviceProfile& device, const Vec3& commanded) noexcept {
-    Vec3 force = commanded;
-    const double strength = force.stableNorm();
-    if (!std::isfinite(strength)) return Vec3::Zero();
-    if (strength > device.maximum_force) force *= device.maximum_force / strength;
-    const double step = device.force_step;
-    if (!(step > 0)) return force;
-    const Vec3 nearest = in_steps(force, step, [](double v) { return std::round(v); });
-    if (nearest.norm() <= device.maximum_force) return nearest;
-    return in_steps(force, step, [](double v) { return std::trunc(v); });
+    return limited_in_steps(commanded, device.maximum_force, device.force_step);
+}
+
+Vec3 motor_torque(const DeviceProfile& device, const Vec3& commanded) noexcept {
+    return limited_in_steps(commanded, device.maximum_torque, device.torque_step);
 }
 
 Vec3 encoder_position(const DeviceProfile& device, const Vec3& position) noexcept {
@@ -65,7 +96,16 @@ Vec3 encoder_position(const DeviceProfile& device, const Vec3& position) noexcep
     return in_steps(position, step, [](double v) { return std::round(v); });
 }
 
-ForceLine::ForceLine(double delay, double longest, std::size_t room)
+Quaternion encoder_orientation(const DeviceProfile& device,
+                               const Quaternion& orientation) noexcept {
+    const double step = device.angle_step;
+    if (!(step > 0)) return orientation;
+    const Vec3 angles = rotation_between(Quaternion::Identity(), orientation);
+    return turned(Quaternion::Identity(),
+                  in_steps(angles, step, [](double v) { return std::round(v); }));
+}
+
+WrenchLine::WrenchLine(double delay, double longest, std::size_t room)
     : delay_(delay),
       longest_(longest),
       ring_(std::max<std::size_t>(1, room)),
@@ -73,15 +113,15 @@ ForceLine::ForceLine(double delay, double longest, std::size_t room)
     acting_.arrival = -infinity;
 }
 
-void ForceLine::send(const Vec3& force, double time) noexcept {
+void WrenchLine::send(const Wrench& wrench, double time) noexcept {
     // A time that is NaN counts as the last one, too.
     const double arrival = time + delay_ > last_arrival_ ? time + delay_ : last_arrival_;
     if (count_ < ring_.size()) ++count_;
-    ring_[(first_ + count_ - 1) % ring_.size()] = {force, arrival};
+    ring_[(first_ + count_ - 1) % ring_.size()] = {wrench, arrival};
     last_arrival_ = arrival;
 }
 
-ForceLine::Acting ForceLine::at(double time) noexcept {
+WrenchLine::Acting WrenchLine::at(double time) noexcept {
     while (count_ > 0 && ring_[first_].arrival <= time) {
         acting_ = ring_[first_];
         first_ = (first_ + 1) % ring_.size();
@@ -89,8 +129,8 @@ ForceLine::Acting ForceLine::at(double time) noexcept {
     }
     const double next = count_ > 0 ? ring_[first_].arrival : infinity;
     const double gone = acting_.arrival + longest_;
-    if (time >= gone) return {Vec3::Zero(), next};
-    return {acting_.force, std::min(next, gone)};
+    if (time >= gone) return {Wrench{}, next};
+    return {acting_.wrench, std::min(next, gone)};
 }
 
 }  // namespace palpate::devices

@@ -3,6 +3,8 @@
 #include "devices/simulated/profiles.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <numbers>
 #include <stdexcept>
 #include <utility>
 
@@ -18,6 +20,13 @@ struct Row {
     double width, height, depth;                     // mm, round the origin
 };
 
+/// Of those that measure the orientation.
+struct TurningRow {
+    const char* name;
+    double inertia, damping, friction;            // kg mm^2, N mm s/rad, N mm
+    double degrees, maximum_torque, torque_step;  // of a step of angle, N mm, N mm
+};
+
 // clang-format off
 constexpr Row rows[] = {
     // name      model           mass   damping friction encoder force step  delay    stiffness  box
@@ -25,25 +34,57 @@ constexpr Row rows[] = {
     {"touch",    "Touch",        0.045, 0.5e-3, 0.26, 0.055,  3.3,  0.002, 1e-3,    0.4,  160, 120,  70},
     {"touchx",   "Touch X",      0.045, 0.5e-3, 0.06, 0.023,  7.9,  0.004, 1e-3,    1.48, 160, 120, 120},
     {"omega3",   "omega.3",      0.2,   2e-3,   0.1,  0.01,   12,   0.006, 0.25e-3, 5,    110, 110, 110},
+    {"omega6",   "omega.6",      0.3,   2e-3,   0.1,  0.01,   12,   0.006, 0.25e-3, 5,    110, 110, 110},
+    {"omega7",   "omega.7",      0.35,  2e-3,   0.1,  0.01,   12,   0.006, 0.25e-3, 5,    110, 110, 110},
+    {"sigma7",   "sigma.7",      0.4,   2e-3,   0.1,  0.0015, 20,   0.01,  0.25e-3, 4,    130, 130, 130},
+    {"premium6dof", "Premium 1.5/6DOF", 0.136, 0.5e-3, 0.2, 0.03, 8.5, 0.004, 0.5e-3, 3.5, 381, 267, 191},
     {"falcon",   "Falcon",       0.15,  2e-3,   0.4,  0.0635, 8,    0.01,  1e-3,    3,     80,  80,  80},
     {"inverse3", "Inverse3",     0.15,  0.5e-3, 0.15, 0.01,   10,   0.005, 1e-3,    1,    170, 170, 170},
+    {"inverse3_versegrip", "Inverse3 with VerseGrip",
+                                 0.2,   0.5e-3, 0.15, 0.01,   10,   0.005, 1e-3,    1,    170, 170, 170},
+};
+constexpr TurningRow turning_rows[] = {
+    // name                inertia damping friction step   torque step
+    {"omni",                2,     0.05,   1,       0.1,     0,   0},
+    {"touch",               2,     0.05,   1,       0.1,     0,   0},
+    {"touchx",              2,     0.05,   0.5,     0.02,    0,   0},
+    {"omega6",             20,     0.2,    2,       0.09,    0,   0},
+    {"omega7",             25,     0.2,    2,       0.09,    0,   0},
+    {"sigma7",             40,     0.2,    2,       0.013, 400,   0.2},
+    {"premium6dof",        20,     0.2,    2,       0.008, 170,   0.1},
+    {"inverse3_versegrip", 20,     0.05,   0,       0.1,     0,   0},
 };
 // clang-format on
 
+void add_rotation(DeviceProfile& profile) {
+    const auto row = std::ranges::find(turning_rows, profile.name, &TurningRow::name);
+    if (row == std::end(turning_rows)) return;
+    profile.has_orientation = true;
+    profile.inertia = row->inertia;
+    profile.rotational_damping = row->damping;
+    profile.rotational_friction = row->friction;
+    profile.angle_step = row->degrees * std::numbers::pi / 180;
+    profile.maximum_torque = row->maximum_torque;
+    profile.torque_step = row->torque_step;
+}
+
 DeviceProfile profile_of(const Row& row) {
     const Vec3 corner = 0.5 * Vec3(row.width, row.height, row.depth);
-    return {.name = row.name,
-            .model = row.model,
-            .mass = row.mass,
-            .damping = row.damping,
-            .friction = row.friction,
-            .encoder_step = row.encoder_step,
-            .maximum_force = row.maximum_force,
-            .force_step = row.force_step,
-            .delay = row.delay,
-            .stiffness = row.stiffness,
-            .workspace_low = -corner,
-            .workspace_high = corner};
+    DeviceProfile profile;
+    profile.name = row.name;
+    profile.model = row.model;
+    profile.mass = row.mass;
+    profile.damping = row.damping;
+    profile.friction = row.friction;
+    profile.encoder_step = row.encoder_step;
+    profile.maximum_force = row.maximum_force;
+    profile.force_step = row.force_step;
+    profile.delay = row.delay;
+    profile.stiffness = row.stiffness;
+    profile.workspace_low = -corner;
+    profile.workspace_high = corner;
+    add_rotation(profile);
+    return profile;
 }
 
 const std::vector<DeviceProfile>& profiles() {
@@ -57,9 +98,28 @@ const std::vector<DeviceProfile>& profiles() {
 
 const std::vector<std::pair<std::string, HandGrip>>& grips() {
     static const std::vector<std::pair<std::string, HandGrip>> all{
-        {"light", {.mass = 0.05, .damping = 2e-3, .stiffness = 0.1}},
-        {"normal", {.mass = 0.1, .damping = 5e-3, .stiffness = 0.3}},
-        {"firm", {.mass = 0.2, .damping = 12e-3, .stiffness = 0.8}},
+        // Of rotation: the same mass, damper and spring at a lever of 20 mm.
+        {"light",
+         {.mass = 0.05,
+          .damping = 2e-3,
+          .stiffness = 0.1,
+          .inertia = 20,
+          .rotational_damping = 0.8,
+          .rotational_stiffness = 40}},
+        {"normal",
+         {.mass = 0.1,
+          .damping = 5e-3,
+          .stiffness = 0.3,
+          .inertia = 40,
+          .rotational_damping = 2,
+          .rotational_stiffness = 120}},
+        {"firm",
+         {.mass = 0.2,
+          .damping = 12e-3,
+          .stiffness = 0.8,
+          .inertia = 80,
+          .rotational_damping = 4.8,
+          .rotational_stiffness = 320}},
     };
     return all;
 }

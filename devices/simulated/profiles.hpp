@@ -10,7 +10,7 @@
 
 namespace palpate::devices {
 
-/// A haptic device as a point mass at the grip, the same in all directions.
+/// A haptic device as a rigid body at the grip, the same in all directions and about all axes.
 struct DeviceProfile {
     std::string name;          ///< for the option `profile`
     std::string model;         ///< as people call it
@@ -24,19 +24,33 @@ struct DeviceProfile {
     double stiffness = 0;      ///< [N/mm] it is rated for
     Vec3 workspace_low = Vec3::Zero();
     Vec3 workspace_high = Vec3::Zero();  ///< [device mm]
+
+    // Of rotation.
+
+    bool has_orientation = false;    ///< false: nothing below counts
+    double inertia = 1;              ///< [kg mm^2] apparent at the grip, > 0
+    double rotational_damping = 0;   ///< [N mm s/rad] viscous, of the mechanics
+    double rotational_friction = 0;  ///< [N mm] Coulomb
+    double angle_step = 0;           ///< [rad] orientations are read in multiples of it; 0: exactly
+    double maximum_torque = 0;       ///< [N mm] 0: it measures the orientation only
+    double torque_step = 0;          ///< [N mm] as force_step
 };
 
-/// omni, touch, touchx, omega3, falcon, inverse3.
+/// omni, touch, touchx, omega3, omega6, omega7, sigma7, premium6dof, falcon, inverse3,
+/// inverse3_versegrip.
 const std::vector<std::string>& profile_names();
 /// Throws std::invalid_argument, listing the names, for another.
 const DeviceProfile& profile(std::string_view name);
 
 /// The hand at the grip: a mass that moves with the device, and a spring and a damper towards the
-/// hand's target.
+/// hand's target; the same of rotation.
 struct HandGrip {
-    double mass = 0;       ///< [kg]
-    double damping = 0;    ///< [N s/mm]
-    double stiffness = 0;  ///< [N/mm]
+    double mass = 0;                  ///< [kg]
+    double damping = 0;               ///< [N s/mm]
+    double stiffness = 0;             ///< [N/mm]
+    double inertia = 0;               ///< [kg mm^2]
+    double rotational_damping = 0;    ///< [N mm s/rad]
+    double rotational_stiffness = 0;  ///< [N mm/rad]
 };
 
 /// light, normal, firm.

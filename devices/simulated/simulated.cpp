@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <utility>
 
@@ -32,11 +33,20 @@ struct HandOptions {
     bool loop = false;
 };
 
+/// How the hand turns the handle: from straight to `angle` and, if it sways, back and so on.
+struct TurnOptions {
+    double angle = 0;  ///< [rad] 0: it keeps it straight
+    double time = 1;   ///< [s] for one way
+    std::string axis = "z";
+    bool sways = false;
+};
+
 struct Choice {
     DeviceProfile device;
     std::string grip = "normal";
     HandGrip grip_numbers;
     HandOptions hand;
+    TurnOptions turn;
 };
 
 /// The motions a hand can make, by the names used here.
@@ -47,12 +57,42 @@ std::vector<std::string> hand_names() {
     return names;
 }
 
+constexpr double degree = std::numbers::pi / 180;
+
+/// The rotational part of the profile, the grip and the hand.
+void choose_rotation(Choice& choice, DeviceOptions& options, const DeviceChoice& given) {
+    DeviceProfile& device = choice.device;
+    if (!device.has_orientation) {
+        for (const char* key :
+             {"turn", "turn_time", "turn_axis", "sway", "angle_step", "torque_step", "hand_inertia",
+              "hand_turn_damping", "hand_turn_stiffness"}) {
+            if (!given.options.contains(key)) continue;
+            throw std::invalid_argument("device " + given.name + ": " + key +
+                                        "= has no meaning with profile=" + device.name +
+                                        ", which measures no orientation");
+        }
+    }
+    device.angle_step = degree * options.number("angle_step", device.angle_step / degree, 0, 5);
+    device.torque_step = options.number("torque_step", device.torque_step, 0, 50);
+    HandGrip& numbers = choice.grip_numbers;
+    numbers.inertia = options.number("hand_inertia", numbers.inertia, 0, 1e4);
+    numbers.rotational_damping =
+        options.number("hand_turn_damping", numbers.rotational_damping, 0, 1e3);
+    numbers.rotational_stiffness =
+        options.number("hand_turn_stiffness", numbers.rotational_stiffness, 0, 1e5);
+    TurnOptions& turn = choice.turn;
+    turn.angle = degree * options.number("turn", 0, -170, 170);
+    turn.time = options.number("turn_time", turn.time, 0.05, 3600);
+    turn.axis = options.one_of("turn_axis", turn.axis, {"x", "y", "z"});
+    turn.sways = options.flag("sway", turn.sways);
+}
+
 Choice choose(const DeviceChoice& given) {
     DeviceOptions options(given, "profile");
     Choice choice;
     choice.device = profile(options.one_of("profile", usual_profile, profile_names()));
     DeviceProfile& device = choice.device;
-    if (!options.flag("friction", true)) device.friction = 0;
+    if (!options.flag("friction", true)) device.friction = device.rotational_friction = 0;
     device.encoder_step = options.number("encoder", device.encoder_step, 0, 5);
     device.delay = 1e-3 * options.number("delay", 1e3 * device.delay, 0, 100);
     device.force_step = options.number("force_step", device.force_step, 0, 5);
@@ -62,6 +102,8 @@ Choice choose(const DeviceChoice& given) {
     numbers.mass = options.number("hand_mass", numbers.mass, 0, 10);
     numbers.damping = options.number("hand_damping", numbers.damping, 0, 1);
     numbers.stiffness = options.number("hand_stiffness", numbers.stiffness, 0, 100);
+
+    choose_rotation(choice, options, given);
 
     HandOptions& hand = choice.hand;
     hand.file = options.text("file", "");
@@ -118,13 +160,20 @@ DeviceInfo info_of(const Choice& choice, double rate) {
     info.limits.maximum_force = device.maximum_force;
     info.limits.rate = rate;
     info.limits.physical_damping = device.damping + choice.grip_numbers.damping;
+    if (device.has_orientation) {
+        info.limits.maximum_torque = device.maximum_torque;
+        info.limits.physical_rotational_damping =
+            device.rotational_damping + choice.grip_numbers.rotational_damping;
+    }
+    info.has_orientation = device.has_orientation;
+    info.renders_torque = device.maximum_torque > 0;
     info.stiffness = device.stiffness;
     info.workspace_low = device.workspace_low;
     info.workspace_high = device.workspace_high;
     return info;
 }
 
-/// Twice the forces that are under way at this rate.
+/// Twice the wrenches that are under way at this rate.
 std::size_t room_for(double delay, double rate) {
     return 16 + static_cast<std::size_t>(2 * delay * std::min(1e5, std::max(1.0, rate)));
 }
@@ -137,8 +186,10 @@ class Simulated final : public Device {
           path_(std::move(path)),
           loop_(choice.hand.loop),
           line_(device_.delay, longest_force, room_for(device_.delay, info.limits.rate)),
-          system_(hand_and_device(device_, choice.grip_numbers, path_.at(path_.begin()).position)) {
-    }
+          system_(hand_and_device(device_, choice.grip_numbers, path_.at(path_.begin()).position)),
+          turn_(choice.turn),
+          turn_axis_(Vec3::Unit(turn_.axis[0] - 'x')),
+          turning_(turning_hand_and_device(device_, choice.grip_numbers, Quaternion::Identity())) {}
 
     DeviceInfo info() const override { return info_; }
 
@@ -153,29 +204,36 @@ class Simulated final : public Device {
         }
         DeviceReading reading;
         reading.position = encoder_position(device_, system_.position);
+        if (device_.has_orientation) {
+            reading.orientation =
+                encoder_orientation(device_, turning_.orientation).toRotationMatrix();
+        }
         const bool finished = !loop_ && path_.begin() + script_time_ > path_.end();
         reading.status = finished ? DeviceStatus::finished : DeviceStatus::ready;
         return reading;
     }
 
-    void write(const Vec3& force, double time) noexcept override { line_.send(force, time); }
+    void write(const Wrench& wrench, double time) noexcept override { line_.send(wrench, time); }
 
     void stop() noexcept override { stopped_.store(true, std::memory_order_relaxed); }
 
   private:
-    /// Lets the system move on to a time, from one change of the force to the next.
+    /// Lets the system move on to a time, from one change of the wrench to the next.
     void pass(double end) noexcept {
         while (now_ < end) {
-            const ForceLine::Acting acting = line_.at(now_);
+            const WrenchLine::Acting acting = line_.at(now_);
             const double until = std::min(end, acting.until);
-            const bool stopped = stopped_.load(std::memory_order_relaxed);
-            integrate(stopped ? Vec3(Vec3::Zero()) : motor_force(device_, acting.force),
-                      until - now_);
+            Wrench given;
+            if (!stopped_.load(std::memory_order_relaxed)) {
+                given = {motor_force(device_, acting.wrench.force),
+                         motor_torque(device_, acting.wrench.torque)};
+            }
+            integrate(given, until - now_);
             now_ = until;
         }
     }
 
-    void integrate(const Vec3& force, double duration) noexcept {
+    void integrate(const Wrench& motors, double duration) noexcept {
         // Less a rounding: a millisecond that came out of a difference is still 40 steps.
         const double wanted = duration / longest_step - 1e-6;
         const int steps = std::max(1, static_cast<int>(std::ceil(wanted)));
@@ -183,7 +241,10 @@ class Simulated final : public Device {
         const double from = script_time_;
         for (int i = 1; i <= steps; ++i) {
             const TimedPath::Place target = target_at(from + i * dt);
-            advance(system_, target.position, target.velocity, force, dt);
+            advance(system_, target.position, target.velocity, motors.force, dt);
+            if (!device_.has_orientation) continue;
+            const Turn turn = turn_at(from + i * dt);
+            advance(turning_, turn.orientation, turn.velocity, motors.torque, dt);
         }
         script_time_ = from + duration;
     }
@@ -196,12 +257,29 @@ class Simulated final : public Device {
         return place;
     }
 
+    struct Turn {
+        Quaternion orientation;
+        Vec3 velocity;  // [rad/s]
+    };
+    /// Half a cosine for one way, so that the hand begins and ends at rest.
+    Turn turn_at(double script_time) const noexcept {
+        if (turn_.angle == 0) return {Quaternion::Identity(), Vec3::Zero()};
+        const double done = script_time / turn_.time;
+        const double phase = std::numbers::pi * (turn_.sways ? done : std::min(1.0, done));
+        const double angle = turn_.angle * 0.5 * (1 - std::cos(phase));
+        const double speed = turn_.angle * 0.5 * std::sin(phase) * std::numbers::pi / turn_.time;
+        return {turned(Quaternion::Identity(), turn_axis_ * angle), turn_axis_ * speed};
+    }
+
     const DeviceInfo info_;
     const DeviceProfile device_;
     TimedPath path_;
     const bool loop_;
-    ForceLine line_;
+    WrenchLine line_;
     HandAndDevice system_;
+    const TurnOptions turn_;
+    const Vec3 turn_axis_;
+    TurningHandAndDevice turning_;
     bool started_ = false;
     double now_ = 0;          // [s] of the session
     double script_time_ = 0;  // [s] since the first read, without what was skipped
@@ -230,7 +308,10 @@ DeviceFinding find_simulated() {
                        "file=TRAJECTORY.csv instead of hand, loop=no, seconds=30, speed=50, "
                        "depth=4, seed=1, friction=yes; the profile's and the grip's own: "
                        "encoder=MM, delay=MS, force_step=N, hand_mass=KG, "
-                       "hand_damping=N_S_PER_MM, hand_stiffness=N_PER_MM"};
+                       "hand_damping=N_S_PER_MM, hand_stiffness=N_PER_MM; of a profile with "
+                       "orientation: turn=DEG (0), turn_time=1, turn_axis=z (x|y|z), sway=no, "
+                       "angle_step=DEG, torque_step=N_MM, hand_inertia=KG_MM2, "
+                       "hand_turn_damping=N_MM_S, hand_turn_stiffness=N_MM"};
 }
 
 std::unique_ptr<Device> open_simulated(const DeviceChoice& given, const DeviceScene& scene) {

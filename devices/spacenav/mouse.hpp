@@ -24,7 +24,7 @@ class Mouse final : public Device {
     DeviceInfo info() const override { return info_; }
     std::string problem() const override;
     DeviceReading read(double) noexcept override { return link_.read(); }
-    void write(const Vec3&, double) noexcept override {}
+    void write(const Wrench&, double) noexcept override {}
     void stop() noexcept override { link_.stop(); }
 
   private:

@@ -8,6 +8,7 @@
 
 #include "devices/simulated/profiles.hpp"
 #include "evaluation/experiment.hpp"
+#include "evaluation/stability/rotation.hpp"
 #include "palpate/devices/devices.hpp"
 #include "palpate/renderer.hpp"
 
@@ -67,7 +68,7 @@ Held press(const Case& c, Subject subject) {
         const bool ready = reading.status == DeviceStatus::ready;
         const Tick tick =
             render(renderer, {.time = time, .position = reading.position, .valid = ready});
-        device->write(tick.force, time);
+        device->write({tick.force, tick.torque}, time);
         if (time < seconds - 1) continue;
         position.extend(reading.position);
         positions.push_back(reading.position);
@@ -334,6 +335,7 @@ Result stability(const Options& options) {
                      control_claim(result.table)};
     result.figures = {map_figure(result.table, plan), profile_figure(result.table, plan)};
     result.paragraph = paragraph_of(result.table, plan, subject);
+    add_rotation(options, subject, result);
     return result;
 }
 

@@ -1,4 +1,4 @@
-// Stage 16, device: the interface of a haptic device, which gives positions and takes forces.
+// Stage 16, device: the interface of a haptic device, which gives poses and takes wrenches.
 // Backends for real and simulated devices are in the folder devices/.
 #pragma once
 
@@ -31,6 +31,7 @@ struct DeviceInfo {
     Vec3 workspace_low = Vec3::Constant(-80);
     Vec3 workspace_high = Vec3::Constant(80);  ///< corners of the usable box [device mm]
     bool renders_force = true;                 ///< false: position only
+    bool renders_torque = false;               ///< false: the torque of a wrench is ignored
     bool has_orientation = false;
     int buttons = 0;
 };
@@ -77,16 +78,17 @@ class Device {
     /// session, with stop(), when this or write() throws or does not return within 10 ms
     /// (DeviceFailure).
     virtual DeviceReading read(double time) = 0;
-    /// Servo thread, as above. A force [N, device axes] holds until the next one, but no longer
-    /// than `longest_force`; then the device's own thread sets it to zero.
-    virtual void write(const Vec3& force, double time) = 0;
+    /// Servo thread, as above. A wrench (device axes; torque about the point that read() gives the
+    /// position of) holds until the next one, but no longer than `longest_force`; then the device's
+    /// own thread sets it to zero. A device without torque renders the force alone.
+    virtual void write(const Wrench& wrench, double time) = 0;
     static constexpr double longest_force = 0.02;  ///< [s]
 
-    /// Zero force from now on, for good, whatever write() is told later or at the same time. Any
-    /// thread, and signal handlers: a program that crashes calls it as a last resort. Also while
-    /// another thread is in read() or write() and does not come back, so it waits for nothing that
-    /// such a thread holds. A device whose force cannot be reached from a second thread says so in
-    /// problem() and its documentation.
+    /// No force and torque from now on, for good, whatever write() is told later or at the same
+    /// time. Any thread, and signal handlers: a program that crashes calls it as a last resort.
+    /// Also while another thread is in read() or write() and does not come back, so it waits for
+    /// nothing that such a thread holds. A device whose force cannot be reached from a second
+    /// thread says so in problem() and its documentation.
     virtual void stop() noexcept = 0;
     /// After stop(): true while the zero is still on its way, where the device can tell. Any
     /// thread, and signal handlers.

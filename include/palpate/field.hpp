@@ -53,8 +53,7 @@ class Field {
     /// Goes to a time of a sequence [s], see Samples::moment_at().
     void set_time(double time) noexcept;
     /// From now on the field is 1 in samples whose label, from 0 to 31, is one of these bits and 0
-    /// in all others; outside the grid is label 0. Of samples of whole numbers in that range, not
-    /// between frames.
+    /// in all others; outside the grid is label 0. Of one uint8 volume that is not edited.
     void show_labels(std::uint32_t labels) noexcept;
     /// Bits of the labels of the sample `at` and its neighbours, whether they are shown or not.
     std::uint32_t labels_around(const Index3& at) const noexcept;
@@ -96,7 +95,8 @@ class Field {
     Neighbours around(const Index3& at) const;
     /// The same samples where they lie: returns visit(centre, row, slice), where `centre` points to
     /// the sample, its neighbours in x are beside it, those in y `row` away, in z `slice`. Samples
-    /// that lie otherwise (at the border, edited, between frames) are gathered first, as doubles.
+    /// that lie otherwise (at the border, edited, between frames) are gathered first, as doubles;
+    /// labels, as bytes.
     template <class Visit>
     auto visit_around(const Index3& at, Visit&& visit) const;
     /// True where all eight samples of `cell` are background.
@@ -122,9 +122,12 @@ class Field {
     Neighbours other_around(const Index3& at) const;
     CellSamples absolute_cell(const Index3& cell) const;
     CellSamples stored_cell(const Index3& cell) const;
-    double shown(double sample) const;
+    template <int count, class Visit>
+    void for_each_label(const Index3& low, Visit&& visit) const;
+    CellSamples shown_cell(const Index3& cell) const;
     template <class Visit>
-    void for_each_label(const Index3& at, Visit&& visit) const;
+    auto visit_gathered(const Index3& at, Visit& visit) const;
+    std::array<std::uint8_t, 27> shown_around(const Index3& at) const;
     void look() noexcept;
 
     std::shared_ptr<const Samples> samples_;
@@ -162,6 +165,16 @@ inline CellSamples Field::cell_of(const Index3& cell) const {
 }
 
 template <class Visit>
+auto Field::visit_gathered(const Index3& at, Visit& visit) const {
+    if (shows_labels_) {
+        const std::array<std::uint8_t, 27> samples = shown_around(at);
+        return visit(samples.data() + 13, std::ptrdiff_t{3}, std::ptrdiff_t{9});
+    }
+    const Neighbours samples = other_around(at);
+    return visit(samples.data() + 13, std::ptrdiff_t{3}, std::ptrdiff_t{9});
+}
+
+template <class Visit>
 inline auto Field::visit_around(const Index3& at, Visit&& visit) const {
     // The lowest and the highest of the eight cells that meet at the sample.
     const auto is_plain = [&](int a) { return at[a] > 0 && at[a] < plain_[a]; };
@@ -171,8 +184,7 @@ inline auto Field::visit_around(const Index3& at, Visit&& visit) const {
             return visit(static_cast<const decltype(zero)*>(data_) + offset, row_, slice_);
         });
     }
-    const Neighbours samples = other_around(at);
-    return visit(samples.data() + 13, std::ptrdiff_t{3}, std::ptrdiff_t{9});
+    return visit_gathered(at, visit);
 }
 
 }  // namespace palpate

@@ -1,12 +1,12 @@
-// Stage 11, force: computes the force on the hand from hand and proxy (Corenthy et al. 2012, Eq.
-// 4), with further effects and with limits. Lengths in device mm, forces in N, time in s, vectors
-// in device axes.
+// Stage 11, force: computes force and torque on the hand from hand and proxy (Corenthy et al. 2012,
+// Eq. 4), with further effects and with limits. Lengths in device mm, angles in rad, forces in N,
+// torques in N mm, time in s, vectors in device axes.
 #pragma once
 
 #include <cstdint>
 #include <limits>
 
-#include "palpate/volume.hpp"
+#include "palpate/tool.hpp"
 
 namespace palpate {
 
@@ -43,6 +43,17 @@ struct ForceSettings {
     /// this, so that a hand that starts inside a solid is not thrown out. Infinity: do not wait.
     double start_below = std::numeric_limits<double>::infinity();
 
+    // Of a tool that turns.
+
+    /// [N mm/rad] torque = this times the rotation from hand to proxy. 0: the stiffness times the
+    /// square of the tool's gyration, which makes the wrench that of the contacts.
+    double rotational_stiffness = 0;
+    /// [N mm s/rad] against the hand's turning out of equilibrium; at most cancels the torque
+    double rotational_damping = 0;
+    /// [N mm] largest torque; the device's own limit holds as well. 0: none.
+    double torque_limit = std::numeric_limits<double>::infinity();
+    double torque_rate_limit = 2e5;  ///< [N mm/s] as rate_limit
+
     bool operator==(const ForceSettings&) const = default;
 };
 
@@ -54,18 +65,27 @@ struct DeviceLimits {
     /// k / (2 rate) + damping <= this (Colgate and Schenkel 1994). 2.5 N s/m is a desktop device in
     /// a light grip.
     double physical_damping = 2.5e-3;
+    double maximum_torque = 0;  ///< [N mm] never exceeded; 0: the device renders none
+    /// [N mm s/rad] the same of turning: a sampled rotational spring is passive for
+    /// k / (2 rate) + damping <= this. 1 is `physical_damping` at a lever of 20 mm.
+    double physical_rotational_damping = 1;
 
     bool operator==(const DeviceLimits&) const = default;
 };
 
 /// Largest stiffness [N/mm] these limits can render with this damping [N s/mm].
 double greatest_stiffness(const DeviceLimits& limits, double damping);
+/// Rotational stiffness [N mm/rad] of the coupling to a tool of this gyration [device mm]: what is
+/// set, or follows from the gyration, and no more than the device renders stably. To one that
+/// renders no torque it is what the proxy's pose is found with.
+double rotational_stiffness(const ForceSettings& settings, const DeviceLimits& limits,
+                            double gyration);
 /// The smaller of both, number by number. A number that is negative or NaN counts as 0: no force.
 DeviceLimits smaller(const DeviceLimits& one, const DeviceLimits& other) noexcept;
 /// The settings as these limits can render them stably. Settings that pass check() come back as
 /// they are. Of others, stiffness, damping and viscosity are lowered by one factor, which keeps
-/// their proportions, and the magnet's peak as far as needed. `limit` stays: render_force() takes
-/// the smaller of it and the device's.
+/// their proportions, stiffness and damping of rotation by another, and the magnet's peak as far as
+/// needed. `limit` stays: render_force() takes the smaller of it and the device's.
 ForceSettings stable(ForceSettings settings, const DeviceLimits& limits) noexcept;
 
 /// Throws std::invalid_argument, naming the limit, its value and the accepted range, for limits
@@ -90,6 +110,9 @@ struct ForceInput {
     double surface_distance =
         -1;  ///< free: [device mm] to the surface against the normal; < 0 none
     Vec3 texture_slope = Vec3::Zero();  ///< gradient of the texture's height at the SCP
+    double rotational_stiffness = 0;    ///< [N mm/rad] 0: nothing turns, so there is no torque
+    Quaternion orientation = Quaternion::Identity();  ///< of the hand
+    Vec3 turn = Vec3::Zero();                         ///< rotation from hand to proxy [rad]
 };
 
 /// Why a force differs from what the settings alone would give. Bits.
@@ -113,16 +136,21 @@ struct ForceState {
     Vec3 hand = Vec3::Zero();      ///< [device mm]
     Vec3 velocity = Vec3::Zero();  ///< [device mm/s], low-pass filtered; at most 10 m/s counts
     Vec3 force = Vec3::Zero();     ///< [N] as rendered
+    bool turns = false;            ///< what follows is known
+    Quaternion orientation = Quaternion::Identity();
+    Vec3 angular_velocity = Vec3::Zero();  ///< [rad/s], low-pass filtered; at most 100 rad/s counts
+    Vec3 torque = Vec3::Zero();            ///< [N mm] as rendered
 };
 
 struct ForceResult {
-    Vec3 force = Vec3::Zero();  ///< [N], device axes
-    std::uint8_t flags = 0;     ///< ForceFlag bits
+    Vec3 force = Vec3::Zero();   ///< [N], device axes
+    Vec3 torque = Vec3::Zero();  ///< [N mm], device axes, about the tool's reference point
+    std::uint8_t flags = 0;      ///< ForceFlag bits
 };
 
-/// The force of one tick. Never throws. Input that is not valid gives zero at once, and the ramp
-/// starts again. Settings that check() would refuse give no force beyond `limits` either.
-/// A lowered limit holds at once: that fall, and every stop, is exempt from the rate limit.
+/// Force and torque of one tick. Never throws. Input that is not valid gives zero at once, and the
+/// ramp starts again. Settings that check() would refuse give no force beyond `limits` either. A
+/// lowered limit holds at once: that fall, and every stop, is exempt from the rate limit.
 ForceResult render_force(ForceState& state, const ForceSettings& settings,
                          const DeviceLimits& limits, const ForceInput& input);
 

@@ -19,8 +19,8 @@ namespace palpate {
 /// What a haptic transfer function gives.
 enum class HapticProperty : std::uint8_t {
     stiffness,         ///< [N/mm] of a surface
-    static_friction,   ///< coefficients of a surface; dynamic counts as at most static
-    dynamic_friction,  ///
+    static_friction,   ///< coefficient of a surface
+    dynamic_friction,  ///< the same, counts as at most the static one
     damping,           ///< [N s/mm] of a surface
     viscosity,         ///< [N s/mm] inside, behind the surface
     puncture_force,    ///< [N] at which a surface gives way; infinity: never

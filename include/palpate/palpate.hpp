@@ -3,6 +3,7 @@
 //   volume -> samples -> field -> lattice --+
 //      edit, editor --^     penetrability --+--> proxy -> force, layers -> device
 //                                 renderer: one call for proxy..force
+//                         tool -> tool_proxy: the same for a rigid body, without a renderer yet
 //
 // surface (the whole isosurface as a mesh) observes volume, field and lattice.
 #pragma once
@@ -18,6 +19,8 @@
 #include "palpate/cubic.hpp"
 #include "palpate/density.hpp"
 #include "palpate/proxy.hpp"
+#include "palpate/tool.hpp"
+#include "palpate/tool_proxy.hpp"
 #include "palpate/penetrability.hpp"
 #include "palpate/force.hpp"
 #include "palpate/layers.hpp"

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "palpate/layers.hpp"
+#include "palpate/tool_proxy.hpp"
 
 namespace palpate {
 
@@ -30,6 +31,7 @@ struct DeviceState {
     bool released = false;         ///< true: no force, see ForceInput::released
     /// Unit, device axes, from the hand to the tool's tip; zero: not known.
     Vec3 pointing = Vec3::Zero();
+    Mat3 orientation = Mat3::Identity();  ///< tool axes to device axes; used with a tool
 };
 
 struct RendererSettings {
@@ -39,6 +41,9 @@ struct RendererSettings {
     /// With layers, what they say of surfaces and forces counts in place of penetrability, friction
     /// and force; without any surface of their own, penetrability stays.
     std::shared_ptr<const Layers> layers;
+    /// Felt with all its points, in six degrees of freedom, on the smooth field and by the method
+    /// exact; null: a point. With a tool there are no layers, penetrability, magnet and texture.
+    std::shared_ptr<const Tool> tool;
     ForceSettings force;
     DeviceLimits device;
     DeviceTransform transform;
@@ -53,18 +58,29 @@ struct Renderer {
     Proxy proxy;
     ForceState force;
     LayerState layers = {};
+    /// Of the tool; `proxy.isovalue` counts. Has a value where there is a tool, or may be one.
+    std::optional<ToolProxy> tool_proxy = {};
 };
 
 /// A monotonic clock of the caller's [ns]. The core reads none of its own.
 using Clock = std::int64_t (*)() noexcept;
+
+/// What is felt with a tool, beside the places of its reference point (Tick::proxy).
+struct ToolFelt {
+    Quaternion hand = Quaternion::Identity();   ///< tool axes to physical axes
+    Quaternion proxy = Quaternion::Identity();  ///< the same of the proxy
+    int contacts = 0;                           ///< how many points hold the proxy
+};
 
 /// The result of one tick.
 struct Tick {
     double time = 0;               ///< [s]
     ProxyUpdate proxy;             ///< HIP, SCP, mode, density, isovalue, ... in physical space
     Vec3 force = Vec3::Zero();     ///< [N], device axes
+    Vec3 torque = Vec3::Zero();    ///< [N mm], device axes, about the tool's reference point
     std::uint8_t force_flags = 0;  ///< ForceFlag bits
     LayersFelt layers;
+    ToolFelt tool;
     std::int64_t update_ns = 0;  ///< [ns] the proxy update alone, by the caller's clock; 0: none
 };
 
@@ -75,9 +91,27 @@ void check(const RendererSettings& settings);
 /// Throws std::invalid_argument for an isovalue that is NaN, or infinite so that all of space is
 /// solid. The other infinity leaves all of space free.
 void check_isovalue(double isovalue, Solid solid);
+/// What of a field stays while its samples change.
+struct FieldKind {
+    Geometry geometry;
+    Solid solid = Solid::above;
+    Interpolation interpolation = Interpolation::linear;
+};
+FieldKind kind_of(const Field& field);
+/// Throws std::invalid_argument, saying what is wrong, for a tool that cannot be felt with this
+/// method on such a field. Null, a point, always can.
+void check_tool(const Tool* tool, ProxyMethod method, const FieldKind& field);
 /// A renderer ready for its first tick. Throws std::invalid_argument for an isovalue or settings
 /// that do not pass their check.
 Renderer make_renderer(Field field, double isovalue, const RendererSettings& settings = {});
+/// Makes room for any tool, so that one can be taken up between two ticks (use_tool()). Throws
+/// std::bad_alloc.
+void make_room_for_tools(Renderer& renderer);
+/// Another tool, or with null a point, from the next tick on, at the proxy's place: the force
+/// starts again. `orientation`: of the hand, tool axes to device axes, for a proxy that had none.
+/// There has to be room, and nothing is allocated. The settings have to pass check() with it.
+void use_tool(Renderer& renderer, std::shared_ptr<const Tool> tool,
+              const Mat3& orientation) noexcept;
 /// A warning if nothing can be felt at this level (it lies outside the data's range), or if the
 /// background is solid at it, and with that all of space outside the data; else empty.
 std::string isovalue_warning(const Field& field, double isovalue);
@@ -86,7 +120,8 @@ std::string isovalue_warning(const Field& field, double isovalue);
 /// it is (UpdateStatus::refused) and gives no force. A time that is not finite or did not advance
 /// gives no force either, but the proxy follows. The same renderer and input give the same tick,
 /// bit for bit, but for `update_ns`, which is measured where a clock is given.
+/// `observer` is for a point, `pose_observer` for a tool.
 Tick render(Renderer& renderer, const DeviceState& device, StepObserver observer = {},
-            Clock clock = nullptr);
+            Clock clock = nullptr, PoseObserver pose_observer = {});
 
 }  // namespace palpate

@@ -70,16 +70,19 @@ struct ServoReport {
 
 /// The newest tick, for observers. Plain values: no observer has access to the session.
 struct Snapshot {
-    std::int64_t number = 0;  ///< of the tick, from 0
     SessionTick session;
-    LatticePoint scp;  ///< the SCP and its tetrahedron, of the lattice of `interpolation`
-    Interpolation interpolation = Interpolation::linear;
-    Vec3 normal = Vec3::Zero();  ///< of the constraint plane at the SCP, out of the solid, physical
+    std::int64_t number = 0;     ///< of the tick, from 0
+    std::int64_t missed = 0;     ///< deadlines so far
+    double speed = 0;            ///< at which a sequence is played
     double stiffness = 0;        ///< [N/mm] in use
+    Vec3 normal = Vec3::Zero();  ///< of the constraint plane at the SCP, out of the solid, physical
+    LatticePoint scp;            ///< the SCP and its tetrahedron, of the lattice of `interpolation`
+    /// Of the tool at the proxy's pose: those with pressure touch. With a point: none.
+    std::array<ToolContact, most_tool_contacts> contacts{};
+    int contact_count = 0;
+    Interpolation interpolation = Interpolation::linear;
     bool penetrability_on = false;
     bool forces_on = true;
-    double speed = 0;         ///< at which a sequence is played
-    std::int64_t missed = 0;  ///< deadlines so far
 };
 
 /// What observers see of a session after a tick. Neither throws nor allocates.
@@ -157,11 +160,10 @@ class Servo {
     const std::unique_ptr<WatchedDevice> device_;
     const ServoSettings settings_;
     RendererSettings start_;
-    const Geometry geometry_;
+    const FieldKind field_;
     std::vector<std::string> privileges_;
     std::thread thread_;
     std::atomic<std::thread::id> thread_id_;
-    const Solid solid_;
     std::atomic<State> state_{State::idle};
     std::atomic<bool> ready_{false}, stopping_{false};
     std::atomic<int> stops_{0};  // calls of stop() under way

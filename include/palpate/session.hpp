@@ -72,6 +72,11 @@ struct Speed {
 struct UseLayers {
     std::shared_ptr<const Layers> layers;
 };
+/// Another tool from the next tick on; null: a point. The force starts again. While a tool is felt,
+/// layers, penetrability, magnet and texture rest.
+struct UseTool {
+    std::shared_ptr<const Tool> tool;
+};
 /// Scales the volume about the SCP, which changes neither the proxy nor the force.
 struct Scale {
     double scale;  ///< physical mm per device mm, > 0
@@ -82,8 +87,8 @@ struct Scale {
 /// own limits the session keeps the smaller, for good (keep_within()).
 using Command = std::variant<command::Isovalue, command::Freeze, command::Clutch, command::Forces,
                              command::Scale, command::Samples, command::Moment, command::Speed,
-                             command::UseLayers, ForceSettings, Friction, Penetrability,
-                             DeviceTransform, DeviceLimits>;
+                             command::UseLayers, command::UseTool, ForceSettings, Friction,
+                             Penetrability, DeviceTransform, DeviceLimits>;
 
 /// One callable of several, for std::visit over a Command: an alternative that is left out does not
 /// compile.
@@ -99,22 +104,23 @@ Overloaded(Each...) -> Overloaded<Each...>;
 struct Session {
     Renderer renderer;
     SessionSettings settings;
-    bool frozen = false;        ///< from the first accepted position on
-    bool clutched = false;      ///< by command
     double speed = 0;           ///< at which a sequence is played
     std::uint64_t version = 0;  ///< of the samples, as it was sent with them
+    bool frozen = false;        ///< from the first accepted position on
+    bool clutched = false;      ///< by command
 
     // Set by the ticks so far.
-    bool begun = false;                 ///< there was a tick
-    double last_tick = 0;               ///< [s] time of the last one
-    bool seen = false;                  ///< a position was accepted
-    double seen_at = 0;                 ///< [s] time of the last accepted position
-    Vec3 hand = Vec3::Zero();           ///< [device mm] the last accepted position
-    Vec3 frozen_hand = Vec3::Zero();    ///< [device mm] position of the hand when it was frozen
-    Mat3 tool = Mat3::Identity();       ///< the last orientation while the clutch was closed
-    bool holding = false;               ///< the clutch was closed in the last tick
-    Vec3 held_hip = Vec3::Zero();       ///< [mm, physical] at the moment it closed
-    Mat3 held_tool = Mat3::Identity();  ///< tool axes to physical axes at that moment
+    bool begun = false;                   ///< there was a tick
+    bool seen = false;                    ///< a position was accepted
+    bool holding = false;                 ///< the clutch was closed in the last tick
+    double last_tick = 0;                 ///< [s] time of the last one
+    double seen_at = 0;                   ///< [s] time of the last accepted position
+    Vec3 hand = Vec3::Zero();             ///< [device mm] the last accepted position
+    Vec3 frozen_hand = Vec3::Zero();      ///< [device mm] position of the hand when it was frozen
+    Mat3 tool = Mat3::Identity();         ///< the last good orientation, tool axes to device axes
+    Mat3 frozen_tool = Mat3::Identity();  ///< when it was frozen
+    Vec3 held_hip = Vec3::Zero();         ///< [mm, physical] at the moment it closed
+    Mat3 held_tool = Mat3::Identity();    ///< tool axes to physical axes at that moment
 };
 
 /// The result of a live tick.
@@ -131,17 +137,15 @@ struct SessionTick {
 /// Throws std::invalid_argument for settings out of range.
 void check(const SessionSettings& settings);
 /// Throws std::invalid_argument, saying what is wrong, for a command that a session with these
-/// settings, this solid side and this grid cannot carry out.
-void check(const Command& command, const RendererSettings& settings, Solid solid,
-           const Geometry& geometry);
+/// settings and such a field cannot carry out.
+void check(const Command& command, const RendererSettings& settings, const FieldKind& field);
 
 /// A command that passed check(). A session carries out no other, so nothing that is not finite or
 /// out of range can enter between two ticks.
 class CheckedCommand {
   public:
     /// Throws as check().
-    CheckedCommand(Command command, const RendererSettings& settings, Solid solid,
-                   const Geometry& geometry);
+    CheckedCommand(Command command, const RendererSettings& settings, const FieldKind& field);
     /// Switches the forces off, which every session can.
     CheckedCommand() = default;
 
@@ -152,10 +156,11 @@ class CheckedCommand {
 };
 
 /// Carries out a command. Never throws or allocates; frees the samples that it replaces unless
-/// somebody else holds them (Servo::send() does).
+/// somebody else holds them (Servo::send() does). A tool needs make_room_for_tools() before.
 void apply(Session& session,  // NOLINT(bugprone-exception-escape)
            const CheckedCommand& command) noexcept;
-/// The same for a command that is checked here. Throws as check(); then nothing has changed.
+/// The same for a command that is checked here, with room made where it needs some. Throws as
+/// check(); then nothing has changed.
 void apply(Session& session, const Command& command);
 
 /// Keeps the smaller of the session's device limits and these, and lowers the force settings as far

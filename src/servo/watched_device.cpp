@@ -91,8 +91,8 @@ DeviceReading WatchedDevice::read(double time) noexcept {
     return reading;
 }
 
-void WatchedDevice::write(const Vec3& force, double time) noexcept {
-    guarded([&] { device_.write(force, time); });
+void WatchedDevice::write(const Wrench& wrench, double time) noexcept {
+    guarded([&] { device_.write(wrench, time); });
 }
 
 DeviceFailure WatchedDevice::failure() const noexcept {

@@ -29,7 +29,7 @@ class WatchedDevice {
     void watch_this_thread() noexcept;
     // Where one of these fails, failure() says so afterwards.
     DeviceReading read(double time) noexcept;
-    void write(const Vec3& force, double time) noexcept;
+    void write(const Wrench& wrench, double time) noexcept;
 
     // Any thread.
 

@@ -136,7 +136,7 @@ TEST(ChangingSession, samples_and_moments_that_are_none_are_refused) {
     const RendererSettings settings;
     const Geometry geometry = shifted_ramp(0).geometry();
     const auto refused = [&](const Command& command) {
-        EXPECT_THROW(check(command, settings, Solid::above, geometry), std::invalid_argument);
+        EXPECT_THROW(check(command, settings, {geometry}), std::invalid_argument);
     };
     refused(command::Samples{});
     refused(command::Moment{std::nan("")});
@@ -144,7 +144,7 @@ TEST(ChangingSession, samples_and_moments_that_are_none_are_refused) {
     refused(command::Speed{1001});
     refused(command::Speed{std::nan("")});
     refused(command::Samples{samples_of(noise_of(SampleType::uint8, grid(cube(3)), 1))});
-    EXPECT_NO_THROW(check(command::Samples{swinging()}, settings, Solid::above, geometry));
+    EXPECT_NO_THROW(check(command::Samples{swinging()}, settings, {geometry}));
 }
 
 /// Everything that makes samples change, at random.

@@ -142,3 +142,32 @@ TEST(Field, of_a_volume_one_voxel_thin_is_a_sheet) {
     EXPECT_EQ(value_at(point, Vec3(1, 0, 0)), 1);
     EXPECT_GT(value_at(point, Vec3(0.3, 0.2, 0.1)), 1);
 }
+
+TEST(Field, of_labels_is_1_in_those_shown_in_every_cell_and_around_every_sample) {
+    const Volume labels = noise_volume<std::uint8_t>(grid({5, 4, 3}), 86, 0, 32);
+    Field field(labels);
+    for (const std::uint32_t shown : {0x5a5a5a5bU, 0xa5a5a5a4U}) {
+        field.show_labels(shown);
+        const auto label = [&](const Index3& at) {
+            const bool in_grid =
+                (at.array() >= 0).all() && (at.array() < labels.geometry().size.array()).all();
+            return in_grid ? static_cast<unsigned>(labels.sample(at)) : 0U;
+        };
+        for (int place = 0; place < 11 * 11 * 11; ++place) {
+            const Index3 at(place % 11 - 3, place / 11 % 11 - 3, place / 121 - 3);
+            const CellSamples cell = field.cell(at);
+            for (int c = 0; c < 8; ++c) {
+                const Index3 corner = at + Index3(c & 1, c >> 1 & 1, c >> 2 & 1);
+                ASSERT_EQ(cell[c], shown >> label(corner) & 1U);
+            }
+            const Neighbours around = field.around(at);
+            std::uint32_t seen = 0;
+            for (int n = 0; n < 27; ++n) {
+                const unsigned of = label(at + Index3(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1));
+                ASSERT_EQ(around[n], shown >> of & 1U);
+                seen |= 1U << of;
+            }
+            ASSERT_EQ(field.labels_around(at), seen);
+        }
+    }
+}

@@ -5,6 +5,7 @@
 // changes the hashes: read the new ones off the failure, after the other proxy tests have passed.
 #include <gtest/gtest.h>
 
+#include "palpate/layers.hpp"
 #include "support/fields.hpp"
 #include "support/hand.hpp"
 #include "support/proxy_state.hpp"
@@ -50,6 +51,58 @@ std::vector<TestField> smooth_golden_fields() {
     std::vector<TestField> fields = golden_fields();
     for (TestField& test : fields) test.field = smooth(test.field);
     return fields;
+}
+
+/// Three surfaces that give way, with friction and a stiffness that follows the gradient: levels of
+/// the field, or three labels and nothing at random in each sample of another grid.
+Layers golden_layers(const TestField& test, bool by_label) {
+    Layers layers;
+    const double range = test.field.range();
+    for (int i = 0; i < 3; ++i) {
+        Layer layer;
+        layer.name = std::to_string(i);
+        layer.level = by_label ? i + 1 : test.isovalue + (i - 1) * 0.1 * range;
+        layer[HapticProperty::puncture_force] = 0.2 + 0.1 * i;
+        layer[HapticProperty::static_friction] = 0.2 * i;
+        layer[HapticProperty::dynamic_friction] = 0.1 * i;
+        layers.layers.push_back(layer);
+    }
+    layers[HapticProperty::stiffness].gradient.knots = {{0, 0.5}, {0.5 * range, 1}};
+    if (!by_label) return layers;
+    const Geometry& data = test.field.geometry();
+    const Volume labels =
+        noise_volume<std::uint8_t>(grid(cube(16), Vec3::Constant(1.5), data.origin), 104, 0, 4);
+    layers.by_label = true;
+    layers.labels = numbered_labels(labels, layers.layers);
+    return layers;
+}
+
+/// The bits of proxy, force and state after each of 2000 ticks.
+std::uint64_t stroke(const TestField& test, bool by_label, bool with_needle) {
+    Layers layers = golden_layers(test, by_label);
+    if (with_needle) layers.needle = Needle{};
+    for (Layer& layer : layers.layers) layer[HapticProperty::drag] = 0.05;
+    Hand hand(test.field.geometry(), 103);
+    Proxy proxy;
+    proxy.isovalue = test.isovalue;
+    LayerState state;
+    LayerInput input;
+    Hash hash;
+    int punctured = 0;
+    for (int i = 0; i < 2000; ++i) {
+        input.hip = hand.next();
+        input.time = 0.001 * i;
+        const LayersUpdate r = update_layers(layers, state, proxy, test.field, input);
+        hash.add(proxy);
+        hash.add(r.pull);
+        hash.add(r.force.stiffness);
+        hash.add(static_cast<std::uint64_t>(r.felt.touched + 1));
+        hash.add(static_cast<std::uint64_t>(r.felt.inside));
+        hash.add(static_cast<std::uint64_t>(state.open));
+        punctured += r.felt.punctured;
+    }
+    EXPECT_GT(punctured, 20) << test.name;
+    return hash.value();
 }
 
 }  // namespace
@@ -101,6 +154,27 @@ TEST(Golden, trajectories_on_smooth_fields_are_the_same_bit_for_bit) {
         EXPECT_EQ(hex(trajectory(fields[i], update_exact, {})), expected[i]) << fields[i].name;
         EXPECT_EQ(hex(trajectory(fields[i], update_exact, settings)), with_friction[i])
             << fields[i].name;
+    }
+}
+
+TEST(Golden, strokes_through_layers_are_the_same_bit_for_bit) {
+    const std::vector<std::string> expected{
+        "42774cd81fd3f43d", "f76e5b5eb17b9609", "c87b665ecf60d3cf", "b611fa3ec3408cd7",
+        "4b066514509ad10c", "782aa89466814caf", "684c899081639a4e", "5c030851ae655f5d",
+        "a27478936ff5531d", "054157e4e957c38a", "14ea3ac8e8d54d05", "b576e380dad228fe",
+        "04a28239c615882e", "99cbabc2136cfbbb", "b8380b81dd31a9ca", "4545b4e179116b50"};
+    std::vector<TestField> fields{noise_field(), oblique_field()};
+    for (TestField& test : smooth_golden_fields()) {
+        if (test.name == "noise" || test.name == "oblique") fields.push_back(test);
+    }
+    auto next = expected.begin();
+    for (const TestField& test : fields) {
+        for (const bool by_label : {false, true}) {
+            for (const bool with_needle : {false, true}) {
+                EXPECT_EQ(hex(stroke(test, by_label, with_needle)), *next++)
+                    << test.name << ' ' << by_label << with_needle;
+            }
+        }
     }
 }
 

@@ -83,6 +83,33 @@ std::vector<Command> layers_with(double value, double isovalue) {
     return commands;
 }
 
+/// A device's limits, each of them `value` in turn.
+std::vector<Command> limits_with(double value) {
+    std::vector<Command> commands;
+    for (double DeviceLimits::*member :
+         {&DeviceLimits::maximum_force, &DeviceLimits::rate, &DeviceLimits::physical_damping,
+          &DeviceLimits::maximum_torque, &DeviceLimits::physical_rotational_damping}) {
+        DeviceLimits limits;
+        limits.*member = value;
+        commands.emplace_back(limits);
+    }
+    return commands;
+}
+
+/// No tool, and tools with `value` for a coordinate, the gyration or both.
+std::vector<Command> tools_with(double value) {
+    std::vector<Command> commands;
+    commands.emplace_back(command::UseTool{nullptr});
+    for (const auto& [point, gyration] : {std::pair{value, 1.0}, {1.0, value}, {value, value}}) {
+        try {
+            const std::vector<Vec3> points{Vec3(1, 0, 0), Vec3(0, point, 0)};
+            commands.emplace_back(command::UseTool{std::make_shared<const Tool>(points, gyration)});
+        } catch (const std::invalid_argument&) {  // no tool at all
+        }
+    }
+    return commands;
+}
+
 /// Every command with `value` wherever it has a number.
 std::vector<Command> commands_with(double value, const Field& field, double isovalue) {
     std::vector<Command> commands = layers_with(value, isovalue);
@@ -96,7 +123,9 @@ std::vector<Command> commands_with(double value, const Field& field, double isov
     for (double ForceSettings::*member :
          {&ForceSettings::stiffness, &ForceSettings::damping, &ForceSettings::viscosity,
           &ForceSettings::limit, &ForceSettings::rate_limit, &ForceSettings::ramp,
-          &ForceSettings::stale_after, &ForceSettings::start_below}) {
+          &ForceSettings::stale_after, &ForceSettings::start_below,
+          &ForceSettings::rotational_stiffness, &ForceSettings::rotational_damping,
+          &ForceSettings::torque_limit, &ForceSettings::torque_rate_limit}) {
         ForceSettings force;
         force.*member = value;
         commands.emplace_back(force);
@@ -133,12 +162,8 @@ std::vector<Command> commands_with(double value, const Field& field, double isov
         transform.rotation(a, a) = value;
         commands.emplace_back(transform);
     }
-    for (double DeviceLimits::*member :
-         {&DeviceLimits::maximum_force, &DeviceLimits::rate, &DeviceLimits::physical_damping}) {
-        DeviceLimits limits;
-        limits.*member = value;
-        commands.emplace_back(limits);
-    }
+    for (const auto& more : {limits_with(value), tools_with(value)})
+        commands.insert(commands.end(), more.begin(), more.end());
     return commands;
 }
 
@@ -156,6 +181,9 @@ bool is_finite(const Session& s) {
            r.proxy.scp_physical.allFinite() && r.proxy.ahead.allFinite() &&
            std::isfinite(r.proxy.recovery_reach) && !std::isnan(r.proxy.isovalue) &&
            r.force.force.allFinite() && r.force.velocity.allFinite() && r.force.hand.allFinite() &&
+           r.force.torque.allFinite() && r.force.angular_velocity.allFinite() &&
+           (!r.tool_proxy || (r.tool_proxy->pose.position.allFinite() &&
+                              r.tool_proxy->pose.orientation.coeffs().allFinite())) &&
            t.rotation.allFinite() && t.translation.allFinite() && std::isfinite(t.scale) &&
            std::isfinite(r.field.time()) && s.hand.allFinite() && s.held_hip.allFinite() &&
            s.held_tool.allFinite();
@@ -167,7 +195,8 @@ struct Presser {
     double time = 0;
     SessionTick last{};
 
-    Presser(const Field& field, double isovalue) : session{make_renderer(field, isovalue), {}} {}
+    Presser(const Field& field, double isovalue, const RendererSettings& settings = {})
+        : session{make_renderer(field, isovalue, settings), {}} {}
     /// False if a tick left something that is not finite.
     bool press(double depth, int ticks) {
         for (int i = 0; i < ticks; ++i) {
@@ -237,6 +266,40 @@ TEST(SessionExtremes, no_command_with_any_value_leaves_what_is_not_finite_or_las
     EXPECT_EQ(refused_kinds.size(), std::variant_size_v<Command> - 3);
 }
 
+TEST(SessionExtremes, with_a_tool_no_command_with_any_value_leaves_what_is_not_finite) {
+    Field field = ramp_of(1, Solid::above);
+    field.set_interpolation(Interpolation::cubic);
+    RendererSettings settings;
+    settings.tool =
+        std::make_shared<const Tool>(std::vector<Vec3>{{1, 0, 0}, {-1, 0, 0}, {0, 0, 2}});
+    settings.device.maximum_torque = 100;
+    int tools = 0;
+    for (const double value : extremes) {
+        for (const Command& command : commands_with(value, field, 30)) {
+            SCOPED_TRACE(testing::Message()
+                         << "value " << value << ", command " << command.index());
+            Presser presser(field, 30, settings);
+            ASSERT_TRUE(presser.press(31, 20));
+            try {
+                apply(presser.session, command);
+                tools += std::holds_alternative<command::UseTool>(command);
+            } catch (const std::invalid_argument&) {
+            }
+            ASSERT_TRUE(presser.press(31, 40));
+            ASSERT_LE(presser.last.tick.torque.norm(), 100 * (1 + 1e-12));
+            apply(presser.session, command::UseTool{settings.tool});
+            presser.restore(field, 30);
+            presser.session.renderer.settings.device = settings.device;
+            ASSERT_TRUE(presser.press(24, 40));
+            ASSERT_TRUE(presser.press(31, 400));
+            ASSERT_EQ(presser.last.tick.proxy.status, UpdateStatus::done);
+            ASSERT_EQ(presser.last.tick.proxy.mode, Mode::constrained);
+            ASSERT_GT(presser.last.tick.force.norm(), 0.1);
+        }
+    }
+    EXPECT_GT(tools, 10);
+}
+
 TEST(SessionExtremes, an_isovalue_at_which_nothing_can_be_free_is_refused_wherever_it_enters) {
     for (const Solid solid : {Solid::above, Solid::below}) {
         const double sign = solid == Solid::above ? 1 : -1;
@@ -263,8 +326,7 @@ TEST(SessionExtremes, only_checked_commands_are_carried_out_without_a_check) {
     static_assert(noexcept(apply(presser.session, CheckedCommand{})));
     const RendererSettings settings;
     const Geometry& geometry = presser.session.renderer.field.geometry();
-    EXPECT_THROW(CheckedCommand(command::Scale{-1}, settings, Solid::above, geometry),
-                 std::invalid_argument);
+    EXPECT_THROW(CheckedCommand(command::Scale{-1}, settings, {geometry}), std::invalid_argument);
     ASSERT_TRUE(presser.press(31, 300));
     EXPECT_GT(presser.last.tick.force.norm(), 0.1);
     apply(presser.session, CheckedCommand{});

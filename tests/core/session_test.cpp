@@ -297,8 +297,7 @@ TEST(Session, commands_take_effect_in_the_next_tick) {
 TEST(Session, commands_that_cannot_be_carried_out_are_refused_with_a_reason) {
     const RendererSettings settings;
     const auto refused = [&](const Command& command) {
-        EXPECT_THROW(check(command, settings, Solid::above, ramp_field().geometry()),
-                     std::invalid_argument);
+        EXPECT_THROW(check(command, settings, kind_of(ramp_field())), std::invalid_argument);
     };
     refused(command::Isovalue{not_a_number});
     refused(command::Scale{0});
@@ -313,7 +312,7 @@ TEST(Session, commands_that_cannot_be_carried_out_are_refused_with_a_reason) {
     Penetrability none = penetrability_threshold(1, 0);
     none.range_count = 0;
     refused(none);
-    EXPECT_NO_THROW(check(command::Freeze{true}, settings, Solid::above, ramp_field().geometry()));
+    EXPECT_NO_THROW(check(command::Freeze{true}, settings, kind_of(ramp_field())));
     EXPECT_THROW(check(SessionSettings{.fastest_hand = 0}), std::invalid_argument);
     EXPECT_THROW(check(SessionSettings{.overrun = not_a_number}), std::invalid_argument);
 }

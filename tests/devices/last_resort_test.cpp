@@ -35,13 +35,13 @@ class Motor : public Device {
         : sent_(sent), thread_([this, period](std::stop_token stop) {
               prepare_device_thread();
               while (!stop.stop_requested()) {
-                  sent_ = link_.force().norm();
+                  sent_ = link_.wrench().force.norm();
                   std::this_thread::sleep_for(period);
               }
           }) {}
     DeviceInfo info() const override { return {}; }
     DeviceReading read(double) noexcept override { return link_.read(); }
-    void write(const Vec3& force, double) noexcept override { link_.write(force); }
+    void write(const Wrench& wrench, double) noexcept override { link_.write(wrench); }
     void stop() noexcept override { link_.stop(); }
     bool is_stopping() const noexcept override { return link_.stopping(); }
 
@@ -75,8 +75,8 @@ std::pair<int, double> crashed(bool guarded, F&& crash, std::chrono::millisecond
         }
         std::jthread servo([&](std::stop_token stop) {
             while (!stop.stop_requested()) {
-                motor.write({0, 0, 2}, 0);
-                second.write({0, 0, 2}, 0);
+                motor.write({Vec3(0, 0, 2), Vec3::Zero()}, 0);
+                second.write({Vec3(0, 0, 2), Vec3::Zero()}, 0);
                 std::this_thread::sleep_for(1ms);
             }
         });
@@ -272,7 +272,7 @@ TEST(LastResort, leaves_signals_alone_that_the_application_handles_or_ignores) {
         const LastResort last_resort(motor);
         std::raise(SIGUSR1);
         std::raise(SIGUSR2);
-        motor.write({0, 0, 2}, 0);
+        motor.write({Vec3(0, 0, 2), Vec3::Zero()}, 0);
     }
     EXPECT_NE(std::signal(SIGUSR1, usr1), SIG_DFL);
     EXPECT_EQ(std::signal(SIGUSR2, usr2), SIG_IGN);

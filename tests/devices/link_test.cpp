@@ -72,35 +72,45 @@ TEST(Link, a_loss_keeps_the_last_position) {
     EXPECT_EQ(link.read().position, Vec3(1, 2, 3));
 }
 
-TEST(Link, no_force_before_the_first_and_after_the_last_has_aged) {
+bool is_zero(const Wrench& wrench) {
+    return wrench.force.isZero(0) && wrench.torque.isZero(0);
+}
+const Wrench some{Vec3(1, 2, 3), Vec3(40, 50, 60)};
+
+TEST(Link, no_wrench_before_the_first_and_after_the_last_has_aged) {
     Link link;
-    EXPECT_EQ(link.force(), Vec3(0, 0, 0));
+    EXPECT_TRUE(is_zero(link.wrench()));
     // A machine that stalls between the two lines is told apart from a link that is wrong.
     bool seen = false;
     for (int attempt = 0; attempt < 100 && !seen; ++attempt) {
-        link.write(Vec3(1, 2, 3));
-        seen = link.force() == Vec3(1, 2, 3);
+        link.write(some);
+        const Wrench got = link.wrench();
+        seen = got.force == some.force && got.torque == some.torque;
     }
     EXPECT_TRUE(seen);
     std::this_thread::sleep_for(21ms);
-    EXPECT_EQ(link.force(), Vec3(0, 0, 0));
+    EXPECT_TRUE(is_zero(link.wrench()));
 }
 
-TEST(Link, a_force_that_is_not_finite_is_zero) {
+TEST(Link, a_wrench_of_which_any_number_is_not_finite_is_zero) {
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    constexpr double infinity = std::numeric_limits<double>::infinity();
     Link link;
-    link.write(Vec3(1, std::numeric_limits<double>::quiet_NaN(), 3));
-    EXPECT_EQ(link.force(), Vec3(0, 0, 0));
-    link.write(Vec3(std::numeric_limits<double>::infinity(), 0, 0));
-    EXPECT_EQ(link.force(), Vec3(0, 0, 0));
+    for (const double bad : {nan, infinity, -infinity}) {
+        link.write({Vec3(1, bad, 3), Vec3(1, 2, 3)});
+        EXPECT_TRUE(is_zero(link.wrench()));
+        link.write({Vec3(1, 2, 3), Vec3(0, 0, bad)});
+        EXPECT_TRUE(is_zero(link.wrench()));
+    }
 }
 
 TEST(Link, lets_go_for_good_when_stopped) {
     Link link;
-    link.write(Vec3(1, 2, 3));
+    link.write(some);
     link.stop();
-    EXPECT_EQ(link.force(), Vec3(0, 0, 0));
-    link.write(Vec3(1, 2, 3));
-    EXPECT_EQ(link.force(), Vec3(0, 0, 0));
+    EXPECT_TRUE(is_zero(link.wrench()));
+    link.write(some);
+    EXPECT_TRUE(is_zero(link.wrench()));
     EXPECT_TRUE(link.stopped());
 }
 

@@ -65,6 +65,8 @@ SessionTick random_tick(Random& random, double time) {
     tick.tick.proxy.isovalue = random.below(9) == 0 ? infinity : random.uniform(0, 1);
     tick.tick.proxy.tetrahedra = random.below(1000);
     tick.tick.force = random.point(-3, 3);
+    tick.tick.torque = random.point(-300, 300);
+    tick.tick.tool = {random.orientation(), random.orientation(), random.below(30)};
     tick.tick.force_flags = static_cast<std::uint8_t>(random.below(256));
     tick.tick.update_ns = random.below(100000);
     tick.device.status = static_cast<DeviceStatus>(random.below(7));
@@ -77,8 +79,14 @@ SessionTick random_tick(Random& random, double time) {
     return tick;
 }
 
+std::shared_ptr<const Tool> random_tool(Random& random) {
+    std::vector<Vec3> points;
+    for (int i = 0; i < 5; ++i) points.push_back(random.point(-3, 3));
+    return std::make_shared<const Tool>(points, random.uniform(1, 9), random.below(2) == 0);
+}
+
 Command random_command(Random& random) {
-    switch (random.below(10)) {
+    switch (random.below(11)) {
         case 0:
             return command::Isovalue{random.uniform(-1, 1)};
         case 1:
@@ -92,6 +100,7 @@ Command random_command(Random& random) {
         case 5: {
             ForceSettings force;
             force.stiffness = random.uniform(0, 1);
+            force.rotational_stiffness = random.uniform(0, 100);
             force.limit = infinity;
             return force;
         }
@@ -100,7 +109,10 @@ Command random_command(Random& random) {
         case 7:
             return penetrability_threshold(random.uniform(0, 3), random.uniform(0, 1));
         case 8:
-            return DeviceLimits{random.uniform(1, 20), 250, random.uniform(1e-3, 1e-2)};
+            return DeviceLimits{random.uniform(1, 20), 250, random.uniform(1e-3, 1e-2),
+                                random.uniform(0, 400), random.uniform(0.1, 2)};
+        case 9:
+            return command::UseTool{random.below(3) == 0 ? nullptr : random_tool(random)};
         default:
             return DeviceTransform{oblique_direction(), random.point(-1, 1), 2};
     }
@@ -172,6 +184,10 @@ TEST(Recording, ticks_hold_what_was_put_in) {
     EXPECT_EQ(back.tick.proxy.scp, tick.tick.proxy.scp);
     EXPECT_EQ(back.tick.proxy.status, tick.tick.proxy.status);
     EXPECT_EQ(back.tick.force, tick.tick.force);
+    EXPECT_EQ(back.tick.torque, tick.tick.torque);
+    EXPECT_EQ(back.tick.tool.hand.coeffs(), tick.tick.tool.hand.coeffs());
+    EXPECT_EQ(back.tick.tool.proxy.coeffs(), tick.tick.tool.proxy.coeffs());
+    EXPECT_EQ(back.tick.tool.contacts, tick.tick.tool.contacts);
     EXPECT_EQ(back.tick.force_flags, tick.tick.force_flags);
     EXPECT_EQ(back.device.orientation, tick.device.orientation);
     EXPECT_EQ(back.device.buttons, tick.device.buttons);
@@ -222,7 +238,7 @@ TEST(Recording, a_damaged_one_is_an_input_error_that_names_the_file) {
     };
     expect(refusal(""), "is no recording");
     expect(refusal("t,x,y,z\n0,1,2,3\n"), "is no recording");
-    expect(refusal(with("recording 3", "recording 4")), "later version");
+    expect(refusal(with("recording 4", "recording 5")), "later version");
     expect(refusal(with("\"version\": ", "\"version\" ")), "not valid JSON");
     expect(refusal(with("\"version\"", "\"edition\"")), "'version' is missing");
     expect(refusal(with("\"stiffness\": 0.5", "\"stiffness\": \"hard\"")), "'force.stiffness'");

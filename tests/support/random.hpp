@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <random>
 
-#include "palpate/volume.hpp"
+#include "palpate/tool.hpp"
 
 namespace palpate::support {
 
@@ -39,6 +39,8 @@ class Random {
             if (squared > 1e-4 && squared <= 1) return v / std::sqrt(squared);
         }
     }
+    /// An orientation, though not a uniform one.
+    Quaternion orientation() { return turned(Quaternion::Identity(), point(-3, 3)); }
 
   private:
     std::mt19937_64 engine_;

@@ -23,10 +23,12 @@ class ScriptedDevice : public Device {
         reads_.fetch_add(1);
         return script_(time);
     }
-    void write(const Vec3& force, double) noexcept override {
+    void write(const Wrench& wrench, double) noexcept override {
+        const auto& [force, torque] = wrench;
         for (std::size_t a = 0; a < 3; ++a) force_[a].store(force[static_cast<int>(a)]);
         const double most = most_.load();
         if (force.norm() > most) most_.store(force.norm());
+        if (torque.norm() > most_torque_.load()) most_torque_.store(torque.norm());
         writes_.fetch_add(1);
     }
     void stop() noexcept override { stopped_ = true; }
@@ -36,6 +38,7 @@ class ScriptedDevice : public Device {
         return {force_[0].load(), force_[1].load(), force_[2].load()};
     }
     double largest_force() const { return most_.load(); }
+    double largest_torque() const { return most_torque_.load(); }
     std::int64_t reads() const { return reads_.load(); }
     std::int64_t writes() const { return writes_.load(); }
 
@@ -43,7 +46,7 @@ class ScriptedDevice : public Device {
     std::function<DeviceReading(double)> script_;
     DeviceInfo info_;
     std::array<std::atomic<double>, 3> force_{};
-    std::atomic<double> most_{0};
+    std::atomic<double> most_{0}, most_torque_{0};
     std::atomic<std::int64_t> reads_{0}, writes_{0};
     std::atomic<bool> stopped_{false};
 };

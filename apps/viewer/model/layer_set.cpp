@@ -2,9 +2,11 @@
 #include "apps/viewer/model/layer_set.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <set>
 #include <utility>
 
 #include "palpate/io/layers_file.hpp"
@@ -33,6 +35,44 @@ void put_first(std::vector<SeenSurface>& surfaces, const Layers& layers, std::si
     surfaces.insert(surfaces.begin(), all.begin(), all.end());
 }
 
+/// What counts where neither a layer nor a curve says it.
+double of_session(HapticProperty property, const RendererSettings& settings) {
+    using enum HapticProperty;
+    switch (property) {
+        case stiffness:
+            return settings.force.stiffness;
+        case static_friction:
+            return settings.proxy.friction.static_coefficient;
+        case dynamic_friction:
+            return settings.proxy.friction.dynamic_coefficient;
+        case damping:
+            return settings.force.damping;
+        case viscosity:
+            return settings.force.viscosity;
+        case puncture_force:
+            return infinity;
+        case drag:
+            break;
+    }
+    return 0;
+}
+
+/// Samples of labels are their layer's number and 1; a label without a layer is 0.
+void renumber(Layers& layers, const Layers& before) {
+    if (!layers.labels) return;
+    std::array<std::uint8_t, 256> to{};
+    for (std::size_t i = 0; i < before.layers.size(); ++i) {
+        const auto now = std::ranges::find(layers.layers, before.layers[i].level, &Layer::level);
+        if (now == layers.layers.end()) continue;
+        to[i + 1] = static_cast<std::uint8_t>(now - layers.layers.begin() + 1);
+    }
+    const Volume& volume = layers.labels->volume();
+    const auto samples = volume.samples<std::uint8_t>();
+    std::vector<std::uint8_t> numbers(samples.begin(), samples.end());
+    for (std::uint8_t& number : numbers) number = to[number];
+    layers.labels = std::make_shared<const Field>(Volume(volume.geometry(), std::move(numbers)));
+}
+
 Layer another(const Layers& layers, double level) {
     static constexpr std::array<double, 3> colours[] = {{0.34, 0.56, 0.75}, {0.84, 0.37, 0.25},
                                                         {0.45, 0.65, 0.35}, {0.80, 0.62, 0.80},
@@ -55,6 +95,10 @@ Layer another(const Layers& layers, double level) {
 
 Look scene_look(Look look, const SharedLayers& layers) {
     if (!have_surfaces(layers)) return look;
+    if (layers->by_label) {
+        look.surface = false;
+        return look;
+    }
     const SeenSurface outer = seen(layers->layers.front(), look.surface);
     look.surface_colour = outer.colour;
     look.surface_opacity = outer.opacity;
@@ -63,28 +107,34 @@ Look scene_look(Look look, const SharedLayers& layers) {
 }
 
 Look slice_look(Look look, const SharedLayers& layers) {
-    if (have_surfaces(layers)) put_first(look.surfaces, *layers, 0, true);
+    if (have_levels(layers)) put_first(look.surfaces, *layers, 0, true);
     return look;
 }
 
-std::string felt_words(const LayersFelt& felt, const SharedLayers& layers) {
+std::string felt_words(const LayersFelt& felt, const SharedLayers& layers, const FeltWords& words) {
     if (!layers) return {};
     const int count = static_cast<int>(layers->layers.size());
     const auto name = [&](int layer) {
         return layers->layers[static_cast<std::size_t>(layer)].name;
     };
-    std::string words;
-    if (felt.touched >= 0 && felt.touched < count) words = "on " + name(felt.touched);
-    const int inside = std::min(static_cast<int>(felt.inside), count);
-    for (int layer = inside - 1; layer >= 0; --layer) {
-        if (layer < inside - 1) {
-            words += ", ";
-        } else {
-            words += words.empty() ? "in " : ", in ";
-        }
-        words += name(layer);
+    const bool on = felt.touched >= 0 && felt.touched < count;
+    const int innermost = std::min(static_cast<int>(felt.inside), count) - 1;
+    const bool from_inside = layers->by_label && innermost >= 0 && felt.touched == innermost;
+    // Labels do not nest.
+    const int outermost = layers->by_label ? std::max(innermost, 0) : 0;
+    std::string inside;
+    for (int layer = innermost; !from_inside && layer >= outermost; --layer) {
+        inside += (inside.empty() ? "" : ", ") + name(layer);
     }
-    return words;
+    if (!on && inside.empty()) return {};
+    std::string text = from_inside ? words.from_inside : inside.empty() ? words.on : words.both;
+    if (!on) text = words.in;
+    const auto put = [&text](const std::string& place, const std::string& what) {
+        if (const auto at = text.find(place); at != std::string::npos) text.replace(at, 2, what);
+    };
+    put("%2", inside);
+    put("%1", on ? name(felt.touched) : inside);
+    return text;
 }
 
 bool same(const SharedLayers& one, const SharedLayers& other) {
@@ -107,28 +157,24 @@ LevelRoom room_of(const Layers& layers, std::size_t layer, double gap) {
 
 double property_at(const Layers& layers, std::size_t layer, HapticProperty property,
                    const RendererSettings& settings) {
-    using enum HapticProperty;
     const Layer& at = layers.layers[layer];
     if (at[property]) return *at[property];
     const Curve& curve = layers[property].density;
-    if (!curve.knots.empty()) return curve(at.level);
-    switch (property) {
-        case stiffness:
-            return settings.force.stiffness;
-        case static_friction:
-            return settings.proxy.friction.static_coefficient;
-        case dynamic_friction:
-            return settings.proxy.friction.dynamic_coefficient;
-        case damping:
-            return settings.force.damping;
-        case viscosity:
-            return settings.force.viscosity;
-        case puncture_force:
-            return infinity;
-        case drag:
-            break;
+    if (!curve.knots.empty() && layers.by_label) {
+        return std::ranges::max(curve.knots, {}, &Curve::Knot::value).value;
     }
-    return 0;
+    if (!curve.knots.empty()) return curve(at.level);
+    return of_session(property, settings);
+}
+
+ValueFrom value_from(const Layers& layers, std::size_t layer, HapticProperty property) {
+    if (layers.layers[layer][property]) return ValueFrom::layer;
+    return layers[property].density.knots.empty() ? ValueFrom::session : ValueFrom::curve;
+}
+
+Curve::Knot first_knot(HapticProperty property, double at, const RendererSettings& settings) {
+    const double value = of_session(property, settings);
+    return {at, std::isfinite(value) ? value : 1};
 }
 
 std::optional<double> lowered_stiffness(const Layers& layers, std::size_t layer,
@@ -137,9 +183,14 @@ std::optional<double> lowered_stiffness(const Layers& layers, std::size_t layer,
     ForceSettings force = settings.force;
     force.stiffness = property_at(layers, layer, stiffness, settings);
     force.damping = property_at(layers, layer, damping, settings);
-    const double outside =
-        layer > 0 ? property_at(layers, layer - 1, viscosity, settings) : settings.force.viscosity;
-    force.viscosity = std::max(outside, property_at(layers, layer, viscosity, settings));
+    force.viscosity = property_at(layers, layer, viscosity, settings);
+    // A label may have any other beside it.
+    const std::size_t first = layers.by_label || layer == 0 ? 0 : layer - 1;
+    const std::size_t end = layers.by_label ? layers.layers.size() : layer;
+    if (first == 0) force.viscosity = std::max(force.viscosity, settings.force.viscosity);
+    for (std::size_t i = first; i < end; ++i) {
+        force.viscosity = std::max(force.viscosity, property_at(layers, i, viscosity, settings));
+    }
     const double rendered = stable(force, settings.device).stiffness;
     return rendered < force.stiffness ? std::optional(rendered) : std::nullopt;
 }
@@ -164,6 +215,22 @@ std::pair<Layers, std::size_t> with_another(Layers layers, Solid solid, double l
     return {std::move(layers), at};
 }
 
+Layers moved_layer(Layers layers, std::size_t from, std::size_t to) {
+    const Layer moved = layers.layers[from];
+    const SharedLayers before = std::make_shared<const Layers>(layers);
+    layers.layers.erase(layers.layers.begin() + static_cast<std::ptrdiff_t>(from));
+    layers.layers.insert(layers.layers.begin() + static_cast<std::ptrdiff_t>(to), moved);
+    renumber(layers, *before);
+    return layers;
+}
+
+Layers without_layer(Layers layers, std::size_t layer) {
+    const SharedLayers before = std::make_shared<const Layers>(layers);
+    layers.layers.erase(layers.layers.begin() + static_cast<std::ptrdiff_t>(layer));
+    renumber(layers, *before);
+    return layers;
+}
+
 Layers first_layer(double level) {
     Layers layers;
     layers.name = "Own layers";
@@ -177,7 +244,23 @@ void LayersHistory::keep(const SharedLayers& now, bool goes_on) {
     future_.clear();
     if (goes_on && !past_.empty()) return;
     past_.push_back(now);
+    bound();
+}
+
+/// The oldest steps go: where there are too many, or their labels take too much memory.
+void LayersHistory::bound() {
     if (past_.size() > most) past_.erase(past_.begin());
+    std::set<const Field*> labels;
+    std::size_t bytes = 0;
+    for (std::size_t i = past_.size(); i-- > 0;) {
+        if (!past_[i] || !past_[i]->labels || !labels.insert(past_[i]->labels.get()).second) {
+            continue;
+        }
+        bytes += static_cast<std::size_t>(sample_count(past_[i]->labels->geometry()));
+        if (bytes <= most_labels_) continue;
+        past_.erase(past_.begin(), past_.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+        return;
+    }
 }
 
 std::optional<SharedLayers> LayersHistory::undo(const SharedLayers& now) {

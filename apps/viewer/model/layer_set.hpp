@@ -19,14 +19,31 @@ inline bool have_surfaces(const SharedLayers& layers) {
     return layers && !layers->layers.empty();
 }
 
+/// Whether their surfaces are levels of the data, not labels.
+inline bool have_levels(const SharedLayers& layers) {
+    return have_surfaces(layers) && !layers->by_label;
+}
+/// By label, but where the labels lie is still to be read.
+inline bool lack_labels(const SharedLayers& layers) {
+    return layers && layers->by_label && !layers->labels;
+}
+
 /// The look with the surfaces of layers before those beside the felt one. In the scene the
-/// outermost is the felt one, whose mesh is there already; slices have a contour of each.
+/// outermost is the felt one, whose mesh is there already; slices have a contour of each. By label,
+/// surfaces are those of the overlay, and the isovalue has none.
 Look scene_look(Look look, const SharedLayers& layers);
 Look slice_look(Look look, const SharedLayers& layers);
 
+/// Sentences of felt_words(), in which %1 and %2 stand for names.
+struct FeltWords {
+    std::string on = "on %1", in = "in %1", both = "on %1, in %2";
+    std::string from_inside = "on %1, from inside";
+};
+
 /// "on bone, in skin": the layer that is touched and those that the SCP is in, the innermost first.
 /// Empty: none.
-std::string felt_words(const LayersFelt& felt, const SharedLayers& layers);
+std::string felt_words(const LayersFelt& felt, const SharedLayers& layers,
+                       const FeltWords& words = {});
 
 /// Whether they are the same, in everything that files keep.
 bool same(const SharedLayers& one, const SharedLayers& other);
@@ -39,9 +56,18 @@ struct LevelRoom {
 LevelRoom room_of(const Layers& layers, std::size_t layer, double gap);
 
 /// What a layer's surface feels like, without its gradient; where neither the layer nor a curve
-/// says it, as the settings have it. A puncture force that nothing gives is infinite.
+/// says it, as the settings have it. A puncture force that nothing gives is infinite. By label, of
+/// a curve its greatest value: the density at the surface is not the same everywhere.
 double property_at(const Layers& layers, std::size_t layer, HapticProperty property,
                    const RendererSettings& settings);
+
+/// What gives a property of a layer its value.
+enum class ValueFrom { layer, curve, session };
+ValueFrom value_from(const Layers& layers, std::size_t layer, HapticProperty property);
+
+/// A knot from which a curve begins, with the value that counts so far; of a puncture force that is
+/// never 1 N.
+Curve::Knot first_knot(HapticProperty property, double at, const RendererSettings& settings);
 
 /// [N/mm] What the device renders of a layer's stiffness where it cannot render it stably with its
 /// damping and the viscosity on either side.
@@ -51,12 +77,20 @@ std::optional<double> lowered_stiffness(const Layers& layers, std::size_t layer,
 /// One more, in the widest room that levels leave between `low` and `high` [data units]; glass.
 /// `layers` must have room: fewer than Layers::most_layers. The second is its number.
 std::pair<Layers, std::size_t> with_another(Layers layers, Solid solid, double low, double high);
+/// The layer `from` at the place `to` in their order, or without it. By label, the places of labels
+/// follow.
+Layers moved_layer(Layers layers, std::size_t from, std::size_t to);
+Layers without_layer(Layers layers, std::size_t layer);
 /// A set of one layer at this level.
 Layers first_layer(double level);
 
 /// Values of layers to go back to, and forward again.
 class LayersHistory {
   public:
+    /// `most_labels` [bytes]: of all labels of steps to go back to.
+    explicit LayersHistory(std::size_t most_labels = std::size_t{512} << 20)
+        : most_labels_(most_labels) {}
+
     /// `now` is about to change. `goes_on`: the change continues the last one (a drag), so that
     /// both are one step.
     void keep(const SharedLayers& now, bool goes_on);
@@ -68,7 +102,10 @@ class LayersHistory {
     void clear();
 
   private:
+    void bound();
+
     static constexpr std::size_t most = 200;
+    std::size_t most_labels_;
     std::vector<SharedLayers> past_, future_;
 };
 

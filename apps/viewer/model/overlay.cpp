@@ -79,6 +79,7 @@ void smooth_along(std::vector<float>& values, const Index3& size, int axis) {
 Overlay make_overlay(const run::LoadedVolume& loaded, const run::Source& source) {
     constexpr int bins = 256;
     Overlay overlay{source, loaded.volume, labels_of(loaded.volume, loaded.values.labels)};
+    overlay.time_steps = loaded.time_steps;
     const double low = loaded.volume.minimum(), high = loaded.volume.maximum();
     const run::Histogram histogram = run::histogram_of(loaded.volume, bins);
     const auto levels = run::suggested_isovalues(histogram);

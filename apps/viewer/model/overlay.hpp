@@ -22,6 +22,7 @@ struct Overlay {
     std::vector<Label> labels;    ///< of a label map, rising; empty: an image
     double dark = 0, bright = 1;  ///< [data units] of an image: no colour, full colour
     double level = 0;             ///< [data units] of an image: the surface suggested first
+    int time_steps = 1;           ///< frames of the file it was read from
 
     bool is_label_map() const { return !labels.empty(); }
 };

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <stdexcept>
 
@@ -263,9 +264,15 @@ void check_session(const SessionFile& s) {
     if (s.device.name.empty()) wrong("device", "must have a name");
     RendererSettings settings = s.settings.value_or(RendererSettings{});
     settings.method = s.method.method;
-    check(settings);
     check(settings.penetrability, s.solid);
     if (settings.layers) check(*settings.layers, s.solid);
+    if (settings.layers && settings.layers->by_label) {
+        if (settings.layers->label_volume.empty()) {
+            wrong("settings.layers.label_volume", "is missing");
+        }
+        settings.layers.reset();  // their places are read later
+    }
+    check(settings);
     check_look(s.look);
     if (s.camera) check_camera(*s.camera);
     check_measurements(s.measurements);
@@ -273,6 +280,12 @@ void check_session(const SessionFile& s) {
     check_finite("window_low", s.window_low);
     check_finite("window_high", s.window_high);
     if (!(s.window_low <= s.window_high)) wrong("window_low", "must not be above 'window_high'");
+}
+
+/// A name from the file, relative to the session's folder.
+std::string name_in(const std::string& volume, const std::filesystem::path& folder) {
+    if (volume.starts_with(synthetic_prefix)) return volume;
+    return (folder / volume).lexically_normal().string();
 }
 
 run::Source source_from(const Json& json, const std::string& member,
@@ -284,9 +297,7 @@ run::Source source_from(const Json& json, const std::string& member,
     }
     std::string& volume = names["volume"];
     if (volume.empty()) wrong(member + ".volume", "is missing");
-    if (!volume.starts_with(synthetic_prefix)) {
-        volume = (folder / volume).lexically_normal().string();
-    }
+    volume = name_in(volume, folder);
     return run::source_from(names);
 }
 
@@ -298,6 +309,16 @@ std::string name_from(const std::string& volume, const std::filesystem::path& fo
         whole.lexically_relative(std::filesystem::absolute(folder).lexically_normal());
     const bool outside = below.empty() || *below.begin() == "..";
     return (outside ? whole : below).string();
+}
+
+/// The same settings with another name of the label volume, where there is one.
+RendererSettings with_label_volume(RendererSettings settings,
+                                   const std::function<std::string(const std::string&)>& name) {
+    if (!settings.layers || settings.layers->label_volume.empty()) return settings;
+    Layers named = *settings.layers;
+    named.label_volume = name(named.label_volume);
+    settings.layers = std::make_shared<const Layers>(std::move(named));
+    return settings;
 }
 
 const Json& needed(const Json& json, const char* name) {
@@ -341,7 +362,10 @@ SessionFile session_from(const Json& json, const std::filesystem::path& folder) 
     session.interpolation = interpolation_from(field);
     if (const Json* const settings = reader.find("settings")) {
         if (!settings->is_object()) wrong("settings", "must be an object");
-        io::from_json(*settings, session.settings.emplace());
+        RendererSettings read;
+        io::from_json(*settings, read);
+        session.settings = with_label_volume(
+            read, [&](const std::string& volume) { return name_in(volume, folder); });
     }
     reader("background", session.background);
     std::string device = run::text_of(session.device), method = session.method.name;
@@ -390,7 +414,12 @@ void write_session(const std::filesystem::path& path, const SessionFile& session
     writer.json["solid"] = session.solid == Solid::above ? "above" : "below";
     writer.json["field"] = name_of(session.interpolation);
     writer.json["isovalue"] = session.isovalue;
-    if (session.settings) writer.json["settings"] = io::to_json(*session.settings);
+    if (session.settings) {
+        writer.json["settings"] =
+            io::to_json(with_label_volume(*session.settings, [&](const std::string& volume) {
+                return name_from(volume, path.parent_path());
+            }));
+    }
     writer("background", session.background);
     writer("device", run::text_of(session.device));
     writer("method", std::string(session.method.name));

@@ -21,7 +21,8 @@ struct SessionFile {
     devices::DeviceChoice device{"simulated", {}};
     baselines::NamedMethod method = baselines::methods().front();
     /// `settings->method` is that of `method` when it is read, and ignored when it is written; a
-    /// penetrability function is code and is not kept. Nothing: the defaults for device and volume.
+    /// penetrability function is code and is not kept. Layers by label lack their places when they
+    /// are read: run::with_labels(). Nothing: the defaults for device and volume.
     std::optional<RendererSettings> settings;
     Look look;
     std::optional<run::Source> overlay;      ///< a label map or image over the volume
@@ -41,7 +42,8 @@ struct SessionFile {
 SessionFile read_session(const std::filesystem::path& path);
 
 /// Writes a session, whole or not at all. A volume that lies below the session's folder is named
-/// relative to it, so that both can be moved together; any other by its whole path. Throws
+/// relative to it, so that both can be moved together; any other by its whole path. So does the
+/// label volume of layers by label, whose places are not in the file. Throws
 /// io::OutputError; and std::invalid_argument for values that read_session would refuse.
 void write_session(const std::filesystem::path& path, const SessionFile& session);
 

@@ -24,10 +24,15 @@ struct Kind {
     const char *text, *tip;
 };
 constexpr Kind all_kinds[] = {
-    {BrushKind::carve, "Carve", "Takes solid away where the brush is"},
-    {BrushKind::add, "Add", "Puts solid on where the brush is"},
-    {BrushKind::smooth, "Smooth", "Blurs: edges and noise wear off"},
-    {BrushKind::paint, "Paint", "Brings the samples to the value, up or down"},
+    {BrushKind::carve, QT_TRANSLATE_NOOP("palpate::viewer::BrushControls", "Carve"),
+     QT_TRANSLATE_NOOP("palpate::viewer::BrushControls", "Takes solid away where the brush is")},
+    {BrushKind::add, QT_TRANSLATE_NOOP("palpate::viewer::BrushControls", "Add"),
+     QT_TRANSLATE_NOOP("palpate::viewer::BrushControls", "Puts solid on where the brush is")},
+    {BrushKind::smooth, QT_TRANSLATE_NOOP("palpate::viewer::BrushControls", "Smooth"),
+     QT_TRANSLATE_NOOP("palpate::viewer::BrushControls", "Blurs: edges and noise wear off")},
+    {BrushKind::paint, QT_TRANSLATE_NOOP("palpate::viewer::BrushControls", "Paint"),
+     QT_TRANSLATE_NOOP("palpate::viewer::BrushControls",
+                       "Brings the samples to the value, up or down")},
 };
 
 QString steps_text(const QString& what, std::size_t steps) {
@@ -35,7 +40,9 @@ QString steps_text(const QString& what, std::size_t steps) {
 }
 
 QString in_words(std::size_t steps) {
-    return steps == 0 ? "none" : steps == 1 ? "one step" : QString("%1 steps").arg(steps);
+    return steps == 0   ? BrushControls::tr("none")
+           : steps == 1 ? BrushControls::tr("one step")
+                        : BrushControls::tr("%n steps", nullptr, static_cast<int>(steps));
 }
 
 }  // namespace
@@ -44,19 +51,19 @@ BrushControls::BrushControls()
     : body_(new QWidget),
       reason_(new Note("brush_reason", Note::Kind::plain)),
       on_(named(new QPushButton, "brush",
-                "While it is on, the probe edits the samples where it is")),
+                tr("While it is on, the probe edits the samples where it is"))),
       kinds_(new QButtonGroup(this)),
       radius_(new Quantity("brush_radius", "mm", 1, 25, 0, Quantity::Scale::factors)),
       hardness_(new Quantity("brush_hardness", "", 0, 1, 0.05)),
       rate_box_(
           new Quantity("brush_rate", "/s", least_rate, most_rate, 0, Quantity::Scale::factors)),
-      at_once_(named(new QCheckBox("At once"), "brush_at_once")),
+      at_once_(named(new QCheckBox(tr("At once")), "brush_at_once")),
       value_(named(new NumberBox, "brush_value")),
-      automatic_(named(new QCheckBox("Automatic"), "brush_automatic")),
+      automatic_(named(new QCheckBox(tr("Automatic")), "brush_automatic")),
       undo_(named(new QPushButton, "undo")),
       redo_(named(new QPushButton, "redo")),
-      save_(named(new QPushButton("Save as..."), "save_edits",
-                  "Writes the volume as it is now to a file")),
+      save_(named(new QPushButton(tr("Save as...")), "save_edits",
+                  tr("Writes the volume as it is now to a file"))),
       state_(named(new QLabel, "edit_state")) {
     setObjectName("brush_controls");
     build();
@@ -68,15 +75,15 @@ BrushControls::BrushControls()
 void BrushControls::build() {
     on_->setCheckable(true);
     make_bold(*on_);
-    radius_->set_accessible_name("Radius of the brush");
-    hardness_->set_accessible_name("Hardness of the brush");
-    rate_box_->set_accessible_name("Rate of the brush");
-    value_->setAccessibleName("Value of the brush");
+    radius_->set_accessible_name(tr("Radius of the brush"));
+    hardness_->set_accessible_name(tr("Hardness of the brush"));
+    rate_box_->set_accessible_name(tr("Rate of the brush"));
+    value_->setAccessibleName(tr("Value of the brush"));
     value_->setStepType(QAbstractSpinBox::AdaptiveDecimalStepType);
     value_->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
     value_->setMinimumWidth(radius_->box().minimumWidth());
     for (QPushButton* button : {undo_, redo_, save_}) {
-        button->setMinimumWidth(fontMetrics().horizontalAdvance("Undo (000)  "));
+        button->setMinimumWidth(fontMetrics().horizontalAdvance(tr("Undo") + " (000)  "));
     }
     auto* rate = row_of({rate_box_, at_once_});
     rate->setFocusProxy(rate_box_);
@@ -84,15 +91,16 @@ void BrushControls::build() {
     value->setFocusProxy(value_);
     auto* form = new QFormLayout;
     form->setVerticalSpacing(3);
-    add_row(*form, "Radius", radius_,
-            "Where half of the effect is left [mm in the volume]: from a voxel to a quarter of "
-            "the grid");
-    add_row(*form, "Hardness", hardness_,
-            "1: an edge of two voxels; 0: an edge as wide as the brush");
-    add_row(*form, "Rate", rate,
-            "How fast the samples approach their final value [1/s]: 63 % of it after 1/rate s");
-    add_row(*form, "Value", value,
-            "What a whole touch leaves [data units]. Automatic: what fits the level that is felt");
+    add_row(*form, tr("Radius"), radius_,
+            tr("Where half of the effect is left [mm in the volume]: from a voxel to a quarter of "
+               "the grid"));
+    add_row(*form, tr("Hardness"), hardness_,
+            tr("1: an edge of two voxels; 0: an edge as wide as the brush"));
+    add_row(*form, tr("Rate"), rate,
+            tr("How fast the samples approach their final value [1/s]: 63 % of it after 1/rate s"));
+    add_row(
+        *form, tr("Value"), value,
+        tr("What a whole touch leaves [data units]. Automatic: what fits the level that is felt"));
     auto* column = column_in(body_, {on_, make_kinds()});
     column->addLayout(form);
     column->addWidget(row_of({undo_, redo_, save_}));
@@ -102,12 +110,12 @@ void BrushControls::build() {
 
 QWidget* BrushControls::make_kinds() {
     auto* all = row_of({});
-    all->setAccessibleName("Kind of brush");
+    all->setAccessibleName(tr("Kind of brush"));
     all->layout()->setSpacing(2);
     for (const Kind& kind : all_kinds) {
         const auto name = QString::fromStdString(std::string(name_of(kind.kind)));
-        auto* button = named(new QToolButton, "brush_" + name, kind.tip);
-        button->setText(kind.text);
+        auto* button = named(new QToolButton, "brush_" + name, tr(kind.tip));
+        button->setText(tr(kind.text));
         button->setCheckable(true);
         button->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
         kinds_->addButton(button, static_cast<int>(kind.kind));
@@ -144,24 +152,24 @@ void BrushControls::connect_inputs() {
 
 void BrushControls::connect_numbers() {
     const auto connect_quantity = [this](Quantity* quantity, double BrushChoice::*member,
-                                         const char* limits) {
+                                         const QString& limits) {
         connect(quantity, &Quantity::wanted, this, [this, quantity, member, limits](double value) {
             if (value >= quantity->low() && value <= quantity->high()) {
                 return change([=](BrushChoice& c) { c.*member = value; });
             }
             show_choice();
             const auto text = [](double number) { return QString::number(number, 'g', 4); };
-            Q_EMIT nonsense(
-                QString(limits).arg(text(quantity->low()), text(quantity->high()), text(value)));
+            Q_EMIT nonsense(limits.arg(text(quantity->low()), text(quantity->high()), text(value)));
         });
     };
-    connect_quantity(radius_, &BrushChoice::radius,
-                     "the brush's radius must be from %1 mm (a voxel) to %2 mm (a quarter of the "
-                     "grid), not %3 mm");
+    connect_quantity(
+        radius_, &BrushChoice::radius,
+        tr("the brush's radius must be from %1 mm (a voxel) to %2 mm (a quarter of the "
+           "grid), not %3 mm"));
     connect_quantity(hardness_, &BrushChoice::hardness,
-                     "the brush's hardness must be from %1 to %2, not %3");
+                     tr("the brush's hardness must be from %1 to %2, not %3"));
     connect_quantity(rate_box_, &BrushChoice::rate,
-                     "the brush's rate must be from %1 to %2 /s or at once, not %3 /s");
+                     tr("the brush's rate must be from %1 to %2 /s or at once, not %3 /s"));
     // A typed number is not automatic any more, even if it is the same.
     const auto own = [this](double value) { change([value](BrushChoice& c) { c.value = value; }); };
     connect(value_, qOverload<double>(&NumberBox::valueChanged), this, own);
@@ -196,7 +204,7 @@ double BrushControls::fitting() const {
 void BrushControls::show_choice() {
     const bool on = choice_.on && reason_->text().isEmpty();
     on_->setChecked(on);
-    on_->setText(on ? "Brush at the probe is ON" : "Brush at the probe is off");
+    on_->setText(on ? tr("Brush at the probe is ON") : tr("Brush at the probe is off"));
     kinds_->button(static_cast<int>(choice_.kind))->setChecked(true);
     // Bold: dark palettes hardly show which button is pressed.
     for (auto* button : kinds_->buttons()) make_bold(*button, button->isChecked());
@@ -245,11 +253,11 @@ void BrushControls::set_history(std::size_t undo_steps, std::size_t redo_steps, 
         button->setToolTip(QString("%1: %2").arg(tip, in_words(steps)));
         button->setAccessibleName(QString("%1, %2").arg(what, in_words(steps)));
     };
-    show(undo_, "Undo", undo_steps, "Takes the last edit back");
-    show(redo_, "Redo", redo_steps, "Makes the edit again that was taken back");
-    state_->setText(changed                        ? "There are edits that are not saved"
-                    : undo_steps + redo_steps == 0 ? "Nothing was edited"
-                                                   : "Nothing is left to save");
+    show(undo_, tr("Undo"), undo_steps, tr("Takes the last edit back"));
+    show(redo_, tr("Redo"), redo_steps, tr("Makes the edit again that was taken back"));
+    state_->setText(changed                        ? tr("There are edits that are not saved")
+                    : undo_steps + redo_steps == 0 ? tr("Nothing was edited")
+                                                   : tr("Nothing is left to save"));
 }
 
 void BrushControls::set_reason(const QString& why) {

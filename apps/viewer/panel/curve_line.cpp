@@ -10,11 +10,13 @@
 
 namespace palpate::viewer {
 
-CurveLine line_of(const Knots& knots) {
+CurveLine line_of(const Knots& knots, double least, const QString& unit) {
     constexpr double room = 1.25;
     double highest = 0;
-    for (const Curve::Knot& knot : knots) highest = std::max(highest, knot.value);
-    return {knots, highest > 0 ? room * highest : 1};
+    for (const Curve::Knot& knot : knots) {
+        if (std::isfinite(knot.value)) highest = std::max(highest, knot.value);
+    }
+    return {knots, highest > 0 ? room * highest : least, least, unit};
 }
 
 QPointF CurveLine::place_of(const Curve::Knot& knot, const LevelAxis& axis,
@@ -25,8 +27,8 @@ QPointF CurveLine::place_of(const Curve::Knot& knot, const LevelAxis& axis,
 
 Curve::Knot CurveLine::knot_of(const QPointF& at, const LevelAxis& axis, const QRectF& plot) const {
     const double part = std::clamp((plot.bottom() - at.y()) / plot.height(), 0.0, 1.0);
-    const double unit = std::pow(10.0, std::floor(std::log10(top)) - 2);  // short numbers
-    return {axis.round_level_of(at.x()), std::round(part * top / unit) * unit};
+    const double digit = std::pow(10.0, std::floor(std::log10(top)) - 2);  // short numbers
+    return {axis.round_level_of(at.x()), std::round(part * top / digit) * digit};
 }
 
 int CurveLine::knot_at(const QPointF& at, const LevelAxis& axis, const QRectF& plot,
@@ -77,7 +79,8 @@ void CurveLine::paint(QPainter& painter, const LevelAxis& axis, const QRectF& pl
         const double radius = static_cast<int>(i) == chosen ? 4.5 : 3;
         painter.drawEllipse(at, radius, radius);
         if (static_cast<int>(i) != chosen) continue;
-        const QString text = number_text(knots[i].value, 3) + " N/mm";
+        QString text = number_text(knots[i].value, 3);
+        if (!unit.isEmpty()) text += " " + unit;
         const double wide = painter.fontMetrics().horizontalAdvance(text);
         const double x = std::clamp(at.x() + 7, plot.left(), plot.right() - wide - 2);
         painter.drawText(

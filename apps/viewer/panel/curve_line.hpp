@@ -4,6 +4,7 @@
 #include <QColor>
 #include <QPointF>
 #include <QRectF>
+#include <QString>
 
 #include <vector>
 
@@ -21,6 +22,8 @@ using Knots = std::vector<Curve::Knot>;
 struct CurveLine {
     Knots knots;
     double top = 1;
+    double least = 1;   ///< of `top`, where all values are 0
+    QString unit = {};  ///< of values; empty: none
 
     QPointF place_of(const Curve::Knot& knot, const LevelAxis& axis, const QRectF& plot) const;
     Curve::Knot knot_of(const QPointF& at, const LevelAxis& axis, const QRectF& plot) const;
@@ -34,7 +37,7 @@ struct CurveLine {
                int chosen) const;
 };
 
-/// With room above the highest knot.
-CurveLine line_of(const Knots& knots);
+/// With room above the highest knot, up to `least` at least. Infinite values lie on the upper edge.
+CurveLine line_of(const Knots& knots, double least = 1, const QString& unit = {});
 
 }  // namespace palpate::viewer

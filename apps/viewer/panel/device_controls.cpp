@@ -15,7 +15,7 @@ namespace palpate::viewer {
 namespace {
 
 struct StatusLook {
-    const char* words;
+    QString words;
     QColor colour;
 };
 
@@ -23,25 +23,25 @@ StatusLook look_of(DeviceStatus status) {
     const QColor green(0, 158, 115), orange(230, 159, 0), red(213, 60, 30), grey(140, 140, 140);
     switch (status) {
         case DeviceStatus::starting:
-            return {"connecting", orange};
+            return {DeviceControls::tr("connecting"), orange};
         case DeviceStatus::ready:
-            return {"ready", green};
+            return {DeviceControls::tr("ready"), green};
         case DeviceStatus::uncalibrated:
-            return {"needs calibration", orange};
+            return {DeviceControls::tr("needs calibration"), orange};
         case DeviceStatus::stale:
-            return {"sends no new positions", orange};
+            return {DeviceControls::tr("sends no new positions"), orange};
         case DeviceStatus::lost:
-            return {"connection lost", red};
+            return {DeviceControls::tr("connection lost"), red};
         case DeviceStatus::fault:
-            return {"reports a fault", red};
+            return {DeviceControls::tr("reports a fault"), red};
         case DeviceStatus::finished:
             break;
     }
-    return {"the hand has come to its end", grey};
+    return {DeviceControls::tr("the hand has come to its end"), grey};
 }
 
 QString length_text(const Vec3& size) {
-    return QString("%1 x %2 x %3 mm, %4")
+    return QString("%1 x %2 x %3 mm")
         .arg(std::lround(size[0]))
         .arg(std::lround(size[1]))
         .arg(std::lround(size[2]));
@@ -51,23 +51,23 @@ QString length_text(const Vec3& size) {
 
 DeviceControls::DeviceControls()
     : picker_(named(new QComboBox, "devices",
-                    "Devices; grey: not found, the tip says what was looked for")),
+                    tr("Devices; grey: not found, the tip says what was looked for"))),
       options_(named(new QLineEdit, "device_options")),
-      refresh_(named(new QPushButton("Look again"), "refresh_devices",
-                     "Look for devices again; takes about a second")),
-      connect_(named(new QPushButton("Connect"), "connect_device",
-                     "Go on with this device; forces ramp up anew")),
+      refresh_(named(new QPushButton(tr("Look again")), "refresh_devices",
+                     tr("Look for devices again; takes about a second"))),
+      connect_(named(new QPushButton(tr("Connect")), "connect_device",
+                     tr("Go on with this device; forces ramp up anew"))),
       missing_(new Note("device_missing", Note::Kind::plain)),
       dot_(named(new QLabel, "device_dot")),
       state_(named(new QLabel, "device_state")),
       model_(named(new QLabel, "device_model")),
       workspace_(named(new QLabel, "device_workspace",
-                       "The box that the device reaches [mm of the hand], and its most force")),
+                       tr("The box that the device reaches [mm of the hand], and its most force"))),
       problem_(new Note("device_problem", Note::Kind::warning)),
       scale_(named(new NumberBox, "scale",
-                   "Scale of the hand: mm in the volume for each mm of the hand. Changes about "
-                   "the proxy, so that neither it nor the force moves")) {
-    options_->setAccessibleName("Options of the device");
+                   tr("Scale of the hand: mm in the volume for each mm of the hand. Changes about "
+                      "the proxy, so that neither it nor the force moves"))) {
+    options_->setAccessibleName(tr("Options of the device"));
     picker_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
     picker_->setMinimumContentsLength(12);
     let_wheel_pass(*picker_);
@@ -86,10 +86,10 @@ void DeviceControls::build() {
     state->layout()->setSpacing(6);
     auto* form = new QFormLayout;
     form->setVerticalSpacing(3);
-    form->addRow("State", state);
-    form->addRow("Model", model_);
-    form->addRow("Reach", workspace_);
-    form->addRow("Scale of the hand", scale_);
+    form->addRow(tr("State"), state);
+    form->addRow(tr("Model"), model_);
+    form->addRow(tr("Reach"), workspace_);
+    form->addRow(tr("Scale of the hand"), scale_);
     column_in(this,
               {row_of({picker_, refresh_}, 0), row_of({options_, connect_}, 0), missing_, problem_})
         ->addLayout(form);
@@ -128,7 +128,7 @@ void DeviceControls::set_devices(const std::vector<devices::DeviceFinding>& find
             continue;
         }
         // Grey but selectable: it may be at another address than the one searched.
-        picker_->addItem(name + " (not found)", name);
+        picker_->addItem(tr("%1 (not found)").arg(name), name);
         picker_->setItemData(row, palette().brush(QPalette::Disabled, QPalette::Text),
                              Qt::ForegroundRole);
         picker_->setItemData(row, QString::fromStdString(finding.missing), Qt::ToolTipRole);
@@ -149,9 +149,9 @@ void DeviceControls::choose(int row) {
     const devices::DeviceFinding& finding = findings_[static_cast<std::size_t>(row)];
     const QString options = QString::fromStdString(finding.options);
     options_->clear();
+    const QString all = tr("Options, KEY=VALUE with commas between");
     options_->setPlaceholderText(options.isEmpty() ? "KEY=VALUE,..." : options);
-    options_->setToolTip("Options, KEY=VALUE with commas between" +
-                         (options.isEmpty() ? QString() : ":\n" + options));
+    options_->setToolTip(options.isEmpty() ? all : all + ":\n" + options);
     missing_->say(finding.found ? QString() : QString::fromStdString(finding.missing));
     picker_->setToolTip(picker_->itemData(row, Qt::ToolTipRole).toString());
 }
@@ -189,9 +189,10 @@ void DeviceControls::show_device(const DeviceInfo& info, DeviceStatus status,
     const QString both = model.isEmpty() || model == name ? name : name + ", " + model;
     model_->setText(both);
     const QString most = info.renders_force
-                             ? QString("up to %1 N").arg(info.limits.maximum_force, 0, 'g', 3)
-                             : QString("gives no force");
-    workspace_->setText(length_text(info.workspace_high - info.workspace_low).arg(most));
+                             ? tr("up to %1 N").arg(info.limits.maximum_force, 0, 'g', 3)
+                             : tr("gives no force");
+    workspace_->setText(
+        QString("%1, %2").arg(length_text(info.workspace_high - info.workspace_low), most));
 }
 
 void DeviceControls::show_scale(double scale) {

@@ -41,39 +41,55 @@ constexpr bool is_plain(std::size_t row) {
 }  // namespace force_row
 
 constexpr std::array force_rows{
-    ForceRow{
-        "Stiffness", "stiffness", "N/mm", 1, 0.05,
-        [](Settings& s) -> double& { return s.force.stiffness; },
-        "Stiffness k of the spring between hand and proxy [N/mm].\nThe slider ends where device "
-        "and loop can no longer render it stably."},
-    ForceRow{
-        "Damping", "damping", "N s/mm", 1e-3, 1e-4,
-        [](Settings& s) -> double& { return s.force.damping; },
-        "Against the hand's motion along the contact normal [N s/mm]; never pulls the hand in"},
-    ForceRow{"Viscosity", "viscosity", "N s/mm", 1e-3, 1e-4,
-             [](Settings& s) -> double& { return s.force.viscosity; },
-             "Of the medium, against all motion, in contact or not [N s/mm]"},
-    ForceRow{"Static friction", "static_friction", "", 1.5, 0.05,
+    ForceRow{QT_TRANSLATE_NOOP("palpate::viewer::ForceControls", "Stiffness"), "stiffness", "N/mm",
+             1, 0.05, [](Settings& s) -> double& { return s.force.stiffness; },
+             QT_TRANSLATE_NOOP("palpate::viewer::ForceControls",
+                               "Stiffness k of the spring between hand and proxy [N/mm].\nThe "
+                               "slider ends where device "
+                               "and loop can no longer render it stably.")},
+    ForceRow{QT_TRANSLATE_NOOP("palpate::viewer::ForceControls", "Damping"), "damping", "N s/mm",
+             1e-3, 1e-4, [](Settings& s) -> double& { return s.force.damping; },
+             QT_TRANSLATE_NOOP("palpate::viewer::ForceControls",
+                               "Against the hand's motion along the contact normal [N s/mm]; never "
+                               "pulls the hand in")},
+    ForceRow{QT_TRANSLATE_NOOP("palpate::viewer::ForceControls", "Viscosity"), "viscosity",
+             "N s/mm", 1e-3, 1e-4, [](Settings& s) -> double& { return s.force.viscosity; },
+             QT_TRANSLATE_NOOP("palpate::viewer::ForceControls",
+                               "Of the medium, against all motion, in contact or not [N s/mm]")},
+    ForceRow{QT_TRANSLATE_NOOP("palpate::viewer::ForceControls", "Static friction"),
+             "static_friction", "", 1.5, 0.05,
              [](Settings& s) -> double& { return s.friction.static_coefficient; },
-             "Coefficient past which the proxy begins to slide (no unit)"},
-    ForceRow{"Dynamic friction", "dynamic_friction", "", 1.5, 0.05,
-             [](Settings& s) -> double& { return s.friction.dynamic_coefficient; },
-             "Coefficient while the proxy slides, at most the static one (no unit)"},
-    ForceRow{"Texture height", "texture_amplitude", "mm", 0.5, 0.01,
+             QT_TRANSLATE_NOOP("palpate::viewer::ForceControls",
+                               "Coefficient past which the proxy begins to slide (no unit)")},
+    ForceRow{
+        QT_TRANSLATE_NOOP("palpate::viewer::ForceControls", "Dynamic friction"), "dynamic_friction",
+        "", 1.5, 0.05, [](Settings& s) -> double& { return s.friction.dynamic_coefficient; },
+        QT_TRANSLATE_NOOP("palpate::viewer::ForceControls",
+                          "Coefficient while the proxy slides, at most the static one (no unit)")},
+    ForceRow{QT_TRANSLATE_NOOP("palpate::viewer::ForceControls", "Texture height"),
+             "texture_amplitude", "mm", 0.5, 0.01,
              [](Settings& s) -> double& { return s.force.texture.amplitude; },
-             "Height of the bumps [mm in the volume]; 0: smooth"},
-    ForceRow{"Texture length", "texture_wavelength", "mm", 20, 0.5,
+             QT_TRANSLATE_NOOP("palpate::viewer::ForceControls",
+                               "Height of the bumps [mm in the volume]; 0: smooth")},
+    ForceRow{QT_TRANSLATE_NOOP("palpate::viewer::ForceControls", "Texture length"),
+             "texture_wavelength", "mm", 20, 0.5,
              [](Settings& s) -> double& { return s.force.texture.wavelength; },
-             "From bump to bump [mm in the volume]"},
-    ForceRow{"Magnet reach", "magnet_distance", "mm", 10, 0.5,
-             [](Settings& s) -> double& { return s.force.magnet.distance; },
-             "From how far a free hand is pulled to the surface [mm of the hand]; 0: off"},
-    ForceRow{"Magnet force", "magnet_peak", "N", 1, 0.1,
-             [](Settings& s) -> double& { return s.force.magnet.peak; },
-             "Greatest pull of the magnet, half-way to the surface [N]"},
-    ForceRow{"Force limit", "force_limit", "N", 3.3, 0.1,
-             [](Settings& s) -> double& { return s.force.limit; },
-             "Greatest force asked of the device [N]; the device's own limit holds as well"}};
+             QT_TRANSLATE_NOOP("palpate::viewer::ForceControls",
+                               "From bump to bump [mm in the volume]")},
+    ForceRow{QT_TRANSLATE_NOOP("palpate::viewer::ForceControls", "Magnet reach"), "magnet_distance",
+             "mm", 10, 0.5, [](Settings& s) -> double& { return s.force.magnet.distance; },
+             QT_TRANSLATE_NOOP(
+                 "palpate::viewer::ForceControls",
+                 "From how far a free hand is pulled to the surface [mm of the hand]; 0: off")},
+    ForceRow{QT_TRANSLATE_NOOP("palpate::viewer::ForceControls", "Magnet force"), "magnet_peak",
+             "N", 1, 0.1, [](Settings& s) -> double& { return s.force.magnet.peak; },
+             QT_TRANSLATE_NOOP("palpate::viewer::ForceControls",
+                               "Greatest pull of the magnet, half-way to the surface [N]")},
+    ForceRow{QT_TRANSLATE_NOOP("palpate::viewer::ForceControls", "Force limit"), "force_limit", "N",
+             3.3, 0.1, [](Settings& s) -> double& { return s.force.limit; },
+             QT_TRANSLATE_NOOP(
+                 "palpate::viewer::ForceControls",
+                 "Greatest force asked of the device [N]; the device's own limit holds as well")}};
 
 }  // namespace
 
@@ -87,14 +103,14 @@ ForceControls::ForceControls() {
     for (std::size_t i = 0; i < force_rows.size(); ++i) {
         const ForceRow& made = force_rows[i];
         auto* quantity = new Quantity(made.name, made.unit, 0, made.high, made.step);
-        quantity->set_accessible_name(made.label);
-        add_row(force_row::is_plain(i) ? *plain_form : *advanced_form, made.label, quantity,
-                made.tip);
+        quantity->set_accessible_name(tr(made.label));
+        add_row(force_row::is_plain(i) ? *plain_form : *advanced_form, tr(made.label), quantity,
+                tr(made.tip));
         rows_.push_back(quantity);
         connect(quantity, &Quantity::wanted, this, [this, i](double value) { change(i, value); });
     }
     rows_[force_row::limit]->box().set_infinite(true);
-    auto* fold = new Section("Advanced", "force_advanced", advanced);
+    auto* fold = new Section(tr("Advanced"), "force_advanced", advanced);
     fold->set_open(false);
     column_in(this, {plain, fold});
 }

@@ -1,7 +1,6 @@
 // Draws the force gauge.
 #include "apps/viewer/panel/force_gauge.hpp"
 
-#include <QMap>
 #include <QPainter>
 #include <QPainterPath>
 
@@ -16,19 +15,53 @@ namespace {
 
 constexpr Colour near_limit{0.835, 0.369, 0};
 
-/// The tooltip, with what `words` of app::force_words() mean.
+/// What `words` of app::force_words() mean: the word itself, a colon, and why.
+QString meaning_of(const QString& words) {
+    if (words == "off") return ForceGauge::tr("Off: forces are switched off");
+    if (words == "recovering") return ForceGauge::tr("Recovering: the proxy is leaving the solid");
+    if (words == "no input") {
+        return ForceGauge::tr("No input: the device gives no reliable position");
+    }
+    if (words == "too late") {
+        return ForceGauge::tr("Too late: a tick took too long, its force was cancelled");
+    }
+    if (words == "waiting") {
+        return ForceGauge::tr("Waiting: forces begin when the hand is where they are small");
+    }
+    if (words == "ramp") {
+        return ForceGauge::tr("Ramp: from zero to full force after a start or pause");
+    }
+    if (words == "limit") {
+        return ForceGauge::tr("Limit: the computed force is larger than the limit");
+    }
+    if (words == "rate limit") {
+        return ForceGauge::tr("Rate limit: the force may not change faster");
+    }
+    return {};
+}
+
+/// The same words, in the person's language.
+QString shown_words(const QString& words) {
+    constexpr const char* known[] = {
+        QT_TRANSLATE_NOOP("palpate::viewer::ForceGauge", "off"),
+        QT_TRANSLATE_NOOP("palpate::viewer::ForceGauge", "recovering"),
+        QT_TRANSLATE_NOOP("palpate::viewer::ForceGauge", "not finite"),
+        QT_TRANSLATE_NOOP("palpate::viewer::ForceGauge", "no input"),
+        QT_TRANSLATE_NOOP("palpate::viewer::ForceGauge", "too late"),
+        QT_TRANSLATE_NOOP("palpate::viewer::ForceGauge", "waiting"),
+        QT_TRANSLATE_NOOP("palpate::viewer::ForceGauge", "ramp"),
+        QT_TRANSLATE_NOOP("palpate::viewer::ForceGauge", "limit"),
+        QT_TRANSLATE_NOOP("palpate::viewer::ForceGauge", "rate limit")};
+    for (const char* one : known) {
+        if (words == one) return ForceGauge::tr(one);
+    }
+    return words;
+}
+
 QString tip_for(const QString& words) {
-    static const QMap<QString, QString> meanings{
-        {"off", "Off: forces are switched off"},
-        {"recovering", "Recovering: the proxy is leaving the solid"},
-        {"no input", "No input: the device gives no reliable position"},
-        {"too late", "Too late: a tick took too long, its force was cancelled"},
-        {"waiting", "Waiting: forces begin when the hand is where they are small"},
-        {"ramp", "Ramp: from zero to full force after a start or pause"},
-        {"limit", "Limit: the computed force is larger than the limit"},
-        {"rate limit", "Rate limit: the force may not change faster"}};
-    const QString what = "Force on the hand [N] against the limit in use";
-    return meanings.contains(words) ? what + "\n" + meanings[words] : what;
+    const QString what = ForceGauge::tr("Force on the hand [N] against the limit in use");
+    const QString meaning = meaning_of(words);
+    return meaning.isEmpty() ? what : what + "\n" + meaning;
 }
 
 }  // namespace
@@ -47,7 +80,8 @@ void ForceGauge::set_force(double force, double limit, const QString& words) {
     force_ = force;
     limit_ = limit;
     words_ = words;
-    setAccessibleName(QString("Force %1 N of %2 N %3").arg(force, 0, 'f', 2).arg(limit).arg(words));
+    setAccessibleName(
+        tr("Force %1 N of %2 N %3").arg(force, 0, 'f', 2).arg(limit).arg(shown_words(words)));
     update();
 }
 
@@ -83,11 +117,12 @@ void ForceGauge::paintEvent(QPaintEvent*) {
     painter.drawText(text, Qt::AlignLeft | Qt::AlignVCenter, number);
     const double after = QFontMetricsF(bold).horizontalAdvance(number) + 0.6 * line;
     painter.setFont(font());
-    painter.drawText(text.adjusted(after, 0, 0, 0), Qt::AlignLeft | Qt::AlignVCenter, words_);
+    painter.drawText(text.adjusted(after, 0, 0, 0), Qt::AlignLeft | Qt::AlignVCenter,
+                     shown_words(words_));
     painter.setPen(palette().color(QPalette::PlaceholderText));
     if (limit_ > 0) {
         painter.drawText(text, Qt::AlignRight | Qt::AlignVCenter,
-                         QString("of %1 N").arg(QString::number(limit_, 'g', 3)));
+                         tr("of %1 N").arg(QString::number(limit_, 'g', 3)));
     }
     const QRectF bar(all.left(), text.bottom() + 1, all.width(), all.bottom() - text.bottom() - 1);
     QPainterPath frame;

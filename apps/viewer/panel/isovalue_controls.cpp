@@ -20,21 +20,22 @@ constexpr int snapshots_of_grace = 3;
 
 IsovalueControls::IsovalueControls()
     : chart_(new LevelChart),
-      slider_(named(new QSlider(Qt::Horizontal), "isovalue_slider", "Isovalue [data units]")),
+      slider_(named(new QSlider(Qt::Horizontal), "isovalue_slider", tr("Isovalue [data units]"))),
       box_(named(new NumberBox, "isovalue_box",
-                 "Isovalue [data units]: the level whose surface is felt")),
-      solid_(named(new QComboBox, "solid",
-                   "Which side of the level is solid: bright bodies on dark, or airways and "
-                   "vessels dark on bright.\nThe session starts anew, with penetrability off.")),
+                 tr("Isovalue [data units]: the level whose surface is felt"))),
+      solid_(
+          named(new QComboBox, "solid",
+                tr("Which side of the level is solid: bright bodies on dark, or airways and "
+                   "vessels dark on bright.\nThe session starts anew, with penetrability off."))),
       smoothness_(named(new QComboBox, "field",
-                        "How densities continue between samples: cubic, smooth, or linear, with "
-                        "facets.\nThe session starts anew, with penetrability off.")),
-      dequantize_(named(new QCheckBox("dequantize"), "dequantize",
-                        "Give back what rounding to levels took, against terraces and the stair "
-                        "steps of masks.\nThe volume is read again; edits are lost.")),
+                        tr("How densities continue between samples: cubic, smooth, or linear, with "
+                           "facets.\nThe session starts anew, with penetrability off."))),
+      dequantize_(named(new QCheckBox(tr("dequantize")), "dequantize",
+                        tr("Give back what rounding to levels took, against terraces and the stair "
+                           "steps of masks.\nThe volume is read again; edits are lost."))),
       felt_(named(new QLabel, "felt",
-                  "The level felt now [data units]; another than the isovalue while "
-                  "penetrability lets the hand through")),
+                  tr("The level felt now [data units]; another than the isovalue while "
+                     "penetrability lets the hand through"))),
       warning_(new Note("isovalue_warning", Note::Kind::warning)),
       overruled_(new Note("isovalue_overruled", Note::Kind::plain)),
       terraces_(new Note("terraces", Note::Kind::plain)),
@@ -42,12 +43,12 @@ IsovalueControls::IsovalueControls()
     slider_->setRange(0, places);
     slider_->setSingleStep(places / 500);
     slider_->setPageStep(places / 50);
-    slider_->setAccessibleName("Isovalue");
+    slider_->setAccessibleName(tr("Isovalue"));
     let_wheel_pass(*slider_);
     box_->setMinimumWidth(fontMetrics().horizontalAdvance("-0000.0000") +
                           2 * fontMetrics().height());
-    solid_->addItems({"above is solid", "below is solid"});
-    smoothness_->addItems({"linear", "cubic"});
+    solid_->addItems({tr("above is solid"), tr("below is solid")});
+    smoothness_->addItems({tr("linear"), tr("cubic")});
     let_wheel_pass(*solid_);
     let_wheel_pass(*smoothness_);
     QSizePolicy keeps_room = overruled_->sizePolicy();  // so that what is below does not jump
@@ -122,18 +123,27 @@ void IsovalueControls::set_field(Solid solid, Interpolation interpolation) {
 void IsovalueControls::set_dequantized(bool on, bool possible, const QString& reason) {
     dequantize_->setChecked(on);
     dequantize_->setEnabled(possible);
-    terraces_->say(reason.isEmpty() ? "" : QString("Dequantizing is worth it: %1.").arg(reason));
+    terraces_->say(reason.isEmpty() ? "" : tr("Dequantizing is worth it: %1.").arg(reason));
 }
 
 void IsovalueControls::set_overruled(bool overruled) {
-    overruled_->say(overruled ? "The level felt follows the hand: pressing through is on." : "");
+    overruled_->say(overruled ? tr("The level felt follows the hand: pressing through is on.")
+                              : "");
 }
 
-void IsovalueControls::set_layered(bool layered) {
+void IsovalueControls::set_layered(bool layered, bool levels) {
     layered_ = layered;
     for (QWidget* one : std::initializer_list<QWidget*>{slider_, box_}) one->setEnabled(!layered);
+    const QString tip = layered
+                            ? tr("Layers are felt, not an isovalue: choose No layers to feel one")
+                            : tr("Isovalue [data units]");
+    slider_->setToolTip(tip);
+    box_->setToolTip(layered ? tip : tr("Isovalue [data units]: the level whose surface is felt"));
     chart_->set_level_shown(!layered);
-    if (layered) overruled_->say("Layers have levels of their own: drag their squares.");
+    if (layered) {
+        overruled_->say(levels ? tr("Layers have levels of their own: drag their squares.")
+                               : tr("Layers by label are felt, not a level of the densities."));
+    }
     if (layered) warning_->say({});
 }
 
@@ -146,7 +156,7 @@ void IsovalueControls::show_felt(double isovalue, bool penetrability_on) {
     differing_ = isovalue == isovalue_ ? 0 : differing_ + 1;
     const bool apart = penetrability_on || differing_ > snapshots_of_grace;
     chart_->set_felt(apart ? isovalue : std::nan(""));
-    felt_->setText(apart ? "felt " + number_text(isovalue) : QString());
+    felt_->setText(apart ? tr("felt %1").arg(number_text(isovalue)) : QString());
 }
 
 void IsovalueControls::ask(double isovalue) {

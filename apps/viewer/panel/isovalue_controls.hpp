@@ -32,8 +32,9 @@ class IsovalueControls : public QWidget {
     void set_dequantized(bool on, bool possible, const QString& reason);
     /// Whether penetrability sets the level felt.
     void set_overruled(bool overruled);
-    /// Layers have levels of their own: the isovalue does nothing. After set_overruled().
-    void set_layered(bool layered);
+    /// Layers are felt: the isovalue does nothing. `levels`: they have levels of their own. After
+    /// set_overruled().
+    void set_layered(bool layered, bool levels);
     /// The level felt now; shown separately where it differs from the level asked for.
     void show_felt(double isovalue, bool penetrability_on);
     LevelChart& chart() { return *chart_; }

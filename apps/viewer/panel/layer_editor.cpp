@@ -4,59 +4,40 @@
 #include <QBoxLayout>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
 #include "apps/viewer/panel/layout.hpp"
+#include "apps/viewer/panel/property_words.hpp"
 
 namespace palpate::viewer {
 namespace {
 
-struct PropertyRow {
-    HapticProperty property;
-    const char *label, *name, *unit;
-    double high, step;  // of the slider, the box
-    const char* tip;
-};
-
-constexpr std::array property_rows{
-    PropertyRow{HapticProperty::stiffness, "Stiffness", "layer_stiffness", "N/mm", 3, 0.05,
-                "Stiffness of the layer's surface [N/mm]"},
-    PropertyRow{HapticProperty::static_friction, "Static friction", "layer_static_friction", "",
-                1.5, 0.05,
-                "Coefficient past which the proxy begins to slide on the surface (no unit)"},
-    PropertyRow{HapticProperty::dynamic_friction, "Dynamic friction", "layer_dynamic_friction", "",
-                1.5, 0.05, "Coefficient while it slides; counts as at most the static one"},
-    PropertyRow{HapticProperty::viscosity, "Viscosity", "layer_viscosity", "N s/mm", 1e-3, 1e-4,
-                "Of what lies behind the surface, against all motion there [N s/mm]"},
-    PropertyRow{HapticProperty::puncture_force, "Puncture force", "layer_puncture_force", "N", 3,
-                0.1, "Force of the press at which the surface gives way [N]"},
-    PropertyRow{HapticProperty::drag, "Drag", "layer_drag", "N/mm", 0.1, 0.005,
-                "Rubbing on a needle's shaft for each millimetre of it in the layer [N/mm]"}};
-constexpr std::size_t puncture_row = 4;
+constexpr auto puncture_row = static_cast<std::size_t>(HapticProperty::puncture_force);
+constexpr auto drag_row = static_cast<std::size_t>(HapticProperty::drag);
 
 }  // namespace
 
 LayerEditor::LayerEditor()
-    : name_(named(new QLineEdit, "layer_name", "Name of the layer")),
+    : name_(named(new QLineEdit, "layer_name", tr("Name of the layer"))),
       level_(named(new NumberBox, "layer_level",
-                   "Its level [data units]; also a line to drag on the histogram")),
-      colour_(new ColourButton("layer_colour", "Colour of the layer")),
+                   tr("Its level [data units]; also a line to drag on the histogram"))),
+      colour_(new ColourButton("layer_colour", tr("Colour of the layer"))),
       opacity_(new Quantity("layer_opacity", "", 0, 1, 0.05)),
-      never_(named(new QCheckBox("never gives way"), "layer_never",
-                   "The surface holds, however hard the hand presses")) {
+      never_(named(new QCheckBox(tr("never gives way")), "layer_never",
+                   tr("The surface holds, however hard the hand presses"))) {
     setObjectName("layer_editor");
-    level_->setAccessibleName("Level of the layer");
-    opacity_->set_accessible_name("Opacity of the layer");
-    opacity_->setToolTip("Opacity of the layer in the scene, 0 to 1");
+    level_->setAccessibleName(tr("Level of the layer"));
+    opacity_->set_accessible_name(tr("Opacity of the layer"));
+    opacity_->setToolTip(tr("Opacity of the layer in the scene, 0 to 1"));
     auto* form = new QFormLayout(this);
     form->setContentsMargins(0, 0, 0, 0);
     form->setVerticalSpacing(3);
-    add_row(*form, "Name", row_of({name_, colour_}, 0), "Name and colour of the layer");
-    add_row(*form, "Level", level_, level_->toolTip());
-    add_row(*form, "Opacity", opacity_, opacity_->toolTip());
-    for (std::size_t i = 0; i < property_rows.size(); ++i) add_property(*form, i);
+    add_row(*form, tr("Name"), row_of({name_, colour_}, 0), tr("Name and colour of the layer"));
+    add_row(*form, tr("Level"), level_, level_->toolTip());
+    level_label_ = qobject_cast<QLabel*>(form->labelForField(level_));
+    add_row(*form, tr("Opacity"), opacity_, opacity_->toolTip());
+    for (const PropertyWords& words : property_words) add_property(*form, words);
     connect(name_, &QLineEdit::editingFinished, this, [this] {
         const std::string name = name_->text().trimmed().toStdString();
         if (!name_->isModified()) return;
@@ -78,19 +59,48 @@ LayerEditor::LayerEditor()
     });
 }
 
-void LayerEditor::add_property(QFormLayout& form, std::size_t row) {
-    const PropertyRow& made = property_rows[row];
-    auto* quantity = new Quantity(made.name, made.unit, 0, made.high, made.step);
-    quantity->set_accessible_name(QString("%1 of the layer").arg(made.label));
-    add_row(form, made.label, quantity, made.tip);
-    if (row == puncture_row) {
-        quantity->box().set_infinite(true);
+void LayerEditor::add_property(QFormLayout& form, const PropertyWords& words) {
+    Row row{
+        new Quantity(words.name, words.unit, 0, words.high, words.step),
+        named(new QToolButton, QString(words.name) + "_clear", tr("Clear the layer's own value"))};
+    row.value->set_accessible_name(tr("%1 of the layer").arg(tr(words.label)));
+    row.clear->setText("×");
+    row.clear->setAutoRaise(true);
+    row.clear->setFocusPolicy(Qt::TabFocus);
+    row.clear->setAccessibleName(tr("Clear the layer's own value: %1").arg(tr(words.label)));
+    QWidget* both = row_of({row.value, row.clear}, 0);
+    both->layout()->setSpacing(2);
+    both->setFocusProxy(row.value);
+    add_row(form, tr(words.label), both, tr(words.tip));
+    if (words.property == HapticProperty::puncture_force) {
+        row.value->box().set_infinite(true);
         form.addRow("", never_);
     }
-    connect(quantity, &Quantity::wanted, this, [this, &made](double value) {
-        Q_EMIT changed(made.name, [&made, value](Layer& layer) { layer[made.property] = value; });
+    connect(row.value, &Quantity::wanted, this, [this, &words](double value) {
+        Q_EMIT changed(words.name,
+                       [&words, value](Layer& layer) { layer[words.property] = value; });
     });
-    properties_.push_back(quantity);
+    connect(row.clear, &QToolButton::clicked, this, [this, &words, value = row.value] {
+        value->drop();
+        Q_EMIT changed({}, [&words](Layer& layer) { layer[words.property].reset(); });
+    });
+    rows_.push_back(row);
+}
+
+/// A value that is not the layer's own stands in italics.
+void LayerEditor::show_property(const Row& row, const PropertyWords& words, ValueFrom from,
+                                double value) {
+    const bool own = from == ValueFrom::layer;
+    row.value->set_value(value);
+    QFont font = row.value->box().font();
+    font.setItalic(!own);
+    row.value->box().setFont(font);
+    row.value->parentWidget()->setToolTip(
+        own ? tr(words.tip)
+        : from == ValueFrom::curve
+            ? tr("%1.\nNow from its curve over density").arg(tr(words.tip))
+            : tr("%1.\nNow from the session's value (Force)").arg(tr(words.tip)));
+    row.clear->setEnabled(own);
 }
 
 void LayerEditor::show_layer(const Layers& layers, std::size_t number,
@@ -100,16 +110,35 @@ void LayerEditor::show_layer(const Layers& layers, std::size_t number,
     if (name_->text() != name && !(name_->hasFocus() && name_->isModified())) name_->setText(name);
     level_->setSingleStep(step);
     level_->show_value(layer.level);
+    level_->setEnabled(!layers.by_label);
+    level_label_->setText(layers.by_label ? tr("Label") : tr("Level"));
+    level_->setToolTip(layers.by_label
+                           ? tr("Its label: the number that its samples have in the label map")
+                           : tr("Its level [data units]; also a line to drag on the histogram"));
     colour_->set_colour({layer.colour[0], layer.colour[1], layer.colour[2]});
     opacity_->set_value(layer.opacity);
-    for (std::size_t i = 0; i < property_rows.size(); ++i) {
-        properties_[i]->set_value(property_at(layers, number, property_rows[i].property, settings));
+    Layers cleared = layers;
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+        const PropertyWords& words = property_words[i];
+        show_property(rows_[i], words, value_from(layers, number, words.property),
+                      property_at(layers, number, words.property, settings));
+        cleared.layers[number][words.property].reset();
+        const double without = property_at(cleared, number, words.property, settings);
+        const QString value =
+            std::isfinite(without) ? number_text(without, 3) : tr("never gives way");
+        rows_[i].clear->setToolTip(
+            value_from(cleared, number, words.property) == ValueFrom::curve
+                ? tr("Clear the layer's own value: then its curve over density, %1, counts")
+                      .arg(value)
+                : tr("Clear the layer's own value: then the session's value (Force), %1, counts")
+                      .arg(value));
     }
-    const double puncture = properties_[puncture_row]->value();
+    const double puncture = rows_[puncture_row].value->value();
     const bool never = !std::isfinite(puncture);
     if (!never) last_puncture_ = puncture;
     never_->setChecked(never);
-    properties_[puncture_row]->setEnabled(!never);
+    rows_[puncture_row].value->setEnabled(!never);
+    rows_[drag_row].value->setEnabled(layers.needle.has_value());
 }
 
 }  // namespace palpate::viewer

@@ -3,7 +3,9 @@
 
 #include <QCheckBox>
 #include <QFormLayout>
+#include <QLabel>
 #include <QLineEdit>
+#include <QToolButton>
 #include <QWidget>
 
 #include <functional>
@@ -15,8 +17,10 @@
 
 namespace palpate::viewer {
 
+struct PropertyWords;
+
 /// Object names: layer_name, layer_level, layer_colour, layer_opacity, layer_stiffness and so on
-/// for the properties, layer_never.
+/// for the properties, layer_never; with _clear, the button that clears a property.
 class LayerEditor : public QWidget {
     Q_OBJECT
 
@@ -35,13 +39,21 @@ class LayerEditor : public QWidget {
     void level_wanted(double level);
 
   private:
-    void add_property(QFormLayout& form, std::size_t row);
+    /// Of a property: its value, and the button that clears it.
+    struct Row {
+        Quantity* value;
+        QToolButton* clear;
+    };
+    void add_property(QFormLayout& form, const PropertyWords& words);
+    static void show_property(const Row& row, const PropertyWords& words, ValueFrom from,
+                              double value);
 
     QLineEdit* name_;
     NumberBox* level_;
+    QLabel* level_label_;
     ColourButton* colour_;
     Quantity* opacity_;
-    std::vector<Quantity*> properties_;
+    std::vector<Row> rows_;  // as HapticProperty
     QCheckBox* never_;
     double last_puncture_ = 1;  // [N] to go back to
 };

@@ -9,9 +9,11 @@
 #include <cmath>
 #include <limits>
 
+#include "apps/viewer/panel/curve_controls.hpp"
 #include "apps/viewer/panel/layer_editor.hpp"
 #include "apps/viewer/panel/layout.hpp"
 #include "apps/viewer/panel/level_axis.hpp"
+#include "apps/viewer/panel/names.hpp"
 #include "apps/viewer/panel/number_box.hpp"
 #include "apps/viewer/panel/section.hpp"
 #include "apps/viewer/panel/stroke_plot.hpp"
@@ -33,34 +35,41 @@ QString wrapped(const QString& text) {
 }  // namespace
 
 LayersControls::LayersControls()
-    : choice_(named(new QComboBox, "layers", "Layers: several surfaces in one stroke")),
-      open_(named(new QPushButton("Open…"), "open_layers", "A set of layers from a file (JSON)")),
-      save_(named(new QPushButton("Save as…"), "save_layers",
-                  "This set of layers to a file (JSON), for these and other data")),
-      undo_(named(new QPushButton("↶"), "undo_layers", "Undo the last change of layers")),
-      redo_(
-          named(new QPushButton("↷"), "redo_layers", "Redo the change of layers that was undone")),
-      add_(named(new QPushButton("Add"), "add_layer",
-                 "Another layer, where levels leave the most room; the first at the isovalue")),
-      remove_(named(new QPushButton("Remove"), "remove_layer", "Remove the chosen layer")),
+    : choice_(named(new QComboBox, "layers", tr("Layers: several surfaces in one stroke"))),
+      open_(named(new QPushButton(tr("Open…")), "open_layers",
+                  tr("A set of layers from a file (JSON)"))),
+      save_(named(new QPushButton(tr("Save as…")), "save_layers",
+                  tr("This set of layers to a file (JSON), for these and other data"))),
+      undo_(named(new QPushButton("↶"), "undo_layers", tr("Undo the last change of layers"))),
+      redo_(named(new QPushButton("↷"), "redo_layers",
+                  tr("Redo the change of layers that was undone"))),
+      add_(named(new QPushButton(tr("Add")), "add_layer")),
+      remove_(named(new QPushButton(tr("Remove")), "remove_layer", tr("Remove the chosen layer"))),
+      earlier_(named(new QPushButton("▲"), "layer_earlier",
+                     tr("Earlier in the list: a surface between two labels has the properties of "
+                        "the later one"))),
+      later_(named(new QPushButton("▼"), "layer_later",
+                   tr("Later in the list: a surface between two labels has the properties of the "
+                      "later one"))),
       note_(new Note("layers_note", Note::Kind::plain)),
       touched_(named(new QLabel, "touched_layers",
-                     "The layer that is touched, and those that the proxy is in")),
-      list_(named(new QListWidget, "layer_list",
-                  "Layers from outside in; choose one to change it. Their levels are lines to drag "
-                  "on the histogram")),
-      needle_(named(new QCheckBox("Needle"), "needle",
-                    "The hand holds a needle: after the first puncture it moves along a line")),
+                     tr("The layer that is touched, and those that the proxy is in"))),
+      list_(named(new QListWidget, "layer_list")),
+      needle_(named(new QCheckBox(tr("Needle")), "needle",
+                    tr("The hand holds a needle: after the first puncture it moves along a line"))),
+      curve_(new CurveControls),
       editor_(new LayerEditor),
       plot_(new StrokePlot),
       limiter_(this) {
     setObjectName("layers_controls");
-    undo_->setAccessibleName("Undo, layers");
-    redo_->setAccessibleName("Redo, layers");
-    add_->setAccessibleName("Add a layer");
-    remove_->setAccessibleName("Remove the layer");
-    open_->setAccessibleName("Open layers");
-    save_->setAccessibleName("Save layers");
+    undo_->setAccessibleName(tr("Undo, layers"));
+    redo_->setAccessibleName(tr("Redo, layers"));
+    add_->setAccessibleName(tr("Add a layer"));
+    remove_->setAccessibleName(tr("Remove the layer"));
+    earlier_->setAccessibleName(tr("Layer earlier in the list"));
+    later_->setAccessibleName(tr("Layer later in the list"));
+    open_->setAccessibleName(tr("Open layers"));
+    save_->setAccessibleName(tr("Save layers"));
     touched_->setTextFormat(Qt::PlainText);
     touched_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Fixed);
     body_ = column_of({make_stroke(), make_list()});
@@ -71,26 +80,27 @@ LayersControls::LayersControls()
 
 QWidget* LayersControls::make_choice() {
     let_wheel_pass(*choice_);
-    choice_->setAccessibleName("Layers");
+    choice_->setAccessibleName(tr("Layers"));
     choice_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
     choice_->setMinimumContentsLength(12);
-    for (QPushButton* one : {undo_, redo_}) one->setMaximumWidth(2 * fontMetrics().height());
+    for (QPushButton* one : {undo_, redo_, earlier_, later_})
+        one->setMaximumWidth(2 * fontMetrics().height());
     return column_of({choice_, row_of({open_, save_, add_, undo_, redo_}, 1)});
 }
 
 /// What is touched, and the force so far.
 QWidget* LayersControls::make_stroke() {
     auto* clear =
-        named(new QPushButton("Clear"), "clear_stroke", "Clear the plot of force by depth");
+        named(new QPushButton(tr("Clear")), "clear_stroke", tr("Clear the plot of force by depth"));
     connect(clear, &QPushButton::clicked, plot_, &StrokePlot::clear);
-    clear->setAccessibleName("Clear the plot");
+    clear->setAccessibleName(tr("Clear the plot"));
     return column_of({row_of({touched_, clear}, 0), plot_});
 }
 
 QWidget* LayersControls::make_list() {
-    list_->setAccessibleName("Layers, from outside in");
+    list_->setAccessibleName(tr("Layers, from outside in"));
     list_->setUniformItemSizes(true);
-    return column_of({list_, row_of({remove_, needle_}, 1), editor_});
+    return column_of({list_, row_of({remove_, earlier_, later_, needle_}, 3), editor_, curve_});
 }
 
 void LayersControls::connect_inputs() {
@@ -98,14 +108,24 @@ void LayersControls::connect_inputs() {
         const auto set = static_cast<std::size_t>(at) - 1;
         if (at == 0) return use(nullptr);
         if (set >= choices_.size()) return;  // the one in use
-        use(choices_[set].layers);
+        const SharedLayers layers = choices_[set].layers;
+        if (!lack_labels(layers)) return use(layers);
+        show_choice();  // the one in use, until it has its labels
+        Q_EMIT labels_wanted(layers);
     });
     connect(open_, &QPushButton::clicked, this, &LayersControls::open_wanted);
     connect(save_, &QPushButton::clicked, this, &LayersControls::save_wanted);
     connect(undo_, &QPushButton::clicked, this, [this] { step(true); });
     connect(redo_, &QPushButton::clicked, this, [this] { step(false); });
+    connect_list();
+    connect_curve();
+}
+
+void LayersControls::connect_list() {
     connect(add_, &QPushButton::clicked, this, &LayersControls::add_layer);
     connect(remove_, &QPushButton::clicked, this, &LayersControls::remove_layer);
+    connect(earlier_, &QPushButton::clicked, this, [this] { shift_layer(-1); });
+    connect(later_, &QPushButton::clicked, this, [this] { shift_layer(1); });
     connect(list_, &QListWidget::currentRowChanged, this, [this] { show(); });
     connect(needle_, &QCheckBox::clicked, this, [this](bool on) {
         change("needle", [on](Layers& layers) {
@@ -121,6 +141,20 @@ void LayersControls::connect_inputs() {
             });
     connect(editor_, &LayerEditor::level_wanted, this, [this](double level) {
         if (chosen() >= 0) move_level(chosen(), level);
+    });
+}
+
+void LayersControls::connect_curve() {
+    connect(curve_, &CurveControls::chosen, this, [this] {
+        last_key_.clear();
+        show();
+        Q_EMIT curve_chosen();
+    });
+    connect(curve_, &CurveControls::start_wanted, this, &LayersControls::begin_curve);
+    connect(curve_, &CurveControls::remove_wanted, this, [this] {
+        change({}, [property = curve_property()](Layers& layers) {
+            layers[property].density.knots.clear();
+        });
     });
 }
 
@@ -181,7 +215,8 @@ void LayersControls::change(const QString& key, const std::function<void(Layers&
 }
 
 void LayersControls::use(const SharedLayers& layers) {
-    const auto known = std::ranges::find(choices_, layers, &LayersChoice::layers);
+    const auto known = std::ranges::find_if(
+        choices_, [&](const LayersChoice& one) { return same(one.layers, layers); });
     note_->say(layers && known != choices_.end() ? known->note : QString());
     edit(layers, {});
     choose_layer(0);
@@ -192,7 +227,8 @@ LevelRoom LayersControls::room(int layer) const {
 }
 
 void LayersControls::move_level(int layer, double level) {
-    if (!layers_ || layer < 0 || layer >= static_cast<int>(layers_->layers.size())) return;
+    if (!have_levels(layers_)) return;
+    if (layer < 0 || layer >= static_cast<int>(layers_->layers.size())) return;
     const auto [low, high] = room(layer);
     const double within = std::isfinite(level) ? std::clamp(level, low, high) : level;
     change(QString("level %1").arg(layer), [layer, within](Layers& layers) {
@@ -200,9 +236,20 @@ void LayersControls::move_level(int layer, double level) {
     });
 }
 
-void LayersControls::set_stiffness_curve(const std::vector<Curve::Knot>& knots) {
+HapticProperty LayersControls::curve_property() const {
+    return curve_->property();
+}
+
+void LayersControls::set_curve(const std::vector<Curve::Knot>& knots) {
     change(QString("curve %1").arg(knots.size()),
-           [&knots](Layers& layers) { layers[HapticProperty::stiffness].density.knots = knots; });
+           [&](Layers& layers) { layers[curve_property()].density.knots = knots; });
+}
+
+/// One point, at the chosen layer's level.
+void LayersControls::begin_curve() {
+    const double middle = rounded_to(0.5 * (low_ + high_), least_gap * (high_ - low_));
+    const double at = std::clamp(chosen_level().value_or(middle), low_, high_);
+    set_curve({first_knot(curve_property(), at, settings_)});
 }
 
 void LayersControls::add_layer() {
@@ -224,7 +271,20 @@ void LayersControls::remove_layer() {
     const int row = chosen();
     if (row < 0) return;
     if (layers_->layers.size() == 1) return use(nullptr);
-    change({}, [row](Layers& layers) { layers.layers.erase(layers.layers.begin() + row); });
+    change({}, [row](Layers& layers) {
+        layers = without_layer(std::move(layers), static_cast<std::size_t>(row));
+    });
+}
+
+/// Of layers by label: those of levels are in the order of their levels.
+void LayersControls::shift_layer(int by) {
+    const int row = chosen(), to = row + by;
+    if (row < 0 || to < 0 || to >= static_cast<int>(layers_->layers.size())) return;
+    change({}, [row, to](Layers& layers) {
+        layers = moved_layer(std::move(layers), static_cast<std::size_t>(row),
+                             static_cast<std::size_t>(to));
+    });
+    choose_layer(to);
 }
 
 void LayersControls::step(bool back) {
@@ -244,7 +304,7 @@ int LayersControls::chosen() const {
 }
 
 std::optional<double> LayersControls::chosen_level() const {
-    if (chosen() < 0) return std::nullopt;
+    if (chosen() < 0 || layers_->by_label) return std::nullopt;
     return layers_->layers[static_cast<std::size_t>(chosen())].level;
 }
 
@@ -260,26 +320,49 @@ void LayersControls::show() {
     redo_->setEnabled(history_.can_redo());
     save_->setEnabled(layers_ != nullptr);
     body_->setVisible(layers_ != nullptr);
-    add_->setEnabled(!layers_ || layers_->layers.size() < Layers::most_layers);
     const int row = chosen();
+    show_order();
     remove_->setEnabled(row >= 0);
     editor_->setVisible(row >= 0);
     if (!layers_) return;
     needle_->setChecked(layers_->needle.has_value());
+    curve_->show_layers(*layers_);
     if (row < 0) return;
     editor_->show_layer(*layers_, static_cast<std::size_t>(row), settings_,
                         rounded_to(least_gap * (high_ - low_), 1e-6));
+}
+
+/// What is different by label: an order instead of levels.
+void LayersControls::show_order() {
+    const bool by_label = layers_ && layers_->by_label;
+    const int row = chosen(), count = layers_ ? static_cast<int>(layers_->layers.size()) : 0;
+    earlier_->setVisible(by_label);
+    later_->setVisible(by_label);
+    earlier_->setEnabled(row > 0);
+    later_->setEnabled(row >= 0 && row + 1 < count);
+    const bool full = count >= Layers::most_layers;
+    add_->setEnabled(!by_label && !full);
+    add_->setToolTip(
+        by_label ? tr("The labels are chosen in the label map: show those to feel, on the page "
+                      "Data, and feel them again")
+        : full   ? tr("There are %1 layers at most").arg(Layers::most_layers)
+               : tr("Another layer, where levels leave the most room; the first at the isovalue"));
+    list_->setToolTip(
+        by_label ? tr("Layers by label; choose one to change it. The order says which one counts "
+                      "where two meet")
+                 : tr("Layers from outside in; choose one to change it. Their levels are lines to "
+                      "drag on the histogram"));
 }
 
 /// None, the sets that can be had, and the one in use where it is none of them.
 void LayersControls::show_choice() {
     const QSignalBlocker quiet(choice_);
     choice_->clear();
-    choice_->addItem("No layers: one surface");
-    choice_->setItemData(0, wrapped("The surface of the isovalue is felt"), Qt::ToolTipRole);
+    choice_->addItem(tr("No layers: one surface"));
+    choice_->setItemData(0, wrapped(tr("The surface of the isovalue is felt")), Qt::ToolTipRole);
     int now = 0;
     for (const LayersChoice& one : choices_) {
-        choice_->addItem(QString::fromStdString(one.layers->name));
+        choice_->addItem(shown_set(one.layers->name));
         const int at = choice_->count() - 1;
         choice_->setItemData(at,
                              wrapped(one.note.isEmpty() ? one.about : one.note + ". " + one.about),
@@ -292,14 +375,14 @@ void LayersControls::show_choice() {
         const auto made_from = std::ranges::find_if(choices_, [this](const LayersChoice& one) {
             return one.layers->name == layers_->name;
         });
-        QString name = QString::fromStdString(layers_->name.empty() ? "Own layers" : layers_->name);
-        if (made_from != choices_.end()) name += " (changed)";
+        QString name = shown_set(layers_->name);
+        if (made_from != choices_.end()) name = tr("%1 (changed)").arg(name);
         choice_->addItem(name);
         now = choice_->count() - 1;
     }
     choice_->setCurrentIndex(now);
-    choice_->setToolTip(now == 0 ? wrapped("Several surfaces in one stroke, each with its own "
-                                           "stiffness, friction and puncture force")
+    choice_->setToolTip(now == 0 ? wrapped(tr("Several surfaces in one stroke, each with its own "
+                                              "stiffness, friction and puncture force"))
                                  : choice_->itemData(now, Qt::ToolTipRole).toString());
 }
 
@@ -310,41 +393,38 @@ void LayersControls::show_list() {
     const int row = std::clamp(list_->currentRow(), count > 0 ? 0 : -1, count - 1);
     while (list_->count() > count) delete list_->takeItem(list_->count() - 1);
     while (list_->count() < count) list_->addItem("");
-    for (int i = 0; i < count; ++i) {
-        const auto at = static_cast<std::size_t>(i);
-        const Layer& layer = layers_->layers[at];
-        QListWidgetItem& item = *list_->item(i);
-        QPixmap colour(16, 16);
-        colour.fill(QColor::fromRgbF(layer.colour[0], layer.colour[1], layer.colour[2]));
-        QIcon icon(colour);
-        icon.addPixmap(colour, QIcon::Selected);  // not tinted
-        item.setIcon(icon);
-        QString text =
-            QString("%1   %2").arg(QString::fromStdString(layer.name), number_text(layer.level));
-        const auto lowered = lowered_stiffness(*layers_, at, settings_);
-        if (lowered) {
-            text += QString("   ⚠ rendered at %1 N/mm").arg(number_text(*lowered, 3));
-        }
-        item.setText(text);
-        item.setToolTip(
-            lowered
-                ? QString("The device cannot render %1 N/mm stably with this "
-                          "damping and viscosity: it renders %2 N/mm")
-                      .arg(number_text(
-                               property_at(*layers_, at, HapticProperty::stiffness, settings_), 3),
-                           number_text(*lowered, 3))
-                : QString());
-    }
+    for (int i = 0; i < count; ++i) show_item(i);
     list_->setCurrentRow(row);
     const int rows = std::clamp(count, 2, most_rows);
     list_->setFixedHeight(rows * (fontMetrics().height() + 4) + 6);
 }
 
+void LayersControls::show_item(int row) {
+    const auto at = static_cast<std::size_t>(row);
+    const Layer& layer = layers_->layers[at];
+    QListWidgetItem& item = *list_->item(row);
+    QPixmap colour(16, 16);
+    colour.fill(QColor::fromRgbF(layer.colour[0], layer.colour[1], layer.colour[2]));
+    QIcon icon(colour);
+    icon.addPixmap(colour, QIcon::Selected);  // not tinted
+    item.setIcon(icon);
+    QString text = (layers_->by_label ? tr("%1   label %2") : QString("%1   %2"))
+                       .arg(QString::fromStdString(layer.name), number_text(layer.level));
+    const auto lowered = lowered_stiffness(*layers_, at, settings_);
+    if (lowered) text += "   ⚠ " + tr("rendered at %1 N/mm").arg(number_text(*lowered, 3));
+    item.setText(text);
+    const double asked = property_at(*layers_, at, HapticProperty::stiffness, settings_);
+    item.setToolTip(lowered ? tr("The device cannot render %1 N/mm stably with this damping "
+                                 "and viscosity: it renders %2 N/mm")
+                                  .arg(number_text(asked, 3), number_text(*lowered, 3))
+                            : QString());
+}
+
 void LayersControls::show_snapshot(const Snapshot& now) {
     if (!layers_) return;
     plot_->add(now, layers_);
-    const QString words = QString::fromStdString(felt_words(now.session.tick.layers, layers_));
-    const QString text = words.isEmpty() ? "touches no layer" : words;
+    const QString words = felt_text(now.session.tick.layers, layers_);
+    const QString text = words.isEmpty() ? tr("touches no layer") : words;
     if (touched_->text() != text) touched_->setText(text);
 }
 

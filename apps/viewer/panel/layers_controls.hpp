@@ -20,11 +20,12 @@
 
 namespace palpate::viewer {
 
+class CurveControls;
 class LayerEditor;
 class Note;
 class StrokePlot;
 
-/// A set that can be chosen.
+/// A set that can be chosen. One by label may lack the places of its labels: labels_wanted().
 struct LayersChoice {
     SharedLayers layers;
     QString about;
@@ -45,14 +46,16 @@ class LayersControls : public QWidget {
     /// Shows the layers in effect; emits nothing. With none, one can be added at `isovalue`.
     void set_layers(const RendererSettings& settings, double isovalue);
     const SharedLayers& layers() const { return layers_; }
-    /// Of the layer that is chosen; nothing: there is none.
+    /// Of the layer that is chosen; nothing: there is none, or layers are by label.
     std::optional<double> chosen_level() const;
     /// What a file that was opened says; shown until another set is chosen.
     void say(const QString& note);
     /// As by hand.
     void use(const SharedLayers& layers);
     void move_level(int layer, double level);
-    void set_stiffness_curve(const std::vector<Curve::Knot>& knots);
+    /// Of the property that is chosen.
+    void set_curve(const std::vector<Curve::Knot>& knots);
+    HapticProperty curve_property() const;
     void choose_layer(int layer);
     LevelRoom room(int layer) const;
     void show_snapshot(const Snapshot& now);
@@ -62,6 +65,10 @@ class LayersControls : public QWidget {
   Q_SIGNALS:
     /// At most 60 a second. Null: none.
     void wanted(const palpate::viewer::SharedLayers& layers);
+    /// The places of its labels are to be looked up, then use().
+    void labels_wanted(const palpate::viewer::SharedLayers& layers);
+    /// The curve of another property is to be shown.
+    void curve_chosen();
     void open_wanted();
     void save_wanted();
 
@@ -69,15 +76,21 @@ class LayersControls : public QWidget {
     QWidget* make_choice();
     QWidget* make_stroke();
     QWidget* make_list();
+    void connect_list();
+    void connect_curve();
     void connect_inputs();
     void edit(const SharedLayers& next, const QString& key);
     void change(const QString& key, const std::function<void(Layers&)>& how);
     void add_layer();
     void remove_layer();
+    void shift_layer(int by);
+    void begin_curve();
     void step(bool back);
     void show();
     void show_choice();
     void show_list();
+    void show_item(int row);
+    void show_order();
     int chosen() const;
 
     SharedLayers layers_;
@@ -90,12 +103,13 @@ class LayersControls : public QWidget {
     QElapsedTimer since_edit_;
 
     QComboBox* choice_;
-    QPushButton *open_, *save_, *undo_, *redo_, *add_, *remove_;
+    QPushButton *open_, *save_, *undo_, *redo_, *add_, *remove_, *earlier_, *later_;
     Note* note_;
     QLabel* touched_;
     QWidget* body_;
     QListWidget* list_;
     QCheckBox* needle_;
+    CurveControls* curve_;
     LayerEditor* editor_;
     StrokePlot* plot_;
     RateLimiter limiter_;

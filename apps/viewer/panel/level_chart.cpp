@@ -24,17 +24,17 @@ LevelChart::LevelChart() {
     setFocusPolicy(Qt::StrongFocus);
     setMouseTracking(true);
     setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
-    setAccessibleName("Isovalue on the histogram");
+    setAccessibleName(tr("Isovalue on the histogram"));
     setToolTip(
-        "Histogram of the data (logarithm of the counts).\n"
-        "Drag: the isovalue. Arrow keys or wheel after a click: fine steps; Page keys: ten.\n"
-        "Squares on the lower edge: levels of layers and of other surfaces, to drag.\n"
-        "Points of the curve of stiffness: drag; double click adds one, right click or Del "
-        "deletes.\n"
-        "Ticks on the upper edge: levels that are likely worth feeling.\n"
-        "Shift-drag: a new range of interest. Drag the strip below: move or resize it;\n"
-        "right click or Del: delete it.\n"
-        "Ctrl-wheel zooms, shift-wheel moves, Ctrl+0 shows all again.");
+        tr("Histogram of the data (logarithm of the counts).\n"
+           "Drag: the isovalue. Arrow keys or wheel after a click: fine steps; Page keys: ten.\n"
+           "Squares on the lower edge: levels of layers and of other surfaces, to drag.\n"
+           "Points of a curve: drag; double click adds one, right click or Del deletes. By keys:\n"
+           "Page keys choose a point, arrows move it, Insert adds one.\n"
+           "Ticks on the upper edge: levels that are likely worth feeling.\n"
+           "Shift-drag: a new range of interest. Drag the strip below: move or resize it;\n"
+           "right click or Del: delete it.\n"
+           "Ctrl-wheel zooms, shift-wheel moves, Ctrl+0 shows all again."));
 }
 
 void LevelChart::set_data(const run::Histogram& histogram, const std::vector<double>& suggested) {
@@ -85,13 +85,6 @@ void LevelChart::set_marks(const std::vector<LevelMark>& marks) {
 void LevelChart::set_level_shown(bool shown) {
     if (shown == level_shown_) return;
     level_shown_ = shown;
-    update();
-}
-
-void LevelChart::set_curve(const Knots& knots) {
-    if (drag_ == Drag::knot) return;
-    if (held_knot_ >= static_cast<int>(knots.size())) held_knot_ = -1;
-    curve_ = line_of(knots);
     update();
 }
 
@@ -198,12 +191,13 @@ void LevelChart::mousePressEvent(QMouseEvent* event) {
     if (event->button() != Qt::LeftButton || histogram_.counts.empty()) return;
     const QPointF at = event->localPos();
     if (event->modifiers() & Qt::ShiftModifier) {
+        if (!level_shown_) return;
         drag_ = Drag::fresh;
         held_at_ = axis().round_level_of(at.x());
         fresh_ = {held_at_, held_at_};
         return;
     }
-    if (!bands_.empty() && at.y() >= strip().top()) {
+    if (have_bands() && at.y() >= strip().top()) {
         press_strip(at);
         return;
     }
@@ -268,33 +262,11 @@ void LevelChart::mouseMoveEvent(QMouseEvent* event) {
     }
 }
 
-/// Another knot of the curve.
-void LevelChart::mouseDoubleClickEvent(QMouseEvent* event) {
-    const QPointF at = event->localPos();
-    if (curve_.knots.empty() || event->button() != Qt::LeftButton || !plot().contains(at) ||
-        curve_.knot_at(at, axis(), plot(), reach) >= 0) {
-        return mousePressEvent(event);
-    }
-    held_knot_ = curve_.add(curve_.knot_of(at, axis(), plot()));
-    if (held_knot_ < 0) return;
-    update();
-    Q_EMIT curve_changed(curve_.knots);
-}
-
-/// The last one stays: a curve without knots says nothing.
-void LevelChart::remove_knot(int knot) {
-    if (knot < 0 || curve_.knots.size() < 2) return;
-    curve_.knots.erase(curve_.knots.begin() + knot);
-    held_knot_ = -1;
-    update();
-    Q_EMIT curve_changed(curve_.knots);
-}
-
 void LevelChart::mouseReleaseEvent(QMouseEvent* event) {
     if (event->button() != Qt::LeftButton) return;
     const Drag drag = std::exchange(drag_, Drag::none);
     update();
-    if (drag == Drag::knot) curve_ = line_of(curve_.knots);  // with room above again
+    if (drag == Drag::knot) set_curve(Knots(curve_.knots), curve_.least, QString(curve_.unit));
     if (drag == Drag::level) Q_EMIT level_settled();
     if (drag == Drag::band) Q_EMIT bands_settled();
     // A click makes no range.
@@ -303,7 +275,7 @@ void LevelChart::mouseReleaseEvent(QMouseEvent* event) {
 
 void LevelChart::show_cursor(const QPointF& at) {
     Qt::CursorShape shape = Qt::ArrowCursor;
-    if (!bands_.empty() && at.y() >= strip().top()) {
+    if (have_bands() && at.y() >= strip().top()) {
         const Grip grip = band_at(bands_, axis(), at.x(), reach).grip;
         if (grip == Grip::low || grip == Grip::high) shape = Qt::SizeHorCursor;
         if (grip == Grip::whole && editable_) shape = Qt::OpenHandCursor;
@@ -322,14 +294,14 @@ void LevelChart::contextMenuEvent(QContextMenuEvent* event) {
         return remove_knot(knot);
     }
     const int band = band_at(bands_, axis(), at.x(), reach).band;
-    if (!editable_ || band < 0) return;
+    if (!editable_ || !have_bands() || band < 0) return;
     choose_band(band);
     Q_EMIT band_chosen(band);
     auto* menu = new QMenu(this);
     menu->setAttribute(Qt::WA_DeleteOnClose);
     const DensityRange& range = bands_[static_cast<std::size_t>(band)];
     menu->addAction(
-        QString("Delete range %1 to %2").arg(number_text(range.low), number_text(range.high)), this,
+        tr("Delete range %1 to %2").arg(number_text(range.low), number_text(range.high)), this,
         [this, band] { Q_EMIT band_deleted(band); });
     menu->popup(event->globalPos());  // does not block the window
 }
@@ -337,6 +309,7 @@ void LevelChart::contextMenuEvent(QContextMenuEvent* event) {
 void LevelChart::keyPressEvent(QKeyEvent* event) {
     if (histogram_.counts.empty()) return QWidget::keyPressEvent(event);
     const double many = event->modifiers() & Qt::ShiftModifier ? 10 : 1;
+    if (!level_shown_ && step_knot(event->key(), many)) return;
     switch (event->key()) {
         case Qt::Key_Left:
         case Qt::Key_Down:
@@ -366,7 +339,7 @@ void LevelChart::keyPressEvent(QKeyEvent* event) {
         case Qt::Key_Delete:
         case Qt::Key_Backspace:
             if (held_knot_ >= 0) return remove_knot(held_knot_);
-            if (editable_ && chosen_ >= 0) Q_EMIT band_deleted(chosen_);
+            if (editable_ && have_bands() && chosen_ >= 0) Q_EMIT band_deleted(chosen_);
             break;
         default:
             QWidget::keyPressEvent(event);

@@ -49,11 +49,12 @@ class LevelChart : public QWidget {
     void set_bands(const Ranges& bands);
     /// Further levels, as lines with a grip below; emits nothing. Ignored while one is dragged.
     void set_marks(const std::vector<LevelMark>& marks);
-    /// A curve of stiffness [N/mm] over levels, with knots to drag; emits nothing. Ignored while
-    /// one is dragged. No knots: none.
-    void set_curve(const Knots& knots);
+    /// A curve over levels, with knots to drag; emits nothing. Ignored while one is dragged. No
+    /// knots: none. `least`: the value up to which there is room where all are 0.
+    void set_curve(const Knots& knots, double least = 1, const QString& unit = {});
     const CurveLine& curve() const { return curve_; }
-    /// False: there is no isovalue to drag, and marks are held by their whole lines.
+    /// False: there are no isovalue and no bands, marks are held by their whole lines, and arrow
+    /// keys are for the curve.
     void set_level_shown(bool shown);
     const Ranges& bands() const { return bands_; }
     /// Whether bands can be added, deleted and moved as a whole; else only their ends move.
@@ -103,6 +104,8 @@ class LevelChart : public QWidget {
     int tick_at(const QPointF& at) const;
     int mark_at(const QPointF& at) const;
     void remove_knot(int knot);
+    bool step_knot(int key, double steps);
+    bool have_bands() const { return level_shown_ && !bands_.empty(); }
     void paint_marks(QPainter& painter, const LevelAxis& axis) const;
     void show_cursor(const QPointF& at);
     void paint_ticks(QPainter& painter, const LevelAxis& axis) const;

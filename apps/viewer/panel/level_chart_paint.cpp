@@ -88,7 +88,7 @@ void LevelChart::paint_ends(QPainter& painter) const {
     painter.drawText(below, Qt::AlignRight | Qt::AlignVCenter, number_text(a.high));
     if (!std::isfinite(felt_) && !std::isnan(felt_)) {
         painter.setPen(readable(to_qt(pictures::scp_colour), palette()));
-        painter.drawText(below, Qt::AlignHCenter | Qt::AlignVCenter, "nothing is felt here");
+        painter.drawText(below, Qt::AlignHCenter | Qt::AlignVCenter, tr("nothing is felt here"));
     }
 }
 
@@ -99,14 +99,14 @@ void LevelChart::paintEvent(QPaintEvent*) {
     painter.fillRect(p, palette().color(QPalette::Base));
     if (histogram_.counts.empty()) {
         painter.setPen(palette().color(QPalette::PlaceholderText));
-        painter.drawText(p, Qt::AlignCenter, "no volume");
+        painter.drawText(p, Qt::AlignCenter, tr("no volume"));
         return;
     }
     const LevelAxis a = axis();
     QColor bars = palette().color(QPalette::Text);
     bars.setAlphaF(isEnabled() ? 0.42 : 0.2);
     paint_histogram(painter, histogram_, a, p, bars);
-    Ranges bands = bands_;
+    Ranges bands = level_shown_ ? bands_ : Ranges();
     if (drag_ == Drag::fresh) bands.push_back(fresh_);
     paint_bands(painter, bands, a, p, strip(), chosen_);
     paint_ticks(painter, a);

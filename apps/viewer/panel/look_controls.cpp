@@ -10,25 +10,29 @@
 
 #include "apps/viewer/model/colour_map.hpp"
 #include "apps/viewer/panel/layout.hpp"
+#include "apps/viewer/panel/names.hpp"
 
 namespace palpate::viewer {
 
 LookControls::LookControls()
-    : surface_colour_(new ColourButton("surface_colour", "Colour of the isosurface")),
-      point_colour_(new ColourButton("point_colour", "Colour of the chosen point")),
+    : surface_colour_(new ColourButton("surface_colour", tr("Colour of the isosurface"))),
+      point_colour_(new ColourButton("point_colour", tr("Colour of the chosen point"))),
       surface_opacity_(new Quantity("surface_opacity", "", 0, 1, 0.05)),
-      preset_(named(new QComboBox, "preset",
-                    "Transfer functions made for these data; choose one again to undo changes")),
+      preset_(
+          named(new QComboBox, "preset",
+                tr("Transfer functions made for these data; choose one again to undo changes"))),
       surfaces_(new SurfaceList),
-      cut_(named(new QComboBox, "cut",
-                 "Cut surfaces and volume open, to see inside. Drag the blue balls in the scene.\n"
-                 "Choose the plane again to have it face you.")),
-      colours_(named(new QComboBox, "colours", "Colour map of the slices")),
+      cut_(named(
+          new QComboBox, "cut",
+          tr("Cut surfaces and volume open, to see inside. Drag the blue balls in the scene.\n"
+             "Choose the plane again to have it face you."))),
+      colours_(named(new QComboBox, "colours", tr("Colour map of the slices"))),
       editor_(new TransferEditor),
-      point_level_(named(new NumberBox, "point_level", "Level of the chosen point [data units]")),
+      point_level_(
+          named(new NumberBox, "point_level", tr("Level of the chosen point [data units]"))),
       point_opacity_(named(new NumberBox, "point_opacity",
-                           "Opacity of the chosen point, 0 to 1, of a layer as thick as the "
-                           "smallest spacing")),
+                           tr("Opacity of the chosen point, 0 to 1, of a layer as thick as the "
+                              "smallest spacing"))),
       limiter_(this) {
     column_in(this, {make_surface(), surfaces_, make_cut(), make_volume(), make_rest()});
     connect(surface_colour_, &ColourButton::wanted, this, [this](const Colour& colour) {
@@ -58,19 +62,20 @@ QCheckBox* LookControls::add_switch(const QString& name, const QString& text, co
 }
 
 QWidget* LookControls::make_surface() {
-    surface_opacity_->set_accessible_name("Opacity of the isosurface");
-    surface_opacity_->setToolTip("Opacity of the isosurface, 0 to 1");
-    auto* surface = add_switch("surface", "Surface", "The isosurface that is felt", &Look::surface);
+    surface_opacity_->set_accessible_name(tr("Opacity of the isosurface"));
+    surface_opacity_->setToolTip(tr("Opacity of the isosurface, 0 to 1"));
+    auto* surface =
+        add_switch("surface", tr("Surface"), tr("The isosurface that is felt"), &Look::surface);
     return row_of({surface, surface_colour_, surface_opacity_}, 2);
 }
 
 QWidget* LookControls::make_cut() {
     let_wheel_pass(*cut_);
-    cut_->addItems({"nothing", "by a plane", "to a box"});
-    cut_->setAccessibleName("Cut away");
+    cut_->addItems({tr("nothing"), tr("by a plane"), tr("to a box")});
+    cut_->setAccessibleName(tr("Cut away"));
     connect(cut_, qOverload<int>(&QComboBox::activated), this,
             [this](int at) { Q_EMIT cut_wanted(static_cast<Cut>(at)); });
-    auto* label = new QLabel("Cut away");
+    auto* label = new QLabel(tr("Cut away"));
     label->setBuddy(cut_);
     return row_of({label, cut_}, 1);
 }
@@ -118,6 +123,11 @@ void LookControls::set_overlay_look(const OverlayLook& overlay) {
     changed();
 }
 
+void LookControls::set_layered(bool layered) {
+    surfaces_->set_feelable(!layered,
+                            tr("Layers are felt, not an isovalue: choose No layers to feel one"));
+}
+
 void LookControls::set_felt(double isovalue, Solid solid) {
     felt_ = isovalue;
     solid_ = solid;
@@ -141,21 +151,22 @@ void LookControls::move_surface(int row, double level) {
 
 QWidget* LookControls::make_volume() {
     let_wheel_pass(*preset_);
-    for (const std::string& name : preset_names()) preset_->addItem(QString::fromStdString(name));
+    for (const std::string& name : preset_names()) add_choice(*preset_, name);
     point_opacity_->setSingleStep(0.05);
-    auto* volume =
-        add_switch("volume", "Volume", "Volume rendering by the transfer function", &Look::volume);
-    auto* shading =
-        add_switch("shading", "Shading", "Light on the volume, by its gradients", &Look::shading);
-    auto* maximum = add_switch("maximum", "Maximum",
-                               "Maximum intensity projection: the brightest sample along each "
-                               "line of sight, black to white over the levels below",
+    auto* volume = add_switch("volume", tr("Volume"),
+                              tr("Volume rendering by the transfer function"), &Look::volume);
+    auto* shading = add_switch("shading", tr("Shading"),
+                               tr("Light on the volume, by its gradients"), &Look::shading);
+    auto* maximum = add_switch("maximum", tr("Maximum"),
+                               tr("Maximum intensity projection: the brightest sample along each "
+                                  "line of sight, black to white over the levels below"),
                                &Look::maximum);
     for (NumberBox* box : {point_level_, point_opacity_}) {
         box->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
     }
-    return column_of({row_of({volume, shading, maximum}), preset_, editor_,
-                      row_of({new QLabel("Point"), point_level_, point_opacity_, point_colour_})});
+    return column_of(
+        {row_of({volume, shading, maximum}), preset_, editor_,
+         row_of({new QLabel(tr("Point")), point_level_, point_opacity_, point_colour_})});
 }
 
 QWidget* LookControls::make_rest() {
@@ -164,28 +175,27 @@ QWidget* LookControls::make_rest() {
     grid->setContentsMargins(0, 0, 0, 0);
     grid->setVerticalSpacing(2);
     QCheckBox* boxes[] = {
-        add_switch("slices", "Slices", "Three planes through the crosshair", &Look::slices),
-        add_switch("contact", "Hand and proxy", "HIP, SCP, the spring between them and the force",
-                   &Look::contact),
-        add_switch("tetrahedra", "Tetrahedra", "Those round the proxy, with the surface in them",
-                   &Look::tetrahedra),
-        add_switch("planes", "Constraint planes", "Those of the tetrahedra round the proxy",
+        add_switch("slices", tr("Slices"), tr("Three planes through the crosshair"), &Look::slices),
+        add_switch("contact", tr("Hand and proxy"),
+                   tr("HIP, SCP, the spring between them and the force"), &Look::contact),
+        add_switch("tetrahedra", tr("Tetrahedra"),
+                   tr("Those round the proxy, with the surface in them"), &Look::tetrahedra),
+        add_switch("planes", tr("Constraint planes"), tr("Those of the tetrahedra round the proxy"),
                    &Look::planes),
-        add_switch("box", "Box", "The bounds of the data", &Look::box),
-        add_switch("orientation", "Orientation cube", "L, R, A, P, S, I: sides of the body",
+        add_switch("box", tr("Box"), tr("The bounds of the data"), &Look::box),
+        add_switch("orientation", tr("Orientation cube"), tr("L, R, A, P, S, I: sides of the body"),
                    &Look::orientation),
-        add_switch("scale_bar", "Scale bar", "A length in the picture [mm]", &Look::scale_bar)};
+        add_switch("scale_bar", tr("Scale bar"), tr("A length in the picture [mm]"),
+                   &Look::scale_bar)};
     for (int i = 0; i < 7; ++i) grid->addWidget(boxes[i], i / 2, i % 2);
-    for (const std::string& name : colour_map_names()) {
-        colours_->addItem(QString::fromStdString(name));
-    }
+    for (const std::string& name : colour_map_names()) add_choice(*colours_, name);
     let_wheel_pass(*colours_);
-    colours_->setAccessibleName("Colour map of the slices");
+    colours_->setAccessibleName(tr("Colour map of the slices"));
     connect(colours_, qOverload<int>(&QComboBox::activated), this, [this] {
-        look_.colours = colours_->currentText().toStdString();
+        look_.colours = colours_->currentData().toString().toStdString();
         changed();
     });
-    auto* label = new QLabel("Slices' colours");
+    auto* label = new QLabel(tr("Slices' colours"));
     label->setBuddy(colours_);
     return column_of({all, row_of({label, colours_}, 1)});
 }
@@ -193,7 +203,7 @@ QWidget* LookControls::make_rest() {
 void LookControls::connect_transfer() {
     connect(preset_, qOverload<int>(&QComboBox::activated), this, [this](int at) {
         if (!volume_) return;
-        const std::string name = preset_->itemText(at).toStdString();
+        const std::string name = preset_->itemData(at).toString().toStdString();
         look_.transfer = preset(name, histogram_, *volume_);
         editor_->set_transfer(look_.transfer);
         changed();
@@ -250,7 +260,7 @@ void LookControls::set_look(const Look& look) {
     surface_opacity_->set_value(look.surface_opacity);
     surfaces_->set_surfaces(look.surfaces);
     cut_->setCurrentIndex(static_cast<int>(look.cut));
-    colours_->setCurrentText(QString::fromStdString(look.colours));
+    colours_->setCurrentIndex(colours_->findData(QString::fromStdString(look.colours)));
     editor_->set_transfer(look.transfer);
     show_preset();
     Q_EMIT look_set();
@@ -259,7 +269,7 @@ void LookControls::set_look(const Look& look) {
 /// The preset, or none for a function that was edited.
 void LookControls::show_preset() {
     const QString name = QString::fromStdString(look_.transfer.preset);
-    preset_->setCurrentIndex(preset_->findText(name));
+    preset_->setCurrentIndex(preset_->findData(name));
 }
 
 void LookControls::show_point(int point) {

@@ -26,6 +26,8 @@ class LookControls : public QWidget {
     void clear();
     /// The level that is felt, and its side that is solid, for surfaces beside it.
     void set_felt(double isovalue, Solid solid);
+    /// Layers are felt: no other surface can be, until they are gone.
+    void set_layered(bool layered);
     /// Surface `row` and the felt one, now at `isovalue` and soon at the surface's level, change
     /// places.
     void swap_felt(int row, double isovalue);

@@ -5,6 +5,7 @@
 
 #include "apps/options/words.hpp"
 #include "apps/viewer/panel/layout.hpp"
+#include "apps/viewer/panel/names.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -16,15 +17,16 @@ QString time_text(std::int64_t ns) {
 }  // namespace
 
 LoopView::LoopView()
-    : rate_(named(new QLabel, "loop_rate", "Ticks a second, as measured [Hz]")),
+    : rate_(named(new QLabel, "loop_rate", tr("Ticks a second, as measured [Hz]"))),
       missed_(named(new QLabel, "loop_missed",
-                    "Deadlines: ticks that did not happen at their time; and forces that were "
-                    "taken back because a tick took too long")),
+                    tr("Deadlines: ticks that did not happen at their time; and forces that were "
+                       "taken back because a tick took too long"))),
       worst_(named(new QLabel, "loop_worst")) {
     auto* grid = new QGridLayout(this);
     grid->setContentsMargins(0, 0, 0, 0);
     grid->setVerticalSpacing(2);
-    const char* heads[] = {"Rate", "Missed", "", "Lateness", "Compute", "Worst tick"};
+    const QString heads[] = {tr("Rate"),     tr("Missed"),  "",
+                             tr("Lateness"), tr("Compute"), tr("Worst tick")};
     for (int row = 0; row < 6; ++row) {
         grid->addWidget(new QLabel(heads[row]), row, 0, row == 5 ? Qt::AlignTop : Qt::Alignment());
     }
@@ -44,8 +46,8 @@ LoopView::LoopView()
         grid->setColumnStretch(i + 1, 1);
     }
     setToolTip(
-        "Lateness: how late a tick began, caused by the rest of the machine.\n"
-        "Compute: processor time of a tick.");
+        tr("Lateness: how late a tick began, caused by the rest of the machine.\n"
+           "Compute: processor time of a tick."));
     clear();
 }
 
@@ -57,16 +59,21 @@ void LoopView::put(const Row& row, const LatencySummary& summary) {
 }
 
 void LoopView::show_report(const ServoReport& report, double rate) {
-    rate_->setText(QString("%1 Hz").arg(rate, 0, 'f', 0));
-    QString missed = QString("%1 of %2 ticks").arg(report.missed).arg(report.ticks);
-    if (report.overruns > 0) missed += QString(", %1 forces taken back").arg(report.overruns);
-    if (report.unrecorded > 0) missed += QString(", %1 not recorded").arg(report.unrecorded);
-    missed_->setText(missed);
+    rate_->setText(tr("%1 Hz").arg(rate, 0, 'f', 0));
+    QStringList missed{tr("%1 of %2 ticks").arg(report.missed).arg(report.ticks)};
+    if (report.overruns > 0) {
+        missed << tr("%n forces taken back", nullptr, static_cast<int>(report.overruns));
+    }
+    if (report.unrecorded > 0) {
+        missed << tr("%n not recorded", nullptr, static_cast<int>(report.unrecorded));
+    }
+    missed_->setText(missed.join(", "));
     put(lateness_, report.lateness);
     put(compute_, report.compute);
-    if (report.worst.tick < 0) return worst_->setText("none yet");
+    if (report.worst.tick < 0) return worst_->setText(tr("none yet"));
     const std::int64_t whole = report.worst.lateness_ns + report.worst.work_ns;
-    worst_->setText(QString("%1, mostly %2").arg(time_text(whole), name_of(report.worst.cause)));
+    worst_->setText(
+        tr("%1, mostly %2").arg(time_text(whole), shown_name(name_of(report.worst.cause))));
 }
 
 void LoopView::clear() {

@@ -11,6 +11,8 @@
 namespace palpate::viewer {
 
 class LoopView : public QWidget {
+    Q_OBJECT
+
   public:
     LoopView();
     /// `rate` [Hz] as measured.

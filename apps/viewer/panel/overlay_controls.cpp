@@ -8,6 +8,7 @@
 #include "apps/viewer/model/colour_map.hpp"
 #include "apps/viewer/panel/colours.hpp"
 #include "apps/viewer/panel/layout.hpp"
+#include "apps/viewer/panel/names.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -21,33 +22,35 @@ QLabel* label_for(const QString& text, QWidget* field) {
 }  // namespace
 
 OverlayControls::OverlayControls()
-    : open_(named(new QPushButton("Open…"), "open_overlay",
-                  "A label map or another image of the same body, on a grid of its own")),
-      close_(named(new QPushButton("Close"), "close_overlay")),
+    : open_(named(new QPushButton(tr("Open…")), "open_overlay",
+                  tr("A label map or another image of the same body, on a grid of its own"))),
+      close_(named(new QPushButton(tr("Close")), "close_overlay")),
       name_(named(new QLabel, "overlay_name")),
-      shown_(named(new QCheckBox("In slices"), "overlay_shown", "Over the grey of the slices")),
-      surface_(named(new QCheckBox("In the scene"), "overlay_surface",
-                     "Surfaces of the labels, or of the image's level")),
+      shown_(named(new QCheckBox(tr("In slices")), "overlay_shown",
+                   tr("Over the grey of the slices"))),
+      surface_(named(new QCheckBox(tr("In the scene")), "overlay_surface",
+                     tr("Surfaces of the labels, or of the image's level"))),
       opacity_(new Quantity("overlay_opacity", "", 0, 1, 0.05)),
       surface_opacity_(new Quantity("overlay_surface_opacity", "", 0, 1, 0.05)),
-      colours_(named(new QComboBox, "overlay_colours", "Colour map of the image")),
-      level_(named(new NumberBox, "overlay_level", "Level of the image's surface [its units]")),
+      colours_(named(new QComboBox, "overlay_colours", tr("Colour map of the image"))),
+      level_(named(new NumberBox, "overlay_level", tr("Level of the image's surface [its units]"))),
       labels_(named(new QListWidget, "overlay_labels",
-                    "Labels; a double click goes to where one lies")) {
-    opacity_->set_accessible_name("Opacity of the overlay in slices");
-    surface_opacity_->set_accessible_name("Opacity of the overlay's surfaces");
-    labels_->setAccessibleName("Labels");
-    colours_->setAccessibleName("Colour map of the overlay");
-    level_->setAccessibleName("Level of the overlay's surface");
-    for (const std::string& name : colour_map_names()) {
-        colours_->addItem(QString::fromStdString(name));
-    }
+                    tr("Labels; a double click goes to where one lies"))),
+      feel_(named(new QPushButton(tr("Feel these labels")), "feel_labels",
+                  tr("Layers by label: each label that is shown becomes one, with its name and "
+                     "colour; change them on the page Feel"))) {
+    opacity_->set_accessible_name(tr("Opacity of the overlay in slices"));
+    surface_opacity_->set_accessible_name(tr("Opacity of the overlay's surfaces"));
+    labels_->setAccessibleName(tr("Labels"));
+    colours_->setAccessibleName(tr("Colour map of the overlay"));
+    level_->setAccessibleName(tr("Level of the overlay's surface"));
+    for (const std::string& name : colour_map_names()) add_choice(*colours_, name);
     let_wheel_pass(*colours_);
     name_->setTextFormat(Qt::PlainText);
-    image_ =
-        row_of({label_for("Colours", colours_), colours_, label_for("Level", level_), level_}, 3);
-    body_ = column_of(
-        {row_of({shown_, opacity_}, 1), row_of({surface_, surface_opacity_}, 1), image_, labels_});
+    image_ = row_of(
+        {label_for(tr("Colours"), colours_), colours_, label_for(tr("Level"), level_), level_}, 3);
+    body_ = column_of({row_of({shown_, opacity_}, 1), row_of({surface_, surface_opacity_}, 1),
+                       image_, labels_, feel_});
     column_in(this, {row_of({open_, close_, name_}, 2), body_});
     connect_inputs();
     set_overlay(nullptr);
@@ -60,6 +63,7 @@ void OverlayControls::change(const std::function<void(OverlayLook&)>& how) {
 
 void OverlayControls::connect_inputs() {
     connect(open_, &QPushButton::clicked, this, &OverlayControls::open_wanted);
+    connect(feel_, &QPushButton::clicked, this, &OverlayControls::feel_wanted);
     connect(close_, &QPushButton::clicked, this, &OverlayControls::close_wanted);
     connect(shown_, &QCheckBox::clicked, this,
             [this](bool on) { change([on](OverlayLook& l) { l.shown = on; }); });
@@ -74,7 +78,9 @@ void OverlayControls::connect_inputs() {
     part(opacity_, &OverlayLook::opacity);
     part(surface_opacity_, &OverlayLook::surface_opacity);
     connect(colours_, qOverload<int>(&QComboBox::activated), this, [this] {
-        change([this](OverlayLook& l) { l.colours = colours_->currentText().toStdString(); });
+        change([this](OverlayLook& l) {
+            l.colours = colours_->currentData().toString().toStdString();
+        });
     });
     connect(level_, qOverload<double>(&NumberBox::valueChanged), this,
             [this](double level) { change([level](OverlayLook& l) { l.level = level; }); });
@@ -101,7 +107,7 @@ void OverlayControls::fill_labels(const Overlay* overlay) {
         colour.fill(to_qt(label.colour));
         item->setIcon(QIcon(colour));
         item->setData(Qt::UserRole, label.value);
-        item->setToolTip(QString("Value %1").arg(label.value));
+        item->setToolTip(tr("Value %1").arg(label.value));
         item->setFlags(item->flags() | Qt::ItemIsUserCheckable);
     }
 }
@@ -115,6 +121,7 @@ void OverlayControls::set_overlay(const Overlay* overlay) {
     body_->setVisible(overlay);
     image_->setVisible(overlay && !overlay->is_label_map());
     labels_->setVisible(overlay && overlay->is_label_map());
+    feel_->setVisible(overlay && overlay->is_label_map());
     suggested_ = overlay ? overlay->level : 0;
     fill_labels(overlay);
     set_look(look_);
@@ -126,7 +133,7 @@ void OverlayControls::set_look(const OverlayLook& look) {
     surface_->setChecked(look.surface);
     opacity_->set_value(look.opacity);
     surface_opacity_->set_value(look.surface_opacity);
-    colours_->setCurrentText(QString::fromStdString(look.colours));
+    colours_->setCurrentIndex(colours_->findData(QString::fromStdString(look.colours)));
     level_->show_value(look.level.value_or(suggested_));
     const QSignalBlocker quiet(labels_);
     for (int i = 0; i < labels_->count(); ++i) {

@@ -23,11 +23,15 @@ class OverlayControls : public QWidget {
     void set_overlay(const Overlay* overlay);
     /// Shows a look; emits nothing.
     void set_look(const OverlayLook& look);
+    /// Whether labels can be felt now: in a live run.
+    void set_feelable(bool feelable) { feel_->setEnabled(feelable); }
 
   Q_SIGNALS:
     void open_wanted();
     void close_wanted();
     void look_changed(const palpate::viewer::OverlayLook& look);
+    /// The labels that are shown are to be felt.
+    void feel_wanted();
     /// To where this label lies.
     void label_wanted(int value);
 
@@ -46,6 +50,7 @@ class OverlayControls : public QWidget {
     QComboBox* colours_;
     NumberBox* level_;
     QListWidget* labels_;
+    QPushButton* feel_;
 };
 
 }  // namespace palpate::viewer

@@ -21,6 +21,7 @@
 #include "apps/viewer/panel/loop_view.hpp"
 #include "apps/viewer/panel/overlay_controls.hpp"
 #include "apps/viewer/panel/penetrability_controls.hpp"
+#include "apps/viewer/panel/property_words.hpp"
 #include "apps/viewer/panel/section.hpp"
 #include "apps/viewer/panel/session_bar.hpp"
 
@@ -66,17 +67,17 @@ Panel::Panel(QWidget* parent)
 Panel::~Panel() = default;
 
 void Panel::build() {
-    session_part_ = new Section("Session", "session_part", bar_);
-    isovalue_part_ = new Section("Isovalue", "isovalue_part", isovalue_);
-    layers_part_ = new Section("Layers", "layers_part", layers_);
+    session_part_ = new Section(tr("Session"), "session_part", bar_);
+    isovalue_part_ = new Section(tr("Isovalue"), "isovalue_part", isovalue_);
+    layers_part_ = new Section(tr("Layers"), "layers_part", layers_);
     penetrability_part_ =
-        new Section("Pressing through (penetrability)", "penetrability_part", penetrability_);
-    edit_part_ = new Section("Edit", "edit_part", edit_);
-    force_part_ = new Section("Force", "force_part", force_);
-    device_part_ = new Section("Device", "device_part", device_);
-    loop_part_ = new Section("Advanced: servo loop", "loop_part", loop_);
-    look_part_ = new Section("Look", "look_part", look_);
-    overlay_part_ = new Section("Overlay", "overlay_part", overlay_);
+        new Section(tr("Pressing through (penetrability)"), "penetrability_part", penetrability_);
+    edit_part_ = new Section(tr("Edit"), "edit_part", edit_);
+    force_part_ = new Section(tr("Force"), "force_part", force_);
+    device_part_ = new Section(tr("Device"), "device_part", device_);
+    loop_part_ = new Section(tr("Advanced: servo loop"), "loop_part", loop_);
+    look_part_ = new Section(tr("Look"), "look_part", look_);
+    overlay_part_ = new Section(tr("Overlay"), "overlay_part", overlay_);
     loop_part_->set_open(false);
     sections_ = {session_part_, isovalue_part_, layers_part_,  penetrability_part_, force_part_,
                  look_part_,    edit_part_,     overlay_part_, device_part_,        loop_part_};
@@ -86,10 +87,10 @@ void Panel::build() {
         tabs_->addTab(page, title);
         page->setAccessibleName(QString(title).remove('&'));
     };
-    add("Fee&l", {layers_part_, penetrability_part_, force_part_});
-    add("L&ook", {look_part_});
-    add("D&ata", {edit_part_, overlay_part_});
-    add("Devi&ce", {device_part_, loop_part_});
+    add(tr("Fee&l"), {layers_part_, penetrability_part_, force_part_});
+    add(tr("L&ook"), {look_part_});
+    add(tr("D&ata"), {edit_part_, overlay_part_});
+    add(tr("Devi&ce"), {device_part_, loop_part_});
     auto* column = new QVBoxLayout(this);
     column->setContentsMargins(6, 6, 6, 0);
     column->addWidget(session_part_);
@@ -136,22 +137,22 @@ void Panel::connect_sections() {
 /// Levels of layers are the first marks on the chart.
 void Panel::connect_layers() {
     connect(layers_, &LayersControls::wanted, this, &Panel::ask_layers);
-    connect(&isovalue_->chart(), &LevelChart::curve_changed, layers_,
-            &LayersControls::set_stiffness_curve);
-    connect(&isovalue_->chart(), &LevelChart::mark_chosen, layers_, &LayersControls::choose_layer);
+    connect(&isovalue_->chart(), &LevelChart::curve_changed, layers_, &LayersControls::set_curve);
+    connect(layers_, &LayersControls::curve_chosen, this, &Panel::show_marks);
+    connect(overlay_, &OverlayControls::feel_wanted, this, [this] { raise_page(*layers_part_); });
+    connect(&isovalue_->chart(), &LevelChart::mark_chosen, this, [this](int mark) {
+        if (have_levels(layers_->layers())) layers_->choose_layer(mark);
+    });
     connect(&isovalue_->chart(), &LevelChart::mark_moved, this, [this](int mark, double level) {
         const auto& layers = now_.settings.layers;
-        const int count = layers ? static_cast<int>(layers->layers.size()) : 0;
+        const int count = have_levels(layers) ? static_cast<int>(layers->layers.size()) : 0;
         if (mark < count) return layers_->move_level(mark, level);
         look_->move_surface(mark - count, level);
     });
 }
 
-/// Without layers the isovalue that was asked for before is felt again.
 void Panel::ask_layers(const SharedLayers& layers) {
-    const bool end = have_surfaces(now_.settings.layers) && !have_surfaces(layers);
     ask(layers_part_, command::UseLayers{layers});
-    if (end && !refused_ && live_) ask(layers_part_, command::Isovalue{now_.isovalue});
 }
 
 /// Surfaces of the look are levels on the chart.
@@ -172,7 +173,8 @@ void Panel::connect_look() {
 void Panel::show_marks() {
     std::vector<LevelMark> marks;
     const SharedLayers& layers = layers_->layers();
-    for (int i = 0; layers && i < static_cast<int>(layers->layers.size()); ++i) {
+    const int levels = have_levels(layers) ? static_cast<int>(layers->layers.size()) : 0;
+    for (int i = 0; i < levels; ++i) {
         const Layer& layer = layers->layers[static_cast<std::size_t>(i)];
         const auto [low, high] = layers_->room(i);
         marks.push_back({layer.level, to_qt({layer.colour[0], layer.colour[1], layer.colour[2]}),
@@ -185,8 +187,9 @@ void Panel::show_marks() {
         marks.push_back(mark);
     }
     isovalue_->chart().set_marks(marks);
-    isovalue_->chart().set_curve(layers ? (*layers)[HapticProperty::stiffness].density.knots
-                                        : Knots());
+    const PropertyWords& words = words_of(layers_->curve_property());
+    isovalue_->chart().set_curve(layers ? (*layers)[words.property].density.knots : Knots(),
+                                 words.high, words.unit);
 }
 
 void Panel::connect_edits() {
@@ -237,6 +240,7 @@ void Panel::set_session(const Field& field, const run::Histogram& histogram, dou
     bar_->set_session(settings);
     loop_->clear();
     device_->show_device(device, DeviceStatus::starting, {});
+    overlay_->set_feelable(true);
     show_effect();
 }
 
@@ -251,7 +255,10 @@ void Panel::clear() {
     last_.reset();
     isovalue_->clear();
     layers_->clear();
-    isovalue_->set_layered(false);
+    isovalue_->set_layered(false, false);
+    look_->set_layered(false);
+    penetrability_->set_layered(false);
+    overlay_->set_feelable(false);
     penetrability_->drop();
     force_->drop();
     clear_edits();
@@ -289,7 +296,10 @@ void Panel::show_effect() {
     isovalue_->set_isovalue(now_.isovalue);
     isovalue_->set_field(solid_, interpolation_);
     isovalue_->set_overruled(now_.settings.penetrability.on);
-    isovalue_->set_layered(have_surfaces(now_.settings.layers));
+    const bool layered = have_surfaces(now_.settings.layers);
+    isovalue_->set_layered(layered, have_levels(now_.settings.layers));
+    penetrability_->set_layered(layered);
+    look_->set_layered(layered);
     layers_->set_layers(now_.settings, now_.isovalue);
     look_->set_felt(now_.isovalue, solid_);
     show_marks();
@@ -324,6 +334,7 @@ void Panel::take(const Command& command) {
                           [&](const Friction& friction) { settings.proxy.friction = friction; },
                           [&](const Penetrability& given) { settings.penetrability = given; },
                           [&](const command::UseLayers& c) { settings.layers = c.layers; },
+                          [&](const command::UseTool& c) { settings.tool = c.tool; },
                           [&](const command::Forces& forces) { settings.forces_on = forces.on; },
                           [&](const command::Freeze& freeze) { now_.frozen = freeze.on; },
                           [&](const command::Clutch& clutch) { now_.clutched = clutch.on; },
@@ -340,8 +351,11 @@ void Panel::take(const Command& command) {
 /// refused while `asked` is emitted.
 void Panel::ask(Section* by, const Command& command) {
     if (!live_) return;
+    if (std::holds_alternative<command::Isovalue>(command) && have_surfaces(now_.settings.layers)) {
+        return refuse(by, tr("layers are felt, not an isovalue: choose No layers to feel one"));
+    }
     try {
-        palpate::check(command, now_.settings, solid_, unedited_->geometry());
+        palpate::check(command, now_.settings, {unedited_->geometry(), solid_, interpolation_});
     } catch (const std::invalid_argument& error) {
         refuse(by, QString::fromStdString(error.what()));
         return;

@@ -3,6 +3,7 @@
 
 #include <QHBoxLayout>
 #include <QRadioButton>
+#include <QVariant>
 
 #include <algorithm>
 
@@ -13,17 +14,25 @@ namespace {
 
 using Mode = PressThrough::Mode;
 
+constexpr const char* usual_tip = "usual_tip";  // property of a widget
+
 struct ModeText {
     const char* name;
     const char* text;
     const char* tip;
 };
 constexpr ModeText mode_texts[] = {
-    {"penetrability_off", "Off", "Surfaces hold, however hard the hand presses"},
-    {"penetrability_threshold", "Threshold",
-     "A surface that is pressed deeper than PT gives way: the level felt follows the hand"},
-    {"penetrability_ranges", "Ranges",
-     "As Threshold, but only levels in the ranges of interest are felt"}};
+    {"penetrability_off", QT_TRANSLATE_NOOP("palpate::viewer::PenetrabilityControls", "Off"),
+     QT_TRANSLATE_NOOP("palpate::viewer::PenetrabilityControls",
+                       "Surfaces hold, however hard the hand presses")},
+    {"penetrability_threshold",
+     QT_TRANSLATE_NOOP("palpate::viewer::PenetrabilityControls", "Threshold"),
+     QT_TRANSLATE_NOOP(
+         "palpate::viewer::PenetrabilityControls",
+         "A surface that is pressed deeper than PT gives way: the level felt follows the hand")},
+    {"penetrability_ranges", QT_TRANSLATE_NOOP("palpate::viewer::PenetrabilityControls", "Ranges"),
+     QT_TRANSLATE_NOOP("palpate::viewer::PenetrabilityControls",
+                       "As Threshold, but only levels in the ranges of interest are felt")}};
 
 }  // namespace
 
@@ -38,29 +47,31 @@ PenetrabilityControls::PenetrabilityControls(LevelChart& chart)
       limiter_(this) {
     auto* modes = new QHBoxLayout;
     for (int i = 0; i < 3; ++i) {
-        auto* button =
-            named(new QRadioButton(mode_texts[i].text), mode_texts[i].name, mode_texts[i].tip);
+        auto* button = named(new QRadioButton(tr(mode_texts[i].text)), mode_texts[i].name,
+                             tr(mode_texts[i].tip));
         modes_->addButton(button, i);
         modes->addWidget(button);
     }
     modes->addStretch(1);
     threshold_->box().set_infinite(true);
-    threshold_->set_accessible_name("PT, penetration threshold");
+    threshold_->set_accessible_name(tr("PT, penetration threshold"));
     auto* form = new QFormLayout;
-    add_row(*form, "PT", threshold_,
-            "PT, the penetration threshold [mm of the hand]: pulled further apart than this, hand "
-            "and proxy get the surface to give way. The spring never exceeds stiffness x PT.");
+    add_row(
+        *form, "PT", threshold_,
+        tr("PT, the penetration threshold [mm of the hand]: pulled further apart than this, hand "
+           "and proxy get the surface to give way. The spring never exceeds stiffness x PT."));
     minimum_->setObjectName("minimum");
     minimum_->set_infinite(true);
     auto* minimum = new QFormLayout(minimum_row_);
     minimum->setContentsMargins(0, 0, 0, 0);
-    add_row(*minimum, "Minimum level", minimum_,
-            "The least level felt [data units] (the greatest, where below is solid); also by the "
-            "end of the band on the histogram");
-    auto* add = named(new QPushButton("Add range"), "add_range",
-                      "Another range of interest; or shift-drag on the histogram");
+    add_row(
+        *minimum, tr("Minimum level"), minimum_,
+        tr("The least level felt [data units] (the greatest, where below is solid); also by the "
+           "end of the band on the histogram"));
+    auto* add = named(new QPushButton(tr("Add range")), "add_range",
+                      tr("Another range of interest; or shift-drag on the histogram"));
     auto* remove =
-        named(new QPushButton("Delete range"), "delete_range", "Delete the chosen range");
+        named(new QPushButton(tr("Delete range")), "delete_range", tr("Delete the chosen range"));
     auto* buttons = new QHBoxLayout;
     buttons->addWidget(add);
     buttons->addWidget(remove);
@@ -130,6 +141,23 @@ void PenetrabilityControls::set_in_use(const Penetrability& in_use) {
     show(shown_from(in_use, solid_, shown_));
 }
 
+void PenetrabilityControls::set_layered(bool layered) {
+    setEnabled(!layered);
+    setToolTip(layered
+                   ? tr("Layers are felt: their surfaces give way by puncture forces. Choose No "
+                        "layers to press through by depth")
+                   : "");
+    for (auto* one : findChildren<QWidget*>()) {
+        if (layered && !one->property(usual_tip).isValid()) {
+            one->setProperty(usual_tip, one->toolTip());
+            one->setToolTip("");  // that of the whole shows
+        } else if (!layered && one->property(usual_tip).isValid()) {
+            one->setToolTip(one->property(usual_tip).toString());
+            one->setProperty(usual_tip, QVariant());
+        }
+    }
+}
+
 void PenetrabilityControls::drop() {
     limiter_.drop();
     threshold_->drop();
@@ -167,11 +195,11 @@ void PenetrabilityControls::add_range(const DensityRange& range) {
 
 void PenetrabilityControls::remove_range(int which) {
     if (which < 0 || which >= static_cast<int>(shown_.ranges.size())) {
-        Q_EMIT nonsense("choose the range to delete, in the table or on the histogram");
+        Q_EMIT nonsense(tr("choose the range to delete, in the table or on the histogram"));
         return;
     }
     if (shown_.ranges.size() == 1) {
-        Q_EMIT nonsense("the last range stays: switch penetrability off to have none");
+        Q_EMIT nonsense(tr("the last range stays: switch penetrability off to have none"));
         return;
     }
     PressThrough next = shown_;

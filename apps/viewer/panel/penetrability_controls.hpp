@@ -28,6 +28,8 @@ class PenetrabilityControls : public QWidget {
                      double high);
     /// Shows the setting in use; emits nothing.
     void set_in_use(const Penetrability& in_use);
+    /// Layers are felt: this rests meanwhile.
+    void set_layered(bool layered);
     void drop();
 
   Q_SIGNALS:

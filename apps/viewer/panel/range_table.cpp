@@ -12,15 +12,16 @@
 namespace palpate::viewer {
 RangeTable::RangeTable() : QTableWidget(0, 2) {
     setObjectName("ranges");
-    setAccessibleName("Ranges of interest");
-    setHorizontalHeaderLabels({"from", "to"});
+    setAccessibleName(tr("Ranges of interest"));
+    setHorizontalHeaderLabels({tr("from"), tr("to")});
     horizontalHeader()->setSectionResizeMode(QHeaderView::Stretch);
     verticalHeader()->setDefaultSectionSize(static_cast<int>(1.7 * fontMetrics().height()));
     setSelectionBehavior(QAbstractItemView::SelectRows);
     setSelectionMode(QAbstractItemView::SingleSelection);
     setTabKeyNavigation(false);  // Tab leaves the table
     setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
-    setToolTip("Ranges of interest [data units]: only these levels are felt. Del deletes a row.");
+    setToolTip(
+        tr("Ranges of interest [data units]: only these levels are felt. Del deletes a row."));
     connect(this, &QTableWidget::cellChanged, this, &RangeTable::read);
     connect(this, &QTableWidget::itemSelectionChanged, this,
             [this] { Q_EMIT row_chosen(chosen()); });
@@ -81,7 +82,7 @@ void RangeTable::read(int row, int column) {
         const QSignalBlocker quiet(this);
         write(row);
     }
-    Q_EMIT nonsense(QString("'%1' is not a number").arg(text));
+    Q_EMIT nonsense(tr("'%1' is not a number").arg(text));
 }
 
 void RangeTable::keyPressEvent(QKeyEvent* event) {

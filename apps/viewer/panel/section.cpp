@@ -39,7 +39,7 @@ void Note::changeEvent(QEvent* event) {
 }
 
 Section::Section(const QString& title, const QString& name, QWidget* content)
-    : heading_(named(new QToolButton, name + "_heading", "Fold this part away or back")),
+    : heading_(named(new QToolButton, name + "_heading", tr("Fold this part away or back"))),
       content_(content),
       message_(new Note(name + "_message", Note::Kind::warning)) {
     setObjectName(name);

@@ -38,16 +38,16 @@ void SessionSwitch::set_state(bool on) {
 }
 
 SessionBar::SessionBar()
-    : forces_(named(new SessionSwitch("Forces are ON", "Forces are OFF"), "forces",
-                    "Forces on or off (space bar). Off: zero at once; on: they ramp up")),
-      freeze_(named(new SessionSwitch("Frozen", "Freeze"), "freeze",
-                    "Hand and proxy stand still for the session, forces are let go")),
-      clutch_(named(new SessionSwitch("Clutched", "Clutch"), "clutch",
-                    "The volume hangs on the hand, to put it elsewhere; forces are let go")),
+    : forces_(named(new SessionSwitch(tr("Forces are ON"), tr("Forces are OFF")), "forces",
+                    tr("Forces on or off (space bar). Off: zero at once; on: they ramp up"))),
+      freeze_(named(new SessionSwitch(tr("Frozen"), tr("Freeze")), "freeze",
+                    tr("Hand and proxy stand still for the session, forces are let go"))),
+      clutch_(named(new SessionSwitch(tr("Clutched"), tr("Clutch")), "clutch",
+                    tr("The volume hangs on the hand, to put it elsewhere; forces are let go"))),
       gauge_(new ForceGauge),
       contact_(named(new QLabel, "contact",
-                     "Whether the proxy is on a surface, and how far it is from the hand [mm of "
-                     "the hand; mm in the volume]")) {
+                     tr("Whether the proxy is on a surface, and how far it is from the hand [mm of "
+                        "the hand; mm in the volume]"))) {
     setObjectName("session_bar");
     QFont big = forces_->font();
     big.setBold(true);
@@ -90,7 +90,7 @@ void SessionBar::changeEvent(QEvent* event) {
 void SessionBar::show_waiting(bool waiting) {
     if (forces_->property("waiting").toBool() == waiting) return;
     forces_->setProperty("waiting", waiting);
-    forces_->set_on_text(waiting ? "Forces WAIT: withdraw a little" : "Forces are ON");
+    forces_->set_on_text(waiting ? tr("Forces WAIT: withdraw a little") : tr("Forces are ON"));
     forces_->setStyleSheet({});  // a rule by property is looked up only once
     colour_forces();
 }
@@ -99,7 +99,7 @@ void SessionBar::set_session(const RendererSettings& settings) {
     forces_->set_state(settings.forces_on);
     freeze_->set_state(false);
     clutch_->set_state(false);
-    contact_->setText("no tick yet");
+    contact_->setText(tr("no tick yet"));
     gauge_->set_force(0, std::min(settings.force.limit, settings.device.maximum_force), {});
 }
 
@@ -119,8 +119,8 @@ void SessionBar::show_snapshot(const Snapshot& now, double limit) {
     gauge_->set_force(tick.force.norm(), limit, QString::fromStdString(app::force_words(tick)));
     const double apart = (tick.proxy.scp - tick.proxy.hip).norm();
     const bool touching = tick.proxy.mode == palpate::Mode::constrained;
-    contact_->setText(QString("%1, pull %2 mm (%3 mm in the volume)")
-                          .arg(touching ? "In contact" : "Free")
+    contact_->setText((touching ? tr("In contact, pull %1 mm (%2 mm in the volume)")
+                                : tr("Free, pull %1 mm (%2 mm in the volume)"))
                           .arg(apart / now.session.transform.scale, 0, 'f', 2)
                           .arg(apart, 0, 'f', 2));
 }

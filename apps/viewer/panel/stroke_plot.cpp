@@ -15,8 +15,8 @@ namespace palpate::viewer {
 
 StrokePlot::StrokePlot() {
     named(this, "stroke_plot",
-          "Force over depth: the stroke so far, from its first contact, in the colours of the "
-          "layers touched.\nA stroke ends two seconds after the hand has left all layers.");
+          tr("Force over depth: the stroke so far, from its first contact, in the colours of the "
+             "layers touched.\nA stroke ends two seconds after the hand has left all layers."));
     setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
 }
 
@@ -63,7 +63,7 @@ void StrokePlot::paint_axes(QPainter& painter, double deepest, double highest) c
     painter.setPen(palette().color(QPalette::PlaceholderText));
     const QRectF below(p.left(), p.bottom() + 2, p.width(), fontMetrics().height());
     painter.drawText(below, Qt::AlignLeft, "0");
-    painter.drawText(below, Qt::AlignHCenter, "depth");
+    painter.drawText(below, Qt::AlignHCenter, tr("depth"));
     painter.drawText(below, Qt::AlignRight, number_text(deepest, 2) + " mm");
     painter.drawText(p.adjusted(3, 1, 0, 0), Qt::AlignLeft | Qt::AlignTop,
                      number_text(highest, 2) + " N");
@@ -94,7 +94,7 @@ void StrokePlot::paintEvent(QPaintEvent*) {
     const auto& points = stroke_.points();
     if (points.size() < 2) {
         painter.setPen(palette().color(QPalette::PlaceholderText));
-        painter.drawText(p, Qt::AlignCenter, "force over depth: press into a layer");
+        painter.drawText(p, Qt::AlignCenter, tr("force over depth: press into a layer"));
         return;
     }
     // Round ends, so that the axes do not run along with the hand.

@@ -6,10 +6,17 @@
 #include "apps/viewer/panel/layout.hpp"
 
 namespace palpate::viewer {
+namespace {
+
+QString feel_tip() {
+    return SurfaceList::tr("Feel this one; the one felt now takes its place here");
+}
+
+}  // namespace
 
 SurfaceList::SurfaceList()
-    : add_(named(new QPushButton("Add a surface"), "add_surface",
-                 "See another level beside the one that is felt: skin over bone")) {
+    : add_(named(new QPushButton(tr("Add a surface")), "add_surface",
+                 tr("See another level beside the one that is felt: skin over bone"))) {
     auto* column = column_in(this);
     for (std::size_t i = 0; i < most_surfaces; ++i) {
         rows_.push_back(make_row(static_cast<int>(i) + 1));
@@ -23,22 +30,21 @@ SurfaceList::SurfaceList()
 
 SurfaceList::Row SurfaceList::make_row(int number) {
     const QString name = QString("surface_%1").arg(number);
-    const QString which = QString("Surface %1").arg(number);
+    const QString which = tr("Surface %1").arg(number);
     Row row{};
-    row.shown = named(new QCheckBox, name, which + " is seen");
+    row.shown = named(new QCheckBox, name, tr("Surface %1 is seen").arg(number));
     row.shown->setAccessibleName(which);
-    row.colour = new ColourButton(name + "_colour", QString("Colour of surface %1").arg(number));
+    row.colour = new ColourButton(name + "_colour", tr("Colour of surface %1").arg(number));
     row.level = named(new NumberBox, name + "_level",
-                      "Its level [data units]; also a line to drag on the histogram");
-    row.level->setAccessibleName(QString("Level of surface %1").arg(number));
-    row.opacity = named(new NumberBox, name + "_opacity", "Its opacity, 0 to 1");
-    row.opacity->setAccessibleName(QString("Opacity of surface %1").arg(number));
+                      tr("Its level [data units]; also a line to drag on the histogram"));
+    row.level->setAccessibleName(tr("Level of surface %1").arg(number));
+    row.opacity = named(new NumberBox, name + "_opacity", tr("Its opacity, 0 to 1"));
+    row.opacity->setAccessibleName(tr("Opacity of surface %1").arg(number));
     row.opacity->setSingleStep(0.05);
-    row.feel = named(new QPushButton("Feel"), name + "_feel",
-                     "Feel this one; the one felt now takes its place here");
-    row.feel->setAccessibleName(QString("Feel surface %1").arg(number));
-    row.remove = named(new QPushButton("×"), name + "_remove", "Remove it");
-    row.remove->setAccessibleName(QString("Remove surface %1").arg(number));
+    row.feel = named(new QPushButton(tr("Feel")), name + "_feel", feel_tip());
+    row.feel->setAccessibleName(tr("Feel surface %1").arg(number));
+    row.remove = named(new QPushButton("×"), name + "_remove", tr("Remove it"));
+    row.remove->setAccessibleName(tr("Remove surface %1").arg(number));
     const int em = fontMetrics().height();
     row.feel->setMaximumWidth(3 * em);
     row.remove->setMaximumWidth(2 * em);
@@ -90,6 +96,13 @@ void SurfaceList::set_surfaces(const SeenSurfaces& surfaces) {
         if (i < surfaces_.size()) show_row(i);
     }
     add_->setEnabled(surfaces_.size() < most_surfaces);
+}
+
+void SurfaceList::set_feelable(bool feelable, const QString& why) {
+    for (const Row& row : rows_) {
+        row.feel->setEnabled(feelable);
+        row.feel->setToolTip(feelable ? feel_tip() : why);
+    }
 }
 
 void SurfaceList::set_step(double step) {

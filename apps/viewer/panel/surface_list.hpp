@@ -26,6 +26,8 @@ class SurfaceList : public QWidget {
     void set_surfaces(const SeenSurfaces& surfaces);
     /// [data units] Of the levels' boxes.
     void set_step(double step);
+    /// Whether one of them can be felt in place of the isovalue; else `why` not.
+    void set_feelable(bool feelable, const QString& why);
 
   Q_SIGNALS:
     void changed(const palpate::viewer::SeenSurfaces& surfaces);

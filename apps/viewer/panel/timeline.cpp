@@ -51,14 +51,16 @@ QToolButton* make_button(const QString& name, const QString& accessible, const Q
 
 Timeline::Timeline(QWidget* parent)
     : QWidget(parent),
-      back_(make_button("timeline_back", "Step back", "To the frame before")),
-      play_(make_button("timeline_play", "Play", "Play")),
-      forward_(make_button("timeline_forward", "Step forward", "To the next frame")),
+      back_(make_button("timeline_back", tr("Step back"), tr("To the frame before"))),
+      play_(make_button("timeline_play", tr("Play"), tr("Play"))),
+      forward_(make_button("timeline_forward", tr("Step forward"), tr("To the next frame"))),
       track_(new TimelineTrack),
-      text_(named(new QLabel, "timeline_time",
-                  "The time shown [s] or [minutes:seconds], and the frame there or the length")),
-      speed_(named(new SpeedBox, "timeline_speed", "Seconds played in a second, 0.1 to 10")),
-      loop_(named(new QCheckBox("&Loop"), "timeline_loop", "After the end it begins again")),
+      text_(
+          named(new QLabel, "timeline_time",
+                tr("The time shown [s] or [minutes:seconds], and the frame there or the length"))),
+      speed_(named(new SpeedBox, "timeline_speed", tr("Seconds played in a second, 0.1 to 10"))),
+      loop_(
+          named(new QCheckBox(tr("&Loop")), "timeline_loop", tr("After the end it begins again"))),
       limiter_(this) {
     setObjectName("timeline");
     auto* row = row_in(this, {back_, play_, forward_, track_, text_, speed_, loop_});
@@ -66,7 +68,7 @@ Timeline::Timeline(QWidget* parent)
     row->setStretch(3, 1);
     back_->setAutoRepeat(true);
     forward_->setAutoRepeat(true);
-    speed_->setAccessibleName("Speed");
+    speed_->setAccessibleName(tr("Speed"));
     speed_->setSuffix(QString::fromUtf8("×"));
     speed_->show_value(play_speed_);
     speed_->setFixedWidth(fontMetrics().horizontalAdvance(QString::fromUtf8("0.0000×")) +
@@ -192,7 +194,7 @@ void Timeline::show_playing(bool playing) {
     if (playing == playing_ && !play_->icon().isNull()) return;
     playing_ = playing;
     play_->setIcon(icon(playing ? Shape::pause : Shape::play));
-    play_->setAccessibleName(playing ? "Pause" : "Play");
+    play_->setAccessibleName(playing ? tr("Pause") : tr("Play"));
     play_->setToolTip(play_->accessibleName());
 }
 

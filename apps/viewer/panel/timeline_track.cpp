@@ -24,8 +24,8 @@ constexpr double least_between_ticks = 3;  // pixels
 
 TimelineTrack::TimelineTrack() {
     setObjectName("timeline_track");
-    setAccessibleName("Time [ms]");
-    setAccessibleDescription("Arrows go from frame to frame");
+    setAccessibleName(tr("Time [ms]"));
+    setAccessibleDescription(tr("Arrows go from frame to frame"));
     setFocusPolicy(Qt::StrongFocus);
     setOrientation(Qt::Horizontal);
     setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);

@@ -1,11 +1,17 @@
 // Times, frames and texts of a timeline.
 #include "apps/viewer/panel/timeline_view.hpp"
 
+#include <QCoreApplication>
 #include <algorithm>
 #include <cmath>
 
 namespace palpate::viewer {
 namespace {
+
+/// Words of this file.
+struct TimelineWords {
+    Q_DECLARE_TR_FUNCTIONS(TimelineWords)
+};
 
 double length(const TimelineView& view) {
     return std::max(view.end - view.begin, 0.0);
@@ -25,7 +31,7 @@ int digits_for(const TimelineView& view) {
 /// "1:02.345"; hours where there are any.
 QString clock_text(double seconds) {
     const auto all = static_cast<long long>(std::floor(1e3 * seconds + 0.5));
-    const long long minutes = all / 60'000 % 60, hours = all / 3'600'000;
+    const long long minutes = all / 60000 % 60, hours = all / 3600000;
     const QString rest =
         QString("%1.%2").arg(all / 1000 % 60, 2, 10, QChar('0')).arg(all % 1000, 3, 10, QChar('0'));
     return hours > 0 ? QString("%1:%2:%3").arg(hours).arg(minutes, 2, 10, QChar('0')).arg(rest)
@@ -83,10 +89,13 @@ QString text_at(const TimelineView& view, double time) {
         return clock_text(time - view.begin) + " / " + clock_text(view.end - view.begin);
     }
     const QString seconds = QString("%1 s").arg(time, 0, 'f', digits_for(view));
-    if (view.live) return QString("%1, live").arg(seconds);
+    if (view.live) return TimelineWords::tr("%1, live").arg(seconds);
     const auto frame = frame_at(view, time);
     if (!frame) return {};
-    return QString("%1, frame %2 of %3").arg(seconds).arg(*frame + 1).arg(view.frames.size());
+    return TimelineWords::tr("%1, frame %2 of %3")
+        .arg(seconds)
+        .arg(*frame + 1)
+        .arg(view.frames.size());
 }
 
 QString overview_text_at(const TimelineView& view, double time) {
@@ -95,11 +104,12 @@ QString overview_text_at(const TimelineView& view, double time) {
     const auto at = static_cast<std::size_t>((time - view.begin) / overview.width);
     if (overview.pieces.empty()) return words;
     const Overview::Piece& piece = overview.pieces[std::min(at, overview.pieces.size() - 1)];
-    if (!piece.empty) words += QString("\nforce up to %1 N").arg(piece.most_force, 0, 'f', 2);
+    if (!piece.empty)
+        words += "\n" + TimelineWords::tr("force up to %1 N").arg(piece.most_force, 0, 'f', 2);
     if (!piece.empty && piece.least_isovalue <= piece.most_isovalue) {
-        words += QString("\nisovalue %1").arg(piece.most_isovalue, 0, 'g', 6);
+        words += "\n" + TimelineWords::tr("isovalue %1").arg(piece.most_isovalue, 0, 'g', 6);
     }
-    if (piece.contact) words += QString("\nin contact");
+    if (piece.contact) words += "\n" + TimelineWords::tr("in contact");
     return words;
 }
 

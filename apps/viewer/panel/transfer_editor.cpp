@@ -26,14 +26,14 @@ TransferEditor::TransferEditor() {
     setObjectName("transfer_editor");
     setFocusPolicy(Qt::StrongFocus);
     setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
-    setAccessibleName("Transfer function");
-    setToolTip(
+    setAccessibleName(tr("Transfer function"));
+    setToolTip(tr(
         "Opacity (upwards, 0 to 1) and colour by level [data units].\n"
         "Drag a point; double click adds one, or on a point chooses its colour; right click or Del "
         "deletes.\nArrow keys move the chosen point, comma and period choose the next, Return its "
         "colour.\nChoose the preset again to undo. Ctrl-wheel zooms, shift-wheel moves, Ctrl+0 "
         "shows "
-        "all again.");
+        "all again."));
 }
 
 void TransferEditor::set_data(const run::Histogram& histogram) {
@@ -271,7 +271,7 @@ void TransferEditor::paintEvent(QPaintEvent*) {
         paint_function(painter);
     } else {
         painter.setPen(palette().color(QPalette::PlaceholderText));
-        painter.drawText(p, Qt::AlignCenter, "choose a preset");
+        painter.drawText(p, Qt::AlignCenter, tr("choose a preset"));
     }
     painter.setBrush(Qt::NoBrush);
     painter.setPen(QPen(palette().color(hasFocus() ? QPalette::Highlight : QPalette::Mid), 1));

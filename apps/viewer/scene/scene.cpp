@@ -36,7 +36,7 @@ Colour ink_of(const QPalette& palette) {
 
 Scene::Scene(QWidget* parent) : QVTKOpenGLNativeWidget(parent), parts_(std::make_unique<Parts>()) {
     setObjectName("scene");
-    setAccessibleName("3-D view");
+    setAccessibleName(tr("3-D view"));
     setFocusPolicy(Qt::StrongFocus);
     setMinimumSize(120, 90);
     setMouseTracking(true);

@@ -1,6 +1,7 @@
 // Looks up every pixel in the overlay.
 #include "apps/viewer/slices/overlay_picture.hpp"
 
+#include <QCoreApplication>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -10,6 +11,11 @@
 
 namespace palpate::viewer {
 namespace {
+
+/// Words of this file.
+struct OverlayWords {
+    Q_DECLARE_TR_FUNCTIONS(OverlayWords)
+};
 
 /// The sample nearest to a point in index space; nothing outside the voxels.
 std::optional<double> nearest_sample(const Volume& volume, const Vec3& index) {
@@ -118,7 +124,7 @@ QString overlay_words(const Overlay& overlay, const Vec3& physical) {
     const Vec3 index = index_from_physical(overlay.volume.geometry(), physical);
     if (!overlay.is_label_map()) {
         const auto value = interpolated(overlay.volume, index);
-        return value ? QString("overlay %1").arg(*value, 0, 'g', 5) : QString();
+        return value ? OverlayWords::tr("overlay %1").arg(*value, 0, 'g', 5) : QString();
     }
     const auto value = nearest_sample(overlay.volume, index);
     if (!value) return {};

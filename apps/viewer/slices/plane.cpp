@@ -1,6 +1,7 @@
 // Chooses the orientation in which a slice is shown.
 #include "apps/viewer/slices/plane.hpp"
 
+#include <QtGlobal>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -11,7 +12,9 @@ namespace {
 // Along +x, +y, +z of physical space (LPS), and against them.
 constexpr std::array positive{'L', 'P', 'S'};
 constexpr std::array negative{'R', 'A', 'I'};
-constexpr std::array titles{"Sagittal", "Coronal", "Axial"};
+constexpr std::array titles{QT_TRANSLATE_NOOP("palpate::viewer::SlicePane", "Sagittal"),
+                            QT_TRANSLATE_NOOP("palpate::viewer::SlicePane", "Coronal"),
+                            QT_TRANSLATE_NOOP("palpate::viewer::SlicePane", "Axial")};
 /// Below this component [sine of 15 degrees] a direction is as good as along the others.
 constexpr double aslant = 0.2588;
 

@@ -37,11 +37,11 @@ GreyWindow whole_range(const Field& field) {
 
 SlicePane::SlicePane(int axis, QWidget* parent) : QWidget(parent), axis_(axis) {
     setObjectName(QStringLiteral("slice%1").arg(axis));
-    setAccessibleName("Slice");
-    setWhatsThis(QString(
-        "Wheel: next slice. Left: crosshair, or the probe where the mouse is the hand (Ctrl: "
-        "crosshair). Right drag: window (sideways) and level (up, down). Middle drag: move. "
-        "Ctrl+wheel: zoom. Double click: reset. Keys: arrows, Page Up and Down, +, -, Home."));
+    setAccessibleName(tr("Slice"));
+    setWhatsThis(
+        tr("Wheel: next slice. Left: crosshair, or the probe where the mouse is the hand (Ctrl: "
+           "crosshair). Right drag: window (sideways) and level (up, down). Middle drag: move. "
+           "Ctrl+wheel: zoom. Double click: reset. Keys: arrows, Page Up and Down, +, -, Home."));
     setFocusPolicy(Qt::StrongFocus);
     setMouseTracking(true);
     setAttribute(Qt::WA_OpaquePaintEvent);
@@ -71,7 +71,7 @@ void SlicePane::set_field(const Field& field, double isovalue) {
         view_ = {};
         snapshot_.reset();
     }
-    setAccessibleName(QString("%1 slice").arg(title()));
+    setAccessibleName(tr("%1 slice").arg(title()));
     set_crosshair(crosshair_);
     picture_changed();
 }
@@ -88,7 +88,7 @@ void SlicePane::clear() {
     content_.reset();
     snapshot_.reset();
     drag_ = Drag::none;
-    setAccessibleName("Slice");
+    setAccessibleName(tr("Slice"));
     update();
 }
 
@@ -171,7 +171,7 @@ void SlicePane::set_unit(LengthUnit unit) {
 }
 
 QString SlicePane::title() const {
-    return content_ ? QString::fromStdString(content_->plane.title) : QString();
+    return content_ ? tr(content_->plane.title.c_str()) : QString();
 }
 
 double SlicePane::margin() const {
@@ -249,7 +249,7 @@ void SlicePane::paintEvent(QPaintEvent*) {
     if (!content_) {
         painter.fillRect(rect(), palette().window());
         painter.setPen(palette().color(QPalette::Disabled, QPalette::WindowText));
-        painter.drawText(rect(), Qt::AlignCenter | Qt::TextWordWrap, QString("No volume"));
+        painter.drawText(rect(), Qt::AlignCenter | Qt::TextWordWrap, tr("No volume"));
         return;
     }
     const SliceMap where = map();
@@ -283,12 +283,12 @@ void SlicePane::paint_words(QPainter& painter) const {
         painter, size(), Qt::AlignLeft | Qt::AlignTop,
         {title(),
          samples.in_data() ? QString("%1 / %2").arg(std::lround(samples.position()) + 1).arg(layers)
-                           : QString("outside the data"),
+                           : tr("outside the data"),
          QString::fromStdString(position_text(content_->plane, geometry(), middle))});
     // Short where the letter of the lower edge is, so that narrow panes have room for both.
     paint_corner(painter, size(), Qt::AlignRight | Qt::AlignBottom,
-                 {QString("W %1").arg(high_ - low_, 0, 'g', 5),
-                  QString("L %1").arg(0.5 * (low_ + high_), 0, 'g', 5)});
+                 {tr("W %1", "window, in the corner").arg(high_ - low_, 0, 'g', 5),
+                  tr("L %1", "level, in the corner").arg(0.5 * (low_ + high_), 0, 'g', 5)});
     if (!pointer_) return;
     const Vec3 at = point_at(*pointer_);
     const Vec3 index = index_from_physical(geometry(), at);

@@ -49,7 +49,7 @@ QWidget* make_progress_strip(BackgroundTask& task) {
     auto* label = new QLabel;
     auto* bar = new QProgressBar;
     bar->setRange(0, 100);
-    auto* cancel = named(new QPushButton("Cancel"), "cancel");
+    auto* cancel = named(new QPushButton(BackgroundTask::tr("Cancel")), "cancel");
     auto* strip = named(new QWidget, "progress");
     auto* row = new QHBoxLayout(strip);
     row->addWidget(label);

@@ -68,9 +68,13 @@ SharedLayers Content::layers() const {
     return playback_ ? playback_->layers_at(time_) : nullptr;
 }
 
-double Content::outer_level() const {
+Content::OuterSurface Content::outer_surface() const {
     const SharedLayers now = layers();
-    return have_surfaces(now) ? now->layers.front().level : live_->isovalue();
+    if (have_levels(now)) return {live_->field_now(), now->layers.front().level};
+    if (!have_surfaces(now)) return {live_->field_now(), live_->isovalue()};
+    OuterSurface labels{*now->labels, 0.5};
+    labels.field.show_labels(~1U);  // all but what is in no layer
+    return labels;
 }
 
 std::optional<Snapshot> Content::snapshot() const {

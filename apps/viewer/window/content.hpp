@@ -55,9 +55,12 @@ class Content : public QObject {
 
     /// The layers in use now, or at the time shown; null: none.
     SharedLayers layers() const;
-    /// The level of the outermost surface that is felt: of the layers, else the run's isovalue. For
-    /// a live run.
-    double outer_level() const;
+    /// The outermost surface that is felt: a field and its level. For a live run.
+    struct OuterSurface {
+        Field field;
+        double level;
+    };
+    OuterSurface outer_surface() const;
     /// What is felt now, or was at the time shown. Nothing before the first tick.
     std::optional<Snapshot> snapshot() const;
     /// The data of such a snapshot.

@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "apps/viewer/model/sample_block.hpp"
@@ -18,6 +19,8 @@
 
 namespace palpate::viewer {
 namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Of a single slice, as it lies on a screen: rows to the right, and down or towards the head.
 std::optional<pictures::View> face_on(const Geometry& geometry) {
@@ -55,6 +58,7 @@ void DisplayController::clear() {
     isovalue_.reset();
     shown_.reset();
     layers_.reset();
+    overlays_.set_layers(nullptr);
     next_level_.reset();
     views_.clear();
     panel_.clear();
@@ -92,6 +96,7 @@ void DisplayController::observe_layers() {
     const SharedLayers layers = content_.layers();
     if (layers == layers_) return;
     layers_ = layers;
+    overlays_.set_layers(layers);
     show_look();
 }
 
@@ -113,7 +118,9 @@ void DisplayController::observe_layer_level(const Snapshot& now) {
 
 /// While the hand presses through one surface to the next, the first one stays.
 void DisplayController::observe_level(const Snapshot& now) {
-    if (have_surfaces(layers_)) return observe_layer_level(now);
+    if (have_levels(layers_)) return observe_layer_level(now);
+    // The overlay shows labels; no level of the densities is felt.
+    if (have_surfaces(layers_)) return views_.set_next_level(infinity);
     next_level_.reset();
     const ProxyUpdate& proxy = now.session.tick.proxy;
     const bool pressing = now.penetrability_on && proxy.mode == Mode::constrained && isovalue_ &&

@@ -62,7 +62,7 @@ EditController::EditController(Content& content, Panel& panel, Messages& message
 
 void EditController::show() {
     panel_.brush_controls().set_reason(
-        content_.player() ? "A sequence cannot be edited: open one frame of it (--time-step)."
+        content_.player() ? tr("A sequence cannot be edited: open one frame of it (--time-step).")
                           : QString());
     use_brush(panel_.brush());
 }
@@ -78,14 +78,14 @@ void EditController::use_brush(const BrushChoice& brush) {
 }
 
 void EditController::undo() {
-    step(&run::VolumeEditor::undo, "There is nothing to undo");
+    step(&run::VolumeEditor::undo, tr("There is nothing to undo"));
 }
 
 void EditController::redo() {
-    step(&run::VolumeEditor::redo, "There is nothing to redo");
+    step(&run::VolumeEditor::redo, tr("There is nothing to redo"));
 }
 
-void EditController::step(bool (run::VolumeEditor::*take)(), const char* if_none) {
+void EditController::step(bool (run::VolumeEditor::*take)(), const QString& if_none) {
     messages_.guarded([&] {
         run::VolumeEditor* editor = content_.editor();
         if (editor && !(editor->*take)()) messages_.show_done(if_none);
@@ -112,7 +112,7 @@ void EditController::ask_save(std::function<void()> then) {
     if (base.startsWith("synthetic:")) base = base.section(':', 1, 1);
     if (base.endsWith("." + suffix, Qt::CaseInsensitive)) base.chop(suffix.size() + 1);
     if (!content_.saved_elsewhere()) base += "-edited";
-    const QString path = ask_save_name(window_, "Save the volume", base + "." + suffix, suffix);
+    const QString path = ask_save_name(window_, tr("Save the volume"), base + "." + suffix, suffix);
     if (!path.isEmpty()) save(path, std::move(then));
 }
 
@@ -127,13 +127,13 @@ void EditController::save(const QString& path, std::function<void()> then) {
     const auto samples = field.shared_samples();
     const QString words = QString::fromStdString(io::opening_words(file, field.volume()));
     const run::Source source = source_of(path, field.volume());
-    messages_.show_done(QString("Saving %1").arg(path));
+    messages_.show_done(tr("Saving %1").arg(path));
     const auto write = [file, samples, moment = field.moment()](const io::Progress& progress) {
         io::WriteOptions options;
         options.progress = progress;
         io::write_volume(flattened(*samples, moment), file, options);
     };
-    saving_.start(QString("Saving %1").arg(path), write,
+    saving_.start(tr("Saving %1").arg(path), write,
                   [this, path, words, samples, source, then = std::move(then)] {
                       // Of a sequence only one frame was saved.
                       if (run::VolumeEditor* editor = content_.editor()) {
@@ -141,7 +141,7 @@ void EditController::save(const QString& path, std::function<void()> then) {
                           content_.set_saved(source);
                           remember_file(path);
                       }
-                      messages_.show_done(QString("Saved %1").arg(path) + words);
+                      messages_.show_done(tr("Saved %1").arg(path) + words);
                       if (then) then();
                   });
 }
@@ -149,9 +149,9 @@ void EditController::save(const QString& path, std::function<void()> then) {
 void EditController::ask_save_surface() {
     const QString base =
         QFileInfo(QString::fromStdString(run::name_of(content_.source()))).completeBaseName();
-    const QString path = ask_save_name(window_, "Save the surface (.ply, .stl, .obj or .vtp)",
+    const QString path = ask_save_name(window_, tr("Save the surface (.ply, .stl, .obj or .vtp)"),
                                        base.section(':', -1) + ".ply", "ply", true,
-                                       "Meshes (*.ply *.stl *.obj *.vtp)");
+                                       tr("Meshes (*.ply *.stl *.obj *.vtp)"));
     if (!path.isEmpty()) save_surface(path);
 }
 
@@ -166,8 +166,9 @@ void EditController::save_surface(const QString& path) {
     const auto write = [=](const io::Progress& progress) {
         *triangles = write_surface(field, isovalue, file, progress);
     };
-    saving_.start(QString("Saving %1").arg(path), write, [this, path, triangles] {
-        messages_.show_done(QString("Saved %1, %L2 triangles").arg(path).arg(*triangles));
+    saving_.start(tr("Saving %1").arg(path), write, [this, path, triangles] {
+        messages_.show_done(
+            tr("Saved %1, %Ln triangles", nullptr, static_cast<int>(*triangles)).arg(path));
     });
 }
 
@@ -177,24 +178,24 @@ void EditController::settle_edits(const std::function<void()>& action) {
 
 bool EditController::may_lose_edits(const std::function<void()>& once_saved) {
     QMessageBox box(QMessageBox::Question, "Palpate",
-                    "The volume was edited, and not saved since. Save it?",
+                    tr("The volume was edited, and not saved since. Save it?"),
                     QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel, window_);
     return go_on(box, once_saved);
 }
 
 void EditController::save_edits_first(const std::function<void()>& action) {
     QMessageBox box(QMessageBox::Question, "Palpate",
-                    "This will name the volume's file, which has not the latest edits. Save the "
-                    "volume first?",
+                    tr("This will name the volume's file, which has not the latest edits. Save the "
+                       "volume first?"),
                     QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel, window_);
-    box.button(QMessageBox::Discard)->setText("Without the edits");
+    box.button(QMessageBox::Discard)->setText(tr("Without the edits"));
     if (go_on(box, action)) action();
 }
 
 /// Asks, if there are unsaved edits.
 bool EditController::go_on(QMessageBox& question, const std::function<void()>& once_saved) {
     if (saving()) {
-        messages_.show_done("The volume is still being saved");
+        messages_.show_done(tr("The volume is still being saved"));
         return false;
     }
     if (!unsaved()) return true;

@@ -22,6 +22,8 @@ class Panel;
 struct BrushChoice;
 
 class EditController : public QObject {
+    Q_OBJECT
+
   public:
     /// Dialogs belong to `window`.
     EditController(Content& content, Panel& panel, Messages& messages, QWidget* window);
@@ -58,7 +60,7 @@ class EditController : public QObject {
   private:
     bool go_on(QMessageBox& question, const std::function<void()>& once_saved);
     void show();
-    void step(bool (run::VolumeEditor::*take)(), const char* if_none);
+    void step(bool (run::VolumeEditor::*take)(), const QString& if_none);
 
     Content& content_;
     Panel& panel_;

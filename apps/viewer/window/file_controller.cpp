@@ -9,6 +9,7 @@
 #include "apps/viewer/window/content.hpp"
 #include "apps/viewer/window/display_controller.hpp"
 #include "apps/viewer/window/file_dialogs.hpp"
+#include "apps/viewer/window/layers_controller.hpp"
 #include "apps/viewer/window/messages.hpp"
 #include "apps/viewer/window/raw_dialog.hpp"
 #include "apps/viewer/window/recording_controller.hpp"
@@ -25,11 +26,12 @@ std::filesystem::path path_of(const QString& name) {
 
 }  // namespace
 
-FileController::FileController(Content& content, RunController& run,
+FileController::FileController(Content& content, RunController& run, LayersController& layers,
                                RecordingController& recordings, DisplayController& display,
                                Messages& messages)
     : content_(content),
       run_(run),
+      layers_(layers),
       recordings_(recordings),
       display_(display),
       messages_(messages),
@@ -42,7 +44,7 @@ void FileController::load(const run::Source& source, Then then) {
     };
     auto result = std::make_shared<Result>();
     loader_.start(
-        QString("Reading %1").arg(short_name(QString::fromStdString(name_of(source)))),
+        tr("Reading %1").arg(short_name(QString::fromStdString(name_of(source)))),
         [result, source](const io::Progress& progress) {
             try {
                 result->opened = std::make_shared<Opened>(open(source, progress));
@@ -84,6 +86,7 @@ void FileController::load_or_reuse(const run::Source& source, Then then) {
 
 void FileController::open_path(const QString& path) {
     remember_folder(path);
+    if (LayersController::is_layers_file(path)) return layers_.open(path);
     if (path.endsWith(".json", Qt::CaseInsensitive)) return open_session(path);
     if (path.endsWith(".csv", Qt::CaseInsensitive)) return open_recording(path);
     const run::Source source = run::source_named(path.toStdString());
@@ -158,7 +161,7 @@ void FileController::open_recording(const QString& path) {
 void FileController::play(std::shared_ptr<Opened> opened, const QString& path) {
     auto result = std::make_shared<std::optional<Playback>>();
     loader_.start(
-        QString("Reading %1").arg(short_name(path)),
+        tr("Reading %1").arg(short_name(path)),
         [result, opened, path](const io::Progress& progress) {
             *result = Playback::read(path_of(path), opened->loaded, progress);
         },
@@ -214,7 +217,7 @@ void FileController::save_session(const QString& path) {
     write_session(path.toStdString(), session_now());
     content_.set_session(path);
     remember_file(path);
-    messages_.show_done(QString("Saved %1").arg(path));
+    messages_.show_done(tr("Saved %1").arg(path));
 }
 
 void FileController::open_session(const QString& path) {
@@ -226,6 +229,9 @@ void FileController::open_session(const QString& path) {
             feel_session(std::move(opened), session, request);
             content_.set_session(path);
             remember_file(path);
+            if (session.settings && lack_labels(session.settings->layers)) {
+                layers_.restore(session.settings->layers, path);
+            }
         });
     });
 }
@@ -247,7 +253,7 @@ void FileController::feel_session(std::shared_ptr<Opened> opened, const SessionF
         const QString why = QString::fromStdString(app::failure_of(e).text);
         setup.device = run_.device();
         feel(opened, request);
-        messages_.show_done(QString("%1; felt through the device %2")
+        messages_.show_done(tr("%1; felt through the device %2")
                                 .arg(why, QString::fromStdString(run::text_of(setup.device))));
     }
     display_.use_usual_look();

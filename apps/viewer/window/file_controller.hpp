@@ -13,6 +13,7 @@ namespace palpate::viewer {
 
 class Content;
 class DisplayController;
+class LayersController;
 class RecordingController;
 class RunController;
 struct Opened;
@@ -20,12 +21,14 @@ struct RunRequest;
 
 /// Errors are shown; what was open then stays open, as long as the new file cannot be read.
 class FileController : public QObject {
-  public:
-    FileController(Content& content, RunController& run, RecordingController& recordings,
-                   DisplayController& display, Messages& messages);
+    Q_OBJECT
 
-    /// A volume, a folder, a session or a recording: its name tells which. Asks for the layout
-    /// where lacks_layout().
+  public:
+    FileController(Content& content, RunController& run, LayersController& layers,
+                   RecordingController& recordings, DisplayController& display, Messages& messages);
+
+    /// A volume, a folder, a session, layers or a recording: its name tells which. Asks for the
+    /// layout where lacks_layout().
     void open_path(const QString& path);
     /// Asks how the samples lie in a file without a header, and opens it.
     void ask_layout(const run::Source& source);
@@ -59,6 +62,7 @@ class FileController : public QObject {
 
     Content& content_;
     RunController& run_;
+    LayersController& layers_;
     RecordingController& recordings_;
     DisplayController& display_;
     Messages& messages_;

@@ -1,6 +1,7 @@
 // File dialogs; folder and recent files are remembered from one start to the next.
 #include "apps/viewer/window/file_dialogs.hpp"
 
+#include <QCoreApplication>
 #include <QDateTime>
 #include <QDir>
 #include <QFileDialog>
@@ -9,6 +10,11 @@
 
 namespace palpate::viewer {
 namespace {
+
+/// Words of this file.
+struct FileDialogs {
+    Q_DECLARE_TR_FUNCTIONS(FileDialogs)
+};
 
 constexpr int most_recent = 10;
 
@@ -24,14 +30,16 @@ bool is_synthetic(const QString& path) {
 
 QString ask_open_name(QWidget* window) {
     return QFileDialog::getOpenFileName(
-        window, "Open a volume, a session or a recording", last_folder(),
+        window, FileDialogs::tr("Open a volume, a session, layers or a recording"), last_folder(),
 
-        "All that can be opened (*.nrrd *.nhdr *.mha *.mhd *.nii *.nii.gz *.dcm *.tif *.tiff "
-        "*.vti *.raw *.raw.gz *.json *.csv);;All files (*)");
+        FileDialogs::tr(
+            "All that can be opened (*.nrrd *.nhdr *.mha *.mhd *.nii *.nii.gz *.dcm *.tif *.tiff "
+            "*.vti *.raw *.raw.gz *.json *.csv);;All files (*)"));
 }
 
 QString ask_open_folder(QWidget* window) {
-    return QFileDialog::getExistingDirectory(window, "Open a folder of slices", last_folder());
+    return QFileDialog::getExistingDirectory(window, FileDialogs::tr("Open a folder of slices"),
+                                             last_folder());
 }
 
 QString ask_save_name(QWidget* window, const QString& title, const QString& name,
@@ -48,12 +56,13 @@ QString ask_save_name(QWidget* window, const QString& title, const QString& name
 }
 
 QString ask_open_raw_name(QWidget* window) {
-    return QFileDialog::getOpenFileName(window, "Open raw data", last_folder(), "All files (*)");
+    return QFileDialog::getOpenFileName(window, FileDialogs::tr("Open raw data"), last_folder(),
+                                        FileDialogs::tr("All files (*)"));
 }
 
 QString ask_open_layers_name(QWidget* window) {
-    return QFileDialog::getOpenFileName(window, "Open layers", last_folder(),
-                                        "Layers (*.json);;All files (*)");
+    return QFileDialog::getOpenFileName(window, FileDialogs::tr("Open layers"), last_folder(),
+                                        FileDialogs::tr("Layers (*.json);;All files (*)"));
 }
 
 void remember_folder(const QString& path) {

@@ -3,6 +3,7 @@
 #include "apps/viewer/window/help.hpp"
 
 #include <QAction>
+#include <QCoreApplication>
 #include <QDialog>
 #include <QDialogButtonBox>
 #include <QTextBrowser>
@@ -11,25 +12,40 @@
 namespace palpate::viewer {
 namespace {
 
+/// Words of this file.
+struct Help {
+    Q_DECLARE_TR_FUNCTIONS(Help)
+};
+
 QString row(const QString& keys, const QString& what) {
     return QString("<tr><td style='padding-right:2em'><b>%1</b></td><td>%2</td></tr>")
         .arg(keys.toHtmlEscaped(), what.toHtmlEscaped());
 }
 
+QString heading(const QString& text) {
+    return QString("<h3>%1</h3><table>").arg(text.toHtmlEscaped());
+}
+
 QString mouse_table() {
-    return "<h3>Mouse in the scene</h3><table>" +
-           row("Left click", "with the mouse as device: touch the surface; held: press deeper") +
-           row("Left drag",
-               "turn; with the mouse as device: move the probe in the plane of the view") +
-           row("Wheel",
-               "zoom; with the mouse as device: probe into the depth (Shift: finely; Ctrl: zoom)") +
-           row("Right drag", "zoom; with the mouse as device: turn (Shift or middle: pan)") +
-           row("Double click", "this pane alone, or again all") +
-           row("Shift and double click", "centre there") +
-           "</table><h3>Mouse in a slice</h3><table>" +
-           row("Left", "crosshair; with the mouse as device: the probe (Ctrl: crosshair)") +
-           row("Wheel", "next slice (Ctrl: zoom)") + row("Right drag", "window and level") +
-           row("Middle drag", "pan; Shift and double click: the whole slice") + "</table>";
+    return heading(Help::tr("Mouse in the scene")) +
+           row(Help::tr("Left click"),
+               Help::tr("with the mouse as device: touch the surface; held: press deeper")) +
+           row(Help::tr("Left drag"),
+               Help::tr(
+                   "turn; with the mouse as device: move the probe in the plane of the view")) +
+           row(Help::tr("Wheel"), Help::tr("zoom; with the mouse as device: probe into the depth "
+                                           "(Shift: finely; Ctrl: zoom)")) +
+           row(Help::tr("Right drag"),
+               Help::tr("zoom; with the mouse as device: turn (Shift or middle: pan)")) +
+           row(Help::tr("Double click"), Help::tr("this pane alone, or again all")) +
+           row(Help::tr("Shift and double click"), Help::tr("centre there")) + "</table>" +
+           heading(Help::tr("Mouse in a slice")) +
+           row(Help::tr("Left"),
+               Help::tr("crosshair; with the mouse as device: the probe (Ctrl: crosshair)")) +
+           row(Help::tr("Wheel"), Help::tr("next slice (Ctrl: zoom)")) +
+           row(Help::tr("Right drag"), Help::tr("window and level")) +
+           row(Help::tr("Middle drag"), Help::tr("pan; Shift and double click: the whole slice")) +
+           "</table>";
 }
 
 /// A page of text with a button that closes it.
@@ -55,46 +71,56 @@ QDialog* page(QWidget* window, const char* name, const QString& title, const QSt
 
 QDialog* make_first_steps_dialog(QWidget* window) {
     return page(
-        window, "first_steps", "First steps",
-        "<h3>Touch</h3><p>Click a surface: the probe goes there and touches it. Hold the button, "
-        "or "
-        "turn the wheel, to press; drag to move along the surface. The blue ball is your hand, the "
-        "vermilion one the proxy, which stays on the surface; the green arrow is the force. The "
-        "right button turns the view. With a haptic device, choose it under <i>Device</i>.</p>"
-        "<h3>Choose what is solid</h3><p>Drag the line in the histogram: everything denser is "
-        "solid, at once. The ticks are good levels to begin with.</p>"
-        "<h3>Go deeper</h3><p>Under <i>Pressing through</i> choose <i>Threshold</i>: press harder "
-        "than it, and the hand goes through to what is denser.</p>"
-        "<h3>See more</h3><p>Under <i>Look</i> add a surface: skin over bone. V cuts everything "
-        "open "
-        "with a plane; drag its blue balls. M measures a length. Under <i>Data</i> open an "
-        "overlay: "
-        "labels or another image.</p>"
-        "<h3>Change the data</h3><p>Switch the brush on (B) and touch: it carves, adds, smooths or "
-        "paints. Ctrl+Z takes a stroke back, Ctrl+Shift+S saves the volume.</p>"
-        "<h3>Come back</h3><p>Ctrl+S saves the session: volume, level, view and settings. Ctrl+R "
-        "records what is felt, to be played later.</p>");
+        window, "first_steps", Help::tr("First steps"),
+        Help::tr(
+            "<h3>Touch</h3><p>Click a surface: the probe goes there and touches it. Hold the "
+            "button, "
+            "or "
+            "turn the wheel, to press; drag to move along the surface. The blue ball is your hand, "
+            "the "
+            "vermilion one the proxy, which stays on the surface; the green arrow is the force. "
+            "The "
+            "right button turns the view. With a haptic device, choose it under <i>Device</i>.</p>"
+            "<h3>Choose what is solid</h3><p>Drag the line in the histogram: everything denser is "
+            "solid, at once. The ticks are good levels to begin with.</p>"
+            "<h3>Go deeper</h3><p>Under <i>Pressing through</i> choose <i>Threshold</i>: press "
+            "harder "
+            "than it, and the hand goes through to what is denser.</p>"
+            "<h3>See more</h3><p>Under <i>Look</i> add a surface: skin over bone. V cuts "
+            "everything "
+            "open "
+            "with a plane; drag its blue balls. M measures a length. Under <i>Data</i> open an "
+            "overlay: "
+            "labels or another image.</p>"
+            "<h3>Change the data</h3><p>Switch the brush on (B) and touch: it carves, adds, "
+            "smooths or "
+            "paints. Ctrl+Z takes a stroke back, Ctrl+Shift+S saves the volume.</p>"
+            "<h3>Come back</h3><p>Ctrl+S saves the session: volume, level, view and settings. "
+            "Ctrl+R "
+            "records what is felt, to be played later.</p>"));
 }
 
 QDialog* make_shortcuts_dialog(QWidget* window) {
-    QString text = "<h3>Keys</h3><table>";
+    QString text = heading(Help::tr("Keys"));
     for (const QAction* action : window->findChildren<QAction*>()) {
         if (action->shortcut().isEmpty()) continue;
         text += row(action->shortcut().toString(QKeySequence::NativeText),
                     action->text().remove('&').remove(QString::fromUtf8("\u2026")));
     }
-    return page(window, "shortcuts", "Shortcuts", text + "</table>" + mouse_table());
+    return page(window, "shortcuts", Help::tr("Shortcuts"), text + "</table>" + mouse_table());
 }
 
 QDialog* make_about_dialog(QWidget* window) {
-    const QString versions = QString("Palpate %1, Qt %2, VTK %3, built %4")
-                                 .arg(PALPATE_VERSION, qVersion(), PALPATE_VTK_VERSION,
-                                      sizeof(void*) == 8 ? "for 64 bits" : "for 32 bits");
-    return page(window, "about", "About Palpate",
-                "<h2>Palpate</h2><p>Feel the surfaces inside volumetric data.</p><p>" + versions +
-                    "</p><p>After \"Volume Haptic Rendering with Dynamically Extracted "
-                    "Isosurface\" by Corenthy, San Martin, Otaduy and Garcia (2012).</p><p>"
-                    "Not a medical device: for research, teaching and development.</p>");
+    const QString versions =
+        Help::tr("Palpate %1, Qt %2, VTK %3, built %4")
+            .arg(PALPATE_VERSION, qVersion(), PALPATE_VTK_VERSION,
+                 sizeof(void*) == 8 ? Help::tr("for 64 bits") : Help::tr("for 32 bits"));
+    return page(window, "about", Help::tr("About Palpate"),
+                Help::tr("<h2>Palpate</h2><p>Feel the surfaces inside volumetric data.</p><p>%1</p>"
+                         "<p>After \"Volume Haptic Rendering with Dynamically Extracted "
+                         "Isosurface\" by Corenthy, San Martin, Otaduy and Garcia (2012).</p>"
+                         "<p>Not a medical device: for research, teaching and development.</p>")
+                    .arg(versions));
 }
 
 }  // namespace palpate::viewer

@@ -3,6 +3,7 @@
 
 #include "apps/viewer/model/hand_state.hpp"
 #include "apps/viewer/panel/layout.hpp"
+#include "apps/viewer/panel/names.hpp"
 #include "apps/viewer/scene/scene.hpp"
 #include "apps/viewer/window/content.hpp"
 #include "apps/viewer/window/recording_controller.hpp"
@@ -12,10 +13,10 @@ namespace {
 
 /// Why there is no force although the hand may expect one; empty: nothing holds it back.
 QString reason_of(const Snapshot& now) {
-    if (!now.forces_on) return "Forces are off: the space bar switches them on";
-    if (now.session.frozen) return "Frozen: F lets hand and proxy move again";
-    if (now.session.clutched) return "The volume hangs on the hand: C puts it down";
-    if (waits_for_hand(now)) return "Withdraw a little to feel forces again";
+    if (!now.forces_on) return Hints::tr("Forces are off: the space bar switches them on");
+    if (now.session.frozen) return Hints::tr("Frozen: F lets hand and proxy move again");
+    if (now.session.clutched) return Hints::tr("The volume hangs on the hand: C puts it down");
+    if (waits_for_hand(now)) return Hints::tr("Withdraw a little to feel forces again");
     return {};
 }
 
@@ -73,9 +74,9 @@ void Hints::show_depth(const std::optional<Snapshot>& now) {
                          now->session.tick.proxy.hip.allFinite();
     if (!presses) return depth_->hide();
     const ProxyUpdate& proxy = now->session.tick.proxy;
-    const std::string felt = felt_words(now->session.tick.layers, content_.layers());
-    const QString layer = felt.empty() ? QString() : QString::fromStdString(felt) + ": ";
-    const QString words = layer + QString("%1 mm deep, %2 N")
+    const QString felt = felt_text(now->session.tick.layers, content_.layers());
+    const QString layer = felt.isEmpty() ? QString() : felt + ": ";
+    const QString words = layer + tr("%1 mm deep, %2 N")
                                       .arg((proxy.hip - proxy.scp).norm(), 0, 'f', 1)
                                       .arg(now->session.tick.force.norm(), 0, 'f', 1);
     const Pixel hand = pixel_of(scene_.camera(), scene_.view_size(), proxy.hip);

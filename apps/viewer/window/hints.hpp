@@ -16,6 +16,8 @@ class RecordingController;
 class Scene;
 
 class Hints : public QObject {
+    Q_OBJECT
+
   public:
     Hints(const Content& content, const RecordingController& recordings, Scene& scene);
 

@@ -5,12 +5,16 @@
 #include <QString>
 #include <vector>
 
+#include "apps/viewer/model/layer_set.hpp"
+#include "apps/viewer/window/background_task.hpp"
 #include "palpate/io/layers_file.hpp"
 
 namespace palpate::viewer {
 
 class Content;
 class Messages;
+class OverlayController;
+struct Overlay;
 class Panel;
 struct LayersChoice;
 
@@ -18,7 +22,11 @@ class LayersController : public QObject {
     Q_OBJECT
 
   public:
-    LayersController(Content& content, Panel& panel, Messages& messages);
+    LayersController(Content& content, OverlayController& overlays, Panel& panel,
+                     Messages& messages);
+
+    /// Whether a file is a set of layers, by its content.
+    static bool is_layers_file(const QString& path);
 
     /// By a dialog.
     void ask_open();
@@ -26,15 +34,29 @@ class LayersController : public QObject {
     /// Feels the layers of a file. Errors are shown; the layers before stay then.
     void open(const QString& path);
     void save(const QString& path);
+    /// Feels the labels of the overlay that are shown.
+    void feel_labels();
+    /// Feels layers that lack_labels() once their label volume has been read; a name that is
+    /// relative counts from the working folder, then from that of `file`.
+    void restore(const SharedLayers& layers, const QString& file);
+    bool settled() const { return !reader_.busy(); }
+    BackgroundTask& reader() { return reader_; }
 
   private:
     LayersChoice choice_of(const io::LayersFile& file) const;
+    LayersChoice choice_of_labels(const Overlay& labels) const;
+    void limit_to_labels(LayersChoice& choice) const;
     void offer();
+    void use(const LayersChoice& choice);
+    void place(const SharedLayers& layers);
+    void show_overlay();
 
     Content& content_;
+    OverlayController& overlays_;
     Panel& panel_;
     Messages& messages_;
     std::vector<io::LayersFile> files_;  // built in, then those that were opened
+    BackgroundTask reader_;              // of labels
 };
 
 }  // namespace palpate::viewer

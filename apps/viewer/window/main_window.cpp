@@ -20,6 +20,7 @@
 #include "apps/viewer/model/hand_state.hpp"
 #include "apps/viewer/panel/isovalue_controls.hpp"
 #include "apps/viewer/panel/layout.hpp"
+#include "apps/viewer/panel/names.hpp"
 #include "apps/viewer/panel/panel.hpp"
 #include "apps/viewer/panel/timeline.hpp"
 #include "apps/viewer/scene/scene.hpp"
@@ -38,9 +39,9 @@ constexpr int frame_ms = 16;
 constexpr int rounds_at_rest = 60, resting_frame_ms = 48;
 // [frames] Intervals of updates that change slowly or take long.
 constexpr int panel_rounds = 2, device_rounds = 8, report_rounds = 32;
-constexpr int message_ms = 10'000;
+constexpr int message_ms = 10000;
 // After a volume was closed the C library is asked to give its memory back to the system.
-constexpr int give_back_ms = 2'000;
+constexpr int give_back_ms = 2000;
 
 }  // namespace
 
@@ -56,12 +57,12 @@ MainWindow::MainWindow(const RunRequest& request)
       overlays_(content_, *views_, *panel_, messages_),
       display_(content_, *views_, *panel_, measuring_, overlays_),
       run_(request, content_, *panel_, messages_),
-      layers_(content_, *panel_, messages_),
+      layers_(content_, overlays_, *panel_, messages_),
       recordings_(content_, *panel_, messages_),
       probe_(content_, run_, *views_, messages_),
       editing_(content_, *panel_, messages_, this),
       playing_(content_, *timeline_, messages_),
-      files_(content_, run_, recordings_, display_, messages_),
+      files_(content_, run_, layers_, recordings_, display_, messages_),
       hints_(content_, recordings_, views_->scene()),
       actions_(this, messages_) {
     setObjectName("palpate");
@@ -91,18 +92,19 @@ void MainWindow::build() {
     layout->setSpacing(0);
     layout->addWidget(make_progress_strip(files_.loader()));
     layout->addWidget(make_progress_strip(overlays_.loader()));
+    layout->addWidget(make_progress_strip(layers_.reader()));
     setCentralWidget(centre);
-    auto* dock = new QDockWidget("Feel and look");
+    auto* dock = new QDockWidget(tr("Feel and look"));
     dock->setObjectName("dock");
     dock->setWidget(panel_);
     addDockWidget(Qt::RightDockWidgetArea, dock);
     panel_->clear();
     readout_->setObjectName("readout");
-    readout_->setToolTip("The proxy: where it is (LPS) [mm], the sample there and its slope");
+    readout_->setToolTip(tr("The proxy: where it is (LPS) [mm], the sample there and its slope"));
     statusBar()->addPermanentWidget(readout_);
     frame_time_->setObjectName("frames");
     statusBar()->addPermanentWidget(frame_time_);
-    statusBar()->showMessage("Open a volume, or drop one here (Ctrl+O); ? lists the shortcuts");
+    statusBar()->showMessage(tr("Open a volume, or drop one here (Ctrl+O); ? lists the shortcuts"));
 }
 
 void MainWindow::connect_parts() {
@@ -159,7 +161,7 @@ void MainWindow::show_title() {
     volume.replace("[*]", "[*][*]");
     const QString session =
         content_.session().isEmpty() ? "" : QString(" (%1)").arg(short_name(content_.session()));
-    setWindowTitle(QString("%1[*]%2 – Palpate").arg(volume, session));
+    setWindowTitle(tr("%1[*]%2 – Palpate").arg(volume, session));
 }
 
 void MainWindow::restore_layout() {
@@ -215,7 +217,7 @@ void MainWindow::tick() {
     if (rounds_ % (resting ? 4 * report_rounds : report_rounds) != 0) return;
     run_.show_report();
     const double seconds = views_->scene().frame_seconds();
-    frame_time_->setText(seconds > 0 ? QString("%1 ms a frame").arg(1e3 * seconds, 0, 'f', 0)
+    frame_time_->setText(seconds > 0 ? tr("%1 ms a frame").arg(1e3 * seconds, 0, 'f', 0)
                                      : QString());
 }
 
@@ -226,9 +228,9 @@ void MainWindow::show_readout(const Snapshot& now) {
     const Field field = content_.field_at(now);
     const QString units = QString::fromStdString(content_.volume()->loaded.values.units);
     const auto number = [](double value) { return QString::number(value, 'f', 1); };
-    QString felt = QString::fromStdString(felt_words(now.session.tick.layers, content_.layers()));
+    QString felt = felt_text(now.session.tick.layers, content_.layers());
     if (!felt.isEmpty()) felt += "   ";
-    readout_->setText(felt + QString("%1, %2, %3 mm   %4 %5   slope %6 /mm")
+    readout_->setText(felt + tr("%1, %2, %3 mm   %4 %5   slope %6 /mm")
                                  .arg(number(at[0]), number(at[1]), number(at[2]),
                                       QString::number(value_at(field, at), 'g', 4), units,
                                       QString::number(gradient_at(field, at).norm(), 'g', 3)));
@@ -246,7 +248,7 @@ void MainWindow::rest_or_wake(const std::optional<Snapshot>& now) {
 
 bool MainWindow::settled() const {
     return !files_.loading() && !editing_.saving() && !probe_.travelling() && overlays_.settled() &&
-           (!content_.volume() || views_->scene().settled());
+           layers_.settled() && (!content_.volume() || views_->scene().settled());
 }
 
 void MainWindow::save_picture(const QString& path, bool whole_window) {
@@ -256,7 +258,7 @@ void MainWindow::save_picture(const QString& path, bool whole_window) {
     buffer.open(QIODevice::WriteOnly);
     image.save(&buffer, "PNG");
     io::write_file(path.toStdString(), {bytes.constData(), std::size_t(bytes.size())});
-    messages_.show_done(QString("Saved %1").arg(path));
+    messages_.show_done(tr("Saved %1").arg(path));
 }
 
 void MainWindow::end() {
@@ -290,7 +292,10 @@ void MainWindow::dropEvent(QDropEvent* event) {
     const auto urls = event->mimeData()->urls();
     if (urls.isEmpty()) return;
     event->acceptProposedAction();
-    editing_.settle_edits([this, path = urls.front().toLocalFile()] { files_.open_path(path); });
+    const QString path = urls.front().toLocalFile();
+    // The volume stays, with its edits.
+    if (LayersController::is_layers_file(path)) return layers_.open(path);
+    editing_.settle_edits([this, path] { files_.open_path(path); });
 }
 
 }  // namespace palpate::viewer

@@ -31,6 +31,8 @@ class Views;
 class Welcome;
 
 class MainWindow : public QMainWindow {
+    Q_OBJECT
+
   public:
     /// `request`: the command line's, for the runs to come. Opens
     /// nothing yet.

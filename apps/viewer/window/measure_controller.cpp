@@ -23,9 +23,9 @@ void MeasureController::begin(Measure kind) {
     show();
     messages_.show_done(
         kind == Measure::length
-            ? "Click two points on the surface or in a slice (Esc: give up)"
-            : "Click a point on one side, the corner, and a point on the other side "
-              "(Esc: give up)");
+            ? tr("Click two points on the surface or in a slice (Esc: give up)")
+            : tr("Click a point on one side, the corner, and a point on the other side "
+                 "(Esc: give up)"));
 }
 
 bool MeasureController::cancel() {

@@ -29,7 +29,7 @@ void fill_recent(QMenu& menu, MainWindow& window) {
             window.editing().settle_edits([&window, path] { window.files().open_path(path); });
         });
     }
-    if (menu.isEmpty()) menu.addAction("nothing yet")->setEnabled(false);
+    if (menu.isEmpty()) menu.addAction(MainWindow::tr("nothing yet"))->setEnabled(false);
 }
 
 void add_open_actions(MainWindow& window, Actions& actions, QMenu* menu) {
@@ -41,16 +41,16 @@ void add_open_actions(MainWindow& window, Actions& actions, QMenu* menu) {
             });
         };
     };
-    actions.add(menu, "open", "&Open…", QKeySequence::Open, open(ask_open_name));
-    actions.add(menu, "open_folder", "Open a &folder (DICOM, TIFF)…", QKeySequence("Ctrl+Shift+O"),
-                open(ask_open_folder));
-    actions.add(menu, "open_raw", "Open raw &data…", {}, [&window] {
+    actions.add(menu, "open", MainWindow::tr("&Open…"), QKeySequence::Open, open(ask_open_name));
+    actions.add(menu, "open_folder", MainWindow::tr("Open a &folder (DICOM, TIFF)…"),
+                QKeySequence("Ctrl+Shift+O"), open(ask_open_folder));
+    actions.add(menu, "open_raw", MainWindow::tr("Open raw &data…"), {}, [&window] {
         window.editing().settle_edits([&window] {
             const QString path = ask_open_raw_name(&window);
             if (!path.isEmpty()) window.files().ask_layout(run::source_named(path.toStdString()));
         });
     });
-    QMenu* recent = menu->addMenu("Open &recent");
+    QMenu* recent = menu->addMenu(MainWindow::tr("Open &recent"));
     recent->setObjectName("recent");
     QObject::connect(recent, &QMenu::aboutToShow, &window,
                      [&window, recent] { fill_recent(*recent, window); });
@@ -59,9 +59,10 @@ void add_open_actions(MainWindow& window, Actions& actions, QMenu* menu) {
 /// Asks for a name where there is none. A session names a volume, so its edits are saved first.
 void save_session(MainWindow& window, const QString& name) {
     window.editing().save_edits_first([&window, name] {
-        const QString path =
-            !name.isEmpty() ? name
-                            : ask_save_name(&window, "Save the session", "session.json", "json");
+        const QString path = !name.isEmpty()
+                                 ? name
+                                 : ask_save_name(&window, MainWindow::tr("Save the session"),
+                                                 "session.json", "json");
         if (!path.isEmpty()) window.files().save_session(path);
     });
 }
@@ -69,48 +70,50 @@ void save_session(MainWindow& window, const QString& name) {
 void add_save_actions(MainWindow& window, Actions& actions, QMenu* menu) {
     const auto opened = [&window] { return window.content().volume() != nullptr; };
     actions.add(
-        menu, "save_session", "&Save the session", QKeySequence::Save,
+        menu, "save_session", MainWindow::tr("&Save the session"), QKeySequence::Save,
         [&window] { save_session(window, window.content().session()); }, opened);
     actions.add(
-        menu, "save_session_as", "Save the session &as…", {},
+        menu, "save_session_as", MainWindow::tr("Save the session &as…"), {},
         [&window] { save_session(window, {}); }, opened);
     const auto picture = [&window](bool whole_window) {
-        const QString path =
-            ask_save_name(&window, "Save a picture", "palpate-" + time_stamp() + ".png", "png");
+        const QString path = ask_save_name(&window, MainWindow::tr("Save a picture"),
+                                           "palpate-" + time_stamp() + ".png", "png");
         if (!path.isEmpty()) window.save_picture(path, whole_window);
     };
     actions.add(
-        menu, "picture", "&Picture of the scene…", QKeySequence("Ctrl+P"),
+        menu, "picture", MainWindow::tr("&Picture of the scene…"), QKeySequence("Ctrl+P"),
         [picture] { picture(false); }, opened);
-    actions.add(menu, "window_picture", "Picture of the &window…", QKeySequence("Ctrl+Shift+P"),
-                [picture] { picture(true); });
+    actions.add(menu, "window_picture", MainWindow::tr("Picture of the &window…"),
+                QKeySequence("Ctrl+Shift+P"), [picture] { picture(true); });
 }
 
 void make_file_menu(MainWindow& window, Actions& actions) {
-    QMenu* file = window.menuBar()->addMenu("&File");
+    QMenu* file = window.menuBar()->addMenu(MainWindow::tr("&File"));
     add_open_actions(window, actions, file);
     file->addSeparator();
     add_save_actions(window, actions, file);
     file->addSeparator();
-    actions.add(file, "ask_preferences", "Pr&eferences…", QKeySequence("Ctrl+,"),
+    actions.add(file, "ask_preferences", MainWindow::tr("Pr&eferences…"), QKeySequence("Ctrl+,"),
                 [&window] { window.ask_preferences(); });
-    actions.add(file, "quit", "&Quit", QKeySequence("Ctrl+Q"), [&window] { window.close(); });
+    actions.add(file, "quit", MainWindow::tr("&Quit"), QKeySequence("Ctrl+Q"),
+                [&window] { window.close(); });
 }
 
 void add_recording_actions(MainWindow& window, Actions& actions, QMenu* menu) {
     const auto record = [&window, &actions](bool on) {
         actions.refresh();  // the switch shows the present state until a name is chosen
         if (!on) return window.recordings().stop();
-        const QString path = ask_save_name(&window, "Record the session",
+        const QString path = ask_save_name(&window, MainWindow::tr("Record the session"),
                                            "session-" + time_stamp() + ".csv", "csv", false);
         if (!path.isEmpty()) window.recordings().start(path);
     };
     actions.add_switch(
-        menu, "record", "&Record…", QKeySequence("Ctrl+R"), record,
+        menu, "record", MainWindow::tr("&Record…"), QKeySequence("Ctrl+R"), record,
         [&window] { return window.recordings().recording(); },
         [&window] { return window.live() != nullptr; });
     actions.add(
-        menu, "leave_playback", "Leave the recordin&g, feel again", QKeySequence("Esc"),
+        menu, "leave_playback", MainWindow::tr("Leave the recordin&g, feel again"),
+        QKeySequence("Esc"),
         [&window] {
             if (!window.measuring().cancel()) window.files().leave_playback();
         },
@@ -118,19 +121,19 @@ void add_recording_actions(MainWindow& window, Actions& actions, QMenu* menu) {
 }
 
 void make_session_menu(MainWindow& window, Actions& actions) {
-    QMenu* menu = window.menuBar()->addMenu("&Session");
+    QMenu* menu = window.menuBar()->addMenu(MainWindow::tr("&Session"));
     const auto live = [&window] { return window.live() != nullptr; };
     const auto send = [&window](const Command& command) { window.run().send(command); };
     actions.add_switch(
-        menu, "forces", "&Forces on", QKeySequence(Qt::Key_Space),
+        menu, "forces", MainWindow::tr("&Forces on"), QKeySequence(Qt::Key_Space),
         [send](bool on) { send(command::Forces{on}); },
         [&window] { return window.live() && window.live()->settings().forces_on; }, live);
     actions.add_switch(
-        menu, "freeze", "Free&ze", QKeySequence("F"),
+        menu, "freeze", MainWindow::tr("Free&ze"), QKeySequence("F"),
         [send](bool on) { send(command::Freeze{on}); },
         [&window] { return window.live() && window.live()->frozen(); }, live);
     actions.add_switch(
-        menu, "clutch", "&Clutch: the volume follows the hand", QKeySequence("C"),
+        menu, "clutch", MainWindow::tr("&Clutch: the volume follows the hand"), QKeySequence("C"),
         [send](bool on) { send(command::Clutch{on}); },
         [&window] {
             const auto now = window.live() ? window.live()->snapshot() : std::nullopt;
@@ -138,7 +141,7 @@ void make_session_menu(MainWindow& window, Actions& actions) {
         },
         live);
     actions.add_switch(
-        menu, "pointer", "&Mouse moves the probe", QKeySequence("H"),
+        menu, "pointer", MainWindow::tr("&Mouse moves the probe"), QKeySequence("H"),
         [&window](bool on) { window.probe().set_pointing(on); },
         [&window] { return window.probe().pointing(); },
         [&window] { return window.probe().possible(); });
@@ -149,73 +152,89 @@ void make_session_menu(MainWindow& window, Actions& actions) {
     const auto scale = [&window](double factor) {
         return [&window, factor] { window.run().scale_hand(factor); };
     };
-    actions.add(menu, "level_up", "Isovalue &up by 1 %", QKeySequence("+"), raise(1), live);
-    actions.add(menu, "level_down", "Isovalue &down by 1 %", QKeySequence("-"), raise(-1), live);
-    actions.add(menu, "coarser", "Hand &larger in the volume", QKeySequence("]"), scale(1.1), live);
-    actions.add(menu, "finer", "Hand &smaller in the volume", QKeySequence("["), scale(1 / 1.1),
-                live);
+    actions.add(menu, "level_up", MainWindow::tr("Isovalue &up by 1 %"), QKeySequence("+"),
+                raise(1), live);
+    actions.add(menu, "level_down", MainWindow::tr("Isovalue &down by 1 %"), QKeySequence("-"),
+                raise(-1), live);
+    actions.add(menu, "coarser", MainWindow::tr("Hand &larger in the volume"), QKeySequence("]"),
+                scale(1.1), live);
+    actions.add(menu, "finer", MainWindow::tr("Hand &smaller in the volume"), QKeySequence("["),
+                scale(1 / 1.1), live);
     menu->addSeparator();
     add_recording_actions(window, actions, menu);
 }
 
 void make_data_menu(MainWindow& window, Actions& actions) {
-    QMenu* menu = window.menuBar()->addMenu("&Data");
+    QMenu* menu = window.menuBar()->addMenu(MainWindow::tr("&Data"));
     const auto editable = [&window] { return window.content().editor() != nullptr; };
     const auto playable = [&window] { return window.content().player() || window.playback(); };
     actions.add(
-        menu, "brush_action", "&Brush at the probe", QKeySequence("B"),
+        menu, "brush_action", MainWindow::tr("&Brush at the probe"), QKeySequence("B"),
         [&window] {
             BrushControls& brush = window.panel().brush_controls();
             brush.reason().isEmpty() ? brush.toggle() : window.messages().show_done(brush.reason());
         },
         [&window] { return window.live() != nullptr; });
     actions.add(
-        menu, "undo_action", "&Undo", QKeySequence::Undo, [&window] { window.editing().undo(); },
-        editable);
+        menu, "undo_action", MainWindow::tr("&Undo"), QKeySequence::Undo,
+        [&window] { window.editing().undo(); }, editable);
     actions.add(
-        menu, "redo_action", "&Redo", QKeySequence("Ctrl+Shift+Z"),
+        menu, "redo_action", MainWindow::tr("&Redo"), QKeySequence("Ctrl+Shift+Z"),
         [&window] { window.editing().redo(); }, editable);
     actions.add(
-        menu, "save_volume", "&Save the volume…", QKeySequence("Ctrl+Shift+S"),
+        menu, "save_volume", MainWindow::tr("&Save the volume…"), QKeySequence("Ctrl+Shift+S"),
         [&window] { window.editing().ask_save(); }, [&window] { return window.live() != nullptr; });
     actions.add(
-        menu, "save_surface", "Save the surface as a &mesh…", {},
+        menu, "save_surface", MainWindow::tr("Save the surface as a &mesh…"), {},
         [&window] { window.editing().ask_save_surface(); },
         [&window] { return window.live() != nullptr; });
     actions.add(
-        menu, "open_overlay_action", "Open an o&verlay: labels or another image…", {},
-        [&window] { window.overlays().ask_open(); },
+        menu, "open_overlay_action", MainWindow::tr("Open an o&verlay: labels or another image…"),
+        {}, [&window] { window.overlays().ask_open(); },
         [&window] { return window.content().volume() != nullptr; });
     actions.add(
-        menu, "close_overlay_action", "&Close the overlay", {},
+        menu, "close_overlay_action", MainWindow::tr("&Close the overlay"), {},
         [&window] { window.overlays().close(); },
         [&window] { return window.overlays().overlay() != nullptr; });
     menu->addSeparator();
     actions.add(
-        menu, "play_sequence", "&Play the sequence, or pause it", QKeySequence("K"),
+        menu, "play_sequence", MainWindow::tr("&Play the sequence, or pause it"), QKeySequence("K"),
         [&window] { window.timeline().toggle_playing(); }, playable);
     const auto step = [&window](int frames) {
         return [&window, frames] { window.timeline().step(frames); };
     };
-    actions.add(menu, "frame_back", "A frame bac&k", QKeySequence(","), step(-1), playable);
-    actions.add(menu, "frame_on", "A frame &on", QKeySequence("."), step(1), playable);
+    actions.add(menu, "frame_back", MainWindow::tr("A frame bac&k"), QKeySequence(","), step(-1),
+                playable);
+    actions.add(menu, "frame_on", MainWindow::tr("A frame &on"), QKeySequence("."), step(1),
+                playable);
+}
+
+/// Names of pictures::view_names().
+QString view_text(const std::string& name) {
+    if (name == "front") return MainWindow::tr("From the front");
+    if (name == "back") return MainWindow::tr("From the back");
+    if (name == "left") return MainWindow::tr("From the left");
+    if (name == "right") return MainWindow::tr("From the right");
+    if (name == "top") return MainWindow::tr("From the top");
+    if (name == "bottom") return MainWindow::tr("From the bottom");
+    if (name == "oblique") return MainWindow::tr("From the oblique");
+    return QString::fromStdString(name);
 }
 
 void add_camera_actions(MainWindow& window, Actions& actions, QMenu* menu) {
     actions.add(
-        menu, "whole", "&Whole volume", QKeySequence("R"),
+        menu, "whole", MainWindow::tr("&Whole volume"), QKeySequence("R"),
         [&window] { window.views().scene().reset_camera(); },
         [&window] { return window.content().volume() != nullptr; });
     const auto from_hand = [&window] {
         const auto now = window.live() ? window.live()->snapshot() : std::nullopt;
         if (now) window.display().look_from_hand(now->session.transform);
     };
-    actions.add(menu, "from_hand", "From the &hand", QKeySequence("0"), from_hand,
+    actions.add(menu, "from_hand", MainWindow::tr("From the &hand"), QKeySequence("0"), from_hand,
                 [&window] { return window.live() != nullptr; });
     int number = 0;
     for (const std::string& name : pictures::view_names()) {
-        actions.add(menu, ("view_" + name).c_str(),
-                    QString("From the %1").arg(QString::fromStdString(name)),
+        actions.add(menu, ("view_" + name).c_str(), view_text(name),
                     QKeySequence(QString::number(++number)), [&window, name] {
                         window.views().scene().look_from(pictures::view_named(name));
                     });
@@ -224,90 +243,92 @@ void add_camera_actions(MainWindow& window, Actions& actions, QMenu* menu) {
 
 void add_measure_actions(MainWindow& window, Actions& actions, QMenu* view) {
     const auto opened = [&window] { return window.content().volume() != nullptr; };
-    QMenu* measure = view->addMenu("&Measure");
+    QMenu* measure = view->addMenu(MainWindow::tr("&Measure"));
     MeasureController& measuring = window.measuring();
     actions.add(
-        measure, "measure_length", "A &length", QKeySequence("M"),
+        measure, "measure_length", MainWindow::tr("A &length"), QKeySequence("M"),
         [&measuring] { measuring.begin(Measure::length); }, opened);
     actions.add(
-        measure, "measure_angle", "An &angle", QKeySequence("Shift+M"),
+        measure, "measure_angle", MainWindow::tr("An &angle"), QKeySequence("Shift+M"),
         [&measuring] { measuring.begin(Measure::angle); }, opened);
     const auto measured = [&measuring] {
         return measuring.measuring() || !measuring.measurements().empty();
     };
     actions.add(
-        measure, "measure_remove_last", "&Remove the last", QKeySequence("Shift+Backspace"),
-        [&measuring] { measuring.remove_last(); }, measured);
+        measure, "measure_remove_last", MainWindow::tr("&Remove the last"),
+        QKeySequence("Shift+Backspace"), [&measuring] { measuring.remove_last(); }, measured);
     actions.add(
-        measure, "measure_remove_all", "R&emove all", {}, [&measuring] { measuring.remove_all(); },
-        measured);
+        measure, "measure_remove_all", MainWindow::tr("R&emove all"), {},
+        [&measuring] { measuring.remove_all(); }, measured);
 }
 
 void add_cut_actions(MainWindow& window, Actions& actions, QMenu* view) {
     const auto opened = [&window] { return window.content().volume() != nullptr; };
-    QMenu* cut = view->addMenu("Cut awa&y");
+    QMenu* cut = view->addMenu(MainWindow::tr("Cut awa&y"));
     const auto add_cut = [&](const char* name, const QString& text, Cut kind,
                              const QKeySequence& key) {
         actions.add(
             cut, name, text, key, [&window, kind] { window.display().set_cut(kind); }, opened);
     };
-    add_cut("cut_nothing", "&Nothing", Cut::nothing, {});
-    add_cut("cut_plane", "By a &plane that faces you", Cut::plane, QKeySequence("V"));
-    add_cut("cut_box", "To a &box", Cut::box, QKeySequence("Shift+V"));
+    add_cut("cut_nothing", MainWindow::tr("&Nothing"), Cut::nothing, {});
+    add_cut("cut_plane", MainWindow::tr("By a &plane that faces you"), Cut::plane,
+            QKeySequence("V"));
+    add_cut("cut_box", MainWindow::tr("To a &box"), Cut::box, QKeySequence("Shift+V"));
 }
 
 void make_view_menu(MainWindow& window, Actions& actions) {
-    QMenu* view = window.menuBar()->addMenu("&View");
+    QMenu* view = window.menuBar()->addMenu(MainWindow::tr("&View"));
     add_camera_actions(window, actions, view);
     view->addSeparator();
     Views& views = window.views();
     actions.add_switch(
-        view, "slices", "&Slices beside the scene", QKeySequence("X"),
+        view, "slices", MainWindow::tr("&Slices beside the scene"), QKeySequence("X"),
         [&views](bool on) { views.show_slices(on); }, [&views] { return views.slices_shown(); });
     const auto opened = [&window] { return window.content().volume() != nullptr; };
     actions.add(
-        view, "beside", "Scene with slices &beside it", QKeySequence("F5"),
+        view, "beside", MainWindow::tr("Scene with slices &beside it"), QKeySequence("F5"),
         [&views] { views.arrange(Views::Arrangement::beside); }, opened);
     actions.add(
-        view, "four", "Four &panes", QKeySequence("F6"),
+        view, "four", MainWindow::tr("Four &panes"), QKeySequence("F6"),
         [&views] { views.arrange(Views::Arrangement::four); }, opened);
     actions.add(
-        view, "scene_alone", "Scene a&lone, or all panes", QKeySequence("F7"),
+        view, "scene_alone", MainWindow::tr("Scene a&lone, or all panes"), QKeySequence("F7"),
         [&views] { views.toggle_alone(&views.scene()); }, opened);
     actions.add(
-        view, "slice_alone", "A slice al&one, then the next", QKeySequence("F8"),
+        view, "slice_alone", MainWindow::tr("A slice al&one, then the next"), QKeySequence("F8"),
         [&views] { views.show_next_slice(); }, opened);
     add_measure_actions(window, actions, view);
     add_cut_actions(window, actions, view);
     QAction* follow = actions.add_switch(
-        view, "follow", "&Crosshair follows the probe", QKeySequence("G"),
+        view, "follow", MainWindow::tr("&Crosshair follows the probe"), QKeySequence("G"),
         [&views](bool on) { views.set_follow(on); }, [&views] { return views.follows(); });
     QObject::connect(&views, &Views::follow_changed, follow, &QAction::setChecked);
     auto* dock = window.findChild<QDockWidget*>("dock");
     dock->toggleViewAction()->setShortcut(QKeySequence("F9"));
     view->addAction(dock->toggleViewAction());
     actions.add_switch(
-        view, "full", "&Full screen", QKeySequence("F11"),
+        view, "full", MainWindow::tr("&Full screen"), QKeySequence("F11"),
         [&window](bool on) { on ? window.showFullScreen() : window.showNormal(); },
         [&window] { return window.isFullScreen(); });
-    QMenu* menu = view->addMenu("&Appearance");
+    QMenu* menu = view->addMenu(MainWindow::tr("&Appearance"));
     const auto add = [&](const char* name, const QString& text, Appearance appearance) {
         actions.add(menu, name, text, {}, [appearance] { set_appearance(appearance); });
     };
-    add("system", "As the &system", Appearance::system);
-    add("light", "&Light", Appearance::light);
-    add("dark", "&Dark", Appearance::dark);
+    add("system", MainWindow::tr("As the &system"), Appearance::system);
+    add("light", MainWindow::tr("&Light"), Appearance::light);
+    add("dark", MainWindow::tr("&Dark"), Appearance::dark);
 }
 
 void make_help_menu(MainWindow& window, Actions& actions) {
-    QMenu* help = window.menuBar()->addMenu("&Help");
-    actions.add(help, "first_steps_action", "&First steps", QKeySequence::HelpContents,
+    QMenu* help = window.menuBar()->addMenu(MainWindow::tr("&Help"));
+    actions.add(help, "first_steps_action", MainWindow::tr("&First steps"),
+                QKeySequence::HelpContents,
                 [&window] { make_first_steps_dialog(&window)->show(); });
     actions
-        .add(help, "shortcuts_action", "&Shortcuts", QKeySequence("?"),
+        .add(help, "shortcuts_action", MainWindow::tr("&Shortcuts"), QKeySequence("?"),
              [&window] { make_shortcuts_dialog(&window)->show(); })
         ->setShortcuts({QKeySequence("?"), QKeySequence("Shift+?")});
-    actions.add(help, "about_action", "&About Palpate", {},
+    actions.add(help, "about_action", MainWindow::tr("&About Palpate"), {},
                 [&window] { make_about_dialog(&window)->show(); });
 }
 
@@ -319,7 +340,7 @@ void make_menus(MainWindow& window, Actions& actions) {
     make_data_menu(window, actions);
     make_view_menu(window, actions);
     make_help_menu(window, actions);
-    QToolBar* bar = window.addToolBar("Tools");
+    QToolBar* bar = window.addToolBar(MainWindow::tr("Tools"));
     bar->setObjectName("tools");
     for (const char* name :
          {"open", "forces", "freeze", "record", "pointer", "whole", "from_hand"}) {

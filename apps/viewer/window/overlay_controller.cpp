@@ -16,6 +16,16 @@
 #include "apps/viewer/window/views.hpp"
 
 namespace palpate::viewer {
+namespace {
+
+/// Of the layer that a label is, if it is one.
+double opacity_of(int label, const SharedLayers& layers) {
+    if (!layers || !layers->by_label) return 1;
+    const auto layer = std::ranges::find(layers->layers, label, &palpate::Layer::level);
+    return layer != layers->layers.end() ? layer->opacity : 1;
+}
+
+}  // namespace
 
 OverlayController::OverlayController(Content& content, Views& views, Panel& panel,
                                      Messages& messages)
@@ -23,7 +33,7 @@ OverlayController::OverlayController(Content& content, Views& views, Panel& pane
       views_(views),
       panel_(panel),
       messages_(messages),
-      image_({2'000'000, 20'000}),
+      image_({2000000, 20000}),
       loader_(messages) {
     connect(&content, &Content::closed, this, &OverlayController::close);
     connect(&image_, &SurfaceSource::made, this, &OverlayController::show);
@@ -50,7 +60,7 @@ void OverlayController::open(const run::Source& source) {
     const auto read = std::make_shared<Read>();
     const QString name = short_name(QString::fromStdString(run::name_of(source)));
     loader_.start(
-        QString("Opening %1").arg(name),
+        tr("Opening %1").arg(name),
         [source, read](const io::Progress& progress) {
             constexpr double reading = 0.6;
             const run::LoadedVolume loaded =
@@ -73,8 +83,21 @@ void OverlayController::use(std::shared_ptr<const Overlay> overlay,
     } else {
         image_.set_field(Field(overlay_->volume), level.value_or(overlay_->level));
     }
-    panel_.overlay_controls().set_overlay(overlay_.get());
-    views_.set_overlay(overlay_);
+    colour();
+    Q_EMIT changed();
+}
+
+void OverlayController::set_layers(const SharedLayers& layers) {
+    layers_ = layers;
+    if (overlay_) colour();
+}
+
+void OverlayController::colour() {
+    const auto before = std::exchange(coloured_, in_colours_of(overlay_, layers_));
+    if (coloured_ != before) {
+        panel_.overlay_controls().set_overlay(coloured_.get());
+        views_.set_overlay(coloured_);
+    }
     show();
 }
 
@@ -82,11 +105,13 @@ void OverlayController::close() {
     loader_.abandon();
     if (!overlay_) return;
     overlay_.reset();
+    coloured_.reset();
     labels_.clear();
     image_.clear();
     panel_.overlay_controls().set_overlay(nullptr);
     views_.set_overlay(nullptr);
     views_.scene().set_overlay({});
+    Q_EMIT changed();
 }
 
 void OverlayController::show() {
@@ -99,9 +124,10 @@ void OverlayController::show() {
     std::vector<DrawnSurface> surfaces;
     if (overlay_->is_label_map()) {
         for (std::size_t i = 0; i < labels_.size(); ++i) {
-            const Label& label = overlay_->labels[i];
+            const Label& label = coloured_->labels[i];
             const bool hidden = std::ranges::count(look.hidden, label.value) > 0;
-            surfaces.push_back({labels_[i], label.colour, hidden ? 0 : opacity, offset});
+            const double seen = hidden ? 0 : opacity * opacity_of(label.value, layers_);
+            surfaces.push_back({labels_[i], label.colour, seen, offset});
         }
     } else {
         image_.set_level(look.level.value_or(overlay_->level));

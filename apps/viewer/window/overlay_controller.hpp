@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "apps/viewer/model/label_layers.hpp"
 #include "apps/viewer/model/overlay.hpp"
 #include "apps/viewer/scene/surface_source.hpp"
 #include "apps/viewer/window/background_task.hpp"
@@ -31,19 +32,27 @@ class OverlayController : public QObject {
     void close();
     /// Null: none.
     const std::shared_ptr<const Overlay>& overlay() const { return overlay_; }
+    /// Labels have the colours and opacities of these, where they are by label.
+    void set_layers(const SharedLayers& layers);
     bool settled() const { return !loader_.busy() && !image_.extracting(); }
     BackgroundTask& loader() { return loader_; }
+
+  Q_SIGNALS:
+    /// Another overlay, or none.
+    void changed();
 
   private:
     void use(std::shared_ptr<const Overlay> overlay, std::vector<ExtractedSurface> labels);
     void show();
+    void colour();
     void go_to(int label);
 
     Content& content_;
     Views& views_;
     Panel& panel_;
     Messages& messages_;
-    std::shared_ptr<const Overlay> overlay_;
+    std::shared_ptr<const Overlay> overlay_, coloured_;  // the latter as it is shown
+    SharedLayers layers_;
     std::vector<ExtractedSurface> labels_;
     SurfaceSource image_;  // its surface
     BackgroundTask loader_;

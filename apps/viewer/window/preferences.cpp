@@ -50,6 +50,7 @@ Preferences saved_preferences() {
     const Preferences usual;
     Preferences found;
     found.appearance = last_appearance();
+    found.language = chosen_language();
     found.wheel_px =
         number_in(settings, "preferences/wheel_px", usual.wheel_px, least_wheel, most_wheel);
     found.unit = static_cast<LengthUnit>(
@@ -60,6 +61,7 @@ Preferences saved_preferences() {
 }
 
 void save_preferences(const Preferences& preferences) {
+    choose_language(preferences.language);
     QSettings settings;
     settings.setValue("preferences/wheel_px", preferences.wheel_px);
     settings.setValue("preferences/unit", static_cast<int>(preferences.unit));
@@ -69,23 +71,28 @@ void save_preferences(const Preferences& preferences) {
 PreferencesDialog::PreferencesDialog(const Preferences& preferences, QWidget* window)
     : QDialog(window), preferences_(preferences) {
     setObjectName("preferences");
-    setWindowTitle("Preferences");
-    auto* theme = choice_box("preferred_theme", {"as the system", "light", "dark"},
+    setWindowTitle(tr("Preferences"));
+    auto* theme = choice_box("preferred_theme", {tr("as the system"), tr("light"), tr("dark")},
                              static_cast<int>(preferences.appearance));
-    auto* wheel =
-        number_box("preferred_wheel", preferences.wheel_px, least_wheel, most_wheel, 1, " pixels");
-    auto* unit = choice_box("preferred_unit",
-                            {"automatic", "micrometres", "millimetres", "centimetres", "inches"},
-                            static_cast<int>(preferences.unit));
+    // Each language by its own name: whoever looks for it may not read the others.
+    auto* language = choice_box("preferred_language", {tr("as the system"), "English", "Deutsch"},
+                                static_cast<int>(preferences.language));
+    auto* wheel = number_box("preferred_wheel", preferences.wheel_px, least_wheel, most_wheel, 1,
+                             tr(" pixels"));
+    auto* unit = choice_box(
+        "preferred_unit",
+        {tr("automatic"), tr("micrometres"), tr("millimetres"), tr("centimetres"), tr("inches")},
+        static_cast<int>(preferences.unit));
     auto* millions = number_box("preferred_triangles", preferences.surface_millions, least_millions,
-                                most_millions, 1, " million");
+                                most_millions, 1, tr(" million"));
     auto* form = new QFormLayout(this);
-    add_row(*form, "Theme", theme, "Colours of the window");
-    add_row(*form, "A notch of the wheel", wheel,
-            "Moves the probe into the depth as far as a drag of so many pixels");
-    add_row(*form, "Units of lengths", unit, "Of measurements");
-    add_row(*form, "Triangles of the surface", millions,
-            "At most; a finer surface is thinned. A million takes about 80 MB");
+    add_row(*form, tr("Theme"), theme, tr("Colours of the window"));
+    add_row(*form, tr("Language"), language, tr("Of the window's words; from the next start"));
+    add_row(*form, tr("A notch of the wheel"), wheel,
+            tr("Moves the probe into the depth as far as a drag of so many pixels"));
+    add_row(*form, tr("Units of lengths"), unit, tr("Of measurements"));
+    add_row(*form, tr("Triangles of the surface"), millions,
+            tr("At most; a finer surface is thinned. A million takes about 80 MB"));
     auto* buttons = new QDialogButtonBox(QDialogButtonBox::Close);
     form->addRow(buttons);
     connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::accept);
@@ -96,6 +103,7 @@ PreferencesDialog::PreferencesDialog(const Preferences& preferences, QWidget* wi
         });
     };
     choice(theme, [](Preferences& p, int at) { p.appearance = static_cast<Appearance>(at); });
+    choice(language, [](Preferences& p, int at) { p.language = static_cast<Language>(at); });
     choice(unit, [](Preferences& p, int at) { p.unit = static_cast<LengthUnit>(at); });
     const auto number = [this](QDoubleSpinBox* box, double Preferences::*member) {
         connect(box, qOverload<double>(&QDoubleSpinBox::valueChanged), this,

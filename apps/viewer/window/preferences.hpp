@@ -5,11 +5,13 @@
 
 #include "apps/viewer/model/measurement.hpp"
 #include "apps/viewer/window/appearance.hpp"
+#include "apps/viewer/window/language.hpp"
 
 namespace palpate::viewer {
 
 struct Preferences {
     Appearance appearance = Appearance::system;
+    Language language = Language::system;  ///< of the window's words, from the next start
     double wheel_px = 15;  ///< a notch of the wheel moves the probe as a drag of so many pixels
     LengthUnit unit = LengthUnit::automatic;  ///< of measurements
     double surface_millions = 6;              ///< the most triangles of the felt surface

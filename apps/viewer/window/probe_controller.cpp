@@ -73,8 +73,8 @@ void ProbeController::set_pointing(bool probe) {
     if (!pointing_) return;
     views_.scene().setFocus();
     messages_.show_done(
-        "Click to touch, drag to move the probe, turn the wheel to push it in; the right button "
-        "turns the view");
+        tr("Click to touch, drag to move the probe, turn the wheel to push it in; the right button "
+           "turns the view"));
 }
 
 Vec3 ProbeController::towards_viewer() const {
@@ -114,7 +114,7 @@ Vec3 ProbeController::before_far_side(const Vec3& from, const Vec3& by) {
     const double room =
         from.dot(towards) - extent_along(content_.live()->field().geometry(), towards).back;
     if (deeper <= room) return by;
-    messages_.show_done("The probe is at the far side of the volume: nothing lies deeper");
+    messages_.show_done(tr("The probe is at the far side of the volume: nothing lies deeper"));
     return by + (deeper - std::max(room, 0.0)) * towards;
 }
 
@@ -127,8 +127,9 @@ void ProbeController::touch(const Vec3& at) {
     const Vec3 aside = at - from - (at - from).dot(towards) * towards;
     const double grab = grab_px * mm_per_pixel(views_.scene().camera(), views_.scene().view_size());
     if (aside.norm() <= grab && now->session.tick.proxy.mode == Mode::constrained) return;
-    const Field field = content_.live()->field_now();
-    const auto surface = surface_under(field, content_.outer_level(), at, towards);
+    const Field& field = content_.live()->field();
+    const Content::OuterSurface outer = content_.outer_surface();
+    const auto surface = surface_under(outer.field, outer.level, at, towards);
     if (!surface) return;
     const double stiffness = content_.live()->settings().force.stiffness;
     const double depth = transform.scale * std::min(touch_newtons / stiffness, deepest_touch);
@@ -153,8 +154,9 @@ void ProbeController::approach(const Snapshot& now) {
     approaching_ = false;
     const pictures::Camera camera = views_.scene().camera();
     const Vec3 towards = axes_of(camera).towards_viewer;
-    const Field field = content_.live()->field_now();
-    const auto surface = surface_in_view(field, content_.outer_level(), towards, camera.up);
+    const Field& field = content_.live()->field();
+    const Content::OuterSurface outer = content_.outer_surface();
+    const auto surface = surface_in_view(outer.field, outer.level, towards, camera.up);
     if (!surface) return;
     const Vec3 off = off_voxels * field.geometry().spacing.maxCoeff() * towards;
     const DeviceTransform& transform = now.session.transform;
@@ -197,17 +199,18 @@ void ProbeController::add_keys() {
         Vec3 step;
     };
     const Key keys[] = {
-        {"Nudge the probe to the left", Qt::Key_Left, {-1, 0, 0}},
-        {"Nudge the probe to the right", Qt::Key_Right, {1, 0, 0}},
-        {"Nudge the probe up", Qt::Key_Up, {0, 1, 0}},
-        {"Nudge the probe down", Qt::Key_Down, {0, -1, 0}},
-        {"Nudge the probe into the depth", Qt::Key_PageUp, {0, 0, -1}},
-        {"Nudge the probe towards you", Qt::Key_PageDown, {0, 0, 1}},
+        {tr("Nudge the probe to the left"), Qt::Key_Left, {-1, 0, 0}},
+        {tr("Nudge the probe to the right"), Qt::Key_Right, {1, 0, 0}},
+        {tr("Nudge the probe up"), Qt::Key_Up, {0, 1, 0}},
+        {tr("Nudge the probe down"), Qt::Key_Down, {0, -1, 0}},
+        {tr("Nudge the probe into the depth"), Qt::Key_PageUp, {0, 0, -1}},
+        {tr("Nudge the probe towards you"), Qt::Key_PageDown, {0, 0, 1}},
     };
     // Only where the scene has the focus: elsewhere arrows belong to sliders, numbers and slices.
     for (const Key& key : keys) {
         for (const bool far : {false, true}) {
-            auto* action = new QAction(far ? key.text + " by ten voxels" : key.text, &views_);
+            auto* action =
+                new QAction(far ? tr("%1 by ten voxels").arg(key.text) : key.text, &views_);
             action->setShortcut(QKeySequence(key.key + (far ? int(Qt::ShiftModifier) : 0)));
             action->setShortcutContext(Qt::WidgetShortcut);
             const Vec3 step = (far ? 10 : 1) * key.step;

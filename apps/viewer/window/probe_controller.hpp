@@ -16,6 +16,8 @@ class RunController;
 class Views;
 
 class ProbeController : public QObject {
+    Q_OBJECT
+
   public:
     ProbeController(Content& content, RunController& run, Views& views, Messages& messages);
 

@@ -30,26 +30,27 @@ RawDialog::RawDialog(const QString& path, QWidget* parent)
       type_(named(new QComboBox, "raw_type")),
       order_(named(new QComboBox, "raw_order")),
       skip_(named(new QSpinBox, "raw_skip")),
-      skip_rest_(named(new QPushButton("Skip the rest"), "raw_skip_rest",
-                       "Takes the bytes that are left over for a header")),
+      skip_rest_(named(new QPushButton(tr("Skip the rest")), "raw_skip_rest",
+                       tr("Takes the bytes that are left over for a header"))),
       slice_(named(new QSlider(Qt::Horizontal), "raw_slice")),
       picture_(named(new QLabel, "raw_picture")),
       verdict_(named(new QLabel, "raw_verdict")) {
     setObjectName("raw");
-    setWindowTitle(QString("Raw data: %1").arg(QFileInfo(path).fileName()));
+    setWindowTitle(tr("Raw data: %1").arg(QFileInfo(path).fileName()));
     make_fields();
     auto* buttons = new QDialogButtonBox(QDialogButtonBox::Open | QDialogButtonBox::Cancel);
     accept_ = buttons->button(QDialogButtonBox::Open);
     connect(buttons, &QDialogButtonBox::accepted, this, &QDialog::accept);
     connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);
     auto* form = new QFormLayout;
-    add_row(*form, "Samples", row_of({size_[0], size_[1], size_[2]}),
-            "How many along x, which runs fastest, y and z");
-    add_row(*form, "Sample type", type_, "Of each sample in the file");
-    add_row(*form, "Byte order", order_, "Of samples of two or four bytes");
-    add_row(*form, "Spacing [mm]", row_of({spacing_[0], spacing_[1], spacing_[2]}),
-            "Between samples along x, y and z");
-    add_row(*form, "Header [bytes]", row_of({skip_, skip_rest_}), "Skipped before the samples");
+    add_row(*form, tr("Samples"), row_of({size_[0], size_[1], size_[2]}),
+            tr("How many along x, which runs fastest, y and z"));
+    add_row(*form, tr("Sample type"), type_, tr("Of each sample in the file"));
+    add_row(*form, tr("Byte order"), order_, tr("Of samples of two or four bytes"));
+    add_row(*form, tr("Spacing [mm]"), row_of({spacing_[0], spacing_[1], spacing_[2]}),
+            tr("Between samples along x, y and z"));
+    add_row(*form, tr("Header [bytes]"), row_of({skip_, skip_rest_}),
+            tr("Skipped before the samples"));
     form->addRow(verdict_);
     auto* fields = new QWidget;
     fields->setLayout(form);
@@ -66,16 +67,16 @@ void RawDialog::make_fields() {
         size_[a]->setRange(1, 65535);
         size_[a]->setValue(guess.size[int(a)]);
         size_[a]->setObjectName(QString("size%1").arg(a));
-        size_[a]->setAccessibleName(QString("Samples along %1").arg(axes[a]));
+        size_[a]->setAccessibleName(tr("Samples along %1").arg(axes[a]));
         spacing_[a]->setRange(1e-4, 1000);
         spacing_[a]->setDecimals(4);
         spacing_[a]->setValue(1);
-        spacing_[a]->setAccessibleName(QString("Spacing along %1").arg(axes[a]));
+        spacing_[a]->setAccessibleName(tr("Spacing along %1").arg(axes[a]));
         connect(size_[a], qOverload<int>(&QSpinBox::valueChanged), this, changed);
     }
     type_->addItems({"uint8", "int16", "uint16", "float32"});
     type_->setCurrentText(QString::fromLatin1(name_of(guess.type).data()));
-    order_->addItems({"little-endian (PC)", "big-endian"});
+    order_->addItems({tr("little-endian (PC)"), tr("big-endian")});
     order_->setCurrentIndex(guess.big_endian ? 1 : 0);
     skip_->setRange(0, std::numeric_limits<int>::max());
     for (QComboBox* box : {type_, order_}) {
@@ -94,7 +95,7 @@ QWidget* RawDialog::make_preview() {
     picture_->setAlignment(Qt::AlignCenter);
     picture_->setWordWrap(true);
     picture_->setFrameShape(QFrame::StyledPanel);
-    slice_->setAccessibleName("Slice of the preview");
+    slice_->setAccessibleName(tr("Slice of the preview"));
     slice_->setRange(0, size_[2]->value() - 1);
     slice_->setValue(size_[2]->value() / 2);
     connect(slice_, &QSlider::valueChanged, this, &RawDialog::show_slice);
@@ -122,12 +123,13 @@ void RawDialog::judge() {
     accept_->setEnabled(packed || bytes == have);
     skip_rest_->setEnabled(!packed && bytes < have && have - bytes < skip_->maximum());
     verdict_->setText(
-        packed ? QString("These samples take %L1 bytes once unpacked.").arg(bytes, 0, 'f', 0)
-        : bytes == have ? "These samples are just what the file holds."
-                        : QString("The file holds %L1 bytes, %L2 %3 than these samples take.")
-                              .arg(have, 0, 'f', 0)
-                              .arg(std::abs(have - bytes), 0, 'f', 0)
-                              .arg(have > bytes ? "more" : "fewer"));
+        packed ? tr("These samples take %L1 bytes once unpacked.").arg(bytes, 0, 'f', 0)
+        : bytes == have
+            ? tr("These samples are just what the file holds.")
+            : (have > bytes ? tr("The file holds %L1 bytes, %L2 more than these samples take.")
+                            : tr("The file holds %L1 bytes, %L2 fewer than these samples take."))
+                  .arg(have, 0, 'f', 0)
+                  .arg(std::abs(have - bytes), 0, 'f', 0));
     if (slice_->maximum() != layout.size[2] - 1) {
         slice_->setMaximum(layout.size[2] - 1);
         slice_->setValue(layout.size[2] / 2);
@@ -137,7 +139,7 @@ void RawDialog::judge() {
 
 void RawDialog::show_slice() {
     const auto slice = raw_slice(path_.toStdString(), layout_now(), slice_->value());
-    if (!slice) return picture_->setText("No preview");
+    if (!slice) return picture_->setText(tr("No preview"));
     const QImage image(slice->grey.data(), slice->width, slice->height, slice->width,
                        QImage::Format_Grayscale8);
     picture_->setPixmap(QPixmap::fromImage(image.scaled(

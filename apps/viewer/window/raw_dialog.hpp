@@ -18,6 +18,8 @@ namespace palpate::viewer {
 /// Begins with what the file's name and length suggest. Shows at every change a slice, and whether
 /// the file has just the bytes that are needed; else it cannot be accepted.
 class RawDialog : public QDialog {
+    Q_OBJECT
+
   public:
     explicit RawDialog(const QString& path, QWidget* parent = nullptr);
     /// The file with the layout that is chosen.

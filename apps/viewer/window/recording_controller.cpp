@@ -19,7 +19,7 @@ void RecordingController::start(const QString& path) {
     if (!content_.live()) return;
     messages_.guarded([&] {
         content_.live()->record(path.toStdString());
-        messages_.show_done(QString("Recording to %1").arg(path));
+        messages_.show_done(tr("Recording to %1").arg(path));
     });
     Q_EMIT changed();
 }
@@ -28,7 +28,8 @@ void RecordingController::stop() {
     if (!recording()) return;
     messages_.guarded([&] {
         const int before = std::exchange(exit_status_, app::bad_output);  // unless it is whole
-        messages_.show_done(QString("%1 ticks recorded").arg(content_.live()->stop_recording()));
+        messages_.show_done(
+            tr("%n ticks recorded", nullptr, static_cast<int>(content_.live()->stop_recording())));
         exit_status_ = before;
     });
     Q_EMIT changed();
@@ -51,13 +52,13 @@ void RecordingController::show_playback() {
     panel_.set_session(playback.field(), content_.volume()->histogram, head.isovalue, head.settings,
                        device);
     panel_.set_observing(true);
-    QString words = QString("%1 ticks").arg(playback.ticks());
-    if (!playback.complete()) words += "; the recording was cut off before its end";
+    QStringList words{tr("%n ticks", nullptr, static_cast<int>(playback.ticks()))};
+    if (!playback.complete()) words << tr("the recording was cut off before its end");
     if (playback.different() > 0) {
-        words += QString("; %1 of them come out otherwise than they were recorded")
-                     .arg(playback.different());
+        words << tr("%n of them come out otherwise than they were recorded", nullptr,
+                    static_cast<int>(playback.different()));
     }
-    messages_.show_done(words);
+    messages_.show_done(words.join("; "));
 }
 
 }  // namespace palpate::viewer

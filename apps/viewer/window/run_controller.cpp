@@ -44,14 +44,14 @@ QString RunController::device_words() const {
             finding.name == "mouse" || finding.name == "simulated" || finding.name == "recorded";
         if (finding.found && !made) names << QString::fromStdString(finding.name);
     }
-    if (names.isEmpty()) return "No haptic device was found: the mouse is the hand.";
-    return QString("Found: %1. Choose it under Device.").arg(names.join(", "));
+    if (names.isEmpty()) return tr("No haptic device was found: the mouse is the hand.");
+    return tr("Found: %1. Choose it under Device.").arg(names.join(", "));
 }
 
 void RunController::start(std::shared_ptr<Opened> volume, const run::Setup& setup) {
     content_.start_run(std::move(volume), setup);
-    QString words = QString("Felt through the device %1")
-                        .arg(QString::fromStdString(run::text_of(setup.device)));
+    QString words =
+        tr("Felt through the device %1").arg(QString::fromStdString(run::text_of(setup.device)));
     for (const std::string& sentence : content_.live()->privileges()) {
         words += "; " + QString::fromStdString(sentence);
     }
@@ -63,8 +63,9 @@ void RunController::start(std::shared_ptr<Opened> volume, const run::Setup& setu
 void RunController::send(const Command& command) {
     run::Run* live = content_.live();
     if (!live) {
-        panel_.show_refused(content_.playback() ? "A recording is played: nothing here changes it."
-                                                : "There is no volume to feel.");
+        panel_.show_refused(content_.playback()
+                                ? tr("A recording is played: nothing here changes it.")
+                                : tr("There is no volume to feel."));
         return;
     }
     try {
@@ -78,7 +79,9 @@ void RunController::restore(const RendererSettings& settings) {
     send(settings.force);
     send(settings.proxy.friction);
     send(settings.penetrability);
-    if (settings.layers) send(command::UseLayers{settings.layers});
+    if (settings.layers && !lack_labels(settings.layers)) {
+        send(command::UseLayers{settings.layers});
+    }
     send(settings.transform);
     send(command::Forces{settings.forces_on});
     Q_EMIT content_.run_changed();
@@ -88,7 +91,8 @@ void RunController::raise_isovalue(double percent) {
     const run::Run* live = content_.live();
     if (!live) return;
     if (have_surfaces(live->settings().layers)) {
-        return messages_.show_done("Layers have levels of their own: drag one on the histogram");
+        return messages_.show_done(
+            tr("Layers are felt, not an isovalue: choose No layers to feel one"));
     }
     const double step = 0.01 * percent * live->field().volume().range();
     send(command::Isovalue{live->isovalue() + step});
@@ -104,7 +108,8 @@ void RunController::find_devices() {
     if (search_.busy()) return;
     auto found = std::make_shared<std::vector<devices::DeviceFinding>>();
     search_.start(
-        "Looking for devices", [found](const io::Progress&) { *found = devices::find_devices(); },
+        tr("Looking for devices"),
+        [found](const io::Progress&) { *found = devices::find_devices(); },
         [this, found] {
             findings_ = *found;
             show_devices();
@@ -138,8 +143,8 @@ void RunController::use_device(const QString& option) {
             const std::int64_t ticks = live->recording() ? live->recording()->ticks() : 0;
             content_.use_device(device);
             if (ticks > 0) {
-                messages_.show_done(
-                    QString("%1 ticks recorded, up to the other device").arg(ticks));
+                messages_.show_done(tr("%n ticks recorded, up to the other device", nullptr,
+                                       static_cast<int>(ticks)));
             }
             Q_EMIT device_changed();
         }

@@ -50,7 +50,8 @@ class RunController : public QObject {
 
     /// A command that cannot be carried out is refused in the panel.
     void send(const Command& command);
-    /// Sends those of the settings for which there are commands; the panel shows the result.
+    /// Sends those of the settings for which there are commands; the panel shows the result. Not
+    /// layers that lack_labels().
     void restore(const RendererSettings& settings);
     /// By so many percent of the data's range.
     void raise_isovalue(double percent);

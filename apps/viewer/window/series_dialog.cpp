@@ -14,9 +14,18 @@
 namespace palpate::viewer {
 namespace {
 
-const QStringList columns{"",     "Series",       "Modality", "Slices",
-                          "Size", "Spacing [mm]", "Patient",  "Study"};
 constexpr int picture_size = 64;
+
+QStringList columns() {
+    return {"",
+            SeriesDialog::tr("Series"),
+            SeriesDialog::tr("Modality"),
+            SeriesDialog::tr("Slices"),
+            SeriesDialog::tr("Size"),
+            SeriesDialog::tr("Spacing [mm]"),
+            SeriesDialog::tr("Patient"),
+            SeriesDialog::tr("Study")};
+}
 
 QPixmap pixmap_of(const io::Thumbnail& picture) {
     if (picture.grey.empty()) return {};
@@ -28,12 +37,12 @@ QPixmap pixmap_of(const io::Thumbnail& picture) {
 
 QStringList texts_of(const io::SeriesInfo& s) {
     const auto text = [](const std::string& t) { return QString::fromStdString(t); };
-    const QString stack = s.stack.empty() ? QString() : QString(" (stack %1)").arg(text(s.stack));
-    const QString name = s.description.empty() ? text(s.uid) : text(s.description);
+    QString name = s.description.empty() ? text(s.uid) : text(s.description);
+    if (!s.stack.empty()) name = SeriesDialog::tr("%1 (stack %2)").arg(name, text(s.stack));
     QStringList spacing;
     for (int a = 0; a < 3 && s.spacing[a] > 0; ++a)
         spacing << QString::number(s.spacing[a], 'g', 4);
-    return {name + stack,
+    return {name,
             text(s.modality),
             QString::number(s.slices),
             QString("%1 x %2").arg(s.size[0]).arg(s.size[1]),
@@ -47,11 +56,11 @@ QStringList texts_of(const io::SeriesInfo& s) {
 SeriesDialog::SeriesDialog(const QString& name, const std::vector<io::SeriesInfo>& series,
                            QWidget* parent)
     : QDialog(parent),
-      table_(named(new QTableWidget(static_cast<int>(series.size()), columns.size()), "series")) {
+      table_(named(new QTableWidget(static_cast<int>(series.size()), columns().size()), "series")) {
     setObjectName("choose-series");
-    setWindowTitle(QString("Choose a series of %1").arg(name));
-    table_->setAccessibleName("Series");
-    table_->setHorizontalHeaderLabels(columns);
+    setWindowTitle(tr("Choose a series of %1").arg(name));
+    table_->setAccessibleName(tr("Series"));
+    table_->setHorizontalHeaderLabels(columns());
     table_->setSelectionBehavior(QAbstractItemView::SelectRows);
     table_->setSelectionMode(QAbstractItemView::SingleSelection);
     table_->setEditTriggers(QAbstractItemView::NoEditTriggers);

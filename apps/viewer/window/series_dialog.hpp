@@ -10,6 +10,8 @@ class QTableWidget;
 namespace palpate::viewer {
 
 class SeriesDialog : public QDialog {
+    Q_OBJECT
+
   public:
     SeriesDialog(const QString& name, const std::vector<io::SeriesInfo>& series,
                  QWidget* parent = nullptr);

@@ -41,22 +41,24 @@ Welcome::Welcome(QWidget* parent)
     : QWidget(parent), recent_(named(new QWidget, "welcome_recent")), devices_(words({})) {
     setObjectName("welcome");
     devices_->setObjectName("welcome_devices");
-    auto* open = button("welcome_open", "Open a volume…",
-                        "NRRD, MetaImage, NIfTI, DICOM, TIFF, VTI, raw; a session or a recording");
-    auto* folder = button("welcome_folder", "Open a folder…", "DICOM series, TIFF slices");
-    auto* sample = button("welcome_sample", "Feel the sample volume", "A CT scan of a head");
+    auto* open =
+        button("welcome_open", tr("Open a volume…"),
+               tr("NRRD, MetaImage, NIfTI, DICOM, TIFF, VTI, raw; a session or a recording"));
+    auto* folder = button("welcome_folder", tr("Open a folder…"), tr("DICOM series, TIFF slices"));
+    auto* sample =
+        button("welcome_sample", tr("Feel the sample volume"), tr("A CT scan of a head"));
     sample->setVisible(has_sample());
     connect(open, &QCommandLinkButton::clicked, this, &Welcome::open_asked);
     connect(folder, &QCommandLinkButton::clicked, this, &Welcome::folder_asked);
     connect(sample, &QCommandLinkButton::clicked, this, &Welcome::sample_asked);
-    auto* title = words("Palpate: feel volumes");
+    auto* title = words(tr("Palpate: feel volumes"));
     QFont large = title->font();
     large.setPointSizeF(1.6 * large.pointSizeF());
     title->setFont(large);
-    auto* how = words(
+    auto* how = words(tr(
         "Click a surface to touch it; drag to move along, hold the button or turn the wheel to "
         "press.\nThe right button turns the view.\nDrag the line in the histogram to feel another "
-        "level; press harder to go through a layer.");
+        "level; press harder to go through a layer."));
     auto* column = column_of({title, open, folder, sample, recent_, how, devices_});
     column->setFixedWidth(column_width);
     column->layout()->setSpacing(10);
@@ -73,7 +75,7 @@ void Welcome::refresh() {
     const QStringList files = recent_files().mid(0, most_recent);
     recent_->setVisible(!files.isEmpty());
     if (files.isEmpty()) return;
-    recent_->layout()->addWidget(words("Recent"));
+    recent_->layout()->addWidget(words(tr("Recent")));
     for (const QString& path : files) {
         auto* link = new QPushButton(short_name(path));
         link->setFlat(true);

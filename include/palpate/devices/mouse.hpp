@@ -33,7 +33,7 @@ class Mouse final : public Device {
     DeviceInfo info() const override;
     DeviceReading read(double time) noexcept override;
     /// Forces reach no motor.
-    void write(const Vec3&, double) noexcept override {}
+    void write(const Wrench&, double) noexcept override {}
     void stop() noexcept override {}
 
   private:

@@ -26,20 +26,28 @@ struct TraceRow {
     bool constrained = false;    ///< mode: constrained or free
     int tetrahedra = 0;          ///< how many the SCP moved through
     std::int64_t update_ns = 0;  ///< time of this proxy update alone
-    LayersFelt layers = {};
+    LayersFelt layers = {};      ///< of a session without layers: none
+    ToolFelt tool = {};          ///< of a point: nothing turns
+    Vec3 torque = Vec3::Zero();  ///< [N mm]
 };
 
 TraceRow trace_row(const Tick& tick);
+
+/// Columns that a trace has only where there is something to tell.
+struct TraceExtras {
+    /// `layer` (the one touched) and `inside` (those that the SCP is in, outermost first, joined by
+    /// +; _ in place of what would break a table). Empty: neither.
+    std::vector<std::string> layer_names = {};
+    /// `qw` to `qz` (hand), `proxy_qw` to `proxy_qz`, `torque_x` to `torque_z`, `contacts`.
+    bool tool = false;
+};
 
 /// Writes a trace row by row; the file appears with commit(). Throws OutputError.
 class TraceWriter {
   public:
     /// Each comment, at the head of the file, is one or more lines of text without the #.
-    /// With names of layers there are columns `layer` (the one touched) and `inside` (those that
-    /// the SCP is in, outermost first, joined by +; _ in place of what would break a table).
     explicit TraceWriter(const std::filesystem::path& path,
-                         const std::vector<std::string>& comments = {},
-                         std::vector<std::string> layer_names = {});
+                         const std::vector<std::string>& comments = {}, TraceExtras extras = {});
     void add(const TraceRow& row);
     void commit() { file_.commit(); }
     /// For PendingFile::commit_together().
@@ -47,7 +55,7 @@ class TraceWriter {
 
   private:
     PendingFile file_;
-    std::vector<std::string> layer_names_;
+    TraceExtras extras_;
     std::string line_;
 };
 
@@ -59,6 +67,22 @@ class PathWriter {
     /// The corners of a tick in order, its end included.
     void add(std::int64_t tick, const Vec3& corner);
     void commit() { file_.commit(); }
+    /// For PendingFile::commit_together().
+    PendingFile& file() { return file_; }
+
+  private:
+    PendingFile file_;
+    std::string line_;
+};
+
+/// Writes the poses of a tool's proxy: columns tick, x, y, z [mm, physical], qw, qx, qy, qz (tool
+/// axes to physical axes). Throws OutputError.
+class PosesWriter {
+  public:
+    explicit PosesWriter(const std::filesystem::path& path);
+    /// The poses of a tick in order, its end included: between two successive ones each point of
+    /// the tool travels a straight line.
+    void add(std::int64_t tick, const Pose& pose);
     /// For PendingFile::commit_together().
     PendingFile& file() { return file_; }
 

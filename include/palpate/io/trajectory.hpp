@@ -7,20 +7,23 @@
 #include <vector>
 
 #include "palpate/io/error.hpp"
-#include "palpate/volume.hpp"
+#include "palpate/tool.hpp"
 
 namespace palpate::io {
 
-/// HIP positions over time; both vectors have the same length, at least 1.
+/// Poses of the hand over time; vectors have the same length, at least 1, but for orientations that
+/// are not given: none.
 struct Trajectory {
-    std::vector<double> time;    ///< [s], strictly increasing
-    std::vector<Vec3> position;  ///< [mm, physical], finite
+    std::vector<double> time;             ///< [s], strictly increasing
+    std::vector<Vec3> position;           ///< [mm, physical], finite
+    std::vector<Quaternion> orientation;  ///< unit, tool axes to physical axes
 };
 
 /// A CSV text whose header names t and x, y, z; or t and hip_x, hip_y, hip_z, so that a trace can
-/// be replayed. Further columns are ignored. Throws InputError, which calls the text `name`, for
-/// anything else: a missing column, no rows, a cell that is not a finite number, time that does not
-/// increase.
+/// be replayed. Columns qw, qx, qy, qz, all or none, are the orientation; what is unit to a
+/// thousandth is made so to all digits. Further columns are ignored. Throws InputError, which calls
+/// the text `name`, for anything else: a missing column, no rows, a cell that is not a finite
+/// number, an orientation that is not unit, time that does not increase.
 Trajectory parse_trajectory(std::string_view text, const std::string& name);
 
 /// The same from a file.

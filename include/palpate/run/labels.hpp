@@ -3,11 +3,16 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 
 #include "palpate/io/layers_file.hpp"
 #include "palpate/run/source.hpp"
 
 namespace palpate::run {
+
+/// A layer by label for each of these, with its name and colour, which gives way at 1.5 N. Their
+/// places are still to come: layers_by_label().
+io::LayersFile layers_of(std::span<const io::LabelName> labels);
 
 /// Layers whose places are the labels of this volume. With `like`, its layers: by the numbers that
 /// they have as levels if it is by label, else by the names that the label volume gives. Without, a

@@ -18,27 +18,32 @@ struct OfflineSummary {
     std::int64_t out_of_budget = 0;  ///< updates that continued in the next tick
     std::int64_t recovering = 0;     ///< not yet out of the solid: no force
     std::int64_t refused = 0;        ///< positions absurdly far: no force, nothing changed
-    double worst_surface_error = 0;  ///< largest |density - isovalue| / range in contact
-    double largest_force = 0;        ///< [N]
+    double worst_surface_error =
+        0;                      ///< largest |f - isovalue| / range at the SCP or points in contact
+    double largest_force = 0;   ///< [N]
+    double largest_torque = 0;  ///< [N mm]
+    std::int64_t most_contacts = 0;  ///< of a tool in one tick
     double mean_tetrahedra = 0;
     /// Time of a proxy update [ns].
     double mean_ns = 0;
     std::int64_t p50_ns = 0, p99_ns = 0, p999_ns = 0, max_ns = 0;
 };
 
-/// Receivers of the ticks; any may be empty. The last corner of a tick is its SCP, bit for bit.
+/// Receivers of the ticks; any may be empty. The last corner of a tick is its SCP, bit for bit, and
+/// the last pose that of the proxy.
 struct OfflineSinks {
     /// Called before each tick; it may change what is felt.
     std::function<void(Renderer& renderer, std::int64_t tick)> change;
     std::function<void(const io::TraceRow&)> row;
     std::function<void(std::int64_t tick, const Vec3& corner)> corner;  ///< of the SCP's path [mm]
+    std::function<void(std::int64_t tick, const Pose& pose)> pose;      ///< of a tool's way
     std::function<void(double fraction)> progress;
 };
 
 /// Renders each position of the trajectory (physical space) in order. The proxy begins at the first
 /// position if that is free, else where recovery finds free space; with layers, inside whatever is
-/// there that can give way. Throws std::invalid_argument if all of space is solid. What a sink
-/// throws is passed on.
+/// there that can give way. A tool begins at the first pose and is brought out if it is inside.
+/// Throws std::invalid_argument if all of space is solid. What a sink throws is passed on.
 OfflineSummary render_offline(Renderer& renderer, const io::Trajectory& trajectory,
                               const OfflineSinks& sinks);
 

@@ -62,7 +62,8 @@ class Run {
     /// What the system granted of real time, and what not.
     const std::vector<std::string>& privileges() const { return servo_->privileges(); }
     /// Throws std::invalid_argument, saying what is wrong, for a command that cannot be carried
-    /// out; QueueFull for one that comes too fast.
+    /// out; QueueFull for one that comes too fast. While layers have surfaces an isovalue waits;
+    /// when they are taken away, the one asked for last is felt.
     void send(const Command& command);
     /// Commands that were sent and not carried out yet.
     std::int64_t waiting() const { return servo_->waiting(); }
@@ -73,7 +74,8 @@ class Run {
 
     /// As the commands sent so far have left them.
     const RendererSettings& settings() const { return settings_; }
-    /// The level that was asked for last; the level felt is in the snapshot.
+    /// The level that was asked for last, also while layers are felt; the level felt is in the
+    /// snapshot.
     double isovalue() const { return isovalue_; }
     bool frozen() const { return frozen_; }
 

@@ -14,6 +14,7 @@
 #include "palpate/io/frame_loader.hpp"
 #include "palpate/io/layers_file.hpp"
 #include "palpate/io/level.hpp"
+#include "palpate/io/tool_file.hpp"
 #include "palpate/run/source.hpp"
 #include "palpate/session.hpp"
 
@@ -45,6 +46,8 @@ struct RenderSetup {
     baselines::NamedMethod method = baselines::methods().front();
     PenetrabilitySetup penetrability;
     std::optional<io::LayersFile> layers;
+    io::ToolSpec tool;                   ///< a point
+    std::optional<double> tool_spacing;  ///< of its points [mm]; nothing: half a voxel
     std::optional<Friction> friction;
     ForceSettings force;          ///< `limit` and `stiffness` only where the next two are absent
     std::optional<double> limit;  ///< [N] nothing: the device's

@@ -45,11 +45,11 @@ class FailingDevice : public Device {
         fail_if_asked(Call::read);
         return ready_at(at_depth(29 + std::min(2.0, 20 * time)));
     }
-    void write(const Vec3& force, double) override {
+    void write(const Wrench& wrench, double) override {
         fail_if_asked(Call::write);
-        if (force.isZero(0)) fail_if_asked(Call::write_zero);
+        if (wrench.force.isZero(0)) fail_if_asked(Call::write_zero);
         if (failed_) ++late_writes_;
-        if (!stopped_) force_ = force.norm();
+        if (!stopped_) force_ = wrench.force.norm();
     }
     void stop() noexcept override {
         if (!stopped_.exchange(true)) taken_ = Clock::now();

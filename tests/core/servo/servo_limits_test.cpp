@@ -54,7 +54,7 @@ struct Recorded {
                     if (limits.empty()) ticks_before_limits = ticks.size();
                     limits.push_back(*to);
                 } else {
-                    apply(begin, CheckedCommand(*command, start, field.solid(), field.geometry()));
+                    apply(begin, CheckedCommand(*command, start, kind_of(field)));
                 }
                 continue;
             }

@@ -1,96 +1,10 @@
 // The device `forcedimension` against stand-ins for the vendor's libraries.
-#include "devices/forcedimension/forcedimension.hpp"
+#include "devices/forcedimension/forcedimension_fixture.hpp"
 
-#include <dlfcn.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <limits>
-#include <stdexcept>
-
-#include "devices/forcedimension/mock_dhd.hpp"
-#include "devices/vendor_polling.hpp"
-#include "support/scratch_folder.hpp"
 
 namespace palpate::devices {
 namespace {
-
-using namespace std::chrono_literals;
-using support::any_scene;
-using support::contains;
-using support::eventually;
-using support::message_of;
-using support::MockDhd;
-using support::MockDhdState;
-using support::throughout;
-
-/// A stand-in that was just plugged in.
-MockDhd* plugged_in(const char* path) {
-    void* library = dlopen(path, RTLD_NOW);
-    if (!library) throw std::runtime_error(dlerror());
-    MockDhd* mock = reinterpret_cast<MockDhd* (*)()>(dlsym(library, "mock_dhd"))();
-    const std::lock_guard lock(mock->mutex);
-    mock->state = {};
-    return mock;
-}
-
-class ForceDimension : public testing::Test {
-  protected:
-    void use(const char* library) {
-        library_ = library;
-        mock_ = plugged_in(library);
-    }
-    void SetUp() override { use(MOCK_DRD); }
-
-    std::unique_ptr<Device> open(const std::string& options = "", double rate = 1000) const {
-        return open_forcedimension(parse_device("forcedimension:library=" + library_ + options),
-                                   any_scene(rate));
-    }
-    std::string refusal(const std::string& options = "") const {
-        return message_of<DeviceError>([&] { open(options); });
-    }
-
-    /// Of the stand-in, its lock held.
-    template <class F>
-    auto with(F act) const {
-        const std::lock_guard lock(mock_->mutex);
-        return act(mock_->state);
-    }
-    /// In our axes: x to the right, y up, z towards the person.
-    Vec3 force() const {
-        return with([](auto& dhd) { return Vec3(dhd.force[1], dhd.force[2], dhd.force[0]); });
-    }
-    bool becomes(Device& device, DeviceStatus status) const {
-        return eventually([&] { return device.read(0).status == status; });
-    }
-    bool has_no_problem(Device& device) const {
-        return eventually([&] { return device.problem().empty(); });
-    }
-    bool says(Device& device, const std::string& words) const {
-        return eventually([&] { return contains(device.problem(), words); });
-    }
-    /// Presses with this force until the device feels it.
-    bool presses(Device& device, const Vec3& newtons = Vec3(1, 2, 0)) const {
-        return eventually([&] { return (force() - newtons).norm() < 1e-12; },
-                          [&] { device.write(newtons, 0); });
-    }
-    /// No force for a while, whatever is asked for.
-    bool stays_at_zero(Device& device) const {
-        return throughout(
-            100ms, [&] { return force().isZero(0); }, [&] { device.write(Vec3(1, 1, 1), 0); });
-    }
-    bool goes_to_zero(Device& device) const {
-        const auto press = [&] { device.write(Vec3(1, 1, 1), 0); };
-        return eventually([&] { return force().isZero(0); }, press) && stays_at_zero(device);
-    }
-    long called(const std::string& name) const {
-        return with(
-            [&](auto& dhd) { return std::count(dhd.calls.begin(), dhd.calls.end(), name); });
-    }
-
-    std::string library_;
-    MockDhd* mock_ = nullptr;
-};
 
 TEST_F(ForceDimension, a_missing_library_is_named_with_what_to_install) {
     const auto open_nothing = [] {
@@ -134,7 +48,7 @@ TEST_F(ForceDimension, options_that_cannot_be_meant_are_refused) {
     const auto wrong = [&](const std::string& options) {
         return message_of<std::invalid_argument>([&] { open(options); });
     };
-    EXPECT_TRUE(contains(wrong(",gripper=yes"), "there are: index, autoinit, library"));
+    EXPECT_TRUE(contains(wrong(",gripper=yes"), "there are: index, autoinit, centre, library"));
     EXPECT_TRUE(contains(wrong(",index=1.5"), "a whole number is needed"));
     EXPECT_TRUE(contains(wrong(",index=-1"), "a number from 0 to 100"));
     EXPECT_TRUE(contains(wrong(",autoinit=perhaps"), "must be one of yes, no"));
@@ -206,7 +120,7 @@ TEST_F(ForceDimension, a_force_arrives_in_newtons_in_the_axes_it_was_written_in)
             const auto raw = with([](auto& dhd) { return dhd.force; });
             return raw == std::array<double, 3>{3, 1, 2};
         },
-        [&] { device->write(Vec3(1, 2, 3), 0); }));
+        [&] { device->write({Vec3(1, 2, 3)}, 0); }));
     EXPECT_EQ(with([](auto& dhd) { return dhd.wrong_id; }), 0);
 }
 
@@ -214,7 +128,7 @@ TEST_F(ForceDimension, a_force_beyond_the_devices_own_is_cut_to_it) {
     const auto device = open();
     const Vec3 cut = Vec3(0.6, 0, 0.8) * 12;
     EXPECT_TRUE(eventually([&] { return (force() - cut).norm() < 1e-12; },
-                           [&] { device->write(Vec3(30, 0, 40), 0); }));
+                           [&] { device->write({Vec3(30, 0, 40)}, 0); }));
     EXPECT_LE(with([](auto& dhd) { return dhd.largest_force; }), 12 + 1e-12);
     EXPECT_EQ(with([](auto& dhd) { return dhd.max_force; }), 12);
 }
@@ -417,7 +331,7 @@ TEST_F(ForceDimension, readings_of_a_slow_library_are_never_ready_and_get_no_for
     EXPECT_TRUE(says(*device, "takes too long"));
     EXPECT_TRUE(throughout(
         300ms, [&] { return device->read(0).status != DeviceStatus::ready && force().isZero(0); },
-        [&] { device->write(Vec3(1, 1, 1), 0); }));
+        [&] { device->write({Vec3(1, 1, 1)}, 0); }));
     with([](auto& dhd) { dhd.slow_ms = 0; });
     EXPECT_TRUE(presses(*device));
 }

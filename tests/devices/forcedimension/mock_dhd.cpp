@@ -27,12 +27,17 @@ int fail(int code) {
     return -1;
 }
 
-void apply(MockDhdState& state, const std::array<double, 3>& force) {
+void apply(MockDhdState& state, const std::array<double, 3>& force,
+           const std::array<double, 3>& torque = {}) {
     const bool works =
         state.initialised && state.force_on && !state.brakes && state.force_off_cause == 0;
     state.force = works ? force : std::array<double, 3>{};
     const double size = std::hypot(state.force[0], state.force[1], state.force[2]);
     state.largest_force = std::max(state.largest_force, size);
+    const bool turns = works && state.active_wrist && !state.is_regulating;
+    state.torque = turns ? torque : std::array<double, 3>{};
+    const double turning = std::hypot(state.torque[0], state.torque[1], state.torque[2]);
+    state.largest_torque = std::max(state.largest_torque, turning);
 }
 
 /// The state, for a call for this device; its lock is held.
@@ -142,6 +147,7 @@ MOCK_EXPORT int dhdGetStatus(int* status, char id) {
     status[3] = call->initialised ? 1 : 0;
     status[5] = call->tells_of_force && call->force_on && call->force_off_cause == 0 ? 1 : 0;
     status[6] = call->brakes ? 1 : 0;
+    status[12] = call->wrist_initialised ? 1 : 0;
     status[14] = call->force_off_cause;
     return 0;
 }
@@ -164,6 +170,7 @@ MOCK_EXPORT int dhdGetPosition(double* x, double* y, double* z, char id) {
 
 MOCK_EXPORT int dhdGetOrientationFrame(double (*rows)[3], char id) {
     const Call call(id);
+    if (call->orientation_error) return fail(call->orientation_error);
     std::memcpy(rows, call->frame, sizeof call->frame);
     return 0;
 }
@@ -179,6 +186,40 @@ MOCK_EXPORT int dhdSetForce(double x, double y, double z, char id) {
     if (call->force_error) return fail(call->force_error);
     apply(mock.state, {x, y, z});
     return call->force_result;
+}
+
+MOCK_EXPORT bool dhdHasActiveWrist(char id) {
+    const Call call(id);
+    return call->active_wrist;
+}
+
+namespace {
+int set_both(const std::array<double, 3>& force, const std::array<double, 3>& torque, char id) {
+    const Call call(id);
+    ++call->loops;
+    if (call->torque_error) return fail(call->torque_error);
+    apply(mock.state, force, torque);
+    return call->force_result;
+}
+}  // namespace
+
+// Each stand-in has one of the two functions.
+#ifdef MOCK_DHD_ALONE
+MOCK_EXPORT int dhdSetForceAndTorque(double fx, double fy, double fz, double tx, double ty,
+                                     double tz, char id) {
+    return set_both({fx, fy, fz}, {tx, ty, tz}, id);
+}
+#else
+MOCK_EXPORT int dhdSetForceAndTorqueAndGripperForce(double fx, double fy, double fz, double tx,
+                                                    double ty, double tz, double gripper, char id) {
+    return set_both({fx, fy, fz}, {tx, ty, tz + gripper}, id);
+}
+#endif
+
+MOCK_EXPORT int dhdSetMaxTorque(double limit, char id) {
+    const Call call(id);
+    call->max_torque = limit;
+    return 0;
 }
 
 MOCK_EXPORT int dhdSetBrakes(int on, char id) {
@@ -237,6 +278,50 @@ MOCK_EXPORT int drdAutoInit(char id) {
     const Call call(id);
     if (!call->initialises) return fail(8);
     call->initialised = true;
+    return 0;
+}
+
+MOCK_EXPORT int drdRegulatePos(bool on, char id) {
+    const Call call(id);
+    call->regulates_position = on;
+    return 0;
+}
+
+MOCK_EXPORT int drdRegulateRot(bool on, char id) {
+    const Call call(id);
+    call->regulates_rotation = on;
+    return 0;
+}
+
+MOCK_EXPORT int drdRegulateGrip(bool, char id) {
+    const Call call(id);
+    return 0;
+}
+
+MOCK_EXPORT int drdStart(char id) {
+    const Call call(id, "start");
+    call->is_regulating = true;
+    return 0;
+}
+
+MOCK_EXPORT int drdStop(bool stays_on, char id) {
+    const Call call(id, "stop regulating");
+    call->is_regulating = false;
+    call->force_on = stays_on;
+    return 0;
+}
+
+MOCK_EXPORT int drdMoveToRot(double a, double b, double c, bool wait, char id) {
+    int takes = 0;
+    {
+        const Call call(id, "turn");
+        takes = call->centre_ms;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(takes));
+    const Call call(id);
+    const bool straight = a == 0 && b == 0 && c == 0 && wait;
+    const bool wrist_alone = call->regulates_rotation && !call->regulates_position;
+    if (straight && wrist_alone && call->is_regulating) ++call->turned_to_centre;
     return 0;
 }
 #endif

@@ -17,6 +17,8 @@ struct MockDhdState {
     std::array<double, 3> position{};  // [m]
     double frame[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     unsigned int buttons = 0;
+    bool wrist_initialised = true;
+    bool active_wrist = false;
 
     // How it misbehaves.
     bool refuses_open = false;
@@ -29,12 +31,19 @@ struct MockDhdState {
     int position_result = 0;     // where it does not fail: 1 time guard
     int force_result = 0;        // 1 time guard, 2 motor saturated
     int slow_ms = 0;             // dhdGetPosition takes this long
+    int orientation_error = 0;   // dhdGetOrientationFrame fails with this
+    int torque_error = 0;        // dhdSetForceAndTorque(AndGripperForce) fails with this
+    int centre_ms = 0;           // how long drdMoveToRot takes
     int force_off_cause = 0;     // the device has switched its force off
     bool tells_of_force = true;  // false: its status never says that force is on
 
     // What it saw.
-    std::array<double, 3> force{};  // [N] as applied: zero with brakes on or force off
-    double largest_force = 0;
+    std::array<double, 3> force{};   // [N] as applied: zero with brakes on or force off
+    std::array<double, 3> torque{};  // [N m] the same; zero also while the wrist is regulated
+    double largest_force = 0, largest_torque = 0;
+    double max_torque = -1;  // dhdSetMaxTorque
+    bool regulates_position = true, regulates_rotation = true, is_regulating = false;
+    int turned_to_centre = 0;
     double max_force = -1;  // dhdSetMaxForce
     int watchdog = 17, gravity = 0;
     bool force_on = false, brakes = true, is_open = false;

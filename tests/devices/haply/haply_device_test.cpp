@@ -21,7 +21,7 @@ TEST_F(HaplyTest, axes_can_be_chosen) {
     EXPECT_LT((device->read(0).position - Vec3(100, -200, 300)).norm(), 1e-9);
     EXPECT_EQ(device->info().workspace_low, Vec3(-300, -299, -118));
     ASSERT_TRUE(until([&] {
-        device->write(push, 0);
+        device->write({push}, 0);
         const auto forces = service.forces();
         return !forces.empty() && forces.back() == push;
     }));
@@ -70,7 +70,7 @@ TEST_F(HaplyTest, the_other_spelling_of_the_force_is_an_option) {
 TEST_F(HaplyTest, no_force_beyond_what_the_device_can_take) {
     const auto device = open();
     ASSERT_TRUE(until([&] {
-        device->write(Vec3(30, 0, 0), 0);
+        device->write({Vec3(30, 0, 0)}, 0);
         const auto forces = service.forces();
         return !forces.empty() && forces.back()[0] > 9;
     }));

@@ -36,7 +36,7 @@ TEST_F(HaplyTest, a_force_from_before_it_was_ready_is_not_felt) {
     for (int round = 0; round < 10; ++round) {
         service.answer("garbage");
         ASSERT_TRUE(until([&] { return device->read(0).status == DeviceStatus::fault; }));
-        device->write(push, 0);
+        device->write({push}, 0);
         service.answer(moved(id, Vec3(0, 0, 0)));
         ASSERT_TRUE(until([&] { return device->read(0).status == DeviceStatus::ready; }));
         const std::size_t now = service.messages();

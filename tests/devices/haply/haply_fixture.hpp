@@ -59,7 +59,7 @@ class HaplyTest : public ::testing::Test {
 
     /// Writes the push once and looks how the device is, as a servo does each millisecond.
     DeviceStatus press(Device& device) const {
-        device.write(push, 0);
+        device.write({push, Vec3::Zero()}, 0);
         return device.read(0).status;
     }
 
@@ -90,7 +90,7 @@ class HaplyTest : public ::testing::Test {
         const std::size_t now = service.forces().size();
         const Vec3 later(4, 0, 0);
         const bool went_on = until([&] {
-            device.write(later, 0);
+            device.write({later, Vec3::Zero()}, 0);
             const auto forces = service.forces();
             return forces.size() > now + 10 && forces.back().isZero(0);
         });

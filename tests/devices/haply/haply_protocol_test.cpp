@@ -175,6 +175,63 @@ TEST(HaplyProtocol, a_wired_grip_has_one_button) {
     EXPECT_EQ(state.grip.buttons, 1U);
 }
 
+TEST(HaplyProtocol, a_wired_grip_turns_as_a_wireless_one_does) {
+    for (const std::string list : {"verse_grip", "wireless_verse_grip"}) {
+        const ServiceState state = after({with_grip(
+            snapshot({whole_device("A")}),
+            R"("device_id":"1","state":{"orientation":{"w":0,"x":0,"y":0,"z":1}})", list)});
+        EXPECT_EQ(state.grip.list, list);
+        EXPECT_LE((state.grip.orientation * Vec3(1, 2, 3) - Vec3(-1, -2, 3)).norm(), 1e-12);
+    }
+}
+
+TEST(HaplyProtocol, a_grip_that_is_gone_keeps_its_last_orientation_until_another_tells_one) {
+    const std::string half = R"("orientation":{"w":0,"x":1,"y":0,"z":0})";
+    ServiceState state = after(
+        {with_grip(snapshot({whole_device("A")}), R"("device_id":"G","state":{)" + half + "}")});
+    const Mat3 last = state.grip.orientation;
+    EXPECT_LE((last * Vec3(1, 2, 3) - Vec3(1, -2, -3)).norm(), 1e-12);
+    take_message(state, R"({"inverse3":[{"device_id":"A"}],"wireless_verse_grip":[]})");
+    EXPECT_TRUE(state.grip.list.empty());
+    EXPECT_EQ(state.grip.orientation, last);
+    take_message(state, with_grip(moved("A", Vec3(0, 0, 0)),
+                                  R"("device_id":"H","state":{"orientation":{"w":0,"x":0,"y":0,)"
+                                  R"("z":0}})",
+                                  "verse_grip"));
+    EXPECT_EQ(state.grip.orientation, last);  // zeros turn nothing: it sleeps
+    take_message(state, with_grip(moved("A", Vec3(0, 0, 0)),
+                                  R"("device_id":"H","state":{"orientation":{"w":1,"x":0,"y":0,)"
+                                  R"("z":0}})",
+                                  "verse_grip"));
+    EXPECT_EQ(state.grip.orientation, Mat3(Mat3::Identity()));
+}
+
+/// What service 3.5 adds to the first message is passed over.
+TEST(HaplyProtocol, the_first_message_of_service_3_5_is_understood) {
+    const std::string device =
+        R"({"device_id":"049D","config":{"type":"inverse3","handedness":"right",)"
+        R"("streaming_mode":"USB","preset":"defaults","home_return":{"enabled":false},)"
+        R"("device_info":{"major_version":7,"minor_version":4},"basis":{"permutation":"XYZ"},)"
+        R"("mount":{"position":{"x":0,"y":0,"z":0},"scale":{"x":1,"y":1,"z":1}},)"
+        R"("filters":{"force_gate":{"gain":0.3},"damping":{"scalar":0}}},)"
+        R"("state":{"cursor_position":{"x":0.01,"y":-0.12,"z":0.15},)"
+        R"("body_orientation":{"w":1,"x":0,"y":0,"z":0},"control_domain":"cartesian",)"
+        R"("transform":{"position":{"x":0,"y":0,"z":0},"rotation":{"w":1,"x":0,"y":0,"z":0}}},)" +
+        support::status() + "}";
+    const std::string grip =
+        R"("device_id":"61548","config":{"type":"wireless_verse_grip"},"state":{"orientation":)"
+        R"({"w":0,"x":1,"y":0,"z":0},"buttons":{"a":true,"b":false,"c":false},)"
+        R"("battery_level":0.9},"status":{"connected":true,"awake":true,"ready":true})";
+    const ServiceState state = after({with_grip(snapshot({device}), grip)});
+    EXPECT_EQ(state.device_id, "049D");
+    ASSERT_TRUE(state.position);
+    EXPECT_EQ(*state.position, Vec3(0.01, -0.12, 0.15));
+    EXPECT_EQ(status_of(state), DeviceStatus::ready);
+    EXPECT_EQ(problem_of(state), "");
+    EXPECT_EQ(state.grip.buttons, 1U);
+    EXPECT_LE((state.grip.orientation * Vec3(0, 0, 1) - Vec3(0, 0, -1)).norm(), 1e-12);
+}
+
 TEST(HaplyProtocol, a_grip_that_is_gone_holds_no_button) {
     const std::string held = with_grip(snapshot({whole_device("A")}),
                                        R"("device_id":"G","state":{"buttons":{"b":true}})");

@@ -39,7 +39,7 @@ std::optional<std::thread> scheduler;
 std::atomic<bool> running{false};
 bool force_output = false;
 bool in_frame = false;
-std::array<double, 3> frame_force{};
+std::array<double, 3> frame_force{}, frame_torque{};
 unsigned long last_handle = 0;
 
 // The mutex is held by the caller of all of these.
@@ -54,10 +54,13 @@ void want_frame() {
     ++state.outside;
     complain(0x102);
 }
-void apply(const std::array<double, 3>& force) {
+void drive(const std::array<double, 3>& force, const std::array<double, 3>& torque) {
     state.force = force_output ? force : std::array<double, 3>{};
     const double size = std::hypot(state.force[0], state.force[1], state.force[2]);
     state.largest_force = std::max(state.largest_force, size);
+    state.torque = force_output ? torque : std::array<double, 3>{};
+    const double turning = std::hypot(state.torque[0], state.torque[1], state.torque[2]);
+    state.largest_torque = std::max(state.largest_torque, turning);
 }
 
 void loop() {
@@ -94,6 +97,12 @@ MOCK_EXPORT void mock_hd_reset() {
     state.stiffness = fresh.stiffness;
     state.workspace = fresh.workspace;
     state.rate = fresh.rate;
+    state.input_dof = fresh.input_dof;
+    state.output_dof = fresh.output_dof;
+    state.most_torque = fresh.most_torque;
+    state.torque_error = 0;
+    state.torque = {};
+    state.largest_torque = 0;
     state.calibration = fresh.calibration;
     state.calibration_style = fresh.calibration_style;
     state.refuses_null = state.refuses_all = state.refuses_start = false;
@@ -142,7 +151,7 @@ MOCK_EXPORT void hdBeginFrame(unsigned int device) {
         if (device != the_device || !state.device_open) complain(0x104);
         if (in_frame) complain(0x400);
         in_frame = true;
-        frame_force = {};
+        frame_force = frame_torque = {};
         slow = state.slow_ms;
     }
     if (slow) std::this_thread::sleep_for(std::chrono::milliseconds(slow));
@@ -154,7 +163,7 @@ MOCK_EXPORT void hdEndFrame(unsigned int device) {
     if (!in_frame) complain(0x401);
     in_frame = false;
     ++state.frames;
-    apply(frame_force);
+    drive(frame_force, frame_torque);
     if (state.every_error) complain(state.every_error);
     if (state.next_error) complain(state.next_error);
     state.next_error = 0;
@@ -197,7 +206,7 @@ MOCK_EXPORT void hdDisable(unsigned int capability) {
     called("disable");
     if (capability != 0x4000) return complain(0x100);
     force_output = false;
-    apply({});
+    drive({}, {});
 }
 
 MOCK_EXPORT void hdGetDoublev(unsigned int parameter, double* value) {
@@ -221,6 +230,10 @@ MOCK_EXPORT void hdGetDoublev(unsigned int parameter, double* value) {
         case 0x2603:
             *value = state.most_force;
             break;
+        case 0x2622:
+            if (state.output_dof < 6) return complain(0x100);
+            *value = state.most_torque;
+            break;
         default:
             complain(0x100);
     }
@@ -234,7 +247,10 @@ MOCK_EXPORT void hdGetIntegerv(unsigned int parameter, int* value) {
             *value = state.buttons;
             break;
         case 0x2553:
-            *value = 6;
+            *value = state.input_dof;
+            break;
+        case 0x2554:
+            *value = state.output_dof;
             break;
         case 0x2555:
             *value = state.calibration_style;
@@ -255,6 +271,11 @@ MOCK_EXPORT const char* hdGetString(unsigned int parameter) {
 MOCK_EXPORT void hdSetDoublev(unsigned int parameter, const double* value) {
     const std::lock_guard lock(state.mutex);
     want_frame();
+    if (parameter == 0x2701 && state.output_dof >= 6) {
+        if (state.torque_error) return complain(state.torque_error);
+        std::copy(value, value + 3, frame_torque.begin());
+        return;
+    }
     if (parameter != 0x2700) return complain(0x100);
     std::copy(value, value + 3, frame_force.begin());
 }

@@ -19,23 +19,28 @@ struct MockHd {
     double most_force = 3.3, stiffness = 0.7;
     std::array<double, 6> workspace{-80, -60, -35, 80, 60, 35};
     int rate = 1000;
+    int input_dof = 6, output_dof = 3;
+    double most_torque = 170;  // [mN m]
     unsigned int calibration = 0x5000;
     int calibration_style = 4;
 
     // How it misbehaves.
-    bool refuses_null = false;     // hdInitDevice(NULL) fails
-    bool refuses_all = false;      // and so does any name
-    bool refuses_start = false;    // hdStartScheduler
-    bool update_helps = true;      // hdUpdateCalibration
-    unsigned int every_error = 0;  // reported by every frame
-    unsigned int next_error = 0;   // reported by the next frame
-    int slow_ms = 0;               // hdBeginFrame takes this long
-    bool silent = false;           // the servo loop calls nobody
-    bool no_position = false;      // hdGetDoublev(position) tells nothing
+    bool refuses_null = false;      // hdInitDevice(NULL) fails
+    bool refuses_all = false;       // and so does any name
+    bool refuses_start = false;     // hdStartScheduler
+    bool update_helps = true;       // hdUpdateCalibration
+    unsigned int every_error = 0;   // reported by every frame
+    unsigned int next_error = 0;    // reported by the next frame
+    int slow_ms = 0;                // hdBeginFrame takes this long
+    unsigned int torque_error = 0;  // reported by every call that sets a torque
+    bool silent = false;            // the servo loop calls nobody
+    bool no_position = false;       // hdGetDoublev(position) tells nothing
 
     // What it saw.
     std::array<double, 3> force{};   // as applied: the last frame's, zero without force output
+    std::array<double, 3> torque{};  // [mN m] the same
     double largest_force = 0;        // since the last clear
+    double largest_torque = 0;
     std::vector<std::string> calls;  // but for those in frames
     long frames = 0;
     std::array<double, 3> force_at_stop{1, 1, 1};  // as applied when the scheduler was stopped

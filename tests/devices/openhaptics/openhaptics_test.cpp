@@ -1,78 +1,13 @@
 // The device `openhaptics` against a stand-in for the vendor's library.
-#include "devices/openhaptics/openhaptics.hpp"
-
-#include <dlfcn.h>
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 
-#include "devices/openhaptics/mock_hd.hpp"
-#include "devices/vendor_polling.hpp"
-#include "support/scratch_folder.hpp"
+#include "devices/openhaptics/openhaptics_fixture.hpp"
 
 namespace palpate::devices {
 namespace {
-
-using namespace std::chrono_literals;
-using support::any_scene;
-using support::contains;
-using support::eventually;
-using support::message_of;
-using support::MockHd;
-using support::throughout;
-
-class OpenHaptics : public testing::Test {
-  protected:
-    void SetUp() override {
-        void* library = dlopen(MOCK_HD, RTLD_NOW);
-        ASSERT_NE(library, nullptr) << dlerror();
-        hd_ = reinterpret_cast<MockHd* (*)()>(dlsym(library, "mock_hd"))();
-        reinterpret_cast<void (*)()>(dlsym(library, "mock_hd_reset"))();
-    }
-
-    static std::unique_ptr<Device> open(const std::string& options = "", double rate = 1000) {
-        const std::string text = "openhaptics:library=" + std::string(MOCK_HD) + options;
-        return open_openhaptics(parse_device(text), any_scene(rate));
-    }
-    static std::string refusal(const std::string& options = "") {
-        return message_of<DeviceError>([&] { open(options); });
-    }
-
-    /// Of the stand-in, its lock held.
-    template <class F>
-    auto with(F use) const {
-        const std::lock_guard lock(hd_->mutex);
-        return use(*hd_);
-    }
-    Vec3 force() const {
-        return with([](MockHd& hd) { return Vec3(hd.force[0], hd.force[1], hd.force[2]); });
-    }
-    bool becomes(Device& device, DeviceStatus status) const {
-        return eventually([&] { return device.read(0).status == status; });
-    }
-    bool has_no_problem(Device& device) const {
-        return eventually([&] { return device.problem().empty(); });
-    }
-    /// Presses with this force until the device feels it.
-    bool presses(Device& device, const Vec3& newtons) const {
-        return eventually([&] { return (force() - newtons).norm() < 1e-12; },
-                          [&] { device.write(newtons, 0); });
-    }
-    /// No force for a while, whatever is asked for.
-    bool stays_at_zero(Device& device) const {
-        return throughout(
-            100ms, [&] { return force().isZero(0); }, [&] { device.write(Vec3(1, 1, 1), 0); });
-    }
-    bool goes_to_zero(Device& device) const {
-        const auto press = [&] { device.write(Vec3(1, 1, 1), 0); };
-        return eventually([&] { return force().isZero(0); }, press) && stays_at_zero(device);
-    }
-
-    MockHd* hd_ = nullptr;
-};
 
 TEST_F(OpenHaptics, a_missing_library_is_named_with_what_to_install) {
     const auto open_nothing = [] {
@@ -215,7 +150,7 @@ TEST_F(OpenHaptics, a_force_beyond_the_devices_own_is_cut_to_it) {
     const auto device = open();
     const Vec3 cut = Vec3(0.6, 0.8, 0) * 3.3;
     EXPECT_TRUE(eventually([&] { return (force() - cut).norm() < 1e-12; },
-                           [&] { device->write(Vec3(30, 40, 0), 0); }));
+                           [&] { device->write({Vec3(30, 40, 0)}, 0); }));
     EXPECT_LE(with([](MockHd& hd) { return hd.largest_force; }), 3.3 + 1e-12);
 }
 
@@ -223,8 +158,8 @@ TEST_F(OpenHaptics, a_force_that_is_no_number_is_none) {
     const auto device = open();
     ASSERT_TRUE(presses(*device, Vec3(1, 0, 0)));
     const double nan = std::numeric_limits<double>::quiet_NaN();
-    EXPECT_TRUE(
-        eventually([&] { return force().isZero(0); }, [&] { device->write(Vec3(1, nan, 0), 0); }));
+    EXPECT_TRUE(eventually([&] { return force().isZero(0); },
+                           [&] { device->write({Vec3(1, nan, 0)}, 0); }));
 }
 
 TEST_F(OpenHaptics, the_force_goes_to_zero_when_the_servo_falls_silent) {
@@ -404,7 +339,7 @@ TEST_F(OpenHaptics, readings_of_a_slow_driver_are_never_ready_and_get_no_force) 
     ASSERT_TRUE(becomes(*device, DeviceStatus::stale));
     EXPECT_TRUE(throughout(
         300ms, [&] { return device->read(0).status != DeviceStatus::ready && force().isZero(0); },
-        [&] { device->write(Vec3(1, 1, 1), 0); }));
+        [&] { device->write({Vec3(1, 1, 1)}, 0); }));
     with([](MockHd& hd) { hd.slow_ms = 0; });
     EXPECT_TRUE(presses(*device, Vec3(1, 2, 0)));
 }

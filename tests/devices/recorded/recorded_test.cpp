@@ -254,7 +254,7 @@ TEST_F(Recorded, takes_any_force_and_is_not_moved_by_it) {
     EXPECT_NO_THROW(check(force, pushed->info().limits));
     for (int i = 0; i < 100; ++i) {
         ASSERT_EQ(pushed->read(i / 1000.0).position, left->read(i / 1000.0).position);
-        pushed->write(Vec3::Constant(i % 2 == 0 ? 1e9 : std::nan("")), i / 1000.0);
+        pushed->write({Vec3::Constant(i % 2 == 0 ? 1e9 : std::nan(""))}, i / 1000.0);
     }
     pushed->stop();
     EXPECT_EQ(pushed->read(0.2).position, left->read(0.2).position);
@@ -281,7 +281,7 @@ TEST_F(Recorded, reads_and_writes_allocate_nothing) {
     const std::int64_t before = support::allocation_count();
     for (int i = 0; i < 10000; ++i) {
         device->read(i / 1000.0);
-        device->write({1, 2, 3}, i / 1000.0);
+        device->write({Vec3(1, 2, 3)}, i / 1000.0);
     }
     EXPECT_EQ(support::allocation_count(), before);
 }

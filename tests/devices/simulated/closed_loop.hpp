@@ -64,7 +64,7 @@ inline Held press(const Body& body, Device& device, double stiffness, double sec
         const bool ready = reading.status == DeviceStatus::ready;
         const Tick tick =
             render(renderer, {.time = time, .position = reading.position, .valid = ready});
-        device.write(tick.force, time);
+        device.write({tick.force}, time);
         held.push = tick.force.norm();
         held.constrained = tick.proxy.mode == Mode::constrained;
         if (time < seconds - 1) continue;

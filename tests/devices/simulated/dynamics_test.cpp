@@ -170,6 +170,7 @@ TEST(MotorForce, is_nothing_for_a_force_that_is_not_finite) {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     constexpr double infinity = std::numeric_limits<double>::infinity();
     EXPECT_EQ(motor_force(device, {1, nan, 1}), zero);
+    EXPECT_EQ(motor_force(device, {0, nan, 0}), zero);
     EXPECT_EQ(motor_force(device, {infinity, 0, 0}), zero);
     EXPECT_EQ(motor_force(device, {-infinity, infinity, 0}), zero);
 }
@@ -182,43 +183,43 @@ TEST(EncoderPosition, is_the_nearest_whole_step) {
     EXPECT_EQ(encoder_position(device, {0.24, 0.26, -7.8}), Vec3(0.24, 0.26, -7.8));
 }
 
-TEST(ForceLine, a_force_acts_from_its_delay_until_the_next_or_until_it_is_too_old) {
-    ForceLine line(0.25, 2, 8);
-    EXPECT_EQ(line.at(0).force, zero);
+TEST(WrenchLine, a_force_acts_from_its_delay_until_the_next_or_until_it_is_too_old) {
+    WrenchLine line(0.25, 2, 8);
+    EXPECT_EQ(line.at(0).wrench.force, zero);
     EXPECT_EQ(line.at(0).until, std::numeric_limits<double>::infinity());
-    line.send({1, 0, 0}, 1);
-    line.send({2, 0, 0}, 2);
-    EXPECT_EQ(line.at(1).force, zero);
+    line.send({Vec3(1, 0, 0)}, 1);
+    line.send({Vec3(2, 0, 0)}, 2);
+    EXPECT_EQ(line.at(1).wrench.force, zero);
     EXPECT_EQ(line.at(1).until, 1.25);
-    EXPECT_EQ(line.at(1.25).force, Vec3(1, 0, 0));
+    EXPECT_EQ(line.at(1.25).wrench.force, Vec3(1, 0, 0));
     EXPECT_EQ(line.at(1.25).until, 2.25);
-    EXPECT_EQ(line.at(2.25).force, Vec3(2, 0, 0));
+    EXPECT_EQ(line.at(2.25).wrench.force, Vec3(2, 0, 0));
     EXPECT_EQ(line.at(2.25).until, 4.25);
-    EXPECT_EQ(line.at(4.25).force, zero);
-    line.send({3, 0, 0}, 5);
-    EXPECT_EQ(line.at(5).force, zero);
-    EXPECT_EQ(line.at(5.25).force, Vec3(3, 0, 0));
+    EXPECT_EQ(line.at(4.25).wrench.force, zero);
+    line.send({Vec3(3, 0, 0)}, 5);
+    EXPECT_EQ(line.at(5).wrench.force, zero);
+    EXPECT_EQ(line.at(5.25).wrench.force, Vec3(3, 0, 0));
 }
 
-TEST(ForceLine, gives_the_newest_of_those_that_arrived_and_replaces_when_it_is_full) {
-    ForceLine line(1, 100, 2);
-    for (int i = 1; i <= 5; ++i) line.send({double(i), 0, 0}, 0.1 * i);
-    EXPECT_EQ(line.at(1.2).force, Vec3(1, 0, 0));
-    EXPECT_EQ(line.at(1.6).force, Vec3(5, 0, 0));
+TEST(WrenchLine, gives_the_newest_of_those_that_arrived_and_replaces_when_it_is_full) {
+    WrenchLine line(1, 100, 2);
+    for (int i = 1; i <= 5; ++i) line.send({Vec3(double(i), 0, 0)}, 0.1 * i);
+    EXPECT_EQ(line.at(1.2).wrench.force, Vec3(1, 0, 0));
+    EXPECT_EQ(line.at(1.6).wrench.force, Vec3(5, 0, 0));
     for (int i = 1; i <= 100; ++i) {  // round the ring
-        line.send({double(i), 0, 0}, 10 + i);
-        ASSERT_EQ(line.at(11 + i).force, Vec3(i, 0, 0));
+        line.send({Vec3(double(i), 0, 0)}, 10 + i);
+        ASSERT_EQ(line.at(11 + i).wrench.force, Vec3(i, 0, 0));
     }
 }
 
-TEST(ForceLine, a_time_that_goes_back_or_is_not_a_number_counts_as_the_last_one) {
-    ForceLine line(0, 10, 8);
-    line.send({1, 0, 0}, 5);
-    line.send({2, 0, 0}, 3);
-    EXPECT_EQ(line.at(4.9).force, zero);
-    EXPECT_EQ(line.at(5).force, Vec3(2, 0, 0));
-    line.send({3, 0, 0}, std::numeric_limits<double>::quiet_NaN());
-    EXPECT_EQ(line.at(5).force, Vec3(3, 0, 0));
+TEST(WrenchLine, a_time_that_goes_back_or_is_not_a_number_counts_as_the_last_one) {
+    WrenchLine line(0, 10, 8);
+    line.send({Vec3(1, 0, 0)}, 5);
+    line.send({Vec3(2, 0, 0)}, 3);
+    EXPECT_EQ(line.at(4.9).wrench.force, zero);
+    EXPECT_EQ(line.at(5).wrench.force, Vec3(2, 0, 0));
+    line.send({Vec3(3, 0, 0)}, std::numeric_limits<double>::quiet_NaN());
+    EXPECT_EQ(line.at(5).wrench.force, Vec3(3, 0, 0));
 }
 
 TEST(Profiles, are_found_by_name_and_make_sense) {
@@ -233,9 +234,10 @@ TEST(Profiles, are_found_by_name_and_make_sense) {
         EXPECT_LT(one.delay, 0.01);
     }
     for (const std::string& name : grip_names()) EXPECT_GT(grip(name).damping, 0);
-    EXPECT_EQ(support::message_of<std::invalid_argument>([] { profile("novint"); }),
-              "there is no device profile 'novint'; there are: omni touch touchx omega3 falcon "
-              "inverse3");
+    EXPECT_EQ(
+        support::message_of<std::invalid_argument>([] { profile("novint"); }),
+        "there is no device profile 'novint'; there are: omni touch touchx omega3 omega6 omega7 "
+        "sigma7 premium6dof falcon inverse3 inverse3_versegrip");
     EXPECT_EQ(support::message_of<std::invalid_argument>([] { grip("tight"); }),
               "there is no grip 'tight'; there are: light normal firm");
 }

@@ -94,8 +94,8 @@ TEST(Simulated, the_same_reads_and_writes_give_the_same_bits) {
         ASSERT_EQ(a, b) << i;
         differs |= other->read(time).position != a;
         const Vec3 force(0.5 * (i % 3), -0.2 * (i % 5), 0.1);
-        one->write(force, time);
-        two->write(force, time);
+        one->write({force}, time);
+        two->write({force}, time);
     }
     EXPECT_TRUE(differs);
 }
@@ -105,10 +105,10 @@ template <class Force>
 Vec3 moved(const std::string& options, int ticks, Force force) {
     const auto device = body().open(loose + options);
     const Vec3 start = device->read(0).position;
-    device->write(force(0), 0);
+    device->write({force(0)}, 0);
     for (int i = 1; i <= ticks; ++i) {
         device->read(i / 1000.0);
-        device->write(force(i), i / 1000.0);
+        device->write({force(i)}, i / 1000.0);
     }
     return device->read(ticks / 1000.0).position - start;
 }
@@ -124,13 +124,13 @@ TEST(Simulated, a_force_acts_exactly_its_delay_later) {
     const Vec3 push(0.5, 1, -2);
     const auto late = body().open(loose + ",delay=2.5");
     const Vec3 start = late->read(0).position;
-    late->write(push, 0);
+    late->write({push}, 0);
     EXPECT_EQ(late->read(0.0025).position, start);
     EXPECT_NE(late->read(0.0026).position, start);
     const auto prompt = body().open(loose + ",delay=0");
     prompt->read(0);
     prompt->read(0.0025);
-    prompt->write(push, 0.0025);
+    prompt->write({push}, 0.0025);
     EXPECT_TRUE(
         (late->read(0.02).position - start).isApprox(prompt->read(0.02).position - start, 1e-9));
 }
@@ -147,7 +147,7 @@ TEST(Simulated, rounds_forces_to_whole_steps) {
         const auto device = body().open(
             "omni,friction=no,encoder=0,force_step=0.5,hand_stiffness=0,hand_damping=0");
         const Vec3 start = device->read(0).position;
-        device->write({newtons, 0, 0}, 0);
+        device->write({Vec3(newtons, 0, 0)}, 0);
         return Vec3(device->read(0.02).position - start);
     };
     EXPECT_EQ(way(0.24), Vec3(0, 0, 0));
@@ -161,12 +161,12 @@ TEST(Simulated, a_force_that_is_too_old_is_none) {
     const auto told = body().open(loose + ",delay=0");
     const Vec3 start = device->read(0).position;
     told->read(0);
-    device->write({1, 0, 0}, 0);
-    told->write({1, 0, 0}, 0);
+    device->write({Vec3(1, 0, 0)}, 0);
+    told->write({Vec3(1, 0, 0)}, 0);
     for (int i = 1; i <= 60; ++i) {
         device->read(i / 1000.0);
         told->read(i / 1000.0);
-        if (i == 20) told->write({0, 0, 0}, i / 1000.0);
+        if (i == 20) told->write({Vec3(0, 0, 0)}, i / 1000.0);
     }
     const Vec3 way = device->read(0.06).position - start;
     EXPECT_TRUE(way.isApprox(told->read(0.06).position - start, 1e-9));
@@ -182,11 +182,11 @@ TEST(Simulated, a_force_that_is_not_finite_is_none) {
 TEST(Simulated, no_force_after_stop_not_even_one_under_way) {
     const auto device = body().open(loose + ",delay=5");
     const Vec3 start = device->read(0).position;
-    device->write({1, 0, 0}, 0);
+    device->write({Vec3(1, 0, 0)}, 0);
     device->stop();
     for (int i = 1; i < 50; ++i) {
         ASSERT_EQ(device->read(i / 1000.0).position, start);
-        device->write({1, 0, 0}, i / 1000.0);
+        device->write({Vec3(1, 0, 0)}, i / 1000.0);
     }
 }
 
@@ -195,14 +195,14 @@ TEST(Simulated, may_be_stopped_from_another_thread) {
     device->read(0);
     std::jthread other([&] { device->stop(); });
     for (int i = 1; i < 200; ++i) {
-        device->write({1, 0, 0}, i / 1000.0);
+        device->write({Vec3(1, 0, 0)}, i / 1000.0);
         device->read(i / 1000.0);
     }
     other.join();
     // Friction is off: what it still travels it travels by its momentum, ever more slowly.
     Vec3 before = device->read(0.2).position, step = Vec3::Constant(1e9);
     for (int i = 201; i < 260; ++i) {
-        device->write({1, 0, 0}, i / 1000.0);
+        device->write({Vec3(1, 0, 0)}, i / 1000.0);
         const Vec3 now = device->read(i / 1000.0).position;
         ASSERT_LE((now - before).norm(), step.norm() + 1e-9);
         step = now - before;
@@ -332,7 +332,7 @@ TEST(Simulated, every_motion_meets_the_body) {
             const double time = i / 1000.0;
             const Tick tick =
                 render(renderer, {.time = time, .position = device->read(time).position});
-            device->write(tick.force, time);
+            device->write({tick.force}, time);
             most = std::max(most, tick.force.norm());
         }
         EXPECT_GT(most, 0.3) << motion;
@@ -347,7 +347,7 @@ TEST(Simulated, reads_and_writes_allocate_nothing) {
     for (int i = 0; i < support::scaled(20000); ++i) {
         const double time = i / 1000.0 + (i > 100 ? 10 : 0);
         sum += device->read(time).position;
-        device->write({0.1, 0.2, 0.3}, time);
+        device->write({Vec3(0.1, 0.2, 0.3)}, time);
     }
     EXPECT_EQ(support::allocation_count(), before);
     EXPECT_TRUE(sum.allFinite());

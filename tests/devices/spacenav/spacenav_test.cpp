@@ -80,7 +80,7 @@ TEST_F(Spacenav, renders_no_force_and_says_so) {
     EXPECT_TRUE(info.has_orientation);
     EXPECT_EQ(info.workspace_low, Vec3(-80, -80, -80));
     EXPECT_EQ(info.workspace_high, Vec3(80, 80, 80));
-    device->write(Vec3(1, 2, 3), 0);
+    device->write({Vec3(1, 2, 3)}, 0);
     device->stop();
     EXPECT_TRUE(becomes(*device, DeviceStatus::ready));
 }
@@ -119,6 +119,50 @@ TEST_F(Spacenav, the_hand_turns_and_the_buttons_are_held) {
     EXPECT_TRUE(eventually([&] { return device->read(0).orientation(0, 2) > 0.1; }));
     daemon_.say({2, 1, 0, 0, 0, 0, 0, 0});
     EXPECT_TRUE(eventually([&] { return device->read(0).buttons == 0; }));
+}
+
+TEST_F(Spacenav, the_hand_turns_at_its_speed_until_the_puck_is_let_go_and_keeps_its_place) {
+    const auto device = open(",turn=20");
+    daemon_.say({0, 0, 0, 0, 350, 0, 0, 8});
+    EXPECT_TRUE(eventually([&] { return device->read(0).orientation(2, 1) > 0.05; }));
+    daemon_.say({0, 0, 0, 0, 0, 0, 0, 8});
+    Mat3 there = Mat3::Identity();
+    EXPECT_TRUE(eventually([&] {
+        there = device->read(0).orientation;
+        return throughout(50ms, [&] { return device->read(0).orientation == there; });
+    }));
+    EXPECT_EQ(there(0, 0), 1);  // about x alone
+    EXPECT_EQ(device->read(0).position, Vec3(0, 0, 0));
+}
+
+TEST_F(Spacenav, absurd_rotations_and_other_types_leave_a_rotation) {
+    constexpr std::int32_t most = std::numeric_limits<std::int32_t>::max();
+    constexpr std::int32_t least = std::numeric_limits<std::int32_t>::min();
+    const auto device = open(",turn=360");
+    daemon_.say({5, 0, 0, 0, most, most, most, 8});
+    EXPECT_TRUE(
+        throughout(30ms, [&] { return device->read(0).orientation == Mat3(Mat3::Identity()); }));
+    for (const std::int32_t x : {most, least}) {
+        daemon_.say({0, 0, 0, 0, x, least, most, x});
+        EXPECT_TRUE(throughout(100ms, [&] {
+            const Mat3 m = device->read(0).orientation;
+            return (m * m.transpose() - Mat3::Identity()).norm() < 1e-9 && m.determinant() > 0;
+        }));
+    }
+    EXPECT_NE(device->read(0).orientation, Mat3(Mat3::Identity()));
+}
+
+TEST_F(Spacenav, a_daemon_that_hangs_up_while_the_hand_turns_stops_it) {
+    const auto device = open();
+    daemon_.say({0, 0, 0, 0, 0, 350, 0, 8});
+    ASSERT_TRUE(eventually([&] { return device->read(0).orientation(0, 2) > 0.05; }));
+    daemon_.go_away();
+    ASSERT_TRUE(becomes(*device, DeviceStatus::lost));
+    const Mat3 there = device->read(0).orientation;
+    daemon_.listen();
+    ASSERT_TRUE(daemon_.accept());
+    ASSERT_TRUE(becomes(*device, DeviceStatus::ready));
+    EXPECT_TRUE(throughout(50ms, [&] { return device->read(0).orientation == there; }));
 }
 
 TEST_F(Spacenav, an_event_may_come_in_pieces) {

@@ -124,6 +124,93 @@ TEST(LayerSet, properties_come_from_the_layer_else_its_curve_else_the_settings) 
     EXPECT_EQ(property_at(layers, 1, drag, settings), 0);
 }
 
+Layers three_labels() {
+    Layers layers;
+    layers.by_label = true;
+    for (const int label : {2, 4, 9}) {
+        Layer layer;
+        layer.name = std::to_string(label);
+        layer.level = label;
+        layers.layers.push_back(layer);
+    }
+    Geometry geometry;
+    geometry.size = {5, 1, 1};
+    const Volume labels(geometry, std::vector<std::uint8_t>{0, 2, 4, 9, 7});
+    layers.labels = numbered_labels(labels, layers.layers);
+    layers.label_volume = "labels.nrrd";
+    return layers;
+}
+
+std::vector<int> numbers(const Layers& layers) {
+    const auto samples = layers.labels->volume().samples<std::uint8_t>();
+    return {samples.begin(), samples.end()};
+}
+
+TEST(LayerSet, the_places_of_labels_follow_their_order) {
+    const Layers layers = three_labels();
+    EXPECT_EQ(numbers(layers), (std::vector{0, 1, 2, 3, 0}));
+    const Layers moved = moved_layer(layers, 2, 0);
+    EXPECT_EQ(moved.layers[0].level, 9);
+    EXPECT_EQ(numbers(moved), (std::vector{0, 2, 3, 1, 0}));
+    EXPECT_EQ(numbers(moved_layer(moved, 0, 2)), numbers(layers));
+    EXPECT_EQ(numbers(without_layer(layers, 1)), (std::vector{0, 1, 0, 2, 0}));
+    EXPECT_NO_THROW(check(moved, Solid::above));
+}
+
+TEST(LayerSet, labels_have_no_levels_to_see_and_do_not_nest) {
+    const SharedLayers labels = shared(three_labels());
+    EXPECT_TRUE(have_surfaces(labels));
+    EXPECT_FALSE(have_levels(labels));
+    Look look;
+    EXPECT_FALSE(scene_look(look, labels).surface);
+    EXPECT_TRUE(scene_look(look, labels).surfaces.empty());
+    EXPECT_EQ(slice_look(look, labels), look);
+    EXPECT_EQ(felt_words({2, 2, 0}, labels), "on 9, in 4");
+    EXPECT_EQ(felt_words({-1, 3, 0}, labels), "in 9");
+    EXPECT_EQ(felt_words({2, 3, 0}, labels), "on 9, from inside");
+    EXPECT_EQ(felt_words({-1, 0, 0}, labels), "");
+}
+
+TEST(LayerSet, a_label_may_have_the_viscosity_of_any_other_beside_it) {
+    RendererSettings settings;
+    Layers layers = three_labels();
+    layers.layers[0][HapticProperty::stiffness] = 4.5;
+    EXPECT_FALSE(lowered_stiffness(layers, 0, settings));
+    layers.layers[2][HapticProperty::viscosity] = 1e-3;
+    EXPECT_TRUE(lowered_stiffness(layers, 0, settings));
+}
+
+TEST(LayerSet, by_label_a_session_keeps_the_name_of_the_label_volume_relative_to_its_folder) {
+    const support::ScratchFolder folder;
+    SessionFile session;
+    session.source = run::source_named("synthetic:sphere:16x16x16");
+    Layers layers = three_labels();
+    layers.label_volume = (folder.path() / "labels.nrrd").string();
+    session.settings.emplace();
+    session.settings->layers = shared(layers);
+    write_session(folder.path() / "s.json", session);
+    std::filesystem::create_directory(folder.path() / "moved");
+    std::filesystem::rename(folder.path() / "s.json", folder.path() / "moved" / "s.json");
+    const SessionFile read = read_session(folder.path() / "moved" / "s.json");
+    ASSERT_TRUE(lack_labels(read.settings->layers));
+    EXPECT_EQ(read.settings->layers->label_volume,
+              (folder.path() / "moved" / "labels.nrrd").string());
+    EXPECT_EQ(read.settings->layers->layers.size(), 3U);
+}
+
+TEST(LayersHistory, labels_of_many_steps_take_bounded_memory) {
+    LayersHistory history(3 * 5);
+    Layers layers = three_labels();
+    for (int i = 0; i < 7; ++i) {
+        history.keep(shared(layers), false);
+        history.keep(shared(layers), false);  // the same labels
+        layers = moved_layer(layers, 2, 0);
+    }
+    int back = 0;
+    while (history.undo(nullptr)) ++back;
+    EXPECT_EQ(back, 6);
+}
+
 TEST(LayersHistory, goes_back_and_forward_and_a_drag_is_one_step) {
     LayersHistory history;
     const SharedLayers a = shared({}), b = shared(skin_and_bone()), c = shared({}), d = shared({});

@@ -6,10 +6,14 @@
 #include <QLineEdit>
 #include <QListWidget>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
+#include <set>
 
 #include "apps/viewer/panel/isovalue_controls.hpp"
 #include "apps/viewer/panel/layers_controls.hpp"
+#include "apps/viewer/panel/number_box.hpp"
 #include "apps/viewer/panel/stroke_plot.hpp"
 #include "palpate/io/layers_file.hpp"
 #include "tests/viewer/panel/panel_fixture.hpp"
@@ -67,8 +71,8 @@ TEST_F(LayersPart, a_choice_is_one_command_and_none_goes_back_to_the_isovalue) {
     EXPECT_EQ(find<QLabel>("layers_note")->text(), "These are for CT");
     choose(0);
     EXPECT_EQ(of<command::UseLayers>().back().layers, nullptr);
-    ASSERT_EQ(of<command::Isovalue>().size(), 1U);
-    EXPECT_EQ(of<command::Isovalue>()[0].isovalue, 300);
+    EXPECT_TRUE(of<command::Isovalue>().empty()) << "the run goes back to it";
+    EXPECT_EQ(panel.isovalue(), 300);
     EXPECT_TRUE(find<QWidget>("isovalue_box")->isEnabled());
     EXPECT_TRUE(find<QLabel>("layers_note")->text().isEmpty());
 }
@@ -85,11 +89,14 @@ TEST_F(LayersPart, each_property_of_the_chosen_layer_can_be_set) {
     choose(1);
     find<QListWidget>("layer_list")->setCurrentRow(1);
     type("layer_level", "400");
+    EXPECT_FALSE(find<QWidget>("layer_drag_box")->isEnabled()) << "only a needle rubs";
+    tick("needle");
     EXPECT_EQ(layer(1).level, 400);
     const std::pair<const char*, HapticProperty> properties[] = {
         {"layer_stiffness_box", stiffness},
         {"layer_static_friction_box", static_friction},
         {"layer_dynamic_friction_box", dynamic_friction},
+        {"layer_damping_box", damping},
         {"layer_viscosity_box", viscosity},
         {"layer_drag_box", HapticProperty::drag}};
     double value = 0.0001;
@@ -102,6 +109,194 @@ TEST_F(LayersPart, each_property_of_the_chosen_layer_can_be_set) {
     EXPECT_EQ(layer(1).opacity, 0.5);
     EXPECT_EQ(layer(0).level, -300);
     EXPECT_NO_THROW(check(*asked(), Solid::above));
+}
+
+TEST_F(LayersPart, a_value_is_cleared_back_to_the_curve_or_the_session) {
+    choose(1);
+    auto* box = find<NumberBox>("layer_stiffness_box");
+    auto* clear = find<QAbstractButton>("layer_stiffness_clear");
+    EXPECT_FALSE(box->font().italic());
+    EXPECT_TRUE(clear->toolTip().contains("session")) << clear->toolTip().toStdString();
+    press("layer_stiffness_clear");
+    settle();
+    EXPECT_FALSE(layer(0)[stiffness]);
+    EXPECT_EQ(box->value(), panel.settings().force.stiffness) << "what then counts";
+    EXPECT_TRUE(box->font().italic());
+    EXPECT_FALSE(clear->isEnabled());
+    press("start_curve");
+    EXPECT_TRUE(box->toolTip().isEmpty());
+    type("layer_stiffness_box", "0.7");
+    EXPECT_TRUE(clear->isEnabled());
+    EXPECT_TRUE(clear->toolTip().contains("curve")) << clear->toolTip().toStdString();
+    press("undo_layers");
+    EXPECT_FALSE(layer(0)[stiffness]);
+}
+
+TEST_F(LayersPart, each_property_has_a_curve_that_begins_is_changed_and_ends) {
+    choose(1);
+    LevelChart& chart = panel.isovalue_controls().chart();
+    auto* properties = find<QComboBox>("curve_property");
+    ASSERT_EQ(properties->count(), haptic_property_count);
+    for (int i = 0; i < haptic_property_count; ++i) {
+        const auto property = static_cast<HapticProperty>(i);
+        properties->setFocus();
+        while (properties->currentIndex() < i) QTest::keyClick(properties, Qt::Key_Down);
+        settle();
+        EXPECT_TRUE(chart.curve().knots.empty()) << i;
+        EXPECT_FALSE(find<QWidget>("remove_curve")->isEnabled());
+        press("start_curve");
+        settle();
+        ASSERT_EQ((*asked())[property].density.knots.size(), 1U) << i;
+        ASSERT_EQ(chart.curve().knots.size(), 1U);
+        chart.setFocus();
+        for (const Qt::Key key : {Qt::Key_PageDown, Qt::Key_Insert, Qt::Key_Up, Qt::Key_Up}) {
+            QTest::keyClick(&chart, key);
+        }
+        settle();
+        const auto knots = (*asked())[property].density.knots;
+        ASSERT_EQ(knots.size(), 2U) << i;
+        EXPECT_GT(knots[1].value, knots[0].value) << i;
+        EXPECT_GT(knots[1].at, knots[0].at) << i;
+        EXPECT_NO_THROW(check(*asked(), Solid::above));
+        EXPECT_TRUE(properties->currentText().contains("(2)"));
+        if (property == puncture_force) {
+            QDir().mkpath(PALPATE_PICTURES);
+            panel.grab().save(QString(PALPATE_PICTURES) + "/layers_curve_puncture.png");
+        }
+        press("remove_curve");
+        settle();
+        EXPECT_TRUE((*asked())[property].density.knots.empty()) << i;
+        press("undo_layers");
+        EXPECT_EQ((*asked())[property].density.knots.size(), 2U) << i;
+        press("redo_layers");
+    }
+}
+
+TEST_F(LayersPart, a_curve_from_a_file_may_have_forces_that_are_infinite) {
+    Layers layers = *choices[0].layers;
+    const double never = std::numeric_limits<double>::infinity();
+    layers[puncture_force].density.knots = {{-500, 1}, {1000, never}};
+    choices[0].layers = std::make_shared<const Layers>(layers);
+    panel.layers_controls().set_choices(choices);
+    choose(1);
+    auto* properties = find<QComboBox>("curve_property");
+    properties->setFocus();
+    while (properties->currentIndex() < int(puncture_force)) {
+        QTest::keyClick(properties, Qt::Key_Down);
+    }
+    settle();
+    const LevelChart& chart = panel.isovalue_controls().chart();
+    ASSERT_EQ(chart.curve().knots.size(), 2U);
+    EXPECT_TRUE(std::isfinite(chart.curve().top));
+    EXPECT_EQ(chart.curve().knots[1].value, never);
+    EXPECT_TRUE(find<QLabel>("curve_note")->text().contains("own") ||
+                !std::ranges::all_of(layers.layers, [](const Layer& layer) {
+                    return layer[puncture_force].has_value();
+                }));
+}
+
+/// Two labels on the field's grid, with places.
+SharedLayers two_labels(const Volume& volume) {
+    Layers layers;
+    layers.name = "by label";
+    layers.by_label = true;
+    for (const int label : {3, 5}) {
+        Layer layer;
+        layer.name = "organ " + std::to_string(label);
+        layer.level = label;
+        layers.layers.push_back(layer);
+    }
+    std::vector<std::uint8_t> samples(std::size_t(sample_count(volume.geometry())));
+    for (std::size_t i = 0; i < samples.size(); ++i)
+        samples[i] = i % 3 == 0 ? 3 : i % 3 == 1 ? 5 : 0;
+    const Volume labels(volume.geometry(), samples);
+    layers.labels = numbered_labels(labels, layers.layers);
+    return std::make_shared<const Layers>(layers);
+}
+
+TEST_F(LayersPart, layers_by_label_have_an_order_instead_of_levels) {
+    panel.layers_controls().use(two_labels(field->volume()));
+    settle();
+    ASSERT_TRUE(asked());
+    EXPECT_FALSE(find<QWidget>("layer_level")->isEnabled());
+    EXPECT_FALSE(find<QWidget>("add_layer")->isEnabled());
+    EXPECT_FALSE(find<QWidget>("add_layer")->toolTip().isEmpty());
+    type("layer_stiffness_box", "0.2");
+    EXPECT_EQ(layer(0)[stiffness], 0.2);
+    const auto number_at = [&](int sample) {
+        return asked()->labels->volume().sample(Index3(sample, 0, 0));
+    };
+    EXPECT_EQ(number_at(0), 1);
+    press("layer_later");
+    settle();
+    EXPECT_EQ(layer(0).level, 5);
+    EXPECT_EQ(number_at(0), 2);
+    EXPECT_EQ(number_at(1), 1);
+    EXPECT_EQ(number_at(2), 0);
+    EXPECT_EQ(find<QListWidget>("layer_list")->currentRow(), 1) << "the same layer stays chosen";
+    EXPECT_FALSE(find<QWidget>("layer_later")->isEnabled());
+    QDir().mkpath(PALPATE_PICTURES);
+    panel.grab().save(QString(PALPATE_PICTURES) + "/layers_by_label.png");
+    press("remove_layer");
+    settle();
+    EXPECT_EQ(number_at(0), 0);
+    EXPECT_EQ(number_at(1), 1);
+    press("undo_layers");
+    EXPECT_EQ(number_at(0), 2);
+    choose(0);
+    EXPECT_FALSE(find<QWidget>("layer_later")->isVisible());
+}
+
+TEST_F(LayersPart, what_has_no_effect_meanwhile_is_disabled_and_says_why) {
+    Look look;
+    look.surfaces = {{1000, {0, 0, 1}, 0.5, true}};
+    panel.look_controls().set_look(look);
+    const QString tip = find<QWidget>("threshold_box")->parentWidget()->toolTip();
+    const char* resting[] = {"isovalue_box", "isovalue_slider", "penetrability_threshold",
+                             "add_range", "surface_1_feel"};
+    for (const bool layered : {true, false}) {
+        choose(layered ? 1 : 0);
+        for (const char* name : resting) {
+            auto* one = find<QWidget>(name);
+            EXPECT_EQ(one->isEnabled(), !layered) << name;
+            QString said = one->toolTip();
+            for (QWidget* at = one; said.isEmpty(); at = at->parentWidget()) said = at->toolTip();
+            EXPECT_EQ(said.contains("No layers"), layered) << name << said.toStdString();
+        }
+    }
+    EXPECT_EQ(find<QWidget>("threshold_box")->parentWidget()->toolTip(), tip);
+    choose(1);
+    LevelChart& chart = panel.isovalue_controls().chart();
+    const double y = chart.strip().top() - 40;
+    drag(&chart, {40, y}, {120, y}, Qt::ShiftModifier);
+    chart.setFocus();
+    QTest::keyClick(&chart, Qt::Key_Right);
+    Q_EMIT panel.isovalue_controls().wanted(500);
+    EXPECT_TRUE(of<Penetrability>().empty());
+    EXPECT_TRUE(of<command::Isovalue>().empty());
+    EXPECT_TRUE(message("isovalue_part").contains("No layers"));
+    EXPECT_EQ(panel.isovalue(), 300);
+}
+
+TEST_F(LayersPart, every_control_has_a_name_of_its_own_and_a_tip) {
+    choose(2);
+    std::set<QString> names;
+    auto* controls = find<QWidget>("layers_controls");
+    for (auto* one : controls->findChildren<QWidget*>()) {
+        if (one->focusProxy() || !(one->focusPolicy() & Qt::TabFocus)) continue;
+        if (one->objectName().startsWith("qt_") || !one->isVisible()) continue;
+        QString tip;
+        for (QWidget* at = one; at != controls && tip.isEmpty(); at = at->parentWidget()) {
+            tip = at->toolTip();
+        }
+        EXPECT_NE(tip, "") << one->objectName().toStdString();
+        const auto* button = qobject_cast<QAbstractButton*>(one);
+        QString name = one->accessibleName();
+        if (name.isEmpty() && button) name = button->text();
+        EXPECT_NE(name, "") << one->objectName().toStdString();
+        if (!button) continue;
+        EXPECT_TRUE(names.insert(name).second) << name.toStdString();
+    }
 }
 
 TEST_F(LayersPart, a_puncture_force_may_be_never) {

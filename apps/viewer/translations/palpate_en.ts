@@ -1,0 +1,75 @@
+<?xml version="1.0" encoding="utf-8"?>
+<!DOCTYPE TS>
+<TS version="2.1" language="en">
+<context>
+    <name>palpate::viewer::BrushControls</name>
+    <message numerus="yes">
+        <source>%n steps</source>
+        <translation>
+            <numerusform>%n step</numerusform>
+            <numerusform>%n steps</numerusform>
+        </translation>
+    </message>
+</context>
+<context>
+    <name>palpate::viewer::EditController</name>
+    <message numerus="yes">
+        <source>Saved %1, %Ln triangles</source>
+        <translation>
+            <numerusform>Saved %1, %Ln triangle</numerusform>
+            <numerusform>Saved %1, %Ln triangles</numerusform>
+        </translation>
+    </message>
+</context>
+<context>
+    <name>palpate::viewer::LoopView</name>
+    <message numerus="yes">
+        <source>%n forces taken back</source>
+        <translation>
+            <numerusform>%n force taken back</numerusform>
+            <numerusform>%n forces taken back</numerusform>
+        </translation>
+    </message>
+    <message numerus="yes">
+        <source>%n not recorded</source>
+        <translation>
+            <numerusform>%n not recorded</numerusform>
+            <numerusform>%n not recorded</numerusform>
+        </translation>
+    </message>
+</context>
+<context>
+    <name>palpate::viewer::RecordingController</name>
+    <message numerus="yes">
+        <source>%n ticks recorded</source>
+        <translation>
+            <numerusform>%n tick recorded</numerusform>
+            <numerusform>%n ticks recorded</numerusform>
+        </translation>
+    </message>
+    <message numerus="yes">
+        <source>%n ticks</source>
+        <translation>
+            <numerusform>%n tick</numerusform>
+            <numerusform>%n ticks</numerusform>
+        </translation>
+    </message>
+    <message numerus="yes">
+        <source>%n of them come out otherwise than they were recorded</source>
+        <translation>
+            <numerusform>%n of them comes out otherwise than it was recorded</numerusform>
+            <numerusform>%n of them come out otherwise than they were recorded</numerusform>
+        </translation>
+    </message>
+</context>
+<context>
+    <name>palpate::viewer::RunController</name>
+    <message numerus="yes">
+        <source>%n ticks recorded, up to the other device</source>
+        <translation>
+            <numerusform>%n tick recorded, up to the other device</numerusform>
+            <numerusform>%n ticks recorded, up to the other device</numerusform>
+        </translation>
+    </message>
+</context>
+</TS>

@@ -1,0 +1,56 @@
+// Tools as options name them: a built-in shape with its sizes, or a file of points.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "palpate/io/error.hpp"
+#include "palpate/tool.hpp"
+
+namespace palpate::io {
+
+// Lengths in mm.
+struct PointSpec {};
+struct SphereSpec {
+    double radius;
+};
+struct RodSpec {
+    double length;
+};
+struct NeedleSpec {
+    double length = 60, radius = 0.5;
+};
+struct BurrSpec {
+    double radius;
+};
+struct BoxSpec {
+    Vec3 size;
+};
+struct FingertipSpec {};
+struct PointsSpec {
+    std::vector<Vec3> points;  ///< tool axes
+};
+
+/// What a tool is to be; its points follow from their spacing.
+using ToolSpec = std::variant<PointSpec, SphereSpec, RodSpec, NeedleSpec, BurrSpec, BoxSpec,
+                              FingertipSpec, PointsSpec>;
+
+/// "point", "sphere:RADIUS", "rod:LENGTH", "needle[:LENGTH,RADIUS]", "burr:RADIUS", "box:X,Y,Z",
+/// "fingertip", or the name of a CSV file with columns x, y, z, whose points are the tool's. Throws
+/// std::invalid_argument for other text, InputError for a file that cannot be read.
+ToolSpec tool_spec_from(const std::string& text);
+/// The tool with neighbouring points about `spacing` [mm] apart; those of a file stay as they are.
+/// Null for a point. Throws std::invalid_argument for sizes that are none, and for more points than
+/// a tool may have.
+std::shared_ptr<const Tool> make_tool(const ToolSpec& spec, double spacing);
+/// Half of the smallest distance of samples [mm].
+double usual_spacing(const Geometry& geometry);
+
+/// The points of a tool file. Throws InputError, which calls the text `name`.
+std::vector<Vec3> parse_tool_points(std::string_view text, const std::string& name);
+
+}  // namespace palpate::io

@@ -1,0 +1,87 @@
+// Tool: a rigid body that touches with the points of its surface. A point is the simplest
+// tool. Plain values; nothing here knows of fields.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "palpate/volume.hpp"
+
+namespace palpate {
+
+using Quaternion = Eigen::Quaterniond;
+
+/// Where a rigid body is and how it is turned.
+struct Pose {
+    Vec3 position = Vec3::Zero();                     ///< of its reference point [mm, physical]
+    Quaternion orientation = Quaternion::Identity();  ///< unit; from tool axes to physical axes
+};
+
+/// Force and torque on the hand.
+struct Wrench {
+    Vec3 force = Vec3::Zero();   ///< [N]
+    Vec3 torque = Vec3::Zero();  ///< [N mm] about the reference point
+};
+
+inline constexpr std::size_t most_tool_points = 20'000;
+
+/// The points with which a tool touches, in its own axes, its reference point at their origin.
+/// What is thinner than the distance of neighbouring points passes between them. Immutable.
+class Tool {
+  public:
+    /// A single point at the reference point.
+    Tool() : Tool({Vec3::Zero()}) {}
+    /// `gyration` [mm] weighs rotation against translation: to turn by an angle counts as much as
+    /// to move by the angle (in radians) times it. Its square is the quotient of rotational
+    /// [N mm / rad] and translational stiffness [N / mm] of a coupling that finds the proxy's pose
+    /// in equilibrium. Default: the root of the points' mean squared distance from the reference
+    /// point. Without `turns` the tool keeps its orientation, which a single point at the origin
+    /// always does. Throws std::invalid_argument without points, with more than `most_tool_points`,
+    /// and for points and a gyration beyond 1e6 mm or a gyration below 1e-6 mm.
+    explicit Tool(std::vector<Vec3> points, std::optional<double> gyration = std::nullopt,
+                  bool turns = true);
+
+    std::span<const Vec3> points() const { return points_; }  ///< [mm]
+    double gyration() const { return gyration_; }             ///< [mm]
+    double radius() const { return radius_; }  ///< of the farthest point from the origin [mm]
+    bool turns() const { return turns_; }
+
+  private:
+    std::vector<Vec3> points_;
+    double gyration_ = 1;
+    double radius_ = 0;
+    bool turns_ = true;
+};
+
+/// One point at the reference point.
+Tool point_tool();
+/// A ball round the reference point. Neighbouring points are about `spacing` apart. Lengths in mm,
+/// > 0, here and below: std::invalid_argument. It need not turn.
+Tool sphere_tool(double radius, double spacing);
+/// A straight line along z, from the reference point, which is its tip, to `length`.
+Tool rod_tool(double length, double spacing);
+/// The surface of a box round the reference point.
+Tool box_tool(const Vec3& size, double spacing);
+
+/// The rounded tip of a shaft along z, from the reference point, which is the tip, to `length`.
+Tool needle_tool(double length, double radius, double spacing);
+/// The ball of a surgical burr round the reference point, with its shank along z, 0.4 times as
+/// thick and 4 radii long.
+Tool burr_tool(double radius, double spacing);
+/// The end of a forefinger, 16 mm wide, 12 mm deep and 20 mm long (assumed: an adult's), along z.
+/// The reference point is the middle of its rounded end's base, 8 mm from the tip.
+Tool fingertip_tool(double spacing);
+
+/// A point of the tool in physical space.
+inline Vec3 physical_from_tool(const Pose& pose, const Vec3& point) {
+    return pose.position + pose.orientation * point;
+}
+/// The rotation vector (unit axis times angle in radians, at most pi) that turns `from` into `to`,
+/// physical axes.
+Vec3 rotation_between(const Quaternion& from, const Quaternion& to);
+/// Turned by a rotation vector (physical axes), unit again.
+Quaternion turned(const Quaternion& from, const Vec3& rotation);
+
+}  // namespace palpate

@@ -1,0 +1,141 @@
+// Tool proxy: the pose of a rigid tool that stays on the free side of the isosurface while
+// the hand presses and turns it into the solid, on the smooth field (docs/tools.md). No point of
+// the tool ever goes through. Nothing here but the making of a proxy allocates, locks or throws.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "palpate/proxy.hpp"
+#include "palpate/tool.hpp"
+
+namespace palpate {
+
+struct ToolSettings {
+    /// At each contact: it does not slip until the tangential pull exceeds the static coefficient
+    /// times its pressure, and then trails the hand at the dynamic one.
+    Friction friction = {};
+    /// Most rounds of an update: each finds a direction and goes along it. An update that finds no
+    /// way on before it is at rest ends as one that is out of budget.
+    int most_rounds = 60;
+    /// Most work of an update, in cubes of the lattice looked at, a tenth of a microsecond each; 4
+    /// for each point of the tool come on top. Later updates finish what is left.
+    int work_budget = 8000;
+    /// [mm] in place of the tool's own; 0: that.
+    double gyration = 0;
+};
+
+/// A point of the tool that touches, or nearly.
+struct ToolContact {
+    int point = 0;               ///< of the tool
+    Vec3 place = Vec3::Zero();   ///< [mm, physical]
+    Vec3 normal = Vec3::Zero();  ///< unit, out of the solid, physical axes
+    double pressure = 0;         ///< share of the pull that it holds [mm]; 0: does not touch
+};
+inline constexpr int most_tool_contacts = 32;
+
+struct ToolUpdate {
+    UpdateStatus status = UpdateStatus::done;
+    Mode mode = Mode::free;
+    Pose hand;         ///< that of the device
+    Pose proxy;        ///< the same to the bit where it was reached
+    int contacts = 0;  ///< how many points hold the proxy
+    int rounds = 0;
+    int work = 0;  ///< cubes looked at
+};
+
+namespace tool {
+
+/// What is known about the samples round the tool. Changes no result but saves time.
+struct Surroundings {
+    /// Bounds of the field, its sign turned where the solid is below.
+    struct Bounds {
+        double most = 0;            ///< greatest value
+        Vec3 slope = Vec3::Zero();  ///< greatest derivatives along the grid's axes [1/mm]
+    };
+    /// Four cubes along each axis.
+    struct Brick {
+        Index3 at = Index3::Zero();
+        std::uint32_t epoch = 0;
+        bool knows_wide = false;
+        Bounds own;
+        Bounds wide;  ///< with the 26 bricks round it
+    };
+    static constexpr std::size_t brick_count = 4096;
+    std::vector<Brick> bricks = std::vector<Brick>(brick_count);
+    std::uint32_t epoch = 1;
+    std::shared_ptr<const Samples> samples;  ///< that it is about
+    Moment moment;
+    double sign = 0, background = 0;
+};
+
+}  // namespace tool
+
+/// The state between updates. Set `isovalue` freely between two updates. Copies are independent.
+class ToolProxy {
+  public:
+    /// Allocates what updates need. Not null.
+    explicit ToolProxy(std::shared_ptr<const Tool> tool);
+
+    const Tool& tool() const { return *tool_; }
+    /// Allocates what use() needs for tools of this many points. Changes nothing else.
+    void make_room(std::size_t points);
+    /// Another tool from the next update on, at the same pose; recovers where that is inside.
+    /// Allocates nothing; frees the tool before unless somebody else holds it. False, and nothing
+    /// changes: there is no room for its points.
+    bool use(std::shared_ptr<const Tool> tool) noexcept;
+    Pose pose;
+    double isovalue = 0;  ///< [data units]
+    Mode mode = Mode::free;
+    bool placed = false;  ///< false: the next update starts at the hand's pose
+    std::array<ToolContact, most_tool_contacts> contacts{};
+    int contact_count = 0;  ///< contacts known, those without pressure included
+    bool sliding = false;   ///< dynamic friction applies
+
+    /// Of updates, to save time.
+    struct Kept {
+        // Of each point, with room for more.
+        std::vector<double> arms;    ///< distance from the reference point [mm]
+        std::vector<double> expiry;  ///< travel [mm] up to which it certainly meets nothing
+        double moved = 0;            ///< odometers: translation [mm] ...
+        double turned = 0;           ///< ... and rotation [rad] so far
+        double trust = 1;            ///< longest step in contact [voxel]
+        double stride = 64;          ///< longest motion with nothing near [voxel]
+        std::array<int, most_tool_contacts> idle{};
+        std::vector<int> suspects;  ///< room for one motion
+        tool::Surroundings surroundings;
+        double isovalue = 0;
+        bool renewed = true;  ///< the tool is another one
+        bool inside = false;  ///< recovery goes on
+        int search = 0;       ///< place that it looks at next; 0: it pushes
+    } kept;
+
+  private:
+    std::shared_ptr<const Tool> tool_;
+};
+
+/// Called with every pose that the proxy goes to: between two of them each point of the tool
+/// travels a straight line.
+struct PoseObserver {
+    void (*on_pose)(const Pose& pose, void* context) = nullptr;
+    void* context = nullptr;
+};
+
+/// Moves the proxy for one pose of the hand. Guarantees, with r = field.range():
+/// T1 between two successive poses every point of the tool goes straight, and no point of its way
+/// has
+///    sign * (f - isovalue) / r > 1e-9 (recovery excepted); each pose is exactly rigid;
+/// T2 points that hold the proxy have |f - isovalue| / r <= 1e-6;
+/// T3 at rest the pose is optimal to first order: what is left of the pull, projected on what the
+///    contacts allow, is at most 3e-4 of it;
+/// T4 the distance to the hand, sqrt(|translation|^2 + |gyration * rotation|^2), never grows (field
+///    and isovalue unchanged); T3 and T4 without friction;
+/// T5 bounded work, and never NaN.
+/// Refused: a field that is not cubic, a pose that is not finite or farther than `farthest_hip`, a
+/// tool whose radius is more than `farthest_hip` voxels.
+ToolUpdate update_tool(ToolProxy& proxy, const Field& field, const Pose& hand,
+                       const ToolSettings& settings = {}, PoseObserver observer = {});
+
+}  // namespace palpate

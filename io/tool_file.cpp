@@ -1,0 +1,105 @@
+// Reads what options say of a tool.
+#include "palpate/io/tool_file.hpp"
+
+#include <array>
+#include <stdexcept>
+
+#include "io/number.hpp"
+#include "palpate/io/csv.hpp"
+#include "palpate/session.hpp"
+
+namespace palpate::io {
+namespace {
+
+constexpr const char* wanted =
+    "point, sphere:RADIUS, rod:LENGTH, needle[:LENGTH,RADIUS], burr:RADIUS, box:X,Y,Z, fingertip "
+    "(lengths in mm), or a file of points (.csv)";
+
+[[noreturn]] void refuse(const std::string& text) {
+    throw std::invalid_argument("the tool '" + text + "' is not known: it is " + wanted);
+}
+
+/// The sizes after the colon, each finite and above 0.
+template <std::size_t count>
+std::array<double, count> sizes_from(const std::string& text, std::string_view sizes) {
+    std::array<double, count> found{};
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto comma = sizes.find(',');
+        const bool last = i + 1 == count;
+        const auto number = number_from<double>(sizes.substr(0, comma));
+        if (!number || !(*number > 0 && *number < 1e6) || last != (comma == sizes.npos)) {
+            throw std::invalid_argument("the tool '" + text + "': " + std::to_string(count) +
+                                        (count == 1 ? " length" : " lengths") +
+                                        " above 0 [mm] must follow the colon");
+        }
+        found[i] = *number;
+        sizes.remove_prefix(last ? sizes.size() : comma + 1);
+    }
+    return found;
+}
+
+}  // namespace
+
+std::vector<Vec3> parse_tool_points(std::string_view text, const std::string& name) {
+    CsvReader rows(text, name);
+    const std::array columns{rows.column("x"), rows.column("y"), rows.column("z")};
+    std::vector<Vec3> points;
+    while (rows.next()) {
+        if (points.size() == most_tool_points) {
+            rows.fail("a tool has at most " + std::to_string(most_tool_points) +
+                      " points: space them farther apart");
+        }
+        points.emplace_back(rows.finite_number(columns[0]), rows.finite_number(columns[1]),
+                            rows.finite_number(columns[2]));
+    }
+    if (points.empty()) throw InputError(name + ": has a header and no points: add at least one");
+    return points;
+}
+
+ToolSpec tool_spec_from(const std::string& text) {
+    const auto colon = text.find(':');
+    const std::string name = text.substr(0, colon);
+    const bool has_sizes = colon != std::string::npos;
+    const std::string_view sizes =
+        has_sizes ? std::string_view(text).substr(colon + 1) : std::string_view();
+    const auto one = [&] { return sizes_from<1>(text, sizes)[0]; };
+    if (text == "point") return PointSpec{};
+    if (text == "fingertip") return FingertipSpec{};
+    if (text == "needle") return NeedleSpec{};
+    if (name == "sphere") return SphereSpec{one()};
+    if (name == "rod") return RodSpec{one()};
+    if (name == "burr") return BurrSpec{one()};
+    if (name == "needle") {
+        const auto [length, radius] = sizes_from<2>(text, sizes);
+        return NeedleSpec{length, radius};
+    }
+    if (name == "box") {
+        const auto [x, y, z] = sizes_from<3>(text, sizes);
+        return BoxSpec{{x, y, z}};
+    }
+    if (std::filesystem::path(text).extension() == ".csv") {
+        return PointsSpec{parse_tool_points(read_text(text), text)};
+    }
+    refuse(text);
+}
+
+std::shared_ptr<const Tool> make_tool(const ToolSpec& spec, double spacing) {
+    const Overloaded make{
+        [](const PointSpec&) { return point_tool(); },
+        [&](const SphereSpec& s) { return sphere_tool(s.radius, spacing); },
+        [&](const RodSpec& s) { return rod_tool(s.length, spacing); },
+        [&](const NeedleSpec& s) { return needle_tool(s.length, s.radius, spacing); },
+        [&](const BurrSpec& s) { return burr_tool(s.radius, spacing); },
+        [&](const BoxSpec& s) { return box_tool(s.size, spacing); },
+        [&](const FingertipSpec&) { return fingertip_tool(spacing); },
+        [](const PointsSpec& s) { return Tool(s.points); },
+    };
+    if (std::holds_alternative<PointSpec>(spec)) return nullptr;
+    return std::make_shared<const Tool>(std::visit(make, spec));
+}
+
+double usual_spacing(const Geometry& geometry) {
+    return 0.5 * geometry.spacing.minCoeff();
+}
+
+}  // namespace palpate::io

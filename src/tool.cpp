@@ -1,0 +1,192 @@
+// Tools: their points and built-in shapes.
+#include "palpate/tool.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+namespace palpate {
+namespace {
+
+void require_length(double length) {
+    if (!(length > 0 && length < 1e9)) {
+        throw std::invalid_argument("a tool's lengths and the spacing of its points must be > 0");
+    }
+}
+
+/// How many equal steps of at most `spacing` a length has.
+int steps_along(double length, double spacing) {
+    require_length(length);
+    require_length(spacing);
+    const double steps = std::ceil(length / spacing - 1e-9);
+    if (steps > double(most_tool_points)) {
+        throw std::invalid_argument("a tool has at most 20000 points: space them farther apart");
+    }
+    return std::max(1, static_cast<int>(steps));
+}
+
+/// A profile turned round z: (distance from the axis, z) from one end to the other.
+std::vector<Vec3> turned_profile(const std::vector<Eigen::Vector2d>& profile, double spacing) {
+    std::vector<Vec3> points;
+    const auto ring = [&](const Eigen::Vector2d& at) {
+        const double around = 2 * std::numbers::pi * at[0];
+        const int count = around > spacing ? steps_along(around, spacing) : 1;
+        if (points.size() + static_cast<std::size_t>(count) > most_tool_points) {
+            steps_along(2 * double(most_tool_points), 1);  // refuses
+        }
+        for (int i = 0; i < count; ++i) {
+            const double angle = 2 * std::numbers::pi * i / count;
+            const double r = count == 1 ? 0 : at[0];
+            points.emplace_back(r * std::cos(angle), r * std::sin(angle), at[1]);
+        }
+    };
+    ring(profile.front());
+    for (std::size_t i = 1; i < profile.size(); ++i) {
+        const Eigen::Vector2d way = profile[i] - profile[i - 1];
+        const double length = std::sqrt(way[0] * way[0] + way[1] * way[1]);
+        if (length == 0) continue;
+        const int steps = steps_along(length, spacing);
+        for (int k = 1; k <= steps; ++k) ring(profile[i - 1] + way * (double(k) / steps));
+    }
+    return points;
+}
+
+/// Appends an arc round (0, z) between two angles from the -z axis, in pieces that are short beside
+/// the spacing.
+void add_arc(std::vector<Eigen::Vector2d>& profile, double radius, double z, double from, double to,
+             double spacing) {
+    const int steps = steps_along(radius * std::abs(to - from), spacing);
+    for (int i = 0; i <= steps; ++i) {
+        const double angle = from + (to - from) * i / steps;
+        profile.emplace_back(radius * std::sin(angle), z - radius * std::cos(angle));
+    }
+}
+
+constexpr double right_angle = std::numbers::pi / 2;
+
+/// Of a tool's points [mm]: beyond the one no volume lies, below the other turning moves nothing.
+constexpr double longest_arm = 1e6, shortest_arm = 1e-6;
+
+}  // namespace
+
+Tool::Tool(std::vector<Vec3> points, std::optional<double> gyration, bool turns)
+    : points_(std::move(points)) {
+    if (points_.empty()) throw std::invalid_argument("a tool needs at least one point");
+    if (points_.size() > most_tool_points) {
+        throw std::invalid_argument("a tool has at most 20000 points: space them farther apart");
+    }
+    double sum = 0;
+    for (const Vec3& point : points_) {
+        const double arm = point.norm();
+        if (!(arm <= longest_arm)) {
+            throw std::invalid_argument("a tool's points must lie within 1e6 mm of its origin");
+        }
+        sum += arm * arm;
+        radius_ = std::max(radius_, arm);
+    }
+    const bool has_extent = radius_ >= shortest_arm;
+    turns_ = turns && has_extent;
+    gyration_ = gyration.value_or(has_extent ? std::sqrt(sum / double(points_.size())) : 1);
+    if (!(gyration_ >= shortest_arm && gyration_ <= longest_arm)) {
+        throw std::invalid_argument("a tool's radius of gyration must be from 1e-6 to 1e6 mm");
+    }
+}
+
+Tool point_tool() {
+    return Tool({Vec3::Zero()});
+}
+
+Tool sphere_tool(double radius, double spacing) {
+    require_length(radius);
+    require_length(spacing);
+    // Points of a spiral, each with the area of a hexagon.
+    const double area = 4 * std::numbers::pi * radius * radius;
+    const double count = std::ceil(area / (0.5 * std::sqrt(3.0) * spacing * spacing));
+    steps_along(count, 1);
+    const double golden_angle = std::numbers::pi * (3 - std::sqrt(5.0));
+    std::vector<Vec3> points;
+    const int n = std::max(4, static_cast<int>(count));
+    for (int i = 0; i < n; ++i) {
+        const double z = 1 - (2 * i + 1) / double(n);
+        const double across = std::sqrt(1 - z * z), angle = golden_angle * i;
+        points.emplace_back(radius * across * std::cos(angle), radius * across * std::sin(angle),
+                            radius * z);
+    }
+    return Tool(std::move(points), std::nullopt, false);
+}
+
+Tool rod_tool(double length, double spacing) {
+    const int steps = steps_along(length, spacing);
+    std::vector<Vec3> points;
+    for (int i = 0; i <= steps; ++i) points.emplace_back(0, 0, length * i / steps);
+    return Tool(std::move(points));
+}
+
+Tool box_tool(const Vec3& size, double spacing) {
+    const std::array<int, 3> steps{steps_along(size[0], spacing), steps_along(size[1], spacing),
+                                   steps_along(size[2], spacing)};
+    std::vector<Vec3> points;
+    const double count =
+        2.0 * (double(steps[0] + 1) * (steps[1] + 1) + double(steps[1] + 1) * (steps[2] + 1) +
+               double(steps[2] + 1) * (steps[0] + 1));
+    steps_along(count, 1);
+    for (int z = 0; z <= steps[2]; ++z) {
+        for (int y = 0; y <= steps[1]; ++y) {
+            const bool inside = z > 0 && z < steps[2] && y > 0 && y < steps[1];
+            for (int x = 0; x <= steps[0]; x += inside ? steps[0] : 1) {
+                const Vec3 share(double(x) / steps[0], double(y) / steps[1], double(z) / steps[2]);
+                points.push_back((share - Vec3::Constant(0.5)).cwiseProduct(size));
+            }
+        }
+    }
+    return Tool(std::move(points));
+}
+
+Tool needle_tool(double length, double radius, double spacing) {
+    require_length(radius);
+    require_length(spacing);
+    if (!(length > radius)) throw std::invalid_argument("a needle must be longer than thick");
+    std::vector<Eigen::Vector2d> profile;
+    add_arc(profile, radius, radius, 0, right_angle, spacing);
+    profile.emplace_back(radius, length);
+    return Tool(turned_profile(profile, spacing));
+}
+
+Tool burr_tool(double radius, double spacing) {
+    require_length(radius);
+    require_length(spacing);
+    constexpr double thin = 0.4;
+    std::vector<Eigen::Vector2d> profile;
+    add_arc(profile, radius, 0, 0, std::numbers::pi - std::asin(thin), spacing);
+    profile.emplace_back(thin * radius, 4 * radius);
+    return Tool(turned_profile(profile, spacing));
+}
+
+Tool fingertip_tool(double spacing) {
+    require_length(spacing);
+    constexpr double half_width = 8, half_depth = 6, length = 12;  // [mm]
+    std::vector<Eigen::Vector2d> profile;
+    add_arc(profile, half_width, 0, 0, right_angle, spacing);
+    profile.emplace_back(half_width, length);
+    std::vector<Vec3> points = turned_profile(profile, spacing);
+    for (Vec3& point : points) point[1] *= half_depth / half_width;
+    return Tool(std::move(points));
+}
+
+Vec3 rotation_between(const Quaternion& from, const Quaternion& to) {
+    Quaternion q = to * from.conjugate();
+    if (q.w() < 0) q.coeffs() = -q.coeffs();
+    const double sine = q.vec().norm();
+    if (sine < 1e-8) return 2 * q.vec();  // to all digits
+    return q.vec() * (2 * std::atan2(sine, q.w()) / sine);
+}
+
+Quaternion turned(const Quaternion& from, const Vec3& rotation) {
+    const double angle = rotation.norm();
+    const double share = angle < 1e-8 ? 0.5 : std::sin(0.5 * angle) / angle;
+    const Vec3 v = rotation * share;
+    return (Quaternion(std::cos(0.5 * angle), v[0], v[1], v[2]) * from).normalized();
+}
+
+}  // namespace palpate

@@ -1,0 +1,494 @@
+// The update of a tool's proxy: rounds of a direction, from the half-spaces at the points that
+// touch and the curvature there, and of certified motion along it (docs/tools.md).
+#include <algorithm>
+#include <cmath>
+
+#include "tool_proxy/friction.hpp"
+#include "tool_proxy/motion.hpp"
+#include "tool_proxy/nearest.hpp"
+#include "tool_proxy/recovery.hpp"
+
+namespace palpate {
+
+namespace tool {
+namespace {
+
+/// What is left of the pull at rest, relative to it, and in voxels.
+constexpr double resting_pull = 3e-4, least_pull = 5e-7;
+/// Smallest eigenvalue with which curvature enters.
+constexpr double least_curvature = 0.55;
+/// A chord differs from the arc of a turning point by at most this [voxel].
+constexpr double sagitta = 1e-3;
+/// Evaluations without pressure after which a contact is forgotten.
+constexpr int most_idle = 12;
+constexpr int most_failures = 8;
+/// Of a motion with nothing near [voxel].
+constexpr double longest_stride = 64;
+/// Slope of the field [range / voxel] below which its normal says nothing.
+constexpr double least_slope = 1e-9;
+
+Six six(const Vec3& a, const Vec3& b) {
+    Six result;
+    result << a, b;
+    return result;
+}
+
+/// A contact as a round sees it.
+struct Touch {
+    Vec3 arm;      ///< from the reference point [mm]
+    Vec3 normal;   ///< out of the solid
+    Mat3 bend;     ///< Hessian of the excess over its slope [1/mm]
+    double gap;    ///< to the level at which supports are held [mm]
+    double bound;  ///< of the half-space: what a motion along the normal has to reach [mm]
+};
+
+/// A motion as translation and rotation.
+struct Split {
+    Vec3 v, w;
+};
+
+class Rounds {
+  public:
+    Rounds(ToolProxy& proxy, Around& around, const Pose& hand, const ToolSettings& settings,
+           PoseObserver observer)
+        : proxy_(proxy),
+          around_(around),
+          motion_{proxy, around, observer},
+          hand_(hand),
+          target_(hand),
+          friction_(settings.friction),
+          friction_pending_(friction_.static_coefficient > 0 || friction_.dynamic_coefficient > 0),
+          gyration_(settings.gyration > 0 ? settings.gyration : proxy.tool().gyration()),
+          reach_(proxy.tool().radius()),
+          voxel_(around.shortest()),
+          most_angle_(std::min(3.0, std::sqrt(8 * sagitta * voxel_ / reach_))) {}
+
+    UpdateStatus run(int most_rounds, int& rounds) {
+        int failures = 0;
+        for (rounds = 0; rounds < most_rounds && !around_.is_exhausted(); ++rounds) {
+            look();
+            if (friction_pending_) apply_friction();
+            pull_ = pull();
+            const double before = dot(pull_, pull_);
+            if (before == 0 || proxy_.contact_count == 0) {
+                if ((before == 0 || go_freely()) && is_at_hand()) return end_free();
+            } else {
+                if (go_along(failures)) {
+                    proxy_.mode = Mode::constrained;
+                    return UpdateStatus::done;
+                }
+            }
+            if (around_.is_exhausted()) break;
+            const Six left = pull();
+            const double after = dot(left, left);
+            const double least = 2e-9 * voxel_ * std::max(std::sqrt(before), 1e-9 * voxel_);
+            if (before - after > least) {
+                failures = 0;
+                proxy_.kept.trust = std::min(1.0, 2 * proxy_.kept.trust);
+                continue;
+            }
+            proxy_.kept.trust = std::max(1e-4, 0.25 * proxy_.kept.trust);
+            if (added_ > 0) {  // a new contact is news; it shares in the friction
+                is_at_hand();
+                continue;
+            }
+            if (++failures > most_failures) break;
+        }
+        if (around_.is_exhausted()) {
+            proxy_.kept.trust = std::max(1e-3, 0.5 * proxy_.kept.trust);
+            proxy_.kept.stride = std::max(1e-2, 0.25 * proxy_.kept.stride);
+        }
+        proxy_.mode = proxy_.contact_count > 0 ? Mode::constrained : Mode::free;
+        return UpdateStatus::out_of_budget;
+    }
+
+  private:
+    UpdateStatus end_free() {
+        proxy_.mode = Mode::free;
+        proxy_.sliding = false;
+        proxy_.contact_count = 0;
+        return UpdateStatus::done;
+    }
+
+    /// At the target: false if that is not the hand, because friction had moved it back to where
+    /// nothing touches any more. Then the hand is the target again.
+    bool is_at_hand() {
+        if (!is_held_back_) return true;
+        is_held_back_ = false;
+        friction_pending_ = true;
+        target_ = hand_;
+        return false;
+    }
+
+    /// Moves the target back by what friction at the contacts holds.
+    void apply_friction() {
+        const int count = proxy_.contact_count;
+        if (count == 0) return;
+        pull_ = pull();
+        const double length = std::sqrt(dot(pull_, pull_));
+        const double at_rest = std::max(resting_pull * length, least_pull * voxel_);
+        std::array<tool::Tangents, most_tool_contacts> tangents;
+        for (int i = 0; i < count; ++i) {
+            const Vec3 along = touches_[i].normal.unitOrthogonal();
+            const Vec3 across = touches_[i].normal.cross(along);
+            tangents[i] = {{row_of(touches_[i].arm, along), row_of(touches_[i].arm, across)}};
+        }
+        const auto held = [&](double coefficient) {
+            return held_by_friction(pull_, rows_.data(), tangents.data(), count, coefficient,
+                                    1e-9 * std::max(length, voxel_), at_rest);
+        };
+        Held left =
+            held(proxy_.sliding ? friction_.dynamic_coefficient : friction_.static_coefficient);
+        if (left.slips && !proxy_.sliding) left = held(friction_.dynamic_coefficient);
+        slipped_ |= left.slips;
+        proxy_.sliding = slipped_;
+        friction_pending_ = false;
+        is_held_back_ = true;
+        const Split s = split(left.pull);
+        target_ = {proxy_.pose.position + s.v,
+                   turns() ? turned(proxy_.pose.orientation, s.w) : hand_.orientation};
+    }
+
+    bool turns() const { return proxy_.tool().turns(); }
+    Six pull() const { return pull_from(proxy_.pose); }
+    Six pull_from(const Pose& pose) const {
+        const Vec3 rotation =
+            turns() ? rotation_between(pose.orientation, target_.orientation) : Vec3::Zero();
+        return six(target_.position - pose.position, gyration_ * rotation);
+    }
+    Split split(const Six& x) const { return {x.head<3>(), x.tail<3>() / gyration_}; }
+
+    /// How a motion of the tool moves what is at its arm along a direction.
+    Six row_of(const Vec3& arm, const Vec3& direction) const {
+        return six(direction, turns() ? Vec3(arm.cross(direction) / gyration_) : Vec3::Zero());
+    }
+
+    /// The contacts that the pull may reach, as they are now.
+    void look() {
+        int kept = 0;
+        for (int i = 0; i < proxy_.contact_count; ++i) {
+            ToolContact contact = proxy_.contacts[i];
+            int idle = proxy_.kept.idle[i];
+            contact.place = physical_from_tool(proxy_.pose, proxy_.tool().points()[contact.point]);
+            const Around::Expansion at = around_.expand(contact.place);
+            const double slope = std::sqrt(dot(at.gradient, at.gradient));
+            if (!(slope > least_slope * around_.range() / voxel_)) continue;
+            const double gap = (Around::held * around_.range() - at.excess) / slope;
+            if (++idle > most_idle || gap > 1.5 * voxel_) continue;
+            contact.normal = at.gradient / -slope;
+            contact.pressure = 0;
+            touches_[kept] = {contact.place - proxy_.pose.position, contact.normal,
+                              at.hessian / slope, gap, gap > 0 ? -gap : -1.5 * gap};
+            rows_[kept] = {row_of(touches_[kept].arm, contact.normal), touches_[kept].bound};
+            proxy_.contacts[kept] = contact;
+            proxy_.kept.idle[kept] = idle;
+            ++kept;
+        }
+        proxy_.contact_count = kept;
+    }
+
+    /// Takes up the points that ended the last motion.
+    void take_up_hits() {
+        for (int h = 0; h < motion_.hit_count; ++h) {
+            const int point = motion_.hits[h];
+            bool known = false;
+            for (int i = 0; i < proxy_.contact_count; ++i) {
+                if (proxy_.contacts[i].point == point) known = true;
+            }
+            if (known) continue;
+            int at = proxy_.contact_count;
+            if (at == most_tool_contacts)
+                at = least_needed();
+            else
+                ++proxy_.contact_count;
+            proxy_.contacts[at] = {.point = point};
+            proxy_.kept.idle[at] = 0;
+            ++added_;
+        }
+    }
+
+    int least_needed() const {
+        int least = 0;
+        for (int i = 1; i < most_tool_contacts; ++i) {
+            if (proxy_.kept.idle[i] > proxy_.kept.idle[least]) least = i;
+        }
+        return least;
+    }
+
+    double go(const Six& step, const Pose* exact = nullptr) {
+        const Split s = split(step);
+        const double part = motion_.go(s.v, s.w, exact);
+        take_up_hits();
+        return part;
+    }
+
+    /// With nothing near: straight to the hand, in turns small enough that chords are arcs. True at
+    /// the hand.
+    bool go_freely() {
+        added_ = 0;
+        const Split s = split(pull_);
+        const double angle = s.w.norm();
+        const double far = s.v.norm() + angle * reach_, stride = proxy_.kept.stride * voxel_;
+        double share = far > stride ? stride / far : 1;
+        if (angle * share > most_angle_) share = most_angle_ / angle;
+        Pose end = target_;
+        if (!turns()) end.orientation = proxy_.pose.orientation;
+        const bool whole = share == 1;
+        const double part = go(pull_ * share, whole ? &end : nullptr);
+        if (part == 1) proxy_.kept.stride = std::min(longest_stride, 2 * proxy_.kept.stride);
+        return part == 1 && whole;
+    }
+
+    /// No longer than the trust, in translation and at the farthest point, and no more of a turn
+    /// than chords allow.
+    double share_of(const Six& step) const {
+        const double trust = proxy_.kept.trust * voxel_;
+        const Split s = split(step);
+        const double v = s.v.norm(), w = s.w.norm();
+        double share = 1;
+        if (v > trust) share = trust / v;
+        if (w * share * reach_ > trust) share = trust / (w * reach_);
+        if (w * share > most_angle_) share = most_angle_ / w;
+        return share;
+    }
+
+    /// How much the surface rises under a contact, and how much its way bends into the solid
+    /// because it turns, both beyond what is linear [mm].
+    struct Rise {
+        double surface, turn;
+    };
+    static Rise rise_of(const Touch& touch, const Split& s) {
+        const Vec3 turn = s.w.cross(touch.arm);
+        const Vec3 chord = s.v + turn;
+        return {0.5 * chord.dot(touch.bend * chord), -0.5 * touch.normal.dot(s.w.cross(turn))};
+    }
+
+    Nearest nearest_to(const Six& to) const {
+        return nearest(to, rows_.data(), proxy_.contact_count, 1e-13 * voxel_);
+    }
+
+    /// A round in contact. True at rest.
+    bool go_along(int failures) {
+        added_ = 0;
+        const int count = proxy_.contact_count;
+        const Nearest flat = nearest_to(pull_);
+        double pressing = 0;
+        for (int i = 0; i < count; ++i) {
+            proxy_.contacts[i].pressure = flat.multiplier[i];
+            if (!(flat.multiplier[i] > 0)) continue;
+            proxy_.kept.idle[i] = 0;
+            pressing = std::max(pressing, std::abs(touches_[i].gap));
+        }
+        const double pull = std::sqrt(dot(pull_, pull_));
+        const double left = std::sqrt(dot(flat.point, flat.point));
+        if (!flat.found) return false;
+        if (left <= std::max(resting_pull * pull, least_pull * voxel_) &&
+            pressing < least_pull * voxel_) {
+            return true;
+        }
+        const Nearest bent =
+            nearest(pull_, curvature(flat), least_curvature, rows_.data(), count, 1e-13 * voxel_);
+        const Six aim = bent.found ? bent.point : flat.point;
+        const Six step = aim * share_of(aim);
+        lift(step, failures);
+        const Six along = lifted(step);
+        if (!descend(along)) return false;
+        if (motion_.hit_count > 0) return false;
+        fall(step, along);
+        return false;
+    }
+
+    /// The half-spaces raised to where a step certainly is above the surface.
+    void lift(const Six& step, int failures) {
+        const Split s = split(step);
+        const double more = std::min(4.0, 1 + 0.75 * failures);
+        for (int i = 0; i < proxy_.contact_count; ++i) {
+            const Rise rise = rise_of(touches_[i], s);
+            const double up =
+                1.1 * std::max(0.0, rise.surface) + (rise.turn > 0 ? 1.05 : 0.95) * rise.turn;
+            rows_[i].bound = touches_[i].bound + more * std::max(0.0, up);
+        }
+    }
+
+    /// The step nearest to one whose exact chords clear the surface as the field's second order
+    /// says.
+    Six lifted(const Six& step) {
+        Six result = step;
+        for (int tries = 0; tries < 4; ++tries) {
+            const Nearest found = nearest_to(step);
+            if (!found.found) return Six::Zero();
+            result = found.point;
+            const Split s = split(result);
+            const Quaternion turn = turned(Quaternion::Identity(), s.w);
+            double missing = 0;
+            for (int i = 0; i < proxy_.contact_count; ++i) {
+                const Touch& touch = touches_[i];
+                const Vec3 chord = s.v + (turn * touch.arm - touch.arm);
+                const double rise = 1.05 * std::max(0.0, rise_of(touch, s).surface);
+                const double lacking = touch.bound + rise - touch.normal.dot(chord);
+                if (!(lacking > 1e-14 * voxel_)) continue;
+                rows_[i].bound += lacking;
+                missing = std::max(missing, lacking);
+            }
+            if (missing == 0) break;
+        }
+        return result;
+    }
+
+    /// Along a step, no farther than where the distance to the hand is least. False if it leads
+    /// away.
+    bool descend(Six step) {
+        const Six left = pull();
+        const double towards = dot(step, left), squared = dot(step, step);
+        if (!(towards > 0) || !(squared > 0)) return false;
+        if (towards < squared) step *= towards / squared;
+        // Rotations do not add up: look at the distance itself.
+        for (int tries = 0; tries < 4; ++tries) {
+            const Split s = split(step);
+            const Six after = pull_from(moved(proxy_.pose, s.v, s.w, 1));
+            if (dot(after, after) <= dot(left, left)) {
+                go(step);
+                return true;
+            }
+            step *= 0.25;
+        }
+        return false;
+    }
+
+    /// From above the surface to where the step's foot is by the field's second order, and past it,
+    /// in case the surface lies lower.
+    void fall(const Six& step, const Six& along) {
+        const Split s = split(step);
+        for (int i = 0; i < proxy_.contact_count; ++i) {
+            const Rise rise = rise_of(touches_[i], s);
+            rows_[i].bound = touches_[i].bound + rise.surface + rise.turn;
+        }
+        const Nearest foot = nearest_to(step);
+        if (foot.found) descend(3 * (foot.point - along));
+    }
+
+    Mat6 curvature(const Nearest& flat) const {
+        Mat6 b = Mat6::Identity();
+        for (int i = 0; i < proxy_.contact_count; ++i) {
+            const double pressure = flat.multiplier[i];
+            if (!(pressure > 0)) continue;
+            const Touch& touch = touches_[i];
+            const Mat3& h = touch.bend;
+            b.topLeftCorner<3, 3>() += pressure * h;
+            if (!turns()) continue;
+            Mat3 cross;  // cross * w = w x arm
+            cross << 0, touch.arm[2], -touch.arm[1], -touch.arm[2], 0, touch.arm[0], touch.arm[1],
+                -touch.arm[0], 0;
+            const Mat3 mixed = pressure / gyration_ * (h * cross);
+            b.topRightCorner<3, 3>() += mixed;
+            b.bottomLeftCorner<3, 3>() += mixed.transpose();
+            const Vec3 &n = touch.normal, &c = touch.arm;
+            const Mat3 turn =
+                n.dot(c) * Mat3::Identity() - 0.5 * (n * c.transpose() + c * n.transpose());
+            b.bottomRightCorner<3, 3>() +=
+                pressure / (gyration_ * gyration_) * (cross.transpose() * h * cross + turn);
+        }
+        return b;
+    }
+
+    ToolProxy& proxy_;
+    Around& around_;
+    Motion motion_;
+    const Pose& hand_;
+    Pose target_;
+    const Friction& friction_;
+    bool friction_pending_;
+    bool is_held_back_ = false;  ///< the target is not the hand
+    bool slipped_ = false;       ///< in this update
+    const double gyration_, reach_, voxel_, most_angle_;
+    Six pull_ = Six::Zero();
+    std::array<Touch, most_tool_contacts> touches_;
+    std::array<HalfSpace6, most_tool_contacts> rows_;
+    int added_ = 0;
+};
+
+bool accepts(const Tool& tool, const Field& field, double isovalue, const Pose& hand) {
+    if (field.interpolation() != Interpolation::cubic) return false;
+    if (!(tool.radius() <= farthest_hip * field.geometry().spacing.minCoeff())) return false;
+    if (!hand.position.allFinite() || !hand.orientation.coeffs().allFinite()) return false;
+    if (!(std::abs(hand.orientation.squaredNorm() - 1) < 1e-6)) return false;
+    const Vec3 index = index_from_physical(field.geometry(), hand.position);
+    for (int a = 0; a < 3; ++a) {
+        if (!(index[a] >= -farthest_hip) ||
+            !(index[a] <= field.geometry().size[a] + farthest_hip)) {
+            return false;
+        }
+    }
+    return field.sign() * isovalue > -std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+}  // namespace tool
+
+ToolProxy::ToolProxy(std::shared_ptr<const Tool> tool) {
+    make_room(tool->points().size());
+    use(std::move(tool));
+}
+
+void ToolProxy::make_room(std::size_t points) {
+    const std::size_t room = std::max(points, kept.arms.size());
+    kept.arms.resize(room);
+    kept.expiry.resize(room);
+    kept.suspects.resize(room);
+}
+
+bool ToolProxy::use(std::shared_ptr<const Tool> tool) noexcept {
+    const auto points = tool->points();
+    if (points.size() > kept.arms.size()) return false;
+    std::ranges::transform(points, kept.arms.begin(), [](const Vec3& p) { return p.norm(); });
+    contact_count = 0;
+    kept.renewed = true;
+    tool_ = std::move(tool);
+    return true;
+}
+
+ToolUpdate update_tool(ToolProxy& proxy, const Field& field, const Pose& hand,
+                       const ToolSettings& settings, PoseObserver observer) {
+    ToolUpdate result{.mode = proxy.mode, .hand = hand, .proxy = proxy.pose};
+    Quaternion& turn = result.hand.orientation;
+    if (!tool::accepts(proxy.tool(), field, proxy.isovalue, hand)) {
+        result.status = UpdateStatus::refused;
+        return result;
+    }
+    // What is unit to all digits stays as it is, to the bit.
+    if (std::abs(turn.squaredNorm() - 1) > 1e-14) turn.normalize();
+    ToolProxy::Kept& kept = proxy.kept;
+    const int budget = settings.work_budget + 4 * static_cast<int>(proxy.tool().points().size());
+    tool::Around around(field, proxy.isovalue, kept.surroundings, budget);
+    const bool others = tool::renew(kept.surroundings, field) || !proxy.placed ||
+                        kept.isovalue != proxy.isovalue || kept.renewed;
+    if (!proxy.placed) {
+        proxy.pose = result.hand;
+        proxy.contact_count = 0;
+    }
+    // Odometers keep their digits.
+    if (others || kept.inside || kept.moved + kept.turned * proxy.tool().radius() > 1000) {
+        std::ranges::fill(kept.expiry, -1.0);
+        kept.moved = kept.turned = 0;
+        kept.isovalue = proxy.isovalue;
+        kept.renewed = false;
+    }
+    if (others || kept.inside) kept.inside = !tool::recover(proxy, around, observer);
+    proxy.placed = true;
+    if (!kept.inside) {
+        tool::Rounds rounds(proxy, around, result.hand, settings, observer);
+        result.status = rounds.run(settings.most_rounds, result.rounds);
+    } else {
+        proxy.mode = Mode::constrained;
+        result.status = UpdateStatus::recovering;
+    }
+    result.mode = proxy.mode;
+    result.proxy = proxy.pose;
+    result.work = budget - around.work_left();
+    for (int i = 0; i < proxy.contact_count; ++i) {
+        result.contacts += proxy.contacts[i].pressure > 0;
+    }
+    return result;
+}
+
+}  // namespace palpate

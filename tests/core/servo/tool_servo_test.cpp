@@ -1,0 +1,87 @@
+// Servo: tools that are sent while it runs are felt, and freed by other threads than its own; a
+// device that renders torque gets one, within its limits.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <thread>
+
+#include "palpate/servo.hpp"
+#include "support/eventually.hpp"
+#include "support/fields.hpp"
+#include "support/press.hpp"
+#include "support/scripted_device.hpp"
+
+using namespace palpate;
+using namespace palpate::support;
+
+namespace {
+
+/// A hand at rest at a depth of 33 in the smooth ramp, whose density is the depth; level 30.
+struct ToolServo {
+    std::atomic<std::thread::id> servo_thread;
+    ScriptedDevice device{[this](double) {
+                              servo_thread = std::this_thread::get_id();
+                              return ready_at(at_depth(33));
+                          },
+                          {.maximum_torque = 2}};
+    Servo servo{Session{make_renderer(smooth(ramp_field()), 30, with_torque()), {}}, device};
+
+    static RendererSettings with_torque() {
+        RendererSettings settings;
+        settings.device.maximum_torque = 1000;
+        return settings;
+    }
+    ToolServo() { servo.start(); }
+    /// At rest with the reference point at this depth, held by a tool's contacts or a point's.
+    bool is_at(double depth, double tolerance, bool with_tool) {
+        return comes_true([&] {
+            const auto now = servo.snapshot();
+            if (!now || with_tool != (now->contact_count > 0)) return false;
+            return std::abs(now->session.tick.proxy.scp[2] - depth) < tolerance;
+        });
+    }
+};
+
+}  // namespace
+
+TEST(ToolServo, tools_that_are_sent_are_felt_and_freed_by_others) {
+    std::atomic<int> freed{0}, freed_by_servo{0};
+    {
+        ToolServo live;
+        EXPECT_TRUE(live.is_at(30, 1e-6, false));
+        for (int i = 0; i < 20; ++i) {
+            const double radius = 1 + i % 3;
+            const std::shared_ptr<const Tool> tool(
+                new Tool(sphere_tool(radius, 0.3)), [&](const Tool* used) {
+                    ++freed;
+                    freed_by_servo += std::this_thread::get_id() == live.servo_thread.load();
+                    delete used;
+                });
+            ASSERT_TRUE(live.servo.send(command::UseTool{tool}));
+            ASSERT_TRUE(live.is_at(30 - radius, 0.1, true)) << radius;
+        }
+        EXPECT_GE(freed, 10) << "while it runs";
+        ASSERT_TRUE(live.servo.send(command::UseTool{nullptr}));
+        EXPECT_TRUE(live.is_at(30, 1e-6, false));
+        live.servo.stop();
+    }
+    EXPECT_EQ(freed, 20);
+    EXPECT_EQ(freed_by_servo, 0);
+}
+
+TEST(ToolServo, torque_reaches_the_device_within_its_limits) {
+    ToolServo live;
+    const auto arm = std::make_shared<const Tool>(std::vector<Vec3>{{3, 0, 0}}, 20.0);
+    ASSERT_TRUE(live.servo.send(command::UseTool{arm}));
+    EXPECT_TRUE(comes_true([&] { return live.device.largest_torque() > 1.9; }));
+    live.servo.stop();
+    EXPECT_LE(live.device.largest_torque(), 2 * (1 + 1e-12));
+}
+
+TEST(ToolServo, a_tool_is_refused_where_it_cannot_be_felt) {
+    ScriptedDevice device{[](double) { return ready_at(at_depth(33)); }};
+    Servo servo{Session{make_renderer(ramp_field(), 30), {}}, device};
+    const auto tool = std::make_shared<const Tool>(sphere_tool(1, 0.3));
+    EXPECT_THROW(servo.send(command::UseTool{tool}), std::invalid_argument);
+    EXPECT_EQ(tool.use_count(), 1) << "it is not held";
+}

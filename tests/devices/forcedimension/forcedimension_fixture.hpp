@@ -1,0 +1,119 @@
+// A device `forcedimension` on a stand-in for the vendor's library: opening it, pressing, and
+// waiting for what it does.
+#pragma once
+
+#include <dlfcn.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include "devices/forcedimension/forcedimension.hpp"
+#include "devices/forcedimension/mock_dhd.hpp"
+#include "devices/vendor_polling.hpp"
+#include "support/scratch_folder.hpp"
+
+namespace palpate::devices {
+
+using namespace std::chrono_literals;
+using support::any_scene;
+using support::contains;
+using support::eventually;
+using support::message_of;
+using support::MockDhd;
+using support::MockDhdState;
+using support::throughout;
+
+/// A stand-in that was just plugged in.
+inline MockDhd* plugged_in(const char* path) {
+    void* library = dlopen(path, RTLD_NOW);
+    if (!library) throw std::runtime_error(dlerror());
+    MockDhd* mock = reinterpret_cast<MockDhd* (*)()>(dlsym(library, "mock_dhd"))();
+    const std::lock_guard lock(mock->mutex);
+    mock->state = {};
+    return mock;
+}
+
+class ForceDimension : public testing::Test {
+  protected:
+    void use(const char* library) {
+        library_ = library;
+        mock_ = plugged_in(library);
+    }
+    void SetUp() override { use(MOCK_DRD); }
+
+    std::unique_ptr<Device> open(const std::string& options = "", double rate = 1000) const {
+        return open_forcedimension(parse_device("forcedimension:library=" + library_ + options),
+                                   any_scene(rate));
+    }
+    std::string refusal(const std::string& options = "") const {
+        return message_of<DeviceError>([&] { open(options); });
+    }
+
+    /// Of the stand-in, its lock held.
+    template <class F>
+    auto with(F act) const {
+        const std::lock_guard lock(mock_->mutex);
+        return act(mock_->state);
+    }
+    /// In our axes: x to the right, y up, z towards the person.
+    Vec3 force() const {
+        return with([](auto& dhd) { return Vec3(dhd.force[1], dhd.force[2], dhd.force[0]); });
+    }
+    bool becomes(Device& device, DeviceStatus status) const {
+        return eventually([&] { return device.read(0).status == status; });
+    }
+    bool has_no_problem(Device& device) const {
+        return eventually([&] { return device.problem().empty(); });
+    }
+    bool says(Device& device, const std::string& words) const {
+        return eventually([&] { return contains(device.problem(), words); });
+    }
+    /// Presses with this force until the device feels it.
+    bool presses(Device& device, const Vec3& newtons = Vec3(1, 2, 0)) const {
+        return eventually([&] { return (force() - newtons).norm() < 1e-12; },
+                          [&] {
+                              device.write({newtons, Vec3::Zero()}, 0);
+                          });
+    }
+    /// [N m] in our axes.
+    Vec3 torque() const {
+        return with([](auto& dhd) { return Vec3(dhd.torque[1], dhd.torque[2], dhd.torque[0]); });
+    }
+    /// Presses and turns until the device feels both.
+    bool turns(Device& device, const Vec3& newton_mm = Vec3(10, 20, 30)) const {
+        const Vec3 newtons(1, 2, 0);
+        return eventually(
+            [&] {
+                return (force() - newtons).norm() < 1e-12 &&
+                       (1000 * torque() - newton_mm).norm() < 1e-9;
+            },
+            [&] {
+                device.write({newtons, newton_mm}, 0);
+            });
+    }
+    /// No force for a while, whatever is asked for.
+    bool stays_at_zero(Device& device) const {
+        return throughout(
+            100ms, [&] { return force().isZero(0) && torque().isZero(0); },
+            [&] {
+                device.write({Vec3(1, 1, 1), Vec3(1, 1, 1)}, 0);
+            });
+    }
+    bool goes_to_zero(Device& device) const {
+        const auto press = [&] { device.write({Vec3(1, 1, 1), Vec3(1, 1, 1)}, 0); };
+        return eventually([&] { return force().isZero(0) && torque().isZero(0); }, press) &&
+               stays_at_zero(device);
+    }
+    long called(const std::string& name) const {
+        return with(
+            [&](auto& dhd) { return std::count(dhd.calls.begin(), dhd.calls.end(), name); });
+    }
+
+    std::string library_;
+    MockDhd* mock_ = nullptr;
+};
+
+}  // namespace palpate::devices

@@ -1,0 +1,240 @@
+// Layers by label in the window: felt from an overlay, kept in sessions and recordings; layer files
+// that are dropped or opened.
+#include <QComboBox>
+#include <QDragEnterEvent>
+#include <QLabel>
+#include <QListWidget>
+#include <QMimeData>
+#include <QPushButton>
+#include <QStandardItemModel>
+#include <QTabWidget>
+
+#include <fstream>
+
+#include "apps/viewer/panel/layers_controls.hpp"
+#include "apps/viewer/panel/number_box.hpp"
+#include "palpate/io/layers_file.hpp"
+#include "viewer/window/window_fixture.hpp"
+
+namespace palpate::viewer::test {
+namespace {
+
+class LabelsInWindow : public InWindow {
+  protected:
+    /// A shell round a core on a coarser grid than the ball's, as 3D Slicer writes them.
+    void write_labels() {
+        std::ofstream out(scratch_.path() / "ball.seg.nrrd", std::ios::binary);
+        out << "NRRD0004\ntype: unsigned char\ndimension: 3\nspace: left-posterior-superior\n"
+               "sizes: 24 24 24\nspace directions: (2,0,0) (0,2,0) (0,0,2)\n"
+               "kinds: domain domain domain\nencoding: raw\nspace origin: (-23,-23,-23)\n"
+               "Segment0_ID:=Segment_1\nSegment0_LabelValue:=1\nSegment0_Name:=shell\n"
+               "Segment0_Color:=0.9 0.1 0.1\nSegment1_ID:=Segment_2\nSegment1_LabelValue:=7\n"
+               "Segment1_Name:=core\nSegment1_Color:=0.1 0.2 0.9\n\n";
+        for (int i = 0; i < 24 * 24 * 24; ++i) {
+            const double r = (Vec3(i % 24, i / 24 % 24, i / 576) - Vec3::Constant(11.5)).norm();
+            out.put(r > 9 ? '\0' : r > 4 ? '\1' : '\7');
+        }
+    }
+    void write_file(const char* name, const std::string& text) {
+        std::ofstream(scratch_.path() / name) << text;
+    }
+    void open_labels() {
+        write_labels();
+        window_->overlays().open(run::source_named((scratch_.path() / "ball.seg.nrrd").string()));
+        ASSERT_TRUE(wait_until([&] { return window_->overlays().overlay() && settled(); }));
+    }
+    void feel_labels() {
+        open_labels();
+        auto* tabs = window_->findChild<QTabWidget*>("tabs");
+        tabs->setCurrentIndex(2);
+        QTest::qWait(50);
+        QTest::mouseClick(&part<QPushButton>("feel_labels"), Qt::LeftButton);
+        ASSERT_TRUE(wait_until([&] { return layers() != nullptr; }))
+            << window_->messages().problem().toStdString();
+    }
+    void drop(const QString& path) {
+        QMimeData data;
+        data.setUrls({QUrl::fromLocalFile(path)});
+        QDragEnterEvent enter({10, 10}, Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
+        QApplication::sendEvent(window_.get(), &enter);
+        ASSERT_TRUE(enter.isAccepted());
+        QDropEvent event(QPointF(10, 10), Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
+        QApplication::sendEvent(window_.get(), &event);
+    }
+    SharedLayers layers() { return window_->live()->settings().layers; }
+    bool settled() {
+        QTest::qWait(60);
+        return wait_until([&] { return window_->settled(); });
+    }
+    /// Of a set that can be chosen; -1: it is not there.
+    int row_of(const QString& set) { return part<QComboBox>("layers").findText(set); }
+    bool possible(const QString& set) {
+        const auto& box = part<QComboBox>("layers");
+        return bool(box.model()->index(box.findText(set), 0).flags() & Qt::ItemIsEnabled);
+    }
+    void choose(const QString& set) {
+        auto& box = part<QComboBox>("layers");
+        box.setCurrentIndex(row_of(set));
+        Q_EMIT box.activated(box.currentIndex());
+        QTest::qWait(60);
+    }
+    /// The wheel over the scene, until a layer of that name is touched.
+    bool press_until_on(const std::string& name) {
+        const auto on = [&] {
+            const int touched = now().session.tick.layers.touched;
+            return touched >= 0 && layers()->layers[std::size_t(touched)].name == name;
+        };
+        for (int i = 0; i < 300 && !on(); ++i) {
+            turn_wheel(window_->views().scene(), 1);
+            QTest::qWait(15);
+        }
+        return on();
+    }
+};
+
+TEST_F(LabelsInWindow, one_click_feels_the_labels_with_their_names_and_colours) {
+    feel("synthetic:sphere:48x48x48");
+    feel_labels();
+    ASSERT_EQ(layers()->layers.size(), 2U);
+    EXPECT_TRUE(layers()->by_label);
+    EXPECT_EQ(layers()->layers[0].name, "shell");
+    EXPECT_EQ(layers()->layers[1].level, 7);
+    EXPECT_NEAR(layers()->layers[1].colour[2], 0.9, 1e-6);
+    auto& list = part<QListWidget>("layer_list");
+    EXPECT_TRUE(wait_until([&] { return list.isVisible(); })) << "the page Feel is shown";
+    EXPECT_EQ(list.item(1)->text(), "core   label 7");
+    EXPECT_EQ(part<QComboBox>("layers").currentText(), "Labels of ball.seg.nrrd");
+    EXPECT_TRUE(press_until_on("shell"));
+    EXPECT_TRUE(press_until_on("core")) << "through the shell, which gives way";
+    EXPECT_TRUE(wait_until([&] { return part<QLabel>("touched_layers").text().contains("core"); }));
+    ASSERT_TRUE(settled());
+    save("felt");
+    const double level = window_->live()->isovalue();
+    choose("No layers: one surface");
+    EXPECT_TRUE(wait_until([&] { return !layers(); }));
+    EXPECT_TRUE(wait_until([&] { return now().session.tick.proxy.isovalue == level; }));
+}
+
+TEST_F(LabelsInWindow, hidden_labels_are_not_felt) {
+    feel("synthetic:sphere:48x48x48");
+    open_labels();
+    part<QListWidget>("overlay_labels").item(0)->setCheckState(Qt::Unchecked);
+    QTest::mouseClick(&part<QPushButton>("feel_labels"), Qt::LeftButton);
+    ASSERT_TRUE(wait_until([&] { return layers() != nullptr; }));
+    ASSERT_EQ(layers()->layers.size(), 1U);
+    EXPECT_EQ(layers()->layers[0].name, "core");
+}
+
+TEST_F(LabelsInWindow, a_session_keeps_them_also_when_it_is_moved_with_its_data) {
+    io::write_volume(run::load(run::source_named("synthetic:sphere:48x48x48")).volume,
+                     scratch_.path() / "ball.nrrd");
+    feel((scratch_.path() / "ball.nrrd").string());
+    feel_labels();
+    auto& box = part<NumberBox>("layer_stiffness_box");
+    box.setFocus();
+    box.selectAll();
+    QTest::keyClicks(&box, "0.123");
+    QTest::keyClick(&box, Qt::Key_Return);
+    ASSERT_TRUE(wait_until(
+        [&] { return layers()->layers[0][HapticProperty::stiffness].value_or(0) == 0.123; }));
+    window_->files().save_session(scratch("s.json"));
+    EXPECT_EQ(window_->messages().problem(), "");
+    feel("synthetic:torus:40x40x40");
+    ASSERT_FALSE(layers());
+    const auto moved = scratch_.path() / "moved";
+    std::filesystem::create_directory(moved);
+    for (const char* name : {"s.json", "ball.nrrd", "ball.seg.nrrd"}) {
+        std::filesystem::rename(scratch_.path() / name, moved / name);
+    }
+    window_->files().open_path(QString::fromStdString((moved / "s.json").string()));
+    ASSERT_TRUE(wait_until([&] { return window_->live() && layers(); }))
+        << window_->messages().problem().toStdString();
+    ASSERT_TRUE(settled());
+    EXPECT_EQ(window_->messages().problem(), "");
+    EXPECT_TRUE(layers()->by_label);
+    EXPECT_EQ(layers()->layers[0][HapticProperty::stiffness], 0.123);
+    EXPECT_TRUE(window_->overlays().overlay());
+    EXPECT_TRUE(press_until_on("shell"));
+    std::filesystem::remove(moved / "ball.seg.nrrd");
+    window_->files().open_path(QString::fromStdString((moved / "s.json").string()));
+    EXPECT_TRUE(wait_until([&] { return !window_->messages().problem().isEmpty(); }));
+    EXPECT_TRUE(wait_until([&] { return window_->live() && !layers(); })) << "felt without them";
+}
+
+TEST_F(LabelsInWindow, a_recording_is_played_with_them) {
+    feel("synthetic:sphere:48x48x48");
+    feel_labels();
+    const double level = window_->live()->isovalue();
+    window_->recordings().start(scratch("a.csv"));
+    EXPECT_EQ(window_->live()->isovalue(), level);
+    ASSERT_TRUE(press_until_on("shell"));
+    QTest::qWait(200);
+    window_->recordings().stop();
+    window_->files().open_path(scratch("a.csv"));
+    ASSERT_TRUE(wait_until([&] { return window_->playback() != nullptr; }))
+        << window_->messages().problem().toStdString();
+    EXPECT_EQ(window_->playback()->different(), 0U);
+    window_->playing().show_time(window_->playback()->end());
+    EXPECT_TRUE(wait_until([&] { return part<QLabel>("readout").text().contains("on shell"); }))
+        << part<QLabel>("readout").text().toStdString();
+    QTest::keyClick(window_.get(), Qt::Key_Escape);
+    ASSERT_TRUE(wait_until([&] { return window_->live() && layers(); }));
+    EXPECT_TRUE(wait_until([&] { return window_->overlays().overlay() != nullptr; }))
+        << "their label map is shown";
+    ASSERT_TRUE(settled());
+}
+
+constexpr const char* by_label_set = R"({"palpate_layers": 1, "name": "Organs", "by_label": true,
+    "layers": [{"name": "core", "level": 7, "stiffness": 0.5, "puncture_force": "inf"}]})";
+constexpr const char* named_set = R"({"palpate_layers": 1, "name": "Named", "layers": [
+    {"name": "shell", "level": 20}, {"name": "core", "level": 60}]})";
+
+TEST_F(LabelsInWindow, a_set_by_label_can_be_chosen_once_there_is_a_label_map) {
+    feel("synthetic:sphere:48x48x48");
+    write_file("organs.json", by_label_set);
+    write_file("named.json", named_set);
+    drop(scratch("organs.json"));
+    EXPECT_TRUE(window_->messages().problem().contains("label map"))
+        << window_->messages().problem().toStdString();
+    EXPECT_FALSE(layers());
+    ASSERT_GE(row_of("Organs"), 0);
+    EXPECT_FALSE(possible("Organs"));
+    const auto& box = part<QComboBox>("layers");
+    EXPECT_TRUE(box.itemData(row_of("Organs"), Qt::ToolTipRole).toString().contains("label map"));
+    drop(scratch("named.json"));
+    ASSERT_TRUE(wait_until([&] { return layers() != nullptr; }));
+    EXPECT_FALSE(layers()->by_label);
+    EXPECT_EQ(row_of("Named, by label"), -1);
+    open_labels();
+    EXPECT_TRUE(possible("Organs"));
+    choose("Organs");
+    ASSERT_TRUE(wait_until([&] { return layers() && layers()->name == "Organs"; }));
+    EXPECT_TRUE(press_until_on("core"));
+    choose("Named, by label");
+    ASSERT_TRUE(wait_until([&] { return layers()->by_label && layers()->layers.size() == 2; }));
+    EXPECT_EQ(layers()->layers[1].level, 7);
+}
+
+TEST_F(LabelsInWindow, a_layer_file_that_is_opened_is_used_and_a_bad_one_is_one_clear_line) {
+    write_file("named.json", named_set);
+    write_file("bad.json", R"({"palpate_layers": 1, "layers": [{"name": "a", "levle": 3}]})");
+    window_->files().open_path(scratch("named.json"));
+    EXPECT_TRUE(window_->messages().problem().contains("open a volume first"));
+    for (auto* box : window_->findChildren<QDialog*>()) box->close();
+    window_->activateWindow();
+    feel("synthetic:sphere:48x48x48");
+    type_in_dialog(Qt::Key_O, scratch("named.json"));
+    ASSERT_TRUE(wait_until([&] { return layers() != nullptr; }))
+        << window_->messages().problem().toStdString();
+    EXPECT_EQ(layers()->name, "Named");
+    drop(scratch("bad.json"));
+    ASSERT_TRUE(wait_until([&] { return !window_->messages().problem().isEmpty(); }));
+    const QString problem = window_->messages().problem();
+    EXPECT_TRUE(problem.contains("bad.json") && problem.contains("level")) << problem.toStdString();
+    EXPECT_FALSE(problem.contains('\n'));
+    EXPECT_FALSE(problem.contains("session"));
+    EXPECT_EQ(layers()->name, "Named") << "the ones before stay";
+}
+
+}  // namespace
+}  // namespace palpate::viewer::test
