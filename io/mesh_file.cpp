@@ -6,6 +6,7 @@
 #include <array>
 #include <bit>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
@@ -157,9 +158,7 @@ void write_vtp(const SurfaceMesh& mesh, PendingFile& file) {
     file.write("\n</AppendedData>\n</VTKFile>\n");
 }
 
-}  // namespace
-
-MeshFormat mesh_format_from(const std::filesystem::path& path) {
+std::optional<MeshFormat> format_of(const std::filesystem::path& path) {
     std::string extension = path.extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(),
                    [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
@@ -167,8 +166,19 @@ MeshFormat mesh_format_from(const std::filesystem::path& path) {
     if (extension == ".stl") return MeshFormat::stl;
     if (extension == ".obj") return MeshFormat::obj;
     if (extension == ".vtp") return MeshFormat::vtp;
+    return {};
+}
+
+}  // namespace
+
+MeshFormat mesh_format_from(const std::filesystem::path& path) {
+    if (const auto format = format_of(path)) return *format;
     throw std::invalid_argument(
         path.string() + ": its extension names no mesh format: use .ply, .stl, .obj or .vtp");
+}
+
+bool names_a_mesh(const std::filesystem::path& path) {
+    return format_of(path).has_value();
 }
 
 void write_mesh(const SurfaceMesh& mesh, const std::filesystem::path& path) {

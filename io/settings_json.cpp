@@ -87,10 +87,42 @@ void from_value(const Json& json, const std::string&, Layers& layers) {
     layers = layers_from_json(json);
 }
 
+/// Of a shape: finer ones are left out.
+constexpr std::size_t most_triangles_kept = 20'000;
+
 Json to_value(const Tool& tool) {
     Json points = Json::array();
     for (const Vec3& point : tool.points()) points.push_back(to_value(point));
-    return {{"points", points}, {"gyration", tool.gyration()}, {"turns", tool.turns()}};
+    Json json = {{"points", points}, {"gyration", tool.gyration()}, {"turns", tool.turns()}};
+    const ToolShape& shape = tool.shape();
+    if (shape.triangles.empty() || shape.triangles.size() > most_triangles_kept) return json;
+    Json& vertices = json["vertices"] = Json::array();
+    for (const Vec3& vertex : shape.vertices) vertices.push_back(to_value(vertex));
+    json["triangles"] = shape.triangles;
+    return json;
+}
+
+/// What a tool looks like; may be missing.
+ToolShape shape_from(const Json& json, const std::string& name) {
+    ToolShape shape;
+    if (!json.contains("triangles")) return shape;
+    const Json &vertices = member(json, "vertices"), &triangles = json["triangles"];
+    if (!vertices.is_array()) wrong_member(name + ".vertices", "a list of points");
+    if (!triangles.is_array()) wrong_member(name + ".triangles", "a list of triangles");
+    shape.vertices.resize(vertices.size());
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+        from_value(vertices[i], name + ".vertices", shape.vertices[i]);
+    }
+    shape.triangles.resize(triangles.size());
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+        if (!triangles[i].is_array() || triangles[i].size() != 3) {
+            wrong_member(name + ".triangles", "three numbers each");
+        }
+        for (std::size_t k = 0; k < 3; ++k) {
+            from_value(triangles[i][k], name + ".triangles", shape.triangles[i][k]);
+        }
+    }
+    return shape;
 }
 
 void from_value(const Json& json, const std::string& name, Tool& tool) {
@@ -106,7 +138,7 @@ void from_value(const Json& json, const std::string& name, Tool& tool) {
     bool turns = true;
     from_value(member(json, "gyration"), name + ".gyration", gyration);
     from_value(member(json, "turns"), name + ".turns", turns);
-    tool = Tool(std::move(points), gyration, turns);
+    tool = Tool(std::move(points), gyration, turns, shape_from(json, name));
 }
 
 // The lists of members. Not in an unnamed namespace, where JsonWriter would not find them.

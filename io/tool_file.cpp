@@ -3,9 +3,11 @@
 
 #include <array>
 #include <stdexcept>
+#include <utility>
 
 #include "io/number.hpp"
 #include "palpate/io/csv.hpp"
+#include "palpate/io/mesh_file.hpp"
 #include "palpate/session.hpp"
 
 namespace palpate::io {
@@ -13,7 +15,7 @@ namespace {
 
 constexpr const char* wanted =
     "point, sphere:RADIUS, rod:LENGTH, needle[:LENGTH,RADIUS], burr:RADIUS, box:X,Y,Z, fingertip "
-    "(lengths in mm), or a file of points (.csv)";
+    "(lengths in mm), or a file: points (.csv) or a mesh (.stl, .ply, .obj, .vtp)";
 
 [[noreturn]] void refuse(const std::string& text) {
     throw std::invalid_argument("the tool '" + text + "' is not known: it is " + wanted);
@@ -80,6 +82,11 @@ ToolSpec tool_spec_from(const std::string& text) {
     if (std::filesystem::path(text).extension() == ".csv") {
         return PointsSpec{parse_tool_points(read_text(text), text)};
     }
+    if (names_a_mesh(text)) {
+        SurfaceMesh mesh = read_mesh(text);
+        return MeshSpec{std::make_shared<const ToolShape>(
+            ToolShape{std::move(mesh.vertices), std::move(mesh.triangles)})};
+    }
     refuse(text);
 }
 
@@ -91,11 +98,39 @@ std::shared_ptr<const Tool> make_tool(const ToolSpec& spec, double spacing) {
         [&](const NeedleSpec& s) { return needle_tool(s.length, s.radius, spacing); },
         [&](const BurrSpec& s) { return burr_tool(s.radius, spacing); },
         [&](const BoxSpec& s) { return box_tool(s.size, spacing); },
-        [&](const FingertipSpec&) { return fingertip_tool(spacing); },
+        [&](const FingertipSpec& s) { return fingertip_tool(spacing, s.scale); },
         [](const PointsSpec& s) { return Tool(s.points); },
+        [&](const MeshSpec& s) { return mesh_tool(*s.mesh, spacing); },
     };
     if (std::holds_alternative<PointSpec>(spec)) return nullptr;
     return std::make_shared<const Tool>(std::visit(make, spec));
+}
+
+ToolSpec scaled(const ToolSpec& spec, double factor) {
+    if (!(factor > 0 && factor < 1e9)) {
+        throw std::invalid_argument("a tool's scale must be a number above 0");
+    }
+    const auto all = [factor](std::vector<Vec3> points) {
+        for (Vec3& point : points) point *= factor;
+        return points;
+    };
+    const Overloaded scale{
+        [](const PointSpec& s) -> ToolSpec { return s; },
+        [&](const SphereSpec& s) -> ToolSpec { return SphereSpec{s.radius * factor}; },
+        [&](const RodSpec& s) -> ToolSpec { return RodSpec{s.length * factor}; },
+        [&](const NeedleSpec& s) -> ToolSpec {
+            return NeedleSpec{s.length * factor, s.radius * factor};
+        },
+        [&](const BurrSpec& s) -> ToolSpec { return BurrSpec{s.radius * factor}; },
+        [&](const BoxSpec& s) -> ToolSpec { return BoxSpec{s.size * factor}; },
+        [&](const FingertipSpec& s) -> ToolSpec { return FingertipSpec{s.scale * factor}; },
+        [&](const PointsSpec& s) -> ToolSpec { return PointsSpec{all(s.points)}; },
+        [&](const MeshSpec& s) -> ToolSpec {
+            return MeshSpec{std::make_shared<const ToolShape>(
+                ToolShape{all(s.mesh->vertices), s.mesh->triangles})};
+        },
+    };
+    return std::visit(scale, spec);
 }
 
 double usual_spacing(const Geometry& geometry) {

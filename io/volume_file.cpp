@@ -12,6 +12,7 @@
 
 #include "io/helper/protocol.hpp"
 #include "io/helper_process.hpp"
+#include "io/io_helper.hpp"
 #include "io/leftovers.hpp"
 #include "io/raw_file.hpp"
 #include "palpate/io/written_formats.hpp"
@@ -20,63 +21,6 @@ namespace palpate::io {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr HelperProgram io_helper{
-    "palpate-io-helper", "the format's library",
-    "the file is damaged or not what its name says; export it again",
-    "close other programs or use a smaller volume",
-    "files of its size take less; it is most likely damaged: export it again"};
-
-std::uint64_t machine_memory() {
-    return static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) *
-           static_cast<std::uint64_t>(sysconf(_SC_PAGE_SIZE));
-}
-
-/// Bytes of a file, or of all files in a folder.
-double bytes_in(const fs::path& path) {
-    std::error_code error;
-    if (!fs::is_directory(path, error)) return static_cast<double>(fs::file_size(path, error));
-    double bytes = 0;
-    for (fs::directory_iterator entry(path, error), end; entry != end && !error;
-         entry.increment(error)) {
-        std::error_code of_entry;
-        const auto size = entry->file_size(of_entry);
-        if (!of_entry) bytes += static_cast<double>(size);
-    }
-    return bytes;
-}
-
-/// Enough for any sound file on a slow machine: compressed files take the longest, less than a
-/// tenth of this.
-struct TimeLimits {
-    double wall_s, processor_s;
-    TimeLimits(double asked_s, double bytes)
-        : wall_s(asked_s > 0 ? asked_s : 600 + 2e-6 * bytes),
-          processor_s(asked_s > 0 ? asked_s : 120 + 2e-6 * bytes) {}
-};
-
-/// Checks a path without knowing the file's format.
-void check_readable(const fs::path& path) {
-    const std::string name = path.empty() ? "(no name)" : path.string();
-    std::error_code error;
-    const fs::file_status status = fs::status(path, error);
-    if (status.type() == fs::file_type::not_found) {
-        throw InputError(name + ": does not exist; check the name");
-    }
-    if (status.type() == fs::file_type::none) {
-        throw InputError(name + ": " + error.message() + "; check the name and its permissions");
-    }
-    if (status.type() != fs::file_type::regular && status.type() != fs::file_type::directory) {
-        throw InputError(name + ": is neither a file nor a folder; give a volume file");
-    }
-    const bool folder = status.type() == fs::file_type::directory;
-    if (access(path.c_str(), folder ? R_OK | X_OK : R_OK) != 0) {
-        throw InputError(name + ": " + std::strerror(errno) + "; check its permissions");
-    }
-    if (!folder && fs::file_size(path, error) == 0) {
-        throw InputError(name + ": is empty (0 bytes); copy or download it again");
-    }
-}
 
 /// What the helper says about the file; it may quote its header.
 std::vector<std::string> notes_of(const nlohmann::json& done) {
@@ -186,9 +130,7 @@ VolumeFile read_volume(const fs::path& path, const ReadOptions& options) {
     } catch (const std::invalid_argument& e) {
         throw InputError(path.string() + ": " + e.what());
     } catch (const nlohmann::json::exception&) {
-        throw InputError(path.string() +
-                         ": the helper process gave no sensible answer; check that "
-                         "palpate-io-helper belongs to this version of Palpate");
+        fail_without_answer(path);
     }
 }
 

@@ -63,15 +63,50 @@ void add_arc(std::vector<Eigen::Vector2d>& profile, double radius, double z, dou
     }
 }
 
+/// A profile turned round z, to look at.
+ToolShape turned_shape(const std::vector<Eigen::Vector2d>& profile) {
+    constexpr std::uint32_t around = 32;
+    ToolShape shape;
+    for (const Eigen::Vector2d& at : profile) {
+        for (std::uint32_t i = 0; i < around; ++i) {
+            const double angle = 2 * std::numbers::pi * i / around;
+            shape.vertices.emplace_back(at[0] * std::cos(angle), at[0] * std::sin(angle), at[1]);
+        }
+    }
+    for (std::uint32_t ring = 0; ring + 1 < profile.size(); ++ring) {
+        for (std::uint32_t i = 0; i < around; ++i) {
+            const std::uint32_t a = ring * around + i, b = ring * around + (i + 1) % around;
+            shape.triangles.push_back({a, b, a + around});
+            shape.triangles.push_back({b, b + around, a + around});
+        }
+    }
+    return shape;
+}
+
 constexpr double right_angle = std::numbers::pi / 2;
+/// Of arcs that are looked at.
+constexpr double fine = 0.1;
 
 /// Of a tool's points [mm]: beyond the one no volume lies, below the other turning moves nothing.
 constexpr double longest_arm = 1e6, shortest_arm = 1e-6;
 
+void check_shape(const ToolShape& shape) {
+    for (const Vec3& vertex : shape.vertices) {
+        if (vertex.norm() <= longest_arm) continue;
+        throw std::invalid_argument("a tool's shape must lie within 1e6 mm of its origin");
+    }
+    for (const auto& triangle : shape.triangles) {
+        for (const std::uint32_t i : triangle) {
+            if (i < shape.vertices.size()) continue;
+            throw std::invalid_argument("a triangle names a vertex that the tool's shape has not");
+        }
+    }
+}
+
 }  // namespace
 
-Tool::Tool(std::vector<Vec3> points, std::optional<double> gyration, bool turns)
-    : points_(std::move(points)) {
+Tool::Tool(std::vector<Vec3> points, std::optional<double> gyration, bool turns, ToolShape shape)
+    : points_(std::move(points)), shape_(std::move(shape)) {
     if (points_.empty()) throw std::invalid_argument("a tool needs at least one point");
     if (points_.size() > most_tool_points) {
         throw std::invalid_argument("a tool has at most 20000 points: space them farther apart");
@@ -91,6 +126,7 @@ Tool::Tool(std::vector<Vec3> points, std::optional<double> gyration, bool turns)
     if (!(gyration_ >= shortest_arm && gyration_ <= longest_arm)) {
         throw std::invalid_argument("a tool's radius of gyration must be from 1e-6 to 1e6 mm");
     }
+    check_shape(shape_);
 }
 
 Tool point_tool() {
@@ -113,7 +149,9 @@ Tool sphere_tool(double radius, double spacing) {
         points.emplace_back(radius * across * std::cos(angle), radius * across * std::sin(angle),
                             radius * z);
     }
-    return Tool(std::move(points), std::nullopt, false);
+    std::vector<Eigen::Vector2d> profile;
+    add_arc(profile, radius, 0, 0, 2 * right_angle, fine * radius);
+    return Tool(std::move(points), std::nullopt, false, turned_shape(profile));
 }
 
 Tool rod_tool(double length, double spacing) {
@@ -140,38 +178,59 @@ Tool box_tool(const Vec3& size, double spacing) {
             }
         }
     }
-    return Tool(std::move(points));
+    ToolShape shape;
+    for (int i = 0; i < 8; ++i) {
+        const Vec3 corner(i & 1, i >> 1 & 1, i >> 2);
+        shape.vertices.push_back((corner - Vec3::Constant(0.5)).cwiseProduct(size));
+    }
+    shape.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                       {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+    return Tool(std::move(points), std::nullopt, true, std::move(shape));
 }
 
 Tool needle_tool(double length, double radius, double spacing) {
     require_length(radius);
     require_length(spacing);
     if (!(length > radius)) throw std::invalid_argument("a needle must be longer than thick");
-    std::vector<Eigen::Vector2d> profile;
-    add_arc(profile, radius, radius, 0, right_angle, spacing);
-    profile.emplace_back(radius, length);
-    return Tool(turned_profile(profile, spacing));
+    const auto profile = [&](double step) {
+        std::vector<Eigen::Vector2d> line;
+        add_arc(line, radius, radius, 0, right_angle, step);
+        line.emplace_back(radius, length);
+        return line;
+    };
+    return Tool(turned_profile(profile(spacing), spacing), std::nullopt, true,
+                turned_shape(profile(fine * radius)));
 }
 
 Tool burr_tool(double radius, double spacing) {
     require_length(radius);
     require_length(spacing);
     constexpr double thin = 0.4;
-    std::vector<Eigen::Vector2d> profile;
-    add_arc(profile, radius, 0, 0, std::numbers::pi - std::asin(thin), spacing);
-    profile.emplace_back(thin * radius, 4 * radius);
-    return Tool(turned_profile(profile, spacing));
+    const auto profile = [&](double step) {
+        std::vector<Eigen::Vector2d> line;
+        add_arc(line, radius, 0, 0, std::numbers::pi - std::asin(thin), step);
+        line.emplace_back(thin * radius, 4 * radius);
+        return line;
+    };
+    return Tool(turned_profile(profile(spacing), spacing), std::nullopt, true,
+                turned_shape(profile(fine * radius)));
 }
 
-Tool fingertip_tool(double spacing) {
+Tool fingertip_tool(double spacing, double scale) {
     require_length(spacing);
-    constexpr double half_width = 8, half_depth = 6, length = 12;  // [mm]
-    std::vector<Eigen::Vector2d> profile;
-    add_arc(profile, half_width, 0, 0, right_angle, spacing);
-    profile.emplace_back(half_width, length);
-    std::vector<Vec3> points = turned_profile(profile, spacing);
+    require_length(scale);
+    const double half_width = 8 * scale, half_depth = 6 * scale, length = 12 * scale;
+    const auto profile = [&](double step) {
+        std::vector<Eigen::Vector2d> line;
+        add_arc(line, half_width, 0, 0, right_angle, step);
+        line.emplace_back(half_width, length);
+        return line;
+    };
+    std::vector<Vec3> points = turned_profile(profile(spacing), spacing);
+    ToolShape shape = turned_shape(profile(fine * half_width));
     for (Vec3& point : points) point[1] *= half_depth / half_width;
-    return Tool(std::move(points));
+    for (Vec3& vertex : shape.vertices) vertex[1] *= half_depth / half_width;
+    return Tool(std::move(points), std::nullopt, true, std::move(shape));
 }
 
 Vec3 rotation_between(const Quaternion& from, const Quaternion& to) {

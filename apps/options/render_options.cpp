@@ -62,7 +62,7 @@ void RenderOptions::add_to(CLI::App& command) {
         .add_option_function<std::string>(
             "--tool", [this](const std::string& text) { given.tool = io::tool_spec_from(text); },
             "Feel with a rigid tool: sphere:R, rod:L, needle[:L,R], burr:R, box:X,Y,Z, fingertip "
-            "[mm], or a file of points (.csv)")
+            "[mm], or a file: points (.csv) or a mesh (.stl, .ply, .obj, .vtp)")
         ->type_name("TOOL")
         ->default_str("point");
     command

@@ -2,8 +2,10 @@
 #include "apps/palpate/picture.hpp"
 
 #include <filesystem>
+#include <stdexcept>
 
 #include "apps/palpate/commands.hpp"
+#include "apps/palpate/outputs.hpp"
 #include "pictures/picture.hpp"
 
 namespace palpate::app {
@@ -15,6 +17,12 @@ pictures::PictureScene scene_of(const run::LoadedVolume& loaded, int width, int 
     scene.height = height;
     scene.title = (path.has_filename() ? path : path.parent_path()).filename().string();
     return scene;
+}
+
+void require_png(const std::string& option, const std::string& name) {
+    if (is_stream(name) || std::filesystem::path(name).extension() == ".png") return;
+    throw std::invalid_argument(option + " " + name +
+                                ": pictures are PNG files; give a name that ends in .png");
 }
 
 std::string draw(const pictures::PictureScene& scene) {

@@ -12,6 +12,9 @@ namespace palpate::app {
 /// folders.
 pictures::PictureScene scene_of(const run::LoadedVolume& loaded, int width, int height);
 
+/// Throws std::invalid_argument for a name that is not a PNG file's; of a stream, any.
+void require_png(const std::string& option, const std::string& name);
+
 /// The picture as a PNG file's bytes. Throws io::OutputError if it cannot be drawn, and
 /// Interrupted.
 std::string draw(const pictures::PictureScene& scene);

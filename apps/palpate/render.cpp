@@ -178,10 +178,7 @@ Drawing drawing_of(const RenderPictureOptions& options) {
 }
 
 void render(const RenderPictureOptions& options) {
-    if (!is_stream(options.output) && std::filesystem::path(options.output).extension() != ".png") {
-        throw std::invalid_argument("--output " + options.output +
-                                    ": pictures are PNG files; give a name that ends in .png");
-    }
+    require_png("--output", options.output);
     check_outputs({options.source.name(), options.path}, {options.output});
     (void)size_from(options.size);
     io::PendingFile file(options.output);

@@ -2,12 +2,18 @@
 #include "palpate/devices/mouse.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace palpate::devices {
 namespace {
 
 /// [s] Time constant of following the target: two frames of a screen.
 constexpr double lag = 0.03;
+/// [N mm] The torque that is shown goes so far, as that of a Phantom Premium 1.5/6DOF.
+constexpr double shown_torque = 170;
+/// [rad/s]
+constexpr double fastest_turn = 4 * std::numbers::pi;
 /// A gap between two reads counts as no more [s].
 constexpr double longest_gap = 0.02;
 
@@ -35,11 +41,19 @@ std::unique_ptr<Device> open_mouse(const DeviceChoice& choice, const DeviceScene
     return std::make_unique<Mouse>(speed);
 }
 
-Mouse::Mouse(double speed) : aim_(begin), speed_(speed), target_(aim_), position_(aim_) {}
+Mouse::Mouse(double speed)
+    : aim_{begin, Quaternion::Identity()}, speed_(speed), target_(aim_), position_(begin) {}
 
 void Mouse::aim(const Vec3& position) noexcept {
     if (!position.allFinite()) return;
-    aim_ = position.cwiseMax(-reach).cwiseMin(reach);
+    aim_.position = position.cwiseMax(-reach).cwiseMin(reach);
+    going_.put(aim_);
+}
+
+void Mouse::turn(const Quaternion& orientation) noexcept {
+    const double norm = orientation.norm();
+    if (!(norm > 0 && norm < 1e100)) return;
+    aim_.orientation = orientation.normalized();
     going_.put(aim_);
 }
 
@@ -50,6 +64,8 @@ DeviceInfo Mouse::info() const {
     info.workspace_low = -workspace;
     info.workspace_high = workspace;
     info.renders_force = false;
+    info.has_orientation = true;
+    info.limits.maximum_torque = shown_torque;
     return info;
 }
 
@@ -60,13 +76,20 @@ DeviceReading Mouse::read(double time) noexcept {
     target_ = going_.get().value_or(target_);
     // Implicit Euler of x'' = w^2 (target - x) - 2 w x', w = 2 / lag: stable for every dt.
     const double w = 2 / lag;
-    velocity_ =
-        (velocity_ + dt * w * w * (target_ - position_)) / (1 + 2 * w * dt + w * w * dt * dt);
+    velocity_ = (velocity_ + dt * w * w * (target_.position - position_)) /
+                (1 + 2 * w * dt + w * w * dt * dt);
     const double speed = velocity_.norm();
     if (speed > speed_) velocity_ *= speed_ / speed;
     position_ += dt * velocity_;
+    const Vec3 left = rotation_between(orientation_, target_.orientation);
+    const double angle = left.norm();
+    if (angle > 0) {
+        const double step = std::min(angle * -std::expm1(-dt / lag), dt * fastest_turn);
+        orientation_ = turned(orientation_, left * (step / angle));
+    }
     DeviceReading reading;
     reading.position = position_;
+    reading.orientation = orientation_.toRotationMatrix();
     reading.status = DeviceStatus::ready;
     return reading;
 }

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -27,6 +29,12 @@ struct Wrench {
 
 inline constexpr std::size_t most_tool_points = 20'000;
 
+/// Triangles in tool axes [mm].
+struct ToolShape {
+    std::vector<Vec3> vertices;
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
 /// The points with which a tool touches, in its own axes, its reference point at their origin.
 /// What is thinner than the distance of neighbouring points passes between them. Immutable.
 class Tool {
@@ -38,21 +46,25 @@ class Tool {
     /// [N mm / rad] and translational stiffness [N / mm] of a coupling that finds the proxy's pose
     /// in equilibrium. Default: the root of the points' mean squared distance from the reference
     /// point. Without `turns` the tool keeps its orientation, which a single point at the origin
-    /// always does. Throws std::invalid_argument without points, with more than `most_tool_points`,
-    /// and for points and a gyration beyond 1e6 mm or a gyration below 1e-6 mm.
+    /// always does. `shape` is what it looks like; nothing is felt of it. Throws
+    /// std::invalid_argument without points, with more than `most_tool_points`, for points and a
+    /// gyration beyond 1e6 mm or a gyration below 1e-6 mm, and for a shape with vertices beyond
+    /// 1e6 mm or triangles of others.
     explicit Tool(std::vector<Vec3> points, std::optional<double> gyration = std::nullopt,
-                  bool turns = true);
+                  bool turns = true, ToolShape shape = {});
 
     std::span<const Vec3> points() const { return points_; }  ///< [mm]
     double gyration() const { return gyration_; }             ///< [mm]
     double radius() const { return radius_; }  ///< of the farthest point from the origin [mm]
     bool turns() const { return turns_; }
+    const ToolShape& shape() const { return shape_; }  ///< may be empty
 
   private:
     std::vector<Vec3> points_;
     double gyration_ = 1;
     double radius_ = 0;
     bool turns_ = true;
+    ToolShape shape_;
 };
 
 /// One point at the reference point.
@@ -70,9 +82,17 @@ Tool needle_tool(double length, double radius, double spacing);
 /// The ball of a surgical burr round the reference point, with its shank along z, 0.4 times as
 /// thick and 4 radii long.
 Tool burr_tool(double radius, double spacing);
-/// The end of a forefinger, 16 mm wide, 12 mm deep and 20 mm long (assumed: an adult's), along z.
-/// The reference point is the middle of its rounded end's base, 8 mm from the tip.
-Tool fingertip_tool(double spacing);
+/// The end of a forefinger, 16 mm wide, 12 mm deep and 20 mm long (assumed: an adult's), along z,
+/// or `scale` times as large. The reference point is the middle of its rounded end's base, 8 mm
+/// from the tip.
+Tool fingertip_tool(double spacing, double scale = 1);
+
+/// The surface of a mesh, closed or not, its triangles turned either way: no place on it is farther
+/// than `spacing` [mm] from a point, and no two points are nearer than three quarters of it;
+/// corners and edges (30 degrees) have theirs first. Throws std::invalid_argument without a
+/// triangle that has an area, for vertices that are not finite or not there, and for more points
+/// than a tool may have.
+Tool mesh_tool(ToolShape mesh, double spacing);
 
 /// A point of the tool in physical space.
 inline Vec3 physical_from_tool(const Pose& pose, const Vec3& point) {

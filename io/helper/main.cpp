@@ -1,5 +1,6 @@
-// palpate-io-helper: reads or writes one volume with the formats' libraries and reports as
-// described in protocol.hpp. It exists so that a crash of a library does not crash the caller.
+// palpate-io-helper: reads or writes one volume, or reads a mesh, with the formats' libraries and
+// reports as described in protocol.hpp. It exists so that a crash of a library does not crash the
+// caller.
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -240,17 +241,33 @@ nlohmann::json run_write(const fs::path& path, const nlohmann::json& asked,
     return nlohmann::json::object();
 }
 
+nlohmann::json run_read_mesh(const fs::path& path, const nlohmann::json& asked) {
+    limit_this_process(asked, asked.at("memory").get<std::uint64_t>());
+    const MeshSize size = read_mesh(path, extension_of(path), [](const MeshSize& wanted) {
+        const std::size_t bytes = mesh_bytes(wanted.vertices, wanted.triangles);
+        if (ftruncate(samples_descriptor, static_cast<off_t>(bytes)) != 0) throw std::bad_alloc();
+        void* const memory =
+            mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, samples_descriptor, 0);
+        if (memory == MAP_FAILED) throw std::bad_alloc();
+        return memory;
+    });
+    return {{"vertices", size.vertices}, {"triangles", size.triangles}};
+}
+
 int run(int argc, char** argv) {
-    const bool reading = argc == 4 && std::strcmp(argv[1], "read") == 0;
+    const bool of_mesh = argc == 4 && std::strcmp(argv[1], "read-mesh") == 0;
+    const bool reading = of_mesh || (argc == 4 && std::strcmp(argv[1], "read") == 0);
     const bool writing = argc == 5 && std::strcmp(argv[1], "write") == 0;
     const auto work = [&] {
         const auto asked = nlohmann::json::parse(argv[3]);
+        if (of_mesh) return run_read_mesh(argv[2], asked);
         return reading ? run_read(argv[2], asked) : run_write(argv[2], asked, argv[4]);
     };
     const auto words_of = [&](const std::exception& e) -> std::string {
         if (dynamic_cast<const Failure*>(&e)) return e.what();
         if (dynamic_cast<const std::bad_alloc*>(&e)) {
-            return "not enough memory; crop or downsample the volume";
+            return of_mesh ? "not enough memory; simplify the mesh"
+                           : "not enough memory; crop or downsample the volume";
         }
         return "the format's library refused it (" + library_words(e.what(), 300) + "); " +
                (reading ? "it is damaged or of a kind that is not read" : "is the disk full?");

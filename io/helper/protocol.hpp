@@ -1,11 +1,14 @@
 // The protocol between the library and its helper program.
 //   palpate-io-helper read PATH REQUEST       samples come back in descriptor 3
+//   palpate-io-helper read-mesh PATH REQUEST  vertices and triangles come back in descriptor 3
 //   palpate-io-helper write PATH REQUEST FOLDER   samples are given in descriptor 3; FOLDER, beside
 //                                             PATH, is created for the unfinished file and removed
 // REQUEST is JSON. Lines of JSON come back on descriptor 4: {"progress":0.5}, {"doing":"a file"},
 // and at the end {"error":"..."} or {"done":{...}}. Doubles in JSON survive to the bit.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -42,6 +45,11 @@ inline Geometry geometry_from(const nlohmann::json& j) {
     g.spacing = vec3_from(j.at("spacing"));
     g.origin = vec3_from(j.at("origin"));
     return g;
+}
+
+/// Bytes of a mesh in shared memory: vertices of three doubles, triangles of three 32-bit numbers.
+constexpr std::size_t mesh_bytes(std::int64_t vertices, std::int64_t triangles) {
+    return static_cast<std::size_t>(vertices) * 24 + static_cast<std::size_t>(triangles) * 12;
 }
 
 /// One line, whatever bytes a file's name or a library's message has.

@@ -1,6 +1,7 @@
 // The readers and writers of the helper program, one source file for each family of formats.
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "io/helper/decode.hpp"
@@ -20,6 +21,15 @@ Result read_vti(const Request& request);
 /// DICOM's four letters after 128 bytes.
 bool looks_like_dicom(const std::filesystem::path& file);
 bool looks_like_tiff(const std::filesystem::path& file);
+
+struct MeshSize {
+    std::int64_t vertices = 0, triangles = 0;
+};
+using MeshMemory = std::function<void*(const MeshSize&)>;
+/// Reads a mesh into the memory that `memory_of` gives for its size: all vertices [3 doubles each],
+/// then all triangles [3 32-bit numbers of vertices each].
+MeshSize read_mesh(const std::filesystem::path& path, const std::string& extension,
+                   const MeshMemory& memory_of);
 
 /// Writes the shared samples to `path`, in the format that its extension names.
 void write_with_itk(const std::filesystem::path& path, const std::string& extension,

@@ -5,7 +5,6 @@
 #include <vtkInformation.h>
 #include <vtkMatrix3x3.h>
 #include <vtkNew.h>
-#include <vtkObjectFactory.h>
 #include <vtkOutputWindow.h>
 #include <vtkPointData.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
@@ -21,33 +20,13 @@
 #include "io/helper/headers.hpp"
 #include "io/helper/library_words.hpp"
 #include "io/helper/readers.hpp"
+#include "io/helper/vtk_errors.hpp"
 #include "io/helper/vtk_type.hpp"
 
 namespace palpate::io {
 namespace {
 
-/// VTK reports errors to a window and continues; this window keeps the first.
-class ErrorKeeper : public vtkOutputWindow {
-  public:
-    static ErrorKeeper* New();
-    vtkTypeMacro(ErrorKeeper, vtkOutputWindow) void DisplayText(const char*) override {}
-    void DisplayErrorText(const char* text) override { keep(text); }
-    void DisplayWarningText(const char*) override {}
-    const std::string& first() const { return first_; }
-
-  private:
-    void keep(const char* text) {
-        if (!first_.empty()) return;
-        // "ERROR: In file, line n\nvtkClass (0x...): what is wrong\n"
-        const std::string all = trimmed(text);
-        const auto colon = all.find("): ");
-        first_ = library_words(colon == std::string::npos ? all : all.substr(colon + 3), 160);
-    }
-    std::string first_;
-};
-vtkStandardNewMacro(ErrorKeeper)
-
-    void check_errors(const ErrorKeeper& errors) {
+void check_errors(const ErrorKeeper& errors) {
     if (errors.first().empty()) return;
     throw Failure("is damaged or no VTI file (" + errors.first() +
                   "); copy it again or export it again");

@@ -31,13 +31,13 @@ RendererSettings settings_with(std::shared_ptr<const Tool> tool) {
 }
 
 /// A session on the smooth ramp (density = z, in device mm at first), level 30.
-struct Live {
+struct FeltLive {
     Session session;
     double time = 0;
     DeviceReading reading;
     SessionTick last{};
 
-    explicit Live(const RendererSettings& settings, const SessionSettings& safety = {})
+    explicit FeltLive(const RendererSettings& settings, const SessionSettings& safety = {})
         : session{make_renderer(smooth(ramp_field()), 30, settings), safety} {
         reading.status = DeviceStatus::ready;
         reading.position = at_depth(20);
@@ -55,7 +55,7 @@ struct Live {
 };
 
 TEST(ToolSession, one_contact_gives_its_force_and_the_torque_of_its_lever) {
-    Live live(settings_with(one_arm({3, 0, 1})));
+    FeltLive live(settings_with(one_arm({3, 0, 1})));
     const Tick& tick = live.rest_at(31);
     EXPECT_EQ(tick.tool.contacts, 1);
     EXPECT_EQ(tick.proxy.mode, Mode::constrained);
@@ -72,7 +72,7 @@ TEST(ToolSession, wrench_is_in_device_axes_and_the_tool_is_scaled_with_the_hand)
     const Mat3 rotation = oblique_direction();
     settings.transform.rotation = rotation;
     settings.transform.scale = 2;  // 2 mm of the volume are 1 mm of the hand
-    Live live(settings);
+    FeltLive live(settings);
     const Mat3 upright = rotation.transpose();  // the tool stands in the volume as it is
     live.reading.orientation = upright;
     for (double z = 20; z < 31.5; z += 0.1) {
@@ -118,7 +118,7 @@ TEST(ToolSession, force_and_torque_stay_within_the_device_and_stop_together) {
     settings.device.maximum_torque = 0.7;
     SessionSettings safety;
     safety.deadman_buttons = 1;
-    Live live(settings, safety);
+    FeltLive live(settings, safety);
     live.reading.buttons = 1;
     live.rest_at(36);
     EXPECT_NEAR(live.last.tick.force.norm(), 0.5, 1e-9);
@@ -126,15 +126,15 @@ TEST(ToolSession, force_and_torque_stay_within_the_device_and_stop_together) {
     EXPECT_TRUE(live.last.tick.force_flags & force_limited);
 
     const auto expect_stop = [&](const char* why, auto&& change) {
-        Live broken = live;
+        FeltLive broken = live;
         change(broken);
         const Tick& tick = broken.next();
         EXPECT_TRUE(tick.force.isZero(0) && tick.torque.isZero(0)) << why;
     };
-    expect_stop("stale", [](Live& l) { l.reading.age = 1; });
-    expect_stop("lost", [](Live& l) { l.reading.status = DeviceStatus::lost; });
-    expect_stop("dead-man", [](Live& l) { l.reading.buttons = 0; });
-    expect_stop("off", [](Live& l) { apply(l.session, command::Forces{false}); });
+    expect_stop("stale", [](FeltLive& l) { l.reading.age = 1; });
+    expect_stop("lost", [](FeltLive& l) { l.reading.status = DeviceStatus::lost; });
+    expect_stop("dead-man", [](FeltLive& l) { l.reading.buttons = 0; });
+    expect_stop("off", [](FeltLive& l) { apply(l.session, command::Forces{false}); });
     let_go(live.session, live.last);
     EXPECT_TRUE(live.last.tick.torque.isZero(0));
 }
@@ -142,7 +142,7 @@ TEST(ToolSession, force_and_torque_stay_within_the_device_and_stop_together) {
 TEST(ToolSession, a_device_without_torque_gets_the_force_alone) {
     RendererSettings settings = settings_with(one_arm({3, 0, 1}));
     settings.device.maximum_torque = 0;
-    Live live(settings);
+    FeltLive live(settings);
     const Tick& tick = live.rest_at(31);
     EXPECT_TRUE(tick.torque.isZero(0));
     EXPECT_FALSE(tick.force_flags & force_limited) << "nothing that it could give was cut";
@@ -152,7 +152,7 @@ TEST(ToolSession, a_device_without_torque_gets_the_force_alone) {
 TEST(ToolSession, a_soft_rotation_is_still_the_equilibrium_of_what_is_rendered) {
     RendererSettings settings = settings_with(one_arm({3, 0, 1}));
     settings.device.physical_rotational_damping = 1e-3;  // at most 2 N mm/rad
-    Live live(settings);
+    FeltLive live(settings);
     const Tick& tick = live.rest_at(31);
     const Vec3 lever = tick.tool.proxy * Vec3(3, 0, 1);
     const Vec3 turn = rotation_between(tick.tool.hand, tick.tool.proxy);
@@ -164,7 +164,7 @@ TEST(ToolSession, ramp_and_rate_limit_hold_for_torque_as_for_force) {
     RendererSettings settings = settings_with(one_arm({3, 0, 1}));
     settings.force.ramp = 0.1;
     settings.force.torque_rate_limit = 50;
-    Live live(settings);
+    FeltLive live(settings);
     Vec3 before = Vec3::Zero();
     for (int i = 0; i < 3000; ++i) {
         live.reading.position = at_depth(i < 100 ? 25 : 30 + 0.02 * (i % 97));
@@ -178,7 +178,7 @@ TEST(ToolSession, ramp_and_rate_limit_hold_for_torque_as_for_force) {
 }
 
 TEST(ToolSession, an_orientation_that_is_no_rotation_is_ignored_and_freeze_holds_it) {
-    Live live(settings_with(one_arm({3, 0, 1})));
+    FeltLive live(settings_with(one_arm({3, 0, 1})));
     const Mat3 good = turned(Quaternion::Identity(), {0.1, 0.2, 0.3}).toRotationMatrix();
     live.reading.orientation = good;
     live.next();
@@ -200,7 +200,7 @@ TEST(ToolSession, an_orientation_that_is_no_rotation_is_ignored_and_freeze_holds
 }
 
 TEST(ToolSession, tools_are_taken_up_and_put_down_where_the_proxy_is) {
-    Live live(at_once());
+    FeltLive live(at_once());
     live.rest_at(33);
     EXPECT_NEAR(live.last.tick.proxy.scp[2], 30, 1e-6);
     apply(live.session, command::UseTool{std::make_shared<const Tool>(sphere_tool(2, 0.5))});

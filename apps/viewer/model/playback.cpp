@@ -56,10 +56,8 @@ Playback Playback::read(const std::filesystem::path& recording, const run::Loade
         const double time = tick->again.tick.time;
         if (!std::isfinite(time)) continue;
         if (!playback.snapshots_.empty() && !(time > playback.overview_.end)) continue;
-        const auto& layers = replay.session().renderer.settings.layers;
-        if (playback.layers_.empty() || playback.layers_.back().layers != layers) {
-            playback.layers_.push_back({time, layers});
-        }
+        playback.layers_.note(time, replay.session().renderer.settings.layers);
+        playback.tools_.note(time, replay.session().renderer.settings.tool);
         last = snapshot_of(replay.session(), tick->again, tick->number, 0);
         kept = playback.snapshots_.empty() ||
                time >= playback.snapshots_.back().session.tick.time + punctual * playback.interval_;
@@ -131,13 +129,6 @@ Field Playback::field_at(const Snapshot& snapshot) {
     field.use(samples_->of(snapshot.session.version));
     field.set_time(snapshot.session.moment);
     return field;
-}
-
-std::shared_ptr<const Layers> Playback::layers_at(double time) const {
-    const auto after =
-        std::upper_bound(layers_.begin(), layers_.end(), time,
-                         [](double t, const LayersFrom& from) { return t < from.time; });
-    return after == layers_.begin() ? layers_.front().layers : (after - 1)->layers;
 }
 
 const Snapshot& Playback::at(double time) const {

@@ -1,10 +1,12 @@
 // Playback of a recording: hand, proxy and force by time. No servo, no device.
 #pragma once
 
+#include <algorithm>
 #include <deque>
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "palpate/run/replay.hpp"
@@ -68,7 +70,9 @@ class Playback {
     /// The field that was felt, as it was at the start.
     const Field& field() const { return field_; }
     /// The layers in use at this time; null: none.
-    std::shared_ptr<const Layers> layers_at(double time) const;
+    std::shared_ptr<const Layers> layers_at(double time) const { return layers_.at(time); }
+    /// The tool; null: a point.
+    std::shared_ptr<const Tool> tool_at(double time) const { return tools_.at(time); }
     /// The field at a snapshot: with the edits up to then, some of which may have to be repeated,
     /// or at the moment of the sequence.
     Field field_at(const Snapshot& snapshot);
@@ -84,11 +88,24 @@ class Playback {
     Field field_;
     std::optional<run::RecordedSamples> samples_;  // once all is read
     std::deque<Snapshot> snapshots_;               // grows without a copy of all of it
-    struct LayersFrom {
-        double time;  // [s]
-        std::shared_ptr<const Layers> layers;
+    /// What is in use from when on.
+    template <class T>
+    class Changes {
+      public:
+        void note(double time, const std::shared_ptr<const T>& now) {
+            if (all_.empty() || all_.back().second != now) all_.emplace_back(time, now);
+        }
+        std::shared_ptr<const T> at(double time) const {
+            const auto after = std::ranges::upper_bound(
+                all_, time, {}, [](const auto& change) { return change.first; });
+            return after == all_.begin() ? all_.front().second : (after - 1)->second;
+        }
+
+      private:
+        std::vector<std::pair<double, std::shared_ptr<const T>>> all_;  // [s]
     };
-    std::vector<LayersFrom> layers_;    // each from its time on
+    Changes<Layers> layers_;
+    Changes<Tool> tools_;
     double interval_ = least_interval;  // [s] between snapshots
     std::size_t ticks_ = 0, different_ = 0;
     bool complete_ = false;

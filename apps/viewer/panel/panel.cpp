@@ -24,6 +24,7 @@
 #include "apps/viewer/panel/property_words.hpp"
 #include "apps/viewer/panel/section.hpp"
 #include "apps/viewer/panel/session_bar.hpp"
+#include "apps/viewer/panel/tool_controls.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -49,6 +50,7 @@ Panel::Panel(QWidget* parent)
       isovalue_(new IsovalueControls),
       layers_(new LayersControls),
       penetrability_(new PenetrabilityControls(isovalue_->chart())),
+      tool_(new ToolControls),
       edit_(new BrushControls),
       force_(new ForceControls),
       device_(new DeviceControls),
@@ -72,6 +74,7 @@ void Panel::build() {
     layers_part_ = new Section(tr("Layers"), "layers_part", layers_);
     penetrability_part_ =
         new Section(tr("Pressing through (penetrability)"), "penetrability_part", penetrability_);
+    tool_part_ = new Section(tr("Tool"), "tool_part", tool_);
     edit_part_ = new Section(tr("Edit"), "edit_part", edit_);
     force_part_ = new Section(tr("Force"), "force_part", force_);
     device_part_ = new Section(tr("Device"), "device_part", device_);
@@ -79,15 +82,16 @@ void Panel::build() {
     look_part_ = new Section(tr("Look"), "look_part", look_);
     overlay_part_ = new Section(tr("Overlay"), "overlay_part", overlay_);
     loop_part_->set_open(false);
-    sections_ = {session_part_, isovalue_part_, layers_part_,  penetrability_part_, force_part_,
-                 look_part_,    edit_part_,     overlay_part_, device_part_,        loop_part_};
+    sections_ = {session_part_, isovalue_part_, layers_part_, penetrability_part_,
+                 tool_part_,    force_part_,    look_part_,   edit_part_,
+                 overlay_part_, device_part_,   loop_part_};
     tabs_->setDocumentMode(true);
     const auto add = [this](const QString& title, std::initializer_list<QWidget*> sections) {
         QScrollArea* page = page_of(sections);
         tabs_->addTab(page, title);
         page->setAccessibleName(QString(title).remove('&'));
     };
-    add(tr("Fee&l"), {layers_part_, penetrability_part_, force_part_});
+    add(tr("Fee&l"), {layers_part_, penetrability_part_, tool_part_, force_part_});
     add(tr("L&ook"), {look_part_});
     add(tr("D&ata"), {edit_part_, overlay_part_});
     add(tr("Devi&ce"), {device_part_, loop_part_});
@@ -118,6 +122,10 @@ void Panel::connect_sections() {
             });
     connect(penetrability_, &PenetrabilityControls::wanted, this, &Panel::ask_penetrability);
     connect(penetrability_, &PenetrabilityControls::nonsense, penetrability_part_, &Section::say);
+    connect(tool_, &ToolControls::wanted, this, [this](const std::shared_ptr<const Tool>& tool) {
+        ask(tool_part_, command::UseTool{tool});
+    });
+    connect(tool_, &ToolControls::nonsense, tool_part_, &Section::say);
     connect(force_, &ForceControls::asked, this,
             [this](const Command& command) { ask(force_part_, command); });
     connect(device_, &DeviceControls::scale_wanted, this,
@@ -216,12 +224,14 @@ void Panel::set_session(const Field& field, const run::Histogram& histogram, dou
                         const RendererSettings& settings, const DeviceInfo& device) {
     isovalue_->drop();
     layers_->drop();
+    tool_->drop();
     force_->drop();
     live_ = true;
     solid_ = field.solid();
     interpolation_ = field.interpolation();
     unedited_.emplace(field.volume(), field.solid(), field.background(), field.interpolation());
     edit_->set_grid(field.geometry());
+    tool_->set_grid(field.geometry());
     clear_edits();
     now_ = before_ = {settings, isovalue, false, false, edit_->choice()};
     asked_by_ = nullptr;
@@ -260,9 +270,11 @@ void Panel::clear() {
     penetrability_->set_layered(false);
     overlay_->set_feelable(false);
     penetrability_->drop();
+    tool_->clear();
     force_->drop();
     clear_edits();
     now_.settings.layers = nullptr;
+    now_.settings.tool = nullptr;
     now_.brush = before_.brush = edit_->choice();
     unedited_.reset();
     bar_->clear();
@@ -301,6 +313,7 @@ void Panel::show_effect() {
     penetrability_->set_layered(layered);
     look_->set_layered(layered);
     layers_->set_layers(now_.settings, now_.isovalue);
+    tool_->set_tool(now_.settings.tool);
     look_->set_felt(now_.isovalue, solid_);
     show_marks();
     penetrability_->set_in_use(now_.settings.penetrability);

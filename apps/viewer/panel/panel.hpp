@@ -28,6 +28,7 @@ class OverlayControls;
 class PenetrabilityControls;
 class Section;
 class SessionBar;
+class ToolControls;
 struct PressThrough;
 
 /// GUI thread only.
@@ -74,6 +75,7 @@ class Panel : public QWidget {
     LayersControls& layers_controls() { return *layers_; }
     BrushControls& brush_controls() { return *edit_; }
     DeviceControls& device_controls() { return *device_; }
+    ToolControls& tool_controls() { return *tool_; }
 
   Q_SIGNALS:
     /// A command that has passed palpate::check for the session that is shown.
@@ -114,6 +116,7 @@ class Panel : public QWidget {
     IsovalueControls* isovalue_;
     LayersControls* layers_;
     PenetrabilityControls* penetrability_;
+    ToolControls* tool_;
     BrushControls* edit_;
     ForceControls* force_;
     DeviceControls* device_;
@@ -122,8 +125,8 @@ class Panel : public QWidget {
     OverlayControls* overlay_;
     SessionBar* bar_;
     QTabWidget* tabs_;
-    Section *session_part_, *isovalue_part_, *layers_part_, *penetrability_part_, *edit_part_,
-        *force_part_, *device_part_, *loop_part_, *look_part_, *overlay_part_;
+    Section *session_part_, *isovalue_part_, *layers_part_, *penetrability_part_, *tool_part_,
+        *edit_part_, *force_part_, *device_part_, *loop_part_, *look_part_, *overlay_part_;
     std::vector<Section*> sections_;  // all of them, from top to bottom
 
     bool live_ = false;  // there is a session

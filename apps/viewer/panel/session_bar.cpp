@@ -119,10 +119,15 @@ void SessionBar::show_snapshot(const Snapshot& now, double limit) {
     gauge_->set_force(tick.force.norm(), limit, QString::fromStdString(app::force_words(tick)));
     const double apart = (tick.proxy.scp - tick.proxy.hip).norm();
     const bool touching = tick.proxy.mode == palpate::Mode::constrained;
-    contact_->setText((touching ? tr("In contact, pull %1 mm (%2 mm in the volume)")
-                                : tr("Free, pull %1 mm (%2 mm in the volume)"))
-                          .arg(apart / now.session.transform.scale, 0, 'f', 2)
-                          .arg(apart, 0, 'f', 2));
+    QString text = (touching ? tr("In contact, pull %1 mm (%2 mm in the volume)")
+                             : tr("Free, pull %1 mm (%2 mm in the volume)"))
+                       .arg(apart / now.session.transform.scale, 0, 'f', 2)
+                       .arg(apart, 0, 'f', 2);
+    if (tick.tool.contacts > 0) {
+        text += '\n' + tr("%n points of the tool hold, torque %1 N mm", nullptr, tick.tool.contacts)
+                           .arg(tick.torque.norm(), 0, 'f', 1);
+    }
+    contact_->setText(text);
 }
 
 }  // namespace palpate::viewer

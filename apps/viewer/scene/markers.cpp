@@ -3,8 +3,6 @@
 
 #include <vtkCellArray.h>
 #include <vtkNew.h>
-#include <vtkOpenGLRenderWindow.h>
-#include <vtkOpenGLState.h>
 #include <vtkPoints.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
@@ -21,27 +19,7 @@
 namespace palpate::viewer {
 namespace {
 
-constexpr double faint_opacity = 0.4;
 constexpr Colour plane_colour{0.8, 0.475, 0.655};  // reddish purple (Okabe and Ito)
-
-/// Switches the writing of colours, among the opaque props in its turn.
-class ColourWriting : public vtkProp {
-  public:
-    static ColourWriting* New() {
-        auto* const made = new ColourWriting;
-        made->InitializeObjectBase();
-        return made;
-    }
-    double* GetBounds() override { return nullptr; }
-    int RenderOpaqueGeometry(vtkViewport* viewport) override {
-        auto* const window = vtkOpenGLRenderWindow::SafeDownCast(
-            vtkRenderer::SafeDownCast(viewport)->GetRenderWindow());
-        const unsigned char write = on ? 1 : 0;
-        window->GetState()->vtkglColorMask(write, write, write, write);
-        return 0;
-    }
-    bool on = true;
-};
 
 vtkSmartPointer<vtkPolyData> unit_ball() {
     vtkNew<vtkSphereSource> source;
@@ -101,7 +79,7 @@ std::optional<Contact> contact_of(const std::optional<Snapshot>& snapshot, const
 }
 
 Markers::Markers(vtkRenderer& solid, vtkRenderer& overlay)
-    : solid_(solid), overlay_(overlay), patch_actor_(vtkSmartPointer<vtkActor>::New()) {
+    : solid_(solid), patch_actor_(vtkSmartPointer<vtkActor>::New()) {
     vtkNew<vtkPolyDataMapper> mapper;
     mapper->ScalarVisibilityOff();
     patch_actor_->SetMapper(mapper);
@@ -129,44 +107,7 @@ Markers::Markers(vtkRenderer& solid, vtkRenderer& overlay)
     }
     flat(*discs_.solid, 0.35);
     flat(*patches_.solid, 0.6);
-    add_faint_actors();
-}
-
-/// A faint actor over its visible twin changes nothing; over a surface that hides the twin it shows
-/// where that is. Depths are drawn first, so that only the nearest part of all of them is seen.
-void Markers::add_faint_actors() {
-    const auto all = {&edges_, &spring_, &arrow_, &scp_, &hip_, &brush_, &normals_};
-    const auto writing = [this](bool on) {
-        vtkNew<ColourWriting> prop;
-        prop->on = on;
-        overlay_.AddViewProp(prop);
-    };
-    writing(false);
-    for (const Twin* twin : all) overlay_.AddActor(twin->depth);
-    writing(true);
-    for (const Twin* twin : all) overlay_.AddActor(twin->faint);
-}
-
-Markers::Twin Markers::twin_of(const Colour& colour, vtkSmartPointer<vtkPolyData> data) {
-    const auto make = [] { return vtkSmartPointer<vtkActor>::New(); };
-    Twin twin{make(), make(), make(), std::move(data)};
-    for (vtkActor* actor : twin.actors()) {
-        vtkNew<vtkPolyDataMapper> mapper;
-        mapper->SetInputData(twin.data);
-        mapper->ScalarVisibilityOff();
-        actor->SetMapper(mapper);
-        actor->GetProperty()->SetColor(colour.red, colour.green, colour.blue);
-        pictures::look_matt(*actor);
-        actor->GetProperty()->SetSpecular(0.35);
-        actor->SetVisibility(false);
-    }
-    twin.faint->GetProperty()->SetOpacity(faint_opacity);
-    twin.faint->ForceOpaqueOn();
-    return twin;
-}
-
-void Markers::set_visible(const Twin& twin, bool visible) {
-    for (vtkActor* actor : twin.actors()) actor->SetVisibility(visible);
+    add_faint_actors(overlay, {&edges_, &spring_, &arrow_, &scp_, &hip_, &brush_, &normals_});
 }
 
 void Markers::show_probe(const Contact& contact, const Vec3& origin, double pixel) {
@@ -175,8 +116,8 @@ void Markers::show_probe(const Contact& contact, const Vec3& origin, double pixe
     const bool apart = contact.hip != contact.scp;
     for (vtkActor* actor : hip_.actors()) place(*actor, hip, radius);
     for (vtkActor* actor : scp_.actors()) place(*actor, scp, radius);
-    set_visible(hip_, true);
-    set_visible(scp_, apart);
+    set_visible(hip_, !contact.as_tool);
+    set_visible(scp_, apart && !contact.as_tool);
     const bool sprung = apart && (scp - hip).norm() > 2 * radius;
     set_visible(spring_, sprung);
     if (sprung) spring_.data->ShallowCopy(pictures::spring(hip, scp, 0.5 * radius));

@@ -7,13 +7,13 @@
 #include <vtkRenderer.h>
 #include <vtkSmartPointer.h>
 
-#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "apps/viewer/model/look.hpp"
 #include "apps/viewer/scene/local.hpp"
+#include "apps/viewer/scene/twin.hpp"
 #include "palpate/servo.hpp"
 
 namespace palpate::viewer {
@@ -22,6 +22,7 @@ namespace palpate::viewer {
 struct Contact {
     Vec3 hip = Vec3::Zero(), scp = Vec3::Zero();  ///< [mm, physical]
     Vec3 force = Vec3::Zero();                    ///< [N] on the hand, physical axes
+    bool as_tool = false;                         ///< hand and proxy are drawn as a tool, not here
     std::vector<LocalTetrahedron> lattice;
     double brush = 0;                         ///< [mm] its radius round the proxy; 0: none
     std::shared_ptr<const RenderMesh> patch;  ///< of the surface that is felt; null: none
@@ -46,21 +47,12 @@ class Markers {
               double pixel, double voxel, const Colour& ink, double pixel_ratio);
 
   private:
-    struct Twin {
-        vtkSmartPointer<vtkActor> solid, depth, faint;
-        vtkSmartPointer<vtkPolyData> data;
-
-        std::array<vtkActor*, 3> actors() const { return {solid, depth, faint}; }
-    };
-    static Twin twin_of(const Colour& colour, vtkSmartPointer<vtkPolyData> data);
-    void add_faint_actors();
-    static void set_visible(const Twin& twin, bool visible);
     void show_probe(const Contact& contact, const Vec3& origin, double pixel);
     void show_lattice(const Contact& contact, const Look& look, const Vec3& origin, double voxel);
 
     void show_patch(const std::shared_ptr<const RenderMesh>& patch, const Colour& colour);
 
-    vtkRenderer &solid_, &overlay_;
+    vtkRenderer& solid_;
     std::shared_ptr<const RenderMesh> patch_;  // whose memory the actor reads
     vtkSmartPointer<vtkActor> patch_actor_;
     Twin hip_, scp_, spring_, arrow_, brush_, edges_, patches_, discs_, normals_;

@@ -34,6 +34,12 @@ Vec3 point_at(const Camera& camera, const ViewSize& size, const Pixel& pixel) {
            in_view_plane(camera, size, pixel.x - 0.5 * size.width, pixel.y - 0.5 * size.height);
 }
 
+Vec3 rotation_of_drag(const Camera& camera, const ViewSize& size, double right, double down) {
+    const ViewAxes axes = axes_of(camera);
+    const double angle = std::numbers::pi / std::max(1.0, std::min(size.width, size.height));
+    return angle * (right * axes.up + down * axes.right);
+}
+
 Camera turned(const Camera& camera, const ViewSize& size, double right, double down) {
     const double distance = std::hypot(right, down);
     if (distance == 0) return camera;

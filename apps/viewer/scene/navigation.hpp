@@ -32,6 +32,10 @@ Vec3 point_at(const Camera& camera, const ViewSize& size, const Pixel& pixel);
 /// A drag on the screen as a displacement in the view plane [mm, physical].
 Vec3 in_view_plane(const Camera& camera, const ViewSize& size, double right, double down);
 
+/// A drag on the screen as a rotation vector [radians, physical axes] of a thing whose front side
+/// goes with the pointer: half a turn for the smaller side.
+Vec3 rotation_of_drag(const Camera& camera, const ViewSize& size, double right, double down);
+
 /// A trackball about the focus: dragged once over the smaller side it turns by 180 degrees.
 Camera turned(const Camera& camera, const ViewSize& size, double right, double down);
 /// What was under the pointer stays under it.

@@ -119,6 +119,12 @@ void Scene::show_snapshot(const std::optional<Snapshot>& snapshot) {
     refresh();
 }
 
+void Scene::set_tool(const std::shared_ptr<const Tool>& tool) {
+    if (tool == parts_->tool) return;
+    parts_->tool = tool;
+    refresh();
+}
+
 void Scene::set_crosshair(const Vec3& physical) {
     parts_->wanted.crosshair = physical;
     if (parts_->wanted.look.slices) changed();
@@ -262,9 +268,13 @@ void Scene::lay_out() {
         const Vec3 origin = physical_centre(field->geometry());
         direct(*parts_->front->GetActiveCamera(), camera, origin, reach_of(field->geometry()));
         const double voxel = field->geometry().spacing.mean();
-        const auto contact = this->contact(*field);
+        auto contact = this->contact(*field);
         const double pixel = mm_per_pixel(camera, view_size());
+        const auto tool = look.contact ? seen_tool(parts_->snapshot, parts_->tool) : std::nullopt;
+        // One that would be smaller than the markers is better seen by those.
+        if (contact) contact->as_tool = tool && tool->tool->radius() > ball_radius_px * pixel;
         parts_->markers->show(contact, look, origin, pixel, voxel, ink, ratio);
+        parts_->tool_marks->show(contact ? tool : std::nullopt, origin, pixel, ratio);
         parts_->cut->show(look, field->geometry(), origin, pixel, ratio, held_);
         parts_->measures->show(parts_->measurements,
                                {origin, camera, view_size(), ratio,
@@ -273,6 +283,7 @@ void Scene::lay_out() {
         parts_->measures->show({}, {});
         parts_->cut->hide();
         parts_->markers->show({}, look, Vec3::Zero(), 1, 1, ink, ratio);
+        parts_->tool_marks->show({}, Vec3::Zero(), 1, ratio);
     }
     Annotations::Content annotations;
     annotations.orientation = look.orientation && field;

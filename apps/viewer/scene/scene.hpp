@@ -52,6 +52,8 @@ class Scene : public QVTKOpenGLNativeWidget {
     void set_pressed(const std::optional<double>& level);
     /// As often as the screen shows; nothing: no probe.
     void show_snapshot(const std::optional<Snapshot>& snapshot);
+    /// With which it is felt; null: a point.
+    void set_tool(const std::shared_ptr<const Tool>& tool);
     /// Where the three slices cut [mm, physical]; to begin with the middle of the grid.
     void set_crosshair(const Vec3& physical);
 
@@ -92,6 +94,9 @@ class Scene : public QVTKOpenGLNativeWidget {
   Q_SIGNALS:
     /// Hand motion asked for with mouse or wheel under Hand::probe [mm, physical].
     void probe_dragged(const palpate::Vec3& by);
+    /// The tool is to be turned, about its reference point: a rotation vector [radians, physical
+    /// axes].
+    void tool_turned(const palpate::Vec3& rotation);
     /// The left button went down under Hand::probe, without Shift: `at` lies under the pointer, in
     /// the plane through the camera's focus [mm, physical].
     void probe_pressed(const palpate::Vec3& at);
@@ -118,7 +123,7 @@ class Scene : public QVTKOpenGLNativeWidget {
 
   private:
     struct Parts;
-    enum class Drag { none, turn, pan, zoom, probe, handle };
+    enum class Drag { none, turn, pan, zoom, probe, tool, handle };
 
     Drag drag_of(const QMouseEvent& event) const;
     std::optional<Vec3> surface_at(const QPointF& at) const;

@@ -22,6 +22,7 @@ Scene::Drag Scene::drag_of(const QMouseEvent& event) const {
     const Qt::KeyboardModifiers keys = event.modifiers();
     switch (event.button()) {
         case Qt::LeftButton:
+            if (probe && keys & Qt::ControlModifier) return Drag::tool;
             if (probe) return keys & Qt::AltModifier ? Drag::turn : Drag::probe;
             return keys & Qt::ShiftModifier ? Drag::pan : Drag::turn;
         case Qt::MiddleButton:
@@ -130,6 +131,11 @@ void Scene::mouseMoveEvent(QMouseEvent* event) {
         case Drag::probe: {
             const double part = event->modifiers() & Qt::ShiftModifier ? finer : 1;
             Q_EMIT probe_dragged(part * in_view_plane(camera_, size, by.x(), by.y()));
+            break;
+        }
+        case Drag::tool: {
+            const double part = event->modifiers() & Qt::ShiftModifier ? finer : 1;
+            Q_EMIT tool_turned(part * rotation_of_drag(camera_, size, by.x(), by.y()));
             break;
         }
         case Drag::handle:

@@ -18,6 +18,7 @@
 #include "apps/viewer/scene/markers.hpp"
 #include "apps/viewer/scene/measure_marks.hpp"
 #include "apps/viewer/scene/scene.hpp"
+#include "apps/viewer/scene/tool_marks.hpp"
 #include "pictures/vtk/props.hpp"
 
 namespace palpate::viewer {
@@ -26,6 +27,7 @@ struct Scene::Parts {
     BackgroundRenderer background;
     RenderRequest wanted;  // look, crosshair; changed() fills in the rest
     std::optional<Snapshot> snapshot;
+    std::shared_ptr<const Tool> tool;
     double brush = 0;
     std::vector<Measurement> measurements;
     LengthUnit unit = LengthUnit::automatic;
@@ -40,6 +42,7 @@ struct Scene::Parts {
     vtkNew<LayerProp> solid, glass;
     Annotations annotations{2};
     std::unique_ptr<Markers> markers;
+    std::unique_ptr<ToolMarks> tool_marks;
     std::unique_ptr<CutMarks> cut;
     std::unique_ptr<MeasureMarks> measures;
 
@@ -52,6 +55,7 @@ struct Scene::Parts {
         overlay->SetActiveCamera(front->GetActiveCamera());
         front->AddViewProp(solid);
         markers = std::make_unique<Markers>(*front, *overlay);
+        tool_marks = std::make_unique<ToolMarks>(*front, *overlay);
         cut = std::make_unique<CutMarks>(*front);
         measures = std::make_unique<MeasureMarks>(*overlay, annotations.writing());
         front->AddViewProp(glass);  // after all that it may cover

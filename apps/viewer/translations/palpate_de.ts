@@ -31,6 +31,14 @@
         <source>Open a volume, a session, layers or a recording</source>
         <translation>Volumen, Sitzung, Schichten oder Aufzeichnung öffnen</translation>
     </message>
+    <message>
+        <source>Open a tool</source>
+        <translation>Werkzeug öffnen</translation>
+    </message>
+    <message>
+        <source>Tools (*.stl *.ply *.obj *.vtp *.csv);;All files (*)</source>
+        <translation>Werkzeuge (*.stl *.ply *.obj *.vtp *.csv);;Alle Dateien (*)</translation>
+    </message>
 </context>
 <context>
     <name>Help</name>
@@ -2058,6 +2066,10 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
         <source>layers are felt, not an isovalue: choose No layers to feel one</source>
         <translation>es werden Schichten gefühlt, kein Isowert: Wählen Sie „Keine Schichten“, um einen zu fühlen</translation>
     </message>
+    <message>
+        <source>Tool</source>
+        <translation>Werkzeug</translation>
+    </message>
 </context>
 <context>
     <name>palpate::viewer::PenetrabilityControls</name>
@@ -2254,6 +2266,34 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
     <message>
         <source>%1 by ten voxels</source>
         <translation>%1, um zehn Voxel</translation>
+    </message>
+    <message>
+        <source>A point has no sides: choose a tool on the page Feel to turn it</source>
+        <translation>Ein Punkt hat keine Seiten: zum Drehen auf der Seite Fühlen ein Werkzeug wählen</translation>
+    </message>
+    <message>
+        <source>Turn the tool anticlockwise</source>
+        <translation>Werkzeug gegen den Uhrzeigersinn drehen</translation>
+    </message>
+    <message>
+        <source>Turn the tool clockwise</source>
+        <translation>Werkzeug im Uhrzeigersinn drehen</translation>
+    </message>
+    <message>
+        <source>Turn the tool down</source>
+        <translation>Werkzeug nach unten drehen</translation>
+    </message>
+    <message>
+        <source>Turn the tool to the left</source>
+        <translation>Werkzeug nach links drehen</translation>
+    </message>
+    <message>
+        <source>Turn the tool to the right</source>
+        <translation>Werkzeug nach rechts drehen</translation>
+    </message>
+    <message>
+        <source>Turn the tool up</source>
+        <translation>Werkzeug nach oben drehen</translation>
     </message>
 </context>
 <context>
@@ -2555,6 +2595,13 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
         <source>Free, pull %1 mm (%2 mm in the volume)</source>
         <translation>Frei, Zug %1 mm (%2 mm im Volumen)</translation>
     </message>
+    <message numerus="yes">
+        <source>%n points of the tool hold, torque %1 N mm</source>
+        <translation>
+            <numerusform>%n Punkt des Werkzeugs hält, Drehmoment %1 N mm</numerusform>
+            <numerusform>%n Punkte des Werkzeugs halten, Drehmoment %1 N mm</numerusform>
+        </translation>
+    </message>
 </context>
 <context>
     <name>palpate::viewer::SlicePane</name>
@@ -2733,6 +2780,102 @@ Ein Zug endet zwei Sekunden, nachdem die Hand alle Schichten verlassen hat.</tra
     <message>
         <source>Arrows go from frame to frame</source>
         <translation>Pfeile gehen von Bild zu Bild</translation>
+    </message>
+</context>
+<context>
+    <name>palpate::viewer::ToolController</name>
+    <message>
+        <source>%1: this is a tool: open a volume first, and feel it, then open the tool</source>
+        <translation>%1: das ist ein Werkzeug: zuerst ein Volumen öffnen und fühlen, dann das Werkzeug öffnen</translation>
+    </message>
+    <message>
+        <source>Reading the tool</source>
+        <translation>Werkzeug wird gelesen</translation>
+    </message>
+</context>
+<context>
+    <name>palpate::viewer::ToolControls</name>
+    <message numerus="yes">
+        <source>%n points, %1 mm apart.</source>
+        <translation>
+            <numerusform>%n Punkt, Abstand %1 mm.</numerusform>
+            <numerusform>%n Punkte, Abstand %1 mm.</numerusform>
+        </translation>
+    </message>
+    <message numerus="yes">
+        <source>%n points.</source>
+        <translation>
+            <numerusform>%n Punkt.</numerusform>
+            <numerusform>%n Punkte.</numerusform>
+        </translation>
+    </message>
+    <message>
+        <source>A tool from a file: a mesh (STL, PLY, OBJ, VTP) or points (CSV: x, y, z), in mm from the point that is held</source>
+        <translation>Ein Werkzeug aus einer Datei: ein Netz (STL, PLY, OBJ, VTP) oder Punkte (CSV: x, y, z), in mm von dem Punkt aus, der gehalten wird</translation>
+    </message>
+    <message>
+        <source>As given</source>
+        <translation>Wie gegeben</translation>
+    </message>
+    <message>
+        <source>Ball</source>
+        <translation>Kugel</translation>
+    </message>
+    <message>
+        <source>Box</source>
+        <translation>Quader</translation>
+    </message>
+    <message>
+        <source>Burr</source>
+        <translation>Fräser</translation>
+    </message>
+    <message>
+        <source>Fingertip</source>
+        <translation>Fingerkuppe</translation>
+    </message>
+    <message>
+        <source>How many times as large as usual the tool is</source>
+        <translation>Wievielmal so groß wie üblich das Werkzeug ist</translation>
+    </message>
+    <message>
+        <source>Layers, pressing through, magnet and texture rest while it is felt.</source>
+        <translation>Schichten, Durchdrücken, Magnet und Textur ruhen, solange damit gefühlt wird.</translation>
+    </message>
+    <message>
+        <source>Needle</source>
+        <translation>Nadel</translation>
+    </message>
+    <message>
+        <source>Open a tool</source>
+        <translation>Werkzeug öffnen</translation>
+    </message>
+    <message>
+        <source>Open…</source>
+        <translation>Öffnen …</translation>
+    </message>
+    <message>
+        <source>Point</source>
+        <translation>Punkt</translation>
+    </message>
+    <message>
+        <source>Rod</source>
+        <translation>Stab</translation>
+    </message>
+    <message>
+        <source>Size</source>
+        <translation>Größe</translation>
+    </message>
+    <message>
+        <source>Size of the tool</source>
+        <translation>Größe des Werkzeugs</translation>
+    </message>
+    <message>
+        <source>Tool</source>
+        <translation>Werkzeug</translation>
+    </message>
+    <message>
+        <source>What touches. No point of a tool ever goes through the surface; it pushes and turns the hand. With the mouse, Ctrl and drag in the scene turn it.</source>
+        <translation>Womit berührt wird. Kein Punkt eines Werkzeugs geht je durch die Oberfläche; es drückt und dreht die Hand. Mit der Maus drehen es Strg und Ziehen in der Szene.</translation>
     </message>
 </context>
 <context>

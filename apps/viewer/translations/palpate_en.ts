@@ -72,4 +72,31 @@
         </translation>
     </message>
 </context>
+<context>
+    <name>palpate::viewer::SessionBar</name>
+    <message numerus="yes">
+        <source>%n points of the tool hold, torque %1 N mm</source>
+        <translation>
+            <numerusform>%n point of the tool holds, torque %1 N mm</numerusform>
+            <numerusform>%n points of the tool hold, torque %1 N mm</numerusform>
+        </translation>
+    </message>
+</context>
+<context>
+    <name>palpate::viewer::ToolControls</name>
+    <message numerus="yes">
+        <source>%n points, %1 mm apart.</source>
+        <translation>
+            <numerusform>%n point, %1 mm apart.</numerusform>
+            <numerusform>%n points, %1 mm apart.</numerusform>
+        </translation>
+    </message>
+    <message numerus="yes">
+        <source>%n points.</source>
+        <translation>
+            <numerusform>%n point.</numerusform>
+            <numerusform>%n points.</numerusform>
+        </translation>
+    </message>
+</context>
 </TS>

@@ -68,6 +68,11 @@ SharedLayers Content::layers() const {
     return playback_ ? playback_->layers_at(time_) : nullptr;
 }
 
+std::shared_ptr<const Tool> Content::tool() const {
+    if (live_) return live_->settings().tool;
+    return playback_ ? playback_->tool_at(time_) : nullptr;
+}
+
 Content::OuterSurface Content::outer_surface() const {
     const SharedLayers now = layers();
     if (have_levels(now)) return {live_->field_now(), now->layers.front().level};

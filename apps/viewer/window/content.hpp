@@ -55,6 +55,8 @@ class Content : public QObject {
 
     /// The layers in use now, or at the time shown; null: none.
     SharedLayers layers() const;
+    /// The tool in use now, or at the time shown; null: a point.
+    std::shared_ptr<const Tool> tool() const;
     /// The outermost surface that is felt: a field and its level. For a live run.
     struct OuterSurface {
         Field field;

@@ -83,6 +83,7 @@ void DisplayController::show_volume(const Field& field, double isovalue,
 
 std::optional<Snapshot> DisplayController::observe() {
     const std::optional<Snapshot> now = held_ ? held_ : content_.snapshot();
+    views_.scene().set_tool(content_.tool());
     views_.show_snapshot(now);
     if (!now) return now;
     observe_data(*now);

@@ -65,6 +65,12 @@ QString ask_open_layers_name(QWidget* window) {
                                         FileDialogs::tr("Layers (*.json);;All files (*)"));
 }
 
+QString ask_open_tool_name(QWidget* window) {
+    return QFileDialog::getOpenFileName(
+        window, FileDialogs::tr("Open a tool"), last_folder(),
+        FileDialogs::tr("Tools (*.stl *.ply *.obj *.vtp *.csv);;All files (*)"));
+}
+
 void remember_folder(const QString& path) {
     if (!is_synthetic(path)) QSettings().setValue("folder", QFileInfo(path).absolutePath());
 }

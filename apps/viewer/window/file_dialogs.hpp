@@ -14,6 +14,7 @@ QString ask_open_name(QWidget* window);
 QString ask_open_folder(QWidget* window);
 QString ask_open_raw_name(QWidget* window);
 QString ask_open_layers_name(QWidget* window);
+QString ask_open_tool_name(QWidget* window);
 /// A name without an extension gets `suffix`. `replaces`: the dialog asks before an existing file
 /// is replaced; false for files that are never replaced. `filter`: of the
 /// files shown, without it those with the suffix.

@@ -58,6 +58,7 @@ MainWindow::MainWindow(const RunRequest& request)
       display_(content_, *views_, *panel_, measuring_, overlays_),
       run_(request, content_, *panel_, messages_),
       layers_(content_, overlays_, *panel_, messages_),
+      tools_(content_, *panel_, messages_),
       recordings_(content_, *panel_, messages_),
       probe_(content_, run_, *views_, messages_),
       editing_(content_, *panel_, messages_, this),
@@ -93,6 +94,7 @@ void MainWindow::build() {
     layout->addWidget(make_progress_strip(files_.loader()));
     layout->addWidget(make_progress_strip(overlays_.loader()));
     layout->addWidget(make_progress_strip(layers_.reader()));
+    layout->addWidget(make_progress_strip(tools_.reader()));
     setCentralWidget(centre);
     auto* dock = new QDockWidget(tr("Feel and look"));
     dock->setObjectName("dock");
@@ -248,7 +250,8 @@ void MainWindow::rest_or_wake(const std::optional<Snapshot>& now) {
 
 bool MainWindow::settled() const {
     return !files_.loading() && !editing_.saving() && !probe_.travelling() && overlays_.settled() &&
-           layers_.settled() && (!content_.volume() || views_->scene().settled());
+           layers_.settled() && tools_.settled() &&
+           (!content_.volume() || views_->scene().settled());
 }
 
 void MainWindow::save_picture(const QString& path, bool whole_window) {
@@ -295,6 +298,7 @@ void MainWindow::dropEvent(QDropEvent* event) {
     const QString path = urls.front().toLocalFile();
     // The volume stays, with its edits.
     if (LayersController::is_layers_file(path)) return layers_.open(path);
+    if (ToolController::is_tool_file(path)) return tools_.open(path);
     editing_.settle_edits([this, path] { files_.open_path(path); });
 }
 

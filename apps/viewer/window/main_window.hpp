@@ -20,6 +20,7 @@
 #include "apps/viewer/window/recording_controller.hpp"
 #include "apps/viewer/window/run_controller.hpp"
 #include "apps/viewer/window/timeline_controller.hpp"
+#include "apps/viewer/window/tool_controller.hpp"
 
 class QLabel;
 
@@ -45,6 +46,7 @@ class MainWindow : public QMainWindow {
     FileController& files() { return files_; }
     RunController& run() { return run_; }
     LayersController& layers() { return layers_; }
+    ToolController& tools() { return tools_; }
     RecordingController& recordings() { return recordings_; }
     EditController& editing() { return editing_; }
     ProbeController& probe() { return probe_; }
@@ -96,6 +98,7 @@ class MainWindow : public QMainWindow {
     DisplayController display_;
     RunController run_;
     LayersController layers_;
+    ToolController tools_;
     RecordingController recordings_;
     ProbeController probe_;
     EditController editing_;

@@ -3,6 +3,7 @@
 
 #include <QAction>
 #include <algorithm>
+#include <numbers>
 #include <utility>
 
 #include "apps/viewer/model/probe_route.hpp"
@@ -38,6 +39,7 @@ ProbeController::ProbeController(Content& content, RunController& run, Views& vi
         held_.invalidate();
         move_by(by);
     });
+    connect(&views, &Views::tool_turned, this, &ProbeController::turn_by);
     connect(&views, &Views::probe_aimed, this, &ProbeController::move_to);
     connect(&views, &Views::probe_pressed, this, [this](const Vec3& at) {
         pressed_ = at;
@@ -192,6 +194,21 @@ void ProbeController::nudge(const Vec3& screen) {
             (screen[0] * axes.right + screen[1] * axes.up + screen[2] * axes.towards_viewer));
 }
 
+void ProbeController::turn_by(const Vec3& rotation) {
+    const auto now = possible() ? content_.snapshot() : std::nullopt;
+    if (!now) return;
+    devices::Mouse& mouse = *content_.live()->mouse();
+    mouse.turn(palpate::turned(mouse.turned_to(), now->session.transform.rotation.transpose() * rotation));
+    if (!content_.tool()) {
+        messages_.show_done(tr("A point has no sides: choose a tool on the page Feel to turn it"));
+    }
+}
+
+void ProbeController::twist(const Vec3& screen) {
+    const ViewAxes axes = axes_of(views_.scene().camera());
+    turn_by(screen[0] * axes.right + screen[1] * axes.up + screen[2] * axes.towards_viewer);
+}
+
 void ProbeController::add_keys() {
     struct Key {
         QString text;
@@ -206,6 +223,23 @@ void ProbeController::add_keys() {
         {tr("Nudge the probe into the depth"), Qt::Key_PageUp, {0, 0, -1}},
         {tr("Nudge the probe towards you"), Qt::Key_PageDown, {0, 0, 1}},
     };
+    const Key turns[] = {
+        {tr("Turn the tool to the left"), Qt::Key_Left, {0, -1, 0}},
+        {tr("Turn the tool to the right"), Qt::Key_Right, {0, 1, 0}},
+        {tr("Turn the tool up"), Qt::Key_Up, {-1, 0, 0}},
+        {tr("Turn the tool down"), Qt::Key_Down, {1, 0, 0}},
+        {tr("Turn the tool clockwise"), Qt::Key_PageDown, {0, 0, -1}},
+        {tr("Turn the tool anticlockwise"), Qt::Key_PageUp, {0, 0, 1}},
+    };
+    constexpr double step = std::numbers::pi / 36;  // 5 degrees
+    for (const Key& key : turns) {
+        auto* action = new QAction(key.text, &views_);
+        action->setShortcut(QKeySequence(key.key + int(Qt::ControlModifier)));
+        action->setShortcutContext(Qt::WidgetShortcut);
+        connect(action, &QAction::triggered, this,
+                [this, turn = Vec3(step * key.step)] { twist(turn); });
+        views_.scene().addAction(action);
+    }
     // Only where the scene has the focus: elsewhere arrows belong to sliders, numbers and slices.
     for (const Key& key : keys) {
         for (const bool far : {false, true}) {

@@ -31,6 +31,10 @@ class ProbeController : public QObject {
     void move_to(const Vec3& to);
     /// `screen`: to the right, up, towards the viewer [voxels].
     void nudge(const Vec3& screen);
+    /// Turns the tool by a rotation vector [radians, physical axes].
+    void turn_by(const Vec3& rotation);
+    /// `screen`: about the axes to the right, up, towards the viewer [radians].
+    void twist(const Vec3& screen);
     /// Brings the probe from in front to the surface under a point of the picture, and a little
     /// into it; nothing where the probe is there already, or there is no surface.
     void touch(const Vec3& at);

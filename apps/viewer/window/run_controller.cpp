@@ -82,6 +82,7 @@ void RunController::restore(const RendererSettings& settings) {
     if (settings.layers && !lack_labels(settings.layers)) {
         send(command::UseLayers{settings.layers});
     }
+    if (settings.tool) send(command::UseTool{settings.tool});
     send(settings.transform);
     send(command::Forces{settings.forces_on});
     Q_EMIT content_.run_changed();

@@ -78,6 +78,8 @@ class Views : public QWidget {
     void probe_dragged(const palpate::Vec3& by);
     void probe_aimed(const palpate::Vec3& to);
     /// As Scene's.
+    void tool_turned(const palpate::Vec3& rotation);
+    /// As Scene's.
     void probe_pressed(const palpate::Vec3& at);
     void probe_released();
     void follow_changed(bool follow);

@@ -6,6 +6,7 @@
 
 #include "palpate/devices/backend.hpp"
 #include "palpate/exchange.hpp"
+#include "palpate/tool.hpp"
 
 namespace palpate::devices {
 
@@ -16,7 +17,8 @@ DeviceFinding find_mouse();
 std::unique_ptr<Device> open_mouse(const DeviceChoice& choice, const DeviceScene& scene);
 
 /// A hand that goes where a window's pointer aims. Pointers jump a hundred times a second; the hand
-/// follows smoothly, a thousand times, never faster than its speed. Axes and workspace as of every
+/// follows smoothly, a thousand times, never faster than its speed, and turns no faster than two
+/// turns a second. Axes and workspace as of every
 /// device: x to the right, y up, z towards the person. Begins in front of the volume,
 /// before the person.
 class Mouse final : public Device {
@@ -28,7 +30,11 @@ class Mouse final : public Device {
     /// thread, the window's; not finite: nothing happens.
     void aim(const Vec3& position) noexcept;
     /// Where it is going. The thread that aims.
-    const Vec3& aimed() const noexcept { return aim_; }
+    const Vec3& aimed() const noexcept { return aim_.position; }
+    /// How the tool is to be turned (tool axes to device axes), by the shortest way; not finite or
+    /// zero: nothing happens. By the thread that aims.
+    void turn(const Quaternion& orientation) noexcept;
+    const Quaternion& turned_to() const noexcept { return aim_.orientation; }
 
     DeviceInfo info() const override;
     DeviceReading read(double time) noexcept override;
@@ -37,11 +43,13 @@ class Mouse final : public Device {
     void stop() noexcept override {}
 
   private:
-    Vec3 aim_;            // the window's
-    Newest<Vec3> going_;  // from the window to the servo
+    Pose aim_;            // the window's
+    Newest<Pose> going_;  // from the window to the servo
     // The servo's.
     double speed_;
-    Vec3 target_, position_, velocity_ = Vec3::Zero();
+    Pose target_;
+    Vec3 position_, velocity_ = Vec3::Zero();
+    Quaternion orientation_ = Quaternion::Identity();
     double time_ = 0;
     bool moving_ = false;
 };

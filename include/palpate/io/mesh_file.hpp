@@ -1,5 +1,4 @@
-// Writes an isosurface for other programs: PLY, STL, OBJ, VTP. Own writers, not VTK's;
-// docs/surface.md says why.
+// Meshes in files: an isosurface for other programs, a tool from them. PLY, STL, OBJ, VTP.
 #pragma once
 
 #include <filesystem>
@@ -8,14 +7,22 @@
 
 namespace palpate::io {
 
-/// Binary little-endian PLY, binary STL, OBJ text, VTP with raw appended data. Vertices are doubles
-/// in all but STL, which has 32-bit floats only. Normals go along where the mesh has them, but for
-/// STL.
+/// Written as binary little-endian PLY, binary STL, OBJ text, VTP with raw appended data. Vertices
+/// are doubles in all but STL, which has 32-bit floats only. Normals go along where the mesh has
+/// them, but for STL.
 enum class MeshFormat : std::uint8_t { ply, stl, obj, vtp };
 
 /// The format of an extension, upper or lower case. Throws std::invalid_argument, naming the four,
 /// for any other: call it before the mesh is computed.
 MeshFormat mesh_format_from(const std::filesystem::path& path);
+
+/// Whether the extension is one of the four, upper or lower case.
+bool names_a_mesh(const std::filesystem::path& path);
+
+/// The triangles of a mesh file, polygons cut into them, vertices as they are there (taken for mm),
+/// without normals; closed or not. Read by VTK in a process of its own (docs/io.md). Throws
+/// InputError.
+SurfaceMesh read_mesh(const std::filesystem::path& path);
 
 /// Writes the mesh in the format of the path's extension, whole or not at all (PendingFile).
 /// Throws OutputError, and std::invalid_argument as above.

@@ -1,4 +1,4 @@
-// Tools as options name them: a built-in shape with its sizes, or a file of points.
+// Tools as options name them: a built-in shape with its sizes, or a file of points or of a mesh.
 #pragma once
 
 #include <filesystem>
@@ -30,23 +30,33 @@ struct BurrSpec {
 struct BoxSpec {
     Vec3 size;
 };
-struct FingertipSpec {};
+struct FingertipSpec {
+    double scale = 1;
+};
 struct PointsSpec {
     std::vector<Vec3> points;  ///< tool axes
 };
 
+struct MeshSpec {
+    std::shared_ptr<const ToolShape> mesh;  ///< not null
+};
+
 /// What a tool is to be; its points follow from their spacing.
 using ToolSpec = std::variant<PointSpec, SphereSpec, RodSpec, NeedleSpec, BurrSpec, BoxSpec,
-                              FingertipSpec, PointsSpec>;
+                              FingertipSpec, PointsSpec, MeshSpec>;
 
 /// "point", "sphere:RADIUS", "rod:LENGTH", "needle[:LENGTH,RADIUS]", "burr:RADIUS", "box:X,Y,Z",
-/// "fingertip", or the name of a CSV file with columns x, y, z, whose points are the tool's. Throws
+/// "fingertip", the name of a CSV file with columns x, y, z, whose points are the tool's, or that
+/// of a mesh (.stl, .ply, .obj, .vtp). Lengths in files are mm in tool axes. Throws
 /// std::invalid_argument for other text, InputError for a file that cannot be read.
 ToolSpec tool_spec_from(const std::string& text);
 /// The tool with neighbouring points about `spacing` [mm] apart; those of a file stay as they are.
 /// Null for a point. Throws std::invalid_argument for sizes that are none, and for more points than
 /// a tool may have.
 std::shared_ptr<const Tool> make_tool(const ToolSpec& spec, double spacing);
+/// The same tool, `factor` times as large. Throws std::invalid_argument for one that is not above
+/// 0.
+ToolSpec scaled(const ToolSpec& spec, double factor);
 /// Half of the smallest distance of samples [mm].
 double usual_spacing(const Geometry& geometry);
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "palpate/devices/options.hpp"
@@ -88,6 +89,28 @@ TEST(Mouse, options_out_of_range_are_refused_by_name) {
     EXPECT_THROW(open_mouse(parse_device("mouse:speed=0"), scene), std::invalid_argument);
     EXPECT_THROW(open_mouse(parse_device("mouse:sped=5"), scene), std::invalid_argument);
     EXPECT_NE(open_mouse(parse_device("mouse:speed=100"), scene), nullptr);
+}
+
+TEST(Mouse, hand_turns_to_where_it_is_asked_smoothly_and_by_the_shortest_way) {
+    Mouse mouse(600);
+    EXPECT_TRUE(mouse.info().has_orientation);
+    EXPECT_EQ(mouse.read(0).orientation, Mat3::Identity());
+    const Quaternion half(Eigen::AngleAxisd(3, Vec3(1, 2, 3).normalized()));
+    mouse.turn(half);
+    Quaternion last = Quaternion::Identity();
+    double fastest = 0;
+    for (int i = 1; i < 1500; ++i) {
+        const Quaternion at(mouse.read(i * tick).orientation);
+        fastest = std::max(fastest, at.angularDistance(last) / tick);
+        EXPECT_LE(at.angularDistance(Quaternion::Identity()), 3 + 1e-6);
+        last = at;
+    }
+    EXPECT_NEAR(last.angularDistance(half), 0, 1e-6);
+    EXPECT_LE(fastest, 4 * std::acos(-1.0) * (1 + 1e-6)) << "two turns a second";
+    EXPECT_GT(fastest, 10);
+    mouse.turn(Quaternion(0, 0, 0, 0));
+    mouse.turn(Quaternion(std::numeric_limits<double>::quiet_NaN(), 0, 0, 1));
+    EXPECT_NEAR(mouse.turned_to().angularDistance(half), 0, 1e-9) << "no orientations";
 }
 
 }  // namespace

@@ -171,5 +171,27 @@ TEST(SceneMouse, a_view_of_the_whole_stays_one_when_the_window_changes_its_shape
     EXPECT_EQ(hands.scene.camera().half_height, own);
 }
 
+TEST(SceneMouse, ctrl_and_left_drag_turn_the_tool_where_the_mouse_is_the_hand) {
+    Hands hands;
+    Vec3 turn = Vec3::Zero();
+    QObject::connect(&hands.scene, &Scene::tool_turned, [&](const Vec3& by) { turn += by; });
+    const Camera before = hands.scene.camera();
+    hands.drag(Qt::LeftButton, {200, 160}, {280, 160}, Qt::ControlModifier);
+    EXPECT_EQ(turn, Vec3::Zero()) << "the mouse is not the hand";
+    hands.scene.set_camera(before);
+    hands.scene.set_hand(Scene::Hand::probe);
+    // 80 pixels of 320: 45 degrees; the side towards the viewer (-y) goes to the right (+x).
+    hands.drag(Qt::LeftButton, {200, 160}, {280, 160}, Qt::ControlModifier);
+    EXPECT_NEAR(turn.norm(), std::acos(-1.0) / 4, 1e-9);
+    const Mat3 rotation = Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix();
+    EXPECT_GT((rotation * Vec3(0, -1, 0))[0], 0.5);
+    turn.setZero();
+    hands.drag(Qt::LeftButton, {200, 160}, {200, 80}, Qt::ControlModifier);
+    const Mat3 up = Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix();
+    EXPECT_GT((up * Vec3(0, -1, 0))[2], 0.5) << "and up";
+    EXPECT_EQ(hands.dragged, Vec3::Zero());
+    EXPECT_EQ(hands.scene.camera(), before);
+}
+
 }  // namespace
 }  // namespace palpate::viewer

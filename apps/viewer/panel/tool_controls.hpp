@@ -1,0 +1,65 @@
+// Tool: what touches. A point, a built-in shape, or one of a file, and how large it is.
+#pragma once
+
+#include <QComboBox>
+#include <QLabel>
+#include <QPushButton>
+#include <QWidget>
+
+#include <memory>
+#include <vector>
+
+#include "apps/viewer/panel/quantity.hpp"
+#include "palpate/io/tool_file.hpp"
+
+namespace palpate::viewer {
+
+class ToolControls : public QWidget {
+    Q_OBJECT
+
+  public:
+    ToolControls();
+
+    /// Of another volume: sizes suit it. Tools of files stay.
+    void set_grid(const Geometry& geometry);
+    void clear();
+    /// Shows the tool in effect; emits nothing. One that was not made here, such as a session's, is
+    /// one more choice. Null: a point.
+    void set_tool(const std::shared_ptr<const Tool>& tool);
+    /// Another choice, chosen as by hand.
+    void add(const QString& name, const io::ToolSpec& spec);
+    /// Forgets a request that waits.
+    void drop() { scale_->drop(); }
+
+  Q_SIGNALS:
+    /// Null: a point.
+    void wanted(const std::shared_ptr<const palpate::Tool>& tool);
+    /// What was asked for is no tool.
+    void nonsense(const QString& why);
+    void open_wanted();
+
+  private:
+    struct Choice {
+        QString name;
+        io::ToolSpec spec;
+    };
+    struct Shown {
+        int row = 0;
+        double scale = 1;
+        std::shared_ptr<const Tool> tool;
+        double spacing = 0;  // [mm] 0: as given
+    };
+    void choose(int row, double scale);
+    void show(const Shown& now);
+
+    Geometry geometry_{Index3::Zero()};
+    std::size_t built_in_ = 0;     // of the choices, the first ones
+    std::vector<Choice> choices_;  // then those of files and sessions
+    Shown shown_, before_;         // before the last request, should that be refused
+    QComboBox* choice_;
+    QPushButton* open_;
+    Quantity* scale_;
+    QLabel* about_;
+};
+
+}  // namespace palpate::viewer

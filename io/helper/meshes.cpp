@@ -1,0 +1,176 @@
+// Reads meshes with VTK's readers: the triangles, and nothing else of them.
+#include <vtkCellArray.h>
+#include <vtkNew.h>
+#include <vtkPLYReader.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkSTLReader.h>
+#include <vtkTriangleFilter.h>
+#include <vtkXMLPolyDataReader.h>
+
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/helper/readers.hpp"
+#include "io/helper/vtk_errors.hpp"
+#include "io/number.hpp"
+#include "palpate/io/error.hpp"
+
+namespace palpate::io {
+namespace {
+
+/// A binary STL says how many triangles it has; VTK takes as many as there are.
+void check_length_of_stl(const std::filesystem::path& path) {
+    constexpr std::uintmax_t head_bytes = 84, triangle_bytes = 50;
+    std::ifstream in(path, std::ios::binary);
+    char head[head_bytes] = {};
+    in.read(head, head_bytes);
+    const std::string text(head, static_cast<std::size_t>(in.gcount()));
+    // A text begins with this word, and so does the free header of some binary files, which have
+    // bytes in it that no text has.
+    if (text.starts_with("solid") && text.find('\0') == std::string::npos) return;
+    if (text.size() < head_bytes) throw Failure("is too short for an STL file; copy it again");
+    std::uint32_t count = 0;
+    std::memcpy(&count, head + 80, sizeof count);
+    if (std::filesystem::file_size(path) < head_bytes + triangle_bytes * count) {
+        throw Failure("it is cut off: its " + std::to_string(count) +
+                      " triangles need more bytes; copy it again");
+    }
+}
+
+template <class Reader>
+vtkSmartPointer<vtkPolyData> read_with(const std::filesystem::path& path) {
+    const vtkNew<ErrorKeeper> errors;
+    vtkOutputWindow::SetInstance(errors);
+    const vtkNew<Reader> reader;
+    reader->SetFileName(path.c_str());
+    reader->Update();
+    vtkOutputWindow::SetInstance(nullptr);
+    if (!errors->first().empty()) {
+        throw Failure("is damaged or not what its name says (" + errors->first() +
+                      "); export it again");
+    }
+    return reader->GetOutput();
+}
+
+/// The vertex that a corner of an OBJ face names ("3", "3/1/2", from 1, or backwards from -1).
+vtkIdType vertex_of(std::string_view corner, vtkIdType vertices, const std::string& line) {
+    const auto number = number_from<std::int64_t>(corner.substr(0, corner.find('/')));
+    const std::int64_t index = number.value_or(0);
+    if (index > 0 && index <= vertices) return index - 1;
+    if (index < 0 && -index <= vertices) return vertices + index;
+    throw Failure("'" + one_line(line.substr(0, 60)) +
+                  "' names a vertex that is not there; export it again");
+}
+
+/// Vertices and faces; VTK's reader loses faces that count backwards, and reads "nan" as a number.
+vtkSmartPointer<vtkPolyData> read_obj(const std::filesystem::path& path) {
+    std::ifstream in(path);
+    const vtkNew<vtkPoints> points;
+    points->SetDataTypeToDouble();
+    const vtkNew<vtkCellArray> faces;
+    for (std::string line; std::getline(in, line);) {
+        for (std::string more; line.ends_with('\\') && std::getline(in, more);) {
+            line.back() = ' ';
+            line += more;
+        }
+        std::istringstream words(line);
+        std::string word;
+        words >> word;
+        if (word == "v") {
+            double at[3] = {};
+            for (double& coordinate : at) {
+                words >> word;
+                const auto number = number_from<double>(word);
+                if (!words || !number) {
+                    throw Failure("'" + one_line(line.substr(0, 60)) +
+                                  "' is no vertex of three numbers; export it again");
+                }
+                coordinate = *number;
+            }
+            points->InsertNextPoint(at);
+        } else if (word == "f") {
+            std::vector<vtkIdType> corners;
+            while (words >> word) {
+                corners.push_back(vertex_of(word, points->GetNumberOfPoints(), line));
+            }
+            faces->InsertNextCell(static_cast<vtkIdType>(corners.size()), corners.data());
+        }
+    }
+    auto data = vtkSmartPointer<vtkPolyData>::New();
+    data->SetPoints(points);
+    data->SetPolys(faces);
+    return data;
+}
+
+vtkSmartPointer<vtkPolyData> read_poly_data(const std::filesystem::path& path,
+                                            const std::string& extension) {
+    if (extension == ".stl") {
+        check_length_of_stl(path);
+        return read_with<vtkSTLReader>(path);
+    }
+    if (extension == ".ply") return read_with<vtkPLYReader>(path);
+    if (extension == ".obj") return read_obj(path);
+    if (extension == ".vtp") return read_with<vtkXMLPolyDataReader>(path);
+    throw Failure("has no extension of a known mesh format (stl, ply, obj, vtp)");
+}
+
+/// Faces that name a vertex the file has not would be read beyond the array's end.
+void check_faces(vtkCellArray& faces, vtkIdType vertices) {
+    vtkIdType count = 0;
+    const vtkIdType* ids = nullptr;
+    for (faces.InitTraversal(); faces.GetNextCell(count, ids) != 0;) {
+        for (vtkIdType i = 0; i < count; ++i) {
+            if (ids[i] >= 0 && ids[i] < vertices) continue;
+            throw Failure("a face names vertex " + std::to_string(ids[i]) + " of " +
+                          std::to_string(vertices) + "; export it again");
+        }
+    }
+}
+
+}  // namespace
+
+MeshSize read_mesh(const std::filesystem::path& path, const std::string& extension,
+                   const MeshMemory& memory_of) {
+    const vtkSmartPointer<vtkPolyData> read = read_poly_data(path, extension);
+    check_faces(*read->GetPolys(), read->GetNumberOfPoints());
+    check_faces(*read->GetStrips(), read->GetNumberOfPoints());
+    const vtkNew<vtkTriangleFilter> filter;
+    filter->SetInputData(read);
+    filter->PassVertsOff();
+    filter->PassLinesOff();
+    filter->Update();
+    vtkPolyData& mesh = *filter->GetOutput();
+    const MeshSize size{mesh.GetNumberOfPoints(), mesh.GetPolys()->GetNumberOfCells()};
+    if (size.triangles == 0) {
+        throw Failure("has no faces; export it again as a mesh of triangles or polygons");
+    }
+    if (size.vertices > std::numeric_limits<std::uint32_t>::max()) {
+        throw Failure("has more vertices than can be read; simplify it");
+    }
+    void* const memory = memory_of(size);
+    auto* const vertices = static_cast<double*>(memory);
+    for (vtkIdType i = 0; i < size.vertices; ++i) {
+        double* const vertex = vertices + 3 * i;
+        mesh.GetPoint(i, vertex);
+        if (!std::isfinite(vertex[0] + vertex[1] + vertex[2])) {
+            throw Failure("vertex " + std::to_string(i) + " is not finite; export it again");
+        }
+    }
+    auto* triangle = reinterpret_cast<std::uint32_t*>(vertices + 3 * size.vertices);
+    vtkIdType count = 0;
+    const vtkIdType* ids = nullptr;
+    vtkCellArray& cells = *mesh.GetPolys();
+    for (cells.InitTraversal(); cells.GetNextCell(count, ids) != 0;) {
+        for (int i = 0; i < 3; ++i) *triangle++ = static_cast<std::uint32_t>(ids[i]);
+    }
+    return size;
+}
+
+}  // namespace palpate::io

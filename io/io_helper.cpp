@@ -1,0 +1,62 @@
+// What every job of palpate-io-helper has in common; see the header.
+#include "io/io_helper.hpp"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <system_error>
+
+#include "palpate/io/error.hpp"
+
+namespace palpate::io {
+
+namespace fs = std::filesystem;
+
+std::uint64_t machine_memory() {
+    return static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) *
+           static_cast<std::uint64_t>(sysconf(_SC_PAGE_SIZE));
+}
+
+double bytes_in(const fs::path& path) {
+    std::error_code error;
+    if (!fs::is_directory(path, error)) return static_cast<double>(fs::file_size(path, error));
+    double bytes = 0;
+    for (fs::directory_iterator entry(path, error), end; entry != end && !error;
+         entry.increment(error)) {
+        std::error_code of_entry;
+        const auto size = entry->file_size(of_entry);
+        if (!of_entry) bytes += static_cast<double>(size);
+    }
+    return bytes;
+}
+
+void check_readable(const fs::path& path) {
+    const std::string name = path.empty() ? "(no name)" : path.string();
+    std::error_code error;
+    const fs::file_status status = fs::status(path, error);
+    if (status.type() == fs::file_type::not_found) {
+        throw InputError(name + ": does not exist; check the name");
+    }
+    if (status.type() == fs::file_type::none) {
+        throw InputError(name + ": " + error.message() + "; check the name and its permissions");
+    }
+    if (status.type() != fs::file_type::regular && status.type() != fs::file_type::directory) {
+        throw InputError(name + ": is neither a file nor a folder; give a file");
+    }
+    const bool folder = status.type() == fs::file_type::directory;
+    if (access(path.c_str(), folder ? R_OK | X_OK : R_OK) != 0) {
+        throw InputError(name + ": " + std::strerror(errno) + "; check its permissions");
+    }
+    if (!folder && fs::file_size(path, error) == 0) {
+        throw InputError(name + ": is empty (0 bytes); copy or download it again");
+    }
+}
+
+void fail_without_answer(const fs::path& path) {
+    throw InputError(path.string() +
+                     ": the helper process gave no sensible answer; check that "
+                     "palpate-io-helper belongs to this version of Palpate");
+}
+
+}  // namespace palpate::io

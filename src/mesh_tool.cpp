@@ -1,0 +1,239 @@
+// The points of a tool that is given as a mesh: evenly over its surface, corners and edges first.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+#include <unordered_map>
+#include <utility>
+
+#include "palpate/tool.hpp"
+
+namespace palpate {
+namespace {
+
+using Triangle = std::array<std::uint32_t, 3>;
+using Edge = std::pair<std::uint32_t, std::uint32_t>;
+
+/// In parts of the spacing: points keep this distance from each other, and there is a candidate
+/// within two thirds of that one of every place, so that no place is farther than the spacing from
+/// a point.
+constexpr double least_distance = 0.75, candidate_step = 1.0 / 3;
+static_assert(least_distance + candidate_step * 2 / 3 < 1);
+constexpr std::size_t most_candidates = 20'000'000;
+
+[[noreturn]] void refuse_number() {
+    throw std::invalid_argument("a tool has at most " + std::to_string(most_tool_points) +
+                                " points: space them farther apart, or simplify the mesh");
+}
+
+/// Places a point may be put. Too many are refused.
+void add(std::vector<Vec3>& candidates, const Vec3& place) {
+    if (candidates.size() == most_candidates) refuse_number();
+    candidates.push_back(place);
+}
+
+/// A grid of cells that finds the points near a place.
+class Points {
+  public:
+    explicit Points(double cell) : cell_(cell) {}
+
+    bool has_within(double distance, const Vec3& place) const {
+        const Cell low = cell_of(place - Vec3::Constant(distance));
+        const Cell high = cell_of(place + Vec3::Constant(distance));
+        for (auto z = low[2]; z <= high[2]; ++z) {
+            for (auto y = low[1]; y <= high[1]; ++y) {
+                for (auto x = low[0]; x <= high[0]; ++x) {
+                    if (has_within(distance, place, {x, y, z})) return true;
+                }
+            }
+        }
+        return false;
+    }
+
+    void add(const Vec3& point) {
+        if (points_.size() == most_tool_points) refuse_number();
+        points_.push_back(point);
+        cells_[cell_of(point)].push_back(point);
+    }
+
+    const std::vector<Vec3>& all() const { return points_; }
+
+  private:
+    using Cell = std::array<std::int64_t, 3>;
+    struct Hash {
+        std::size_t operator()(const Cell& c) const {
+            std::uint64_t h = 0;
+            for (const std::int64_t i : c) {
+                h = (h ^ static_cast<std::uint64_t>(i)) * 0x9E3779B97F4A7C15U;
+                h ^= h >> 32;
+            }
+            return static_cast<std::size_t>(h);
+        }
+    };
+
+    Cell cell_of(const Vec3& place) const {
+        Cell cell{};
+        for (int a = 0; a < 3; ++a) {
+            cell[std::size_t(a)] = static_cast<std::int64_t>(std::floor(place[a] / cell_));
+        }
+        return cell;
+    }
+    bool has_within(double distance, const Vec3& place, const Cell& cell) const {
+        const auto found = cells_.find(cell);
+        if (found == cells_.end()) return false;
+        return std::ranges::any_of(found->second, [&](const Vec3& point) {
+            return (point - place).squaredNorm() < distance * distance;
+        });
+    }
+
+    double cell_;
+    std::vector<Vec3> points_;
+    std::unordered_map<Cell, std::vector<Vec3>, Hash> cells_;
+};
+
+/// Makes points of candidates until each has one within `distance`: far from each other first,
+/// which leaves few gaps that are neither one nor two points wide (dart throwing with shrinking
+/// darts; McCool and Fiume 1992).
+void choose(Points& points, const std::vector<Vec3>& candidates, double distance) {
+    for (const double share : {2.0, 1.6, 1.3, 1.1, 1.0}) {
+        for (const Vec3& place : candidates) {
+            if (!points.has_within(share * distance, place)) points.add(place);
+        }
+    }
+}
+
+/// The triangles with a number for each place in space, so that neighbours are known in files that
+/// repeat their vertices (STL). Those without an area are left out.
+std::vector<Triangle> joined(std::span<const Vec3> vertices, std::span<const Triangle> triangles) {
+    const auto before = [](const Vec3& a, const Vec3& b) {
+        return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+    };
+    std::map<Vec3, std::uint32_t, decltype(before)> numbers(before);
+    std::vector<Triangle> result;
+    for (Triangle t : triangles) {
+        for (std::uint32_t& i : t) {
+            if (i >= vertices.size()) {
+                throw std::invalid_argument("a triangle names a vertex that the mesh has not");
+            }
+            if (!vertices[i].allFinite()) {
+                throw std::invalid_argument("a mesh must have finite vertices");
+            }
+            i = numbers.try_emplace(vertices[i], i).first->second;
+        }
+        if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) result.push_back(t);
+    }
+    if (result.empty()) throw std::invalid_argument("a tool's mesh needs at least one triangle");
+    return result;
+}
+
+Vec3 area_vector(std::span<const Vec3> vertices, const Triangle& t) {
+    return 0.5 * (vertices[t[1]] - vertices[t[0]]).cross(vertices[t[2]] - vertices[t[0]]);
+}
+
+/// Edges at the border, between more than two triangles, and where two meet at more than 30
+/// degrees.
+std::vector<Edge> sharp_edges(std::span<const Vec3> vertices, std::span<const Triangle> triangles) {
+    struct Sides {
+        int count = 0;
+        Vec3 normal;
+        bool flat = true;
+    };
+    const double flat = std::cos(std::acos(-1.0) / 6);
+    std::map<Edge, Sides> edges;
+    for (const Triangle& t : triangles) {
+        const Vec3 normal = area_vector(vertices, t).normalized();
+        for (std::size_t i = 0; i < 3; ++i) {
+            Sides& sides = edges[std::minmax(t[i], t[(i + 1) % 3])];
+            // Files do not agree on which side is out: triangles back to back count as flat.
+            sides.flat &= ++sides.count == 1 || std::abs(normal.dot(sides.normal)) >= flat;
+            if (sides.count == 1) sides.normal = normal;
+        }
+    }
+    std::vector<Edge> sharp;
+    for (const auto& [edge, sides] : edges) {
+        if (sides.count != 2 || !sides.flat) sharp.push_back(edge);
+    }
+    return sharp;
+}
+
+/// Where sharp edges end, branch or turn by more than 30 degrees.
+std::vector<Vec3> corners_of(std::span<const Vec3> vertices, std::span<const Edge> edges) {
+    std::map<std::uint32_t, std::vector<Vec3>> ways;  // unit, from the vertex along its edges
+    for (const auto& [a, b] : edges) {
+        const Vec3 way = (vertices[b] - vertices[a]).normalized();
+        ways[a].push_back(way);
+        ways[b].push_back(-way);
+    }
+    std::vector<Vec3> corners;
+    for (const auto& [vertex, from] : ways) {
+        const bool passes = from.size() == 2 && from[0].dot(from[1]) < -std::sqrt(0.75);
+        if (!passes) add(corners, vertices[vertex]);
+    }
+    return corners;
+}
+
+std::vector<Vec3> along(std::span<const Vec3> vertices, std::span<const Edge> edges, double step) {
+    std::vector<Vec3> places;
+    for (const auto& [a, b] : edges) {
+        const Vec3 way = vertices[b] - vertices[a];
+        const double steps = std::ceil(way.norm() / step);
+        if (steps > double(most_candidates)) refuse_number();
+        for (double i = 0; i <= steps; ++i) add(places, vertices[a] + way * (i / steps));
+    }
+    return places;
+}
+
+/// The middles of pieces, halved across their longest edge until that is at most `step` long. No
+/// place of a piece is farther than two thirds of that edge from its middle.
+void add_pieces(std::vector<Vec3>& places, const std::array<Vec3, 3>& corners, double step) {
+    std::vector<std::array<Vec3, 3>> left{corners};
+    while (!left.empty()) {
+        const std::array<Vec3, 3> piece = left.back();
+        left.pop_back();
+        std::size_t longest = 0;
+        double length = 0;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const double of_this = (piece[(i + 1) % 3] - piece[i]).norm();
+            if (of_this > length) longest = i, length = of_this;
+        }
+        if (!(length > step)) {
+            add(places, (piece[0] + piece[1] + piece[2]) / 3);
+            continue;
+        }
+        const Vec3 &a = piece[longest], &b = piece[(longest + 1) % 3],
+                   &c = piece[(longest + 2) % 3];
+        const Vec3 middle = 0.5 * (a + b);
+        left.push_back({middle, b, c});
+        left.push_back({a, middle, c});
+    }
+}
+
+}  // namespace
+
+Tool mesh_tool(ToolShape mesh, double spacing) {
+    if (!(spacing > 0 && spacing < 1e9)) {
+        throw std::invalid_argument("the spacing of a tool's points must be > 0");
+    }
+    const std::span<const Vec3> vertices(mesh.vertices);
+    const std::vector<Triangle> triangles = joined(vertices, mesh.triangles);
+    double area = 0;
+    for (const Triangle& t : triangles) area += area_vector(vertices, t).norm();
+    // The closest packing that leaves no place farther than the spacing from a point.
+    if (!(area < 1.5 * std::sqrt(3.0) * spacing * spacing * double(most_tool_points))) {
+        refuse_number();
+    }
+    const double step = candidate_step * spacing, distance = least_distance * spacing;
+    const std::vector<Edge> edges = sharp_edges(vertices, triangles);
+    Points points(spacing);
+    choose(points, corners_of(vertices, edges), distance);
+    choose(points, along(vertices, edges, step), distance);
+    std::vector<Vec3> places;
+    for (const Triangle& t : triangles) {
+        add_pieces(places, {vertices[t[0]], vertices[t[1]], vertices[t[2]]}, step);
+    }
+    choose(points, places, distance);
+    return Tool(points.all(), std::nullopt, true, std::move(mesh));
+}
+
+}  // namespace palpate

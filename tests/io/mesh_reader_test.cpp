@@ -1,0 +1,134 @@
+// Meshes come back from the four formats as they were; damaged files are refused in a line.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <random>
+
+#include "palpate/io/error.hpp"
+#include "palpate/io/mesh_file.hpp"
+#include "palpate/io/tool_file.hpp"
+#include "support/scratch_folder.hpp"
+#include "volume_support.hpp"
+
+namespace palpate::io::test {
+namespace {
+
+const char* const extensions[] = {".stl", ".ply", ".obj", ".vtp"};
+
+SurfaceMesh wedge() {
+    SurfaceMesh mesh;
+    mesh.vertices = {{0, 0, 0}, {2, 0, 0}, {0, 3, 0}, {0, 0, 0.5}};
+    mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+    return mesh;
+}
+
+/// The corners of the triangles, in an order that does not depend on the file.
+std::vector<std::vector<double>> corners_of(const SurfaceMesh& mesh) {
+    std::vector<std::vector<double>> all;
+    for (const auto& t : mesh.triangles) {
+        std::vector<Vec3> corners;
+        for (const std::uint32_t i : t) corners.push_back(mesh.vertices.at(i));
+        const auto before = [](const Vec3& a, const Vec3& b) {
+            return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+        };
+        std::ranges::rotate(corners, std::ranges::min_element(corners, before));
+        auto& flat = all.emplace_back();
+        for (const Vec3& corner : corners) flat.insert(flat.end(), corner.begin(), corner.end());
+    }
+    std::ranges::sort(all);
+    return all;
+}
+
+std::string refusal_of_mesh(const std::filesystem::path& path) {
+    try {
+        (void)read_mesh(path);
+    } catch (const InputError& e) {
+        return e.what();
+    }
+    return "";
+}
+
+TEST(MeshReader, reads_what_was_written) {
+    const support::ScratchFolder folder;
+    for (const std::string extension : extensions) {
+        const auto path = folder / ("a" + extension);
+        write_mesh(wedge(), path);
+        EXPECT_EQ(corners_of(read_mesh(path)), corners_of(wedge())) << extension;
+    }
+}
+
+TEST(MeshReader, reads_texts_polygons_and_open_meshes) {
+    const support::ScratchFolder folder;
+    put_bytes(folder / "square.obj",
+              "# a square and a triangle\nv 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nv 1 1 5\nvn 0 0 1\n"
+              "f 1//1 2//1 3//1 4//1\nf -1 1 2\n");
+    const SurfaceMesh square = read_mesh(folder / "square.obj");
+    EXPECT_EQ(square.triangles.size(), 3U);
+    put_bytes(folder / "one.STL",
+              "solid one\n facet normal 0 0 1\n  outer loop\n   vertex 0 0 0\n   vertex 1e1 0 0\n"
+              "   vertex 0 10 0\n  endloop\n endfacet\nendsolid one\n");
+    EXPECT_EQ(read_mesh(folder / "one.STL").triangles.size(), 1U);
+    put_bytes(folder / "five.ply",
+              "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\n"
+              "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+              "end_header\n0 0 0\n2 0 0\n3 1 0\n1 3 0\n-1 1 0\n5 0 1 2 3 4\n");
+    EXPECT_EQ(read_mesh(folder / "five.ply").triangles.size(), 3U);
+    const auto tool = make_tool(tool_spec_from((folder / "one.STL").string()), 0.5);
+    EXPECT_GT(tool->points().size(), 150U);
+    EXPECT_NEAR(tool->radius(), 10, 1e-6);
+}
+
+TEST(MeshReader, says_what_is_wrong) {
+    const support::ScratchFolder folder;
+    const auto says = [&](const std::string& name, const std::string& bytes,
+                          const std::string& word) {
+        put_bytes(folder / name, bytes);
+        const std::string message = refusal_of_mesh(folder / name);
+        EXPECT_TRUE(one_line_about(message, folder / name)) << name << ": " << message;
+        EXPECT_TRUE(contains(message, word)) << message;
+    };
+    says("empty.stl", "", "empty");
+    says("short.stl", "abc", "too short");
+    says("cut.stl", std::string(80, '\0') + std::string("\xff\xff\xff\x7f", 4), "cut off");
+    says("points.obj", "v 0 0 0\nv 1 0 0\n", "no faces");
+    says("beyond.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n", "vertex");
+    says("text.ply", "not a mesh\n", "not what its name says");
+    says("text.vtp", "not a mesh\n", "not what its name says");
+    says("nan.obj", "v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "finite");
+    says("a.mesh", "v\n", "extension");
+    EXPECT_TRUE(contains(refusal_of_mesh(folder / "none.stl"), "does not exist"));
+    EXPECT_TRUE(contains(refusal_of_mesh(folder.path()), "is a folder"));
+}
+
+TEST(MeshReader, damaged_files_are_refused_or_give_a_mesh) {
+    const support::ScratchFolder folder;
+    std::mt19937 random(17);
+    for (const std::string extension : extensions) {
+        const auto path = folder / ("a" + extension);
+        write_mesh(wedge(), path);
+        const std::string whole = support::bytes_of(path);
+        for (int i = 0; i < support::scaled(40); ++i) {
+            std::string bytes = whole;
+            if (i % 4 == 0) {
+                bytes.resize(1 + random() % (whole.size() - 1));
+            } else {
+                char& byte = bytes[random() % bytes.size()];
+                byte = static_cast<char>(byte ^ (1 << random() % 8));
+            }
+            put_bytes(path, bytes);
+            try {
+                const SurfaceMesh mesh = read_mesh(path);
+                for (const auto& t : mesh.triangles) {
+                    for (const std::uint32_t v : t) ASSERT_LT(v, mesh.vertices.size());
+                }
+                for (const Vec3& v : mesh.vertices) ASSERT_TRUE(v.allFinite());
+            } catch (const InputError& e) {
+                EXPECT_TRUE(one_line_about(e.what(), path)) << extension << ": " << e.what();
+            }
+        }
+    }
+}
+
+}  // namespace
+}  // namespace palpate::io::test

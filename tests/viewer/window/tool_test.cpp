@@ -1,0 +1,114 @@
+// Tools in the window: choosing one, pressing and turning it with the mouse, files, sessions.
+#include <QComboBox>
+#include <QDragEnterEvent>
+#include <QDropEvent>
+#include <QLabel>
+#include <QMimeData>
+
+#include <fstream>
+
+#include "apps/viewer/panel/tool_controls.hpp"
+#include "palpate/io/mesh_file.hpp"
+#include "palpate/surface.hpp"
+#include "viewer/window/window_fixture.hpp"
+
+namespace palpate::viewer::test {
+namespace {
+
+constexpr const char* ball = "synthetic:sphere:48x48x48";
+
+class ToolInWindow : public InWindow {
+  protected:
+    std::shared_ptr<const Tool> tool() { return window_->live()->settings().tool; }
+    void choose(const char* name) {
+        auto& box = part<QComboBox>("tool");
+        const int row = box.findText(name);
+        ASSERT_GE(row, 0) << name;
+        box.setCurrentIndex(row);
+        Q_EMIT box.activated(row);
+        ASSERT_TRUE(wait_until([&] { return window_->live()->waiting() == 0; }));
+    }
+    void turn(const QPoint& from, const QPoint& to) {
+        QWidget& scene = window_->views().scene();
+        QTest::mousePress(&scene, Qt::LeftButton, Qt::ControlModifier, from);
+        for (int i = 1; i <= 6; ++i) {
+            const QPoint at = from + (to - from) * i / 6;
+            QMouseEvent event(QEvent::MouseMove, at, scene.mapToGlobal(at), Qt::NoButton,
+                              Qt::LeftButton, Qt::ControlModifier);
+            QApplication::sendEvent(&scene, &event);
+            QTest::qWait(15);
+        }
+        QTest::mouseRelease(&scene, Qt::LeftButton, Qt::ControlModifier, to);
+        QTest::qWait(300);
+    }
+};
+
+TEST_F(ToolInWindow, is_pressed_and_turned_with_the_mouse) {
+    feel(ball);
+    choose("Box");
+    ASSERT_TRUE(tool());
+    press_until_force();
+    EXPECT_GT(now().session.tick.tool.contacts, 0);
+    save("tool-pressed");
+    const QPoint middle = window_->views().scene().rect().center();
+    turn(middle, middle + QPoint(90, 40));
+    const Tick tick = now().session.tick;
+    const double turned = tick.tool.hand.angularDistance(Quaternion::Identity());
+    EXPECT_GT(turned, 0.3);
+    // A flat face that is turned on a ball pushes back.
+    EXPECT_TRUE(wait_until([&] { return now().session.tick.torque.norm() > 1; }));
+    save("tool-turned");
+    QTest::keyClick(&window_->views().scene(), Qt::Key_Left, Qt::ControlModifier);
+    EXPECT_TRUE(wait_until(
+        [&] { return now().session.tick.tool.hand.angularDistance(tick.tool.hand) > 0.05; }));
+    choose("Point");
+    EXPECT_FALSE(tool());
+    EXPECT_TRUE(wait_until([&] { return now().session.tick.tool.contacts == 0; }));
+}
+
+TEST_F(ToolInWindow, comes_from_a_mesh_that_is_dropped_and_goes_with_the_session) {
+    feel(ball);
+    ToolShape hook{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {0, 0, 9}},
+                   {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
+    SurfaceMesh mesh;
+    mesh.vertices = hook.vertices;
+    mesh.triangles = hook.triangles;
+    const QString path = QString::fromStdString((scratch_.path() / "hook.stl").string());
+    io::write_mesh(mesh, path.toStdString());
+    QMimeData data;
+    data.setUrls({QUrl::fromLocalFile(path)});
+    QDragEnterEvent enter({100, 100}, Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
+    QApplication::sendEvent(window_.get(), &enter);
+    QDropEvent drop({100, 100}, Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
+    QApplication::sendEvent(window_.get(), &drop);
+    ASSERT_TRUE(wait_until([&] { return tool() != nullptr; }));
+    EXPECT_EQ(tool()->shape().triangles.size(), 4U);
+    EXPECT_EQ(part<QComboBox>("tool").currentText(), "hook.stl");
+    const std::size_t points = tool()->points().size();
+    press_until_force();
+    save("tool-of-a-mesh");
+    const QString session = QString::fromStdString((scratch_.path() / "hook.json").string());
+    window_->files().save_session(session);
+    choose("Point");
+    ASSERT_FALSE(tool());
+    window_->files().open_path(session);
+    ASSERT_TRUE(wait_until([&] { return window_->live() && tool() != nullptr; }));
+    EXPECT_EQ(tool()->points().size(), points);
+    EXPECT_EQ(tool()->shape().triangles.size(), 4U);
+    EXPECT_EQ(part<QComboBox>("tool").currentText(), "As given");
+}
+
+TEST_F(ToolInWindow, that_cannot_be_read_is_said_and_changes_nothing) {
+    feel(ball);
+    choose("Ball");
+    const auto before = tool();
+    const auto path = scratch_.path() / "bad.stl";
+    std::ofstream(path) << "no mesh";
+    window_->tools().open(QString::fromStdString(path.string()));
+    ASSERT_TRUE(wait_until([&] { return !window_->messages().problem().isEmpty(); }));
+    EXPECT_TRUE(window_->messages().problem().contains("bad.stl"));
+    EXPECT_EQ(tool(), before);
+}
+
+}  // namespace
+}  // namespace palpate::viewer::test
