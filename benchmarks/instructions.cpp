@@ -8,6 +8,7 @@
 #include <string>
 
 #include "benchmarks/hand.hpp"
+#include "benchmarks/tool_hand.hpp"
 #include "palpate/baselines/methods.hpp"
 #include "palpate/layers.hpp"
 
@@ -141,12 +142,39 @@ void run(const Case& chosen, long updates) {
                 static_cast<unsigned long long>(hash));
 }
 
+void run_tool(const ToolCase& chosen, long updates) {
+    const ToolTouch touch = chosen.touch();
+    ToolProxy proxy(touch.tool);
+    proxy.isovalue = touch.isovalue;
+    std::uint64_t hash = 0xcbf29ce484222325U;
+    long rounds = 0, contacts = 0, work = 0, unfinished = 0;
+    const long count = static_cast<long>(touch.path.size());
+    for (long i = 0; i < updates; ++i) {
+        const long at = i / count % 2 == 0 ? i % count : count - 1 - i % count;
+        const ToolUpdate update =
+            update_tool(proxy, touch.field, touch.path[static_cast<std::size_t>(at)]);
+        mix(hash, update.proxy.position);
+        mix(hash, update.proxy.orientation.vec());
+        rounds += update.rounds;
+        contacts += update.contacts;
+        work += update.work;
+        unfinished += update.status != UpdateStatus::done;
+    }
+    const auto mean = [&](long sum) { return double(sum) / double(updates); };
+    std::printf(
+        "%-28s %ld updates, hash of the poses %016llx; %.2f rounds, %.2f contacts, %.1f "
+        "cubes, %ld not finished\n",
+        chosen.name, updates, static_cast<unsigned long long>(hash), mean(rounds), mean(contacts),
+        mean(work), unfinished);
+}
+
 }  // namespace
 
 /// Without arguments: every case once. With `--list`: their names. Else CASE UPDATES.
 int main(int argc, char** argv) {
     if (argc == 2 && std::strcmp(argv[1], "--list") == 0) {
         for (const Case& c : cases) std::puts(c.name);
+        for (const ToolCase& c : tool_cases()) std::puts(c.name);
         return 0;
     }
     if (argc == 3) {
@@ -155,9 +183,15 @@ int main(int argc, char** argv) {
             run(c, std::atol(argv[2]));
             return 0;
         }
+        for (const ToolCase& c : tool_cases()) {
+            if (std::strcmp(c.name, argv[1]) != 0) continue;
+            run_tool(c, std::atol(argv[2]));
+            return 0;
+        }
         std::fprintf(stderr, "no case '%s'; --list names them\n", argv[1]);
         return 2;
     }
     for (const Case& c : cases) run(c, 100000);
+    for (const ToolCase& c : tool_cases()) run_tool(c, 10000);
     return 0;
 }

@@ -31,8 +31,6 @@ if [ ! -x "$driver" ]; then
     exit 1
 fi
 
-few=1000
-many=21000
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 
@@ -50,6 +48,8 @@ else
 fi
 printf '%-30s %s\n' case 'instructions per update'
 for name in "${cases[@]}"; do
+    few=1000 many=21000
+    [[ $name == tool/* ]] && few=100 many=1100  # of a thousand points each
     first=$(count "$name" $few)
     second=$(count "$name" $many)
     awk -v name="$name" -v a="$first" -v b="$second" -v n=$((many - few)) \

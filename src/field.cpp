@@ -187,6 +187,17 @@ Neighbours Field::around(const Index3& at) const {
 
 Neighbours Field::other_around(const Index3& at) const {
     Neighbours samples;
+    const bool inside =
+        (at.array() >= 1).all() && (at.array() < (size_ - Index3::Ones()).array()).all();
+    if (!inside && !shows_labels_) {
+        for (int i = 0; i < 27; ++i) {
+            const Index3 next = at + Index3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+            const bool in_grid = (next.array() >= 0).all() && (next.array() < size_.array()).all();
+            samples[std::size_t(i)] =
+                (in_grid ? samples_->sample(next, moment_) : background_) - offset_;
+        }
+        return samples;
+    }
     // By the eight cells that meet at the sample: they know bricks, moments and the background.
     for (unsigned octant = 0; octant < 8; ++octant) {
         const Index3 side(octant & 1, octant >> 1 & 1, octant >> 2 & 1);

@@ -105,7 +105,10 @@ ToolMarks::ToolMarks(vtkRenderer& solid, vtkRenderer& overlay)
     hand_->SetVisibility(false);
     for (const Twin* twin : {&proxy_, &contacts_, &torque_}) solid.AddActor(twin->solid);
     solid.AddActor(hand_);
-    add_faint_actors(overlay, {&proxy_, &contacts_, &torque_});
+    // Behind the tool they are seen through it.
+    add_faint_actors(overlay, {&contacts_, &torque_});
+    add_faint_actors(overlay, {&proxy_});
+    proxy_.faint->GetProperty()->SetOpacity(0.6 * faint_opacity);
 }
 
 void ToolMarks::use_shape(const std::shared_ptr<const Tool>& tool) {

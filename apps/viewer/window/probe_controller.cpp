@@ -198,7 +198,8 @@ void ProbeController::turn_by(const Vec3& rotation) {
     const auto now = possible() ? content_.snapshot() : std::nullopt;
     if (!now) return;
     devices::Mouse& mouse = *content_.live()->mouse();
-    mouse.turn(palpate::turned(mouse.turned_to(), now->session.transform.rotation.transpose() * rotation));
+    mouse.turn(
+        palpate::turned(mouse.turned_to(), now->session.transform.rotation.transpose() * rotation));
     if (!content_.tool()) {
         messages_.show_done(tr("A point has no sides: choose a tool on the page Feel to turn it"));
     }

@@ -86,6 +86,7 @@ TEST_F(ToolInWindow, comes_from_a_mesh_that_is_dropped_and_goes_with_the_session
     EXPECT_EQ(part<QComboBox>("tool").currentText(), "hook.stl");
     const std::size_t points = tool()->points().size();
     press_until_force();
+    EXPECT_GT(now().session.tick.tool.contacts, 0);
     save("tool-of-a-mesh");
     const QString session = QString::fromStdString((scratch_.path() / "hook.json").string());
     window_->files().save_session(session);
