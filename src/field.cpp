@@ -185,11 +185,34 @@ Neighbours Field::around(const Index3& at) const {
     });
 }
 
+/// At the border, of samples that lie as they were read.
+template <class T>
+Neighbours Field::clipped(const Index3& at) const {
+    Neighbours samples;
+    std::size_t i = 0;
+    for (int z = at[2] - 1; z <= at[2] + 1; ++z) {
+        for (int y = at[1] - 1; y <= at[1] + 1; ++y) {
+            const bool has_row = z >= 0 && z < size_[2] && y >= 0 && y < size_[1];
+            for (int x = at[0] - 1; x <= at[0] + 1; ++x, ++i) {
+                const bool in_grid = has_row && x >= 0 && x < size_[0];
+                const double sample =
+                    in_grid ? double(static_cast<const T*>(data_)[x + y * row_ + z * slice_])
+                            : background_;
+                samples[i] = sample - offset_;
+            }
+        }
+    }
+    return samples;
+}
+
 Neighbours Field::other_around(const Index3& at) const {
     Neighbours samples;
     const bool inside =
         (at.array() >= 1).all() && (at.array() < (size_ - Index3::Ones()).array()).all();
     if (!inside && !shows_labels_) {
+        if (!samples_->bricks() && !(moment_.weight > 0)) {
+            return with_type(type_, [&](auto zero) { return clipped<decltype(zero)>(at); });
+        }
         for (int i = 0; i < 27; ++i) {
             const Index3 next = at + Index3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
             const bool in_grid = (next.array() >= 0).all() && (next.array() < size_.array()).all();

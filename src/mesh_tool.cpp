@@ -179,7 +179,8 @@ std::vector<Vec3> along(std::span<const Vec3> vertices, std::span<const Edge> ed
         const Vec3 way = vertices[b] - vertices[a];
         const double steps = std::ceil(way.norm() / step);
         if (steps > double(most_candidates)) refuse_number();
-        for (double i = 0; i <= steps; ++i) add(places, vertices[a] + way * (i / steps));
+        const int count = static_cast<int>(steps);
+        for (int i = 0; i <= count; ++i) add(places, vertices[a] + way * (double(i) / steps));
     }
     return places;
 }

@@ -119,6 +119,8 @@ class Field {
     template <class T>
     CellSamples cell_of(const Index3& cell) const;
     CellSamples other_cell(const Index3& cell) const;
+    template <class T>
+    Neighbours clipped(const Index3& at) const;
     Neighbours other_around(const Index3& at) const;
     CellSamples absolute_cell(const Index3& cell) const;
     CellSamples stored_cell(const Index3& cell) const;

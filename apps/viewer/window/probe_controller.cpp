@@ -232,13 +232,13 @@ void ProbeController::add_keys() {
         {tr("Turn the tool clockwise"), Qt::Key_PageDown, {0, 0, -1}},
         {tr("Turn the tool anticlockwise"), Qt::Key_PageUp, {0, 0, 1}},
     };
-    constexpr double step = std::numbers::pi / 36;  // 5 degrees
+    constexpr double notch = std::numbers::pi / 36;  // 5 degrees
     for (const Key& key : turns) {
         auto* action = new QAction(key.text, &views_);
         action->setShortcut(QKeySequence(key.key + int(Qt::ControlModifier)));
         action->setShortcutContext(Qt::WidgetShortcut);
         connect(action, &QAction::triggered, this,
-                [this, turn = Vec3(step * key.step)] { twist(turn); });
+                [this, turn = Vec3(notch * key.step)] { twist(turn); });
         views_.scene().addAction(action);
     }
     // Only where the scene has the focus: elsewhere arrows belong to sliders, numbers and slices.
