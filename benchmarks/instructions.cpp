@@ -143,7 +143,7 @@ void run(const Case& chosen, long updates) {
 }
 
 void run_tool(const ToolCase& chosen, long updates) {
-    const ToolTouch touch = chosen.touch();
+    const ToolTouch touch = chosen.touch(1000);
     ToolProxy proxy(touch.tool);
     proxy.isovalue = touch.isovalue;
     std::uint64_t hash = 0xcbf29ce484222325U;

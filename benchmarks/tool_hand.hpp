@@ -17,10 +17,10 @@ struct ToolTouch {
     std::vector<Pose> path;
 };
 
-/// A box of a thousand points, half a voxel apart; the hand moves by a tenth of a voxel a tick.
+/// A cube of about so many points, half a voxel apart; the hand moves by a tenth of a voxel a tick.
 struct ToolCase {
     const char* name;
-    ToolTouch (*touch)();
+    ToolTouch (*touch)(int points);
 };
 /// Hovering over a ball, a corner on it, that corner while the hand turns at 20 rad/s to and fro, a
 /// face flat on a plane, through noise.

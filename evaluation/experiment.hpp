@@ -74,5 +74,6 @@ Result stability(const Options& options);
 Result walk_through(const Options& options);
 Result penetration(const Options& options);
 Result layers(const Options& options);
+Result tools(const Options& options);
 
 }  // namespace palpate::evaluation

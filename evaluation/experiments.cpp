@@ -15,6 +15,7 @@ std::span<const Experiment> experiments() {
         {"walk-through", "How does a proxy move, step by step?", &walk_through},
         {"penetration", "What is felt from the skin into the brain?", &penetration},
         {"layers", "What is felt of several surfaces in one stroke?", &layers},
+        {"tools", "Does any point of a tool go through?", &tools},
     };
     return all;
 }
