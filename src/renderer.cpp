@@ -106,7 +106,8 @@ Tick render_with_tool(Renderer& renderer, const DeviceState& device, Clock clock
     const double gyration = settings.tool->gyration() / transform.scale;
     const double turning = rotational_stiffness(settings.force, settings.device, gyration);
     const double stiffness = settings.force.stiffness;
-    ToolSettings asked{.friction = settings.proxy.friction};
+    ToolSettings asked{.friction = settings.proxy.friction,
+                       .work_budget = settings.proxy.step_budget};
     // With this the proxy's pose is the equilibrium of the springs that are rendered.
     if (stiffness > 0 && turning > 0) {
         const double own = settings.tool->gyration();

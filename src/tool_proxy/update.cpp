@@ -458,7 +458,7 @@ ToolUpdate update_tool(ToolProxy& proxy, const Field& field, const Pose& hand,
     // What is unit to all digits stays as it is, to the bit.
     if (std::abs(turn.squaredNorm() - 1) > 1e-14) turn.normalize();
     ToolProxy::Kept& kept = proxy.kept;
-    const int budget = settings.work_budget + 4 * static_cast<int>(proxy.tool().points().size());
+    const int budget = settings.work_budget + static_cast<int>(proxy.tool().points().size());
     tool::Around around(field, proxy.isovalue, kept.surroundings, budget);
     const bool others = tool::renew(kept.surroundings, field) || !proxy.placed ||
                         kept.isovalue != proxy.isovalue || kept.renewed;
