@@ -12,14 +12,14 @@
 namespace palpate {
 namespace {
 
-using Triangle = std::array<std::uint32_t, 3>;
-using Edge = std::pair<std::uint32_t, std::uint32_t>;
+using MeshTriangle = std::array<std::uint32_t, 3>;
+using MeshEdge = std::pair<std::uint32_t, std::uint32_t>;
 
 /// In parts of the spacing: points keep this distance from each other, and there is a candidate
 /// within two thirds of that one of every place, so that no place is farther than the spacing from
 /// a point.
-constexpr double least_distance = 0.75, candidate_step = 1.0 / 3;
-static_assert(least_distance + candidate_step * 2 / 3 < 1);
+constexpr double distance_of_points = 0.75, candidate_step = 1.0 / 3;
+static_assert(distance_of_points + candidate_step * 2 / 3 < 1);
 constexpr std::size_t most_candidates = 20'000'000;
 
 [[noreturn]] void refuse_number() {
@@ -34,9 +34,9 @@ void add(std::vector<Vec3>& candidates, const Vec3& place) {
 }
 
 /// A grid of cells that finds the points near a place.
-class Points {
+class SpreadPoints {
   public:
-    explicit Points(double cell) : cell_(cell) {}
+    explicit SpreadPoints(double cell) : cell_(cell) {}
 
     bool has_within(double distance, const Vec3& place) const {
         const Cell low = cell_of(place - Vec3::Constant(distance));
@@ -95,7 +95,7 @@ class Points {
 /// Makes points of candidates until each has one within `distance`: far from each other first,
 /// which leaves few gaps that are neither one nor two points wide (dart throwing with shrinking
 /// darts; McCool and Fiume 1992).
-void choose(Points& points, const std::vector<Vec3>& candidates, double distance) {
+void choose(SpreadPoints& points, const std::vector<Vec3>& candidates, double distance) {
     for (const double share : {2.0, 1.6, 1.3, 1.1, 1.0}) {
         for (const Vec3& place : candidates) {
             if (!points.has_within(share * distance, place)) points.add(place);
@@ -105,13 +105,14 @@ void choose(Points& points, const std::vector<Vec3>& candidates, double distance
 
 /// The triangles with a number for each place in space, so that neighbours are known in files that
 /// repeat their vertices (STL). Those without an area are left out.
-std::vector<Triangle> joined(std::span<const Vec3> vertices, std::span<const Triangle> triangles) {
+std::vector<MeshTriangle> joined(std::span<const Vec3> vertices,
+                                 std::span<const MeshTriangle> triangles) {
     const auto before = [](const Vec3& a, const Vec3& b) {
         return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
     };
     std::map<Vec3, std::uint32_t, decltype(before)> numbers(before);
-    std::vector<Triangle> result;
-    for (Triangle t : triangles) {
+    std::vector<MeshTriangle> result;
+    for (MeshTriangle t : triangles) {
         for (std::uint32_t& i : t) {
             if (i >= vertices.size()) {
                 throw std::invalid_argument("a triangle names a vertex that the mesh has not");
@@ -127,21 +128,22 @@ std::vector<Triangle> joined(std::span<const Vec3> vertices, std::span<const Tri
     return result;
 }
 
-Vec3 area_vector(std::span<const Vec3> vertices, const Triangle& t) {
+Vec3 area_vector(std::span<const Vec3> vertices, const MeshTriangle& t) {
     return 0.5 * (vertices[t[1]] - vertices[t[0]]).cross(vertices[t[2]] - vertices[t[0]]);
 }
 
 /// Edges at the border, between more than two triangles, and where two meet at more than 30
 /// degrees.
-std::vector<Edge> sharp_edges(std::span<const Vec3> vertices, std::span<const Triangle> triangles) {
+std::vector<MeshEdge> sharp_edges(std::span<const Vec3> vertices,
+                                  std::span<const MeshTriangle> triangles) {
     struct Sides {
         int count = 0;
         Vec3 normal;
         bool flat = true;
     };
     const double flat = std::cos(std::acos(-1.0) / 6);
-    std::map<Edge, Sides> edges;
-    for (const Triangle& t : triangles) {
+    std::map<MeshEdge, Sides> edges;
+    for (const MeshTriangle& t : triangles) {
         const Vec3 normal = area_vector(vertices, t).normalized();
         for (std::size_t i = 0; i < 3; ++i) {
             Sides& sides = edges[std::minmax(t[i], t[(i + 1) % 3])];
@@ -150,7 +152,7 @@ std::vector<Edge> sharp_edges(std::span<const Vec3> vertices, std::span<const Tr
             if (sides.count == 1) sides.normal = normal;
         }
     }
-    std::vector<Edge> sharp;
+    std::vector<MeshEdge> sharp;
     for (const auto& [edge, sides] : edges) {
         if (sides.count != 2 || !sides.flat) sharp.push_back(edge);
     }
@@ -158,7 +160,7 @@ std::vector<Edge> sharp_edges(std::span<const Vec3> vertices, std::span<const Tr
 }
 
 /// Where sharp edges end, branch or turn by more than 30 degrees.
-std::vector<Vec3> corners_of(std::span<const Vec3> vertices, std::span<const Edge> edges) {
+std::vector<Vec3> corners_of(std::span<const Vec3> vertices, std::span<const MeshEdge> edges) {
     std::map<std::uint32_t, std::vector<Vec3>> ways;  // unit, from the vertex along its edges
     for (const auto& [a, b] : edges) {
         const Vec3 way = (vertices[b] - vertices[a]).normalized();
@@ -173,7 +175,8 @@ std::vector<Vec3> corners_of(std::span<const Vec3> vertices, std::span<const Edg
     return corners;
 }
 
-std::vector<Vec3> along(std::span<const Vec3> vertices, std::span<const Edge> edges, double step) {
+std::vector<Vec3> along(std::span<const Vec3> vertices, std::span<const MeshEdge> edges,
+                        double step) {
     std::vector<Vec3> places;
     for (const auto& [a, b] : edges) {
         const Vec3 way = vertices[b] - vertices[a];
@@ -217,20 +220,20 @@ Tool mesh_tool(ToolShape mesh, double spacing) {
         throw std::invalid_argument("the spacing of a tool's points must be > 0");
     }
     const std::span<const Vec3> vertices(mesh.vertices);
-    const std::vector<Triangle> triangles = joined(vertices, mesh.triangles);
+    const std::vector<MeshTriangle> triangles = joined(vertices, mesh.triangles);
     double area = 0;
-    for (const Triangle& t : triangles) area += area_vector(vertices, t).norm();
+    for (const MeshTriangle& t : triangles) area += area_vector(vertices, t).norm();
     // The closest packing that leaves no place farther than the spacing from a point.
     if (!(area < 1.5 * std::sqrt(3.0) * spacing * spacing * double(most_tool_points))) {
         refuse_number();
     }
-    const double step = candidate_step * spacing, distance = least_distance * spacing;
-    const std::vector<Edge> edges = sharp_edges(vertices, triangles);
-    Points points(spacing);
+    const double step = candidate_step * spacing, distance = distance_of_points * spacing;
+    const std::vector<MeshEdge> edges = sharp_edges(vertices, triangles);
+    SpreadPoints points(spacing);
     choose(points, corners_of(vertices, edges), distance);
     choose(points, along(vertices, edges, step), distance);
     std::vector<Vec3> places;
-    for (const Triangle& t : triangles) {
+    for (const MeshTriangle& t : triangles) {
         add_pieces(places, {vertices[t[0]], vertices[t[1]], vertices[t[2]]}, step);
     }
     choose(points, places, distance);

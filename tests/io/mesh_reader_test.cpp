@@ -32,7 +32,8 @@ std::vector<std::vector<double>> corners_of(const SurfaceMesh& mesh) {
         const auto before = [](const Vec3& a, const Vec3& b) {
             return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
         };
-        std::ranges::rotate(corners, std::ranges::min_element(corners, before));
+        std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end(), before),
+                    corners.end());
         auto& flat = all.emplace_back();
         for (const Vec3& corner : corners) flat.insert(flat.end(), corner.begin(), corner.end());
     }
