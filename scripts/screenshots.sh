@@ -23,13 +23,14 @@ trap 'rm -rf "$sessions"' EXIT
 # Window size and recent files of no user.
 export XDG_CONFIG_HOME=$sessions XDG_RUNTIME_DIR=$sessions
 
-# screenshot NAME AFTER REST: REST are the members of the session file.
+# screenshot NAME AFTER REST OPTIONS...: REST are the members of the session file.
 screenshot() {
     local name=$1 after=$2 rest=$3 session=$sessions/$1.json
+    shift 3
     printf '{"format": "palpate-session", "version": 1, %s}\n' "${rest//DATA/$data}" >"$session"
     echo "== viewer-$name.png"
     scripts/with_display.sh "$program" --session "$session" --after "$after" \
-        --window 1400x880 --screenshot "docs/images/viewer-$name.png"
+        --window 1400x880 --screenshot "docs/images/viewer-$name.png" "$@"
 }
 
 echo "== demos"
@@ -67,3 +68,7 @@ screenshot local 2 '"volume": {"volume": "synthetic:sphere:14x14x14"}, "isovalue
     "look": {"surface_opacity": 0.4, "tetrahedra": true, "planes": true},
     "camera": {"focus": [-3.9, -0.4, -1.4], "up": [0, 0, 1],
         "towards_viewer": [-0.55, -0.75, 0.4], "half_height": 1.3}'
+screenshot tool 3 '"volume": {"volume": "'"$(pwd)"'/data/visible_human_head.nrrd"}, "isovalue": 110,
+    "device": "simulated:sigma7,hand=press,turn=25", "look": {"box": false},
+    "camera": {"focus": [196, 222, 100], "up": [0, 0, 1],
+        "towards_viewer": [-0.75, -0.6, 0.1], "half_height": 42}' --tool burr:6 --tool-spacing 1
