@@ -2,6 +2,7 @@
 #include "palpate/io/tool_file.hpp"
 
 #include <array>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -99,7 +100,7 @@ std::shared_ptr<const Tool> make_tool(const ToolSpec& spec, double spacing) {
         [&](const BurrSpec& s) { return burr_tool(s.radius, spacing); },
         [&](const BoxSpec& s) { return box_tool(s.size, spacing); },
         [&](const FingertipSpec& s) { return fingertip_tool(spacing, s.scale); },
-        [](const PointsSpec& s) { return Tool(s.points); },
+        [](const PointsSpec& s) { return Tool(s.points, std::nullopt, s.turns, s.shape); },
         [&](const MeshSpec& s) { return mesh_tool(*s.mesh, spacing); },
     };
     if (std::holds_alternative<PointSpec>(spec)) return nullptr;
@@ -124,7 +125,9 @@ ToolSpec scaled(const ToolSpec& spec, double factor) {
         [&](const BurrSpec& s) -> ToolSpec { return BurrSpec{s.radius * factor}; },
         [&](const BoxSpec& s) -> ToolSpec { return BoxSpec{s.size * factor}; },
         [&](const FingertipSpec& s) -> ToolSpec { return FingertipSpec{s.scale * factor}; },
-        [&](const PointsSpec& s) -> ToolSpec { return PointsSpec{all(s.points)}; },
+        [&](const PointsSpec& s) -> ToolSpec {
+            return PointsSpec{all(s.points), s.turns, {all(s.shape.vertices), s.shape.triangles}};
+        },
         [&](const MeshSpec& s) -> ToolSpec {
             return MeshSpec{std::make_shared<const ToolShape>(
                 ToolShape{all(s.mesh->vertices), s.mesh->triangles})};

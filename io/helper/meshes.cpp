@@ -1,4 +1,4 @@
-// Reads meshes with VTK's readers: the triangles, and nothing else of them.
+// Reads the triangles of meshes: OBJ by a parser of our own, other formats by VTK.
 #include <vtkCellArray.h>
 #include <vtkNew.h>
 #include <vtkPLYReader.h>
@@ -64,12 +64,12 @@ vtkIdType vertex_of(std::string_view corner, vtkIdType vertices, const std::stri
     const auto number = number_from<std::int64_t>(corner.substr(0, corner.find('/')));
     const std::int64_t index = number.value_or(0);
     if (index > 0 && index <= vertices) return index - 1;
-    if (index < 0 && -index <= vertices) return vertices + index;
+    if (index < 0 && index >= -vertices) return vertices + index;
     throw Failure("'" + one_line(line.substr(0, 60)) +
                   "' names a vertex that is not there; export it again");
 }
 
-/// Vertices and faces; VTK's reader loses faces that count backwards, and reads "nan" as a number.
+/// Vertices and faces. Not by VTK, whose reader loses faces that count their vertices backwards.
 vtkSmartPointer<vtkPolyData> read_obj(const std::filesystem::path& path) {
     std::ifstream in(path);
     const vtkNew<vtkPoints> points;

@@ -94,6 +94,8 @@ TEST(MeshReader, says_what_is_wrong) {
     says("cut.stl", std::string(80, '\0') + std::string("\xff\xff\xff\x7f", 4), "cut off");
     says("points.obj", "v 0 0 0\nv 1 0 0\n", "no faces");
     says("beyond.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n", "vertex");
+    says("far.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -9223372036854775808 1 2\n", "vertex");
+    says("before.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -4 1 2\n", "vertex");
     says("text.ply", "not a mesh\n", "not what its name says");
     says("text.vtp", "not a mesh\n", "not what its name says");
     says("nan.obj", "v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "finite");

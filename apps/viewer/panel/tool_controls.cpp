@@ -102,7 +102,9 @@ void ToolControls::set_tool(const std::shared_ptr<const Tool>& tool) {
     if (tool == before_.tool) return show(Shown(before_));
     if (!tool) return show({});
     const std::vector<Vec3> points(tool->points().begin(), tool->points().end());
-    choices_.push_back({tr("As given"), io::PointsSpec{points}});
+    const QString name = tr("As given");
+    if (choices_.size() > built_in_ && choices_.back().name == name) choices_.pop_back();
+    choices_.push_back({name, io::PointsSpec{points, tool->turns(), tool->shape()}});
     show({static_cast<int>(choices_.size()) - 1, 1, tool, 0});
 }
 

@@ -35,6 +35,8 @@ struct FingertipSpec {
 };
 struct PointsSpec {
     std::vector<Vec3> points;  ///< tool axes
+    bool turns = true;
+    ToolShape shape = {};
 };
 
 struct MeshSpec {

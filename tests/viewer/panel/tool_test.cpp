@@ -72,16 +72,27 @@ TEST_F(PanelTool, goes_back_where_the_session_refuses) {
 
 TEST_F(PanelTool, that_a_session_brings_is_shown_and_keeps_its_points) {
     RendererSettings settings;
-    settings.tool = std::make_shared<const Tool>(rod_tool(7, 1));
+    const std::vector<Vec3> points{Vec3(0, 0, 0), Vec3(0, 0, 7)};
+    const ToolShape shape{{{0, 0, 0}, {1, 0, 0}, {0, 0, 7}}, {{0, 1, 2}}};
+    settings.tool = std::make_shared<const Tool>(points, 3, false, shape);
     set_smooth(settings);
     EXPECT_EQ(find<QComboBox>("tool")->currentText(), "As given");
-    EXPECT_TRUE(find<QLabel>("tool_about")->text().contains("8 points"));
+    EXPECT_TRUE(find<QLabel>("tool_about")->text().contains("2 points"));
     commands.clear();
     find<NumberBox>("tool_scale_box")->setValue(0.5);
     settle();
     ASSERT_TRUE(last_tool());
-    EXPECT_EQ(last_tool()->points().size(), 8U);
+    EXPECT_EQ(last_tool()->points().size(), 2U);
     EXPECT_NEAR(last_tool()->radius(), 3.5, 1e-9);
+    EXPECT_FALSE(last_tool()->turns());
+    ASSERT_EQ(last_tool()->shape().triangles.size(), 1U);
+    EXPECT_EQ(last_tool()->shape().vertices[2], Vec3(0, 0, 3.5));
+    // Another session's takes its place in the list.
+    const int choices = find<QComboBox>("tool")->count();
+    settings.tool = std::make_shared<const Tool>(rod_tool(7, 1));
+    set_smooth(settings);
+    EXPECT_EQ(find<QComboBox>("tool")->count(), choices);
+    EXPECT_TRUE(find<QLabel>("tool_about")->text().contains("8 points"));
 }
 
 TEST_F(PanelTool, of_a_file_is_one_more_choice) {
