@@ -15,7 +15,7 @@ UMBRELLA = "palpate"                # include/palpate/palpate.hpp, for users of 
 # Which folders each folder may include from, besides itself. A folder that is named covers those
 # inside it that have no line of their own. include/palpate/X/ holds the public headers of X and
 # belongs to it, the rest of include/ to the core. `tests` sees everything.
-LIBRARIES = ("include", "io", "baselines", "scenes", "filters", "devices", "run")
+LIBRARIES = ("include", "io", "baselines", "scenes", "filters", "stream", "devices", "run")
 WINDOW = ("apps/options", "apps/viewer/model", "apps/viewer/scene", "apps/viewer/slices",
           "apps/viewer/panel", "apps/viewer/window")
 MAY_SEE = {
@@ -26,8 +26,9 @@ MAY_SEE = {
     "filters": ("include",),
     "io": ("include", "scenes", "io/helper"),
     "io/helper": ("include", "io"),
+    "stream": ("include", "io"),
     "devices": ("include", "io", "scenes"),
-    "run": ("include", "io", "baselines", "scenes", "filters", "devices"),
+    "run": ("include", "io", "baselines", "scenes", "filters", "stream", "devices"),
     "pictures": ("include", "io", "io/helper"),
     "pictures/vtk": ("include",),
     "pictures/helper": ("include", "io", "io/helper", "pictures", "pictures/vtk"),

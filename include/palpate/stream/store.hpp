@@ -1,0 +1,90 @@
+// A store of samples that are read by the box: big plain files, OME-Zarr, N5 and others, on disk or
+// behind HTTP, at several levels of detail. Nothing is held but what is asked for.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "palpate/io/volume_file.hpp"
+#include "palpate/samples.hpp"
+
+namespace palpate::stream {
+
+/// One level of detail: a grid over the same part of space as the others.
+struct Level {
+    Geometry geometry;  ///< physical space (LPS, mm), like that of a volume
+    Index3 chunk;       ///< samples of a stored piece along each axis: cheapest to read as a whole
+};
+
+/// Bounds of the samples [data units].
+struct Range {
+    double minimum = 0;
+    double maximum = 0;
+};
+
+struct StoreInfo {
+    std::string address;  ///< as it was opened
+    std::string format;   ///< "OME-Zarr 0.5", "NRRD", "raw", ...
+    SampleType type = SampleType::uint8;
+    std::vector<Level> levels;               ///< at least one, finest first
+    double fill = 0;                         ///< [data units] of pieces that are not stored
+    std::optional<Range> range;              ///< of the finest level, where the store says it
+    std::vector<std::string> channels = {};  ///< names; empty: one, without a name
+    int times = 1;
+    double frame_interval = 0;            ///< [s] between two times; 0: the store does not say
+    std::vector<std::string> notes = {};  ///< one sentence each, for people
+};
+
+/// What was asked of disk or network so far.
+struct Traffic {
+    std::uint64_t requests = 0;
+    std::uint64_t bytes = 0;  ///< as they came, compressed
+    std::uint64_t retries = 0;
+    std::uint64_t cached = 0;  ///< pieces found in the disk cache
+};
+
+struct StoreOptions {
+    std::optional<io::RawLayout> raw;  ///< of a file without a header
+    std::optional<Vec3> spacing;       ///< [mm] instead of what the store gives or lacks
+    int channel = 0;
+    int time = 0;
+    std::filesystem::path cache_folder = {};  ///< disk cache of remote stores; empty: none
+    std::uint64_t cache_bytes = 0;            ///< most that the disk cache holds
+    int requests = 8;                         ///< most requests at a time to one host
+    double timeout_s = 10;                    ///< of one request
+    int attempts = 5;                         ///< of one request, with growing pauses
+};
+
+/// Safe to use from several threads at a time.
+class Store {
+  public:
+    virtual ~Store() = default;
+    virtual const StoreInfo& info() const = 0;
+    /// Reads a box of samples, both corners in it, all inside the level's grid, into `out`
+    /// (size_of(type) bytes a sample, x fastest). Blocks. Throws io::InputError if a piece is
+    /// damaged or, after all attempts, cannot be had; Cancelled as soon as `stop` is requested.
+    virtual void read(int level, const SampleBox& box, std::span<std::byte> out,
+                      std::stop_token stop) const = 0;
+    virtual Traffic traffic() const = 0;
+};
+
+/// What read() throws when it was asked to stop.
+struct Cancelled {};
+
+/// True if an address names something that open_store() reads by the box: a web address, a folder
+/// or file of a chunked format, or a plain file whose samples lie in it uncompressed. Looks at the
+/// name and at most at the first bytes of a file.
+bool is_store(const std::string& address, const StoreOptions& options = {});
+
+/// Opens a file, a folder, or an http://, https:// or s3:// address. Reads headers only. Throws
+/// io::InputError: what is wrong and what to do, one line.
+std::shared_ptr<const Store> open_store(const std::string& address,
+                                        const StoreOptions& options = {});
+
+}  // namespace palpate::stream
