@@ -190,7 +190,7 @@ struct RecordingReader::Rows {
         Tick& tick = result.tick;
         tick.time = row.t;
         tick.proxy.status = static_cast<UpdateStatus>(
-            code(status, static_cast<std::int64_t>(UpdateStatus::not_finite)));
+            code(status, static_cast<std::int64_t>(UpdateStatus::waiting)));
         tick.proxy.mode = row.constrained ? Mode::constrained : Mode::free;
         tick.proxy.hip = row.hip;
         tick.proxy.scp = row.scp;

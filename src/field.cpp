@@ -1,5 +1,5 @@
 // Field: reads the eight samples of any cell: background outside the grid, and inside it edited
-// samples and those between two frames.
+// samples, those between two frames, and bricks of a large grid.
 #include "palpate/field.hpp"
 
 #include <algorithm>
@@ -143,6 +143,7 @@ std::array<std::uint8_t, 27> Field::shown_around(const Index3& at) const {
 void Field::look() noexcept {
     moment_ = samples_->moment_at(time_);
     data_ = samples_->frames()[moment_.from].volume.data();
+    resident_ = samples_->resident();
     type_ = samples_->type();
     const double low = std::min(samples_->minimum(), background_);
     const double high = std::max(samples_->maximum(), background_);
@@ -153,7 +154,7 @@ void Field::look() noexcept {
     if (offset_ != 0) largest = high - low;
     // Edited, interpolated or shifted samples take the slow path, so that plain ones have no extra
     // cost.
-    const bool changing = samples_->bricks() || moment_.weight > 0 || offset_ != 0;
+    const bool changing = samples_->bricks() || moment_.weight > 0 || offset_ != 0 || resident_;
     plain_ = changing ? Index3(Index3::Zero()) : Index3(size_ - Index3::Ones());
     tolerance_ = std::max(1e-12 * range_, 8 * std::numeric_limits<double>::epsilon() * largest);
     if (!shows_labels_) return;
@@ -207,17 +208,17 @@ Neighbours Field::clipped(const Index3& at) const {
 
 Neighbours Field::other_around(const Index3& at) const {
     Neighbours samples;
-    const bool inside =
-        (at.array() >= 1).all() && (at.array() < (size_ - Index3::Ones()).array()).all();
-    if (!inside && !shows_labels_) {
-        if (!samples_->bricks() && !(moment_.weight > 0)) {
+    if (resident_ && has_sample(at) && !resident_->of_sample(at)) {
+        samples.fill(most_solid() - offset_);
+        return samples;
+    }
+    if ((resident_ || !is_inner(at)) && !shows_labels_) {
+        if (!samples_->bricks() && !(moment_.weight > 0) && !resident_) {
             return with_type(type_, [&](auto zero) { return clipped<decltype(zero)>(at); });
         }
         for (int i = 0; i < 27; ++i) {
             const Index3 next = at + Index3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
-            const bool in_grid = (next.array() >= 0).all() && (next.array() < size_.array()).all();
-            samples[std::size_t(i)] =
-                (in_grid ? samples_->sample(next, moment_) : background_) - offset_;
+            samples[std::size_t(i)] = sample_at(next) - offset_;
         }
         return samples;
     }
@@ -241,17 +242,38 @@ CellSamples Field::absolute_cell(const Index3& cell) const {
     if (!inside) {
         CellSamples samples;
         for (int corner = 0; corner < 8; ++corner) {
-            const Index3 at = cell + Index3(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
-            const bool in_grid = (at.array() >= 0).all() && (at.array() < size_.array()).all();
-            samples[corner] = in_grid ? samples_->sample(at, moment_) : background_;
+            samples[corner] =
+                sample_at(cell + Index3(corner & 1, corner >> 1 & 1, corner >> 2 & 1));
         }
         return samples;
     }
     return stored_cell(cell);
 }
 
+/// What samples that are not in memory count as [data units].
+double Field::most_solid() const {
+    return sign_ > 0 ? samples_->maximum() : samples_->minimum();
+}
+
+/// One sample anywhere in space [data units].
+double Field::sample_at(const Index3& at) const {
+    if (!has_sample(at)) return background_;
+    if (resident_ && !resident_->of_sample(at)) return most_solid();
+    return samples_->sample(at, moment_);
+}
+
 /// Of a cell inside the grid, as they are stored.
 CellSamples Field::stored_cell(const Index3& cell) const {
+    if (resident_) {
+        const ResidentBrick* brick = resident_->of_sample(cell);
+        if (brick) {
+            return corners(type_, brick->samples.get(), ResidentBricks::place_of(cell),
+                           ResidentBricks::row, ResidentBricks::slice);
+        }
+        CellSamples samples;
+        samples.fill(most_solid());
+        return samples;
+    }
     if (const Bricks* bricks = samples_->bricks()) {
         if (const std::byte* brick = bricks->of_cell(cell)) {
             constexpr std::ptrdiff_t row = Bricks::samples, slice = row * Bricks::samples;

@@ -28,12 +28,19 @@ constexpr int magnet_budget = 512;
 double distance_to_surface(const Field& field, const ProxyUpdate& at, const Vec3& normal,
                            double reach) {
     if (normal.isZero(0) || !std::isfinite(at.isovalue)) return -1;
+    if (!is_resident(field, at.scp, reach)) return -1;
     const RayHit ray = cast_ray(field, at.isovalue, at.scp, at.scp - reach * normal, magnet_budget);
     return ray.hit ? (ray.point - at.scp).norm() : -1;
 }
 
 bool knows_layers(ProxyMethod method) {
     return method == &update_exact || method == &update_straight;
+}
+
+/// Whether a force may follow from an update that ended like this.
+bool counts(UpdateStatus status) {
+    return status == UpdateStatus::done || status == UpdateStatus::out_of_budget ||
+           status == UpdateStatus::waiting;
 }
 
 /// What moved the proxy in a tick, and what the force is made of.
@@ -51,9 +58,13 @@ ForceInput force_input(const Renderer& renderer, const DeviceState& device, cons
     input.time = device.time;
     input.enabled = renderer.settings.forces_on && device.armed;
     input.released = device.released;
-    input.valid = at.status == UpdateStatus::done || at.status == UpdateStatus::out_of_budget;
+    input.valid = counts(at.status);
     input.constrained = at.mode == Mode::constrained;
     input.hand = device.position;
+    if (at.status == UpdateStatus::waiting) {
+        input.constrained = false;
+        return input;
+    }
     input.pull = to_device * (at.scp - at.hip) / transform.scale;
     if (moved.layers) {
         input.constrained = moved.layers->pulls;
@@ -71,14 +82,41 @@ ForceInput force_input(const Renderer& renderer, const DeviceState& device, cons
     return input;
 }
 
+/// An update that leaves the proxy where it is, because samples are missing.
+ProxyUpdate wait_for_samples(const Renderer& renderer, const Vec3& hip) {
+    ProxyUpdate held = refuse_update(renderer.proxy, renderer.field, hip, UpdateStatus::waiting);
+    if (!renderer.proxy.placed) held.scp = hip;
+    return held;
+}
+
+/// Layers move the proxy from where the hand was, too.
+Pull pull_of(const Renderer& renderer, const Vec3& hip) {
+    Pull pull{renderer.proxy.placed ? renderer.proxy.scp_physical : hip, hip};
+    if (renderer.settings.layers && renderer.layers.moved) {
+        pull.arm = (hip - renderer.layers.hip).norm();
+    }
+    return pull;
+}
+
 /// The proxy's part of a tick, with what may press it through surfaces.
 Moved move_proxy(Renderer& renderer, const DeviceState& device, const Vec3& hip,
                  StepObserver observer) {
     const RendererSettings& settings = renderer.settings;
     // A position that is not trusted moves nothing.
     if (!device.valid) return {refuse_update(renderer.proxy, renderer.field, hip), {}};
+    const double part = part_within_reach(renderer.field, pull_of(renderer, hip));
+    if (part == 0 || (part < 1 && (settings.layers || settings.penetrability.on))) {
+        return {wait_for_samples(renderer, hip), {}};
+    }
     if (!settings.layers) {
-        return {settings.method(renderer.proxy, renderer.field, hip, settings.proxy, observer), {}};
+        const Vec3 from = renderer.proxy.placed ? renderer.proxy.scp_physical : hip;
+        const Vec3 goal = part == 1 ? hip : Vec3(from + part * (hip - from));
+        Moved moved{settings.method(renderer.proxy, renderer.field, goal, settings.proxy, observer),
+                    {}};
+        moved.proxy.hip = hip;
+        const bool arrived = moved.proxy.mode == Mode::free && counts(moved.proxy.status);
+        if (part < 1 && arrived) moved.proxy.status = UpdateStatus::waiting;
+        return moved;
     }
     const DeviceTransform& transform = settings.transform;
     const LayerInput input{.method = settings.method,
@@ -94,6 +132,32 @@ Moved move_proxy(Renderer& renderer, const DeviceState& device, const Vec3& hip,
                                  input, observer);
     moved.proxy = moved.layers->proxy;
     return moved;
+}
+
+/// The tool's proxy towards the hand's pose, as far as samples are in memory.
+ToolUpdate move_tool(Renderer& renderer, const Pose& hand, const ToolSettings& asked,
+                     PoseObserver observer) {
+    ToolProxy& proxy = *renderer.tool_proxy;
+    const Pose from = proxy.placed ? proxy.pose : hand;
+    const double gyration = asked.gyration > 0 ? asked.gyration : proxy.tool().gyration();
+    const Vec3 turn = rotation_between(from.orientation, hand.orientation);
+    const double part = part_within_reach(
+        renderer.field,
+        {from.position, hand.position, gyration * turn.norm(), proxy.tool().radius()});
+    ToolUpdate update{
+        .status = UpdateStatus::waiting, .mode = proxy.mode, .hand = hand, .proxy = from};
+    if (part == 0) return update;
+    Pose goal = hand;
+    if (part < 1) {
+        goal.position = from.position + part * (hand.position - from.position);
+        goal.orientation = from.orientation.slerp(part, hand.orientation).normalized();
+    }
+    update = update_tool(proxy, renderer.field, goal, asked, observer);
+    update.hand = hand;
+    if (part < 1 && update.mode == Mode::free && counts(update.status)) {
+        update.status = UpdateStatus::waiting;
+    }
+    return update;
 }
 
 /// A tick of a tool: six degrees of freedom.
@@ -123,7 +187,7 @@ Tick render_with_tool(Renderer& renderer, const DeviceState& device, Clock clock
     ToolUpdate update{
         .status = UpdateStatus::refused, .mode = proxy.mode, .hand = hand, .proxy = proxy.pose};
     // A pose that is not trusted moves nothing.
-    if (device.valid) update = update_tool(proxy, renderer.field, hand, asked, observer);
+    if (device.valid) update = move_tool(renderer, hand, asked, observer);
     tick.update_ns = clock ? clock() - begin : 0;
     tick.proxy.status = update.status;
     tick.proxy.mode = update.mode;
@@ -132,21 +196,23 @@ Tick render_with_tool(Renderer& renderer, const DeviceState& device, Clock clock
     tick.proxy.isovalue = proxy.isovalue;
     tick.proxy.tetrahedra = update.work;
     if (proxy.placed) tick.proxy.density = value_at(renderer.field, update.proxy.position);
+    tick.proxy.level = level_at(renderer.field, update.proxy.position);
     tick.tool = {update.hand.orientation, update.proxy.orientation, update.contacts};
 
     ForceInput input;
     input.time = device.time;
     input.enabled = settings.forces_on && device.armed;
     input.released = device.released;
-    input.valid =
-        update.status == UpdateStatus::done || update.status == UpdateStatus::out_of_budget;
-    input.constrained = update.mode == Mode::constrained;
+    const bool waits = update.status == UpdateStatus::waiting;
+    input.valid = counts(update.status);
+    input.constrained = update.mode == Mode::constrained && !waits;
     input.hand = device.position;
     input.pull = to_device * (update.proxy.position - update.hand.position) / transform.scale;
     input.rotational_stiffness = settings.tool->turns() ? turning : 0;
     input.orientation = Quaternion(device.orientation);
     input.turn = to_device * rotation_between(update.hand.orientation, update.proxy.orientation);
     const ForceResult force = render_force(renderer.force, settings.force, settings.device, input);
+    if (waits) renderer.force.ramp_begin = device.time;
     tick.force = force.force;
     tick.torque = force.torque;
     tick.force_flags = force.flags;
@@ -312,7 +378,7 @@ Tick render(Renderer& renderer, const DeviceState& device, StepObserver observer
     }
     tick.update_ns = clock ? clock() - begin : 0;
     const bool has_surfaces = settings.layers && !settings.layers->layers.empty();
-    if (!has_surfaces) {
+    if (!has_surfaces && moved.proxy.status != UpdateStatus::waiting) {
         apply_penetrability(settings.penetrability, renderer.field, 1 / settings.transform.scale,
                             renderer.proxy, moved.proxy, observer);
     }
@@ -323,7 +389,10 @@ Tick render(Renderer& renderer, const DeviceState& device, StepObserver observer
     const ForceResult force =
         render_force(renderer.force, moved.layers ? moved.layers->force : settings.force,
                      settings.device, force_input(renderer, device, moved));
+    // The force comes back with the ramp.
+    if (moved.proxy.status == UpdateStatus::waiting) renderer.force.ramp_begin = device.time;
     tick.proxy = moved.proxy;
+    tick.proxy.level = level_at(renderer.field, moved.proxy.scp);
     if (moved.layers) tick.layers = moved.layers->felt;
     tick.force = force.force;
     tick.force_flags = force.flags;

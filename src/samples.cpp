@@ -65,16 +65,6 @@ void blend(const Volume& from, const Volume& to, double weight, std::byte* whole
 
 }  // namespace
 
-SampleBox united(const SampleBox& a, const SampleBox& b) {
-    if (a.empty()) return b;
-    if (b.empty()) return a;
-    return {a.low.cwiseMin(b.low), a.high.cwiseMax(b.high)};
-}
-
-SampleBox whole_box(const Geometry& geometry) {
-    return {Index3::Zero(), geometry.size - Index3::Ones()};
-}
-
 Bricks no_bricks(const Geometry& geometry) {
     Bricks bricks;
     // A grid of one sample has no cell inside; its samples still need a brick.
@@ -85,6 +75,7 @@ Bricks no_bricks(const Geometry& geometry) {
 
 Samples::Samples(Volume volume) : minimum_(volume.minimum()), maximum_(volume.maximum()) {
     frames_.push_back({0, std::move(volume), -1});
+    geometry_ = this->volume().geometry();
 }
 
 Samples::Samples(Volume volume, Bricks bricks, double minimum, double maximum)
@@ -101,12 +92,26 @@ Samples::Samples(Volume volume, Bricks bricks, double minimum, double maximum)
 Samples::Samples(std::vector<Frame> frames, double period)
     : frames_(std::move(frames)), period_(period) {
     check_frames(frames_, period);
+    geometry_ = volume().geometry();
     minimum_ = volume().minimum();
     maximum_ = volume().maximum();
     for (const Frame& frame : frames_) {
         minimum_ = std::min(minimum_, frame.volume.minimum());
         maximum_ = std::max(maximum_, frame.volume.maximum());
     }
+}
+
+Samples::Samples(Volume overview, const Geometry& geometry, ResidentBricks resident, double minimum,
+                 double maximum)
+    : geometry_(geometry), resident_(std::move(resident)), minimum_(minimum), maximum_(maximum) {
+    check(geometry);
+    if (resident_->count() != ResidentBricks(geometry.size).count()) {
+        throw std::invalid_argument("the bricks do not fit the grid");
+    }
+    if (!(std::isfinite(minimum) && std::isfinite(maximum) && minimum <= maximum)) {
+        throw std::invalid_argument("the least sample must be finite and at most the greatest");
+    }
+    frames_.push_back({0, std::move(overview), -1});
 }
 
 Moment Samples::moment_at(double time) const noexcept {
@@ -136,6 +141,10 @@ double Samples::within(double time) const noexcept {
 }
 
 double Samples::sample(const Index3& i, const Moment& moment) const {
+    if (resident_) {
+        return sample_of(type(), resident_->of_sample(i)->samples.get(),
+                         static_cast<std::size_t>(ResidentBricks::place_of(i)));
+    }
     if (const Bricks* edits = bricks()) {
         const std::byte* brick = edits->of_cell(i);
         if (brick) {

@@ -67,6 +67,16 @@ SampleType sample_type_from(std::string_view name) {
                                 "': use uint8, int16, uint16 or float32");
 }
 
+SampleBox united(const SampleBox& a, const SampleBox& b) {
+    if (a.empty()) return b;
+    if (b.empty()) return a;
+    return {a.low.cwiseMin(b.low), a.high.cwiseMax(b.high)};
+}
+
+SampleBox whole_box(const Geometry& geometry) {
+    return {Index3::Zero(), geometry.size - Index3::Ones()};
+}
+
 std::int64_t sample_count(const Geometry& geometry) {
     return geometry.size.cast<std::int64_t>().prod();
 }

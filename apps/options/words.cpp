@@ -18,6 +18,7 @@ std::string force_words(const Tick& tick) {
     if (flags & force_off) return "off";
     if (tick.proxy.status == UpdateStatus::recovering) return "recovering";
     if (tick.proxy.status == UpdateStatus::not_finite) return "not finite";
+    if (tick.proxy.status == UpdateStatus::waiting) return "waiting for data";
     if (flags & (force_stale | force_not_finite)) return "no input";
     if (flags & force_overrun) return "too late";
     if (flags & force_waiting) return "waiting";

@@ -1,4 +1,4 @@
-// Stage 4, edit: changes to samples as values, and the samples that result. Copy on write: an edit
+// Stage 5, edit: changes to samples as values, and the samples that result. Copy on write: an edit
 // copies only the bricks it touches, and the previous version stays valid for its readers. Not for
 // the servo thread. See docs/changing_data.md.
 #pragma once

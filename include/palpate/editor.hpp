@@ -1,4 +1,4 @@
-// Stage 5, editor: applies edits to samples, with undo and redo. Each step keeps its version of the
+// Stage 6, editor: applies edits to samples, with undo and redo. Each step keeps its version of the
 // samples; versions share all bricks that did not change. Not for the servo thread.
 #pragma once
 

@@ -1,4 +1,4 @@
-// Stage 14, exchange: two containers by which threads pass values to each other without waiting.
+// Stage 16, exchange: two containers by which threads pass values to each other without waiting.
 // Everything between the servo thread and others (snapshots, commands, recordings, devices) goes
 // through them.
 #pragma once

@@ -1,4 +1,4 @@
-// Stage 3, field: samples continued over all of space, and which side of a level is solid.
+// Stage 4, field: samples continued over all of space, and which side of a level is solid.
 // All later stages read samples through Field::cell(), eight at a time, or Field::around(), 27 at a
 // time. They do not know how samples are stored, nor whether they were edited or interpolated
 // between two frames.
@@ -64,9 +64,9 @@ class Field {
     const std::shared_ptr<const Samples>& shared_samples() const { return samples_; }
     double time() const { return time_; }
     const Moment& moment() const { return moment_; }
-    /// The volume before all edits; of a sequence its first frame.
+    /// The volume before all edits; of a sequence its first frame, of a large grid its overview.
     const Volume& volume() const { return samples_->volume(); }
-    const Geometry& geometry() const { return volume().geometry(); }
+    const Geometry& geometry() const { return samples_->geometry(); }
     Solid solid() const { return solid_; }
     Interpolation interpolation() const { return interpolation_; }
     double background() const { return background_; }
@@ -87,7 +87,8 @@ class Field {
     const Vec3& voxels_per_mm() const { return voxels_per_mm_; }
 
     /// The samples of the cell whose lowest corner is `cell` (index space), less offset(); any cell
-    /// in space.
+    /// in space. Samples that are not in memory are as solid as any (ResidentBricks; reach.hpp says
+    /// why no proxy meets them).
     CellSamples cell(const Index3& cell) const {
         return with_type(type_, [&](auto zero) { return cell_of<decltype(zero)>(cell); });
     }
@@ -123,6 +124,18 @@ class Field {
     Neighbours clipped(const Index3& at) const;
     Neighbours other_around(const Index3& at) const;
     CellSamples absolute_cell(const Index3& cell) const;
+    bool has_sample(const Index3& at) const {
+        return (at.array() >= 0).all() && (at.array() < size_.array()).all();
+    }
+    /// True for a sample whose neighbours are in the grid, too.
+    bool is_inner(const Index3& at) const {
+        const auto inner = [&](int a) {
+            return static_cast<unsigned>(at[a] - 1) < static_cast<unsigned>(size_[a] - 2);
+        };
+        return size_.minCoeff() > 2 && inner(0) && inner(1) && inner(2);
+    }
+    double most_solid() const;
+    double sample_at(const Index3& index) const;
     CellSamples stored_cell(const Index3& cell) const;
     template <int count, class Visit>
     void for_each_label(const Index3& low, Visit&& visit) const;
@@ -136,8 +149,9 @@ class Field {
     double time_ = 0;
     Moment moment_;
     const void* data_ = nullptr;  // of the frame before the moment
-    std::ptrdiff_t row_ = 0;      // samples between neighbours in y
-    std::ptrdiff_t slice_ = 0;    // samples between neighbours in z
+    const ResidentBricks* resident_ = nullptr;
+    std::ptrdiff_t row_ = 0;    // samples between neighbours in y
+    std::ptrdiff_t slice_ = 0;  // samples between neighbours in z
     double background_ = 0;
     double range_ = 1;
     double tolerance_ = 0;
@@ -185,6 +199,15 @@ inline auto Field::visit_around(const Index3& at, Visit&& visit) const {
         return with_type(type_, [&](auto zero) {
             return visit(static_cast<const decltype(zero)*>(data_) + offset, row_, slice_);
         });
+    }
+    if (resident_ && offset_ == 0 && is_inner(at)) {
+        if (const ResidentBrick* brick = resident_->of_sample(at)) {
+            return with_type(type_, [&](auto zero) {
+                const auto* samples = reinterpret_cast<const decltype(zero)*>(brick->samples.get());
+                return visit(samples + ResidentBricks::place_of(at), ResidentBricks::row,
+                             ResidentBricks::slice);
+            });
+        }
     }
     return visit_gathered(at, visit);
 }

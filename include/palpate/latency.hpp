@@ -1,4 +1,4 @@
-// Stage 15, latency: histograms of durations, counted without locks. They give percentiles and the
+// Stage 17, latency: histograms of durations, counted without locks. They give percentiles and the
 // maximum, because a mean says nothing about a servo loop.
 #pragma once
 

@@ -11,6 +11,7 @@
 // The order is the flow of data, not the alphabet.
 // clang-format off
 #include "palpate/volume.hpp"
+#include "palpate/resident.hpp"
 #include "palpate/samples.hpp"
 #include "palpate/field.hpp"
 #include "palpate/edit.hpp"
@@ -24,6 +25,7 @@
 #include "palpate/penetrability.hpp"
 #include "palpate/force.hpp"
 #include "palpate/layers.hpp"
+#include "palpate/reach.hpp"
 #include "palpate/renderer.hpp"
 #include "palpate/exchange.hpp"
 #include "palpate/latency.hpp"

@@ -1,4 +1,4 @@
-// Stage 9, proxy: the point that stays on the free side of the isosurface while the hand presses
+// Stage 10, proxy: the point that stays on the free side of the isosurface while the hand presses
 // into it (Corenthy et al. 2012, section 4). A proxy is a small value that can be copied. Nothing
 // here allocates, locks or throws.
 #pragma once
@@ -21,6 +21,7 @@ enum class UpdateStatus : std::uint8_t {
     recovering,     ///< the SCP is still inside the solid: render no force
     refused,        ///< HIP not finite or farther than `farthest_hip`: nothing was changed
     not_finite,     ///< the SCP would be NaN or infinite: nothing was changed, render no force
+    waiting,        ///< held, because samples that it needs are not in memory: render no force
 };
 
 /// Farthest HIP outside the grid [voxel] that an update accepts. The rounding error of a step grows
@@ -96,6 +97,7 @@ struct ProxyUpdate {
     double isovalue = 0;      ///< [data units] of the surface felt; free: of the one ahead
     bool behind = false;      ///< the surface felt is that of Proxy::behind
     int tetrahedra = 0;       ///< number of them that the SCP moved through
+    int level = 0;            ///< of detail of the samples at the SCP (reach.hpp)
 };
 
 /// A proxy method moves the proxy for one HIP [mm, physical]. All methods have this form, so a

@@ -1,4 +1,4 @@
-// Stage 13, renderer: one call renders a tick, from the device's state to proxy and force. A
+// Stage 15, renderer: one call renders a tick, from the device's state to proxy and force. A
 // renderer is a value that can be copied. render() does not allocate, lock, do I/O, read clocks or
 // throw.
 #pragma once
@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "palpate/layers.hpp"
+#include "palpate/reach.hpp"
 #include "palpate/tool_proxy.hpp"
 
 namespace palpate {
@@ -120,6 +121,9 @@ std::string isovalue_warning(const Field& field, double isovalue);
 /// it is (UpdateStatus::refused) and gives no force. A time that is not finite or did not advance
 /// gives no force either, but the proxy follows. The same renderer and input give the same tick,
 /// bit for bit, but for `update_ns`, which is measured where a clock is given.
+/// The proxy only moves where all samples are in memory. Where the hand draws it farther it is held
+/// (UpdateStatus::waiting): the force falls to zero within its rate limit, and comes back with the
+/// ramp once they are. Layers and penetrability need the whole way of the hand in memory.
 /// `observer` is for a point, `pose_observer` for a tool.
 Tick render(Renderer& renderer, const DeviceState& device, StepObserver observer = {},
             Clock clock = nullptr, PoseObserver pose_observer = {});

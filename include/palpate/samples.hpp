@@ -1,13 +1,15 @@
-// Stage 2, samples: one version of the numbers on a grid, which is a volume with its edited bricks
-// or the frames of a sequence. A version never changes. A change makes a new version, published by
-// pointer, and readers pick it up between two reads (copy on write). See docs/changing_data.md.
+// Stage 3, samples: one version of the numbers on a grid, which is a volume with its edited
+// bricks, the frames of a sequence, or the part of a large grid that is in memory. A version never
+// changes. A change makes a new version, published by pointer, and readers pick it up between two
+// reads (copy on write). See docs/changing_data.md.
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
-#include "palpate/volume.hpp"
+#include "palpate/resident.hpp"
 
 namespace palpate {
 
@@ -17,19 +19,6 @@ struct Frame {
     Volume volume;
     int number = -1;  ///< of the frame in its file or series, from 0; -1: in neither
 };
-
-/// A box of samples, both corners in it; empty if `high` is below `low` on some axis.
-struct SampleBox {
-    Index3 low = Index3::Zero();
-    Index3 high = Index3::Constant(-1);
-
-    bool empty() const { return (high.array() < low.array()).any(); }
-    bool operator==(const SampleBox&) const = default;
-};
-/// The smallest box around both; if one is empty, the other one.
-SampleBox united(const SampleBox& a, const SampleBox& b);
-/// All samples of a grid.
-SampleBox whole_box(const Geometry& geometry);
 
 /// Edited samples: bricks of 16 x 16 x 16 cells, each with the 17 x 17 x 17 samples at their
 /// corners, so that every cell lies in one brick. Two neighbours both hold the samples on their
@@ -75,11 +64,20 @@ class Samples {
     /// Throws std::invalid_argument unless there is a frame, all have the same geometry and sample
     /// type, times are finite and rising, and the period is 0 or ends after the last frame.
     explicit Samples(std::vector<Frame> frames, double period = 0);
+    /// The part of a large grid that is in memory. `overview` shows the same part of space by fewer
+    /// samples of the same type; `minimum` and `maximum` [data units] are those of the whole grid,
+    /// as far as they are known. Throws std::invalid_argument for a geometry that is not valid,
+    /// bricks of another grid, and bounds that are not finite or in the wrong order.
+    Samples(Volume overview, const Geometry& geometry, ResidentBricks resident, double minimum,
+            double maximum);
 
-    /// The volume before all edits; of a sequence the first frame.
+    /// The volume before all edits; of a sequence the first frame; of a large grid its overview,
+    /// which has another geometry.
     const Volume& volume() const { return frames_.front().volume; }
-    const Geometry& geometry() const { return volume().geometry(); }
+    const Geometry& geometry() const { return geometry_; }
     SampleType type() const { return volume().type(); }
+    /// Null if all samples are in memory.
+    const ResidentBricks* resident() const { return resident_ ? &*resident_ : nullptr; }
     /// At least one.
     std::span<const Frame> frames() const { return frames_; }
     double period() const { return period_; }
@@ -94,20 +92,23 @@ class Samples {
     Moment moment_at(double time) const noexcept;
     /// The time [s] clamped to that of the frames; unchanged where the sequence repeats.
     double within(double time) const noexcept;
-    /// One sample at a moment, in the data's units; the index must be inside the grid.
+    /// One sample at a moment, in the data's units; the index must be inside the grid, and the
+    /// sample in memory.
     double sample(const Index3& index, const Moment& moment = {}) const;
 
   private:
     std::vector<Frame> frames_;
+    Geometry geometry_;
     double period_ = 0;
     Bricks bricks_;
+    std::optional<ResidentBricks> resident_;
     double minimum_ = 0;
     double maximum_ = 0;
 };
 
 /// The samples at a moment as one volume of the same type (rounded to it between two frames), for
 /// files and for code that needs them in one piece. No copy is made where an existing volume is the
-/// same.
+/// same. Of a large grid: the overview.
 Volume flattened(const Samples& samples, const Moment& moment = {});
 /// Bytes of the bricks of `samples` that `other` does not share.
 std::size_t bytes_apart(const Samples& samples, const Samples& other);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -64,6 +65,17 @@ constexpr decltype(auto) with_type(SampleType type, Work&& work) {
     return std::forward<Work>(work)(float{});
 }
 
+/// A box of samples, both corners in it; empty if `high` is below `low` on some axis.
+struct SampleBox {
+    Index3 low = Index3::Zero();
+    Index3 high = Index3::Constant(-1);
+
+    bool empty() const { return (high.array() < low.array()).any(); }
+    bool operator==(const SampleBox&) const = default;
+};
+/// The smallest box around both; if one is empty, the other one.
+SampleBox united(const SampleBox& a, const SampleBox& b);
+
 /// The grid in physical space (LPS, millimetres).
 /// Sample (i, j, k) lies at origin + direction * (spacing * (i, j, k)); points given in such
 /// (possibly fractional) sample coordinates are in *index* space.
@@ -76,6 +88,8 @@ struct Geometry {
     bool operator==(const Geometry&) const = default;
 };
 
+/// All samples of a grid.
+SampleBox whole_box(const Geometry& geometry);
 /// Number of samples, as 64 bit.
 std::int64_t sample_count(const Geometry& geometry);
 /// index -> physical [mm].

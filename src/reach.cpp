@@ -1,0 +1,60 @@
+// Reach: balls round the hand's goal, and the bricks that they touch.
+#include "palpate/reach.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+/// Samples round a point on which the field there depends, and those across the wall that it is on
+/// [voxel].
+constexpr double around = 3;
+constexpr double least_part = 1.0 / 64;
+
+/// The box of samples round a ball, clipped to the grid; empty if it is background.
+SampleBox box_round(const Field& field, const Vec3& centre, double radius) {
+    const Vec3 at = index_from_physical(field.geometry(), centre);
+    const Vec3 reach = radius * field.voxels_per_mm() + Vec3::Constant(around);
+    const Vec3 last = (field.geometry().size - Index3::Ones()).cast<double>();
+    SampleBox box;
+    for (int a = 0; a < 3; ++a) {
+        const double low = std::floor(at[a] - reach[a]), high = std::ceil(at[a] + reach[a]);
+        if (!(low <= last[a] && high >= 0)) return {};
+        box.low[a] = static_cast<int>(std::clamp(low, 0.0, last[a]));
+        box.high[a] = static_cast<int>(std::clamp(high, 0.0, last[a]));
+    }
+    return box;
+}
+
+}  // namespace
+
+bool is_resident(const Field& field, const Vec3& centre, double radius) noexcept {
+    const ResidentBricks* resident = field.samples().resident();
+    if (!resident) return true;
+    const SampleBox box = box_round(field, centre, radius);
+    return box.empty() || resident->has(box);
+}
+
+double part_within_reach(const Field& field, const Pull& pull) noexcept {
+    if (!field.samples().resident()) return 1;
+    const Vec3 way = pull.to - pull.from;
+    const double length = std::hypot(way.norm(), pull.turn);
+    if (!std::isfinite(length)) return 1;  // the update refuses it
+    for (double part = 1; part >= least_part; part /= 2) {
+        if (is_resident(field, pull.from + part * way, part * length + pull.arm)) return part;
+    }
+    return 0;
+}
+
+int level_at(const Field& field, const Vec3& physical) noexcept {
+    const ResidentBricks* resident = field.samples().resident();
+    if (!resident || !physical.allFinite()) return 0;
+    const Vec3 last = (field.geometry().size - Index3::Ones()).cast<double>();
+    const Vec3 at = index_from_physical(field.geometry(), physical).array().round();
+    const Index3 sample = at.cwiseMax(Vec3::Zero()).cwiseMin(last).cast<int>();
+    const ResidentBrick* brick = resident->of_sample(sample);
+    return brick ? brick->level : 0;
+}
+
+}  // namespace palpate

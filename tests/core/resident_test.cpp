@@ -1,0 +1,149 @@
+// Resident bricks: what is in memory reads as the same samples in one piece, versions share bricks.
+#include "palpate/resident.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "palpate/field.hpp"
+#include "support/constants.hpp"
+#include "support/edits.hpp"
+#include "support/resident.hpp"
+
+using namespace palpate;
+using namespace palpate::support;
+
+namespace {
+
+/// More than a brick along some axes, none along others.
+std::vector<Geometry> large_grids() {
+    return {grid({1, 1, 1}), grid({64, 65, 3}), grid({130, 40, 66}, {0.5, 1, 2}, {-3, 8, 1}),
+            grid({63, 129, 2}, {1, 1, 1}, {5, 5, 5}, oblique_direction())};
+}
+
+TEST(Resident, a_field_of_all_bricks_is_the_field_of_the_same_samples_in_one_piece) {
+    Random random(3);
+    std::int64_t inner = 0;
+    for (const SampleType type : sample_types) {
+        for (const Geometry& geometry : large_grids()) {
+            const Volume volume = noise_of(type, geometry, 7);
+            PartOf part(volume);
+            part.add_all();
+            const Field bricks(part.samples(), Solid::above, -7.25);
+            const Field plain(volume, Solid::above, -7.25);
+            for (int i = 0; i < scaled(3000) + 10; ++i) {
+                const Index3 at(random.below(geometry.size[0] + 4) - 2,
+                                random.below(geometry.size[1] + 4) - 2,
+                                random.below(geometry.size[2] + 4) - 2);
+                ASSERT_EQ(bricks.cell(at), plain.cell(at)) << at.transpose();
+                ASSERT_EQ(bricks.around(at), plain.around(at)) << at.transpose();
+                inner += !plain.is_background_around(at);
+            }
+        }
+    }
+    EXPECT_GT(inner, 1000);
+}
+
+TEST(Resident, data_far_from_zero_are_read_with_their_offset) {
+    const Geometry geometry = grid({70, 5, 5});
+    const Volume volume = noise_volume<float>(geometry, 5, 1e9, 1e9 + 100);
+    PartOf part(volume);
+    part.add_all();
+    const Field bricks(part.samples()), plain(volume);
+    ASSERT_NE(plain.offset(), 0);
+    for_each_sample(geometry, [&](const Index3& at) {
+        ASSERT_EQ(bricks.cell(at), plain.cell(at));
+        ASSERT_EQ(bricks.around(at), plain.around(at));
+    });
+}
+
+TEST(Resident, samples_that_are_missing_are_solid_on_either_side) {
+    const Geometry geometry = grid({130, 66, 66});
+    const Volume volume = noise_of(SampleType::uint8, geometry, 11);
+    PartOf part(volume);
+    part.add({0, 0, 0});
+    for (const Solid solid : {Solid::above, Solid::below}) {
+        const Field field(part.samples(), solid);
+        const double most = solid == Solid::above ? volume.maximum() : volume.minimum();
+        for (const double sample : field.cell({64, 5, 5})) EXPECT_EQ(sample, most);
+        for (const double sample : field.around({64, 5, 5})) EXPECT_EQ(sample, most);
+        const Field plain(volume, solid);
+        EXPECT_EQ(field.cell({63, 5, 5}), plain.cell({63, 5, 5}));
+        EXPECT_EQ(field.around({63, 5, 5}), plain.around({63, 5, 5}));
+    }
+}
+
+TEST(Resident, versions_are_what_a_map_of_bricks_says_and_share_what_stayed) {
+    Random random(5);
+    // More than one page of bricks along x.
+    const Index3 size(64 * 20, 64 * 2, 65);
+    ResidentBricks bricks(size);
+    std::map<std::array<int, 3>, ResidentBrick> expected;
+    for (int step = 0; step < scaled(300) + 20; ++step) {
+        std::vector<ResidentBricks::Change> changes;
+        const ResidentBricks before = bricks;
+        const auto old = expected;
+        for (int n = 1 + random.below(5); n > 0; --n) {
+            const Index3 at(random.below(20), random.below(2), random.below(2));
+            ResidentBrick to;
+            if (random.chance(0.6)) to.samples = std::make_shared<std::byte[]>(1);
+            to.level = static_cast<std::uint8_t>(random.below(3));
+            changes.push_back({at, to});
+            expected[{at[0], at[1], at[2]}] = to;
+        }
+        bricks = bricks.with(changes);
+        const auto agrees = [&](const ResidentBricks& version, const auto& map) {
+            std::size_t held = 0;
+            for (const auto& [at, brick] : map) {
+                const ResidentBrick* found = version.at({at[0], at[1], at[2]});
+                ASSERT_EQ(found ? found->samples : nullptr, brick.samples);
+                ASSERT_EQ(found ? found->level : brick.level, brick.level);
+                held += brick.samples != nullptr;
+            }
+            ASSERT_EQ(version.size(), held);
+        };
+        agrees(before, old);
+        agrees(bricks, expected);
+        if (HasFatalFailure()) return;
+        // Boxes, against every brick that they touch.
+        for (int n = 0; n < 20; ++n) {
+            SampleBox box;
+            for (int a = 0; a < 3; ++a) {
+                box.low[a] = random.below(size[a] + 20) - 10;
+                box.high[a] = box.low[a] + random.below(150);
+            }
+            bool all = true;
+            for (int x = std::max(0, box.low[0]); x <= std::min(size[0] - 1, box.high[0]); ++x) {
+                for (const int y : {0, 64}) {
+                    for (const int z : {0, 64}) {
+                        const bool touches = box.low[1] <= std::min(y + 63, size[1] - 1) &&
+                                             box.high[1] >= y &&
+                                             box.low[2] <= std::min(z + 63, size[2] - 1) &&
+                                             box.high[2] >= z;
+                        if (touches) all &= bricks.of_sample({x, y, z}) != nullptr;
+                    }
+                }
+            }
+            const bool in_grid = (box.low.array() < size.array()).all() &&
+                                 (box.high.array() >= 0).all();
+            ASSERT_TRUE(!in_grid || bricks.has(box) == all);
+        }
+    }
+    const ResidentBricks::Change beyond{{20, 0, 0}, {}};
+    EXPECT_THROW((void)bricks.with({&beyond, 1}), std::out_of_range);
+}
+
+TEST(Resident, samples_refuse_bricks_of_another_grid_and_bounds_that_are_none) {
+    const Volume overview = noise_of(SampleType::uint8, grid({4, 4, 4}), 1);
+    const Geometry large = grid({130, 66, 66});
+    EXPECT_THROW(Samples(overview, large, ResidentBricks({64, 64, 64}), 0, 1),
+                 std::invalid_argument);
+    EXPECT_THROW(Samples(overview, large, ResidentBricks(large.size), 1, 0), std::invalid_argument);
+    EXPECT_THROW(Samples(overview, large, ResidentBricks(large.size), not_a_number, 1),
+                 std::invalid_argument);
+    const Samples samples(overview, large, ResidentBricks(large.size), 0, 1);
+    EXPECT_EQ(samples.geometry(), large);
+    EXPECT_EQ(samples.volume().geometry(), overview.geometry());
+}
+
+}  // namespace
