@@ -97,13 +97,9 @@ PlainSamples locate_samples(const fs::path& path, const ReadOptions& options) {
     try {
         constexpr double seconds = 60;  // for a header
         const double limit = options.time_limit_s > 0 ? options.time_limit_s : seconds;
-        const HelperJob job{io_helper,
-                            options.helper,
-                            {"locate", path.string(), line_from(request)},
-                            nullptr,
-                            {},
-                            limit,
-                            limit};
+        const HelperJob job{
+            io_helper, options.helper, {"locate", path.string(), line_from(request)}, nullptr, {},
+            limit,     limit};
         const HelperResult result = run_helper(job);
         if (!result.failure.empty()) throw InputError(path.string() + ": " + result.failure);
         return plain_from(result.done);

@@ -92,10 +92,9 @@ class PlainFile : public Store {
     void fetch(const Index3& from, std::span<std::byte> raw) const {
         const auto nx = static_cast<std::uint64_t>(grid().size[0]);
         const auto ny = static_cast<std::uint64_t>(grid().size[1]);
-        const std::uint64_t sample = (static_cast<std::uint64_t>(from[2]) * ny +
-                                      static_cast<std::uint64_t>(from[1])) *
-                                         nx +
-                                     static_cast<std::uint64_t>(from[0]);
+        const std::uint64_t sample =
+            (static_cast<std::uint64_t>(from[2]) * ny + static_cast<std::uint64_t>(from[1])) * nx +
+            static_cast<std::uint64_t>(from[0]);
         std::uint64_t at = first_ + sample * bytes_.size();
         for (std::span<std::byte> left = raw; !left.empty();) {
             const ssize_t got =

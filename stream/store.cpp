@@ -14,6 +14,16 @@ bool is_plain(const std::string& address, const StoreOptions& options) {
     return io::may_be_plain(address, read);
 }
 
+/// The metadata of a Zarr group or array, of either version.
+bool is_zarr_folder(const std::filesystem::path& folder) {
+    std::error_code error;
+    if (!std::filesystem::is_directory(folder, error)) return false;
+    for (const char* name : {"zarr.json", ".zattrs", ".zgroup", ".zarray"}) {
+        if (std::filesystem::exists(folder / name, error)) return true;
+    }
+    return folder.extension() == ".zarr";
+}
+
 void check_number(const std::string& address, const std::string& what, int wanted, int count) {
     if (wanted >= 0 && wanted < count) return;
     throw io::InputError(address + ": there is no " + what + " " + std::to_string(wanted) +
@@ -30,10 +40,11 @@ void check_choice(const StoreInfo& info, const StoreOptions& options) {
 }
 
 bool is_store(const std::string& address, const StoreOptions& options) {
-    return is_plain(address, options);
+    return is_zarr_folder(address) || is_plain(address, options);
 }
 
 std::shared_ptr<const Store> open_store(const std::string& address, const StoreOptions& options) {
+    if (is_zarr_folder(address)) return open_zarr(folder_objects(address), address, options);
     return open_plain_file(address, options);
 }
 

@@ -29,8 +29,8 @@ TEST(PlainFile, boxes_are_those_of_the_volume_read_whole_for_every_format_and_ty
     const ScratchFolder folder;
     std::mt19937 random(1);
     for (const char* name : {"v.nrrd", "v.nhdr", "v.mha", "w.mhd", "v.nii"}) {
-        for (const SampleType type : {SampleType::uint8, SampleType::int16, SampleType::uint16,
-                                      SampleType::float32}) {
+        for (const SampleType type :
+             {SampleType::uint8, SampleType::int16, SampleType::uint16, SampleType::float32}) {
             SCOPED_TRACE(std::string(name) + " " + std::string(name_of(type)));
             const std::string path = folder / name;
             io::write_volume(random_volume(random, type, random_geometry(random, true, true)),
@@ -50,7 +50,8 @@ TEST(PlainFile, a_raw_file_is_read_in_either_byte_order_and_after_a_skip) {
     std::mt19937 random(3);
     for (const bool big : {false, true}) {
         for (const SampleType type : {SampleType::uint8, SampleType::uint16, SampleType::float32}) {
-            const Volume volume = random_volume(random, type, random_geometry(random, false, false));
+            const Volume volume =
+                random_volume(random, type, random_geometry(random, false, false));
             std::string bytes(static_cast<const char*>(volume.data()), volume.bytes());
             const std::size_t each = size_of(type);
             for (std::size_t at = 0; big && at < bytes.size(); at += each) {
@@ -186,8 +187,9 @@ TEST(PlainFile, a_file_that_shrinks_while_it_is_open_is_an_error) {
     options.raw = {Index3(10, 10, 10), SampleType::uint8};
     const auto store = open_store(folder / "v.raw", options);
     std::filesystem::resize_file(folder / "v.raw", 500);
-    const std::string message = message_of<io::InputError>(
-        [&] { (void)read_box(*store, 0, {Index3::Zero(), Index3(9, 9, 9)}); });
+    const std::string message = message_of<io::InputError>([&] {
+        (void)read_box(*store, 0, {Index3::Zero(), Index3(9, 9, 9)});
+    });
     EXPECT_TRUE(contains(message, "shorter than when opened"));
 }
 
@@ -200,8 +202,8 @@ TEST(PlainFile, reading_stops_when_asked_to) {
     std::stop_source source;
     source.request_stop();
     std::vector<std::byte> out(1000);
-    EXPECT_THROW(
-        store->read(0, {Index3::Zero(), Index3(9, 9, 9)}, out, source.get_token()), Cancelled);
+    EXPECT_THROW(store->read(0, {Index3::Zero(), Index3(9, 9, 9)}, out, source.get_token()),
+                 Cancelled);
 }
 
 TEST(PlainFile, real_files_give_what_reading_them_whole_gives) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "io/stored.hpp"
 #include "palpate/stream/store.hpp"
 #include "support/scratch_folder.hpp"
 
@@ -56,8 +57,8 @@ inline std::vector<std::byte> box_of(const Volume& volume, const SampleBox& box)
 /// One level of a store as a volume.
 inline Volume volume_of(const Store& store, int level = 0) {
     const Geometry& grid = store.info().levels.at(static_cast<std::size_t>(level)).geometry;
-    auto samples = std::make_shared<std::vector<std::byte>>(
-        read_box(store, level, whole_box(grid)));
+    auto samples =
+        std::make_shared<std::vector<std::byte>>(read_box(store, level, whole_box(grid)));
     return Volume(grid, store.info().type, std::shared_ptr<const void>(samples, samples->data()),
                   samples->size());
 }
