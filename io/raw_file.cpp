@@ -102,7 +102,7 @@ std::uint64_t expected_bytes(const std::filesystem::path& path, const RawLayout&
     }
     const auto samples = static_cast<double>(sample_count(geometry));
     const double bytes = samples * static_cast<double>(size_of(raw.type));
-    if (bytes > static_cast<double>(limit)) {
+    if (limit > 0 && bytes > static_cast<double>(limit)) {
         throw InputError(path.string() + ": " + layout_text(raw) +
                          " needs more memory than there is; correct its dims or use a machine with "
                          "more memory");
@@ -112,18 +112,22 @@ std::uint64_t expected_bytes(const std::filesystem::path& path, const RawLayout&
 
 }  // namespace
 
-VolumeFile read_raw(const std::filesystem::path& path, const ReadOptions& options) {
+RawLayout checked_layout(const std::filesystem::path& path, const ReadOptions& options) {
     RawLayout raw = *options.raw;
     if (options.spacing) raw.spacing = *options.spacing;
+    const std::uint64_t expected = expected_bytes(path, raw, options.memory_limit_bytes);
+    if (!is_gzip(path)) check_size(path, raw, expected, std::filesystem::file_size(path), false);
+    return raw;
+}
+
+VolumeFile read_raw(const std::filesystem::path& path, const ReadOptions& options) {
     if (options.time_step != 0) {
         throw InputError(path.string() + ": a raw file holds one volume; use time step 0");
     }
+    const RawLayout raw = checked_layout(path, options);
     const std::uint64_t expected = expected_bytes(path, raw, options.memory_limit_bytes);
     const std::uint64_t bytes = expected - raw.skip;
     const bool packed = is_gzip(path);
-    if (!packed) {
-        check_size(path, raw, expected, std::filesystem::file_size(path), false);
-    }
     const auto samples = allocate(bytes);
     Filler fill(samples.get(), bytes, raw.skip, options.progress);
     if (packed) {

@@ -6,6 +6,10 @@
 
 namespace palpate::io {
 
+/// options.raw with options.spacing. Throws InputError unless it makes sense, fits the memory limit
+/// (0: none) and the file, if that is not packed, has exactly its bytes.
+RawLayout checked_layout(const std::filesystem::path& path, const ReadOptions& options);
+
 /// Reads options.raw's layout from `path`. The file must hold exactly its bytes: skip + samples.
 /// Throws InputError.
 VolumeFile read_raw(const std::filesystem::path& path, const ReadOptions& options);

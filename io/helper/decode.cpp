@@ -27,57 +27,6 @@ std::string gigabytes(double bytes) {
 
 }  // namespace
 
-std::size_t size_of(Stored stored) {
-    return with_stored(stored, [](auto s) { return sizeof s; });
-}
-
-std::string name_of(Stored stored) {
-    static const char* const names[] = {"int8",   "uint8", "int16",  "uint16",  "int32",
-                                        "uint32", "int64", "uint64", "float32", "float64"};
-    return names[static_cast<int>(stored)];
-}
-
-SampleType kept_as(Stored stored) {
-    switch (stored) {
-        case Stored::uint8:
-            return SampleType::uint8;
-        case Stored::int8:
-        case Stored::int16:
-            return SampleType::int16;
-        case Stored::uint16:
-            return SampleType::uint16;
-        default:
-            return SampleType::float32;
-    }
-}
-
-void note_conversion(Stored stored, std::vector<std::string>& notes) {
-    const std::string kept(name_of(kept_as(stored)));
-    if (kept == name_of(stored)) return;
-    notes.push_back("samples of type " + name_of(stored) + " became " + kept +
-                    (stored == Stored::int8 ? "" : " (exact to about 7 digits)"));
-}
-
-void convert(Stored stored, const std::byte* from, SampleType type, std::byte* to,
-             std::size_t count) {
-    if (name_of(stored) == name_of(type)) {
-        std::memcpy(to, from, count * size_of(stored));
-        return;
-    }
-    with_stored(stored, [&](auto source) {
-        with_type(type, [&](auto target) {
-            using From = decltype(source);
-            using To = decltype(target);
-            for (std::size_t i = 0; i < count; ++i) {
-                From value;
-                std::memcpy(&value, from + i * sizeof(From), sizeof value);
-                const To kept = static_cast<To>(value);
-                std::memcpy(to + i * sizeof(To), &kept, sizeof kept);
-            }
-        });
-    });
-}
-
 std::pair<double, double> range_of(Stored stored, std::span<const std::byte> samples) {
     return with_stored(stored, [&](auto type) {
         using T = decltype(type);

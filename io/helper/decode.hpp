@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "io/stored.hpp"
 #include "palpate/io/series.hpp"
 #include "palpate/io/value_info.hpp"
 #include "palpate/volume.hpp"
@@ -61,48 +62,6 @@ struct Result {
     FrameTimes times;
     ValueInfo values;
 };
-
-/// How a file stores a sample.
-enum class Stored { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
-
-std::size_t size_of(Stored stored);
-std::string name_of(Stored stored);
-/// The type its samples have in a Volume.
-SampleType kept_as(Stored stored);
-/// Appends a note if that is another type.
-void note_conversion(Stored stored, std::vector<std::string>& notes);
-
-/// f(T{}) with the C++ type T of a stored sample.
-template <class F>
-auto with_stored(Stored stored, F&& f) {
-    switch (stored) {
-        case Stored::int8:
-            return f(std::int8_t{});
-        case Stored::uint8:
-            return f(std::uint8_t{});
-        case Stored::int16:
-            return f(std::int16_t{});
-        case Stored::uint16:
-            return f(std::uint16_t{});
-        case Stored::int32:
-            return f(std::int32_t{});
-        case Stored::uint32:
-            return f(std::uint32_t{});
-        case Stored::int64:
-            return f(std::int64_t{});
-        case Stored::uint64:
-            return f(std::uint64_t{});
-        case Stored::float32:
-            return f(float{});
-        case Stored::float64:
-            break;
-    }
-    return f(double{});
-}
-
-/// Converts `count` samples; `to` has room for them.
-void convert(Stored stored, const std::byte* from, SampleType type, std::byte* to,
-             std::size_t count);
 
 /// Least and greatest of some samples (NaN left out; +inf, -inf if there are none).
 std::pair<double, double> range_of(Stored stored, std::span<const std::byte> samples);

@@ -59,7 +59,46 @@ Result read_with(VolumeHeader header, const Request& request) {
     return result;
 }
 
+PlainSamples samples_of(VolumeHeader header, const Request& request) {
+    if (header.place.encoding != DataPlace::Encoding::raw) {
+        throw Failure(
+            "its samples are compressed or text, so they cannot be read piece by piece; save it "
+            "uncompressed, or convert it to OME-Zarr");
+    }
+    if (header.steps > 1 &&
+        header.together * header.steps != static_cast<std::int64_t>(header.samples())) {
+        throw Failure(
+            "the samples of its volumes are mixed, so they cannot be read piece by piece; save one "
+            "volume of it");
+    }
+    check_raw_length(header);
+    PlainSamples plain;
+    plain.stored = header.stored;
+    plain.place = header.place;
+    plain.place.offset += header.place.skip;
+    plain.about.geometry = header.geometry;
+    plain.about.time_steps = static_cast<int>(header.steps);
+    plain.about.times = header.times;
+    plain.about.values = header.values;
+    plain.about.notes = header.notes;
+    if (request.spacing) plain.about.geometry.spacing = *request.spacing;
+    check_geometry(plain.about.geometry);
+    return plain;
+}
+
 }  // namespace
+
+PlainSamples nrrd_samples(const Request& request) {
+    PlainSamples plain = samples_of(nrrd_header(request), request);
+    plain.about.format = "NRRD";
+    return plain;
+}
+
+PlainSamples meta_image_samples(const Request& request) {
+    PlainSamples plain = samples_of(meta_image_header(request), request);
+    plain.about.format = "MetaImage";
+    return plain;
+}
 
 Result read_nrrd(const Request& request) {
     Result result = read_with(nrrd_header(request), request);

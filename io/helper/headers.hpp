@@ -56,8 +56,24 @@ struct VolumeHeader : HeaderFacts {
 
 VolumeHeader nrrd_header(const Request& request);
 VolumeHeader meta_image_header(const Request& request);
+/// What a NIfTI file says of its samples.
+struct NiftiHeader : HeaderFacts {
+    DataPlace place;
+    double slope = 1, intercept = 0;  ///< of all samples; 1 and 0: as they are stored
+};
 /// Also checks the length and the checksum of the data.
-HeaderFacts check_nifti(const Request& request);
+NiftiHeader check_nifti(const Request& request);
+
+/// Samples that lie uncompressed in a file, those of each volume together.
+struct PlainSamples {
+    Result about;  ///< of the first volume
+    Stored stored = Stored::uint8;
+    DataPlace place;
+    double slope = 1, intercept = 0;  ///< as in NiftiHeader
+};
+
+/// Throws Failure unless the file has the bytes that raw samples take; up to 4096 more give a note.
+void check_raw_length(VolumeHeader& header);
 
 /// Hands the bytes of all samples to `sink` in order, in the machine's byte order and in pieces of
 /// whole samples. Throws Failure if the data are damaged, fewer than the header says or more than

@@ -110,8 +110,35 @@ void read_whole(itk::ImageIOBase& io, void* to) {
 
 }  // namespace
 
+PlainSamples nifti_samples(const Request& request) {
+    if (is_gzip(request.path)) {
+        throw Failure(
+            "its samples are compressed, so they cannot be read piece by piece; save it as .nii, "
+            "or "
+            "convert it to OME-Zarr");
+    }
+    const NiftiHeader header = check_nifti(request);
+    const auto io = itk::NiftiImageIO::New();
+    io->SetFileName(request.path.string());
+    io->ReadImageInformation();
+    PlainSamples plain;
+    plain.stored = header.stored;
+    plain.place = header.place;
+    plain.slope = header.slope;
+    plain.intercept = header.intercept;
+    plain.about.format = "NIfTI";
+    plain.about.geometry = geometry_of(*io);
+    plain.about.times = header.times;
+    plain.about.notes = header.notes;
+    plain.about.time_steps =
+        static_cast<int>(steps_of(*io, header, sample_count(plain.about.geometry)));
+    if (request.spacing) plain.about.geometry.spacing = *request.spacing;
+    check_geometry(plain.about.geometry);
+    return plain;
+}
+
 Result read_nifti(const Request& request) {
-    const HeaderFacts facts = check_nifti(request);
+    const NiftiHeader facts = check_nifti(request);
     say_progress(0.3);  // what the check took of the time, roughly
     say_doing(request.path.filename().string());
     const auto io = itk::NiftiImageIO::New();

@@ -141,6 +141,28 @@ nlohmann::json json_of(const SeriesInfo& s) {
             {"grey", s.picture.grey}};
 }
 
+nlohmann::json run_locate(const fs::path& path, const nlohmann::json& asked) {
+    Request request;
+    request.path = path;
+    if (asked.contains("spacing")) request.spacing = vec3_from(asked["spacing"]);
+    limit_this_process(asked, 1 << 30);
+    const std::string extension = extension_of(path);
+    const PlainSamples plain = extension == ".nrrd" || extension == ".nhdr" ? nrrd_samples(request)
+                               : extension == ".nii"                        ? nifti_samples(request)
+                                                     : meta_image_samples(request);
+    return {{"format", plain.about.format},
+            {"geometry", json_from(plain.about.geometry)},
+            {"stored", name_of(plain.stored)},
+            {"file", plain.place.file.string()},
+            {"offset", plain.place.offset},
+            {"swapped", plain.place.swapped},
+            {"slope", plain.slope},
+            {"intercept", plain.intercept},
+            {"times", plain.about.time_steps},
+            {"frame_interval", plain.about.times.interval},
+            {"notes", plain.about.notes}};
+}
+
 nlohmann::json run_read(const fs::path& path, const nlohmann::json& asked) {
     Request request;
     request.path = path;
@@ -257,10 +279,12 @@ nlohmann::json run_read_mesh(const fs::path& path, const nlohmann::json& asked) 
 int run(int argc, char** argv) {
     const bool of_mesh = argc == 4 && std::strcmp(argv[1], "read-mesh") == 0;
     const bool reading = of_mesh || (argc == 4 && std::strcmp(argv[1], "read") == 0);
+    const bool locating = argc == 4 && std::strcmp(argv[1], "locate") == 0;
     const bool writing = argc == 5 && std::strcmp(argv[1], "write") == 0;
     const auto work = [&] {
         const auto asked = nlohmann::json::parse(argv[3]);
         if (of_mesh) return run_read_mesh(argv[2], asked);
+        if (locating) return run_locate(argv[2], asked);
         return reading ? run_read(argv[2], asked) : run_write(argv[2], asked, argv[4]);
     };
     const auto words_of = [&](const std::exception& e) -> std::string {
@@ -270,9 +294,10 @@ int run(int argc, char** argv) {
                            : "not enough memory; crop or downsample the volume";
         }
         return "the format's library refused it (" + library_words(e.what(), 300) + "); " +
-               (reading ? "it is damaged or of a kind that is not read" : "is the disk full?");
+               (reading || locating ? "it is damaged or of a kind that is not read"
+                                    : "is the disk full?");
     };
-    return helper_status("palpate-io-helper", reading || writing, work, words_of);
+    return helper_status("palpate-io-helper", reading || locating || writing, work, words_of);
 }
 
 }  // namespace

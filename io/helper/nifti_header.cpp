@@ -149,12 +149,20 @@ void check_placement(const Header& header, std::vector<std::string>& notes) {
     }
 }
 
+/// As ITK takes it: a slope of 0 means none.
+void take_scaling(const Header& header, NiftiHeader& facts) {
+    const double slope = header.number<float>(112), intercept = header.number<float>(116);
+    if (!std::isfinite(slope) || !std::isfinite(intercept) || slope == 0) return;
+    facts.slope = slope;
+    facts.intercept = intercept;
+}
+
 }  // namespace
 
-HeaderFacts check_nifti(const Request& request) {
+NiftiHeader check_nifti(const Request& request) {
     Header header = read_header(request.path);
     check_kind(header);
-    HeaderFacts facts;
+    NiftiHeader facts;
     facts.stored = stored_from(header.number<std::int16_t>(70));
     if (header.number<std::int16_t>(72) != static_cast<int>(8 * size_of(facts.stored))) {
         throw Failure("its header's bits a sample do not fit its type; the header is damaged");
@@ -191,6 +199,10 @@ HeaderFacts check_nifti(const Request& request) {
                       " samples in more than 4 axes (vectors?); save one volume of it");
     }
     if (facts.sizes.size() == 4) facts.times = times_of(header, facts.notes);
+    facts.place.file = request.path;
+    facts.place.offset = first;
+    facts.place.swapped = header.swapped;
+    take_scaling(header, facts);
     if (header.number<std::int16_t>(252) == 0 && header.number<std::int16_t>(254) == 0) {
         facts.notes.push_back("its header says nothing of its orientation in the body");
     }

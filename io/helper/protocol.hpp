@@ -1,5 +1,6 @@
 // The protocol between the library and its helper program.
 //   palpate-io-helper read PATH REQUEST       samples come back in descriptor 3
+//   palpate-io-helper locate PATH REQUEST     says where the samples lie in their file
 //   palpate-io-helper read-mesh PATH REQUEST  vertices and triangles come back in descriptor 3
 //   palpate-io-helper write PATH REQUEST FOLDER   samples are given in descriptor 3; FOLDER, beside
 //                                             PATH, is created for the unfinished file and removed

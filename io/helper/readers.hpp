@@ -4,7 +4,7 @@
 #include <functional>
 #include <string>
 
-#include "io/helper/decode.hpp"
+#include "io/helper/headers.hpp"
 
 namespace palpate::io {
 
@@ -17,6 +17,12 @@ Result read_dicom_folder(const Request& request);
 Result read_tiff_file(const Request& request);
 Result read_tiff_folder(const Request& request);
 Result read_vti(const Request& request);
+
+/// Where the samples of request.path lie, without reading them. Throws Failure where they cannot be
+/// read from there by the box: compressed, text, or those of several volumes mixed.
+PlainSamples nrrd_samples(const Request& request);
+PlainSamples meta_image_samples(const Request& request);
+PlainSamples nifti_samples(const Request& request);
 
 /// DICOM's four letters after 128 bytes.
 bool looks_like_dicom(const std::filesystem::path& file);

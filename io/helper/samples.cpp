@@ -108,10 +108,20 @@ void read_text(VolumeHeader& header, const ByteSink& sink) {
     samples(bytes);
 }
 
-void read_raw_bytes(VolumeHeader& header, std::uint64_t available, const ByteSink& sink) {
+/// Bytes from the place's offset to the end of its file.
+std::uint64_t available_at(const DataPlace& place) {
+    std::error_code error;
+    const std::uint64_t file_bytes = std::filesystem::file_size(place.file, error);
+    if (error) {
+        throw Failure("its data file '" + place.file.filename().string() + "' cannot be read (" +
+                      error.message() + "); put it beside the header");
+    }
+    return file_bytes - std::min(place.offset, file_bytes);
+}
+
+void read_raw_bytes(VolumeHeader& header, const ByteSink& sink) {
     const DataPlace& place = header.place;
-    compare(available - std::min(place.skip, available), header.bytes(), "bytes of samples",
-            header.notes);
+    check_raw_length(header);
     SampleBytes samples(header, sink);
     std::ifstream in(place.file, std::ios::binary);
     in.seekg(static_cast<std::streamoff>(place.offset));
@@ -146,21 +156,20 @@ void read_compressed(VolumeHeader& header, std::uint64_t available, const ByteSi
 
 }  // namespace
 
+void check_raw_length(VolumeHeader& header) {
+    const std::uint64_t available = available_at(header.place);
+    compare(available - std::min(header.place.skip, available), header.bytes(), "bytes of samples",
+            header.notes);
+}
+
 void stream_samples(VolumeHeader& header, const ByteSink& sink) {
-    const DataPlace& place = header.place;
-    std::error_code error;
-    const std::uint64_t file_bytes = std::filesystem::file_size(place.file, error);
-    if (error) {
-        throw Failure("its data file '" + place.file.filename().string() + "' cannot be read (" +
-                      error.message() + "); put it beside the header");
-    }
-    const std::uint64_t available = file_bytes - std::min(place.offset, file_bytes);
-    switch (place.encoding) {
+    switch (header.place.encoding) {
         case DataPlace::Encoding::raw:
-            return read_raw_bytes(header, available, sink);
+            return read_raw_bytes(header, sink);
         case DataPlace::Encoding::compressed:
-            return read_compressed(header, available, sink);
+            return read_compressed(header, available_at(header.place), sink);
         case DataPlace::Encoding::text:
+            available_at(header.place);
             return read_text(header, sink);
     }
 }

@@ -1,0 +1,209 @@
+// The compressions of stored chunks; see the header.
+#include "stream/codecs.hpp"
+
+#include <blosc.h>
+#include <lz4.h>
+#include <zlib.h>
+#include <zstd.h>
+
+#include <array>
+#include <boost/crc.hpp>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <utility>
+
+namespace palpate::stream {
+namespace {
+
+using Bytes = std::vector<std::byte>;
+
+[[noreturn]] void too_long(std::size_t most) {
+    throw DamagedChunk("unpacks to more than the " + std::to_string(most) +
+                       " bytes that its metadata declare");
+}
+
+std::uint32_t number_at(std::span<const std::byte> bytes, std::size_t at) {
+    std::uint32_t number = 0;
+    for (std::size_t i = 4; i-- > 0;) {
+        number = number << 8 | std::to_integer<std::uint32_t>(bytes[at + i]);
+    }
+    return number;
+}
+
+/// The end of a zlib stream, however it is left.
+struct Inflating {
+    z_stream stream{};
+    Inflating() {
+        constexpr int either_header = 15 + 32;
+        if (inflateInit2(&stream, either_header) != Z_OK) throw std::bad_alloc();
+    }
+    ~Inflating() { inflateEnd(&stream); }
+    Inflating(const Inflating&) = delete;
+    Inflating& operator=(const Inflating&) = delete;
+};
+
+Bytes gunzip(std::span<const std::byte> packed, std::size_t most) {
+    Bytes out(most + 1);  // one more, to see that there is more
+    Inflating job;
+    z_stream& z = job.stream;
+    z.next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(packed.data()));
+    z.avail_in = static_cast<uInt>(packed.size());
+    z.next_out = reinterpret_cast<Bytef*>(out.data());
+    z.avail_out = static_cast<uInt>(out.size());
+    while (true) {
+        const int status = inflate(&z, Z_FINISH);
+        if (status == Z_STREAM_END && z.avail_in > 0 && z.avail_out > 0) {  // another member
+            if (inflateReset(&z) != Z_OK) throw DamagedChunk("is no gzip stream");
+            continue;
+        }
+        if (status == Z_STREAM_END) break;
+        if (z.avail_out == 0) too_long(most);
+        throw DamagedChunk(z.avail_in == 0 ? "ends within its gzip stream"
+                                           : "is a damaged gzip stream");
+    }
+    if (z.avail_out == 0) too_long(most);
+    out.resize(out.size() - z.avail_out);
+    return out;
+}
+
+Bytes unzstd(std::span<const std::byte> packed, std::size_t most) {
+    Bytes out(most);
+    const std::size_t size = ZSTD_decompress(out.data(), most, packed.data(), packed.size());
+    if (ZSTD_isError(size) != 0) {
+        throw DamagedChunk(std::string("is a damaged zstd stream (") + ZSTD_getErrorName(size) +
+                           ")");
+    }
+    out.resize(size);
+    return out;
+}
+
+Bytes unblosc(std::span<const std::byte> packed, std::size_t most) {
+    std::size_t size = 0;
+    if (blosc_cbuffer_validate(packed.data(), packed.size(), &size) != 0) {
+        throw DamagedChunk("is no whole blosc buffer");
+    }
+    if (size > most) too_long(most);
+    Bytes out(size);
+    const int got = size == 0 ? 0 : blosc_decompress_ctx(packed.data(), out.data(), size, 1);
+    if (got < 0 || static_cast<std::size_t>(got) != size) {
+        throw DamagedChunk("is a damaged blosc buffer");
+    }
+    return out;
+}
+
+/// The size, four bytes, and a block.
+Bytes unlz4(std::span<const std::byte> packed, std::size_t most) {
+    if (packed.size() < 4) throw DamagedChunk("is too short for lz4");
+    const std::size_t size = number_at(packed, 0);
+    if (size > most) too_long(most);
+    Bytes out(size);
+    const int got = LZ4_decompress_safe(reinterpret_cast<const char*>(packed.data() + 4),
+                                        reinterpret_cast<char*>(out.data()),
+                                        static_cast<int>(packed.size() - 4),
+                                        static_cast<int>(size));
+    if (got < 0 || static_cast<std::size_t>(got) != size) {
+        throw DamagedChunk("is a damaged lz4 block");
+    }
+    return out;
+}
+
+Bytes checked_crc32c(Bytes bytes) {
+    if (bytes.size() < 4) throw DamagedChunk("is too short for its checksum");
+    const std::size_t size = bytes.size() - 4;
+    if (crc32c_of({bytes.data(), size}) != number_at(bytes, size)) {
+        throw DamagedChunk("does not have its checksum");
+    }
+    bytes.resize(size);
+    return bytes;
+}
+
+Bytes undone(Codec codec, Bytes bytes, std::size_t most) {
+    switch (codec) {
+        case Codec::gzip:
+            return gunzip(bytes, most);
+        case Codec::zstd:
+            return unzstd(bytes, most);
+        case Codec::blosc:
+            return unblosc(bytes, most);
+        case Codec::lz4:
+            return unlz4(bytes, most);
+        case Codec::crc32c:
+            break;
+    }
+    return checked_crc32c(std::move(bytes));
+}
+
+}  // namespace
+
+std::optional<Codec> codec_named(std::string_view name) {
+    constexpr std::string_view prefix = "numcodecs.";
+    if (name.starts_with(prefix)) name.remove_prefix(prefix.size());
+    static constexpr std::array<std::pair<std::string_view, Codec>, 6> codecs = {
+        {{"gzip", Codec::gzip},
+         {"zlib", Codec::gzip},
+         {"zstd", Codec::zstd},
+         {"blosc", Codec::blosc},
+         {"lz4", Codec::lz4},
+         {"crc32c", Codec::crc32c}}};
+    for (const auto& [known, codec] : codecs) {
+        if (name == known) return codec;
+    }
+    return std::nullopt;
+}
+
+Bytes decoded(std::span<const Codec> codecs, Bytes packed, std::size_t size) {
+    for (std::size_t i = 0; i < codecs.size(); ++i) {
+        const bool last = i + 1 == codecs.size();
+        packed = undone(codecs[i], std::move(packed), last ? size : packed_at_most(size));
+    }
+    if (packed.size() != size) {
+        throw DamagedChunk("has " + std::to_string(packed.size()) + " bytes instead of the " +
+                           std::to_string(size) + " that its metadata declare");
+    }
+    return packed;
+}
+
+Bytes packed_gzip(std::span<const std::byte> bytes, int level) {
+    z_stream z{};
+    constexpr int gzip_header = 15 + 16, memory = 8;
+    if (deflateInit2(&z, level, Z_DEFLATED, gzip_header, memory, Z_DEFAULT_STRATEGY) != Z_OK) {
+        throw std::bad_alloc();
+    }
+    Bytes out(deflateBound(&z, static_cast<uLong>(bytes.size())));
+    z.next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(bytes.data()));
+    z.avail_in = static_cast<uInt>(bytes.size());
+    z.next_out = reinterpret_cast<Bytef*>(out.data());
+    z.avail_out = static_cast<uInt>(out.size());
+    deflate(&z, Z_FINISH);
+    out.resize(z.total_out);
+    deflateEnd(&z);
+    return out;
+}
+
+Bytes packed_zstd(std::span<const std::byte> bytes, int level) {
+    Bytes out(ZSTD_compressBound(bytes.size()));
+    const std::size_t size =
+        ZSTD_compress(out.data(), out.size(), bytes.data(), bytes.size(), level);
+    if (ZSTD_isError(size) != 0) throw std::runtime_error(ZSTD_getErrorName(size));
+    out.resize(size);
+    return out;
+}
+
+Bytes packed_blosc(std::span<const std::byte> bytes, std::size_t each, int level) {
+    Bytes out(bytes.size() + BLOSC_MAX_OVERHEAD);
+    const int size =
+        blosc_compress_ctx(level, each > 1 ? BLOSC_SHUFFLE : BLOSC_NOSHUFFLE, each, bytes.size(),
+                           bytes.data(), out.data(), out.size(), BLOSC_ZSTD_COMPNAME, 0, 1);
+    if (size <= 0) throw std::runtime_error("blosc cannot pack a chunk");
+    out.resize(static_cast<std::size_t>(size));
+    return out;
+}
+
+std::uint32_t crc32c_of(std::span<const std::byte> bytes) {
+    boost::crc_optimal<32, 0x1EDC6F41, 0xFFFFFFFF, 0xFFFFFFFF, true, true> crc;
+    crc.process_bytes(bytes.data(), bytes.size());
+    return crc.checksum();
+}
+
+}  // namespace palpate::stream

@@ -1,0 +1,42 @@
+// The compressions of stored chunks. None unpacks more than it is told: what is declared is checked
+// before anything is unpacked. Private to stream/.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string_view>
+#include <vector>
+
+namespace palpate::stream {
+
+enum class Codec { gzip, zstd, blosc, lz4, crc32c };
+
+/// By the names of Zarr 2, Zarr 3 and N5; "zlib" is gzip, whose decoder knows both.
+std::optional<Codec> codec_named(std::string_view name);
+
+/// Bytes that are not what their codec writes; what() is without a file's name.
+class DamagedChunk : public std::runtime_error {
+  public:
+    using std::runtime_error::runtime_error;
+};
+
+/// Undoes `codecs`, the first one first. The result has `size` bytes, or DamagedChunk is thrown.
+std::vector<std::byte> decoded(std::span<const Codec> codecs, std::vector<std::byte> packed,
+                               std::size_t size);
+
+/// Most bytes that `size` bytes may have when packed: no codec makes more of them.
+constexpr std::size_t packed_at_most(std::size_t size) {
+    return size + size / 8 + 65536;
+}
+
+/// What writers use.
+std::vector<std::byte> packed_gzip(std::span<const std::byte> bytes, int level);
+std::vector<std::byte> packed_zstd(std::span<const std::byte> bytes, int level);
+/// Blosc with zstd and byte shuffle; `each`: bytes of a sample.
+std::vector<std::byte> packed_blosc(std::span<const std::byte> bytes, std::size_t each, int level);
+/// The checksum of Zarr's crc32c.
+std::uint32_t crc32c_of(std::span<const std::byte> bytes);
+
+}  // namespace palpate::stream

@@ -1,0 +1,127 @@
+// Plain files of samples, read where they lie: opening costs a header, whatever the file's size.
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <vector>
+
+#include "io/helper_process.hpp"
+#include "io/plain_samples.hpp"
+#include "palpate/io/error.hpp"
+#include "stream/sample_bytes.hpp"
+#include "stream/stores.hpp"
+#include "stream/traffic_count.hpp"
+
+namespace palpate::stream {
+namespace {
+
+class PlainFile : public Store {
+  public:
+    PlainFile(const std::string& path, const StoreOptions& options)
+        : PlainFile(path, options, io::locate_samples(path, read_options(options))) {}
+
+    const StoreInfo& info() const override { return info_; }
+    Traffic traffic() const override { return traffic_.now(); }
+
+    void read(int level, const SampleBox& box, std::span<std::byte> out,
+              std::stop_token stop) const override {
+        if (level != 0) throw std::invalid_argument("a plain file has one level, number 0");
+        check_request(grid(), box, info_.type, out.size());
+        const Index3 size = box.high - box.low + Index3::Ones();
+        const auto row = static_cast<std::size_t>(size[0]);
+        // Rows that follow each other in the file are read in one go.
+        const bool whole_rows = size[0] == grid().size[0];
+        const std::size_t most = std::max<std::size_t>(1, piece_bytes / (row * bytes_.size()));
+        const int together =
+            whole_rows ? static_cast<int>(std::min<std::size_t>(most, std::size_t(size[1]))) : 1;
+        std::vector<std::byte> raw;
+        std::byte* to = out.data();
+        for (int z = box.low[2]; z <= box.high[2]; ++z) {
+            for (int y = box.low[1]; y <= box.high[1]; y += together) {
+                if (stop.stop_requested()) throw Cancelled{};
+                const int rows = std::min(together, box.high[1] - y + 1);
+                const std::size_t count = row * static_cast<std::size_t>(rows);
+                raw.resize(count * bytes_.size());
+                fetch({box.low[0], y, z}, raw);
+                bytes_.convert(raw, to);
+                to += count * size_of(info_.type);
+            }
+        }
+    }
+
+  private:
+    static constexpr std::size_t piece_bytes = 1 << 20;  // converted at a time
+
+    static io::ReadOptions read_options(const StoreOptions& options) {
+        io::ReadOptions read;
+        read.raw = options.raw;
+        read.spacing = options.spacing;
+        return read;
+    }
+
+    PlainFile(const std::string& path, const StoreOptions& options, const io::PlainSamples& plain)
+        : file_(::open(plain.file.c_str(), O_RDONLY | O_CLOEXEC)) {
+        if (file_.number() < 0) {
+            throw io::InputError(path + ": " + io::reason(errno) + "; check its permissions");
+        }
+        bytes_ = {plain.stored, plain.swapped, plain.slope, plain.intercept, 0};
+        info_.address = path;
+        info_.format = plain.format;
+        info_.type = bytes_.type();
+        info_.times = plain.times;
+        info_.frame_interval = plain.frame_interval;
+        info_.notes = plain.notes;
+        // A row is the least that costs one access to a disk.
+        info_.levels = {{plain.geometry, Index3(plain.geometry.size[0], 1, 1)}};
+        if (bytes_.scaled()) {
+            info_.notes.push_back("the file's slope and intercept are applied: " +
+                                  io::name_of(plain.stored) + " becomes float32");
+        } else {
+            io::note_conversion(plain.stored, info_.notes);
+        }
+        check_choice(info_, options);
+        first_ = plain.offset + static_cast<std::uint64_t>(options.time) *
+                                    static_cast<std::uint64_t>(sample_count(grid())) *
+                                    bytes_.size();
+    }
+
+    const Geometry& grid() const { return info_.levels.front().geometry; }
+
+    /// The stored bytes from a sample on.
+    void fetch(const Index3& from, std::span<std::byte> raw) const {
+        const auto nx = static_cast<std::uint64_t>(grid().size[0]);
+        const auto ny = static_cast<std::uint64_t>(grid().size[1]);
+        const std::uint64_t sample =
+            (static_cast<std::uint64_t>(from[2]) * ny + static_cast<std::uint64_t>(from[1])) * nx +
+            static_cast<std::uint64_t>(from[0]);
+        std::uint64_t at = first_ + sample * bytes_.size();
+        for (std::span<std::byte> left = raw; !left.empty();) {
+            const ssize_t got =
+                ::pread(file_.number(), left.data(), left.size(), static_cast<off_t>(at));
+            if (got < 0 && errno == EINTR) continue;
+            if (got <= 0) {
+                throw io::InputError(info_.address + ": " +
+                                     (got < 0 ? io::reason(errno) : "is shorter than when opened") +
+                                     "; check the disk, and that nothing writes to the file");
+            }
+            left = left.subspan(static_cast<std::size_t>(got));
+            at += static_cast<std::uint64_t>(got);
+        }
+        traffic_.request(raw.size());
+    }
+
+    io::Descriptor file_;
+    StoreInfo info_;
+    SampleBytes bytes_;
+    std::uint64_t first_ = 0;  ///< [bytes] of the first sample of the chosen time
+    mutable TrafficCount traffic_;
+};
+
+}  // namespace
+
+std::shared_ptr<const Store> open_plain_file(const std::string& path, const StoreOptions& options) {
+    return std::make_shared<PlainFile>(path, options);
+}
+
+}  // namespace palpate::stream

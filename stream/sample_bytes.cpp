@@ -1,0 +1,59 @@
+// How the bytes of stored pieces become samples of a store; see the header.
+#include "stream/sample_bytes.hpp"
+
+#include <cmath>
+#include <cstring>
+#include <stdexcept>
+
+#include "io/byte_order.hpp"
+
+namespace palpate::stream {
+namespace {
+
+/// As ITK scales NIfTI: in double, rounded once to float after the sample itself was.
+void scale(std::span<std::byte> raw, const SampleBytes& how, std::byte* to) {
+    io::with_stored(how.stored, [&](auto zero) {
+        using T = decltype(zero);
+        for (std::size_t i = 0; i < raw.size() / sizeof(T); ++i) {
+            T value;
+            std::memcpy(&value, raw.data() + i * sizeof(T), sizeof value);
+            const double scaled =
+                static_cast<double>(static_cast<float>(value)) * how.slope + how.intercept;
+            const auto kept = static_cast<float>(scaled);
+            std::memcpy(to + i * sizeof kept, &kept, sizeof kept);
+        }
+    });
+}
+
+void replace_non_finite(std::byte* samples, std::size_t count, float with) {
+    for (std::size_t i = 0; i < count; ++i) {
+        float value;
+        std::memcpy(&value, samples + i * sizeof value, sizeof value);
+        if (!std::isfinite(value)) std::memcpy(samples + i * sizeof value, &with, sizeof with);
+    }
+}
+
+}  // namespace
+
+void SampleBytes::convert(std::span<std::byte> raw, std::byte* to) const {
+    if (swapped) io::swap_bytes(raw, size());
+    const std::size_t count = raw.size() / size();
+    if (scaled()) {
+        scale(raw, *this, to);
+    } else {
+        io::convert(stored, raw.data(), type(), to, count);
+    }
+    if (type() == SampleType::float32) replace_non_finite(to, count, static_cast<float>(fill));
+}
+
+void check_request(const Geometry& grid, const SampleBox& box, SampleType type, std::size_t bytes) {
+    if (box.empty() || (box.low.array() < 0).any() ||
+        (box.high.array() >= grid.size.array()).any()) {
+        throw std::invalid_argument("a box that is empty or not inside the grid");
+    }
+    std::size_t wanted = size_of(type);
+    for (int a = 0; a < 3; ++a) wanted *= static_cast<std::size_t>(box.high[a] - box.low[a] + 1);
+    if (bytes != wanted) throw std::invalid_argument("memory of another size than the box");
+}
+
+}  // namespace palpate::stream

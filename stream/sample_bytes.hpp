@@ -1,0 +1,30 @@
+// How the bytes of stored pieces become samples of a store. Private to stream/.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "io/stored.hpp"
+#include "palpate/samples.hpp"
+
+namespace palpate::stream {
+
+struct SampleBytes {
+    io::Stored stored = io::Stored::uint8;
+    bool swapped = false;             ///< in the other byte order than the machine's
+    double slope = 1, intercept = 0;  ///< what a stored number means; 1 and 0: itself
+    double fill = 0;                  ///< in place of what is not finite [data units]
+
+    bool scaled() const { return slope != 1 || intercept != 0; }
+    SampleType type() const { return scaled() ? SampleType::float32 : io::kept_as(stored); }
+    std::size_t size() const { return io::size_of(stored); }
+    /// Converts the stored samples of `raw`, which it may change, into `to`, which has room for as
+    /// many of type().
+    void convert(std::span<std::byte> raw, std::byte* to) const;
+};
+
+/// Throws std::invalid_argument unless the box is not empty, inside the grid, and `bytes` are those
+/// of its samples: a mistake of the caller.
+void check_request(const Geometry& grid, const SampleBox& box, SampleType type, std::size_t bytes);
+
+}  // namespace palpate::stream

@@ -1,0 +1,22 @@
+// The kinds of stores, which open_store() chooses from. Private to stream/.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "palpate/stream/store.hpp"
+#include "stream/objects.hpp"
+
+namespace palpate::stream {
+
+/// Raw, NRRD, MetaImage and NIfTI files whose samples are not compressed.
+std::shared_ptr<const Store> open_plain_file(const std::string& path, const StoreOptions& options);
+
+/// Zarr below the objects' root; `address` is how messages name it.
+std::shared_ptr<const Store> open_zarr(std::shared_ptr<const Objects> objects,
+                                       const std::string& address, const StoreOptions& options);
+
+/// Throws io::InputError about options.time or options.channel that a store does not have.
+void check_choice(const StoreInfo& info, const StoreOptions& options);
+
+}  // namespace palpate::stream

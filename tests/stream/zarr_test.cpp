@@ -1,0 +1,299 @@
+// Zarr and OME-Zarr against an independent writer and reader, and damaged stores.
+#include <cstdlib>
+#include <filesystem>
+
+#include "io/real_volumes.hpp"
+#include "io/volume_support.hpp"
+#include "stream/store_support.hpp"
+
+namespace palpate::stream::test {
+namespace {
+
+namespace fs = std::filesystem;
+using io::test::real_volume;
+using support::bytes_of;
+using support::contains;
+using support::message_of;
+using support::put_bytes;
+using support::ScratchFolder;
+
+std::string reference(const std::string& arguments) {
+    return std::string(PALPATE_ZARR_PYTHON) + " -B " + PALPATE_STREAM_TESTS + "/zarr_reference.py " +
+           arguments;
+}
+
+/// What the independent writer has written, once for all tests.
+const fs::path& written() {
+    static const ScratchFolder folder;
+    static const bool done =
+        std::system(reference("write " + folder.path().string()).c_str()) == 0;
+    if (!done) throw std::runtime_error("python3-zarr does not work");
+    return folder.path();
+}
+
+/// The samples of a .raw file with stored numbers, as `type`.
+std::vector<std::byte> converted(const std::string& raw, io::Stored stored, SampleType type) {
+    const std::size_t count = raw.size() / io::size_of(stored);
+    std::vector<std::byte> samples(count * size_of(type));
+    io::convert(stored, reinterpret_cast<const std::byte*>(raw.data()), type, samples.data(), count);
+    return samples;
+}
+
+Volume expected_volume(const Geometry& grid, const std::string& raw, io::Stored stored) {
+    const auto samples =
+        std::make_shared<std::vector<std::byte>>(converted(raw, stored, io::kept_as(stored)));
+    return Volume(grid, io::kept_as(stored), std::shared_ptr<const void>(samples, samples->data()),
+                  samples->size());
+}
+
+/// By the bytes of a sample and the type that the store gives them.
+io::Stored stored_of(const Store& store, std::size_t each) {
+    using io::Stored;
+    switch (store.info().type) {
+        case SampleType::uint8:
+            return Stored::uint8;
+        case SampleType::int16:
+            return each == 1 ? Stored::int8 : Stored::int16;
+        case SampleType::uint16:
+            return Stored::uint16;
+        case SampleType::float32:
+            break;
+    }
+    if (each == 4) {
+        const auto& notes = store.info().notes;
+        const bool whole = !notes.empty() && contains(notes.front() + notes.back(), "int32");
+        return whole ? Stored::int32 : Stored::float32;
+    }
+    const auto& notes = store.info().notes;
+    const bool whole = !notes.empty() && contains(notes.front() + notes.back(), "uint64");
+    return whole ? Stored::uint64 : Stored::float64;
+}
+
+TEST(Zarr, every_type_codec_order_and_separator_reads_as_another_program_wrote_it) {
+    int stores = 0;
+    for (const auto& entry : fs::directory_iterator(written())) {
+        const std::string name = entry.path().filename().string();
+        if (!entry.is_directory() || name == "ome.zarr") continue;
+        SCOPED_TRACE(name);
+        ASSERT_TRUE(is_store(entry.path()));
+        const auto store = open_store(entry.path());
+        const Geometry& grid = store->info().levels.at(0).geometry;
+        EXPECT_EQ(grid.size, Index3(17, 13, 11));
+        EXPECT_EQ(store->info().levels[0].chunk, Index3(6, 5, 4));
+        const std::string raw = bytes_of(entry.path().string() + ".raw");
+        const std::size_t each = raw.size() / static_cast<std::size_t>(sample_count(grid));
+        expect_same_boxes(*store, expected_volume(grid, raw, stored_of(*store, each)), 1);
+        ++stores;
+    }
+    EXPECT_EQ(stores, 42 + 1 + 6 + 3);
+}
+
+TEST(Zarr, a_chunk_that_is_not_stored_has_the_fill_value) {
+    const auto store = open_store(written() / "v2-missing.zarr");
+    EXPECT_EQ(store->info().fill, -7);
+    const auto bytes = read_box(*store, 0, {Index3(0, 12, 10), Index3(0, 12, 10)});
+    std::int16_t value = 0;
+    std::memcpy(&value, bytes.data(), sizeof value);
+    EXPECT_EQ(value, -7);
+}
+
+TEST(OmeZarr, channel_time_scale_and_translation_of_each_level_are_those_of_its_metadata) {
+    for (int time = 0; time < 2; ++time) {
+        for (int channel = 0; channel < 3; ++channel) {
+            StoreOptions options;
+            options.time = time;
+            options.channel = channel;
+            const auto store = open_store(written() / "ome.zarr", options);
+            const StoreInfo& info = store->info();
+            EXPECT_EQ(info.format, "OME-Zarr 0.4");
+            EXPECT_EQ(info.times, 2);
+            EXPECT_DOUBLE_EQ(info.frame_interval, 0.04);
+            EXPECT_EQ(info.channels,
+                      (std::vector<std::string>{"nuclei", "membrane", "channel 2"}));
+            ASSERT_EQ(info.levels.size(), 2U);
+            EXPECT_TRUE(info.levels[0].geometry.spacing.isApprox(Vec3(2e-3, 4e-3, 6e-3)));
+            EXPECT_TRUE(info.levels[1].geometry.spacing.isApprox(Vec3(4e-3, 8e-3, 12e-3)));
+            EXPECT_TRUE(info.levels[0].geometry.origin.isApprox(Vec3(30e-3, 20e-3, 10e-3)));
+            EXPECT_TRUE(info.levels[1].geometry.origin.isApprox(Vec3(31e-3, 22e-3, 13e-3)));
+            for (int level = 0; level < 2; ++level) {
+                const std::string raw =
+                    bytes_of(written() / ("ome-" + std::to_string(level) + "-" +
+                                          std::to_string(time) + "-" + std::to_string(channel) + ".raw"));
+                expect_same_boxes(
+                    *store,
+                    expected_volume(info.levels[static_cast<std::size_t>(level)].geometry, raw,
+                                    io::Stored::uint16),
+                    2, level);
+            }
+        }
+    }
+    StoreOptions beyond;
+    beyond.channel = 3;
+    const std::string message = message_of<io::InputError>(
+        [&] { (void)open_store(written() / "ome.zarr", beyond); });
+    EXPECT_TRUE(contains(message, "no channel 3: it has 3"));
+}
+
+TEST(OmeZarr, a_spacing_that_is_given_is_that_of_the_finest_level) {
+    StoreOptions options;
+    options.spacing = Vec3(1, 2, 3);
+    const auto store = open_store(written() / "ome.zarr", options);
+    EXPECT_TRUE(store->info().levels[0].geometry.spacing.isApprox(Vec3(1, 2, 3)));
+    EXPECT_TRUE(store->info().levels[1].geometry.spacing.isApprox(Vec3(2, 4, 6)));
+}
+
+/// The first array of a Zarr 2 image by python3-zarr, and of its twin of version 3 by us.
+void expect_same_as_reference(const fs::path& v4, const fs::path& v5) {
+    const ScratchFolder folder;
+    for (const char* level : {"0", "1"}) {
+        const std::string raw = folder / "level.raw";
+        ASSERT_EQ(std::system(reference("dump " + v4.string() + " " + level + " > " + raw).c_str()), 0);
+        const std::string samples = bytes_of(raw);
+        for (const fs::path& path : {v4, v5}) {
+            SCOPED_TRACE(path);
+            std::size_t at = 0;
+            const auto first = open_store(path);
+            const auto channels = std::max<std::size_t>(1, first->info().channels.size());
+            for (std::size_t i = 0; i < static_cast<std::size_t>(first->info().times) * channels; ++i) {
+                StoreOptions options;
+                options.time = static_cast<int>(i / channels);
+                options.channel = static_cast<int>(i % channels);
+                const auto store = open_store(path, options);
+                const Geometry& grid = store->info().levels.at(level[0] == '0' ? 0 : 1).geometry;
+                const auto bytes = static_cast<std::size_t>(sample_count(grid)) * size_of(store->info().type);
+                const Volume read = volume_of(*store, level[0] - '0');
+                ASSERT_LE(at + bytes, samples.size());
+                EXPECT_EQ(std::memcmp(read.data(), samples.data() + at, bytes), 0);
+                at += bytes;
+            }
+            EXPECT_EQ(at, samples.size());
+        }
+    }
+}
+
+TEST(OmeZarr, public_samples_of_both_versions_read_as_python_reads_them) {
+    const fs::path data = real_volume("zarr");
+    if (!fs::exists(data)) GTEST_SKIP() << "no sample stores";
+    for (const char* kind : {"3d_testing/xyz", "3d_testing/xyt", "3d_testing/xyc"}) {
+        expect_same_as_reference(data / kind / "3d_dataset_v4.ome.zarr",
+                                 data / kind / "3d_dataset_v5.ome.zarr");
+    }
+    for (const char* kind : {"4d_testing/xyzc", "4d_testing/xyzt", "4d_testing/xyct"}) {
+        expect_same_as_reference(data / kind / "4d_dataset_v4.ome.zarr",
+                                 data / kind / "4d_dataset_v5.ome.zarr");
+    }
+    expect_same_as_reference(data / "pyramid_testing/pyramid_v4.zarr",
+                             data / "pyramid_testing/pyramid_v5.zarr");
+    const auto series = open_store(data / "bioformats2raw_testing/bf2raw_dataset_v5.ome.zarr");
+    ASSERT_FALSE(series->info().notes.empty());
+    EXPECT_TRUE(contains(series->info().notes.front(), "series 0 was taken; others are 1"));
+    EXPECT_EQ(series->info().levels.size(), 2U);
+    (void)volume_of(*series);
+}
+
+/// Opens and reads all of a store; true if it did, false if it was refused in one line.
+bool read_or_refused(const fs::path& path) {
+    try {
+        const auto store = open_store(path);
+        if (sample_count(store->info().levels[0].geometry) < 100'000) (void)volume_of(*store);
+        return true;
+    } catch (const io::InputError& error) {
+        EXPECT_TRUE(io::test::one_line_about(error.what(), path) ||
+                    contains(error.what(), path.string() + "/"))
+            << error.what();
+    }
+    return false;
+}
+
+TEST(Zarr, mutated_and_truncated_stores_are_refused_in_one_line_or_read) {
+    std::mt19937 random(11);
+    int refused = 0, tried = 0;
+    for (const char* name : {"v2-5-gzip.zarr", "v2-12-lz4.zarr", "v2-17-blosc-lz4.zarr", "v3-2.zarr",
+                             "v3-shards-0.zarr", "v3-shards-1.zarr", "ome.zarr"}) {
+        if (!fs::exists(written() / name)) ADD_FAILURE() << name;
+        std::vector<fs::path> files;
+        for (const auto& entry : fs::recursive_directory_iterator(written() / name)) {
+            if (entry.is_regular_file()) files.push_back(entry.path());
+        }
+        std::ranges::sort(files);
+        for (int i = 0; i < 60; ++i) {
+            const fs::path& file = files[random() % files.size()];
+            const std::string good = bytes_of(file);
+            std::string bad = good;
+            if (i % 3 == 0) {
+                bad.resize(random() % good.size());
+            } else {
+                for (int flips = 0; flips < 1 + i % 4; ++flips) {
+                    bad[random() % bad.size()] = static_cast<char>(random());
+                }
+            }
+            put_bytes(file, bad);
+            refused += !read_or_refused(written() / name);
+            ++tried;
+            put_bytes(file, good);
+        }
+    }
+    EXPECT_GT(refused, tried / 3);
+    EXPECT_EQ(tried, 420);
+}
+
+struct Hostile {
+    const char* what;
+    const char* from;
+    const char* to;
+};
+
+TEST(Zarr, impossible_metadata_are_refused_with_what_is_wrong) {
+    const ScratchFolder folder;
+    const std::string good =
+        R"({"zarr_format":2,"shape":[4,4,4],"chunks":[4,4,4],"dtype":"|u1","compressor":null,)"
+        R"("fill_value":0,"order":"C","filters":null})";
+    const auto refusal = [&](const std::string& from, const std::string& to) {
+        std::string text = good;
+        text.replace(text.find(from), from.size(), to);
+        fs::create_directories(folder / "a.zarr");
+        put_bytes(folder / "a.zarr/.zarray", text);
+        return message_of<io::InputError>([&] { (void)open_store(folder / "a.zarr"); });
+    };
+    for (const auto& [what, from, to] : std::initializer_list<Hostile>{
+             {"not possible", R"("shape":[4,4,4])", R"("shape":[4,-4,4])"},
+             {"2^30", R"("shape":[4,4,4])", R"("shape":[4,4,10000000000])"},
+             {"1 GiB", R"("chunks":[4,4,4])", R"("chunks":[100000,100000,4])"},
+             {"no list of whole numbers", R"("chunks":[4,4,4])", R"("chunks":[4,4.5,4])"},
+             {"do not agree", R"("chunks":[4,4,4])", R"("chunks":[4,4])"},
+             {"cannot be felt", "|u1", "<c8"},
+             {"cannot be felt", "|u1", "<f2"},
+             {"codec 'bz2' is not read", R"("compressor":null)", R"("compressor":{"id":"bz2"})"},
+             {"codec 'delta' is not read", R"("filters":null)", R"("filters":[{"id":"delta"}])"},
+             {"order", R"("order":"C")", R"("order":"Z")"},
+             {"is not JSON", "{", "{{"},
+             {"lack what they need", R"("chunks":)", R"("chunk":)"}}) {
+        EXPECT_TRUE(contains(refusal(from, to), what)) << refusal(from, to);
+    }
+}
+
+TEST(Zarr, a_small_chunk_that_unpacks_to_gigabytes_is_refused_at_its_declared_size) {
+    const ScratchFolder folder;
+    fs::create_directories(folder / "a.zarr");
+    put_bytes(folder / "a.zarr/.zarray",
+              R"({"zarr_format":2,"shape":[4,4,4],"chunks":[4,4,4],"dtype":"|u1",)"
+              R"("compressor":{"id":"gzip"},"fill_value":0,"order":"C","filters":null})");
+    io::test::put_gzip(folder / "a.zarr/0.0.0", std::string(50'000, '\0'));
+    const auto store = open_store(folder / "a.zarr");
+    const std::string message = message_of<io::InputError>([&] { (void)volume_of(*store); });
+    EXPECT_TRUE(contains(message, "unpacks to more than the 64 bytes")) << message;
+}
+
+TEST(OmeZarr, a_level_outside_of_the_folder_is_refused) {
+    const ScratchFolder folder;
+    fs::create_directories(folder / "a.zarr");
+    put_bytes(folder / "a.zarr/.zgroup", R"({"zarr_format":2})");
+    put_bytes(folder / "a.zarr/.zattrs",
+              R"({"multiscales":[{"axes":["z","y","x"],"datasets":[{"path":"../secret"}]}]})");
+    const std::string message =
+        message_of<io::InputError>([&] { (void)open_store(folder / "a.zarr"); });
+    EXPECT_TRUE(contains(message, "leads out of it")) << message;
+}
+
+}  // namespace
+}  // namespace palpate::stream::test
