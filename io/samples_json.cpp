@@ -103,6 +103,32 @@ FramesOf frames_from(const Json& json) {
     return frames;
 }
 
+BricksOf bricks_from(const Json& json) {
+    BricksOf bricks{whole(json, "of"), {}};
+    const Json& list = member(json, "bricks");
+    if (!list.is_array()) wrong("bricks");
+    for (const Json& each : list) {
+        if (!each.is_array() || each.size() != 4) wrong("bricks");
+        std::array<int, 4> numbers{};
+        for (std::size_t i = 0; i < 4; ++i) {
+            if (!each[i].is_number_integer()) wrong("bricks");
+            const auto number = each[i].get<std::int64_t>();
+            if (number < -1 || number > 1 << 30) wrong("bricks");
+            numbers[i] = static_cast<int>(number);
+        }
+        bricks.bricks.push_back({{numbers[0], numbers[1], numbers[2]}, numbers[3]});
+    }
+    return bricks;
+}
+
+Json json_of(const BricksOf& bricks) {
+    Json list = Json::array();
+    for (const BricksOf::Brick& brick : bricks.bricks) {
+        list.push_back({brick.at[0], brick.at[1], brick.at[2], brick.level});
+    }
+    return list;
+}
+
 }  // namespace
 
 Json to_json(const command::Samples& samples) {
@@ -111,6 +137,11 @@ Json to_json(const command::Samples& samples) {
     if (const auto* made = std::get_if<EditOf>(samples.recipe.get())) {
         json["of"] = made->version;
         json["edit"] = json_of(made->edit);
+        return json;
+    }
+    if (const auto* bricks = std::get_if<BricksOf>(samples.recipe.get())) {
+        json["of"] = bricks->version;
+        json["bricks"] = json_of(*bricks);
         return json;
     }
     const auto& frames = std::get<FramesOf>(*samples.recipe);
@@ -125,6 +156,10 @@ command::Samples samples_command_from_json(const Json& json) {
     samples.version = whole(json, "version");
     if (json.contains("frames")) {
         samples.recipe = std::make_shared<const Recipe>(frames_from(json));
+        return samples;
+    }
+    if (json.contains("bricks")) {
+        samples.recipe = std::make_shared<const Recipe>(bricks_from(json));
         return samples;
     }
     if (!json.contains("edit")) return samples;

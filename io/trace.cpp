@@ -57,7 +57,9 @@ TraceRow trace_row(const Tick& tick) {
             tick.update_ns,
             tick.layers,
             tick.tool,
-            tick.torque};
+            tick.torque,
+            tick.proxy.status == UpdateStatus::waiting,
+            tick.proxy.level};
 }
 
 TraceWriter::TraceWriter(const std::filesystem::path& path,
@@ -67,6 +69,7 @@ TraceWriter::TraceWriter(const std::filesystem::path& path,
     file_.write(trace_header);
     if (!extras_.layer_names.empty()) file_.write(",layer,inside");
     if (extras_.tool) file_.write(tool_header);
+    if (extras_.streamed) file_.write(",waiting,level");
     file_.write("\n");
 }
 
@@ -75,6 +78,10 @@ void TraceWriter::add(const TraceRow& row) {
     append_row(line_, row);
     if (!extras_.layer_names.empty()) append_layers(line_, row.layers, extras_.layer_names);
     if (extras_.tool) append_tool(line_, row);
+    if (extras_.streamed) {
+        append_cell(line_, std::int64_t{row.waiting});
+        append_cell(line_, std::int64_t{row.level});
+    }
     line_ += '\n';
     file_.write(line_);
 }

@@ -1,4 +1,4 @@
-// Data with either an editor or a player.
+// Data with an editor, a player or a streamer.
 #include "palpate/run/data.hpp"
 
 #include <stdexcept>
@@ -14,8 +14,10 @@ void check_volume_name(const std::string& path, const Geometry& geometry) {
 }
 
 Data::Data(LoadedVolume loaded, const PlaybackSetup& playback)
-    : loaded_(std::move(loaded)), start_(std::make_shared<const Samples>(loaded_.volume)) {
-    if (loaded_.live) {
+    : loaded_(std::move(loaded)), start_(start_samples(loaded_)) {
+    if (loaded_.streamed) {
+        streamer_ = std::make_unique<Streamer>(loaded_);
+    } else if (loaded_.live) {
         player_ = std::make_unique<Player>(loaded_.live);
     } else if (loaded_.sequence.count() > 1) {
         player_ = std::make_unique<Player>(loaded_.sequence, playback.loader);
@@ -27,6 +29,7 @@ Data::Data(LoadedVolume loaded, const PlaybackSetup& playback)
 
 VolumeEditor& Data::editor() const {
     if (editor_) return *editor_;
+    if (streamer_) throw std::invalid_argument("a volume that is read as it is felt is not edited");
     throw std::invalid_argument(
         "a sequence cannot be edited: open one frame of it by its time step");
 }
@@ -38,10 +41,12 @@ Player& Data::player() const {
 
 void Data::update(Field& field) const {
     if (player_) return player_->apply_position(field);
+    if (streamer_) return field.use(streamer_->samples());
     field.use(editor_->state().samples);
 }
 
 std::unique_ptr<Servo> Data::attach(Session session, const StartServo& start) {
+    if (streamer_) return streamer_->attach(std::move(session), start);
     return player_ ? player_->attach(std::move(session), start)
                    : editor_->attach(std::move(session), start);
 }
@@ -49,13 +54,22 @@ std::unique_ptr<Servo> Data::attach(Session session, const StartServo& start) {
 void Data::detach(const Servo& servo) {
     if (editor_) editor_->detach(servo);
     if (player_) player_->detach(servo);
+    if (streamer_) streamer_->detach(servo);
+}
+
+stream::BrickLoaderStatus Data::streaming() const {
+    return streamer_ ? streamer_->status() : stream::BrickLoaderStatus{};
 }
 
 std::string Data::problem() const {
+    if (streamer_) return streamer_->status().problem;
     return player_ ? player_->state().problem : editor_->state().problem;
 }
 
 std::string Data::save(const std::filesystem::path& path, const io::Progress& progress) {
+    if (streamer_) {
+        throw std::invalid_argument("it is read as it is felt: palpate convert copies it");
+    }
     Field now(start_);
     update(now);
     io::WriteOptions options;

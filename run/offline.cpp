@@ -102,14 +102,50 @@ void finish(OfflineSummary& summary, std::vector<std::int64_t>& times) {
     summary.max_ns = times.back();
 }
 
+/// How far from the hand [mm] a tick may look at samples.
+double reach_of(const Renderer& renderer, const Vec3& hip, const Quaternion& turned) {
+    if (const auto& tool = renderer.settings.tool) {
+        const ToolProxy& proxy = *renderer.tool_proxy;
+        if (!proxy.placed) return tool->radius();
+        const double turn =
+            tool->gyration() * rotation_between(proxy.pose.orientation, turned).norm();
+        return std::hypot((proxy.pose.position - hip).norm(), turn) + tool->radius();
+    }
+    double reach = renderer.proxy.placed ? (renderer.proxy.scp_physical - hip).norm() : 0;
+    if (renderer.layers.moved) reach += (renderer.layers.hip - hip).norm();
+    return reach;
+}
+
 }  // namespace
+
+std::function<void(Renderer&, std::int64_t)> wait_for_bricks(const LoadedVolume& loaded,
+                                                             const io::Trajectory& trajectory) {
+    if (!loaded.streamed) return {};
+    const auto loader = std::make_shared<stream::BrickLoader>(loaded.streamed->store, loaded.volume,
+                                                              loaded.streamed->loader);
+    return [loader, &trajectory](Renderer& renderer, std::int64_t tick) {
+        const auto at = static_cast<std::size_t>(tick);
+        const Vec3& hip = trajectory.position[at];
+        const Quaternion turned =
+            trajectory.orientation.empty() ? Quaternion::Identity() : trajectory.orientation[at];
+        const double reach = reach_of(renderer, hip, turned);
+        if (is_resident(renderer.field, hip, reach)) return;
+        loader->wait_for(hip, reach);
+        if (const auto version = loader->take()) {
+            field_will_change(renderer.proxy, renderer.field);
+            renderer.field.use(version->samples);
+        }
+    };
+}
 
 OfflineSummary render_offline(Renderer& renderer, const io::Trajectory& trajectory,
                               const OfflineSinks& sinks) {
     const Vec3& first = trajectory.position.front();
     const auto& layers = renderer.settings.layers;
     const bool has_surfaces = layers && !layers->layers.empty();  // they place the proxy themselves
-    if (!has_surfaces && !place(renderer.proxy, renderer.field, first, renderer.proxy.isovalue)) {
+    const bool streamed = renderer.field.samples().resident() != nullptr;
+    if (!has_surfaces && !streamed &&
+        !place(renderer.proxy, renderer.field, first, renderer.proxy.isovalue)) {
         throw std::invalid_argument(
             "no free space was found at this isovalue: everything is solid; choose another "
             "isovalue or background");
@@ -124,7 +160,9 @@ OfflineSummary render_offline(Renderer& renderer, const io::Trajectory& trajecto
     const PoseObserver pose_observer{&PoseTap::on_pose, &pose_tap};
     const bool has_tool = renderer.settings.tool != nullptr;
     const bool watches = has_tool ? sinks.corner || sinks.pose : bool(sinks.corner);
-    if (sinks.corner && !has_surfaces && !has_tool) sinks.corner(0, renderer.proxy.scp_physical);
+    if (sinks.corner && !has_surfaces && !has_tool && !streamed) {
+        sinks.corner(0, renderer.proxy.scp_physical);
+    }
     const auto count = static_cast<std::int64_t>(trajectory.time.size());
     for (std::int64_t i = 0; i < count; ++i) {
         tap.tick = pose_tap.tick = i;

@@ -16,9 +16,16 @@ std::function<Volume(int)> frames_of(const LoadedVolume& loaded) {
     };
 }
 
+BrickReader bricks_of(const LoadedVolume& loaded) {
+    if (!loaded.streamed) return {};
+    auto loader = std::make_shared<stream::BrickLoader>(loaded.streamed->store, loaded.volume,
+                                                        loaded.streamed->loader);
+    return [loader](const Index3& brick, int level) { return loader->read(brick, level); };
+}
+
 RecordedSamples::RecordedSamples(std::shared_ptr<const Samples> start,
-                                 std::function<Volume(int)> frame)
-    : kept_{{0, std::move(start)}}, frame_(std::move(frame)) {}
+                                 std::function<Volume(int)> frame, BrickReader brick)
+    : kept_{{0, std::move(start)}}, frame_(std::move(frame)), brick_(std::move(brick)) {}
 
 Command RecordedSamples::whole(const Command& recorded) {
     return std::visit(Overloaded{[&](command::Samples samples) -> Command {
@@ -37,8 +44,33 @@ std::shared_ptr<const Samples> RecordedSamples::made(const command::Samples& rec
     }
     return std::visit(
         Overloaded{[&](const FramesOf& frames) { return frames_of(frames); },
+                   [&](const BricksOf& bricks) { return bricks_of(bricks, recorded.version); },
                    [&](const EditOf& edit) { return edit_of(edit, recorded.version); }},
         *recorded.recipe);
+}
+
+std::shared_ptr<const Samples> RecordedSamples::bricks_of(const BricksOf& bricks,
+                                                          std::uint64_t version) {
+    if (!brick_) throw std::invalid_argument("bricks of a large grid, which the volume is not");
+    const std::shared_ptr<const Samples> before = bricks_ ? bricks_ : kept_.at(0);
+    if (bricks.version != bricks_version_) {
+        throw std::invalid_argument("bricks after version " + std::to_string(bricks.version) +
+                                    ", but the last was " + std::to_string(bricks_version_));
+    }
+    std::vector<ResidentBricks::Change> changes;
+    for (const BricksOf::Brick& brick : bricks.bricks) {
+        const Index3& count = before->resident()->count();
+        if ((brick.at.array() < 0).any() || (brick.at.array() >= count.array()).any()) {
+            throw std::invalid_argument("a brick outside the grid");
+        }
+        changes.push_back(
+            {brick.at, brick.level < 0 ? ResidentBrick{} : brick_(brick.at, brick.level)});
+    }
+    bricks_ = std::make_shared<const Samples>(before->volume(), before->geometry(),
+                                              before->resident()->with(changes), before->minimum(),
+                                              before->maximum());
+    bricks_version_ = version;
+    return bricks_;
 }
 
 std::shared_ptr<const Samples> RecordedSamples::edit_of(const EditOf& edit, std::uint64_t version) {
@@ -119,6 +151,7 @@ std::shared_ptr<const Samples> RecordedSamples::frames_of(const FramesOf& frames
 
 std::shared_ptr<const Samples> RecordedSamples::of(std::uint64_t version) {
     if (frames_) return frames_;
+    if (bricks_) return bricks_;
     const auto samples = made_again(version);
     return samples ? samples : kept_.at(0);
 }

@@ -16,7 +16,10 @@ namespace palpate::run {
 namespace {
 
 std::string volume_name(const std::string& recorded, const std::filesystem::path& recording) {
-    if (recorded.starts_with("synthetic:") || std::filesystem::exists(recorded)) return recorded;
+    if (recorded.starts_with("synthetic:") || is_web_address(recorded) ||
+        std::filesystem::exists(recorded)) {
+        return recorded;
+    }
     std::string name = recorded;
     while (name.size() > 1 && name.back() == '/') name.pop_back();  // a folder
     const auto beside = recording.parent_path() / std::filesystem::path(name).filename();
@@ -101,10 +104,10 @@ Session recorded_session(const io::RecordingHead& head, const LoadedVolume& load
         settings.method = baselines::method_named(head.method);
         settings.layers = with_labels(settings.layers, recording);
         check(head.session);
-        Session session{
-            make_renderer(Field(loaded.volume, head.solid, head.background, head.interpolation),
-                          head.isovalue, settings),
-            head.session};
+        Session session{make_renderer(Field(start_samples(loaded), head.solid, head.background,
+                                            head.interpolation),
+                                      head.isovalue, settings),
+                        head.session};
         make_room_for_tools(session.renderer);
         return session;
     } catch (const std::invalid_argument& e) {
@@ -146,7 +149,7 @@ Replay::Replay(io::RecordingReader& reader, const LoadedVolume& loaded, std::str
       recording_(std::move(recording)),
       session_(recorded_session(reader.head(), loaded, recording_)),
       start_(session_.renderer.settings),
-      samples_(session_.renderer.field.shared_samples(), frames_of(loaded)) {}
+      samples_(session_.renderer.field.shared_samples(), frames_of(loaded), bricks_of(loaded)) {}
 
 void Replay::carry_out(const Command& recorded) {
     try {

@@ -120,6 +120,36 @@ LoadedVolume loaded_of(const FileSource& file, const Source& source, const io::P
     return loaded;
 }
 
+LoadedVolume loaded_of(const StoreSource& from, const Source& source,
+                       const io::Progress& progress) {
+    if (source.smooth > 0 || source.dequantize > 0 || source.prefilter) {
+        throw std::invalid_argument(from.address +
+                                    ": is felt while it is read, so it cannot be smoothed, "
+                                    "dequantized or sharpened");
+    }
+    stream::StoreOptions options = from.options;
+    options.time = source.frame.value_or(0);
+    std::shared_ptr<const stream::Store> store = stream::open_store(from.address, options);
+    const stream::StoreInfo& info = store->info();
+    if (progress) progress(0.1);
+    LoadedVolume loaded = loaded_from(stream::overview_of(*store), source);
+    loaded.format = info.format;
+    loaded.notes = info.notes;
+    loaded.time_steps = info.times;
+    const Index3& size = loaded.volume.geometry().size;
+    loaded.notes.push_back(
+        "it is read as it is felt; pictures, histogram and suggested levels are "
+        "of an overview of " +
+        std::to_string(size[0]) + " x " + std::to_string(size[1]) + " x " +
+        std::to_string(size[2]) + " samples");
+    if (!info.range) {
+        loaded.notes.emplace_back("its range is estimated from that overview");
+    }
+    loaded.streamed = StreamedVolume{std::move(store), from.loader};
+    start_samples(loaded);  // says now what is wrong with the level
+    return loaded;
+}
+
 /// What is done to every frame before anything else sees it.
 class Preparation {
   public:
@@ -158,6 +188,12 @@ class Preparation {
 };
 
 }  // namespace
+
+std::shared_ptr<const Samples> start_samples(const LoadedVolume& loaded) {
+    if (!loaded.streamed) return std::make_shared<const Samples>(loaded.volume);
+    return stream::empty_samples(*loaded.streamed->store, loaded.volume,
+                                 loaded.streamed->loader.level);
+}
 
 LoadedVolume load(const Source& source, const io::Progress& progress) {
     const Preparation prepare(source);

@@ -1,4 +1,6 @@
 // Sources as the names and values that recordings and session files keep.
+#include <filesystem>
+#include <optional>
 #include <stdexcept>
 #include <string_view>
 
@@ -48,6 +50,12 @@ void add_names(Names& names, const SyntheticSource& synthetic) {
 
 void add_names(Names&, const LiveSource&) {}
 
+void add_names(Names& names, const StoreSource& store) {
+    add_names(names, FileSource{{}, store.options.raw, store.options.spacing, {}});
+    names["level"] = std::to_string(store.loader.level);
+    if (store.options.channel > 0) names["channel"] = std::to_string(store.options.channel);
+}
+
 /// What only files have.
 FileSource with_layout(FileSource file, const Names& names) {
     const std::string dims = value_of(names, "dims"), type = value_of(names, "type");
@@ -64,6 +72,40 @@ FileSource with_layout(FileSource file, const Names& names) {
     if (!spacing.empty()) file.spacing = io::spacing_from(spacing);
     file.series = value_of(names, "series");
     return file;
+}
+
+/// A plain file of at least this size is read as it is felt [bytes].
+constexpr std::uintmax_t large_file = std::uintmax_t{2} << 30;
+
+bool is_large(const std::string& path) {
+    std::error_code error;
+    const std::uintmax_t size = std::filesystem::file_size(path, error);
+    return !error && size >= large_file;
+}
+
+int count_of(const Names& names, const char* name) {
+    return io::number_from<int>(value_of(names, name)).value_or(0);
+}
+
+/// The store that a file, folder or address is read as; nothing: it is read as a whole.
+std::optional<StoreSource> store_of(const FileSource& file, const Names& names) {
+    stream::StoreOptions options;
+    options.raw = file.raw;
+    options.spacing = file.spacing;
+    options.channel = count_of(names, "channel");
+    const bool asked = names.contains("level") || names.contains("memory");
+    const bool chunked = is_web_address(file.path) || std::filesystem::is_directory(file.path) ||
+                         std::filesystem::path(file.path).extension() == ".ims";
+    if (!asked && !chunked && !is_large(file.path)) return std::nullopt;
+    if (!is_web_address(file.path) && !stream::is_store(file.path, options)) {
+        if (!asked) return std::nullopt;
+        throw std::invalid_argument(file.path +
+                                    ": level and memory are for what can be read in parts "
+                                    "(docs/streaming.md); this is read as a whole");
+    }
+    StoreSource store{file.path, options, {}};
+    store.loader.level = count_of(names, "level");
+    return store;
 }
 
 SyntheticSource with_type(SyntheticSource synthetic, const Names& names) {
@@ -89,9 +131,14 @@ struct NameOf {
     std::string operator()(const LiveSource& live) const {
         return std::string(live_prefix) + live.path;
     }
+    std::string operator()(const StoreSource& store) const { return store.address; }
 };
 
 }  // namespace
+
+bool is_web_address(const std::string& name) {
+    return name.starts_with("http://") || name.starts_with("https://") || name.starts_with("s3://");
+}
 
 std::string name_of(const Source& source) {
     return std::visit(NameOf{}, source.from);
@@ -124,6 +171,7 @@ Source source_from(const std::map<std::string, std::string>& names) {
     Source source = source_named(value_of(names, "volume"));
     if (auto* file = std::get_if<FileSource>(&source.from)) {
         *file = with_layout(std::move(*file), names);
+        if (auto store = store_of(*file, names)) source.from = std::move(*store);
     } else if (auto* synthetic = std::get_if<SyntheticSource>(&source.from)) {
         *synthetic = with_type(std::move(*synthetic), names);
     }

@@ -58,7 +58,8 @@ void check(const ChunkedArray& array) {
     const std::size_t axes = array.axes();
     if (axes < 1 || axes > most_axes || array.chunk.size() != axes ||
         array.stored_axes.size() != axes) {
-        throw std::invalid_argument("its axes and those of its chunks do not agree, or are not 1 to 8");
+        throw std::invalid_argument(
+            "its axes and those of its chunks do not agree, or are not 1 to 8");
     }
     for (std::size_t a = 0; a < axes; ++a) {
         if (array.shape[a] < 1 || array.shape[a] > std::int64_t{1} << 40 || array.chunk[a] < 1 ||
@@ -67,7 +68,8 @@ void check(const ChunkedArray& array) {
         }
     }
     if (rough_product(array.chunk) * static_cast<double>(array.bytes.size()) > most_chunk_bytes) {
-        throw std::invalid_argument("its chunks have more than 1 GiB each; store it in smaller ones");
+        throw std::invalid_argument(
+            "its chunks have more than 1 GiB each; store it in smaller ones");
     }
     if (!array.shards) return;
     for (const std::int64_t count : array.shards->chunks) {
@@ -108,7 +110,8 @@ std::optional<Bytes> ChunkReader::packed(std::span<const std::int64_t> index, st
     std::size_t inside = 0;
     for (std::size_t a = 0; a < shard.size(); ++a) {
         const std::int64_t count = array_.shards->chunks[a];
-        inside = inside * static_cast<std::size_t>(count) + static_cast<std::size_t>(index[a] % count);
+        inside =
+            inside * static_cast<std::size_t>(count) + static_cast<std::size_t>(index[a] % count);
         shard[a] /= count;
     }
     key = key_of(array_, shard);

@@ -20,8 +20,8 @@ std::string flaw_in_count(const std::string& text) {
 void SourceOptions::add_to(CLI::App& command, bool optional) {
     auto* positional =
         command.add_option("VOLUME", volume(),
-                           "File, folder, series (heart_%03d.nrrd), synthetic:NAME[:WxHxD], or "
-                           "live:FILE");
+                           "File, folder, series (heart_%03d.nrrd), web address of a store, "
+                           "synthetic:NAME[:WxHxD], or live:FILE");
     if (!optional) positional->required();
     const auto text = [&](const char* name, const char* help) {
         return command.add_option(std::string("--") + name, texts[name], help);
@@ -59,7 +59,31 @@ void SourceOptions::add_to(CLI::App& command, bool optional) {
     command.add_flag("--prefilter", prefilter,
                      "Sharpen the samples so that thin structures keep their height in the smooth "
                      "field; they become float32");
+    add_streaming_to(command);
     command.add_flag("-q,--quiet", quiet, "No progress, no notes");
+}
+
+void SourceOptions::add_streaming_to(CLI::App& command) {
+    command
+        .add_option(
+            "--level", texts["level"],
+            "Level of detail to feel of a store with several, 0 the finest; a plain file is "
+            "then read as it is felt")
+        ->type_name("UINT")
+        ->check(flaw_in_count);
+    command.add_option("--channel", texts["channel"], "Channel of a store, from 0")
+        ->type_name("UINT")
+        ->check(flaw_in_count);
+    command
+        .add_option("--memory", memory,
+                    "Most memory that what is felt may take (512MB); a plain file is then read as "
+                    "it is felt")
+        ->transform(CLI::AsSizeValue(false));
+    command.add_flag("--coarse-first", coarse_first,
+                     "Feel a coarser level where the one that is felt has not come yet");
+    command.add_option("--cache", cache_folder, "Folder that keeps what came over the network");
+    command.add_option("--cache-size", cache_bytes, "Most that this folder keeps (4GB)")
+        ->transform(CLI::AsSizeValue(false));
 }
 
 run::Source SourceOptions::source() const {
@@ -68,7 +92,14 @@ run::Source SourceOptions::source() const {
     if (given.contains("skip") && !io::number_from<std::uint64_t>(given["skip"])) {
         throw std::invalid_argument("--skip " + given["skip"] + ": no file is that long");
     }
+    if (memory) given["memory"] = "yes";
     run::Source source = run::source_from(given);
+    if (auto* store = std::get_if<run::StoreSource>(&source.from)) {
+        if (memory) store->loader.memory = *memory;
+        store->loader.coarse_first = coarse_first;
+        store->options.cache_folder = cache_folder;
+        store->options.cache_bytes = cache_folder.empty() ? 0 : cache_bytes;
+    }
     source.frame = frame;
     source.frame_interval = frame_interval;
     source.smooth = smooth;

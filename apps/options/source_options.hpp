@@ -18,11 +18,17 @@ struct SourceOptions {
     std::optional<double> frame_interval;  ///< [s]
     int smooth = 0;
     bool prefilter = false;
-    int dequantize = 0;  ///< rounds
+    int dequantize = 0;                   ///< rounds
+    std::optional<std::uint64_t> memory;  ///< [bytes] of bricks; given: read as it is felt
+    bool coarse_first = false;
+    std::string cache_folder;
+    std::uint64_t cache_bytes = std::uint64_t{4} << 30;
     bool quiet = false;
 
     /// Declares VOLUME and its options on a command. An `optional` VOLUME has a default.
     void add_to(CLI::App& command, bool optional = false);
+    /// Declares those of volumes that are read as they are felt. Called by add_to().
+    void add_streaming_to(CLI::App& command);
     /// VOLUME; empty where it was not given and has no default.
     std::string& volume() { return texts["volume"]; }
     const std::string& name() const { return texts.at("volume"); }

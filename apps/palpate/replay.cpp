@@ -124,15 +124,17 @@ void replay(const ReplayOptions& options) {
     const io::Trajectory trajectory = io::parse_trajectory(
         io::read_text(options.trajectory, stop_if_interrupted), options.trajectory);
     const run::LoadedVolume loaded = load_for_terminal(options.source);
-    const Field field =
-        run::make_field(loaded.volume, options.field, options.render.given.method.method);
+    const Field field = run::make_field(run::start_samples(loaded), options.field,
+                                        options.render.given.method.method);
     const run::RenderSetup render = options.render.setup();
     const double isovalue = required_isovalue(loaded, field, options.field, render);
     Renderer renderer =
         make_renderer(field, isovalue, run::offline_settings(render, field, isovalue));
 
     const bool has_tool = renderer.settings.tool != nullptr;
-    io::TraceWriter trace(options.output, {}, {names_of(renderer.settings.layers), has_tool});
+    io::TraceWriter trace(
+        options.output, {},
+        {names_of(renderer.settings.layers), has_tool, loaded.streamed.has_value()});
     std::optional<io::PathWriter> path;
     if (!options.path.empty()) path.emplace(options.path);
     std::optional<io::PosesWriter> poses;
@@ -142,6 +144,7 @@ void replay(const ReplayOptions& options) {
     }
     ProgressBar bar("replaying", options.source.quiet);
     run::OfflineSinks sinks;
+    sinks.change = run::wait_for_bricks(loaded, trajectory);
     sinks.row = [&](const io::TraceRow& row) { trace.add(row); };
     if (path) sinks.corner = [&](std::int64_t tick, const Vec3& p) { path->add(tick, p); };
     if (poses) sinks.pose = [&](std::int64_t tick, const Pose& p) { poses->add(tick, p); };

@@ -35,7 +35,16 @@ struct FramesOf {
     std::vector<double> times;  ///< [s] of each
     double period = 0;          ///< [s]
 };
-using Recipe = std::variant<EditOf, FramesOf>;
+/// Bricks of a large grid that came into memory, or went.
+struct BricksOf {
+    std::uint64_t version = 0;  ///< of the samples before
+    struct Brick {
+        Index3 at;
+        int level = 0;  ///< of detail, see ResidentBrick; -1: it went
+    };
+    std::vector<Brick> bricks;
+};
+using Recipe = std::variant<EditOf, FramesOf, BricksOf>;
 
 /// Commands change a running session; each is applied between two ticks.
 namespace command {

@@ -88,8 +88,7 @@ TEST_P(ReachOnFields, bricks_that_come_and_go_at_random_never_let_the_proxy_thro
     const Volume volume = rough();
     const Field whole(volume, Solid::above, {}, GetParam());
     PartOf part(volume);
-    Renderer renderer =
-        make_renderer(Field(part.samples(), Solid::above, {}, GetParam()), 128, {});
+    Renderer renderer = make_renderer(Field(part.samples(), Solid::above, {}, GetParam()), 128, {});
     Judge judge{whole, 128};
     Random random(18);
     Vec3 at = Vec3(75, 70, 80);
@@ -169,7 +168,8 @@ TEST_P(ReachOnFields, a_hand_deep_in_a_solid_whose_inside_is_missing_rests_where
     EXPECT_GT(b.force.norm(), 1);
 }
 
-TEST_P(ReachOnFields, a_force_fades_within_its_rate_where_a_brick_goes_and_comes_back_with_the_ramp) {
+TEST_P(ReachOnFields,
+       a_force_fades_within_its_rate_where_a_brick_goes_and_comes_back_with_the_ramp) {
     const Volume volume = wall();
     PartOf part(volume);
     part.add_all();
@@ -212,8 +212,8 @@ TEST(Reach, a_tool_waits_too_and_none_of_its_points_leaves_what_is_in_memory) {
     PartOf part(volume);
     RendererSettings settings;
     settings.tool = std::make_shared<const Tool>(rod_tool(8, 2));
-    Renderer renderer = make_renderer(
-        Field(part.samples(), Solid::above, {}, Interpolation::cubic), 128, settings);
+    Renderer renderer =
+        make_renderer(Field(part.samples(), Solid::above, {}, Interpolation::cubic), 128, settings);
     Random random(31);
     Vec3 at(75, 70, 80);
     int waiting = 0, done = 0;
@@ -232,7 +232,9 @@ TEST(Reach, a_tool_waits_too_and_none_of_its_points_leaves_what_is_in_memory) {
         if (now.proxy.status == UpdateStatus::waiting && now.proxy.mode == Mode::free) {
             ASSERT_LE(now.force.norm(), 3.3);
         }
-        if (now.proxy.status != UpdateStatus::done || before.position == renderer.tool_proxy->pose.position) continue;
+        if (now.proxy.status != UpdateStatus::done ||
+            before.position == renderer.tool_proxy->pose.position)
+            continue;
         ++done;
         for (const Vec3& point : settings.tool->points()) {
             const Pose& pose = renderer.tool_proxy->pose;
@@ -252,8 +254,8 @@ TEST(Reach, layers_and_penetrability_wait_until_the_whole_way_of_the_hand_is_the
     part.add({0, 0, 0});
     RendererSettings settings;
     settings.penetrability = penetrability_threshold(1, 0);
-    Renderer renderer = make_renderer(
-        Field(part.samples(), Solid::above, {}, Interpolation::cubic), 0, settings);
+    Renderer renderer =
+        make_renderer(Field(part.samples(), Solid::above, {}, Interpolation::cubic), 0, settings);
     int waits = 0;
     for (int tick = 0; tick < 700; ++tick) {
         const Tick now = render(renderer, hand_at({20 + tick * 0.1, 30, 30}, tick));

@@ -116,16 +116,15 @@ TEST(Resident, versions_are_what_a_map_of_bricks_says_and_share_what_stayed) {
             for (int x = std::max(0, box.low[0]); x <= std::min(size[0] - 1, box.high[0]); ++x) {
                 for (const int y : {0, 64}) {
                     for (const int z : {0, 64}) {
-                        const bool touches = box.low[1] <= std::min(y + 63, size[1] - 1) &&
-                                             box.high[1] >= y &&
-                                             box.low[2] <= std::min(z + 63, size[2] - 1) &&
-                                             box.high[2] >= z;
+                        const bool touches =
+                            box.low[1] <= std::min(y + 63, size[1] - 1) && box.high[1] >= y &&
+                            box.low[2] <= std::min(z + 63, size[2] - 1) && box.high[2] >= z;
                         if (touches) all &= bricks.of_sample({x, y, z}) != nullptr;
                     }
                 }
             }
-            const bool in_grid = (box.low.array() < size.array()).all() &&
-                                 (box.high.array() >= 0).all();
+            const bool in_grid =
+                (box.low.array() < size.array()).all() && (box.high.array() >= 0).all();
             ASSERT_TRUE(!in_grid || bricks.has(box) == all);
         }
     }

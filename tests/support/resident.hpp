@@ -16,8 +16,7 @@ inline ResidentBrick brick_of(const Volume& volume, const Index3& brick, int out
     const std::size_t bytes = size_of(volume.type());
     const std::shared_ptr<std::byte[]> samples(new std::byte[ResidentBricks::per_brick * bytes]);
     std::memset(samples.get(), outside, ResidentBricks::per_brick * bytes);
-    const Index3 low =
-        brick * ResidentBricks::edge - Index3::Constant(ResidentBricks::margin);
+    const Index3 low = brick * ResidentBricks::edge - Index3::Constant(ResidentBricks::margin);
     const Index3& size = volume.geometry().size;
     const auto* whole = static_cast<const std::byte*>(volume.data());
     for (int k = 0; k < ResidentBricks::row; ++k) {
@@ -25,11 +24,11 @@ inline ResidentBrick brick_of(const Volume& volume, const Index3& brick, int out
             for (int i = 0; i < ResidentBricks::row; ++i) {
                 const Index3 at = low + Index3(i, j, k);
                 if ((at.array() < 0).any() || (at.array() >= size.array()).any()) continue;
-                const auto to = std::size_t(i + j * ResidentBricks::row + k * ResidentBricks::slice);
-                const auto from =
-                    (std::size_t(at[2]) * std::size_t(size[1]) + std::size_t(at[1])) *
-                        std::size_t(size[0]) +
-                    std::size_t(at[0]);
+                const auto to =
+                    std::size_t(i + j * ResidentBricks::row + k * ResidentBricks::slice);
+                const auto from = (std::size_t(at[2]) * std::size_t(size[1]) + std::size_t(at[1])) *
+                                      std::size_t(size[0]) +
+                                  std::size_t(at[0]);
                 std::memcpy(samples.get() + to * bytes, whole + from * bytes, bytes);
             }
         }
@@ -40,8 +39,7 @@ inline ResidentBrick brick_of(const Volume& volume, const Index3& brick, int out
 /// Versions of a volume with some of its bricks.
 class PartOf {
   public:
-    explicit PartOf(const Volume& volume)
-        : volume_(volume), bricks_(volume.geometry().size) {
+    explicit PartOf(const Volume& volume) : volume_(volume), bricks_(volume.geometry().size) {
         const Index3& count = bricks_.count();
         for (int k = 0; k < count[2]; ++k) {
             for (int j = 0; j < count[1]; ++j) {

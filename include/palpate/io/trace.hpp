@@ -29,6 +29,8 @@ struct TraceRow {
     LayersFelt layers = {};      ///< of a session without layers: none
     ToolFelt tool = {};          ///< of a point: nothing turns
     Vec3 torque = Vec3::Zero();  ///< [N mm]
+    bool waiting = false;        ///< held, because samples are not in memory
+    int level = 0;               ///< of detail of the samples at the SCP
 };
 
 TraceRow trace_row(const Tick& tick);
@@ -40,6 +42,8 @@ struct TraceExtras {
     std::vector<std::string> layer_names = {};
     /// `qw` to `qz` (hand), `proxy_qw` to `proxy_qz`, `torque_x` to `torque_z`, `contacts`.
     bool tool = false;
+    /// `waiting` (1 where the proxy was held because samples were not in memory) and `level`.
+    bool streamed = false;
 };
 
 /// Writes a trace row by row; the file appears with commit(). Throws OutputError.

@@ -1,5 +1,5 @@
 // The data of one or several runs, which may change while they are felt: a volume that is edited,
-// or a sequence that plays.
+// a sequence that plays, or a store that is read as it is felt.
 #pragma once
 
 #include <filesystem>
@@ -7,6 +7,7 @@
 
 #include "palpate/run/player.hpp"
 #include "palpate/run/setup.hpp"
+#include "palpate/run/streamer.hpp"
 #include "palpate/run/volume_editor.hpp"
 
 namespace palpate::run {
@@ -24,6 +25,9 @@ class Data {
     /// As it was loaded.
     const LoadedVolume& loaded() const { return loaded_; }
     bool is_sequence() const { return player_ != nullptr; }
+    bool is_streamed() const { return streamer_ != nullptr; }
+    /// What of a store is in memory; of other data nothing.
+    stream::BrickLoaderStatus streaming() const;
     /// Throw std::invalid_argument, saying what to do, for data of the other kind.
     VolumeEditor& editor() const;
     Player& player() const;
@@ -47,6 +51,7 @@ class Data {
     std::shared_ptr<const Samples> start_;
     std::unique_ptr<VolumeEditor> editor_;
     std::unique_ptr<Player> player_;
+    std::unique_ptr<Streamer> streamer_;
 };
 
 }  // namespace palpate::run

@@ -8,6 +8,7 @@
 #include "palpate/io/trace.hpp"
 #include "palpate/io/trajectory.hpp"
 #include "palpate/renderer.hpp"
+#include "palpate/run/source.hpp"
 
 namespace palpate::run {
 
@@ -39,6 +40,13 @@ struct OfflineSinks {
     std::function<void(std::int64_t tick, const Pose& pose)> pose;      ///< of a tool's way
     std::function<void(double fraction)> progress;
 };
+
+/// For OfflineSinks::change, with a volume that is read as it is felt: waits before each tick until
+/// all samples are in memory that it may need, so the ticks are those of the whole volume. Keeps
+/// references to both. Null for other volumes. What is called throws as
+/// stream::BrickLoader::wait_for().
+std::function<void(Renderer&, std::int64_t)> wait_for_bricks(const LoadedVolume& loaded,
+                                                             const io::Trajectory& trajectory);
 
 /// Renders each position of the trajectory (physical space) in order. The proxy begins at the first
 /// position if that is free, else where recovery finds free space; with layers, inside whatever is

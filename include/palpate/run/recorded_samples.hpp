@@ -14,12 +14,16 @@ namespace palpate::run {
 /// Reads the frames of a sequence; null for a volume that is none.
 std::function<Volume(int)> frames_of(const LoadedVolume& loaded);
 
+/// Reads bricks of a large grid, given their place and level of detail; null for other data.
+using BrickReader = std::function<ResidentBrick(const Index3& brick, int level)>;
+BrickReader bricks_of(const LoadedVolume& loaded);
+
 class RecordedSamples {
   public:
     /// `start`: the samples at the start of the recording. `frame` reads a frame of the sequence
     /// and may throw; null for data that are no sequence.
     explicit RecordedSamples(std::shared_ptr<const Samples> start,
-                             std::function<Volume(int)> frame = {});
+                             std::function<Volume(int)> frame = {}, BrickReader brick = {});
 
     /// The recorded command; if it is command::Samples, with the samples filled in. Throws
     /// std::invalid_argument for samples that cannot be made again, and as check(Edit) does.
@@ -40,6 +44,7 @@ class RecordedSamples {
 
     std::shared_ptr<const Samples> made(const command::Samples& recorded);
     std::shared_ptr<const Samples> frames_of(const FramesOf& frames);
+    std::shared_ptr<const Samples> bricks_of(const BricksOf& bricks, std::uint64_t version);
     std::shared_ptr<const Samples> edit_of(const EditOf& edit, std::uint64_t version);
     std::shared_ptr<const Samples> find(std::uint64_t version) const;
     std::shared_ptr<const Samples> made_again(std::uint64_t version);
@@ -52,6 +57,9 @@ class RecordedSamples {
     std::function<Volume(int)> frame_;
     std::map<int, Volume> read_;  // frames of the last window
     std::shared_ptr<const Samples> frames_;
+    BrickReader brick_;
+    std::uint64_t bricks_version_ = 0;  // of the last bricks, which alone are kept
+    std::shared_ptr<const Samples> bricks_;
 };
 
 }  // namespace palpate::run

@@ -11,6 +11,7 @@
 
 #include "palpate/io/live_frames.hpp"
 #include "palpate/io/sequence.hpp"
+#include "palpate/stream/loader.hpp"
 
 namespace palpate::run {
 
@@ -31,8 +32,16 @@ struct LiveSource {
     std::string path;
 };
 
+/// A store that is read by the box, because it is too large for memory or far away
+/// (docs/streaming.md).
+struct StoreSource {
+    std::string address;
+    stream::StoreOptions options;  ///< its `time` is Source::frame
+    stream::BrickLoaderSettings loader;
+};
+
 struct Source {
-    std::variant<FileSource, SyntheticSource, LiveSource> from;
+    std::variant<FileSource, SyntheticSource, LiveSource, StoreSource> from;
     std::optional<int> frame;              ///< of a sequence this one alone, from 0
     std::optional<double> frame_interval;  ///< [s] instead of what the file gives or lacks
     int smooth = 0;                        ///< passes of the binomial kernel, see smoothed()
@@ -40,6 +49,8 @@ struct Source {
     bool prefilter = false;  ///< after all that, see sharpened()
 };
 
+/// Names of http, https and s3.
+bool is_web_address(const std::string& name);
 /// As people write it: "head.nrrd", "synthetic:torus", "live:frames.shm".
 std::string name_of(const Source& source);
 /// The inverse, with everything else as its default.
@@ -47,16 +58,25 @@ Source source_named(const std::string& name);
 
 /// The names and values under which recordings and session files keep a source: "volume" is its
 /// name, the others are "dims", "type", "spacing", "skip", "byte-order", "series", "time-step",
-/// "frame-interval", "smooth", "dequantize" and "prefilter". What was not given is left out.
+/// "level", "channel", "frame-interval", "smooth", "dequantize" and "prefilter". What was not given
+/// is left out.
 std::map<std::string, std::string> to_names(const Source& source);
 /// The inverse. Unknown names are ignored, numbers that cannot be read count as not given. Throws
 /// std::invalid_argument for a layout that cannot be, and for values that this kind of source does
 /// not have.
 Source source_from(const std::map<std::string, std::string>& names);
 
+/// A store and how it is felt.
+struct StreamedVolume {
+    std::shared_ptr<const stream::Store> store;
+    stream::BrickLoaderSettings loader;
+};
+
 /// A volume and what is known about it.
 struct LoadedVolume {
-    Volume volume;  ///< of a sequence its first frame, of a live source the frame it began with
+    /// Of a sequence its first frame, of a live source the frame it began with, of a store its
+    /// overview.
+    Volume volume;
     Source source;
     std::string name;
     std::string format = {};
@@ -65,8 +85,12 @@ struct LoadedVolume {
     std::optional<double> isovalue = {};              ///< a good one, of a synthetic volume
     io::Sequence sequence = {};                       ///< empty unless there are several frames
     std::shared_ptr<const io::LiveFrames> live = {};  ///< null unless it is a live source
-    int time_steps = 1;  ///< frames there are, whether asked for or not
+    int time_steps = 1;                           ///< frames there are, whether asked for or not
+    std::optional<StreamedVolume> streamed = {};  ///< of a store
 };
+
+/// The samples that a field of a loaded volume begins with: of a store none in memory yet.
+std::shared_ptr<const Samples> start_samples(const LoadedVolume& loaded);
 
 /// Reads or makes the volume. `progress` may throw to stop. Throws std::invalid_argument for a
 /// source that cannot be, io::InputError for one that cannot be read.

@@ -1,0 +1,141 @@
+// Brings bricks of a store into memory round the hands that feel it, within a memory bound, with
+// threads of its own. What is in memory is published as versions of samples (resident.hpp).
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "palpate/stream/store.hpp"
+
+namespace palpate::stream {
+
+/// A volume of few samples that shows all of a store: its coarsest level that is fine enough, or
+/// single samples of a store without levels. At most `samples` of them, one at least. Blocks. Throws
+/// as Store::read().
+Volume overview_of(const Store& store, std::int64_t samples = std::int64_t{1} << 21,
+                   std::stop_token stop = {});
+
+/// The samples of a level before any of it is in memory. Throws std::invalid_argument for a level
+/// that the store does not have.
+std::shared_ptr<const Samples> empty_samples(const Store& store, const Volume& overview, int level);
+
+struct BrickLoaderSettings {
+    int level = 0;                                    ///< of the store that is felt
+    std::uint64_t memory = std::uint64_t{1} << 29;    ///< [bytes] most that bricks and pieces take
+    int threads = 8;                                  ///< that read at a time
+    /// Feel a coarser level until the bricks of `level` are there (ProxyUpdate::level says so).
+    bool coarse_first = false;
+};
+
+/// A hand and where it goes. Points in mm, physical.
+struct Interest {
+    Vec3 proxy = Vec3::Zero();
+    Vec3 hand = Vec3::Zero();
+    Vec3 velocity = Vec3::Zero();  ///< of the hand [mm/s]
+};
+
+/// A brick that came, or with level -1 went.
+struct BrickEvent {
+    Index3 brick;
+    int level = 0;
+    bool operator==(const BrickEvent&) const = default;
+};
+
+/// Samples with what came and went since the version before.
+struct BrickVersion {
+    std::shared_ptr<const Samples> samples;
+    std::vector<BrickEvent> events;
+};
+
+struct BrickLoaderStatus {
+    std::size_t resident = 0;        ///< bricks in memory
+    std::size_t wanted = 0;          ///< bricks that the hands may need soon
+    std::size_t missing = 0;         ///< of those, not in memory
+    std::uint64_t bytes = 0;         ///< that bricks and decoded pieces take
+    std::uint64_t most_bytes = 0;    ///< that they have taken at a time
+    std::uint64_t loaded = 0;        ///< bricks so far
+    std::uint64_t dropped = 0;       ///< bricks so far, to make room
+    Traffic traffic;                 ///< of the store
+    std::string problem = {};        ///< why bricks do not come; usually empty
+};
+
+/// Any thread may call any function.
+class BrickLoader {
+  public:
+    /// Throws std::invalid_argument for a level that the store does not have, or memory for fewer
+    /// than 64 bricks.
+    BrickLoader(std::shared_ptr<const Store> store, Volume overview,
+                const BrickLoaderSettings& settings = {});
+    /// Cancels what is being read.
+    ~BrickLoader();
+    BrickLoader(const BrickLoader&) = delete;
+    BrickLoader& operator=(const BrickLoader&) = delete;
+
+    const Store& store() const { return *store_; }
+    const BrickLoaderSettings& settings() const { return settings_; }
+    const Geometry& geometry() const { return geometry_; }
+    /// Samples without any brick, for a field to begin with.
+    const std::shared_ptr<const Samples>& empty() const { return empty_; }
+    /// What the hands need from now on; never waits for a read.
+    void look(std::span<const Interest> hands);
+    /// What is in memory now; nothing if that did not change since the last call.
+    std::optional<BrickVersion> take();
+    /// Waits until all samples within `radius` [mm] of a point are in memory at the level felt.
+    /// Throws std::invalid_argument if they do not fit, io::InputError for the first that cannot be
+    /// had.
+    void wait_for(const Vec3& centre, double radius);
+    BrickLoaderStatus status() const;
+
+    /// One brick as it is loaded; of a coarser level interpolated. Throws as Store::read().
+    ResidentBrick read(const Index3& brick, int coarser, std::stop_token stop = {});
+
+  private:
+    struct Place {
+        std::array<int, 3> at;
+        auto operator<=>(const Place&) const = default;
+    };
+    struct Job {
+        Index3 brick;
+        int coarser;
+    };
+    using Clock = std::chrono::steady_clock;
+    class Blocks;
+
+    void work(const std::stop_token& stop);
+    std::optional<Job> next_job();
+    void put(const Job& job, const ResidentBrick& brick);
+    void make_room();
+    int coarse_level() const;
+    void note_bytes();
+
+    const std::shared_ptr<const Store> store_;
+    const BrickLoaderSettings settings_;
+    const Volume overview_;
+    const std::shared_ptr<const Samples> empty_;
+    const Geometry geometry_;
+    const std::size_t most_bricks_;
+    const std::unique_ptr<Blocks> blocks_;
+
+    mutable std::mutex mutex_;
+    std::condition_variable_any changed_;
+    ResidentBricks bricks_;
+    std::map<Place, int> held_;               // level of each brick in memory
+    std::map<Place, int> in_flight_;          // level that is being read
+    std::map<Place, Clock::time_point> failed_;  // not tried again before
+    std::vector<Index3> wanted_;              // most urgent first
+    std::vector<Index3> required_;            // by wait_for()
+    std::vector<BrickEvent> events_;
+    std::uint64_t most_bytes_ = 0, loaded_ = 0, dropped_ = 0;
+    std::string problem_;
+    std::vector<std::jthread> threads_;  // last: they use all of the above
+};
+
+}  // namespace palpate::stream

@@ -1,0 +1,114 @@
+// Decoded pieces of a store; see the header.
+#include "stream/blocks.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+namespace palpate::stream {
+namespace {
+
+std::uint64_t bytes_of(const SampleBox& box, SampleType type) {
+    const Index3 size = box.high - box.low + Index3::Ones();
+    return static_cast<std::uint64_t>(size.cast<std::int64_t>().prod()) * size_of(type);
+}
+
+/// Copies the part of `from` that lies in `to`.
+void copy_box(const SampleBox& from, const std::byte* source, const SampleBox& to,
+              std::byte* target, std::size_t sample) {
+    const Index3 low = from.low.cwiseMax(to.low), high = from.high.cwiseMin(to.high);
+    const auto place = [&](const SampleBox& box, int y, int z) {
+        const Index3 size = box.high - box.low + Index3::Ones();
+        return (static_cast<std::size_t>(z - box.low[2]) * static_cast<std::size_t>(size[1]) +
+                static_cast<std::size_t>(y - box.low[1])) *
+                   static_cast<std::size_t>(size[0]) +
+               static_cast<std::size_t>(low[0] - box.low[0]);
+    };
+    const auto row = static_cast<std::size_t>(high[0] - low[0] + 1) * sample;
+    for (int z = low[2]; z <= high[2]; ++z) {
+        for (int y = low[1]; y <= high[1]; ++y) {
+            std::memcpy(target + place(to, y, z) * sample, source + place(from, y, z) * sample,
+                        row);
+        }
+    }
+}
+
+}  // namespace
+
+void BrickLoader::Blocks::read(int level, const SampleBox& box, std::span<std::byte> out,
+                               std::stop_token stop) {
+    const StoreInfo& info = store_.info();
+    const Level& grid = info.levels[static_cast<std::size_t>(level)];
+    const SampleBox piece{Index3::Zero(), grid.chunk - Index3::Ones()};
+    // A piece that is a row or a plane costs nothing to read in parts.
+    const bool is_row = grid.chunk[1] == 1 && grid.chunk[2] == 1;
+    if (is_row || bytes_of(piece, info.type) > most_bytes_ / 4) {
+        return store_.read(level, box, out, stop);
+    }
+    const Index3 last = grid.geometry.size - Index3::Ones();
+    const Index3 first = box.low.cwiseQuotient(grid.chunk), end = box.high.cwiseQuotient(grid.chunk);
+    for (int k = first[2]; k <= end[2]; ++k) {
+        for (int j = first[1]; j <= end[1]; ++j) {
+            for (int i = first[0]; i <= end[0]; ++i) {
+                const Index3 low = Index3(i, j, k).cwiseProduct(grid.chunk);
+                const SampleBox own{low, (low + grid.chunk - Index3::Ones()).cwiseMin(last)};
+                const Bytes bytes = block(level, {i, j, k}, own, stop);
+                copy_box(own, bytes->data(), box, out.data(), size_of(info.type));
+            }
+        }
+    }
+}
+
+BrickLoader::Blocks::Bytes BrickLoader::Blocks::block(int level, const Index3& at,
+                                                      const SampleBox& box, std::stop_token stop) {
+    const Key key{level, at[0], at[1], at[2]};
+    std::promise<Bytes> promise;
+    std::shared_future<Bytes> others;
+    {
+        const std::scoped_lock lock(mutex_);
+        const auto found = kept_.find(key);
+        if (found != kept_.end()) {
+            ages_.splice(ages_.begin(), ages_, found->second.age);
+            others = found->second.bytes;
+        } else {
+            ages_.push_front(key);
+            const std::uint64_t size = bytes_of(box, store_.info().type);
+            kept_[key] = {promise.get_future().share(), ages_.begin(), size};
+            bytes_ += size;
+            forget_old(key);
+        }
+    }
+    if (others.valid()) return others.get();
+    try {
+        auto bytes = std::make_shared<std::vector<std::byte>>(bytes_of(box, store_.info().type));
+        store_.read(level, box, *bytes, stop);
+        promise.set_value(bytes);
+        return bytes;
+    } catch (...) {
+        promise.set_exception(std::current_exception());
+        const std::scoped_lock lock(mutex_);
+        const auto found = kept_.find(key);
+        if (found != kept_.end()) {
+            bytes_ -= found->second.size;
+            ages_.erase(found->second.age);
+            kept_.erase(found);
+        }
+        throw;
+    }
+}
+
+/// Drops the pieces that were not used for longest. Who reads one has its own share of it.
+void BrickLoader::Blocks::forget_old(const Key& but) {
+    while (bytes_ > most_bytes_ && ages_.back() != but) {
+        const auto oldest = kept_.find(ages_.back());
+        bytes_ -= oldest->second.size;
+        kept_.erase(oldest);
+        ages_.pop_back();
+    }
+}
+
+std::uint64_t BrickLoader::Blocks::bytes() const {
+    const std::scoped_lock lock(mutex_);
+    return bytes_;
+}
+
+}  // namespace palpate::stream

@@ -1,0 +1,44 @@
+// Decoded pieces of a store, kept within a memory bound: neighbouring bricks need the same ones.
+// Private to stream/.
+#pragma once
+
+#include <future>
+#include <list>
+#include <map>
+#include <mutex>
+
+#include "palpate/stream/loader.hpp"
+
+namespace palpate::stream {
+
+/// Any thread may call any function.
+class BrickLoader::Blocks {
+  public:
+    Blocks(const Store& store, std::uint64_t most_bytes)
+        : store_(store), most_bytes_(most_bytes) {}
+
+    /// As Store::read(). Pieces small enough to keep are read whole, and each by one thread.
+    void read(int level, const SampleBox& box, std::span<std::byte> out, std::stop_token stop);
+    std::uint64_t bytes() const;
+
+  private:
+    using Key = std::array<int, 4>;  // level and place
+    using Bytes = std::shared_ptr<const std::vector<std::byte>>;
+    struct Kept {
+        std::shared_future<Bytes> bytes;
+        std::list<Key>::iterator age;
+        std::uint64_t size;
+    };
+
+    Bytes block(int level, const Index3& at, const SampleBox& box, std::stop_token stop);
+    void forget_old(const Key& but);
+
+    const Store& store_;
+    const std::uint64_t most_bytes_;
+    mutable std::mutex mutex_;
+    std::map<Key, Kept> kept_;
+    std::list<Key> ages_;  // newest first
+    std::uint64_t bytes_ = 0;
+};
+
+}  // namespace palpate::stream

@@ -1,0 +1,107 @@
+// Which bricks the hands need: by their distance from the way of each hand.
+#include "stream/interest.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate::stream {
+namespace {
+
+/// A hand is followed this far ahead [s], and no farther than this [bricks].
+constexpr double look_ahead = 0.5;
+constexpr double farthest = 16;
+/// Bricks ahead of a moving hand count as this much farther than those it is in.
+constexpr double ahead_factor = 0.5;
+/// Samples round a ball that an update may look at, more than reach.cpp's [voxel].
+constexpr double margin = 5;
+
+struct Segment {
+    Vec3 from, to;  // [bricks]
+};
+
+Vec3 shortened(const Vec3& way) {
+    const double length = way.norm();
+    return length > farthest ? Vec3(way * (farthest / length)) : way;
+}
+
+double distance(const Segment& s, const Vec3& p) {
+    const Vec3 along = s.to - s.from;
+    const double squared = along.squaredNorm();
+    const double t = squared > 0 ? std::clamp((p - s.from).dot(along) / squared, 0.0, 1.0) : 0;
+    return (p - s.from - t * along).norm();
+}
+
+}  // namespace
+
+std::vector<Index3> wanted_bricks(const Geometry& geometry, const Index3& count,
+                                  std::span<const Interest> hands, std::size_t most) {
+    struct Scored {
+        double score;
+        Index3 brick;
+    };
+    if (hands.empty()) return {};
+    const double each = static_cast<double>(most) / static_cast<double>(hands.size());
+    const double radius = std::clamp(0.5 * (std::cbrt(each) - 1), 1.0, 6.0);
+    std::vector<Scored> scored;
+    for (const Interest& hand : hands) {
+        if (!hand.proxy.allFinite() || !hand.hand.allFinite()) continue;
+        const auto in_bricks = [&](const Vec3& physical) {
+            return Vec3(index_from_physical(geometry, physical) / ResidentBricks::edge);
+        };
+        const Vec3 proxy = in_bricks(hand.proxy);
+        const Segment pull{proxy, proxy + shortened(in_bricks(hand.hand) - proxy)};
+        const Vec3 velocity = hand.velocity.allFinite() ? hand.velocity : Vec3::Zero();
+        const Vec3 soon = in_bricks(hand.proxy + look_ahead * velocity) - proxy;
+        const Segment path{proxy, proxy + shortened(soon)};
+        const Vec3 low = proxy.cwiseMin(pull.to).cwiseMin(path.to) - Vec3::Constant(radius);
+        const Vec3 high = proxy.cwiseMax(pull.to).cwiseMax(path.to) + Vec3::Constant(radius);
+        const Vec3 last = (count - Index3::Ones()).cast<double>();
+        const Index3 first = low.cwiseMax(Vec3::Zero()).cwiseMin(last).cast<int>();
+        const Index3 end = high.cwiseMax(Vec3::Zero()).cwiseMin(last).cast<int>();
+        for (int k = first[2]; k <= end[2]; ++k) {
+            for (int j = first[1]; j <= end[1]; ++j) {
+                for (int i = first[0]; i <= end[0]; ++i) {
+                    const Vec3 centre = Vec3(i, j, k) + Vec3::Constant(0.5);
+                    const double near = distance(pull, centre);
+                    const double ahead = distance(path, centre) +
+                                         ahead_factor * std::min(1.0, (centre - proxy).norm());
+                    const double score = std::min(near, ahead);
+                    if (score <= radius + 1) scored.push_back({score, {i, j, k}});
+                }
+            }
+        }
+    }
+    // Ties by place, so that the order does not depend on the library.
+    std::ranges::sort(scored, [](const Scored& a, const Scored& b) {
+        if (a.score != b.score) return a.score < b.score;
+        return std::ranges::lexicographical_compare(a.brick, b.brick);
+    });
+    std::vector<Index3> wanted;
+    for (const Scored& s : scored) {
+        if (wanted.size() >= most) break;
+        wanted.push_back(s.brick);
+    }
+    return wanted;
+}
+
+std::vector<Index3> bricks_round(const Geometry& geometry, const Vec3& centre, double radius) {
+    const Vec3 at = index_from_physical(geometry, centre);
+    const Vec3 last = (geometry.size - Index3::Ones()).cast<double>();
+    const Vec3 reach = (geometry.spacing.cwiseInverse() * radius).array() + margin;
+    const Vec3 low = at - reach, high = at + reach;
+    if (!((low.array() <= last.array()).all() && (high.array() >= 0).all())) return {};
+    const auto brick_at = [&](const Vec3& index) {
+        const Vec3 inside = index.cwiseMax(Vec3::Zero()).cwiseMin(last);
+        return ResidentBricks::brick_of(inside.array().floor().cast<int>());
+    };
+    const Index3 first = brick_at(low), end = brick_at(high);
+    std::vector<Index3> bricks;
+    for (int k = first[2]; k <= end[2]; ++k) {
+        for (int j = first[1]; j <= end[1]; ++j) {
+            for (int i = first[0]; i <= end[0]; ++i) bricks.push_back({i, j, k});
+        }
+    }
+    return bricks;
+}
+
+}  // namespace palpate::stream

@@ -1,0 +1,243 @@
+// The loader's threads: which brick comes next, which one goes, and what is published.
+#include "palpate/stream/loader.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "palpate/io/error.hpp"
+#include "stream/blocks.hpp"
+#include "stream/interest.hpp"
+
+namespace palpate::stream {
+namespace {
+
+constexpr std::size_t fewest_bricks = 64;
+/// A brick that could not be had is tried again after this long.
+constexpr std::chrono::seconds pause_after_failure{2};
+/// Of the memory, the part of decoded pieces.
+constexpr std::uint64_t pieces_part = 4;
+
+const Level& level_of(const Store& store, int level) {
+    const auto count = static_cast<int>(store.info().levels.size());
+    if (level < 0 || level >= count) {
+        throw std::invalid_argument(store.info().address + ": there is no level " +
+                                    std::to_string(level) + ": it has " + std::to_string(count) +
+                                    (count == 1 ? " level, 0" : " levels, from 0"));
+    }
+    return store.info().levels[static_cast<std::size_t>(level)];
+}
+
+std::size_t most_bricks(const Store& store, std::uint64_t memory) {
+    const std::uint64_t each = ResidentBricks::per_brick * size_of(store.info().type);
+    const auto count = static_cast<std::size_t>((memory - memory / pieces_part) / each);
+    if (count < fewest_bricks) {
+        throw std::invalid_argument(
+            "at least " + std::to_string(fewest_bricks * each * 4 / 3 / 1000000 + 1) +
+            " MB of memory are needed to feel " + store.info().address);
+    }
+    return count;
+}
+
+std::array<int, 3> array_of(const Index3& at) {
+    return {at[0], at[1], at[2]};
+}
+
+}  // namespace
+
+std::shared_ptr<const Samples> empty_samples(const Store& store, const Volume& overview,
+                                             int level) {
+    const Geometry& geometry = level_of(store, level).geometry;
+    const Range range =
+        store.info().range.value_or(Range{overview.minimum(), overview.maximum()});
+    return std::make_shared<const Samples>(overview, geometry, ResidentBricks(geometry.size),
+                                           range.minimum, range.maximum);
+}
+
+BrickLoader::BrickLoader(std::shared_ptr<const Store> store, Volume overview,
+                         const BrickLoaderSettings& settings)
+    : store_(std::move(store)),
+      settings_(settings),
+      overview_(std::move(overview)),
+      empty_(empty_samples(*store_, overview_, settings.level)),
+      geometry_(empty_->geometry()),
+      most_bricks_(most_bricks(*store_, settings.memory)),
+      blocks_(std::make_unique<Blocks>(*store_, settings.memory / pieces_part)),
+      bricks_(geometry_.size) {
+    for (int i = 0; i < std::max(1, settings.threads); ++i) {
+        threads_.emplace_back([this](const std::stop_token& stop) { work(stop); });
+    }
+}
+
+BrickLoader::~BrickLoader() {
+    for (std::jthread& thread : threads_) thread.request_stop();
+    changed_.notify_all();
+    threads_.clear();
+}
+
+void BrickLoader::look(std::span<const Interest> hands) {
+    std::vector<Index3> wanted =
+        wanted_bricks(geometry_, bricks_.count(), hands, most_bricks_ - most_bricks_ / 8);
+    const std::scoped_lock lock(mutex_);
+    wanted_ = std::move(wanted);
+    changed_.notify_all();
+}
+
+std::optional<BrickVersion> BrickLoader::take() {
+    const std::scoped_lock lock(mutex_);
+    if (events_.empty()) return std::nullopt;
+    BrickVersion version{std::make_shared<const Samples>(overview_, geometry_, bricks_,
+                                                         empty_->minimum(), empty_->maximum()),
+                         std::move(events_)};
+    events_.clear();
+    return version;
+}
+
+void BrickLoader::wait_for(const Vec3& centre, double radius) {
+    const std::vector<Index3> needed = bricks_round(geometry_, centre, radius);
+    if (needed.size() > most_bricks_ - most_bricks_ / 8) {
+        throw std::invalid_argument(
+            store_->info().address + ": a stroke needs more samples at a time than fit into " +
+            std::to_string(settings_.memory / 1000000) + " MB: allow more memory or feel a "
+            "coarser level");
+    }
+    std::unique_lock lock(mutex_);
+    required_ = needed;
+    wanted_ = needed;
+    failed_.clear();
+    changed_.notify_all();
+    changed_.wait(lock, [&] {
+        return std::ranges::all_of(needed, [&](const Index3& brick) {
+            const Place place{array_of(brick)};
+            const auto held = held_.find(place);
+            return failed_.contains(place) || (held != held_.end() && held->second == 0);
+        });
+    });
+    required_.clear();
+    for (const Index3& brick : needed) {
+        if (failed_.contains({array_of(brick)})) throw io::InputError(problem_);
+    }
+}
+
+BrickLoaderStatus BrickLoader::status() const {
+    BrickLoaderStatus status;
+    status.traffic = store_->traffic();
+    const std::uint64_t pieces = blocks_->bytes();
+    const std::scoped_lock lock(mutex_);
+    status.resident = held_.size();
+    status.wanted = wanted_.size();
+    for (const Index3& brick : wanted_) status.missing += !held_.contains({array_of(brick)});
+    status.bytes = pieces + held_.size() * ResidentBricks::per_brick * size_of(overview_.type());
+    status.most_bytes = std::max(most_bytes_, status.bytes);
+    status.loaded = loaded_;
+    status.dropped = dropped_;
+    status.problem = problem_;
+    return status;
+}
+
+/// The coarser level that comes first, as steps from the one that is felt; 0: none.
+int BrickLoader::coarse_level() const {
+    if (!settings_.coarse_first) return 0;
+    const int coarser = static_cast<int>(store_->info().levels.size()) - 1 - settings_.level;
+    return std::min(coarser, 2);
+}
+
+/// Needs the lock. The most urgent brick that no thread reads.
+std::optional<BrickLoader::Job> BrickLoader::next_job() {
+    const int coarse = required_.empty() ? coarse_level() : 0;
+    const Clock::time_point now = Clock::now();
+    const auto rests = [&](const Place& place) {
+        const auto failed = failed_.find(place);
+        return in_flight_.contains(place) || (failed != failed_.end() && now < failed->second);
+    };
+    // First something everywhere near, then the level that is felt.
+    for (const int level : {coarse, 0}) {
+        for (const Index3& brick : wanted_) {
+            const Place place{array_of(brick)};
+            const auto held = held_.find(place);
+            if (held != held_.end() && held->second <= level) continue;
+            if (!rests(place)) return Job{brick, level};
+        }
+    }
+    return std::nullopt;
+}
+
+void BrickLoader::work(const std::stop_token& stop) {
+    std::unique_lock lock(mutex_);
+    while (!stop.stop_requested()) {
+        const std::optional<Job> job = next_job();
+        if (!job) {
+            changed_.wait_for(lock, stop, std::chrono::milliseconds(500), [] { return false; });
+            continue;
+        }
+        const Place place{array_of(job->brick)};
+        in_flight_[place] = job->coarser;
+        lock.unlock();
+        std::optional<ResidentBrick> brick;
+        std::string problem;
+        try {
+            brick = read(job->brick, job->coarser, stop);
+        } catch (const Cancelled&) {  // the loader ends
+        } catch (const std::exception& e) {
+            problem = e.what();
+        }
+        lock.lock();
+        in_flight_.erase(place);
+        if (brick) {
+            put(*job, *brick);
+        } else if (!problem.empty()) {
+            failed_[place] = Clock::now() + pause_after_failure;
+            problem_ = problem;
+        }
+        changed_.notify_all();
+    }
+}
+
+/// Needs the lock.
+void BrickLoader::put(const Job& job, const ResidentBrick& brick) {
+    const Place place{array_of(job.brick)};
+    failed_.erase(place);
+    if (failed_.empty()) problem_.clear();
+    const ResidentBricks::Change change{job.brick, brick};
+    bricks_ = bricks_.with({&change, 1});
+    held_[place] = job.coarser;
+    events_.push_back({job.brick, job.coarser});
+    ++loaded_;
+    make_room();
+    note_bytes();
+}
+
+/// Needs the lock. Drops bricks that nobody wants, the farthest from what is wanted most first.
+void BrickLoader::make_room() {
+    if (held_.size() <= most_bricks_) return;
+    std::map<Place, int> wanted;
+    for (const Index3& brick : wanted_) wanted[{array_of(brick)}] = 1;
+    const Index3 centre = wanted_.empty() ? Index3(Index3::Zero()) : wanted_.front();
+    std::vector<std::pair<std::int64_t, Index3>> idle;
+    for (const auto& [place, level] : held_) {
+        const Index3 brick(place.at[0], place.at[1], place.at[2]);
+        if (wanted.contains(place)) continue;
+        idle.emplace_back((brick - centre).cast<std::int64_t>().squaredNorm(), brick);
+    }
+    const auto farther = [](const auto& a, const auto& b) { return a.first > b.first; };
+    std::ranges::sort(idle, farther);
+    // An eighth at a time, so that this is rare.
+    const std::size_t enough = most_bricks_ - most_bricks_ / 8;
+    std::vector<ResidentBricks::Change> changes;
+    for (const auto& [distance, brick] : idle) {
+        if (held_.size() <= enough) break;
+        held_.erase({array_of(brick)});
+        changes.push_back({brick, {}});
+        events_.push_back({brick, -1});
+        ++dropped_;
+    }
+    bricks_ = bricks_.with(changes);
+}
+
+void BrickLoader::note_bytes() {
+    const std::uint64_t bytes =
+        blocks_->bytes() + held_.size() * ResidentBricks::per_brick * size_of(overview_.type());
+    most_bytes_ = std::max(most_bytes_, bytes);
+}
+
+}  // namespace palpate::stream

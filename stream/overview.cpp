@@ -1,0 +1,182 @@
+// Overviews of stores, and single bricks as they are loaded.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "palpate/stream/loader.hpp"
+#include "stream/blocks.hpp"
+
+namespace palpate::stream {
+namespace {
+
+/// Samples that are not finite become `instead`, as io::read_volume() does it.
+void make_finite(SampleType type, std::span<std::byte> bytes, double instead) {
+    if (type != SampleType::float32) return;
+    auto* samples = reinterpret_cast<float*>(bytes.data());
+    for (std::size_t i = 0; i < bytes.size() / sizeof(float); ++i) {
+        if (!std::isfinite(samples[i])) samples[i] = static_cast<float>(instead);
+    }
+}
+
+/// The least finite sample; 0 if there is none, or none of floats.
+double least_finite(SampleType type, std::span<const std::byte> bytes) {
+    if (type != SampleType::float32) return 0;
+    double least = std::numeric_limits<double>::infinity();
+    const auto* samples = reinterpret_cast<const float*>(bytes.data());
+    for (std::size_t i = 0; i < bytes.size() / sizeof(float); ++i) {
+        if (std::isfinite(samples[i])) least = std::min(least, double(samples[i]));
+    }
+    return std::isfinite(least) ? least : 0;
+}
+
+/// Most reads for an overview of a level that is too large to be read whole: of rows, or of pieces.
+constexpr std::int64_t most_rows = 4096;
+constexpr std::int64_t most_pieces = 512;
+
+Volume volume_from(const Geometry& geometry, SampleType type, std::vector<std::byte> bytes) {
+    make_finite(type, bytes, least_finite(type, bytes));
+    const auto held = std::make_shared<const std::vector<std::byte>>(std::move(bytes));
+    return {geometry, type, std::shared_ptr<const void>(held, held->data()), held->size()};
+}
+
+Volume whole_level(const Store& store, int level, std::stop_token stop) {
+    const Geometry& geometry = store.info().levels[static_cast<std::size_t>(level)].geometry;
+    const SampleType type = store.info().type;
+    std::vector<std::byte> bytes(static_cast<std::size_t>(sample_count(geometry)) * size_of(type));
+    store.read(level, whole_box(geometry), bytes, stop);
+    return volume_from(geometry, type, std::move(bytes));
+}
+
+/// Every n-th sample along each axis of the coarsest level.
+Volume thinned_level(const Store& store, std::int64_t samples, std::stop_token stop) {
+    const StoreInfo& info = store.info();
+    const auto level = static_cast<int>(info.levels.size()) - 1;
+    const Level& grid = info.levels.back();
+    const bool by_row = grid.chunk[1] == 1 && grid.chunk[2] == 1;
+    const auto count_at = [&](int step) {
+        return Index3((grid.geometry.size + Index3::Constant(step - 1)) / step);
+    };
+    int step = 1;
+    for (;; ++step) {
+        const Eigen::Matrix<std::int64_t, 3, 1> n = count_at(step).cast<std::int64_t>();
+        const std::int64_t reads = by_row ? n[1] * n[2] : n.prod();
+        if (n.prod() <= samples && reads <= (by_row ? most_rows : most_pieces)) break;
+    }
+    Geometry geometry = grid.geometry;
+    geometry.size = count_at(step);
+    geometry.spacing *= step;
+    const std::size_t each = size_of(info.type);
+    std::vector<std::byte> bytes(static_cast<std::size_t>(sample_count(geometry)) * each);
+    std::vector<std::byte> row(static_cast<std::size_t>(grid.geometry.size[0]) * each);
+    std::byte* out = bytes.data();
+    for (int k = 0; k < geometry.size[2]; ++k) {
+        for (int j = 0; j < geometry.size[1]; ++j) {
+            const Index3 low(0, j * step, k * step);
+            if (by_row) {
+                store.read(level, {low, low + Index3(grid.geometry.size[0] - 1, 0, 0)}, row, stop);
+            }
+            for (int i = 0; i < geometry.size[0]; ++i, out += each) {
+                const Index3 at = low + Index3(i * step, 0, 0);
+                if (by_row) {
+                    std::memcpy(out, row.data() + static_cast<std::size_t>(at[0]) * each, each);
+                } else {
+                    store.read(level, {at, at}, {out, each}, stop);
+                }
+            }
+        }
+    }
+    return volume_from(geometry, info.type, std::move(bytes));
+}
+
+/// Interpolates a coarse box at the samples of a brick.
+template <class T>
+void interpolate(const Geometry& fine, const SampleBox& brick, const Geometry& coarse,
+                 const SampleBox& box, const T* from, const Index3& origin, T* to) {
+    const Index3 size = box.high - box.low + Index3::Ones();
+    const auto at = [&](const Index3& i) {
+        const Index3 in = i.cwiseMax(box.low).cwiseMin(box.high) - box.low;
+        return double(from[(static_cast<std::ptrdiff_t>(in[2]) * size[1] + in[1]) * size[0] + in[0]]);
+    };
+    for (int k = brick.low[2]; k <= brick.high[2]; ++k) {
+        for (int j = brick.low[1]; j <= brick.high[1]; ++j) {
+            for (int i = brick.low[0]; i <= brick.high[0]; ++i) {
+                const Vec3 p = index_from_physical(
+                    coarse, physical_from_index(fine, Vec3(i, j, k)));
+                const Vec3 floor = p.array().floor();
+                const Index3 low = floor.cast<int>();
+                const Vec3 t = p - floor;
+                double value = 0;
+                for (int corner = 0; corner < 8; ++corner) {
+                    const Index3 side(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
+                    double weight = 1;
+                    for (int a = 0; a < 3; ++a) weight *= side[a] ? t[a] : 1 - t[a];
+                    if (weight > 0) value += weight * at(low + side);
+                }
+                if constexpr (std::is_integral_v<T>) value = std::nearbyint(value);
+                const Index3 place = Index3(i, j, k) - origin;
+                to[place[0] + place[1] * ResidentBricks::row + place[2] * ResidentBricks::slice] =
+                    static_cast<T>(value);
+            }
+        }
+    }
+}
+
+}  // namespace
+
+Volume overview_of(const Store& store, std::int64_t samples, std::stop_token stop) {
+    const std::vector<Level>& levels = store.info().levels;
+    for (std::size_t level = 0; level < levels.size(); ++level) {
+        if (sample_count(levels[level].geometry) > samples) continue;
+        return whole_level(store, static_cast<int>(level), stop);
+    }
+    return thinned_level(store, samples, stop);
+}
+
+ResidentBrick BrickLoader::read(const Index3& brick, int coarser, std::stop_token stop) {
+    const SampleType type = overview_.type();
+    const std::size_t each = size_of(type);
+    const SampleBox box = empty_->resident()->box_of(brick);
+    const Index3 origin =
+        brick * ResidentBricks::edge - Index3::Constant(ResidentBricks::margin);
+    const std::shared_ptr<std::byte[]> samples(new std::byte[ResidentBricks::per_brick * each]());
+    SampleBox from = box;
+    const Geometry& grid =
+        store_->info().levels[static_cast<std::size_t>(settings_.level + coarser)].geometry;
+    if (coarser > 0) {
+        const auto index_in = [&](const Index3& at) {
+            return index_from_physical(grid, physical_from_index(geometry_, at.cast<double>()));
+        };
+        const Vec3 a = index_in(box.low), b = index_in(box.high);
+        const Index3 last = grid.size - Index3::Ones();
+        from.low = a.cwiseMin(b).array().floor().cast<int>().matrix().cwiseMax(Index3::Zero())
+                       .cwiseMin(last);
+        from.high = a.cwiseMax(b).array().ceil().cast<int>().matrix().cwiseMax(Index3::Zero())
+                        .cwiseMin(last);
+    }
+    const Index3 size = from.high - from.low + Index3::Ones();
+    std::vector<std::byte> bytes(static_cast<std::size_t>(size.cast<std::int64_t>().prod()) * each);
+    blocks_->read(settings_.level + coarser, from, bytes, stop);
+    make_finite(type, bytes, empty_->minimum());
+    if (coarser > 0) {
+        with_type(type, [&](auto zero) {
+            using T = decltype(zero);
+            interpolate(geometry_, box, grid, from, reinterpret_cast<const T*>(bytes.data()),
+                        origin, reinterpret_cast<T*>(samples.get()));
+        });
+        return {samples, static_cast<std::uint8_t>(coarser)};
+    }
+    const auto row = static_cast<std::size_t>(size[0]) * each;
+    const std::byte* next = bytes.data();
+    for (int k = box.low[2]; k <= box.high[2]; ++k) {
+        for (int j = box.low[1]; j <= box.high[1]; ++j, next += row) {
+            const Index3 at = Index3(box.low[0], j, k) - origin;
+            const auto to =
+                at[0] + at[1] * ResidentBricks::row + at[2] * ResidentBricks::slice;
+            std::memcpy(samples.get() + static_cast<std::size_t>(to) * each, next, row);
+        }
+    }
+    return {samples, 0};
+}
+
+}  // namespace palpate::stream
