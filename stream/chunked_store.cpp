@@ -27,7 +27,8 @@ ChunkLayout layout_of(const ChunkedArray& array, const ChunkedVolume& volume) {
         layout.base += strides[a] * static_cast<std::size_t>(volume.fixed[a] % array.chunk[a]);
     }
     for (std::size_t i = 0; i < 3; ++i) {
-        if (volume.space[i] >= 0) layout.stride[i] = strides[static_cast<std::size_t>(volume.space[i])];
+        if (volume.space[i] >= 0)
+            layout.stride[i] = strides[static_cast<std::size_t>(volume.space[i])];
     }
     return layout;
 }
@@ -76,7 +77,8 @@ class ChunkedStore : public Store {
         }
         const ChunkReader& reader = *readers_[static_cast<std::size_t>(level)];
         const auto bytes = reader.chunk(index_of(reader.array(), chunk), stop);
-        copy(reader.array(), bytes, layouts_[static_cast<std::size_t>(level)], corner, part, box, out);
+        copy(reader.array(), bytes, layouts_[static_cast<std::size_t>(level)], corner, part, box,
+             out);
     }
 
     std::vector<std::int64_t> index_of(const ChunkedArray& array, const Index3& chunk) const {
@@ -115,7 +117,8 @@ class ChunkedStore : public Store {
                 const Index3 in = Index3(part.low[0], y, z) - corner;
                 std::size_t from = layout.base;
                 for (std::size_t i = 0; i < 3; ++i) {
-                    from += layout.stride[i] * static_cast<std::size_t>(in[static_cast<Eigen::Index>(i)]);
+                    from += layout.stride[i] *
+                            static_cast<std::size_t>(in[static_cast<Eigen::Index>(i)]);
                 }
                 gather(chunk->data() + from * from_size, layout.stride[0], from_size, raw);
                 array.bytes.convert(raw, to);

@@ -12,9 +12,9 @@ namespace palpate::stream {
 /// What a format's metadata say of a volume.
 struct ChunkedVolume {
     StoreInfo info;
-    std::vector<ChunkedArray> arrays;          ///< one for each of info.levels
-    std::array<int, 3> space = {-1, -1, -1};   ///< axes of the arrays for x, y, z; -1: none
-    std::vector<std::int64_t> fixed;           ///< the index along each other axis
+    std::vector<ChunkedArray> arrays;         ///< one for each of info.levels
+    std::array<int, 3> space = {-1, -1, -1};  ///< axes of the arrays for x, y, z; -1: none
+    std::vector<std::int64_t> fixed;          ///< the index along each other axis
 };
 
 std::shared_ptr<const Store> chunked_store(std::shared_ptr<const Objects> objects,

@@ -98,10 +98,9 @@ Bytes unlz4(std::span<const std::byte> packed, std::size_t most) {
     const std::size_t size = number_at(packed, 0);
     if (size > most) too_long(most);
     Bytes out(size);
-    const int got = LZ4_decompress_safe(reinterpret_cast<const char*>(packed.data() + 4),
-                                        reinterpret_cast<char*>(out.data()),
-                                        static_cast<int>(packed.size() - 4),
-                                        static_cast<int>(size));
+    const int got = LZ4_decompress_safe(
+        reinterpret_cast<const char*>(packed.data() + 4), reinterpret_cast<char*>(out.data()),
+        static_cast<int>(packed.size() - 4), static_cast<int>(size));
     if (got < 0 || static_cast<std::size_t>(got) != size) {
         throw DamagedChunk("is a damaged lz4 block");
     }

@@ -19,7 +19,8 @@ struct Placement {
 
 std::vector<double> numbers_of(const Json& list, std::size_t axes, const char* what) {
     if (!list.is_array() || list.size() != axes) {
-        throw BadMetadata(std::string("a ") + what + " of its image has not as many numbers as axes");
+        throw BadMetadata(std::string("a ") + what +
+                          " of its image has not as many numbers as axes");
     }
     std::vector<double> numbers;
     for (const Json& number : list) {
@@ -35,7 +36,8 @@ std::vector<double> numbers_of(const Json& list, std::size_t axes, const char* w
 Placement placement_of(const Json& object, std::size_t axes) {
     Placement place{std::vector<double>(axes, 1), std::vector<double>(axes, 0)};
     const Json list = object.value("coordinateTransformations", Json::array());
-    if (!list.is_array() || list.size() > 8) throw BadMetadata("its transformations are not sensible");
+    if (!list.is_array() || list.size() > 8)
+        throw BadMetadata("its transformations are not sensible");
     for (const Json& one : list) {
         const std::string type = one.at("type").get<std::string>();
         if (type == "scale" && one.contains("scale")) {
@@ -43,7 +45,8 @@ Placement placement_of(const Json& object, std::size_t axes) {
         } else if (type == "translation" && one.contains("translation")) {
             place.translation = numbers_of(one["translation"], axes, "translation");
         } else if (type != "identity") {
-            throw BadMetadata("its transformation '" + type + "' is not read; use scale and translation");
+            throw BadMetadata("its transformation '" + type +
+                              "' is not read; use scale and translation");
         }
     }
     return place;
@@ -73,11 +76,13 @@ std::vector<OmeAxis> axes_of(const Json& image) {
 std::vector<std::string> channel_names(const Json& attributes) {
     std::vector<std::string> names;
     const Json omero = attributes.value("omero", Json::object());
-    if (!omero.is_object() || !omero.contains("channels") || !omero["channels"].is_array()) return names;
+    if (!omero.is_object() || !omero.contains("channels") || !omero["channels"].is_array())
+        return names;
     for (const Json& channel : omero["channels"]) {
         if (names.size() == most_channels) break;
         const Json label = channel.is_object() ? channel.value("label", Json("")) : Json("");
-        names.push_back(label.is_string() ? io::one_line(label.get<std::string>().substr(0, 64)) : "");
+        names.push_back(label.is_string() ? io::one_line(label.get<std::string>().substr(0, 64))
+                                          : "");
     }
     return names;
 }
@@ -94,7 +99,8 @@ std::optional<Range> range_of(const Json& attributes) {
 
 std::optional<OmeImage> ome_image(const Json& given) {
     if (!given.is_object()) return std::nullopt;
-    const Json& attributes = given.contains("ome") && given["ome"].is_object() ? given["ome"] : given;
+    const Json& attributes =
+        given.contains("ome") && given["ome"].is_object() ? given["ome"] : given;
     if (!attributes.contains("multiscales")) return std::nullopt;
     const Json& all = attributes["multiscales"];
     if (!all.is_array() || all.empty()) throw BadMetadata("its list of images is empty");
@@ -113,7 +119,8 @@ std::optional<OmeImage> ome_image(const Json& given) {
             place.translation[a] = whole.scale[a] * place.translation[a] + whole.translation[a];
             place.scale[a] *= whole.scale[a];
         }
-        found.datasets.push_back({dataset.at("path").get<std::string>(), place.scale, place.translation});
+        found.datasets.push_back(
+            {dataset.at("path").get<std::string>(), place.scale, place.translation});
     }
     found.channels = channel_names(attributes);
     found.range = range_of(given);

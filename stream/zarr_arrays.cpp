@@ -43,8 +43,8 @@ void take_dtype(const Json& json, SampleBytes& bytes) {
     const auto stored = io::stored_named(kind + std::to_string(8 * (type[2] - '0')));
     if (!stored || (type[1] == 'b' && *stored != io::Stored::uint8)) refuse_type(type);
     bytes.stored = *stored;
-    bytes.swapped = (type[0] == '>') == (std::endian::native == std::endian::little) &&
-                    bytes.size() > 1;
+    bytes.swapped =
+        (type[0] == '>') == (std::endian::native == std::endian::little) && bytes.size() > 1;
 }
 
 double fill_of(const Json& json) {
@@ -96,7 +96,8 @@ ChunkedArray zarr2_array(const Json& zarray, const std::string& folder) {
     array.bytes.fill = fitting(fill_of(zarray.value("fill_value", Json())), array.bytes);
     array.separator = separator_of(zarray.value("dimension_separator", std::string(".")));
     const std::string order = zarray.value("order", std::string("C"));
-    if (order != "C" && order != "F") throw BadMetadata("its order is '" + order + "'; it is C or F");
+    if (order != "C" && order != "F")
+        throw BadMetadata("its order is '" + order + "'; it is C or F");
     for (std::size_t a = 0; a < array.axes(); ++a) array.stored_axes.push_back(static_cast<int>(a));
     if (order == "F") std::ranges::reverse(array.stored_axes);
     const Json filters = zarray.value("filters", Json());
@@ -185,7 +186,8 @@ void take_shards(const Json& configuration, ChunkedArray& array) {
 
 void take_codecs(const Json& codecs, ChunkedArray& array) {
     bool as_bytes = false;
-    if (!codecs.is_array() || codecs.size() > 16) throw BadMetadata("its list of codecs is not sensible");
+    if (!codecs.is_array() || codecs.size() > 16)
+        throw BadMetadata("its list of codecs is not sensible");
     for (const Json& codec : codecs) {
         const std::string name = codec.at("name").get<std::string>();
         if (name == "transpose" && !as_bytes) {
@@ -197,7 +199,8 @@ void take_codecs(const Json& codecs, ChunkedArray& array) {
             as_bytes = true;
         } else if (name == "sharding_indexed" && !as_bytes) {
             if (codecs.size() > 1) {
-                throw BadMetadata("its shards are packed as a whole; store them with codecs inside");
+                throw BadMetadata(
+                    "its shards are packed as a whole; store them with codecs inside");
             }
             take_shards(codec.at("configuration"), array);
             as_bytes = true;

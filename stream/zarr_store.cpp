@@ -1,5 +1,5 @@
-// Opens OME-Zarr images of versions 0.4 (Zarr 2) and 0.5 (Zarr 3), single Zarr arrays, and the first
-// series of what bioformats2raw writes.
+// Opens OME-Zarr images of versions 0.4 (Zarr 2) and 0.5 (Zarr 3), single Zarr arrays, and the
+// first series of what bioformats2raw writes.
 #include <algorithm>
 #include <cmath>
 
@@ -17,7 +17,7 @@ constexpr std::size_t most_series = 16;           // that are looked for
 constexpr double longest_grid = 1 << 30;          // [samples] along an axis
 
 Wanted metadata(const std::string& folder, const char* name) {
-    return {key_below(folder, name), std::nullopt, most_metadata};
+    return {key_below(folder, name), std::nullopt, most_metadata, false, false, true};
 }
 
 Json parsed(const std::optional<Bytes>& bytes, const std::string& name) {
@@ -66,7 +66,8 @@ std::vector<Node> nodes_in(const Objects& objects, std::span<const std::string> 
 }
 
 ChunkedArray array_from(const Node& node, const std::string& folder) {
-    if (node.array.is_null()) throw BadMetadata("its level '" + folder + "' is not there; copy it again");
+    if (node.array.is_null())
+        throw BadMetadata("its level '" + folder + "' is not there; copy it again");
     return node.version == 3 ? zarr3_array(node.array, folder) : zarr2_array(node.array, folder);
 }
 
@@ -103,7 +104,8 @@ OmeImage image_of_array(const ChunkedArray& array) {
         throw BadMetadata("it has " + std::to_string(axes) + " axes; 2 to 5 can be read");
     }
     OmeImage image;
-    for (std::size_t a = 0; a < axes; ++a) image.axes.push_back({names[names.size() - axes + a], ""});
+    for (std::size_t a = 0; a < axes; ++a)
+        image.axes.push_back({names[names.size() - axes + a], ""});
     const std::vector<double> one(axes, 1), zero(axes, 0);
     image.datasets = {{"", one, zero}};
     return image;
@@ -129,7 +131,8 @@ class Opening {
         volume_.info.address = address;
         Node root = nodes_in(objects_, std::array{folder_})[0];
         if (root.version == 0) {
-            throw BadMetadata("has no zarr.json, .zgroup or .zarray: it is no Zarr folder; check the name");
+            throw BadMetadata(
+                "has no zarr.json, .zgroup or .zarray: it is no Zarr folder; check the name");
         }
         if (!root.array.is_null()) return of_array(root);
         auto image = ome_image(root.attributes);
@@ -138,7 +141,8 @@ class Opening {
             image = ome_image(root.attributes);
         }
         if (!image) {
-            throw BadMetadata("has neither an image nor an array of its own; give one in a folder below it");
+            throw BadMetadata(
+                "has neither an image nor an array of its own; give one in a folder below it");
         }
         take_levels(*image, root.version);
         return std::move(volume_);
@@ -159,7 +163,8 @@ class Opening {
     /// The series of a bioformats2raw folder are images named 0, 1, ...
     Node first_series() {
         std::vector<std::string> folders;
-        for (std::size_t i = 0; i < most_series; ++i) folders.push_back(key_below(folder_, std::to_string(i)));
+        for (std::size_t i = 0; i < most_series; ++i)
+            folders.push_back(key_below(folder_, std::to_string(i)));
         const auto nodes = nodes_in(objects_, folders);
         if (!ome_image(nodes[0].attributes)) return {};
         std::string others;
@@ -177,7 +182,8 @@ class Opening {
     void take_levels(const OmeImage& image, int version) {
         volume_.info.format = version == 3 ? "OME-Zarr 0.5" : "OME-Zarr 0.4";
         std::vector<std::string> folders;
-        for (const OmeDataset& dataset : image.datasets) folders.push_back(key_below(folder_, dataset.path));
+        for (const OmeDataset& dataset : image.datasets)
+            folders.push_back(key_below(folder_, dataset.path));
         const auto nodes = nodes_in(objects_, folders);
         for (std::size_t i = 0; i < nodes.size(); ++i) {
             volume_.arrays.push_back(array_from(nodes[i], folders[i]));
@@ -191,7 +197,8 @@ class Opening {
         const ChunkedArray& finest = volume_.arrays[0];
         for (const ChunkedArray& array : volume_.arrays) {
             if (array.axes() != image.axes.size() || array.bytes.stored != finest.bytes.stored) {
-                throw BadMetadata("its levels have different types, or other axes than its metadata say");
+                throw BadMetadata(
+                    "its levels have different types, or other axes than its metadata say");
             }
         }
         info.type = finest.bytes.type();
@@ -292,8 +299,8 @@ std::shared_ptr<const Store> open_zarr(std::shared_ptr<const Objects> objects,
     } catch (const std::invalid_argument& e) {
         throw io::InputError(address + ": " + e.what() + "; its metadata are damaged");
     } catch (const Json::exception&) {
-        throw io::InputError(address +
-                             ": its metadata lack what they need; they are damaged: copy them again");
+        throw io::InputError(
+            address + ": its metadata lack what they need; they are damaged: copy them again");
     }
 }
 

@@ -18,15 +18,14 @@ using support::put_bytes;
 using support::ScratchFolder;
 
 std::string reference(const std::string& arguments) {
-    return std::string(PALPATE_ZARR_PYTHON) + " -B " + PALPATE_STREAM_TESTS + "/zarr_reference.py " +
-           arguments;
+    return std::string(PALPATE_ZARR_PYTHON) + " -B " + PALPATE_STREAM_TESTS +
+           "/zarr_reference.py " + arguments;
 }
 
 /// What the independent writer has written, once for all tests.
 const fs::path& written() {
     static const ScratchFolder folder;
-    static const bool done =
-        std::system(reference("write " + folder.path().string()).c_str()) == 0;
+    static const bool done = std::system(reference("write " + folder.path().string()).c_str()) == 0;
     if (!done) throw std::runtime_error("python3-zarr does not work");
     return folder.path();
 }
@@ -35,7 +34,8 @@ const fs::path& written() {
 std::vector<std::byte> converted(const std::string& raw, io::Stored stored, SampleType type) {
     const std::size_t count = raw.size() / io::size_of(stored);
     std::vector<std::byte> samples(count * size_of(type));
-    io::convert(stored, reinterpret_cast<const std::byte*>(raw.data()), type, samples.data(), count);
+    io::convert(stored, reinterpret_cast<const std::byte*>(raw.data()), type, samples.data(),
+                count);
     return samples;
 }
 
@@ -108,17 +108,16 @@ TEST(OmeZarr, channel_time_scale_and_translation_of_each_level_are_those_of_its_
             EXPECT_EQ(info.format, "OME-Zarr 0.4");
             EXPECT_EQ(info.times, 2);
             EXPECT_DOUBLE_EQ(info.frame_interval, 0.04);
-            EXPECT_EQ(info.channels,
-                      (std::vector<std::string>{"nuclei", "membrane", "channel 2"}));
+            EXPECT_EQ(info.channels, (std::vector<std::string>{"nuclei", "membrane", "channel 2"}));
             ASSERT_EQ(info.levels.size(), 2U);
             EXPECT_TRUE(info.levels[0].geometry.spacing.isApprox(Vec3(2e-3, 4e-3, 6e-3)));
             EXPECT_TRUE(info.levels[1].geometry.spacing.isApprox(Vec3(4e-3, 8e-3, 12e-3)));
             EXPECT_TRUE(info.levels[0].geometry.origin.isApprox(Vec3(30e-3, 20e-3, 10e-3)));
             EXPECT_TRUE(info.levels[1].geometry.origin.isApprox(Vec3(31e-3, 22e-3, 13e-3)));
             for (int level = 0; level < 2; ++level) {
-                const std::string raw =
-                    bytes_of(written() / ("ome-" + std::to_string(level) + "-" +
-                                          std::to_string(time) + "-" + std::to_string(channel) + ".raw"));
+                const std::string raw = bytes_of(written() / ("ome-" + std::to_string(level) + "-" +
+                                                              std::to_string(time) + "-" +
+                                                              std::to_string(channel) + ".raw"));
                 expect_same_boxes(
                     *store,
                     expected_volume(info.levels[static_cast<std::size_t>(level)].geometry, raw,
@@ -129,8 +128,8 @@ TEST(OmeZarr, channel_time_scale_and_translation_of_each_level_are_those_of_its_
     }
     StoreOptions beyond;
     beyond.channel = 3;
-    const std::string message = message_of<io::InputError>(
-        [&] { (void)open_store(written() / "ome.zarr", beyond); });
+    const std::string message =
+        message_of<io::InputError>([&] { (void)open_store(written() / "ome.zarr", beyond); });
     EXPECT_TRUE(contains(message, "no channel 3: it has 3"));
 }
 
@@ -147,20 +146,23 @@ void expect_same_as_reference(const fs::path& v4, const fs::path& v5) {
     const ScratchFolder folder;
     for (const char* level : {"0", "1"}) {
         const std::string raw = folder / "level.raw";
-        ASSERT_EQ(std::system(reference("dump " + v4.string() + " " + level + " > " + raw).c_str()), 0);
+        ASSERT_EQ(std::system(reference("dump " + v4.string() + " " + level + " > " + raw).c_str()),
+                  0);
         const std::string samples = bytes_of(raw);
         for (const fs::path& path : {v4, v5}) {
             SCOPED_TRACE(path);
             std::size_t at = 0;
             const auto first = open_store(path);
             const auto channels = std::max<std::size_t>(1, first->info().channels.size());
-            for (std::size_t i = 0; i < static_cast<std::size_t>(first->info().times) * channels; ++i) {
+            for (std::size_t i = 0; i < static_cast<std::size_t>(first->info().times) * channels;
+                 ++i) {
                 StoreOptions options;
                 options.time = static_cast<int>(i / channels);
                 options.channel = static_cast<int>(i % channels);
                 const auto store = open_store(path, options);
                 const Geometry& grid = store->info().levels.at(level[0] == '0' ? 0 : 1).geometry;
-                const auto bytes = static_cast<std::size_t>(sample_count(grid)) * size_of(store->info().type);
+                const auto bytes =
+                    static_cast<std::size_t>(sample_count(grid)) * size_of(store->info().type);
                 const Volume read = volume_of(*store, level[0] - '0');
                 ASSERT_LE(at + bytes, samples.size());
                 EXPECT_EQ(std::memcmp(read.data(), samples.data() + at, bytes), 0);
@@ -208,8 +210,8 @@ bool read_or_refused(const fs::path& path) {
 TEST(Zarr, mutated_and_truncated_stores_are_refused_in_one_line_or_read) {
     std::mt19937 random(11);
     int refused = 0, tried = 0;
-    for (const char* name : {"v2-5-gzip.zarr", "v2-12-lz4.zarr", "v2-17-blosc-lz4.zarr", "v3-2.zarr",
-                             "v3-shards-0.zarr", "v3-shards-1.zarr", "ome.zarr"}) {
+    for (const char* name : {"v2-5-gzip.zarr", "v2-12-lz4.zarr", "v2-17-blosc-lz4.zarr",
+                             "v3-2.zarr", "v3-shards-0.zarr", "v3-shards-1.zarr", "ome.zarr"}) {
         if (!fs::exists(written() / name)) ADD_FAILURE() << name;
         std::vector<fs::path> files;
         for (const auto& entry : fs::recursive_directory_iterator(written() / name)) {
