@@ -12,6 +12,8 @@ constexpr std::size_t most_axes = 8;
 constexpr double most_chunk_bytes = 1 << 30;
 constexpr double most_chunks_in_shard = 1 << 20;
 constexpr std::size_t most_held = 1 << 22;  // numbers in all indices that are kept
+// What was damaged on its way may come whole the next time.
+constexpr int attempts_at_damage = 3;
 constexpr std::uint64_t not_stored = UINT64_MAX;
 
 std::size_t product(std::span<const std::int64_t> sizes) {
@@ -88,23 +90,26 @@ ChunkReader::ChunkReader(std::shared_ptr<const Objects> objects, ChunkedArray ar
 
 std::optional<Bytes> ChunkReader::chunk(std::span<const std::int64_t> index,
                                         std::stop_token stop) const {
-    std::string key;
-    std::optional<Bytes> bytes = packed(index, key, stop);
-    if (!bytes) return bytes;
-    try {
-        return decoded(array_.codecs, *std::move(bytes), array_.bytes_in_chunk());
-    } catch (const DamagedChunk& e) {
-        throw io::InputError(objects_->name_of(key) + ": " + e.what() +
-                             "; the chunk is damaged: copy it again");
+    for (int attempt = 1;; ++attempt) {
+        std::string key;
+        std::optional<Bytes> bytes = packed(index, key, attempt > 1, stop);
+        if (!bytes) return bytes;
+        try {
+            return decoded(array_.codecs, *std::move(bytes), array_.bytes_in_chunk());
+        } catch (const DamagedChunk& e) {
+            if (attempt < attempts_at_damage) continue;
+            throw io::InputError(objects_->name_of(key) + ": " + e.what() +
+                                 "; the chunk is damaged: copy it again");
+        }
     }
 }
 
 std::optional<Bytes> ChunkReader::packed(std::span<const std::int64_t> index, std::string& key,
-                                         std::stop_token stop) const {
+                                         bool again, std::stop_token stop) const {
     const std::uint64_t most = packed_at_most(array_.bytes_in_chunk());
     if (!array_.shards) {
         key = key_of(array_, index);
-        return objects_->get({key, std::nullopt, most, true}, stop);
+        return objects_->get({key, std::nullopt, most, true, again}, stop);
     }
     std::vector<std::int64_t> shard(index.begin(), index.end());
     std::size_t inside = 0;
@@ -119,11 +124,12 @@ std::optional<Bytes> ChunkReader::packed(std::span<const std::int64_t> index, st
     if (!places) return std::nullopt;
     const std::uint64_t offset = (*places)[2 * inside], length = (*places)[2 * inside + 1];
     if (offset == not_stored && length == not_stored) return std::nullopt;
+    if (length == 0) return Bytes{};
     if (length > most || offset > UINT64_MAX / 2) {
         throw io::InputError(objects_->name_of(key) +
                              ": its index is not possible; the shard is damaged: copy it again");
     }
-    return objects_->get({key, ByteRange{offset, length}, most, true}, stop);
+    return objects_->get({key, ByteRange{offset, length}, most, true, again}, stop);
 }
 
 ChunkReader::Index ChunkReader::index_of(const std::string& shard, std::stop_token stop) const {
@@ -132,25 +138,7 @@ ChunkReader::Index ChunkReader::index_of(const std::string& shard, std::stop_tok
         const auto found = indices_.find(shard);
         if (found != indices_.end()) return found->second;
     }
-    const std::size_t size = 16 * product(array_.shards->chunks);
-    std::size_t stored = size;
-    for (const Codec codec : array_.shards->index_codecs) {
-        if (codec == Codec::crc32c) stored += 4;
-    }
-    const ByteRange range{0, stored, !array_.shards->index_at_start};
-    const auto bytes = objects_->get({shard, range, stored, true}, stop);
-    Index index;
-    if (bytes) {
-        try {
-            const Bytes plain = decoded(array_.shards->index_codecs, *bytes, size);
-            auto places = std::make_shared<std::vector<std::uint64_t>>(size / 8);
-            for (std::size_t i = 0; i < places->size(); ++i) (*places)[i] = entry_at(plain, 8 * i);
-            index = places;
-        } catch (const DamagedChunk& e) {
-            throw io::InputError(objects_->name_of(shard) + ": its index " + e.what() +
-                                 "; the shard is damaged: copy it again");
-        }
-    }
+    const Index index = fetched_index(shard, std::move(stop));
     const std::lock_guard lock(mutex_);
     if (!indices_.emplace(shard, index).second) return index;
     order_.push_back(shard);
@@ -162,6 +150,30 @@ ChunkReader::Index ChunkReader::index_of(const std::string& shard, std::stop_tok
         order_.pop_front();
     }
     return index;
+}
+
+ChunkReader::Index ChunkReader::fetched_index(const std::string& shard,
+                                              std::stop_token stop) const {
+    const std::size_t size = 16 * product(array_.shards->chunks);
+    std::size_t stored = size;
+    for (const Codec codec : array_.shards->index_codecs) {
+        if (codec == Codec::crc32c) stored += 4;
+    }
+    const ByteRange range{0, stored, !array_.shards->index_at_start};
+    for (int attempt = 1;; ++attempt) {
+        auto bytes = objects_->get({shard, range, stored, true, attempt > 1}, stop);
+        if (!bytes) return nullptr;
+        try {
+            const Bytes plain = decoded(array_.shards->index_codecs, *std::move(bytes), size);
+            auto places = std::make_shared<std::vector<std::uint64_t>>(size / 8);
+            for (std::size_t i = 0; i < places->size(); ++i) (*places)[i] = entry_at(plain, 8 * i);
+            return places;
+        } catch (const DamagedChunk& e) {
+            if (attempt < attempts_at_damage) continue;
+            throw io::InputError(objects_->name_of(shard) + ": its index " + e.what() +
+                                 "; the shard is damaged: copy it again");
+        }
+    }
 }
 
 }  // namespace palpate::stream

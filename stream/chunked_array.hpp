@@ -61,7 +61,8 @@ class ChunkReader {
     /// Offset and length of each chunk of a shard; null: there is no such shard.
     using Index = std::shared_ptr<const std::vector<std::uint64_t>>;
     Index index_of(const std::string& shard, std::stop_token stop) const;
-    std::optional<Bytes> packed(std::span<const std::int64_t> index, std::string& key,
+    Index fetched_index(const std::string& shard, std::stop_token stop) const;
+    std::optional<Bytes> packed(std::span<const std::int64_t> index, std::string& key, bool again,
                                 std::stop_token stop) const;
 
     std::shared_ptr<const Objects> objects_;

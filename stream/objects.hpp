@@ -30,6 +30,8 @@ struct Wanted {
     std::optional<ByteRange> range = std::nullopt;
     std::uint64_t most = UINT64_MAX;  ///< bytes that the object may have; more is an error
     bool lasting = false;             ///< may come from a disk cache
+    bool again = false;               ///< what came before was damaged: not from the cache
+    bool probe = false;  ///< one that may not be there; what must not be read counts as such
 };
 
 /// Safe to use from several threads at a time.

@@ -3,6 +3,7 @@
 
 #include "io/plain_samples.hpp"
 #include "palpate/io/error.hpp"
+#include "stream/remote_objects.hpp"
 #include "stream/stores.hpp"
 
 namespace palpate::stream {
@@ -40,10 +41,17 @@ void check_choice(const StoreInfo& info, const StoreOptions& options) {
 }
 
 bool is_store(const std::string& address, const StoreOptions& options) {
-    return is_zarr_folder(address) || is_plain(address, options);
+    return is_remote(address) || is_zarr_folder(address) || is_plain(address, options);
 }
 
 std::shared_ptr<const Store> open_store(const std::string& address, const StoreOptions& options) {
+    if (is_remote(address)) {
+        auto objects = http_objects(address, options);
+        if (!options.cache_folder.empty() && options.cache_bytes > 0) {
+            objects = cached_objects(objects, options.cache_folder, options.cache_bytes);
+        }
+        return open_zarr(objects, address, options);
+    }
     if (is_zarr_folder(address)) return open_zarr(folder_objects(address), address, options);
     return open_plain_file(address, options);
 }

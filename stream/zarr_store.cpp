@@ -17,7 +17,7 @@ constexpr std::size_t most_series = 16;           // that are looked for
 constexpr double longest_grid = 1 << 30;          // [samples] along an axis
 
 Wanted metadata(const std::string& folder, const char* name) {
-    return {key_below(folder, name), std::nullopt, most_metadata};
+    return {key_below(folder, name), std::nullopt, most_metadata, false, false, true};
 }
 
 Json parsed(const std::optional<Bytes>& bytes, const std::string& name) {

@@ -1,0 +1,83 @@
+// Remote objects with a cache on the disk.
+#include <atomic>
+#include <string_view>
+
+#include "stream/disk_cache.hpp"
+#include "stream/remote_objects.hpp"
+
+namespace palpate::stream {
+namespace {
+
+class CachedObjects : public Objects {
+  public:
+    CachedObjects(std::shared_ptr<const Objects> objects, const std::filesystem::path& folder,
+                  std::uint64_t most_bytes)
+        : objects_(std::move(objects)), cache_(folder, most_bytes) {}
+
+    std::string name_of(const std::string& key) const override { return objects_->name_of(key); }
+    Traffic traffic() const override {
+        Traffic traffic = objects_->traffic();
+        traffic.cached = found_.load();
+        return traffic;
+    }
+
+    std::optional<Bytes> get(const Wanted& wanted, std::stop_token stop) const override {
+        if (!wanted.lasting) return seen(wanted, objects_->get(wanted, std::move(stop)));
+        const std::string name = entry_name(wanted);
+        if (!wanted.again) {
+            if (auto bytes = cache_.find(name); bytes && bytes->size() <= wanted.most) {
+                found_.fetch_add(1, std::memory_order_relaxed);
+                return bytes;
+            }
+        }
+        auto bytes = objects_->get(wanted, std::move(stop));
+        // That an object is not there is not kept: it may be written any time.
+        if (bytes) cache_.put(name, *bytes);
+        return bytes;
+    }
+
+    std::vector<std::optional<Bytes>> get_all(std::span<const Wanted> wanted,
+                                              std::stop_token stop) const override {
+        for (const Wanted& one : wanted) {
+            if (one.lasting) return Objects::get_all(wanted, std::move(stop));
+        }
+        auto all = objects_->get_all(wanted, std::move(stop));
+        for (std::size_t i = 0; i < all.size(); ++i) all[i] = seen(wanted[i], std::move(all[i]));
+        return all;
+    }
+
+  private:
+    /// What is fetched every time are metadata. They are a part of the names of entries, so that a
+    /// store that is written anew does not meet those of the old one.
+    std::optional<Bytes> seen(const Wanted& wanted, std::optional<Bytes> bytes) const {
+        if (!bytes) return bytes;
+        const std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+        metadata_.fetch_xor(std::hash<std::string_view>{}(text) * 31 +
+                            std::hash<std::string>{}(wanted.key));
+        return bytes;
+    }
+
+    std::string entry_name(const Wanted& wanted) const {
+        std::string name = objects_->name_of(wanted.key) + '\n' + std::to_string(metadata_.load());
+        if (wanted.range) {
+            name += '\n' + std::to_string(wanted.range->offset) + (wanted.range->from_end ? "e" : "+") +
+                    std::to_string(wanted.range->length);
+        }
+        return name;
+    }
+
+    std::shared_ptr<const Objects> objects_;
+    DiskCache cache_;
+    mutable std::atomic<std::size_t> metadata_ = 0;
+    mutable std::atomic<std::uint64_t> found_ = 0;
+};
+
+}  // namespace
+
+std::shared_ptr<const Objects> cached_objects(std::shared_ptr<const Objects> objects,
+                                              const std::filesystem::path& folder,
+                                              std::uint64_t most_bytes) {
+    return std::make_shared<CachedObjects>(std::move(objects), folder, most_bytes);
+}
+
+}  // namespace palpate::stream
