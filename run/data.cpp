@@ -29,7 +29,9 @@ Data::Data(LoadedVolume loaded, const PlaybackSetup& playback)
 
 VolumeEditor& Data::editor() const {
     if (editor_) return *editor_;
-    if (streamer_) throw std::invalid_argument("a volume that is read as it is felt is not edited");
+    if (streamer_) {
+        throw std::invalid_argument("a volume that is read as it is felt cannot be edited");
+    }
     throw std::invalid_argument(
         "a sequence cannot be edited: open one frame of it by its time step");
 }
@@ -66,10 +68,15 @@ std::string Data::problem() const {
     return player_ ? player_->state().problem : editor_->state().problem;
 }
 
-std::string Data::save(const std::filesystem::path& path, const io::Progress& progress) {
+void Data::require_saving() const {
     if (streamer_) {
-        throw std::invalid_argument("it is read as it is felt: palpate convert copies it");
+        throw std::invalid_argument(
+            "a volume that is read as it is felt is not saved: palpate convert copies it");
     }
+}
+
+std::string Data::save(const std::filesystem::path& path, const io::Progress& progress) {
+    require_saving();
     Field now(start_);
     update(now);
     io::WriteOptions options;

@@ -27,6 +27,13 @@ std::string utc_now() {
     return text.data();
 }
 
+/// What simulated hands and pictures see: of a store, of which little may be in memory, the
+/// overview.
+Field seen(const Field& field) {
+    if (!field.samples().resident()) return field;
+    return Field(field.volume(), field.solid(), field.background(), field.interpolation());
+}
+
 std::unique_ptr<Device> open_for(const Field& field, double isovalue, const Setup& setup) {
     const double rate = setup.render.rate;
     if (!(rate >= 250 && rate <= 8000)) {
@@ -34,10 +41,10 @@ std::unique_ptr<Device> open_for(const Field& field, double isovalue, const Setu
         io::append_number(text, rate);
         throw std::invalid_argument("rate " + text + " Hz: a live session runs at 250 to 8000 Hz");
     }
-    return devices::open_device(setup.device, {field, isovalue, rate, [&](const DeviceInfo& info) {
-                                                   return transform_for(field.geometry(), info,
-                                                                        setup);
-                                               }});
+    return devices::open_device(setup.device,
+                                {seen(field), isovalue, rate, [&](const DeviceInfo& info) {
+                                     return transform_for(field.geometry(), info, setup);
+                                 }});
 }
 
 /// Puts what a run begins with into its recording. Waits while the queue is full; the servo does
@@ -185,6 +192,10 @@ Session Run::session_now() const {
     const auto now = servo_ ? servo_->snapshot() : std::nullopt;
     if (!now) return session_from(isovalue_, settings_.transform, -1);
     return session_from(now->session.tick.proxy.isovalue, now->session.transform, now->number);
+}
+
+Field Run::field_seen() const {
+    return seen(field_now());
 }
 
 DeviceFailure Run::device_failure() const {

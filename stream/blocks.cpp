@@ -45,7 +45,8 @@ void BrickLoader::Blocks::read(int level, const SampleBox& box, std::span<std::b
         return store_.read(level, box, out, stop);
     }
     const Index3 last = grid.geometry.size - Index3::Ones();
-    const Index3 first = box.low.cwiseQuotient(grid.chunk), end = box.high.cwiseQuotient(grid.chunk);
+    const Index3 first = box.low.cwiseQuotient(grid.chunk),
+                 end = box.high.cwiseQuotient(grid.chunk);
     for (int k = first[2]; k <= end[2]; ++k) {
         for (int j = first[1]; j <= end[1]; ++j) {
             for (int i = first[0]; i <= end[0]; ++i) {

@@ -14,8 +14,7 @@ namespace palpate::stream {
 /// Any thread may call any function.
 class BrickLoader::Blocks {
   public:
-    Blocks(const Store& store, std::uint64_t most_bytes)
-        : store_(store), most_bytes_(most_bytes) {}
+    Blocks(const Store& store, std::uint64_t most_bytes) : store_(store), most_bytes_(most_bytes) {}
 
     /// As Store::read(). Pieces small enough to keep are read whole, and each by one thread.
     void read(int level, const SampleBox& box, std::span<std::byte> out, std::stop_token stop);

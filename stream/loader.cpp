@@ -32,9 +32,9 @@ std::size_t most_bricks(const Store& store, std::uint64_t memory) {
     const std::uint64_t each = ResidentBricks::per_brick * size_of(store.info().type);
     const auto count = static_cast<std::size_t>((memory - memory / pieces_part) / each);
     if (count < fewest_bricks) {
-        throw std::invalid_argument(
-            "at least " + std::to_string(fewest_bricks * each * 4 / 3 / 1000000 + 1) +
-            " MB of memory are needed to feel " + store.info().address);
+        throw std::invalid_argument("at least " +
+                                    std::to_string(fewest_bricks * each * 4 / 3 / 1000000 + 1) +
+                                    " MB of memory are needed to feel " + store.info().address);
     }
     return count;
 }
@@ -48,8 +48,7 @@ std::array<int, 3> array_of(const Index3& at) {
 std::shared_ptr<const Samples> empty_samples(const Store& store, const Volume& overview,
                                              int level) {
     const Geometry& geometry = level_of(store, level).geometry;
-    const Range range =
-        store.info().range.value_or(Range{overview.minimum(), overview.maximum()});
+    const Range range = store.info().range.value_or(Range{overview.minimum(), overview.maximum()});
     return std::make_shared<const Samples>(overview, geometry, ResidentBricks(geometry.size),
                                            range.minimum, range.maximum);
 }
@@ -96,10 +95,11 @@ std::optional<BrickVersion> BrickLoader::take() {
 void BrickLoader::wait_for(const Vec3& centre, double radius) {
     const std::vector<Index3> needed = bricks_round(geometry_, centre, radius);
     if (needed.size() > most_bricks_ - most_bricks_ / 8) {
-        throw std::invalid_argument(
-            store_->info().address + ": a stroke needs more samples at a time than fit into " +
-            std::to_string(settings_.memory / 1000000) + " MB: allow more memory or feel a "
-            "coarser level");
+        throw std::invalid_argument(store_->info().address +
+                                    ": a stroke needs more samples at a time than fit into " +
+                                    std::to_string(settings_.memory / 1000000) +
+                                    " MB: allow more memory or feel a "
+                                    "coarser level");
     }
     std::unique_lock lock(mutex_);
     required_ = needed;

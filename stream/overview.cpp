@@ -96,13 +96,14 @@ void interpolate(const Geometry& fine, const SampleBox& brick, const Geometry& c
     const Index3 size = box.high - box.low + Index3::Ones();
     const auto at = [&](const Index3& i) {
         const Index3 in = i.cwiseMax(box.low).cwiseMin(box.high) - box.low;
-        return double(from[(static_cast<std::ptrdiff_t>(in[2]) * size[1] + in[1]) * size[0] + in[0]]);
+        return double(
+            from[(static_cast<std::ptrdiff_t>(in[2]) * size[1] + in[1]) * size[0] + in[0]]);
     };
     for (int k = brick.low[2]; k <= brick.high[2]; ++k) {
         for (int j = brick.low[1]; j <= brick.high[1]; ++j) {
             for (int i = brick.low[0]; i <= brick.high[0]; ++i) {
-                const Vec3 p = index_from_physical(
-                    coarse, physical_from_index(fine, Vec3(i, j, k)));
+                const Vec3 p =
+                    index_from_physical(coarse, physical_from_index(fine, Vec3(i, j, k)));
                 const Vec3 floor = p.array().floor();
                 const Index3 low = floor.cast<int>();
                 const Vec3 t = p - floor;
@@ -137,8 +138,7 @@ ResidentBrick BrickLoader::read(const Index3& brick, int coarser, std::stop_toke
     const SampleType type = overview_.type();
     const std::size_t each = size_of(type);
     const SampleBox box = empty_->resident()->box_of(brick);
-    const Index3 origin =
-        brick * ResidentBricks::edge - Index3::Constant(ResidentBricks::margin);
+    const Index3 origin = brick * ResidentBricks::edge - Index3::Constant(ResidentBricks::margin);
     const std::shared_ptr<std::byte[]> samples(new std::byte[ResidentBricks::per_brick * each]());
     SampleBox from = box;
     const Geometry& grid =
@@ -149,9 +149,19 @@ ResidentBrick BrickLoader::read(const Index3& brick, int coarser, std::stop_toke
         };
         const Vec3 a = index_in(box.low), b = index_in(box.high);
         const Index3 last = grid.size - Index3::Ones();
-        from.low = a.cwiseMin(b).array().floor().cast<int>().matrix().cwiseMax(Index3::Zero())
+        from.low = a.cwiseMin(b)
+                       .array()
+                       .floor()
+                       .cast<int>()
+                       .matrix()
+                       .cwiseMax(Index3::Zero())
                        .cwiseMin(last);
-        from.high = a.cwiseMax(b).array().ceil().cast<int>().matrix().cwiseMax(Index3::Zero())
+        from.high = a.cwiseMax(b)
+                        .array()
+                        .ceil()
+                        .cast<int>()
+                        .matrix()
+                        .cwiseMax(Index3::Zero())
                         .cwiseMin(last);
     }
     const Index3 size = from.high - from.low + Index3::Ones();
@@ -171,8 +181,7 @@ ResidentBrick BrickLoader::read(const Index3& brick, int coarser, std::stop_toke
     for (int k = box.low[2]; k <= box.high[2]; ++k) {
         for (int j = box.low[1]; j <= box.high[1]; ++j, next += row) {
             const Index3 at = Index3(box.low[0], j, k) - origin;
-            const auto to =
-                at[0] + at[1] * ResidentBricks::row + at[2] * ResidentBricks::slice;
+            const auto to = at[0] + at[1] * ResidentBricks::row + at[2] * ResidentBricks::slice;
             std::memcpy(samples.get() + static_cast<std::size_t>(to) * each, next, row);
         }
     }

@@ -51,6 +51,18 @@ std::string status_line(const Snapshot& now, const Layers* layers, const ServoRe
     return line;
 }
 
+std::string streaming_text(const stream::BrickLoaderStatus& s) {
+    std::string text = fmt::format(
+        "bricks {} in memory ({:.1f} MB, at most {:.1f}), {} loaded, {} dropped, {} missing; {} "
+        "requests, "
+        "{:.1f} MB, {} retries, {} from the cache",
+        s.resident, double(s.bytes) / 1e6, double(s.most_bytes) / 1e6, s.loaded, s.dropped,
+        s.missing, s.traffic.requests, double(s.traffic.bytes) / 1e6, s.traffic.retries,
+        s.traffic.cached);
+    if (!s.problem.empty()) text += "\n" + s.problem;
+    return text;
+}
+
 std::string report_text(const ServoReport& r, double seconds) {
     std::string text = fmt::format(
         "ticks {} in {:.1f} s, missed deadlines {}, forces taken back {}\n"

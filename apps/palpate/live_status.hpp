@@ -6,6 +6,7 @@
 
 #include "apps/options/words.hpp"
 #include "palpate/servo.hpp"
+#include "palpate/stream/loader.hpp"
 
 namespace palpate::app {
 
@@ -15,6 +16,8 @@ std::string status_line(const Snapshot& now, const Layers* layers, const ServoRe
                         std::size_t columns);
 
 /// Several lines for people; JSON, one object, for scripts. `seconds`: how long the session ran.
+/// What was read of a store, and what is in memory.
+std::string streaming_text(const stream::BrickLoaderStatus& status);
 std::string report_text(const ServoReport& report, double seconds);
 nlohmann::ordered_json report_json(const ServoReport& report, double seconds,
                                    const DeviceInfo& device);

@@ -228,7 +228,8 @@ void save_at_end(run::Data& data, const RunOptions& options) {
             });
         }
         if (!quiet) fmt::print(options.json ? stderr : stdout, "{}\n", saved);
-    } else if (!data.is_sequence() && data.editor().state().changed && !quiet) {
+    } else if (!data.is_sequence() && !data.is_streamed() && data.editor().state().changed &&
+               !quiet) {
         fmt::print(stderr, "the edits were not saved (--save FILE, or the command save FILE)\n");
     }
 }
@@ -291,6 +292,9 @@ void touch(const RunOptions& options) {
     const double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     print_report(run.report(), seconds, device, options);
+    if (data->is_streamed() && !options.json && !options.source.quiet) {
+        fmt::print("{}\n", streaming_text(data->streaming()));
+    }
     save_at_end(*data, options);
     finish_recording(run, options);
     if (!unsaved.empty()) throw io::OutputError(unsaved);

@@ -56,7 +56,8 @@ void Content::use_field(Solid solid, Interpolation interpolation) {
 }
 
 run::VolumeEditor* Content::editor() const {
-    return live_ && !live_->data().is_sequence() ? &live_->data().editor() : nullptr;
+    const bool whole = live_ && !live_->data().is_sequence() && !live_->data().is_streamed();
+    return whole ? &live_->data().editor() : nullptr;
 }
 
 run::Player* Content::player() const {
@@ -75,8 +76,8 @@ std::shared_ptr<const Tool> Content::tool() const {
 
 Content::OuterSurface Content::outer_surface() const {
     const SharedLayers now = layers();
-    if (have_levels(now)) return {live_->field_now(), now->layers.front().level};
-    if (!have_surfaces(now)) return {live_->field_now(), live_->isovalue()};
+    if (have_levels(now)) return {live_->field_seen(), now->layers.front().level};
+    if (!have_surfaces(now)) return {live_->field_seen(), live_->isovalue()};
     OuterSurface labels{*now->labels, 0.5};
     labels.field.show_labels(~1U);  // all but what is in no layer
     return labels;
@@ -89,7 +90,7 @@ std::optional<Snapshot> Content::snapshot() const {
 }
 
 Field Content::field_at(const Snapshot& snapshot) {
-    Field field = live_ ? live_->field_now() : playback_->field_at(snapshot);
+    Field field = live_ ? live_->field_seen() : playback_->field_at(snapshot);
     field.set_time(snapshot.session.moment);
     return field;
 }

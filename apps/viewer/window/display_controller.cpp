@@ -39,10 +39,10 @@ DisplayController::DisplayController(Content& content, Views& views, Panel& pane
     connect(&content, &Content::closed, this, &DisplayController::clear);
     connect(&content, &Content::run_started, this, [this] {
         const run::Run& live = *content_.live();
-        show_volume(live.field(), live.isovalue(), live.settings().transform);
+        show_volume(live.field_seen(), live.isovalue(), live.settings().transform);
     });
     connect(&content, &Content::field_replaced, this,
-            [this] { show_field(content_.live()->field(), content_.live()->isovalue()); });
+            [this] { show_field(content_.live()->field_seen(), content_.live()->isovalue()); });
     connect(&content, &Content::playback_started, this, [this] {
         const io::RecordingHead& head = content_.playback()->head();
         show_volume(content_.playback()->field(), head.isovalue, head.settings.transform);

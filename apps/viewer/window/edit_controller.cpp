@@ -121,7 +121,11 @@ void EditController::save(const QString& path, std::function<void()> then) {
     const std::filesystem::path file(path.toStdString());
     // The samples as they are now, whatever is done to them while they are written.
     const Field field = content_.live()->field_now();
-    if (!messages_.guarded([&] { run::check_volume_name(file.string(), field.geometry()); })) {
+    const auto check = [&] {
+        content_.live()->data().require_saving();
+        run::check_volume_name(file.string(), field.geometry());
+    };
+    if (!messages_.guarded(check)) {
         return;
     }
     const auto samples = field.shared_samples();
@@ -159,7 +163,7 @@ void EditController::save_surface(const QString& path) {
     if (!content_.live() || saving()) return;
     const std::filesystem::path file(path.toStdString());
     if (!messages_.guarded([&] { (void)io::mesh_format_from(file); })) return;
-    const Field field = content_.live()->field_now();
+    const Field field = content_.live()->field_seen();
     const double isovalue =
         panel_.layers_controls().chosen_level().value_or(content_.live()->isovalue());
     auto triangles = std::make_shared<std::size_t>(0);

@@ -41,9 +41,11 @@ class Data {
     void detach(const Servo& servo);
     /// Why edits or frames do not come; usually empty.
     std::string problem() const;
+    /// Throws std::invalid_argument for data that save() cannot write.
+    void require_saving() const;
     /// Writes the samples as they are now (of a sequence, at its moment) to a file, whole or not at
     /// all. Returns a sentence: "saved FILE", and for a raw file how to open it again. Throws
-    /// io::OutputError.
+    /// io::OutputError, and as require_saving().
     std::string save(const std::filesystem::path& path, const io::Progress& progress);
 
   private:

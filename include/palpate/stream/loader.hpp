@@ -18,8 +18,8 @@
 namespace palpate::stream {
 
 /// A volume of few samples that shows all of a store: its coarsest level that is fine enough, or
-/// single samples of a store without levels. At most `samples` of them, one at least. Blocks. Throws
-/// as Store::read().
+/// single samples of a store without levels. At most `samples` of them, one at least. Blocks.
+/// Throws as Store::read().
 Volume overview_of(const Store& store, std::int64_t samples = std::int64_t{1} << 21,
                    std::stop_token stop = {});
 
@@ -28,9 +28,9 @@ Volume overview_of(const Store& store, std::int64_t samples = std::int64_t{1} <<
 std::shared_ptr<const Samples> empty_samples(const Store& store, const Volume& overview, int level);
 
 struct BrickLoaderSettings {
-    int level = 0;                                    ///< of the store that is felt
-    std::uint64_t memory = std::uint64_t{1} << 29;    ///< [bytes] most that bricks and pieces take
-    int threads = 8;                                  ///< that read at a time
+    int level = 0;                                  ///< of the store that is felt
+    std::uint64_t memory = std::uint64_t{1} << 29;  ///< [bytes] most that bricks and pieces take
+    int threads = 8;                                ///< that read at a time
     /// Feel a coarser level until the bricks of `level` are there (ProxyUpdate::level says so).
     bool coarse_first = false;
 };
@@ -56,15 +56,15 @@ struct BrickVersion {
 };
 
 struct BrickLoaderStatus {
-    std::size_t resident = 0;        ///< bricks in memory
-    std::size_t wanted = 0;          ///< bricks that the hands may need soon
-    std::size_t missing = 0;         ///< of those, not in memory
-    std::uint64_t bytes = 0;         ///< that bricks and decoded pieces take
-    std::uint64_t most_bytes = 0;    ///< that they have taken at a time
-    std::uint64_t loaded = 0;        ///< bricks so far
-    std::uint64_t dropped = 0;       ///< bricks so far, to make room
-    Traffic traffic;                 ///< of the store
-    std::string problem = {};        ///< why bricks do not come; usually empty
+    std::size_t resident = 0;      ///< bricks in memory
+    std::size_t wanted = 0;        ///< bricks that the hands may need soon
+    std::size_t missing = 0;       ///< of those, not in memory
+    std::uint64_t bytes = 0;       ///< that bricks and decoded pieces take
+    std::uint64_t most_bytes = 0;  ///< that they have taken at a time
+    std::uint64_t loaded = 0;      ///< bricks so far
+    std::uint64_t dropped = 0;     ///< bricks so far, to make room
+    Traffic traffic;               ///< of the store
+    std::string problem = {};      ///< why bricks do not come; usually empty
 };
 
 /// Any thread may call any function.
@@ -127,11 +127,11 @@ class BrickLoader {
     mutable std::mutex mutex_;
     std::condition_variable_any changed_;
     ResidentBricks bricks_;
-    std::map<Place, int> held_;               // level of each brick in memory
-    std::map<Place, int> in_flight_;          // level that is being read
+    std::map<Place, int> held_;                  // level of each brick in memory
+    std::map<Place, int> in_flight_;             // level that is being read
     std::map<Place, Clock::time_point> failed_;  // not tried again before
-    std::vector<Index3> wanted_;              // most urgent first
-    std::vector<Index3> required_;            // by wait_for()
+    std::vector<Index3> wanted_;                 // most urgent first
+    std::vector<Index3> required_;               // by wait_for()
     std::vector<BrickEvent> events_;
     std::uint64_t most_bytes_ = 0, loaded_ = 0, dropped_ = 0;
     std::string problem_;

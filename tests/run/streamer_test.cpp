@@ -1,0 +1,150 @@
+// Volumes that are read as they are felt: live runs, recordings, replays.
+#include "palpate/run/streamer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "palpate/run/offline.hpp"
+#include "palpate/run/replay.hpp"
+#include "palpate/run/run.hpp"
+#include "palpate/scenes/volumes.hpp"
+#include "support/eventually.hpp"
+#include "support/scratch_folder.hpp"
+
+namespace palpate::run {
+namespace {
+
+using support::comes_true;
+using support::ScratchFolder;
+
+/// A ball of 120 mm in a volume of several bricks along each axis, as a raw file.
+struct BallFile {
+    ScratchFolder folder;
+    Volume volume = scenes::make_volume("sphere:200x190x180").volume;
+    std::string path = (folder.path() / "ball.raw").string();
+
+    BallFile() { io::write_volume(volume, path); }
+
+    std::map<std::string, std::string> names() const {
+        const Geometry& g = volume.geometry();
+        return {{"volume", path},
+                {"dims", "200x190x180"},
+                {"type", std::string(name_of(volume.type()))},
+                {"spacing", std::to_string(g.spacing[0]) + "," + std::to_string(g.spacing[1]) +
+                                "," + std::to_string(g.spacing[2])}};
+    }
+    Source streamed() const {
+        auto given = names();
+        given["memory"] = "yes";
+        Source source = source_from(given);
+        std::get<StoreSource>(source.from).loader.memory = std::uint64_t{200} << 20;
+        return source;
+    }
+    Source whole() const { return source_from(names()); }
+};
+
+io::Trajectory stroke(const Volume& volume) {
+    const Vec3 centre = physical_centre(volume.geometry());
+    io::Trajectory trajectory;
+    for (int i = 0; i < 3000; ++i) {
+        const double a = 0.002 * i, r = 100 - 0.03 * i;
+        trajectory.time.push_back(0.001 * i);
+        trajectory.position.push_back(
+            centre + Vec3(r * std::cos(a), r * std::sin(a), 40 * std::sin(0.001 * i)));
+    }
+    return trajectory;
+}
+
+TEST(Streamed, a_replay_that_waits_gives_the_ticks_of_the_whole_volume_bit_for_bit) {
+    const BallFile ball;
+    const LoadedVolume whole = load(ball.whole()), streamed = load(ball.streamed());
+    ASSERT_FALSE(whole.streamed);
+    ASSERT_TRUE(streamed.streamed);
+    const io::Trajectory trajectory = stroke(whole.volume);
+    const auto rows_of = [&](const LoadedVolume& loaded) {
+        const Field field = make_field(start_samples(loaded), {});
+        const double level = 0.5 * (whole.volume.minimum() + whole.volume.maximum());
+        Renderer renderer =
+            make_renderer(field, level, offline_settings(RenderSetup{}, field, level));
+        std::vector<io::TraceRow> rows;
+        OfflineSinks sinks;
+        sinks.change = wait_for_bricks(loaded, trajectory);
+        sinks.row = [&](const io::TraceRow& row) { rows.push_back(row); };
+        render_offline(renderer, trajectory, sinks);
+        return rows;
+    };
+    const auto expected = rows_of(whole), rows = rows_of(streamed);
+    ASSERT_EQ(rows.size(), expected.size());
+    int constrained = 0;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        ASSERT_FALSE(rows[i].waiting);
+        ASSERT_EQ(rows[i].scp, expected[i].scp) << i;
+        ASSERT_EQ(rows[i].force, expected[i].force) << i;
+        constrained += rows[i].constrained;
+    }
+    EXPECT_GT(constrained, 500);
+}
+
+TEST(Streamed, a_live_run_touches_and_its_recording_repeats_bit_for_bit) {
+    const BallFile ball;
+    const auto data = std::make_shared<Data>(load(ball.streamed()));
+    run::Setup setup;
+    setup.device = devices::parse_device("simulated:hand=explore,seconds=60");
+    setup.real_time = false;
+    run::Run live(data, setup);
+    const std::string recording = (ball.folder.path() / "touch.csv").string();
+    live.record(recording);
+    live.start();
+    int contacts = 0;
+    EXPECT_TRUE(comes_true([&] {
+        const auto now = live.snapshot();
+        contacts += now && now->session.tick.proxy.mode == Mode::constrained &&
+                    now->session.tick.proxy.status == UpdateStatus::done;
+        return contacts > 20;
+    }));
+    EXPECT_THROW(data->editor(), std::invalid_argument);
+    EXPECT_THROW(data->player(), std::invalid_argument);
+    EXPECT_GT(data->streaming().loaded, 0U);
+    // A second recording begins with bricks in memory.
+    const std::string later = (ball.folder.path() / "later.csv").string();
+    live.record(later);
+    EXPECT_TRUE(comes_true([&] {
+        const auto now = live.snapshot();
+        return now && now->number > 200;
+    }));
+    live.stop();
+    live.stop_recording();
+    for (const std::string& path : {recording, later}) {
+        io::RecordingReader reader{std::filesystem::path(path)};
+        const LoadedVolume again = load(recorded_source(reader.head(), path));
+        ASSERT_TRUE(again.streamed) << "a recording says how its volume was read";
+        Replay replay(reader, again, path);
+        std::int64_t waiting = 0;
+        while (const auto tick = replay.next()) {
+            const auto differs = difference(tick->recorded, tick->again);
+            ASSERT_FALSE(differs) << tick->number << " " << differs->part;
+            waiting += tick->again.tick.proxy.status == UpdateStatus::waiting;
+        }
+        EXPECT_GT(replay.ticks(), 100);
+        EXPECT_GT(replay.commands(), 0);
+    }
+}
+
+TEST(Streamed, sources_keep_level_and_channel_in_their_names) {
+    const BallFile ball;
+    auto names = ball.names();
+    names["level"] = "0";
+    const Source source = source_from(names);
+    ASSERT_TRUE(std::holds_alternative<StoreSource>(source.from));
+    EXPECT_EQ(to_names(source), to_names(source_from(to_names(source))));
+    EXPECT_EQ(to_names(source).at("level"), "0");
+    names["level"] = "3";
+    EXPECT_THROW(load(source_from(names)), std::invalid_argument);
+    EXPECT_TRUE(std::holds_alternative<StoreSource>(
+        source_from({{"volume", "https://example.org/a.zarr"}}).from));
+    EXPECT_TRUE(std::holds_alternative<FileSource>(ball.whole().from)) << "a small file is read";
+}
+
+}  // namespace
+}  // namespace palpate::run

@@ -1,0 +1,270 @@
+// The loader: bricks are the store's samples, memory is bounded, failures are told and tried again.
+#include "palpate/stream/loader.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <functional>
+
+#include "palpate/io/error.hpp"
+#include "palpate/reach.hpp"
+#include "stream/interest.hpp"
+#include "support/constants.hpp"
+#include "support/edits.hpp"
+#include "support/eventually.hpp"
+#include "support/resident.hpp"
+
+namespace palpate::stream {
+namespace {
+
+using namespace palpate::support;
+
+/// Levels that are volumes, read in pieces of some size; a test may interfere with each read.
+class VolumeStore : public Store {
+  public:
+    VolumeStore(std::vector<Volume> levels, const Index3& chunk) : levels_(std::move(levels)) {
+        info_.address = "volumes";
+        info_.type = levels_.front().type();
+        for (const Volume& level : levels_) info_.levels.push_back({level.geometry(), chunk});
+    }
+    const StoreInfo& info() const override { return info_; }
+    Traffic traffic() const override { return {.requests = reads_}; }
+    void read(int level, const SampleBox& box, std::span<std::byte> out,
+              std::stop_token stop) const override {
+        ++reads_;
+        if (before_read) before_read(level, box, stop);
+        const Volume& volume = levels_.at(std::size_t(level));
+        const std::size_t each = size_of(volume.type());
+        const Index3& size = volume.geometry().size;
+        std::byte* to = out.data();
+        for (int k = box.low[2]; k <= box.high[2]; ++k) {
+            for (int j = box.low[1]; j <= box.high[1]; ++j) {
+                const auto* row = static_cast<const std::byte*>(volume.data()) +
+                                  ((std::size_t(k) * size[1] + j) * size[0] + box.low[0]) * each;
+                const auto bytes = std::size_t(box.high[0] - box.low[0] + 1) * each;
+                std::memcpy(to, row, bytes);
+                to += bytes;
+            }
+        }
+    }
+
+    std::function<void(int, const SampleBox&, const std::stop_token&)> before_read;
+
+  private:
+    std::vector<Volume> levels_;
+    StoreInfo info_;
+    mutable std::atomic<std::uint64_t> reads_{0};
+};
+
+std::shared_ptr<VolumeStore> store_of(Volume volume, const Index3& chunk = {32, 32, 32}) {
+    return std::make_shared<VolumeStore>(std::vector{std::move(volume)}, chunk);
+}
+
+constexpr std::uint64_t least_memory = 64 * ResidentBricks::per_brick * 4 / 3 + 1000;
+
+TEST(BrickLoader, bricks_hold_the_samples_of_the_store_and_their_margins) {
+    for (const SampleType type : sample_types) {
+        for (const Index3& chunk : {Index3(130, 1, 1), Index3(32, 48, 7), Index3(500, 500, 500)}) {
+            const Volume volume = noise_of(type, grid({130, 66, 70}), 3);
+            const auto store = store_of(volume, chunk);
+            BrickLoader loader(store, overview_of(*store),
+                               {.memory = least_memory * size_of(type), .threads = 1});
+            for (const Index3& at : {Index3(0, 0, 0), Index3(1, 0, 1), Index3(2, 1, 1)}) {
+                const ResidentBrick brick = loader.read(at, 0);
+                const ResidentBrick expected = brick_of(volume, at, 0);
+                ASSERT_EQ(std::memcmp(brick.samples.get(), expected.samples.get(),
+                                      ResidentBricks::per_brick * size_of(type)),
+                          0);
+            }
+        }
+    }
+}
+
+TEST(BrickLoader, a_coarser_level_is_interpolated_where_it_lies_in_space) {
+    // A ramp on both levels, whose samples lie between each other.
+    const auto ramp = [](Geometry geometry) {
+        std::vector<float> samples;
+        for_each_sample(geometry, [&](const Index3& at) {
+            const Vec3 p = physical_from_index(geometry, at.cast<double>());
+            samples.push_back(float(3 * p[0] - 2 * p[1] + p[2]));
+        });
+        return Volume(geometry, std::move(samples));
+    };
+    const Geometry fine = grid({128, 64, 64}, {1, 1, 2}, {5, 5, 5});
+    Geometry coarse = fine;
+    coarse.size = {64, 32, 32};
+    coarse.spacing *= 2;
+    coarse.origin += 0.5 * fine.spacing;
+    const auto store =
+        std::make_shared<VolumeStore>(std::vector{ramp(fine), ramp(coarse)}, Index3(16, 16, 16));
+    BrickLoader loader(store, overview_of(*store), {.memory = 4 * least_memory, .threads = 1});
+    const ResidentBrick exact = loader.read({0, 0, 0}, 0), between = loader.read({0, 0, 0}, 1);
+    EXPECT_EQ(exact.level, 0);
+    EXPECT_EQ(between.level, 1);
+    const auto* a = reinterpret_cast<const float*>(exact.samples.get());
+    const auto* b = reinterpret_cast<const float*>(between.samples.get());
+    // Inside the coarse grid; beyond its last sample it is continued.
+    for (int k = 1; k < 63; ++k) {
+        for (int j = 1; j < 63; ++j) {
+            for (int i = 1; i < 64; ++i) {
+                const auto at = ResidentBricks::place_of({i, j, k});
+                ASSERT_NEAR(a[at], b[at], 1e-3) << i << " " << j << " " << k;
+            }
+        }
+    }
+}
+
+TEST(BrickLoader, memory_is_bounded_and_what_the_hand_needs_arrives_wherever_it_goes) {
+    const Volume volume = noise_of(SampleType::uint8, grid({640, 320, 320}), 4);
+    const auto store = store_of(volume, {64, 64, 64});
+    BrickLoader loader(store, overview_of(*store, 1000),
+                       {.memory = least_memory, .threads = 2});
+    Random random(6);
+    Field field(loader.empty());
+    for (int n = 0; n < 6; ++n) {
+        const Vec3 at(random.uniform(0, 639), random.uniform(0, 319), random.uniform(0, 319));
+        const Interest hand{at, at + 20 * random.direction(), 50 * random.direction()};
+        loader.look({&hand, 1});
+        const auto arrived = [&] {
+            EXPECT_LE(loader.status().bytes, least_memory);
+            if (const auto version = loader.take()) field.use(version->samples);
+            const SampleBox box{(at - Vec3::Constant(10)).cast<int>(),
+                                (at + Vec3::Constant(10)).cast<int>()};
+            return field.samples().resident()->has(box);
+        };
+        ASSERT_TRUE(comes_true(arrived)) << n;
+        const Index3 index = at.cast<int>();
+        EXPECT_EQ(field.samples().sample(index), volume.sample(index));
+    }
+    const BrickLoaderStatus status = loader.status();
+    EXPECT_LE(status.most_bytes, least_memory);
+    EXPECT_GT(status.dropped, 0U);
+    EXPECT_EQ(status.resident, field.samples().resident()->size());
+    EXPECT_EQ(status.problem, "");
+}
+
+TEST(BrickLoader, events_lead_from_version_to_version) {
+    const Volume volume = noise_of(SampleType::uint8, grid({640, 200, 200}), 5);
+    const auto store = store_of(volume);
+    BrickLoader loader(store, overview_of(*store, 1000), {.memory = least_memory, .threads = 2});
+    std::map<std::array<int, 3>, int> present;
+    for (int x = 0; x < 640; x += 60) {
+        const Interest hand{Vec3(x, 100, 100), Vec3(x, 100, 100)};
+        loader.look({&hand, 1});
+        ASSERT_TRUE(comes_true([&] { return loader.status().missing == 0; }));
+        const auto version = loader.take();
+        if (!version) continue;
+        for (const BrickEvent& event : version->events) {
+            const std::array<int, 3> at{event.brick[0], event.brick[1], event.brick[2]};
+            if (event.level < 0) {
+                EXPECT_EQ(present.erase(at), 1U);
+            } else {
+                present[at] = event.level;
+            }
+        }
+        EXPECT_EQ(present.size(), version->samples->resident()->size());
+        for (const auto& [at, level] : present) {
+            EXPECT_TRUE(version->samples->resident()->at({at[0], at[1], at[2]}));
+        }
+    }
+}
+
+TEST(BrickLoader, a_brick_that_cannot_be_had_is_told_and_tried_again) {
+    const auto store = store_of(noise_of(SampleType::uint8, grid({100, 100, 100}), 7));
+    std::atomic<bool> broken{true};
+    store->before_read = [&](int, const SampleBox&, const std::stop_token&) {
+        if (broken) throw io::InputError("volumes: gone; plug it in again");
+    };
+    broken = false;
+    Volume overview = overview_of(*store);
+    broken = true;
+    BrickLoader loader(store, std::move(overview), {.memory = least_memory, .threads = 2});
+    EXPECT_THROW(loader.wait_for({50, 50, 50}, 10), io::InputError);
+    EXPECT_EQ(loader.status().problem, "volumes: gone; plug it in again");
+    broken = false;
+    loader.wait_for({50, 50, 50}, 10);
+    EXPECT_EQ(loader.status().problem, "");
+    EXPECT_GT(loader.take()->samples->resident()->size(), 0U);
+}
+
+TEST(BrickLoader, waits_for_all_that_an_update_may_look_at_and_refuses_what_does_not_fit) {
+    const Volume volume = noise_of(SampleType::uint8, grid({1000, 400, 400}), 8);
+    const auto store = store_of(volume, {64, 64, 64});
+    BrickLoader loader(store, overview_of(*store, 1000), {.memory = least_memory, .threads = 2});
+    loader.wait_for({500, 200, 200}, 40);
+    const Field field(loader.take()->samples);
+    EXPECT_TRUE(is_resident(field, {500, 200, 200}, 40));
+    EXPECT_FALSE(is_resident(field, {100, 200, 200}, 1));
+    EXPECT_THROW(loader.wait_for({500, 200, 200}, 250), std::invalid_argument);
+    loader.wait_for({-500, 200, 200}, 10);  // background
+}
+
+TEST(BrickLoader, ends_at_once_while_a_read_hangs) {
+    const auto store = store_of(noise_of(SampleType::uint8, grid({100, 100, 100}), 9));
+    Volume overview = overview_of(*store);
+    std::atomic<bool> reading{false};
+    store->before_read = [&](int, const SampleBox&, const std::stop_token& stop) {
+        reading = true;
+        while (!stop.stop_requested()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        throw Cancelled{};
+    };
+    auto loader = std::make_unique<BrickLoader>(store, std::move(overview),
+                                                BrickLoaderSettings{.memory = least_memory});
+    const Interest hand{Vec3(50, 50, 50), Vec3(50, 50, 50)};
+    loader->look({&hand, 1});
+    ASSERT_TRUE(comes_true([&] { return reading.load(); }));
+    loader.reset();
+    EXPECT_TRUE(reading);
+}
+
+TEST(BrickLoader, refuses_levels_that_are_not_there_and_too_little_memory) {
+    const auto store = store_of(noise_of(SampleType::uint8, grid({10, 10, 10}), 1));
+    const Volume overview = overview_of(*store);
+    EXPECT_THROW(BrickLoader(store, overview, {.level = 1}), std::invalid_argument);
+    EXPECT_THROW(BrickLoader(store, overview, {.level = -1}), std::invalid_argument);
+    EXPECT_THROW(BrickLoader(store, overview, {.memory = 1000000}), std::invalid_argument);
+}
+
+TEST(Overview, is_the_finest_level_that_is_small_enough_or_single_samples) {
+    const Volume fine = noise_of(SampleType::uint16, grid({90, 80, 70}), 2);
+    const Volume coarse = noise_of(SampleType::uint16, grid({9, 8, 7}, {10, 10, 10}), 3);
+    const VolumeStore both({fine, coarse}, {16, 16, 16});
+    EXPECT_TRUE(same_bits(overview_of(both), fine));
+    EXPECT_TRUE(same_bits(overview_of(both, 1000), coarse));
+    for (const Index3& chunk : {Index3(90, 1, 1), Index3(16, 16, 16)}) {
+        const VolumeStore one({fine}, chunk);
+        const Volume thin = overview_of(one, 1000);
+        EXPECT_LE(sample_count(thin.geometry()), 1000);
+        EXPECT_GT(sample_count(thin.geometry()), 200);
+        for_each_sample(thin.geometry(), [&](const Index3& at) {
+            const Vec3 place = physical_from_index(thin.geometry(), at.cast<double>());
+            const Vec3 index = index_from_physical(fine.geometry(), place);
+            ASSERT_EQ(thin.sample(at), fine.sample(index.array().round().cast<int>()));
+        });
+    }
+}
+
+TEST(Interest, the_bricks_at_hand_and_proxy_come_first_and_those_ahead_before_those_behind) {
+    const Geometry geometry = grid({2000, 2000, 2000});
+    const Index3 count = ResidentBricks(geometry.size).count();
+    const Interest hand{Vec3(1000, 1000, 1000), Vec3(1100, 1000, 1000), Vec3(600, 0, 0)};
+    const auto wanted = wanted_bricks(geometry, count, {&hand, 1}, 400);
+    ASSERT_FALSE(wanted.empty());
+    EXPECT_LE(wanted.size(), 400U);
+    const auto place = [&](const Index3& brick) {
+        return std::ranges::find(wanted, brick) - wanted.begin();
+    };
+    const Index3 at_proxy = ResidentBricks::brick_of({1000, 1000, 1000});
+    const Index3 at_hand = ResidentBricks::brick_of({1100, 1000, 1000});
+    EXPECT_LT(place(at_proxy), 4);
+    EXPECT_LT(place(at_hand), 4);
+    EXPECT_LT(place(at_hand + Index3(2, 0, 0)), place(at_proxy - Index3(3, 0, 0)));
+    for (const Index3& brick : bricks_round(geometry, hand.hand, (hand.hand - hand.proxy).norm())) {
+        EXPECT_LT(place(brick), std::ptrdiff_t(wanted.size())) << brick.transpose();
+    }
+    const Interest broken{Vec3::Constant(not_a_number), Vec3(0, 0, 0)};
+    EXPECT_TRUE(wanted_bricks(geometry, count, {&broken, 1}, 400).empty());
+}
+
+}  // namespace
+}  // namespace palpate::stream
