@@ -51,6 +51,10 @@ void Data::detach(const Servo& servo) {
     if (player_) player_->detach(servo);
 }
 
+void Data::use_tool(const Servo& servo, std::shared_ptr<const Tool> tool) {
+    if (editor_) editor_->use_tool(servo, std::move(tool));
+}
+
 std::string Data::problem() const {
     return player_ ? player_->state().problem : editor_->state().problem;
 }

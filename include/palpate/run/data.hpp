@@ -35,6 +35,8 @@ class Data {
     /// Starts a servo on the data as they are now and keeps it up to date until detach().
     std::unique_ptr<Servo> attach(Session session, const StartServo& start);
     void detach(const Servo& servo);
+    /// What an attached servo feels with from now on, for brushes.
+    void use_tool(const Servo& servo, std::shared_ptr<const Tool> tool);
     /// Why edits or frames do not come; usually empty.
     std::string problem() const;
     /// Writes the samples as they are now (of a sequence, at its moment) to a file, whole or not at
