@@ -49,7 +49,8 @@ struct RecordingReader::Rows {
     std::deque<SessionEvent> waiting;
     bool complete = false;
     std::int64_t lost = 0;
-    std::int64_t ticks = 0;      // so far
+    std::int64_t ticks = 0;  // so far
+    Bodies bodies;
     std::uint32_t checksum = 0;  // of the events so far
     CsvReader csv;
     TraceColumns trace;
@@ -109,7 +110,7 @@ struct RecordingReader::Rows {
             checksum = checksum_with(comment, checksum_with("#", checksum));
             try {
                 waiting.emplace_back(
-                    command_from_json(Json::parse(comment.substr(command_mark.size()))));
+                    command_from_json(Json::parse(comment.substr(command_mark.size())), bodies));
             } catch (const std::exception&) {  // JSON's own, or what is wrong with a member
                 csv.fail("the command " + quoted(comment) + " is not valid");
             }

@@ -164,7 +164,7 @@ void RecordingWriter::append(const Command& command) {
     const std::size_t begin = buffer_.size();
     buffer_ += "#";
     buffer_ += command_mark;
-    buffer_ += to_json(command).dump();
+    buffer_ += to_json(command, bodies_).dump();
     checksum_ = checksum_with(std::string_view(buffer_).substr(begin), checksum_);
     buffer_ += '\n';
 }

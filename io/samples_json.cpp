@@ -1,9 +1,13 @@
 // Converts recipes of samples to JSON and back.
 #include "io/samples_json.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <string>
+
+#include "io/json_members.hpp"
 
 namespace palpate::io {
 namespace {
@@ -15,19 +19,47 @@ Json json_of(const Index3& v) {
     return {v[0], v[1], v[2]};
 }
 
-Json json_of(const edit::Stroke& stroke) {
-    const Brush& brush = stroke.brush;
+Json json_of(const Pose& pose) {
+    const Quaternion& q = pose.orientation;
+    return {{"position", json_of(pose.position)}, {"wxyz", {q.w(), q.x(), q.y(), q.z()}}};
+}
+
+Json json_of(const Brush& brush) {
     return {
         {"kind", name_of(brush.kind)}, {"radius", brush.radius},
         {"hardness", brush.hardness},  {"strength", brush.strength},
         {"level", brush.level},        {"solid", brush.solid == Solid::below ? "below" : "above"},
-        {"value", brush.value},        {"from", json_of(stroke.from)},
-        {"to", json_of(stroke.to)}};
+        {"value", brush.value}};
 }
 
-Json json_of(const Edit& edit) {
+Json json_of(const edit::Stroke& stroke) {
+    Json json = json_of(stroke.brush);
+    json["from"] = json_of(stroke.from);
+    json["to"] = json_of(stroke.to);
+    return json;
+}
+
+Json json_of(const edit::Sweep& sweep, Bodies& bodies) {
+    Json json = json_of(sweep.brush);
+    json["from"] = json_of(sweep.from);
+    json["to"] = json_of(sweep.to);
+    const auto known = std::ranges::find(bodies, sweep.body);
+    if (known != bodies.end()) {
+        json["body"] = known - bodies.begin();
+        return json;
+    }
+    bodies.push_back(sweep.body);
+    const ToolBody& body = *sweep.body;
+    json["body"] = {
+        {"tool", to_value(*body.tool())}, {"step", body.step()}, {"reach", body.reach()}};
+    return json;
+}
+
+Json json_of(const Edit& edit, Bodies& bodies) {
     if (const auto* stroke = std::get_if<edit::Stroke>(&edit))
         return {{"stroke", json_of(*stroke)}};
+    if (const auto* sweep = std::get_if<edit::Sweep>(&edit))
+        return {{"sweep", json_of(*sweep, bodies)}};
     if (const auto* fill = std::get_if<edit::Fill>(&edit)) {
         return {{"fill",
                  {{"low", json_of(fill->box.low)},
@@ -72,9 +104,8 @@ std::uint64_t whole(const Json& json, const char* name) {
     return value.get<std::uint64_t>();
 }
 
-edit::Stroke stroke_from(const Json& json) {
-    edit::Stroke stroke;
-    Brush& brush = stroke.brush;
+Brush brush_from(const Json& json) {
+    Brush brush;
     brush.kind = brush_kind_from(word(json, "kind"));
     brush.radius = number(json, "radius");
     brush.hardness = number(json, "hardness");
@@ -82,9 +113,41 @@ edit::Stroke stroke_from(const Json& json) {
     brush.level = number(json, "level");
     brush.solid = word(json, "solid") == "below" ? Solid::below : Solid::above;
     brush.value = number(json, "value");
-    stroke.from = vector(json, "from");
-    stroke.to = vector(json, "to");
-    return stroke;
+    return brush;
+}
+
+Pose pose_from(const Json& json) {
+    const Json& wxyz = member(json, "wxyz");
+    if (!wxyz.is_array() || wxyz.size() != 4) wrong("wxyz");
+    std::array<double, 4> q{};
+    for (std::size_t i = 0; i < 4; ++i) q[i] = number_from_json(wxyz[i], "wxyz");
+    return {vector(json, "position"), {q[0], q[1], q[2], q[3]}};
+}
+
+std::shared_ptr<const ToolBody> body_from(const Json& json, Bodies& bodies) {
+    if (json.is_number()) {
+        if (!json.is_number_unsigned() || json.get<std::uint64_t>() >= bodies.size()) wrong("body");
+        return bodies[json.get<std::size_t>()];
+    }
+    Tool tool;
+    from_value(member(json, "tool"), "tool", tool);
+    bodies.push_back(std::make_shared<const ToolBody>(std::make_shared<const Tool>(std::move(tool)),
+                                                      number(json, "step"), number(json, "reach")));
+    return bodies.back();
+}
+
+Edit edit_from(const Json& json, Bodies& bodies) {
+    if (json.contains("stroke")) {
+        const Json& stroke = json.at("stroke");
+        return edit::Stroke{brush_from(stroke), vector(stroke, "from"), vector(stroke, "to")};
+    }
+    if (json.contains("sweep")) {
+        const Json& sweep = json.at("sweep");
+        return edit::Sweep{brush_from(sweep), body_from(member(sweep, "body"), bodies),
+                           pose_from(member(sweep, "from")), pose_from(member(sweep, "to"))};
+    }
+    const Json& fill = json.at("fill");
+    return edit::Fill{{index(fill, "low"), index(fill, "high")}, number(fill, "value")};
 }
 
 FramesOf frames_from(const Json& json) {
@@ -131,12 +194,12 @@ Json json_of(const BricksOf& bricks) {
 
 }  // namespace
 
-Json to_json(const command::Samples& samples) {
+Json to_json(const command::Samples& samples, Bodies& bodies) {
     Json json{{"version", samples.version}};
     if (!samples.recipe) return json;
     if (const auto* made = std::get_if<EditOf>(samples.recipe.get())) {
         json["of"] = made->version;
-        json["edit"] = json_of(made->edit);
+        json["edit"] = json_of(made->edit, bodies);
         return json;
     }
     if (const auto* bricks = std::get_if<BricksOf>(samples.recipe.get())) {
@@ -151,7 +214,7 @@ Json to_json(const command::Samples& samples) {
     return json;
 }
 
-command::Samples samples_command_from_json(const Json& json) {
+command::Samples samples_command_from_json(const Json& json, Bodies& bodies) {
     command::Samples samples;
     samples.version = whole(json, "version");
     if (json.contains("frames")) {
@@ -165,13 +228,8 @@ command::Samples samples_command_from_json(const Json& json) {
     if (!json.contains("edit")) return samples;
     const Json& edit = member(json, "edit");
     const std::uint64_t of = whole(json, "of");
-    if (edit.contains("stroke")) {
-        samples.recipe = std::make_shared<const Recipe>(EditOf{of, stroke_from(edit.at("stroke"))});
-    } else if (edit.contains("fill")) {
-        const Json& fill = edit.at("fill");
-        const SampleBox box{index(fill, "low"), index(fill, "high")};
-        samples.recipe =
-            std::make_shared<const Recipe>(EditOf{of, edit::Fill{box, number(fill, "value")}});
+    if (edit.contains("stroke") || edit.contains("sweep") || edit.contains("fill")) {
+        samples.recipe = std::make_shared<const Recipe>(EditOf{of, edit_from(edit, bodies)});
     }
     return samples;
 }

@@ -10,8 +10,8 @@ namespace palpate::io {
 /// "version", and "edit" with "of", or "frames" with "times" and "period"; without a recipe the
 /// version alone. Samples that an application put in place are stored by their box only: they
 /// cannot be made again.
-Json to_json(const command::Samples& samples);
+Json to_json(const command::Samples& samples, Bodies& bodies);
 /// The inverse; `samples` is null (app::RecordedSamples makes them). Throws std::invalid_argument.
-command::Samples samples_command_from_json(const Json& json);
+command::Samples samples_command_from_json(const Json& json, Bodies& bodies);
 
 }  // namespace palpate::io

@@ -261,11 +261,6 @@ Json written(const T& value) {
     return JsonWriter::of(value);
 }
 
-/// Samples are written as their recipe, which is more than a list of members.
-Json written(const command::Samples& samples) {
-    return to_json(samples);
-}
-
 /// The name of each alternative of Command, in its order.
 constexpr std::array command_names{"isovalue", "freeze",   "clutch",        "forces",    "scale",
                                    "samples",  "moment",   "speed",         "layers",    "tool",
@@ -273,14 +268,14 @@ constexpr std::array command_names{"isovalue", "freeze",   "clutch",        "for
 static_assert(command_names.size() == std::variant_size_v<Command>);
 
 template <std::size_t i = 0>
-Command command_named(const std::string& name, const Json& json) {
+Command command_named(const std::string& name, const Json& json, Bodies& bodies) {
     if constexpr (i == command_names.size()) {
         throw std::invalid_argument("there is no command '" + name + "'");
     } else {
-        if (name != command_names[i]) return command_named<i + 1>(name, json);
+        if (name != command_names[i]) return command_named<i + 1>(name, json, bodies);
         std::variant_alternative_t<i, Command> command{};
         if constexpr (std::same_as<decltype(command), command::Samples>) {
-            return samples_command_from_json(json);
+            return samples_command_from_json(json, bodies);
         } else {
             JsonReader reader{json};
             members(reader, command);
@@ -318,9 +313,12 @@ Json to_json(const SessionSettings& settings) {
     return written(settings);
 }
 
-Json to_json(const Command& command) {
-    return {{command_names[command.index()],
-             std::visit([](const auto& alternative) { return written(alternative); }, command)}};
+Json to_json(const Command& command, Bodies& bodies) {
+    // Samples are written as their recipe, which is more than a list of members.
+    const Overloaded write{
+        [&](const command::Samples& samples) { return to_json(samples, bodies); },
+        [](const auto& alternative) { return written(alternative); }};
+    return {{command_names[command.index()], std::visit(write, command)}};
 }
 
 void from_json(const Json& json, RendererSettings& settings) {
@@ -333,11 +331,11 @@ void from_json(const Json& json, SessionSettings& settings) {
     members(reader, settings);
 }
 
-Command command_from_json(const Json& json) {
+Command command_from_json(const Json& json, Bodies& bodies) {
     if (!json.is_object() || json.size() != 1) {
         throw std::invalid_argument("a command is an object of one member");
     }
-    return command_named(json.begin().key(), json.begin().value());
+    return command_named(json.begin().key(), json.begin().value(), bodies);
 }
 
 }  // namespace palpate::io

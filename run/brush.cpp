@@ -1,4 +1,4 @@
-// Strokes of the brush that follows a proxy.
+// What the brush that follows a proxy does in a step.
 #include "palpate/run/brush.hpp"
 
 #include <cmath>
@@ -9,6 +9,13 @@ namespace palpate::run {
 HandBrush usual_brush(const Geometry& geometry) {
     HandBrush brush;
     brush.radius = 3 * geometry.spacing.maxCoeff();
+    return brush;
+}
+
+HandBrush tool_brush(const Geometry& geometry) {
+    HandBrush brush;
+    brush.radius = geometry.spacing.maxCoeff();
+    brush.as_tool = true;
     return brush;
 }
 
@@ -27,15 +34,15 @@ void check(const HandBrush& brush) {
     }
 }
 
-std::optional<edit::Stroke> stroke_of(const HandBrush& hand, const Field& field, double isovalue,
-                                      const Vec3& from, const Vec3& to, double dt) {
+std::optional<Brush> brush_at(const HandBrush& hand, const Field& field, double isovalue,
+                              double dt) {
     if (!std::isfinite(isovalue) || !(dt > 0)) return std::nullopt;
-    edit::Stroke stroke{brush_for(hand.kind, field, isovalue, hand.radius), from, to};
-    stroke.brush.hardness = hand.hardness;
-    stroke.brush.strength = -std::expm1(-hand.rate * dt);
-    if (hand.value) stroke.brush.value = *hand.value;
-    if (!(stroke.brush.strength > 0)) return std::nullopt;
-    return stroke;
+    Brush brush = brush_for(hand.kind, field, isovalue, hand.radius);
+    brush.hardness = hand.hardness;
+    brush.strength = -std::expm1(-hand.rate * dt);
+    if (hand.value) brush.value = *hand.value;
+    if (!(brush.strength > 0)) return std::nullopt;
+    return brush;
 }
 
 }  // namespace palpate::run

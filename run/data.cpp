@@ -63,6 +63,10 @@ stream::BrickLoaderStatus Data::streaming() const {
     return streamer_ ? streamer_->status() : stream::BrickLoaderStatus{};
 }
 
+void Data::use_tool(const Servo& servo, std::shared_ptr<const Tool> tool) {
+    if (editor_) editor_->use_tool(servo, std::move(tool));
+}
+
 std::string Data::problem() const {
     if (streamer_) return streamer_->status().problem;
     return player_ ? player_->state().problem : editor_->state().problem;

@@ -224,6 +224,9 @@ void Run::send(const Command& command) {
     settings_ = changed.renderer.settings;
     isovalue_ = changed.renderer.proxy.isovalue;
     frozen_ = changed.frozen;
+    if (std::holds_alternative<command::UseTool>(command)) {
+        data_->use_tool(*servo_, settings_.tool);
+    }
     // Without this the session would stay at the level of a layer.
     if (waited && !isovalue_waits(settings_)) send(command::Isovalue{isovalue_});
 }

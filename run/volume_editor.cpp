@@ -19,6 +19,8 @@ constexpr auto rest = 500ms;
 constexpr double longest_step = 0.1;
 /// How often a full queue of commands is tried again, a millisecond apart.
 constexpr int attempts = 200;
+/// A command that was sent after tick n shows in tick n + sure at the latest.
+constexpr std::int64_t sure = 2;
 
 }  // namespace
 
@@ -38,8 +40,9 @@ std::unique_ptr<Servo> VolumeEditor::attach(Session session, const StartServo& s
     const std::uint64_t version = version_of(editor_.samples());
     palpate::apply(session, command::Samples{editor_.samples(), version});
     const Field field = session.renderer.field;
+    const std::shared_ptr<const Tool> tool = session.renderer.settings.tool;
     std::unique_ptr<Servo> servo = start(std::move(session), history());
-    hands_.push_back({servo.get(), field});
+    hands_.push_back({servo.get(), field, tool});
     new_step_ = true;
     return servo;
 }
@@ -48,6 +51,18 @@ void VolumeEditor::detach(const Servo& servo) {
     const std::scoped_lock lock(mutex_);
     std::erase_if(hands_, [&](const Hand& hand) { return hand.servo == &servo; });
     new_step_ = true;
+}
+
+void VolumeEditor::use_tool(const Servo& servo, std::shared_ptr<const Tool> tool) {
+    const std::scoped_lock lock(mutex_);
+    for (Hand& hand : hands_) {
+        if (hand.servo != &servo || hand.tool == tool) continue;
+        hand.tool = tool;
+        hand.body.reset();
+        hand.touch.reset();
+        const auto now = servo.snapshot();
+        hand.from = now ? now->number + sure : 0;
+    }
 }
 
 void VolumeEditor::set_brush(const std::optional<HandBrush>& brush) {
@@ -152,7 +167,7 @@ void VolumeEditor::run(const std::stop_token& stop) {
 void VolumeEditor::brush(Hand& hand) {
     if (!brush_) return;
     const auto now = hand.servo->snapshot();
-    if (!now || (hand.touch && now->number <= hand.touch->tick)) return;
+    if (!now || now->number < hand.from || (hand.touch && now->number <= hand.touch->tick)) return;
     const SessionTick& session = now->session;
     if (session.tick.proxy.mode == Mode::free) hand.resting = false;
     const bool works = !hand.resting && session.device.status == DeviceStatus::ready &&
@@ -161,20 +176,34 @@ void VolumeEditor::brush(Hand& hand) {
                        session.tick.proxy.status == UpdateStatus::done;
     if (!works) return hand.touch.reset();
     const auto clock = std::chrono::steady_clock::now();
-    if (hand.touch && brush_from(*hand.touch, hand, *now)) last_change_ = clock;
+    const Touch to{
+        {session.tick.proxy.scp, session.tick.tool.proxy}, session.tick.time, now->number};
+    if (hand.touch && brush_from(*hand.touch, to, hand, session.tick.proxy.isovalue)) {
+        last_change_ = clock;
+    }
     if (clock - last_change_ > rest) new_step_ = true;
-    hand.touch = Touch{session.tick.proxy.scp, session.tick.time, now->number};
+    hand.touch = to;
+}
+
+/// Throws std::invalid_argument for a tool that has no body.
+Edit VolumeEditor::edit_of(const Brush& brush, const Touch& from, const Touch& to, Hand& hand) {
+    if (!brush_->as_tool) return edit::Stroke{brush, from.at.position, to.at.position};
+    const Geometry& geometry = hand.field.geometry();
+    if (!hand.body || hand.body->reach() != reach_of(brush, geometry)) {
+        const auto tool = hand.tool ? hand.tool : std::make_shared<const Tool>(point_tool());
+        hand.body = std::make_shared<const ToolBody>(body_for(brush, geometry, tool));
+    }
+    return edit::Sweep{brush, hand.body, from.at, to.at};
 }
 
 /// True if it changed something.
-bool VolumeEditor::brush_from(const Touch& from, Hand& hand, const Snapshot& now) {
-    const Tick& tick = now.session.tick;
-    const auto stroke = stroke_of(*brush_, hand.field, tick.proxy.isovalue, from.at, tick.proxy.scp,
-                                  std::min(tick.time - from.time, longest_step));
-    if (!stroke) return false;
+bool VolumeEditor::brush_from(const Touch& from, const Touch& to, Hand& hand, double isovalue) {
+    const auto brush =
+        brush_at(*brush_, hand.field, isovalue, std::min(to.time - from.time, longest_step));
+    if (!brush) return false;
     const std::shared_ptr<const Samples> before = editor_.samples();
     try {
-        edit(*stroke, new_step_ ? EditStep::own : EditStep::same);
+        edit(edit_of(*brush, from, to, hand), new_step_ ? EditStep::own : EditStep::same);
     } catch (const std::invalid_argument& e) {
         set_problem(e.what());  // for example a value on the wrong side of the level felt now
         return false;

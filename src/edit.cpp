@@ -7,6 +7,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "edit/reach.hpp"
+
 namespace palpate {
 namespace {
 
@@ -28,40 +30,6 @@ T moved(T old, double aim, double part) {
     return fitted<T>(double(old) + (change > 0 ? 1 : -1));
 }
 
-/// The capsule of space that a stroke touches, in millimetres along the grid's axes.
-class Touch {
-  public:
-    Touch(const edit::Stroke& stroke, const Geometry& geometry)
-        : spacing_(geometry.spacing),
-          from_(index_from_physical(geometry, stroke.from).cwiseProduct(spacing_)),
-          along_(index_from_physical(geometry, stroke.to).cwiseProduct(spacing_) - from_),
-          length_squared_(along_.squaredNorm()),
-          radius_(stroke.brush.radius),
-          edge_(2 * std::max(spacing_.maxCoeff(), (1 - stroke.brush.hardness) * radius_)) {}
-
-    /// 1 inside, 0.5 at the radius, 0 outside.
-    double weight(const Index3& at) const {
-        const Vec3 p = spacing_.cwiseProduct(at.cast<double>()) - from_;
-        const double t =
-            length_squared_ > 0 ? std::clamp(p.dot(along_) / length_squared_, 0.0, 1.0) : 0;
-        const double distance = (p - t * along_).norm();
-        return std::clamp(0.5 + (radius_ - distance) / edge_, 0.0, 1.0);
-    }
-    SampleBox box() const {
-        const Vec3 reach = Vec3::Constant(radius_ + 0.5 * edge_);
-        const Vec3 low = (from_.cwiseMin(from_ + along_) - reach).cwiseQuotient(spacing_);
-        const Vec3 high = (from_.cwiseMax(from_ + along_) + reach).cwiseQuotient(spacing_);
-        // Kept within what an index can hold; the caller clips to the grid.
-        const Vec3 most = Vec3::Constant(1 << 21);
-        return {low.cwiseMax(-most).cwiseMin(most).array().ceil().cast<int>(),
-                high.cwiseMin(most).cwiseMax(-most).array().floor().cast<int>()};
-    }
-
-  private:
-    Vec3 spacing_, from_, along_;
-    double length_squared_, radius_, edge_;
-};
-
 /// The 3 x 3 x 3 binomial mean of the samples before the edit; those beyond the border count as
 /// those on it.
 double blurred(const Samples& samples, const Index3& at) {
@@ -75,13 +43,10 @@ double blurred(const Samples& samples, const Index3& at) {
     return sum / 64;
 }
 
-/// A sample after a stroke.
+/// A sample where a brush has this effect.
 template <class T>
-T touched(const edit::Stroke& stroke, const Touch& touch, const Samples& before, const Index3& at,
-          T old) {
-    const double w = touch.weight(at);
+T brushed(const Brush& brush, double w, const Samples& before, const Index3& at, T old) {
     if (!(w > 0)) return old;  // or NaN, where the ends are so far apart that squares overflow
-    const Brush& brush = stroke.brush;
     if (brush.kind == BrushKind::paint) return moved(old, brush.value, w * brush.strength);
     if (brush.kind == BrushKind::smooth) {
         return fitted<T>(double(old) + w * brush.strength * (blurred(before, at) - double(old)));
@@ -186,13 +151,30 @@ class Rewriting {
     Bricks bricks_;
 };
 
+/// Whether a brush never changes a sample of this value. Saves computing its effect in the air.
+bool is_beyond(const Brush& brush, double old) {
+    if (brush.kind == BrushKind::smooth || brush.kind == BrushKind::paint) return false;
+    const bool downwards = (brush.kind == BrushKind::carve) == (brush.solid == Solid::above);
+    return downwards ? old <= brush.value : old >= brush.value;
+}
+
+template <class T>
+Edited edited_by(const std::shared_ptr<const Samples>& samples, const Brush& brush,
+                 const auto& reach) {
+    return Rewriting(*samples, reach.box()).run<T>(samples, [&](const Index3& at, T old) {
+        if (is_beyond(brush, double(old))) return old;
+        return brushed(brush, reach.weight(at), *samples, at, old);
+    });
+}
+
 template <class T>
 Edited edited_as(const std::shared_ptr<const Samples>& samples, const Edit& edit) {
+    const Geometry& geometry = samples->geometry();
     if (const auto* stroke = std::get_if<edit::Stroke>(&edit)) {
-        const Touch touch(*stroke, samples->geometry());
-        return Rewriting(*samples, touch.box()).run<T>(samples, [&](const Index3& at, T old) {
-            return touched(*stroke, touch, *samples, at, old);
-        });
+        return edited_by<T>(samples, stroke->brush, StrokeReach(*stroke, geometry));
+    }
+    if (const auto* sweep = std::get_if<edit::Sweep>(&edit)) {
+        return edited_by<T>(samples, sweep->brush, SweepReach(*sweep, geometry));
     }
     if (const auto* fill = std::get_if<edit::Fill>(&edit)) {
         const T value = fitted<T>(fill->value);
@@ -232,6 +214,24 @@ void check_brush(const Brush& brush) {
     }
 }
 
+void check_sweep(const edit::Sweep& sweep, const Geometry& geometry) {
+    check_brush(sweep.brush);
+    if (!sweep.body) throw std::invalid_argument("a sweep needs the body of a tool");
+    for (const Pose& pose : {sweep.from, sweep.to}) {
+        if (!pose.position.allFinite() || !(std::abs(pose.orientation.squaredNorm() - 1) < 1e-6)) {
+            throw std::invalid_argument(
+                "a sweep's poses must be finite, with orientations of length 1");
+        }
+    }
+    if (!(sweep.body->reach() >= reach_of(sweep.brush, geometry))) {
+        throw std::invalid_argument(
+            "the tool's body does not reach as far as the brush: make it with body_for()");
+    }
+    if (!(poses_of(sweep, geometry) <= most_poses)) {
+        throw std::invalid_argument("a sweep is too long: make several of it");
+    }
+}
+
 }  // namespace
 
 std::string_view name_of(BrushKind kind) {
@@ -267,6 +267,8 @@ void check(const Edit& edit, const Samples& samples) {
         if (!stroke->from.allFinite() || !stroke->to.allFinite()) {
             throw std::invalid_argument("a stroke's ends must be finite");
         }
+    } else if (const auto* sweep = std::get_if<edit::Sweep>(&edit)) {
+        check_sweep(*sweep, samples.geometry());
     } else if (const auto* fill = std::get_if<edit::Fill>(&edit)) {
         if (!std::isfinite(fill->value)) {
             throw std::invalid_argument("the value that fills a box must be finite");

@@ -7,12 +7,11 @@
 #include <unordered_map>
 #include <utility>
 
-#include "palpate/tool.hpp"
+#include "mesh_tool/joined.hpp"
 
 namespace palpate {
 namespace {
 
-using MeshTriangle = std::array<std::uint32_t, 3>;
 using MeshEdge = std::pair<std::uint32_t, std::uint32_t>;
 
 /// In parts of the spacing: points keep this distance from each other, and there is a candidate
@@ -101,31 +100,6 @@ void choose(SpreadPoints& points, const std::vector<Vec3>& candidates, double di
             if (!points.has_within(share * distance, place)) points.add(place);
         }
     }
-}
-
-/// The triangles with a number for each place in space, so that neighbours are known in files that
-/// repeat their vertices (STL). Those without an area are left out.
-std::vector<MeshTriangle> joined(std::span<const Vec3> vertices,
-                                 std::span<const MeshTriangle> triangles) {
-    const auto before = [](const Vec3& a, const Vec3& b) {
-        return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
-    };
-    std::map<Vec3, std::uint32_t, decltype(before)> numbers(before);
-    std::vector<MeshTriangle> result;
-    for (MeshTriangle t : triangles) {
-        for (std::uint32_t& i : t) {
-            if (i >= vertices.size()) {
-                throw std::invalid_argument("a triangle names a vertex that the mesh has not");
-            }
-            if (!vertices[i].allFinite()) {
-                throw std::invalid_argument("a mesh must have finite vertices");
-            }
-            i = numbers.try_emplace(vertices[i], i).first->second;
-        }
-        if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) result.push_back(t);
-    }
-    if (result.empty()) throw std::invalid_argument("a tool's mesh needs at least one triangle");
-    return result;
 }
 
 Vec3 area_vector(std::span<const Vec3> vertices, const MeshTriangle& t) {

@@ -63,7 +63,7 @@ void add_arc(std::vector<Eigen::Vector2d>& profile, double radius, double z, dou
     }
 }
 
-/// A profile turned round z, to look at.
+/// A profile turned round z, with a disc at each end: closed.
 ToolShape turned_shape(const std::vector<Eigen::Vector2d>& profile) {
     constexpr std::uint32_t around = 32;
     ToolShape shape;
@@ -80,6 +80,19 @@ ToolShape turned_shape(const std::vector<Eigen::Vector2d>& profile) {
             shape.triangles.push_back({b, b + around, a + around});
         }
     }
+    const auto close = [&](std::size_t ring) {
+        if (profile[ring][0] == 0) return;  // a point already
+        const auto middle = static_cast<std::uint32_t>(shape.vertices.size());
+        const auto first = static_cast<std::uint32_t>(ring) * around;
+        shape.vertices.emplace_back(0, 0, profile[ring][1]);
+        for (std::uint32_t i = 0; i < around; ++i) {
+            const std::uint32_t a = first + i, b = first + (i + 1) % around;
+            shape.triangles.push_back(ring == 0 ? std::array<std::uint32_t, 3>{middle, b, a}
+                                                : std::array<std::uint32_t, 3>{middle, a, b});
+        }
+    };
+    close(0);
+    close(profile.size() - 1);
     return shape;
 }
 

@@ -78,9 +78,11 @@ void RunOptions::add_script_options(CLI::App& command) {
         .add_option("--seconds", seconds,
                     "End after this time [s] (default: when the hand has finished)")
         ->check(CLI::PositiveNumber);
-    command.add_option("--brush", brush,
-                       "Brush that follows the proxy from the start: 'KIND RADIUS [RATE [VALUE]]', "
-                       "KIND carve, add, smooth or paint, RADIUS [mm], RATE [1/s] or inf");
+    command.add_option(
+        "--brush", brush,
+        "Brush that follows the proxy from the start: 'KIND RADIUS [RATE [VALUE]]', "
+        "KIND carve, add, smooth or paint, RADIUS [mm] of a ball, or tool[:BEYOND] for "
+        "the tool's own shape and so much round it [mm], RATE [1/s] or inf");
     command.add_option("--save", save, "File for the volume as it is at the end, edits included");
     command.add_flag("--json", json, "Print the report as JSON");
 }

@@ -122,7 +122,14 @@ std::optional<run::HandBrush> brush_from(const CommandWords& words, const Volume
     words.expect(3, 5);
     run::HandBrush brush;
     brush.kind = brush_kind_from(words[1]);
-    brush.radius = words.number(2);
+    const std::string& size = words[2];
+    if (size == "tool" || size.starts_with("tool:")) {
+        brush.as_tool = true;
+        brush.radius = size == "tool" ? run::tool_brush(volume.geometry()).radius
+                                      : number_in(words, size.substr(5));
+    } else {
+        brush.radius = words.number(2);
+    }
     if (words.count() > 3) brush.rate = words.number(3);
     if (words.count() > 4) brush.value = io::level_from_text(words[4], volume);
     run::check(brush);
@@ -132,8 +139,9 @@ std::optional<run::HandBrush> brush_from(const CommandWords& words, const Volume
 DataRequest set_brush(const std::optional<run::HandBrush>& brush) {
     return [brush](run::Data& data, const Field&, double) {
         data.editor().set_brush(brush);
-        return brush ? fmt::format("brush: {}, {:g} mm", name_of(brush->kind), brush->radius)
-                     : "brush: off";
+        if (!brush) return std::string("brush: off");
+        return fmt::format("brush: {}, {:g} mm{}", name_of(brush->kind), brush->radius,
+                           brush->as_tool ? " round the tool" : "");
     };
 }
 

@@ -116,12 +116,12 @@ void sculpt(const ChangingOptions& options) {
         if (tick % brush_interval != 0) return;
         const Proxy& proxy = renderer.proxy;
         if (proxy.mode == Mode::free) return from.reset();
-        const auto stroke = from ? run::stroke_of(options.brush, field, proxy.isovalue, *from,
-                                                  proxy.scp_physical, dt)
-                                 : std::nullopt;
+        const Vec3 before = from.value_or(proxy.scp_physical);
+        const auto brush =
+            from ? run::brush_at(options.brush, field, proxy.isovalue, dt) : std::nullopt;
         from = proxy.scp_physical;
-        if (!stroke) return;
-        editor.apply(*stroke, EditStep::same);
+        if (!brush) return;
+        editor.apply(edit::Stroke{*brush, before, *from}, EditStep::same);
         field_will_change(renderer.proxy, renderer.field);
         renderer.field.use(editor.samples());
     };

@@ -94,8 +94,9 @@ Request LiveCommands::from_words(std::string_view line) {
     const CommandWords words(std::move(all), name.empty() ? "a command" : name + " VALUE");
     words.expect(1, words.count());
     if (name == "brush") {
-        return take_up(brush_from(words.as("brush KIND RADIUS [RATE [VALUE]], or brush off"),
-                                  field_.volume()));
+        return take_up(
+            brush_from(words.as("brush KIND RADIUS|tool[:BEYOND] [RATE [VALUE]], or brush off"),
+                       field_.volume()));
     }
     if (auto data = data_request(words, field_.volume())) return data;
     if (name == "quit" && words.count() == 1) return Quit{};

@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "palpate/field.hpp"
+#include "palpate/tool_body.hpp"
 
 namespace palpate {
 
@@ -20,10 +21,12 @@ std::string_view name_of(BrushKind kind);
 /// The inverse of name_of(); throws std::invalid_argument with the accepted names.
 BrushKind brush_kind_from(std::string_view name);
 
-/// A round brush. Its effect falls from full to none across an edge, and is half at `radius`.
+/// A brush, round or with a tool's own shape. Its effect falls from full to none across an edge,
+/// and is half at `radius`.
 struct Brush {
     BrushKind kind = BrushKind::carve;
-    double radius = 3;  ///< [mm, physical] > 0
+    /// [mm, physical] > 0. With a tool's shape: how far the brush reaches beyond the tool's skin.
+    double radius = 3;
     /// 1: the edge is two voxels wide, the narrowest that the grid shows without steps; 0: as wide
     /// as the brush.
     double hardness = 1;
@@ -47,6 +50,13 @@ struct Stroke {
     Brush brush;
     Vec3 from = Vec3::Zero(), to = Vec3::Zero();  ///< [mm, physical]
 };
+/// A brush with a tool's own shape, swept between two poses without gaps: it moves straight and
+/// turns evenly the shorter way round. The body has to reach as far as the brush (reach_of()).
+struct Sweep {
+    Brush brush;
+    std::shared_ptr<const ToolBody> body;  ///< not null
+    Pose from, to;
+};
 /// Sets all samples of a box to one value.
 struct Fill {
     SampleBox box;
@@ -60,7 +70,14 @@ struct Replace {
 };
 }  // namespace edit
 /// All are clipped at the border of the grid.
-using Edit = std::variant<edit::Stroke, edit::Fill, edit::Replace>;
+using Edit = std::variant<edit::Stroke, edit::Sweep, edit::Fill, edit::Replace>;
+
+/// How far from the skin of a body such a brush has an effect, outside or inside, on this grid
+/// [mm].
+double reach_of(const Brush& brush, const Geometry& geometry);
+/// The body of a tool, fine and wide enough for sweeps of this brush on this grid. Throws
+/// std::invalid_argument as ToolBody does.
+ToolBody body_for(const Brush& brush, const Geometry& geometry, std::shared_ptr<const Tool> tool);
 
 /// The samples after an edit, and the box of samples that it changed.
 struct Edited {

@@ -11,6 +11,8 @@
 // The order is the flow of data, not the alphabet.
 // clang-format off
 #include "palpate/volume.hpp"
+#include "palpate/tool.hpp"
+#include "palpate/tool_body.hpp"
 #include "palpate/resident.hpp"
 #include "palpate/samples.hpp"
 #include "palpate/field.hpp"
@@ -20,7 +22,6 @@
 #include "palpate/cubic.hpp"
 #include "palpate/density.hpp"
 #include "palpate/proxy.hpp"
-#include "palpate/tool.hpp"
 #include "palpate/tool_proxy.hpp"
 #include "palpate/penetrability.hpp"
 #include "palpate/force.hpp"

@@ -22,7 +22,7 @@ bool is_rounded(SampleType type, double sample, double value) {
 }
 
 TEST(Edit, makes_of_each_sample_what_the_formulas_say) {
-    int changes[4] = {}, others = 0;
+    int changes[4] = {}, swept[4] = {}, others = 0;
     std::uint64_t seed = 0;
     for (const SampleType type : sample_types) {
         for (const Geometry& geometry : odd_grids()) {
@@ -42,11 +42,15 @@ TEST(Edit, makes_of_each_sample_what_the_formulas_say) {
                 ASSERT_EQ(after.changed, changed) << "the box is not tight";
                 if (changed.empty()) continue;
                 const auto* stroke = std::get_if<edit::Stroke>(&edit);
-                (stroke ? changes[static_cast<int>(stroke->brush.kind)] : others) += 1;
+                const auto* sweep = std::get_if<edit::Sweep>(&edit);
+                (stroke  ? changes[static_cast<int>(stroke->brush.kind)]
+                 : sweep ? swept[static_cast<int>(sweep->brush.kind)]
+                         : others) += 1;
             }
         }
     }
-    for (const int count : changes) EXPECT_GT(count, scaled(60));
+    for (const int count : changes) EXPECT_GT(count, scaled(40));
+    for (const int count : swept) EXPECT_GT(count, scaled(20));
     EXPECT_GT(others, scaled(60));
 }
 
@@ -279,6 +283,22 @@ TEST(Edit, that_cannot_be_made_is_refused) {
     refused(stroke([&](auto& s) { s.brush.kind = BrushKind::add; }));
     refused(stroke([&](auto& s) { s.from[1] = bad; }));
     refused(stroke([&](auto& s) { s.to[2] = infinity; }));
+    const auto sweep = [&](auto&& change) {
+        edit::Sweep made{{.radius = 1, .level = 10, .value = 0}, nullptr, {}, {}};
+        made.body = std::make_shared<const ToolBody>(
+            body_for(made.brush, samples->geometry(), std::make_shared<const Tool>(point_tool())));
+        change(made);
+        return made;
+    };
+    EXPECT_NO_THROW(check(sweep([](auto&) {}), *samples));
+    refused(sweep([](auto& s) { s.body.reset(); }));
+    refused(sweep([](auto& s) { s.brush.radius = 2; }));  // farther than the body reaches
+    refused(sweep([&](auto& s) { s.brush.value = bad; }));
+    refused(sweep([&](auto& s) { s.from.position[1] = bad; }));
+    refused(sweep([&](auto& s) { s.to.position[2] = infinity; }));
+    refused(sweep([](auto& s) { s.to.position[2] = 1e6; }));  // too many poses
+    refused(sweep([](auto& s) { s.from.orientation.coeffs() *= 1.1; }));
+    refused(sweep([&](auto& s) { s.to.orientation.x() = bad; }));
     refused(edit::Fill{{}, bad});
     refused(edit::Replace{Index3(1 << 21, 0, 0), samples->volume()});
     const Samples sequence({{0, samples->volume()}, {1, samples->volume()}});

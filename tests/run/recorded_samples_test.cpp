@@ -17,8 +17,12 @@ bool same_bits(const Samples& a, const Samples& b) {
 }
 
 /// To a line of a recording and back.
+Command through_json(const Command& command, io::Bodies& written, io::Bodies& read) {
+    return io::command_from_json(io::Json::parse(io::to_json(command, written).dump()), read);
+}
 Command through_json(const Command& command) {
-    return io::command_from_json(io::Json::parse(io::to_json(command).dump()));
+    io::Bodies written, read;
+    return through_json(command, written, read);
 }
 
 TEST(RecordedSamples, versions_come_out_as_they_were_felt) {
@@ -28,21 +32,34 @@ TEST(RecordedSamples, versions_come_out_as_they_were_felt) {
     brush.strength = 1.0 / 3;
     brush.solid = Solid::above;
     Editor editor(field.shared_samples());
+    const Brush drill = brush_for(BrushKind::carve, field, 90, 0.5);
+    const auto body_of = [&](const Tool& tool) {
+        return std::make_shared<const ToolBody>(
+            body_for(drill, field.geometry(), std::make_shared<const Tool>(tool)));
+    };
+    const auto burr = body_of(burr_tool(2.3, 0.5)), box = body_of(box_tool({2, 3, 4}, 0.5));
+    const Quaternion tilted = turned({1, 0, 0, 0}, {0.3, 0.2, 0.1});
     RecordedSamples again(field.shared_samples());
     std::vector<std::shared_ptr<const Samples>> felt{field.shared_samples()};
     const std::vector<Edit> edits{
         edit::Stroke{brush, {0.1, 0.2, 0.3}, {5.5, 1e-3, -4}},
         edit::Fill{{{-3, 2, 2}, {9, 9, 40}}, 7.5},
-        edit::Stroke{brush_for(BrushKind::carve, field, 90, 5), {1, 2, 3}, {1, 2, 3}}};
+        edit::Stroke{brush_for(BrushKind::carve, field, 90, 5), {1, 2, 3}, {1, 2, 3}},
+        edit::Sweep{drill, burr, {{1, 2, 3}, tilted}, {{4, 2.5, -3}, {1, 0, 0, 0}}},
+        edit::Sweep{drill, box, {{-4, 0.1, 3}, tilted}, {{4, 2.5, 1.0 / 3}, tilted}},
+        edit::Sweep{drill, burr, {{4, 2.5, -3}, {1, 0, 0, 0}}, {{5, 2, 1}, tilted}}};
+    io::Bodies written, read;
     for (std::size_t i = 0; i < edits.size(); ++i) {
         editor.apply(edits[i]);
         felt.push_back(editor.samples());
         const Command recorded =
             command::Samples{nullptr, i + 1, std::make_shared<const Recipe>(EditOf{i, edits[i]})};
-        const auto whole = std::get<command::Samples>(again.whole(through_json(recorded)));
+        const auto whole =
+            std::get<command::Samples>(again.whole(through_json(recorded, written, read)));
         EXPECT_TRUE(same_bits(*whole.samples, *felt.back())) << i;
         EXPECT_EQ(whole.version, i + 1);
     }
+    EXPECT_EQ(read.size(), 2U) << "a body is written once";
     // Back to one that was there, and to the start.
     for (const std::uint64_t version : {1U, 0U, 3U}) {
         const Command recorded = command::Samples{nullptr, version};
@@ -105,9 +122,18 @@ TEST(RecordedSamples, what_came_from_outside_is_refused_with_its_reason) {
 
 TEST(RecordedSamples, damaged_recipes_are_refused) {
     const auto refused = [](const std::string& text) {
-        EXPECT_THROW(io::command_from_json(io::Json::parse(text)), std::invalid_argument) << text;
+        io::Bodies bodies;
+        EXPECT_THROW(io::command_from_json(io::Json::parse(text), bodies), std::invalid_argument)
+            << text;
     };
     refused(R"({"samples":{}})");
+    const std::string sweep =
+        R"({"samples":{"version":1,"of":0,"edit":{"sweep":{"kind":"carve","radius":1,"hardness":1,)"
+        R"("strength":1,"level":1,"solid":"above","value":0,)"
+        R"("from":{"position":[0,0,0],"wxyz":[1,0,0,0]},"to":{"position":[0,0,0],"wxyz":[1,0,0]},)";
+    refused(sweep + R"("body":0}}}})");
+    refused(sweep +
+            R"("body":{"tool":{"points":[[0,0,0]],"gyration":1,"turns":false},"step":1}}}}})");
     refused(R"({"samples":{"version":-1}})");
     refused(R"({"samples":{"version":1,"of":0,"edit":{"stroke":{"kind":"carve"}}}})");
     refused(R"({"samples":{"version":1,"of":"x","edit":{"fill":{}}}})");

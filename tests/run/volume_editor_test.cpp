@@ -59,6 +59,37 @@ TEST(VolumeEditor, a_brush_that_carves_lets_the_hand_through_and_leaves_what_it_
     EXPECT_LT(work.samples->sample({16, 32, 32}), p.isovalue);
 }
 
+TEST(VolumeEditor, one_with_the_tools_shape_lets_the_tool_through_and_cuts_nothing_beside_it) {
+    const LoadedVolume ball = test::loaded("synthetic:sphere");
+    const Field field(ball.volume, Solid::above, {}, Interpolation::cubic);
+    support::ScriptedDevice device{[](double) { return support::ready_at({-12, 0, 0}); }};
+    VolumeEditor editor(field.shared_samples());
+    RendererSettings settings;
+    settings.tool = std::make_shared<const Tool>(box_tool({6, 10, 4}, 0.5));
+    Session session{make_renderer(field, *ball.isovalue, settings), {}};
+    const auto servo = editor.attach(std::move(session), test::servo_on(device));
+    HandBrush brush = tool_brush(field.geometry());
+    brush.rate = 60;
+    editor.set_brush(brush);
+    // The hand begins inside: recovery brings the tool out, then it works its way to the hand.
+    EXPECT_TRUE(comes_true([&] {
+        const auto now = servo->snapshot();
+        return now && editor.state().version > 0 &&
+               (now->session.tick.proxy.scp - Vec3(-12, 0, 0)).norm() < 1e-6;
+    })) << editor.state().problem
+        << " version " << editor.state().version << ", "
+        << servo->snapshot()->session.tick.proxy.scp.transpose() << ", status "
+        << int(servo->snapshot()->session.tick.proxy.status);
+    editor.set_brush({});
+    servo->stop();
+    editor.detach(*servo);
+    const Volume after = flattened(*editor.state().samples);
+    EXPECT_LT(value_at(Field(after), Vec3(-12, 0, 0)), *ball.isovalue);
+    for (const Vec3& beside : {Vec3(-12, 8, 0), Vec3(-12, 0, 6), Vec3(-4, 0, 0)}) {
+        EXPECT_GT(value_at(Field(after), beside), *ball.isovalue) << beside.transpose();
+    }
+}
+
 TEST(VolumeEditor, one_that_adds_pushes_the_hand_out) {
     Pressing p;
     ASSERT_TRUE(p.touches());

@@ -81,6 +81,24 @@ inline edit::Stroke random_stroke(Random& random, const Geometry& geometry, Samp
     return stroke;
 }
 
+/// A tool's shape swept in and round the grid: a point, a line, a ball, a box or a burr.
+inline edit::Sweep random_sweep(Random& random, const Geometry& geometry, SampleType type) {
+    const edit::Stroke like = random_stroke(random, geometry, type);
+    const double voxel = geometry.spacing.minCoeff(), spacing = voxel;
+    const double size = random.uniform(0.5, 2) * voxel;
+    const Tool tools[] = {point_tool(), rod_tool(size, spacing), sphere_tool(size, spacing),
+                          box_tool({size, 2 * size, 0.7 * size}, spacing),
+                          burr_tool(size, spacing)};
+    const auto tool = std::make_shared<const Tool>(tools[random.below(5)]);
+    edit::Sweep sweep{
+        like.brush, nullptr, {like.from}, {like.from + 3 * voxel * random.point(-1, 1)}};
+    sweep.body = std::make_shared<const ToolBody>(body_for(like.brush, geometry, tool));
+    sweep.from.orientation = turned({1, 0, 0, 0}, random.uniform(0, 3) * random.direction());
+    sweep.to.orientation =
+        turned(sweep.from.orientation, random.uniform(0, 0.5) * random.direction());
+    return sweep;
+}
+
 inline SampleBox random_box(Random& random, const Geometry& geometry) {
     SampleBox box;
     for (int a = 0; a < 3; ++a) {
@@ -91,7 +109,7 @@ inline SampleBox random_box(Random& random, const Geometry& geometry) {
 }
 
 inline Edit random_edit(Random& random, const Geometry& geometry, SampleType type) {
-    const int kind = random.below(6);
+    const int kind = random.below(8);
     const auto [low, high] = values_of(type);
     if (kind == 0) {
         return edit::Fill{random_box(random, geometry), random.uniform(low, 1.2 * high)};
@@ -102,6 +120,7 @@ inline Edit random_edit(Random& random, const Geometry& geometry, SampleType typ
             random_box(random, geometry).low,
             noise_of(static_cast<SampleType>(random.below(4)), part, random.bits())};
     }
+    if (kind < 4) return random_sweep(random, geometry, type);
     return random_stroke(random, geometry, type);
 }
 
@@ -118,13 +137,30 @@ inline double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
     return (p - (a + along * (b - a))).norm();
 }
 
+/// How far a point lies from the skin of a tool somewhere on its way, below 0 inside: at each of so
+/// many poses that none of the tool's points moves by more than a quarter of a voxel between two.
+inline double distance_to_sweep(const Vec3& p, const edit::Sweep& sweep, const Geometry& geometry) {
+    const ToolBody& body = *sweep.body;
+    const Vec3 turn = rotation_between(sweep.from.orientation, sweep.to.orientation);
+    const double arm = body.low().cwiseAbs().cwiseMax(body.high().cwiseAbs()).norm() +
+                       reach_of(sweep.brush, geometry);
+    const double way = (sweep.to.position - sweep.from.position).norm() + turn.norm() * arm;
+    const int steps = static_cast<int>(std::ceil(way / (0.25 * geometry.spacing.minCoeff())));
+    double nearest = std::numeric_limits<double>::infinity();
+    for (int i = 0; i <= steps; ++i) {
+        const double t = steps > 0 ? double(i) / steps : 0;
+        const Vec3 position = sweep.from.position + t * (sweep.to.position - sweep.from.position);
+        const Quaternion orientation = turned(sweep.from.orientation, t * turn);
+        nearest = std::min(nearest, body.distance(orientation.conjugate() * (p - position)));
+    }
+    return nearest;
+}
+
 /// 1 well inside the brush, 1/2 at its radius, 0 well outside; linear over the edge.
-inline double brush_weight(const edit::Stroke& stroke, const Geometry& geometry, const Vec3& at) {
-    const Brush& brush = stroke.brush;
+inline double brush_weight(const Brush& brush, const Geometry& geometry, double distance) {
     const double narrow = 2 * geometry.spacing.maxCoeff();        // two voxels
     const double wide = (1 - brush.hardness) * 2 * brush.radius;  // the brush
-    const double outside = distance_to_segment(at, stroke.from, stroke.to) - brush.radius;
-    return std::clamp(0.5 - outside / std::max(narrow, wide), 0.0, 1.0);
+    return std::clamp(0.5 - (distance - brush.radius) / std::max(narrow, wide), 0.0, 1.0);
 }
 
 inline double binomial_mean(const Volume& volume, const Index3& at) {
@@ -144,13 +180,10 @@ inline double binomial_mean(const Volume& volume, const Index3& at) {
     return sum;
 }
 
-/// What a stroke should make of a sample, before it is rounded and cut to its type.
-inline double stroked(const edit::Stroke& stroke, const Volume& before, const Index3& at) {
-    const Brush& brush = stroke.brush;
-    const Geometry& geometry = before.geometry();
+/// What a brush at this distance should make of a sample, before it is rounded and cut to its type.
+inline double brushed(const Brush& brush, double distance, const Volume& before, const Index3& at) {
     const double old = before.sample(at);
-    const double w =
-        brush_weight(stroke, geometry, physical_from_index(geometry, at.cast<double>()));
+    const double w = brush_weight(brush, before.geometry(), distance);
     if (w == 0) return old;
     double aim = brush.value, part = w * brush.strength;
     if (brush.kind == BrushKind::smooth) {
@@ -173,7 +206,15 @@ inline double stroked(const edit::Stroke& stroke, const Volume& before, const In
 /// The same for any edit.
 inline double value_after(const Edit& edit, const Volume& before, const Index3& at) {
     const double old = before.sample(at);
-    if (const auto* stroke = std::get_if<edit::Stroke>(&edit)) return stroked(*stroke, before, at);
+    const Vec3 place = physical_from_index(before.geometry(), at.cast<double>());
+    if (const auto* stroke = std::get_if<edit::Stroke>(&edit)) {
+        return brushed(stroke->brush, distance_to_segment(place, stroke->from, stroke->to), before,
+                       at);
+    }
+    if (const auto* sweep = std::get_if<edit::Sweep>(&edit)) {
+        return brushed(sweep->brush, distance_to_sweep(place, *sweep, before.geometry()), before,
+                       at);
+    }
     if (const auto* fill = std::get_if<edit::Fill>(&edit)) {
         const bool in = (at.array() >= fill->box.low.array()).all() &&
                         (at.array() <= fill->box.high.array()).all();

@@ -85,8 +85,9 @@ class RecordingWriter {
     int descriptor_ = -1;
     Queue<SessionEvent> queue_;
     std::string buffer_;
-    std::uint32_t checksum_ = 0;  // of all events so far
-    std::int64_t written_ = 0;    // bytes that are whole lines on the disk
+    std::uint32_t checksum_ = 0;                           // of all events so far
+    std::vector<std::shared_ptr<const ToolBody>> bodies_;  // of its edits, by number
+    std::int64_t written_ = 0;                             // bytes that are whole lines on the disk
     bool seekable_ = false;
     std::atomic<std::int64_t> ticks_{0};
     std::atomic<bool> done_{false};

@@ -39,6 +39,8 @@ class Data {
     /// Starts a servo on the data as they are now and keeps it up to date until detach().
     std::unique_ptr<Servo> attach(Session session, const StartServo& start);
     void detach(const Servo& servo);
+    /// What an attached servo feels with from now on, for brushes.
+    void use_tool(const Servo& servo, std::shared_ptr<const Tool> tool);
     /// Why edits or frames do not come; usually empty.
     std::string problem() const;
     /// Throws std::invalid_argument for data that save() cannot write.

@@ -45,6 +45,9 @@ class VolumeEditor {
     std::unique_ptr<Servo> attach(Session session, const StartServo& start);
     /// For a servo that is not attached: nothing.
     void detach(const Servo& servo);
+    /// What this servo feels with from now on; null: a point. For one that is not attached:
+    /// nothing.
+    void use_tool(const Servo& servo, std::shared_ptr<const Tool> tool);
     /// The brush of every attached servo; nothing: the hand only feels. Throws as check().
     void set_brush(const std::optional<HandBrush>& brush);
     /// Makes an edit, one step for undo(). Throws std::invalid_argument as check(Edit) does, and
@@ -62,16 +65,19 @@ class VolumeEditor {
   private:
     /// Where the proxy was when it was last seen in contact.
     struct Touch {
-        Vec3 at = Vec3::Zero();  ///< [mm, physical]
-        double time = 0;         ///< [s] of the session
+        Pose at;          ///< of the tool; of a point its place
+        double time = 0;  ///< [s] of the session
         std::int64_t tick = -1;
     };
     /// An attached servo and its brush.
     struct Hand {
         Servo* servo;
         Field field;  // for its solid side and background
+        std::shared_ptr<const Tool> tool;
         std::optional<Touch> touch = {};
-        bool resting = false;  // after an undo, until it was in the air
+        bool resting = false;                       // after an undo, until it was in the air
+        std::int64_t from = 0;                      // the first tick that surely has the tool
+        std::shared_ptr<const ToolBody> body = {};  // of the tool, for the last sweep
     };
     struct Version {
         std::weak_ptr<const Samples> samples;  // expired once undo cannot come back to them
@@ -80,7 +86,8 @@ class VolumeEditor {
 
     void run(const std::stop_token& stop);
     void brush(Hand& hand);
-    bool brush_from(const Touch& from, Hand& hand, const Snapshot& now);
+    bool brush_from(const Touch& from, const Touch& to, Hand& hand, double isovalue);
+    Edit edit_of(const Brush& brush, const Touch& from, const Touch& to, Hand& hand);
     void edit(const Edit& edit, EditStep step);
     bool go_to(SampleBox changed);
     void send(const command::Samples& command);
