@@ -16,8 +16,7 @@ bool may_open(const Node& node, const Account& account) {
 
 std::string way_to_node(const Node& node, const Facts& facts) {
     const auto name = facts.machine.group_names.find(node.group);
-    if (name == facts.machine.group_names.end() || node.group == 0 ||
-        (node.mode >> 3 & 6U) != 6U) {
+    if (name == facts.machine.group_names.end() || node.group == 0 || (node.mode >> 3 & 6U) != 6U) {
         return {};
     }
     const auto members = facts.machine.members.find(name->second);

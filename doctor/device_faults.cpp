@@ -32,10 +32,11 @@ const Node* closed_node(const UsbDevice& device, const KnownUsb& kind, const Acc
 
 /// A udev rule below 73, where the tag uaccess gives a device to the person at the screen.
 std::string by_rule(const UsbDevice& device) {
-    return fmt::format("echo 'SUBSYSTEM==\"usb\", ATTR{{idVendor}}==\"{}\", ATTR{{idProduct}}==\"{}\", "
-                       "TAG+=\"uaccess\"' | sudo tee -a /etc/udev/rules.d/70-palpate.rules; sudo "
-                       "udevadm control --reload; plug it in again",
-                       device.vendor, device.product);
+    return fmt::format(
+        "echo 'SUBSYSTEM==\"usb\", ATTR{{idVendor}}==\"{}\", ATTR{{idProduct}}==\"{}\", "
+        "TAG+=\"uaccess\"' | sudo tee -a /etc/udev/rules.d/70-palpate.rules; sudo "
+        "udevadm control --reload; plug it in again",
+        device.vendor, device.product);
 }
 
 Fault forbidden(const UsbDevice& device, const KnownUsb& kind, const Node& node,
@@ -67,7 +68,8 @@ void judge_plugged(const UsbDevice& device, const Facts& facts, std::vector<Faul
     // A library that opens the bus finds nothing there as long as it may not.
     const bool is_explained = closed != nullptr && kind->through == Through::usb;
     const auto* const finding = finding_of(facts, kind->backend);
-    if (finding && !finding->found && !is_explained) faults.push_back(without_backend(device, *kind, *finding));
+    if (finding && !finding->found && !is_explained)
+        faults.push_back(without_backend(device, *kind, *finding));
     if (kind->through == Through::serial && device.serial.empty()) {
         faults.push_back({"device-port", true,
                           called(device, *kind) +
@@ -91,11 +93,12 @@ std::vector<Fault> device_faults(const Facts& facts) {
     for (const UsbDevice& device : facts.machine.usb) judge_plugged(device, facts, faults);
     const auto* const wanted = finding_of(facts, facts.wanted_device);
     if (wanted && !wanted->found) {
-        faults.push_back({"device-missing", true,
-                          fmt::format("{} cannot be used: {}", wanted->name, wanted->missing),
-                          fmt::format("see docs/devices/{}.md; plugged in, switched on, its library "
-                                      "or service there?",
-                                      wanted->name)});
+        faults.push_back(
+            {"device-missing", true,
+             fmt::format("{} cannot be used: {}", wanted->name, wanted->missing),
+             fmt::format("see docs/devices/{}.md; plugged in, switched on, its library "
+                         "or service there?",
+                         wanted->name)});
     }
     return faults;
 }

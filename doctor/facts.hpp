@@ -83,11 +83,11 @@ Machine read_machine(const std::filesystem::path& root);
 struct Limits {
     static constexpr std::uint64_t unlimited = std::numeric_limits<std::uint64_t>::max();
 
-    std::uint64_t priority = 0;         ///< highest real-time priority (RLIMIT_RTPRIO)
+    std::uint64_t priority = 0;              ///< highest real-time priority (RLIMIT_RTPRIO)
     std::uint64_t real_time_us = unlimited;  ///< without sleeping (RLIMIT_RTTIME)
-    std::uint64_t locked_bytes = 0;     ///< RLIMIT_MEMLOCK
-    int priority_error = 0;             ///< of asking for SCHED_FIFO; 0: granted
-    int lock_error = 0;                 ///< of locking a gigabyte; 0: granted
+    std::uint64_t locked_bytes = 0;          ///< RLIMIT_MEMLOCK
+    int priority_error = 0;                  ///< of asking for SCHED_FIFO; 0: granted
+    int lock_error = 0;                      ///< of locking a gigabyte; 0: granted
     double timer_resolution_ns = 1;
     double timer_slack_ns = 1;  ///< of a thread that asked for 1 ns
 };
@@ -111,10 +111,10 @@ struct Program {
 
 /// OpenGL without a display.
 struct Graphics {
-    std::string pictures;          ///< the renderer that draws pictures; empty: there is none
-    std::string machine;           ///< the one that the graphics card's driver offers
-    std::string problem;           ///< why there are no pictures
-    bool has_display = false;      ///< a screen for the viewer
+    std::string pictures;      ///< the renderer that draws pictures; empty: there is none
+    std::string machine;       ///< the one that the graphics card's driver offers
+    std::string problem;       ///< why there are no pictures
+    bool has_display = false;  ///< a screen for the viewer
 };
 
 struct Facts {

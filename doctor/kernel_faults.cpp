@@ -16,8 +16,8 @@ constexpr double memory_needed = 512.0 * 1024 * 1024;  // bytes
 
 /// Read by the processor itself, without a slow device or a lock.
 constexpr std::array<std::string_view, 6> quick_clocks{
-    "tsc", "kvm-clock", "arch_sys_counter", "hyperv_clocksource_tsc_page", "timebase",
-    "riscv_clocksource"};
+    "tsc",      "kvm-clock",        "arch_sys_counter", "hyperv_clocksource_tsc_page",
+    "timebase", "riscv_clocksource"};
 
 Fault preemption(const Machine& machine) {
     return {"kernel-preemption", false,
@@ -62,11 +62,11 @@ std::vector<Fault> kernel_faults(const Facts& facts) {
                           "reason, boot with tsc=reliable"});
     }
     if (const std::string governor = slow_governor(machine); !governor.empty()) {
-        faults.push_back({"processor-governor", false,
-                          fmt::format("the processors slow down between ticks (governor: {})",
-                                      governor),
-                          "sudo apt install linux-cpupower; sudo cpupower frequency-set -g "
-                          "performance"});
+        faults.push_back(
+            {"processor-governor", false,
+             fmt::format("the processors slow down between ticks (governor: {})", governor),
+             "sudo apt install linux-cpupower; sudo cpupower frequency-set -g "
+             "performance"});
     }
     if (const double exit = slowest_exit(machine); exit > slow_exit_us) {
         faults.push_back({"processor-sleep", false,

@@ -51,9 +51,8 @@ class Load {
 void wait(const LatencySettings& settings) {
     const auto begin = std::chrono::steady_clock::now();
     for (double part = 0; part < 1;) {
-        std::this_thread::sleep_for(
-            std::clamp<std::chrono::duration<double>>(
-                std::chrono::duration<double>((1 - part) * settings.seconds), 1ms, 100ms));
+        std::this_thread::sleep_for(std::clamp<std::chrono::duration<double>>(
+            std::chrono::duration<double>((1 - part) * settings.seconds), 1ms, 100ms));
         const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin;
         part = passed.count() / settings.seconds;
         settings.progress(std::min(part, 1.0));
@@ -72,7 +71,9 @@ std::vector<LatenessBin> bins_of(const LatencyHistogram& lateness) {
             const auto ns = static_cast<std::int64_t>(1000 * end);
             const std::uint64_t count =
                 ns >= all.max ? all.count : std::min(all.count, lateness.count_to(ns));
-            if (count > 0) bins.push_back({std::min(end, static_cast<double>(all.max) / 1000), count - before});
+            if (count > 0)
+                bins.push_back(
+                    {std::min(end, static_cast<double>(all.max) / 1000), count - before});
             before = count;
         }
     }

@@ -21,7 +21,7 @@ struct Latency {
     double seconds = 0;
     bool under_load = false;  ///< as many other threads as there are processors compute meanwhile
     ServoReport report;
-    std::vector<LatenessBin> histogram;   ///< all ticks, once each; the last bin ends at the maximum
+    std::vector<LatenessBin> histogram;  ///< all ticks, once each; the last bin ends at the maximum
     std::vector<std::string> privileges;  ///< a sentence each, as Servo::privileges()
     std::string rendered;                 ///< what was felt, for a report
 };

@@ -6,15 +6,16 @@
 namespace palpate::doctor {
 namespace {
 
-constexpr double most_missed = 1e-3;            // of the ticks
-constexpr std::int64_t late_ns = 250'000;       // a quarter of a period
+constexpr double most_missed = 1e-3;       // of the ticks
+constexpr std::int64_t late_ns = 250'000;  // a quarter of a period
 
 /// What to try, for a machine that is late: first what it lacks anyway.
 std::string way_to_punctuality(const Facts& facts) {
     const Machine& machine = facts.machine;
     if (facts.limits.priority_error != 0) return "mend real-time-priority first, and measure again";
     if (machine.is_virtual) {
-        return "run it on the machine itself: a virtual one waits for its host whenever that is busy";
+        return "run it on the machine itself: a virtual one waits for its host whenever that is "
+               "busy";
     }
     if (machine.preemption != Preemption::real_time) {
         return "mend what else is listed; then sudo apt install linux-image-rt-amd64, and reboot";

@@ -103,8 +103,7 @@ void read_kernel(const fs::path& root, Machine& machine) {
     machine.version = line_of(root / "proc/sys/kernel/version");
     machine.command_line = line_of(root / "proc/cmdline");
     machine.preemption_can_be_chosen = contains(machine.version, "PREEMPT_DYNAMIC");
-    if (line_of(root / "sys/kernel/realtime") == "1" ||
-        contains(machine.version, "PREEMPT_RT")) {
+    if (line_of(root / "sys/kernel/realtime") == "1" || contains(machine.version, "PREEMPT_RT")) {
         machine.preemption = Preemption::real_time;
         return;
     }
@@ -194,8 +193,7 @@ void read_control_groups(const fs::path& root, Machine& machine) {
                          number_of(folder / "cpu.cfs_period_us").value_or(-1), machine);
             }
             const fs::path share = root / "sys/fs/cgroup/cpu" / own.relative_path();
-            machine.real_time_forbidden =
-                number_of(share / "cpu.rt_runtime_us").value_or(1) == 0;
+            machine.real_time_forbidden = number_of(share / "cpu.rt_runtime_us").value_or(1) == 0;
         }
     }
 }

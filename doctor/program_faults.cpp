@@ -25,19 +25,18 @@ constexpr std::array<Use, 4> uses{{
 }};
 
 bool draws_by_processor(const std::string& renderer) {
-    return std::ranges::any_of(std::array{"llvmpipe", "softpipe", "swrast", "Software"},
-                               [&](const char* word) {
-                                   return renderer.find(word) != std::string::npos;
-                               });
+    return std::ranges::any_of(
+        std::array{"llvmpipe", "softpipe", "swrast", "Software"},
+        [&](const char* word) { return renderer.find(word) != std::string::npos; });
 }
 
 void judge_graphics(const Facts& facts, std::vector<Fault>& faults) {
     const Graphics& graphics = facts.graphics;
     if (graphics.pictures.empty()) {
-        faults.push_back({"graphics-missing", false,
-                          "OpenGL without a display does not work (" + graphics.problem +
-                              "): no pictures",
-                          "sudo apt install libegl1 libgl1-mesa-dri"});
+        faults.push_back(
+            {"graphics-missing", false,
+             "OpenGL without a display does not work (" + graphics.problem + "): no pictures",
+             "sudo apt install libegl1 libgl1-mesa-dri"});
     }
     const bool by_card = !graphics.machine.empty() && !draws_by_processor(graphics.machine);
     if (by_card || !facts.machine.has_graphics_card) return;
@@ -50,11 +49,12 @@ void judge_graphics(const Facts& facts, std::vector<Fault>& faults) {
                           way_to_node(node, facts)});
         return;
     }
-    faults.push_back({"graphics-software", false,
-                      "there is a graphics card, but no driver for it draws: the viewer uses the "
-                      "processors, which delays the servo",
-                      "sudo apt install libgl1-mesa-dri firmware-amd-graphics firmware-misc-nonfree "
-                      "(or nvidia-driver); reboot"});
+    faults.push_back(
+        {"graphics-software", false,
+         "there is a graphics card, but no driver for it draws: the viewer uses the "
+         "processors, which delays the servo",
+         "sudo apt install libgl1-mesa-dri firmware-amd-graphics firmware-misc-nonfree "
+         "(or nvidia-driver); reboot"});
 }
 
 }  // namespace

@@ -44,14 +44,16 @@ std::string way_to_limit(const Facts& facts, const std::string& item, std::uint6
     if (!group_to_join.empty()) {
         return fmt::format("sudo adduser $USER {}; then log out and in again", group_to_join);
     }
-    return fmt::format("echo '@{0} - {1} {2}' | sudo tee -a {3}; sudo adduser $USER {0}; then log out "
-                       "and in again",
-                       group, item, value, file);
+    return fmt::format(
+        "echo '@{0} - {1} {2}' | sudo tee -a {3}; sudo adduser $USER {0}; then log out "
+        "and in again",
+        group, item, value, file);
 }
 
 Fault refused_priority(const Facts& facts) {
     const Limits& limits = facts.limits;
-    Fault fault{"real-time-priority", true,
+    Fault fault{"real-time-priority",
+                true,
                 fmt::format("the system refuses real-time priority ({}): other programs delay the "
                             "servo, and the force shakes or drops out",
                             std::strerror(limits.priority_error)),
@@ -119,11 +121,12 @@ std::vector<Fault> real_time_faults(const Facts& facts) {
                           "(Debian's have it)"});
     }
     if (limits.timer_slack_ns > 1000) {
-        faults.push_back({"timer-slack", false,
-                          fmt::format("threads without real-time priority are woken up to {:.0f} us "
-                                      "late, although they ask for 1 ns",
-                                      limits.timer_slack_ns / 1000),
-                          "run it outside of the sandbox that forbids prctl(PR_SET_TIMERSLACK)"});
+        faults.push_back(
+            {"timer-slack", false,
+             fmt::format("threads without real-time priority are woken up to {:.0f} us "
+                         "late, although they ask for 1 ns",
+                         limits.timer_slack_ns / 1000),
+             "run it outside of the sandbox that forbids prctl(PR_SET_TIMERSLACK)"});
     }
     return faults;
 }

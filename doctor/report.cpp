@@ -38,11 +38,12 @@ std::string real_time_line(const Limits& limits) {
 
 std::string latency_line(const Latency& latency) {
     const LatencySummary& late = latency.report.lateness;
-    return fmt::format("{:.0f} s{}: woken {:.3g} us late at p50, {:.3g} us at p99, {:.3g} us at "
-                       "p99.9, {:.3g} us at most; {} of {} ticks missed",
-                       latency.seconds, latency.under_load ? " under load" : "", us(late.p50),
-                       us(late.p99), us(late.p999), us(late.max), latency.report.missed,
-                       latency.report.ticks + latency.report.missed);
+    return fmt::format(
+        "{:.0f} s{}: woken {:.3g} us late at p50, {:.3g} us at p99, {:.3g} us at "
+        "p99.9, {:.3g} us at most; {} of {} ticks missed",
+        latency.seconds, latency.under_load ? " under load" : "", us(late.p50), us(late.p99),
+        us(late.p999), us(late.max), latency.report.missed,
+        latency.report.ticks + latency.report.missed);
 }
 
 std::string graphics_line(const Graphics& graphics) {
@@ -66,10 +67,9 @@ std::string devices_line(const Facts& facts) {
     for (const devices::DeviceFinding& device : facts.devices) {
         (device.found ? found : absent).push_back(device.name);
     }
-    return fmt::format("{}{}", joined(found),
-                       absent.empty()
-                           ? ""
-                           : "; not here: " + joined(absent) + " (palpate devices says why)");
+    return fmt::format(
+        "{}{}", joined(found),
+        absent.empty() ? "" : "; not here: " + joined(absent) + " (palpate devices says why)");
 }
 
 std::vector<std::pair<const char*, std::string>> lines_of(const Facts& facts) {

@@ -1,5 +1,5 @@
-// Reads /sys/bus/usb/devices, and has the table of the devices that Palpate can use. The numbers are
-// those of the vendors' udev rules and of the drivers named in docs/devices; no Haply device is
+// Reads /sys/bus/usb/devices, and has the table of the devices that Palpate can use. The numbers
+// are those of the vendors' udev rules and of the drivers named in docs/devices; no Haply device is
 // in it: nobody has published its numbers.
 #include "doctor/usb.hpp"
 

@@ -44,11 +44,11 @@ void examine(const Options& options) {
     doctor::Facts facts = doctor::survey(options.device);
     if (options.duration() > 0) {
         ProgressBar bar("measuring", options.quiet || options.json);
-        facts.latency = doctor::measure_latency(
-            {options.duration(), !options.report.empty(), [&](double part) {
-                 stop_if_interrupted();
-                 bar.at(part);
-             }});
+        facts.latency =
+            doctor::measure_latency({options.duration(), !options.report.empty(), [&](double part) {
+                                         stop_if_interrupted();
+                                         bar.at(part);
+                                     }});
     }
     const std::vector<doctor::Fault> faults = doctor::faults_of(facts);
     if (file) {
@@ -77,13 +77,15 @@ void add_doctor(CLI::App& app) {
         "for ten minutes under load: the report is a certificate, and goes with a bug.\n\n"
         "Examples:\n  palpate doctor\n  palpate doctor --device haply\n  palpate doctor --report "
         "report.md");
-    command->add_option("--seconds", options->seconds,
-                        "Duration of the measurement: 10, with --report 600; 0: none")
+    command
+        ->add_option("--seconds", options->seconds,
+                     "Duration of the measurement: 10, with --report 600; 0: none")
         ->check(CLI::Range(0.0, 86400.0))
         ->type_name("S");
     command->add_option("--device", options->device, "This device has to work")->type_name("NAME");
-    command->add_option("--report", options->report,
-                        "Write a report with a real-time certificate, as Markdown")
+    command
+        ->add_option("--report", options->report,
+                     "Write a report with a real-time certificate, as Markdown")
         ->type_name("FILE");
     command->add_flag("--json", options->json, "Print everything that was found as JSON");
     command->add_flag("--quiet", options->quiet, "Print nothing; the exit status says it");

@@ -16,8 +16,9 @@ TEST(Doctor, examines_this_machine_and_its_status_says_whether_something_essenti
     EXPECT_EQ(json.at("version"), PALPATE_VERSION);
     EXPECT_GE(json.at("machine").at("processors"), 1);
     EXPECT_FALSE(json.at("machine").at("kernel").get<std::string>().empty());
-    EXPECT_GE(json.at("latency").at("ticks").get<int>() + json.at("latency").at("missed").get<int>(),
-              490);
+    EXPECT_GE(
+        json.at("latency").at("ticks").get<int>() + json.at("latency").at("missed").get<int>(),
+        490);
     EXPECT_EQ(json.at("latency").at("under_load"), true);
     EXPECT_FALSE(json.at("graphics").at("pictures").get<std::string>().empty());
     EXPECT_EQ(json.at("programs").at(0).at("works"), true);
@@ -47,9 +48,9 @@ TEST(Doctor, asks_for_a_device_that_has_to_work) {
 
 TEST(Doctor, finds_a_helper_that_does_not_run) {
     const ScratchFolder folder;
-    const Outcome outcome = Running({"-c", "PALPATE_IO_HELPER=/nonexistent PALPATE_PICTURE_HELPER="
-                                           "/nonexistent exec " PALPATE_PROGRAM
-                                           " doctor --seconds 0"},
+    const Outcome outcome = Running({"-c",
+                                     "PALPATE_IO_HELPER=/nonexistent PALPATE_PICTURE_HELPER="
+                                     "/nonexistent exec " PALPATE_PROGRAM " doctor --seconds 0"},
                                     folder.path(), Stdout::captured, "/bin/sh")
                                 .finish();
     EXPECT_EQ(outcome.status, 4);

@@ -127,18 +127,14 @@ void wanted_haply(M& m) {
 
 const Injection real_time[] = {
     {"real-time-priority", true, "log out and in again: the limit is set", no_priority},
-    {"real-time-priority", true, "sudo adduser $USER audio",
-     not_a_member},
+    {"real-time-priority", true, "sudo adduser $USER audio", not_a_member},
     {"real-time-priority", true, "echo '@audio - rtprio 90' | sudo tee -a /etc/security/limits.d",
      no_limits_file},
     {"real-time-priority", true, "--cap-add=SYS_NICE",
      [](M& m) { m.facts.limits.priority_error = EPERM; }},
-    {"real-time-forbidden", true, "cpu.rt_runtime_us",
-     no_time_in_the_group},
-    {"real-time-priority-low", false, "log out",
-     [](M& m) { m.facts.limits.priority = 50; }},
-    {"locked-memory", false, "echo '@audio - memlock unlimited'",
-     unlocked},
+    {"real-time-forbidden", true, "cpu.rt_runtime_us", no_time_in_the_group},
+    {"real-time-priority-low", false, "log out", [](M& m) { m.facts.limits.priority = 50; }},
+    {"locked-memory", false, "echo '@audio - memlock unlimited'", unlocked},
     {"real-time-limit", true, "ulimit -R unlimited",
      [](M& m) { m.facts.limits.real_time_us = 10'000; }},
     {"real-time-share", true, "sudo sysctl kernel.sched_rt_period_us=1000000",
@@ -150,22 +146,16 @@ const Injection real_time[] = {
 };
 
 const Injection kernels[] = {
-    {"kernel-preemption", false, "linux-image-rt-amd64",
-     voluntary},
-    {"kernel-preemption", false, "preempt=full",
-     preempt_none},
-    {"clock-source", false, "tsc=reliable",
-     slow_clock},
+    {"kernel-preemption", false, "linux-image-rt-amd64", voluntary},
+    {"kernel-preemption", false, "preempt=full", preempt_none},
+    {"clock-source", false, "tsc=reliable", slow_clock},
     {"processor-governor", false, "cpupower frequency-set -g performance",
      [](M& m) { m.put(governor, "powersave\n"); }},
-    {"processor-sleep", false, "cpupower idle-set -D 100",
-     deep_sleep},
+    {"processor-sleep", false, "cpupower idle-set -D 100", deep_sleep},
     {"processor-quota", false, "--cpus=2",
      [](M& m) { m.put("sys/fs/cgroup/user.slice/cpu.max", "50000 100000\n"); }},
-    {"processor-quota", false, "CPUQuota=200%",
-     quota_of_version_1},
-    {"processor-single", false, "two processors",
-     one_processor},
+    {"processor-quota", false, "CPUQuota=200%", quota_of_version_1},
+    {"processor-single", false, "two processors", one_processor},
     {"processor-load", false, "top shows them",
      [](M& m) { m.put("proc/loadavg", "9.50 3.00 1.00 9/400 4711\n"); }},
     {"memory-low", false, "smaller volume",
@@ -173,40 +163,36 @@ const Injection kernels[] = {
 };
 
 const Injection programs[] = {
-    {"ticks-missed", true, "hwlatdetect",
-     [](M& m) { m.facts.latency->report.missed = 100; }},
-    {"ticks-missed", true, "the machine itself",
-     missed_in_a_virtual_machine},
+    {"ticks-missed", true, "hwlatdetect", [](M& m) { m.facts.latency->report.missed = 100; }},
+    {"ticks-missed", true, "the machine itself", missed_in_a_virtual_machine},
     {"ticks-late", false, "hwlatdetect",
-     [](M& m) { m.facts.latency->report.lateness = {10'000, 1, 2, 700'000, 800'000}; }},
+     [](M& m) {
+         m.facts.latency->report.lateness = {10'000, 1, 2, 700'000, 800'000};
+     }},
     {"helper-io", true, "install Palpate again",
      [](M& m) { m.facts.programs[0].problem = "it cannot be run"; }},
     {"helper-pictures", false, "install Palpate again",
      [](M& m) { m.facts.programs[1].problem = "it is nowhere"; }},
     {"graphics-missing", false, "sudo apt install libegl1 libgl1-mesa-dri",
-     [](M& m) { m.facts.graphics = {{}, {}, "there is no EGL", false}; }},
-    {"graphics-software", false, "firmware-amd-graphics",
-     no_driver},
-    {"graphics-permission", false, "sudo adduser $USER video",
-     closed_card},
+     [](M& m) {
+         m.facts.graphics = {{}, {}, "there is no EGL", false};
+     }},
+    {"graphics-software", false, "firmware-amd-graphics", no_driver},
+    {"graphics-permission", false, "sudo adduser $USER video", closed_card},
 };
 
 const Injection plugged[] = {
-    {"device-permission", true, "ATTR{idVendor}==\"1451\"",
-     closed_sigma},
-    {"device-permission", true, "sudo adduser $USER dialout",
-     closed_touch},
+    {"device-permission", true, "ATTR{idVendor}==\"1451\"", closed_sigma},
+    {"device-permission", true, "sudo adduser $USER dialout", closed_touch},
     {"device-permission", true, "log out and in again: you are in group dialout",
      touch_before_login},
     {"device-library", true, "install the vendor's library (docs/devices/forcedimension.md)",
      falcon_without_library},
-    {"device-service", true, "sudo apt install spacenavd",
-     mouse_without_service},
+    {"device-service", true, "sudo apt install spacenavd", mouse_without_service},
     {"device-port", true, "modprobe cdc_acm", [](M& m) { m.plug("2988", "0302", "Touch"); }},
     {"device-sleep", false, "echo on | sudo tee /sys/bus/usb/devices/1-2/power/control",
      sleepy_omega},
-    {"device-missing", true, "docs/devices/haply.md",
-     wanted_haply},
+    {"device-missing", true, "docs/devices/haply.md", wanted_haply},
 };
 
 TEST(Doctor, has_nothing_to_say_about_a_healthy_machine) {

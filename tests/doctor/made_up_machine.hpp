@@ -33,7 +33,8 @@ class MadeUpMachine {
             put(folder + "/cpuidle/state1/name", "C1\n");
             put(folder + "/cpuidle/state1/latency", "2\n");
         }
-        put("etc/security/limits.d/palpate.conf", "@audio - rtprio 90\n@audio - memlock unlimited\n");
+        put("etc/security/limits.d/palpate.conf",
+            "@audio - rtprio 90\n@audio - memlock unlimited\n");
         put("etc/group", "root:x:0:\naudio:x:29:anna\ndialout:x:20:\nrender:x:105:anna\n");
 
         facts.limits = {90, Limits::unlimited, Limits::unlimited, 0, 0, 1, 1};
