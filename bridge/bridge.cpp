@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::int64_t second_ns = 1'000'000'000;
 constexpr std::int64_t patience_ns = 10 * second_ns;  // with a peer that takes nothing
-/// More than this waits for a peer only while it is a surface.
+/// While more than this waits for a peer, answers to it are left out; a surface may be longer.
 constexpr std::size_t most_waiting = std::size_t{1} << 20;
 constexpr std::size_t piece_bytes = std::size_t{1} << 16;  // read at once
 constexpr int pieces_a_round = 16;                         // so that one peer cannot hold up others
@@ -41,7 +41,7 @@ struct Bridge::Peer {
     int socket;
     std::string who;
     Reader reader;
-    std::string out;       // what it has not taken yet, from `sent` on
+    std::string out;  // what it has not taken yet, from `sent` on
     std::size_t sent = 0;
     std::int64_t moved_ns;  // when it last took something
     bool gone = false;
@@ -153,9 +153,8 @@ void Bridge::run() {
             if (done_) return;
         }
         try_to_connect();
-        std::vector<pollfd> sockets{{event_, POLLIN, 0},
-                                    {listening_, POLLIN, 0},
-                                    {connecting_, POLLOUT, 0}};
+        std::vector<pollfd> sockets{
+            {event_, POLLIN, 0}, {listening_, POLLIN, 0}, {connecting_, POLLOUT, 0}};
         for (const auto& peer : peers_) {
             sockets.push_back({peer->socket,
                                static_cast<short>(POLLIN | (peer->waiting() > 0 ? POLLOUT : 0)),
@@ -259,7 +258,7 @@ void Bridge::ask(Peer& peer, Request request) {
             return;
         }
     }
-    if (peer.waiting() < most_waiting) reply(peer.number, "not taken: too many requests at once");
+    reply(peer.number, "not taken: too many requests at once");
 }
 
 /// Gives every peer what is new for it, and sends as much as it takes.
@@ -273,7 +272,12 @@ void Bridge::hand_out() {
     }
     for (const auto& peer : peers_) {
         for (const Outgoing& one : outgoing) {
-            if (one.peer == peer->number) peer->append(one.bytes);
+            if (one.peer != peer->number) continue;
+            if (peer->waiting() < most_waiting) {
+                peer->append(one.bytes);
+            } else {
+                note(peer->who + " reads too slowly: an answer was left out");
+            }
         }
         if (frame && peer->waiting() == 0) peer->append(*frame);
         flush(*peer);
@@ -286,8 +290,8 @@ void Bridge::hand_out() {
 
 void Bridge::flush(Peer& peer) {
     while (peer.waiting() > 0) {
-        const ssize_t sent = ::send(peer.socket, peer.out.data() + peer.sent, peer.waiting(),
-                                    MSG_NOSIGNAL);
+        const ssize_t sent =
+            ::send(peer.socket, peer.out.data() + peer.sent, peer.waiting(), MSG_NOSIGNAL);
         if (sent <= 0) return;  // it takes no more now; that it has gone shows in reading
         peer.sent += static_cast<std::size_t>(sent);
         peer.moved_ns = now_ns();

@@ -48,7 +48,8 @@ class Bridge {
     static constexpr std::size_t most_peers = 8;
     static constexpr std::size_t most_requests = 64;  ///< that wait; others are refused
 
-    /// Listens, or starts to connect. Throws std::runtime_error with what is wrong with the address.
+    /// Listens, or starts to connect. Throws std::runtime_error with what is wrong with the
+    /// address.
     explicit Bridge(const Settings& settings);
     ~Bridge();
     Bridge(const Bridge&) = delete;

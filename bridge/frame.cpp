@@ -10,11 +10,11 @@ namespace {
 std::string words_of(const Snapshot& now) {
     const Tick& tick = now.session.tick;
     const DeviceStatus status = now.session.device.status;
-    const char* const state = status != DeviceStatus::ready             ? name_of(status)
-                              : now.session.frozen                      ? "frozen"
-                              : now.session.clutched                    ? "clutch"
+    const char* const state = status != DeviceStatus::ready          ? name_of(status)
+                              : now.session.frozen                   ? "frozen"
+                              : now.session.clutched                 ? "clutch"
                               : tick.proxy.mode == Mode::constrained ? "contact"
-                                                                        : "free";
+                                                                     : "free";
     char text[128];
     std::snprintf(text, sizeof text, "%s, %.2f N, isovalue %.6g, %lld ticks missed", state,
                   tick.force.norm(), tick.proxy.isovalue, static_cast<long long>(now.missed));

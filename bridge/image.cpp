@@ -88,8 +88,8 @@ template <class From, class To>
 Volume volume_as(const ImageHeader& header, std::string_view samples) {
     std::vector<To> converted(samples.size() / sizeof(From));
     for (std::size_t i = 0; i < converted.size(); ++i) {
-        converted[i] = static_cast<To>(
-            sample_at<From>(samples.data() + i * sizeof(From), header.big_endian));
+        converted[i] =
+            static_cast<To>(sample_at<From>(samples.data() + i * sizeof(From), header.big_endian));
     }
     return {header.geometry, std::move(converted)};
 }
@@ -120,8 +120,7 @@ Volume volume_in(const ImageHeader& header, std::string_view samples) {
 Volume volume_of(const Received& received) {
     const ImageHeader header = read_header(received.content);
     try {
-        return volume_in(header,
-                         std::string_view(received.content).substr(image_header_bytes));
+        return volume_in(header, std::string_view(received.content).substr(image_header_bytes));
     } catch (const std::invalid_argument& e) {
         throw WireError(std::string("an IMAGE that is no volume: ") + e.what());
     }

@@ -23,8 +23,7 @@ Addresses addresses_of(const std::string& host, int port, int flags) {
     wanted.ai_socktype = SOCK_STREAM;
     wanted.ai_flags = flags | AI_NUMERICSERV;
     addrinfo* found = nullptr;
-    const int error =
-        getaddrinfo(host.c_str(), std::to_string(port).c_str(), &wanted, &found);
+    const int error = getaddrinfo(host.c_str(), std::to_string(port).c_str(), &wanted, &found);
     if (error != 0) {
         throw std::runtime_error("OpenIGTLink: there is no host '" + host + "' (" +
                                  gai_strerror(error) + ")");

@@ -122,7 +122,8 @@ void Reader::feed(std::string_view bytes, std::vector<Received>& out) {
         const bool in_header = header_.size() < header_bytes;
         std::string& part = in_header ? header_ : body_;
         const std::uint64_t missing = (in_header ? header_bytes : body_size_) - part.size();
-        const std::string_view now = bytes.substr(0, std::min<std::uint64_t>(missing, bytes.size()));
+        const std::string_view now =
+            bytes.substr(0, std::min<std::uint64_t>(missing, bytes.size()));
         part += now;
         bytes.remove_prefix(now.size());
         if (in_header && header_.size() == header_bytes) take_header();
@@ -141,8 +142,8 @@ void Reader::take_header() {
     checksum_ = number_at<std::uint64_t>(header_, 50);
     const std::uint64_t most = next_.type == "IMAGE" ? limits_.image : limits_.other;
     if (body_size_ > most) {
-        throw WireError(next_.type + " of " + std::to_string(body_size_) +
-                        " bytes: at most " + std::to_string(most) + " are taken");
+        throw WireError(next_.type + " of " + std::to_string(body_size_) + " bytes: at most " +
+                        std::to_string(most) + " are taken");
     }
 }
 
@@ -162,8 +163,8 @@ Received Reader::take_body() {
     const auto refuse = [&] { throw WireError(received.type + " with extensions longer than it"); };
     if (body.size() < extension_bytes) refuse();
     const std::uint64_t before = number_at<std::uint16_t>(body, 0);
-    const std::uint64_t after = std::uint64_t{number_at<std::uint16_t>(body, 2)} +
-                                number_at<std::uint32_t>(body, 4);
+    const std::uint64_t after =
+        std::uint64_t{number_at<std::uint16_t>(body, 2)} + number_at<std::uint32_t>(body, 4);
     if (before < extension_bytes || before + after > body.size()) refuse();
     body.resize(body.size() - after);
     body.erase(0, before);

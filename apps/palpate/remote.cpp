@@ -8,6 +8,7 @@
 #include <cctype>
 #include <stdexcept>
 
+#include "apps/palpate/commands.hpp"
 #include "palpate/run/labels.hpp"
 #include "palpate/surface.hpp"
 
@@ -27,7 +28,8 @@ bool is_label_map(const std::string& name) {
 
 run::LoadedVolume loaded_from(bridge::VolumePushed& pushed) {
     run::Source source;
-    source.from = run::FileSource{.path = "igtl:" + pushed.name, .raw = {}, .spacing = {}, .series = {}};
+    source.from =
+        run::FileSource{.path = "igtl:" + pushed.name, .raw = {}, .spacing = {}, .series = {}};
     return {.volume = std::move(pushed.volume), .source = source, .name = "igtl:" + pushed.name};
 }
 
@@ -70,14 +72,19 @@ void Remote::answer(run::Run& run, const Snapshot& now, LiveCommands& commands, 
     }
 }
 
-void Remote::send_surface(const run::Run& run, const Snapshot& now, RequestQueue& queue,
-                          int peer) {
+void Remote::send_surface(const run::Run& run, const Snapshot& now, RequestQueue& queue, int peer) {
+    if (surface_under_way_.exchange(true)) {
+        throw std::invalid_argument("another surface is being made: ask again");
+    }
     queue.put([this, field = run.field_now(), level = now.session.tick.proxy.isovalue, peer] {
         try {
-            bridge_.send_surface(peer, extract_surface(field, level));
+            SurfaceOptions options;
+            options.progress = [](double) { return !interrupted(); };
+            bridge_.send_surface(peer, extract_surface(field, level, options));
         } catch (const std::exception& e) {
             bridge_.reply(peer, std::string("not done: ") + e.what());
         }
+        surface_under_way_ = false;
         return std::string();
     });
 }
@@ -93,6 +100,9 @@ std::string Remote::take_volume(run::Run& run, bridge::VolumePushed& volume) {
     }
     if (run.recording()) {
         throw std::invalid_argument("the session is recorded: a recording has one volume");
+    }
+    if (!run.data().is_sequence() && run.data().editor().state().changed) {
+        throw std::invalid_argument("the volume felt has edits that were not saved");
     }
     const run::Setup& setup = run.setup();
     auto data = std::make_shared<run::Data>(std::move(loaded), setup.playback);
@@ -111,8 +121,7 @@ std::unique_ptr<Remote> make_remote(const std::string& listen, const std::string
     }
     const bool client = listen.empty();
     try {
-        const bridge::Settings settings =
-            bridge::settings_from(client ? connect : listen, client);
+        const bridge::Settings settings = bridge::settings_from(client ? connect : listen, client);
         if (!bridge::is_local(settings)) {
             fmt::print(stderr,
                        "warning: OpenIGTLink has no passwords and no encryption: whoever reaches "

@@ -1,6 +1,7 @@
 // What others ask of a live run by OpenIGTLink, carried out by the run's own thread.
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <memory>
 #include <string>
@@ -36,6 +37,7 @@ class Remote {
 
     bridge::Bridge bridge_;
     std::shared_ptr<run::Data> pushed_;
+    std::atomic<bool> surface_under_way_{false};
 };
 
 /// By the options --igtl and --igtl-connect; null if both are empty. Warns on standard error of an

@@ -7,7 +7,6 @@
 
 #include <chrono>
 
-
 #include "bridge/sockets.hpp"
 #include "support/eventually.hpp"
 #include "support/scratch_folder.hpp"
@@ -57,7 +56,8 @@ class Plug {
     void say(const std::string& bytes) const {
         ASSERT_TRUE(comes_true([&] { return is_connected(socket_); }));
         ASSERT_TRUE(comes_true([&] {
-            return ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL) == ssize_t(bytes.size());
+            return ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL) ==
+                   ssize_t(bytes.size());
         }));
     }
 

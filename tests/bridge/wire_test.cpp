@@ -109,9 +109,9 @@ TEST(Wire, an_image_of_any_scalar_type_and_order_is_read) {
         std::uint8_t scalar;
         std::size_t bytes;
         SampleType type;
-    } kinds[] = {{2, 1, SampleType::int16},   {3, 1, SampleType::uint8},
-                 {4, 2, SampleType::int16},   {5, 2, SampleType::uint16},
-                 {6, 4, SampleType::float32}, {7, 4, SampleType::float32},
+    } kinds[] = {{2, 1, SampleType::int16},    {3, 1, SampleType::uint8},
+                 {4, 2, SampleType::int16},    {5, 2, SampleType::uint16},
+                 {6, 4, SampleType::float32},  {7, 4, SampleType::float32},
                  {10, 4, SampleType::float32}, {11, 8, SampleType::float32}};
     for (const auto& kind : kinds) {
         for (const std::uint8_t endian : {1, 2}) {
@@ -148,13 +148,23 @@ TEST(Wire, what_is_not_as_it_should_be_is_refused) {
         EXPECT_THROW(text_of({"STRING", "", content}), WireError);
     }
     const std::function<void(std::string&)> damages[] = {
-        [](std::string& c) { c.resize(71); },         [](std::string& c) { c.pop_back(); },
-        [](std::string& c) { c += 'x'; },             [](std::string& c) { c[2] = 3; },
-        [](std::string& c) { c[3] = 8; },             [](std::string& c) { c[3] = 99; },
-        [](std::string& c) { c[4] = 0; },             [](std::string& c) { c[5] = 7; },
-        [](std::string& c) { c[7] = 0; },             [](std::string& c) { c[6] = '\xff'; },
-        [](std::string& c) { c[61] = 1; },            [](std::string& c) { c[67] = 1; },
-        [](std::string& c) { c.replace(12, 4, 4, 0); },  [](std::string& c) { c[12] = '\x7f'; c[13] = '\xc0'; },
+        [](std::string& c) { c.resize(71); },
+        [](std::string& c) { c.pop_back(); },
+        [](std::string& c) { c += 'x'; },
+        [](std::string& c) { c[2] = 3; },
+        [](std::string& c) { c[3] = 8; },
+        [](std::string& c) { c[3] = 99; },
+        [](std::string& c) { c[4] = 0; },
+        [](std::string& c) { c[5] = 7; },
+        [](std::string& c) { c[7] = 0; },
+        [](std::string& c) { c[6] = '\xff'; },
+        [](std::string& c) { c[61] = 1; },
+        [](std::string& c) { c[67] = 1; },
+        [](std::string& c) { c.replace(12, 4, 4, 0); },
+        [](std::string& c) {
+            c[12] = '\x7f';
+            c[13] = '\xc0';
+        },
         [](std::string& c) { c.replace(24, 4, c.substr(12, 4)); }};
     for (std::size_t i = 0; i < std::size(damages); ++i) {
         std::string content = image_content();

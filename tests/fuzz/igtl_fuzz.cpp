@@ -1,5 +1,5 @@
-// Any bytes from the network give whole messages or a refusal; any IMAGE a volume no larger than what
-// came, any STRING a printable line. The first byte chooses what the others are.
+// Any bytes from the network give whole messages or a refusal; any IMAGE a volume no larger than
+// what came, any STRING a printable line. The first byte chooses what the others are.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>

@@ -36,8 +36,7 @@ std::unique_ptr<Running> program(const ScratchFolder& folder, int port,
         folder.path());
 }
 
-Outcome peer(const ScratchFolder& folder, const std::string& role, int port,
-             const Words& actions) {
+Outcome peer(const ScratchFolder& folder, const std::string& role, int port, const Words& actions) {
     // It tries once: the program may not listen yet.
     Outcome outcome;
     EXPECT_TRUE(comes_true([&] {
@@ -87,8 +86,8 @@ TEST(BridgeToSlicer, pushes_a_level_and_a_volume_and_feels_them) {
     // Another volume, with other levels and on another grid; then its surface.
     const Outcome volume =
         peer(folder, "connect", port,
-             {"image", "Ball", "24", "200", "await", "STRING", "for", "1", "string",
-              "isovalue 50", "await", "STRING", "for", "0.3", "surface", "await", "POLYDATA"});
+             {"image", "Ball", "24", "200", "await", "STRING", "for", "1", "string", "isovalue 50",
+              "await", "STRING", "for", "0.3", "surface", "await", "POLYDATA"});
     EXPECT_EQ(volume.status, 0);
     EXPECT_TRUE(contains(volume.out, "done: igtl:Ball at isovalue ")) << volume.out;
     EXPECT_TRUE(contains(volume.out, "isovalue 50, ")) << volume.out;
@@ -109,9 +108,9 @@ TEST(BridgeToSlicer, serves_two_clients_of_which_one_breaks_off_and_one_sends_ga
     const int port = free_port();
     const auto touch = program(folder, port);
     ASSERT_EQ(peer(folder, "connect", port, {"for", "0.1"}).status, 0);
-    const auto other = std::make_unique<Running>(
-        Words{"connect", std::to_string(port), "for", "2"}, folder.path(),
-        app::test::Stdout::captured, PALPATE_IGTL_PEER);
+    const auto other =
+        std::make_unique<Running>(Words{"connect", std::to_string(port), "for", "2"}, folder.path(),
+                                  app::test::Stdout::captured, PALPATE_IGTL_PEER);
     EXPECT_EQ(peer(folder, "connect", port, {"garbage", "for", "1"}).status, 3);
     Running(Words{"connect", std::to_string(port), "for", "60"}, folder.path(),
             app::test::Stdout::captured, PALPATE_IGTL_PEER)
@@ -123,12 +122,35 @@ TEST(BridgeToSlicer, serves_two_clients_of_which_one_breaks_off_and_one_sends_ga
     EXPECT_TRUE(contains(end.err, "was disconnected: it sent")) << end.err;
 }
 
+TEST(BridgeToSlicer, cannot_push_a_volume_over_edits_that_were_not_saved) {
+    const ScratchFolder folder;
+    const int port = free_port();
+    const auto touch = program(folder, port, "--igtl", {"--brush", "carve 3"});
+    const Outcome pushed = peer(folder, "connect", port,
+                                {"for", "2", "image", "Ball", "16", "200", "await", "STRING"});
+    EXPECT_TRUE(contains(pushed.out, "not done: the volume felt has edits")) << pushed.out;
+    EXPECT_EQ(touch->finish(SIGINT).status, 130);
+}
+
+TEST(BridgeToSlicer, cannot_push_what_cannot_be_felt_and_the_session_goes_on) {
+    const ScratchFolder folder;
+    const int port = free_port();
+    const auto touch = program(folder, port, "--igtl", {"--record", "session.csv"});
+    const Outcome pushed = peer(folder, "connect", port,
+                                {"image", "Ball", "16", "200", "await", "STRING", "image",
+                                 "Empty-label", "16", "0", "await", "STRING", "for", "0.5"});
+    EXPECT_TRUE(contains(pushed.out, "not done: the session is recorded")) << pushed.out;
+    EXPECT_TRUE(contains(pushed.out, "has no label above 0")) << pushed.out;
+    EXPECT_GE(rate_of(pushed.out, "PalpateHand"), 60) << pushed.out;
+    EXPECT_EQ(touch->finish(SIGINT).status, 130);
+}
+
 TEST(BridgeToSlicer, connects_to_a_server_that_comes_later) {
     const ScratchFolder folder;
     const int port = free_port();
     const auto touch = program(folder, port, "--igtl-connect");
-    const Outcome seen = peer(folder, "listen", port,
-                              {"string", "isovalue 0.3", "await", "STRING", "for", "1"});
+    const Outcome seen =
+        peer(folder, "listen", port, {"string", "isovalue 0.3", "await", "STRING", "for", "1"});
     EXPECT_EQ(seen.status, 0);
     EXPECT_GE(rate_of(seen.out, "PalpateForce"), 60) << seen.out;
     EXPECT_TRUE(contains(seen.out, "done: isovalue 0.3")) << seen.out;

@@ -125,9 +125,9 @@ igtl::ImageMessage::Pointer ball(const char* name, int size, double level) {
     for (int k = 0; k < size; ++k) {
         for (int j = 0; j < size; ++j) {
             for (int i = 0; i < size; ++i) {
-                const double r = std::sqrt((i - middle) * (i - middle) +
-                                           (j - middle) * (j - middle) +
-                                           (k - middle) * (k - middle));
+                const double r =
+                    std::sqrt((i - middle) * (i - middle) + (j - middle) * (j - middle) +
+                              (k - middle) * (k - middle));
                 *at++ = static_cast<unsigned char>(
                     level * std::min(1.0, std::max(0.0, 1.5 - 4 * r / size)));
             }
