@@ -158,28 +158,43 @@ std::string png_from(const io::Descriptor& memory, const json& done) {
     return png;
 }
 
+/// `read` turns the helper's answer into the result.
+template <class Read>
+std::string answer_to(const char* job, json asked, const io::Descriptor* memory,
+                      const DrawOptions& options, const Read& read) {
+    asked["caller"] = getpid();
+    const io::HelperResult result = io::run_helper({picture_helper,
+                                                    options.helper,
+                                                    {job, io::line_from(asked)},
+                                                    memory,
+                                                    [&](double) { options.waiting(); },
+                                                    options.time_limit_s});
+    if (!result.failure.empty()) fail(result.failure);
+    try {
+        return read(result.done);
+    } catch (const nlohmann::json::exception&) {
+        fail(
+            "the helper process gave no sensible answer; check that palpate-picture-helper belongs "
+            "to this version of Palpate");
+    }
+}
+
 }  // namespace
 
 std::string png_of(const PictureScene& scene, const DrawOptions& options) {
     check(scene);
     try {
         const io::Descriptor memory = packed(scene);
-        const io::HelperJob job{picture_helper,
-                                options.helper,
-                                {"draw", io::line_from({{"caller", getpid()}})},
-                                &memory,
-                                [&](double) { options.waiting(); },
-                                options.time_limit_s};
-        const io::HelperResult result = io::run_helper(job);
-        if (!result.failure.empty()) fail(result.failure);
-        return png_from(memory, result.done);
+        return answer_to("draw", json::object(), &memory, options,
+                         [&](const json& done) { return png_from(memory, done); });
     } catch (const std::system_error& e) {
         fail(e.what());
-    } catch (const nlohmann::json::exception&) {
-        fail(
-            "the helper process gave no sensible answer; check that palpate-picture-helper belongs "
-            "to this version of Palpate");
     }
+}
+
+std::string renderer_name(bool machine, const DrawOptions& options) {
+    return answer_to("graphics", {{"machine", machine}}, nullptr, options,
+                     [](const json& done) { return done.at("renderer").get<std::string>(); });
 }
 
 void draw_picture(const PictureScene& scene, const std::filesystem::path& png,

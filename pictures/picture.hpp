@@ -32,4 +32,8 @@ std::string png_of(const PictureScene& scene, const DrawOptions& options = {});
 void draw_picture(const PictureScene& scene, const std::filesystem::path& png,
                   const DrawOptions& options = {});
 
+/// OpenGL's name for who would draw: the pictures, or with `machine` the graphics card's driver,
+/// which pictures do not use. Throws io::OutputError, saying what to install, if nobody can.
+std::string renderer_name(bool machine, const DrawOptions& options = {});
+
 }  // namespace palpate::pictures

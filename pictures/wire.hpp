@@ -5,6 +5,7 @@
 //   arrays       each at a multiple of 16: positions and normals 3 x float32 a vertex, positions
 //                relative to the camera's focus; triangles 3 x uint32
 //   PNG          appended by the helper, which reports {"done": {"at": ..., "bytes": ...}}
+// The job `graphics` draws nothing and needs no memory; it reports {"done": {"renderer": ...}}.
 #pragma once
 
 #include <cstdint>

@@ -13,6 +13,7 @@ void add_touch(CLI::App& app, const Words& words);
 void add_view(CLI::App& app, const Words& words);
 void add_record(CLI::App& app);
 void add_devices(CLI::App& app);
+void add_doctor(CLI::App& app);
 void add_replay(CLI::App& app);
 void add_extract(CLI::App& app);
 void add_render(CLI::App& app);

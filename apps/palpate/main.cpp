@@ -23,5 +23,6 @@ int main(int argc, char** argv) {
         add_view(app, words);
         add_record(app);
         add_devices(app);
+        add_doctor(app);
     });
 }

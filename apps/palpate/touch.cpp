@@ -15,6 +15,7 @@
 #include "apps/palpate/live_status.hpp"
 #include "apps/palpate/outputs.hpp"
 #include "apps/palpate/progress.hpp"
+#include "apps/palpate/remote.hpp"
 #include "apps/palpate/request_queue.hpp"
 #include "apps/palpate/terminal.hpp"
 #include "apps/palpate/window.hpp"
@@ -25,15 +26,22 @@ namespace {
 
 using namespace std::chrono_literals;
 
+struct TouchOptions : RunOptions {
+    bool headless = false;
+    std::string igtl, igtl_connect;
+};
+
 /// What became of a request.
 enum class Obeyed : std::uint8_t { yes, no_room, quit };
 
 /// The terminal of a run: commands from a file, keys, the status line.
 class Terminal {
   public:
+    /// `remote` may be null.
     Terminal(run::Run& run, const RunOptions& options, std::vector<TimedRequest> requests,
-             LiveCommands& commands)
+             LiveCommands& commands, Remote* remote)
         : run_(run),
+          remote_(remote),
           device_name_(run.device().name),
           options_(options),
           requests_(std::move(requests)),
@@ -50,7 +58,7 @@ class Terminal {
         if (run_.device_failure() != DeviceFailure::none) return false;
         const auto now = run_.snapshot();
         if (!now) return true;
-        if (!obey_due(*now)) return false;
+        if (!obey_due(*now) || !serve(*now)) return false;
         if (const auto key = keys_.next()) {
             const auto request = commands_.from_key(*key, *now);
             const Obeyed obeyed = request ? obey(*request, *now) : Obeyed::yes;
@@ -104,8 +112,17 @@ class Terminal {
         return true;
     }
 
-    Obeyed obey(const Request& request, const Snapshot& now) {
-        const Overloaded carry_out{
+    /// What others asked for; false for another volume.
+    bool serve(const Snapshot& now) {
+        if (!remote_) return true;
+        for (const std::string& text : remote_->notes()) note(text);
+        return remote_->serve(run_, now, commands_, queue_,
+                              [&](const Request& request) { carry_out(request, now); });
+    }
+
+    /// Throws std::invalid_argument, and run::QueueFull.
+    void carry_out(const Request& request, const Snapshot& now) {
+        const Overloaded how{
             [](Quit) {},
             [&](Help) { note(LiveCommands::key_help()); },
             [&](const DataRequest& data) {
@@ -116,8 +133,12 @@ class Terminal {
             },
             [&](const Command& command) { run_.send(command); },
         };
+        std::visit(how, request);
+    }
+
+    Obeyed obey(const Request& request, const Snapshot& now) {
         try {
-            std::visit(carry_out, request);
+            carry_out(request, now);
         } catch (const run::QueueFull&) {
             return Obeyed::no_room;
         } catch (const std::invalid_argument& e) {
@@ -179,6 +200,7 @@ class Terminal {
     }
 
     run::Run& run_;
+    Remote* remote_;
     RequestQueue queue_;
     const std::string device_name_;
     const RunOptions& options_;
@@ -259,64 +281,79 @@ void require_no_mouse(const run::Setup& setup) {
         "--commands open none, nor does a machine without a display; palpate devices lists others");
 }
 
-void touch(const RunOptions& options) {
+/// One volume, from the start of the servo to its end. Returns why a volume could not be written;
+/// empty if all could.
+std::string feel(run::Run& run, const RunOptions& options, std::vector<TimedRequest> requests,
+                 LiveCommands& commands, Remote* remote) {
+    run.start();
+    if (!options.source.quiet) announce(run, run.device());
+    Terminal terminal(run, options, std::move(requests), commands, remote);
+    while (!interrupted() && terminal.update()) std::this_thread::sleep_for(10ms);
+    run.stop();
+    return terminal.finish();
+}
+
+LiveCommands commands_for(const run::Run& run) {
+    return {run.field(), run.isovalue(), run.settings()};
+}
+
+void touch(const TouchOptions& options) {
     const run::Setup setup = options.setup();
     check_outputs({options.source.name(), options.commands}, {options.record, options.save});
     require_no_mouse(setup);
-    const auto data =
-        std::make_shared<run::Data>(load_for_terminal(options.source), setup.playback);
-    run::Run run(data, setup);
-    warn_of_isovalue(run.field(), run.isovalue());
-    if (!options.save.empty()) run::check_volume_name(options.save, run.field().geometry());
-    LiveCommands commands(run.field(), run.isovalue(), run.settings());
+    const auto remote = make_remote(options.igtl, options.igtl_connect, options.source.quiet);
+    auto data = std::make_shared<run::Data>(load_for_terminal(options.source), setup.playback);
+    auto run = std::make_unique<run::Run>(data, setup);
+    warn_of_isovalue(run->field(), run->isovalue());
+    if (!options.save.empty()) run::check_volume_name(options.save, run->field().geometry());
+    LiveCommands commands = commands_for(*run);
     std::vector<TimedRequest> requests;
     if (!options.commands.empty()) requests = read_commands(options.commands, commands);
     if (!options.brush.empty()) {
         const Request brush = commands.from_words("brush " + options.brush);
-        std::get<DataRequest>(brush)(*data, run.field(), run.isovalue());
+        std::get<DataRequest>(brush)(*data, run->field(), run->isovalue());
     }
-    start_recording(run, options);
-    const DeviceInfo device = run.device();
+    start_recording(*run, options);
+    const DeviceInfo device = run->device();
     // A program that is suspended could not end the force: Ctrl-Z does nothing meanwhile.
     for (const int s : {SIGTSTP, SIGTTIN, SIGTTOU}) std::signal(s, SIG_IGN);
-    run.start();
-    if (!options.source.quiet) announce(run, device);
-    const auto begin = std::chrono::steady_clock::now();
-    std::string unsaved;
-    {
-        Terminal terminal(run, options, std::move(requests), commands);
-        while (!interrupted() && terminal.update()) std::this_thread::sleep_for(10ms);
-        run.stop();
-        unsaved = terminal.finish();
+    auto begin = std::chrono::steady_clock::now();
+    std::string unsaved = feel(*run, options, std::move(requests), commands, remote.get());
+    while (auto pushed = remote ? remote->take_pushed() : nullptr) {
+        data = std::move(pushed);
+        run.reset();  // a device opens once
+        run = std::make_unique<run::Run>(data, setup);
+        commands = commands_for(*run);
+        begin = std::chrono::steady_clock::now();
+        unsaved += feel(*run, options, {}, commands, remote.get());
     }
     const double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    print_report(run.report(), seconds, device, options);
+    print_report(run->report(), seconds, device, options);
     if (data->is_streamed() && !options.json && !options.source.quiet) {
         fmt::print("{}\n", streaming_text(data->streaming()));
     }
     save_at_end(*data, options);
-    finish_recording(run, options);
+    finish_recording(*run, options);
     if (!unsaved.empty()) throw io::OutputError(unsaved);
-    if (run.device_failure() != DeviceFailure::none) {
-        throw devices::DeviceError("device " + device.name + ": " + run.device_problem());
+    if (run->device_failure() != DeviceFailure::none) {
+        throw devices::DeviceError("device " + device.name + ": " + run->device_problem());
     }
     stop_if_interrupted();
 }
 
 /// False for scripts and without a display.
-bool wants_window(const RunOptions& options, bool headless) {
-    const bool script = options.json || options.seconds > 0 || !options.commands.empty() ||
-                        !options.brush.empty() || !options.save.empty();
-    return !headless && !script && has_display() && !viewer_program().empty();
+bool wants_window(const TouchOptions& options) {
+    const bool remote = !options.igtl.empty() || !options.igtl_connect.empty();
+    const bool script = remote || options.json || options.seconds > 0 ||
+                        !options.commands.empty() || !options.brush.empty() ||
+                        !options.save.empty();
+    return !options.headless && !script && has_display() && !viewer_program().empty();
 }
 
 void add_session(CLI::App& app, const char* name, const char* what, bool is_record,
                  const Words& words, const char* example) {
-    struct Options : RunOptions {
-        bool headless = false;
-    };
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<TouchOptions>();
     CLI::App* command = app.add_subcommand(name, what);
     command->footer(fmt::format(
         "Without --device a simulated hand explores the volume. Forces begin at zero, when the "
@@ -327,10 +364,19 @@ void add_session(CLI::App& app, const char* name, const char* what, bool is_reco
     if (!is_record) {
         command->add_flag("--headless", options->headless,
                           "No window, even where there is a display; so too with --json, "
-                          "--seconds, --commands");
+                          "--seconds, --commands, --igtl");
     }
+    command
+        ->add_option("--igtl", options->igtl,
+                     "Send poses and force to 3D Slicer, take volumes and commands: wait for "
+                     "clients at [HOST:]PORT by OpenIGTLink")
+        ->type_name("[HOST:]PORT");
+    command
+        ->add_option("--igtl-connect", options->igtl_connect,
+                     "The same, but connect to a server, again and again")
+        ->type_name("[HOST:]PORT");
     command->callback([options, words, is_record] {
-        if (!is_record && wants_window(*options, options->headless)) become_viewer(words);
+        if (!is_record && wants_window(*options)) become_viewer(words);
         touch(*options);
     });
 }

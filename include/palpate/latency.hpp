@@ -37,6 +37,15 @@ class LatencyHistogram {
         return summary;
     }
 
+    /// How many were no longer than this, exact to 1/16 of it.
+    std::uint64_t count_to(std::int64_t ns) const noexcept {
+        std::uint64_t count = 0;
+        for (unsigned b = 0; b < bucket_count && top_of(b) <= ns; ++b) {
+            count += buckets_[b].load(std::memory_order_relaxed);
+        }
+        return count;
+    }
+
   private:
     static constexpr unsigned steps = 16;  // buckets per doubling
     static constexpr unsigned bucket_count = (64 - 3) * steps;

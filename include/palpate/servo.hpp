@@ -134,6 +134,8 @@ class Servo {
 
     /// A sentence for each privilege: granted, or not granted and what to set. After start().
     const std::vector<std::string>& privileges() const { return privileges_; }
+    /// How late the thread was woken, every tick [ns]; goes on counting while it runs.
+    const LatencyHistogram& lateness() const { return lateness_; }
     /// The settings of the session at the start, within the device's limits.
     const RendererSettings& settings() const { return start_; }
 

@@ -57,10 +57,10 @@ EGLContext context_of(const Egl& egl, EGLDisplay display) {
 
 }  // namespace
 
-void make_surfaceless_context() {
+void make_surfaceless_context(Driver driver) {
     // The same picture on every machine, and no graphics driver to fail. Who wants the processor
     // for graphics sets it to 0.
-    setenv("LIBGL_ALWAYS_SOFTWARE", "1", 0);
+    if (driver == Driver::software) setenv("LIBGL_ALWAYS_SOFTWARE", "1", 0);
     const Egl egl;
     const auto address = egl.function<decltype(&eglGetProcAddress)>("eglGetProcAddress");
     const auto platform_display =
@@ -80,6 +80,15 @@ void make_surfaceless_context() {
                                          display, EGL_NO_SURFACE, EGL_NO_SURFACE, context)) {
         throw Failure(std::string("EGL gives no OpenGL 3.2 context") + remedy);
     }
+}
+
+std::string renderer_name() {
+    const auto address = Egl().function<decltype(&eglGetProcAddress)>("eglGetProcAddress");
+    using GetString = const unsigned char* (*)(unsigned);
+    const auto get = reinterpret_cast<GetString>(address("glGetString"));
+    constexpr unsigned gl_renderer = 0x1F01;  // GL_RENDERER
+    const auto* const name = get ? reinterpret_cast<const char*>(get(gl_renderer)) : nullptr;
+    return name ? name : "an OpenGL without a name";
 }
 
 }  // namespace palpate::pictures

@@ -1,5 +1,6 @@
-// palpate-picture-helper: draws one scene with VTK and reports; wire.hpp defines the format. As a
-// separate process it lets palpate start fast and survive a crash of OpenGL.
+// palpate-picture-helper: draws one scene with VTK, or names the graphics that it would be drawn
+// with, and reports; wire.hpp defines the format. As a separate process it lets palpate start fast
+// and survive a crash of OpenGL.
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -126,6 +127,12 @@ json draw(const json& asked) {
     return handed_back(png_from(pixels, scene.width, scene.height), memory.size());
 }
 
+json name_renderer(const json& asked) {
+    io::go_with_caller(asked.at("caller").get<pid_t>());
+    make_surfaceless_context(asked.at("machine").get<bool>() ? Driver::machine : Driver::software);
+    return {{"renderer", renderer_name()}};
+}
+
 std::string words_of(const std::exception& e) {
     if (dynamic_cast<const Failure*>(&e)) return e.what();
     if (dynamic_cast<const std::bad_alloc*>(&e)) {
@@ -135,8 +142,12 @@ std::string words_of(const std::exception& e) {
 }
 
 int run(int argc, char** argv) {
-    const bool understood = argc == 3 && std::strcmp(argv[1], "draw") == 0;
-    const auto work = [&] { return draw(json::parse(argv[2])); };
+    const std::string job = argc == 3 ? argv[1] : "";
+    const bool understood = job == "draw" || job == "graphics";
+    const auto work = [&] {
+        const json asked = json::parse(argv[2]);
+        return job == "draw" ? draw(asked) : name_renderer(asked);
+    };
     return io::helper_status("palpate-picture-helper", understood, work, words_of);
 }
 

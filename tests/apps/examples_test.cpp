@@ -38,7 +38,7 @@ TEST(Reference, names_every_option_of_every_command) {
     const std::string reference = support::bytes_of(PALPATE_REFERENCE);
     const ScratchFolder folder;
     for (const std::string command :
-         {"info", "touch", "record", "devices", "replay", "extract", "demo"}) {
+         {"info", "touch", "record", "devices", "doctor", "replay", "extract", "demo"}) {
         const std::string help = palpate(folder, command + " --help").out;
         const std::string options = help.substr(0, help.find("\nExample"));
         for (auto at = options.find("--"); at != std::string::npos; at = options.find("--", at)) {

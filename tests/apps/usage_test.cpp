@@ -4,7 +4,7 @@
 namespace palpate::app::test {
 namespace {
 
-constexpr const char* commands[] = {"info", "replay", "extract", "render", "demo"};
+constexpr const char* commands[] = {"info", "replay", "extract", "render", "demo", "doctor"};
 
 TEST(Usage, every_command_has_help_with_an_example) {
     const ScratchFolder folder;

@@ -66,4 +66,25 @@ TEST(LatencyHistogram, the_longest_durations_there_are_have_a_place) {
     EXPECT_EQ(histogram.summary().p50, std::numeric_limits<std::int64_t>::max());
 }
 
+TEST(LatencyHistogram, counts_those_up_to_a_duration_to_a_sixteenth) {
+    support::Random random(4);
+    LatencyHistogram histogram;
+    std::vector<std::int64_t> all;
+    for (int i = 0; i < 3000; ++i) {
+        all.push_back(static_cast<std::int64_t>(std::exp(random.uniform(0, 25))));
+        histogram.add(all.back());
+    }
+    const auto reference = [&](double ns) {
+        return static_cast<std::uint64_t>(std::ranges::count_if(
+            all, [&](std::int64_t one) { return static_cast<double>(one) <= ns; }));
+    };
+    for (double ns = 1; ns < 1e11; ns *= 1.37) {
+        const std::uint64_t count = histogram.count_to(static_cast<std::int64_t>(ns));
+        EXPECT_LE(count, reference(ns)) << ns;
+        EXPECT_GE(count, reference(std::floor(ns) * 15 / 16 - 1)) << ns;
+    }
+    EXPECT_EQ(histogram.count_to(std::int64_t{1} << 62), 3000U);
+    EXPECT_EQ(histogram.count_to(-1), 0U);
+}
+
 }  // namespace

@@ -1,0 +1,310 @@
+// The bridge's thread: one loop over all sockets.
+#include "bridge/bridge.hpp"
+
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <chrono>
+#include <ctime>
+
+#include "bridge/sockets.hpp"
+
+namespace palpate::bridge {
+namespace {
+
+constexpr std::int64_t second_ns = 1'000'000'000;
+constexpr std::int64_t patience_ns = 10 * second_ns;  // with a peer that takes nothing
+/// While more than this waits for a peer, answers to it are left out; a surface may be longer.
+constexpr std::size_t most_waiting = std::size_t{1} << 20;
+constexpr std::size_t piece_bytes = std::size_t{1} << 16;  // read at once
+constexpr int pieces_a_round = 16;                         // so that one peer cannot hold up others
+
+std::int64_t now_ns() {
+    return std::chrono::steady_clock::now().time_since_epoch().count();
+}
+
+double wall_time() {
+    return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch())
+        .count();
+}
+
+}  // namespace
+
+struct Bridge::Peer {
+    int number;
+    int socket;
+    std::string who;
+    Reader reader;
+    std::string out;  // what it has not taken yet, from `sent` on
+    std::size_t sent = 0;
+    std::int64_t moved_ns;  // when it last took something
+    bool gone = false;
+
+    std::size_t waiting() const { return out.size() - sent; }
+    void append(const std::string& bytes) {
+        if (waiting() == 0) moved_ns = now_ns();
+        out.erase(0, sent);
+        sent = 0;
+        out += bytes;
+    }
+};
+
+Settings settings_from(const std::string& text, bool client) {
+    Settings settings;
+    settings.client = client;
+    const auto colon = text.rfind(':');
+    const std::string port = colon == std::string::npos ? text : text.substr(colon + 1);
+    if (colon != std::string::npos) settings.host = text.substr(0, colon);
+    if (settings.host.size() > 2 && settings.host.front() == '[' && settings.host.back() == ']') {
+        settings.host = settings.host.substr(1, settings.host.size() - 2);  // [::1]:18944
+    }
+    const auto [end, error] =
+        std::from_chars(port.data(), port.data() + port.size(), settings.port);
+    if (error != std::errc() || end != port.data() + port.size() || settings.port > 65535 ||
+        settings.port < (client ? 1 : 0) || settings.host.empty()) {
+        throw std::invalid_argument("'" + text +
+                                    "' is no address for OpenIGTLink: [HOST:]PORT, as in 18944");
+    }
+    return settings;
+}
+
+bool is_local(const Settings& settings) {
+    return is_loopback(settings.host);
+}
+
+Bridge::Bridge(const Settings& settings) : settings_(settings), port_(settings.port) {
+    if (settings_.client) {
+        is_loopback(settings_.host);  // throws for a host that there is not
+    } else {
+        const Listening listening = listen_at(settings_.host, settings_.port);
+        listening_ = listening.socket;
+        port_ = listening.port;
+    }
+    event_ = ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
+    thread_ = std::thread([this] { run(); });
+}
+
+Bridge::~Bridge() {
+    {
+        const std::scoped_lock lock(mutex_);
+        done_ = true;
+    }
+    wake();
+    thread_.join();
+    for (const auto& peer : peers_) ::close(peer->socket);
+    for (const int socket : {listening_, connecting_, event_}) {
+        if (socket >= 0) ::close(socket);
+    }
+}
+
+void Bridge::wake() const {
+    const std::uint64_t one = 1;
+    [[maybe_unused]] const ssize_t ignored = ::write(event_, &one, sizeof one);
+}
+
+void Bridge::show(const Snapshot& now, bool with_tool) {
+    std::string frame = frame_of(now, with_tool, wall_time());
+    {
+        const std::scoped_lock lock(mutex_);
+        frame_ = std::move(frame);
+    }
+    wake();
+}
+
+std::vector<Request> Bridge::requests() {
+    const std::scoped_lock lock(mutex_);
+    return std::exchange(requests_, {});
+}
+
+std::vector<std::string> Bridge::notes() {
+    const std::scoped_lock lock(mutex_);
+    return std::exchange(notes_, {});
+}
+
+void Bridge::note(const std::string& text) {
+    const std::scoped_lock lock(mutex_);
+    if (notes_.size() < most_requests) notes_.push_back("OpenIGTLink: " + text);
+}
+
+void Bridge::send(int peer, std::string_view type, const std::string& body) {
+    const char* const name = type == "POLYDATA" ? "PalpateSurface" : "PalpateReply";
+    std::string bytes = message(type, name, body, wall_time());
+    {
+        const std::scoped_lock lock(mutex_);
+        outgoing_.push_back({peer, std::move(bytes)});
+    }
+    wake();
+}
+
+void Bridge::send_surface(int peer, const SurfaceMesh& mesh) {
+    send(peer, "POLYDATA", polydata_body(mesh));
+}
+
+void Bridge::run() {
+    for (;;) {
+        {
+            const std::scoped_lock lock(mutex_);
+            if (done_) return;
+        }
+        try_to_connect();
+        std::vector<pollfd> sockets{
+            {event_, POLLIN, 0}, {listening_, POLLIN, 0}, {connecting_, POLLOUT, 0}};
+        for (const auto& peer : peers_) {
+            sockets.push_back({peer->socket,
+                               static_cast<short>(POLLIN | (peer->waiting() > 0 ? POLLOUT : 0)),
+                               0});
+        }
+        ::poll(sockets.data(), sockets.size(), 200);
+        std::uint64_t woken = 0;
+        [[maybe_unused]] const ssize_t ignored = ::read(event_, &woken, sizeof woken);
+        for (std::size_t i = 0; i < peers_.size(); ++i) {
+            if (sockets[i + 3].revents & (POLLIN | POLLHUP | POLLERR)) take_from(*peers_[i]);
+        }
+        if (sockets[1].revents & POLLIN) accept_peers();
+        if (sockets[2].revents != 0) {
+            const int socket = std::exchange(connecting_, -1);
+            if (is_connected(socket)) {
+                add_peer(socket, settings_.host + ":" + std::to_string(settings_.port));
+            } else {
+                ::close(socket);
+            }
+        }
+        hand_out();
+        drop_the_gone();
+    }
+}
+
+void Bridge::try_to_connect() {
+    if (!settings_.client || connecting_ >= 0 || !peers_.empty() || now_ns() < next_try_ns_) return;
+    next_try_ns_ = now_ns() + second_ns;
+    try {
+        connecting_ = connect_to(settings_.host, settings_.port);
+    } catch (const std::runtime_error& e) {
+        note(e.what());
+    }
+}
+
+void Bridge::accept_peers() {
+    for (int socket = accept_from(listening_); socket >= 0; socket = accept_from(listening_)) {
+        if (peers_.size() < most_peers) {
+            add_peer(socket, "client " + std::to_string(next_peer_));
+        } else {
+            ::close(socket);
+            note("a client was refused: there are " + std::to_string(most_peers) + " already");
+        }
+    }
+}
+
+void Bridge::add_peer(int socket, const std::string& who) {
+    set_prompt(socket);
+    auto peer = std::make_unique<Peer>(
+        Peer{next_peer_++, socket, who, Reader(settings_.limits), {}, 0, now_ns()});
+    peers_.push_back(std::move(peer));
+    note(who + " is connected");
+}
+
+void Bridge::take_from(Peer& peer) {
+    std::array<char, piece_bytes> piece;
+    std::vector<Received> messages;
+    for (int i = 0; i < pieces_a_round; ++i) {
+        const ssize_t got = ::recv(peer.socket, piece.data(), piece.size(), 0);
+        if (got == 0 || (got < 0 && errno != EAGAIN && errno != EINTR)) {
+            peer.gone = true;
+            note(peer.who + " has left");
+        }
+        if (got <= 0) break;
+        try {
+            peer.reader.feed({piece.data(), static_cast<std::size_t>(got)}, messages);
+        } catch (const WireError& e) {
+            peer.gone = true;
+            note(peer.who + " was disconnected: it sent " + e.what());
+            break;
+        }
+    }
+    for (const Received& received : messages) take(peer, received);
+}
+
+void Bridge::take(Peer& peer, const Received& received) {
+    const std::string& type = received.type;
+    try {
+        if (type == "STRING") {
+            ask(peer, {peer.number, WordsAsked{text_of(received)}});
+        } else if (type == "IMAGE") {
+            ask(peer, {peer.number, VolumePushed{volume_of(received), received.name}});
+        } else if (type == "GET_POLYDATA") {
+            ask(peer, {peer.number, SurfaceAsked{}});
+        }  // others, as programs send them unasked, are left alone
+    } catch (const WireError& e) {
+        note(peer.who + " sent " + e.what());
+        reply(peer.number, std::string("not taken: ") + e.what());
+    }
+}
+
+void Bridge::ask(Peer& peer, Request request) {
+    const bool is_volume = std::holds_alternative<VolumePushed>(request.what);
+    {
+        const std::scoped_lock lock(mutex_);
+        const auto waits = std::ranges::count_if(requests_, [](const Request& other) {
+            return std::holds_alternative<VolumePushed>(other.what);
+        });
+        if (requests_.size() < most_requests && (!is_volume || waits == 0)) {
+            requests_.push_back(std::move(request));
+            return;
+        }
+    }
+    reply(peer.number, "not taken: too many requests at once");
+}
+
+/// Gives every peer what is new for it, and sends as much as it takes.
+void Bridge::hand_out() {
+    std::optional<std::string> frame;
+    std::vector<Outgoing> outgoing;
+    {
+        const std::scoped_lock lock(mutex_);
+        frame = std::exchange(frame_, std::nullopt);
+        outgoing = std::exchange(outgoing_, {});
+    }
+    for (const auto& peer : peers_) {
+        for (const Outgoing& one : outgoing) {
+            if (one.peer != peer->number) continue;
+            if (peer->waiting() < most_waiting) {
+                peer->append(one.bytes);
+            } else {
+                note(peer->who + " reads too slowly: an answer was left out");
+            }
+        }
+        if (frame && peer->waiting() == 0) peer->append(*frame);
+        flush(*peer);
+        if (peer->waiting() > 0 && now_ns() - peer->moved_ns > patience_ns) {
+            peer->gone = true;
+            note(peer->who + " was disconnected: it took nothing for 10 s");
+        }
+    }
+}
+
+void Bridge::flush(Peer& peer) {
+    while (peer.waiting() > 0) {
+        const ssize_t sent =
+            ::send(peer.socket, peer.out.data() + peer.sent, peer.waiting(), MSG_NOSIGNAL);
+        if (sent <= 0) return;  // it takes no more now; that it has gone shows in reading
+        peer.sent += static_cast<std::size_t>(sent);
+        peer.moved_ns = now_ns();
+    }
+    peer.out.clear();
+    peer.sent = 0;
+}
+
+void Bridge::drop_the_gone() {
+    std::erase_if(peers_, [](const std::unique_ptr<Peer>& peer) {
+        if (peer->gone) ::close(peer->socket);
+        return peer->gone;
+    });
+}
+
+}  // namespace palpate::bridge

@@ -1,0 +1,114 @@
+// A bridge to 3D Slicer and others by OpenIGTLink: a thread that sends what is felt and takes
+// volumes and commands. It lives beside a run: its owner shows it snapshots and carries out what
+// was asked for. Nobody waits for it. docs/bridge.md.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <variant>
+#include <vector>
+
+#include "bridge/wire.hpp"
+#include "palpate/servo.hpp"
+
+namespace palpate::bridge {
+
+struct Settings {
+    std::string host = "127.0.0.1";
+    int port = 18944;     ///< 0, of a server: any that is free
+    bool client = false;  ///< connects to a server, again and again, instead of waiting for clients
+    WireLimits limits;
+};
+
+/// `[HOST:]PORT`. Throws std::invalid_argument.
+Settings settings_from(const std::string& text, bool client);
+/// Whether only programs of this machine can reach it.
+bool is_local(const Settings& settings);
+
+/// What somebody at the other end asked for, and who.
+struct WordsAsked {
+    std::string text;
+};
+struct VolumePushed {
+    Volume volume;
+    std::string name;
+};
+struct SurfaceAsked {};
+struct Request {
+    int peer = 0;
+    std::variant<WordsAsked, VolumePushed, SurfaceAsked> what;
+};
+
+class Bridge {
+  public:
+    static constexpr std::size_t most_peers = 8;
+    static constexpr std::size_t most_requests = 64;  ///< that wait; others are refused
+
+    /// Listens, or starts to connect. Throws std::runtime_error with what is wrong with the
+    /// address.
+    explicit Bridge(const Settings& settings);
+    ~Bridge();
+    Bridge(const Bridge&) = delete;
+    Bridge& operator=(const Bridge&) = delete;
+
+    int port() const { return port_; }
+
+    // By the owner's thread; none of these waits for the network.
+
+    /// Sends the state to all: poses, force, status. A peer that has not taken the last one yet
+    /// misses this one. `with_tool`: a rigid tool is felt, not a point.
+    void show(const Snapshot& now, bool with_tool);
+    /// Since the last call, in order.
+    std::vector<Request> requests();
+    /// A sentence for a peer, as a STRING named `PalpateReply`. For one that has gone: nothing.
+    void reply(int peer, const std::string& text) { send(peer, "STRING", string_body(text)); }
+    /// POLYDATA named `PalpateSurface`. Any thread. Throws std::length_error.
+    void send_surface(int peer, const SurfaceMesh& mesh);
+    /// What people should know: who came, went or was refused.
+    std::vector<std::string> notes();
+
+  private:
+    struct Peer;
+    struct Outgoing {
+        int peer;
+        std::string bytes;
+    };
+
+    void run();
+    void wake() const;
+    void send(int peer, std::string_view type, const std::string& body);
+    void note(const std::string& text);
+    void accept_peers();
+    void try_to_connect();
+    void add_peer(int socket, const std::string& who);
+    void take_from(Peer& peer);
+    void take(Peer& peer, const Received& received);
+    void ask(Peer& peer, Request request);
+    void hand_out();
+    static void flush(Peer& peer);
+    void drop_the_gone();
+
+    Settings settings_;
+    int port_ = 0;
+    int listening_ = -1, connecting_ = -1, event_ = -1;
+    std::int64_t next_try_ns_ = 0;
+    std::vector<std::unique_ptr<Peer>> peers_;  // the thread's
+    int next_peer_ = 1;
+
+    std::mutex mutex_;  // of what follows
+    bool done_ = false;
+    std::optional<std::string> frame_;  // the newest state, not handed out yet
+    std::vector<Outgoing> outgoing_;
+    std::vector<Request> requests_;
+    std::vector<std::string> notes_;
+    std::thread thread_;  // last: it uses all of the above
+};
+
+/// The messages of one state, as show() sends them. `time` [s, since 1970].
+std::string frame_of(const Snapshot& now, bool with_tool, double time);
+
+}  // namespace palpate::bridge

@@ -1,0 +1,106 @@
+// Devices: plugged in, permitted, awake, with their library or service.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "doctor/access.hpp"
+#include "doctor/faults.hpp"
+#include "doctor/usb.hpp"
+
+namespace palpate::doctor {
+namespace {
+
+using Through = KnownUsb::Through;
+
+const devices::DeviceFinding* finding_of(const Facts& facts, const std::string& name) {
+    const auto found = std::ranges::find(facts.devices, name, &devices::DeviceFinding::name);
+    return found == facts.devices.end() ? nullptr : &*found;
+}
+
+std::string called(const UsbDevice& device, const KnownUsb& kind) {
+    return device.name.empty() ? kind.name : fmt::format("{} ({})", kind.name, device.name);
+}
+
+/// The node that this person's programs have to open, if they may not.
+const Node* closed_node(const UsbDevice& device, const KnownUsb& kind, const Account& account) {
+    if (kind.through == Through::usb && !may_open(device.node, account)) return &device.node;
+    if (kind.through != Through::serial) return nullptr;
+    const auto closed = std::ranges::find_if(
+        device.serial, [&](const Node& port) { return !may_open(port, account); });
+    return closed == device.serial.end() ? nullptr : &*closed;
+}
+
+/// A udev rule below 73, where the tag uaccess gives a device to the person at the screen.
+std::string by_rule(const UsbDevice& device) {
+    return fmt::format(
+        "echo 'SUBSYSTEM==\"usb\", ATTR{{idVendor}}==\"{}\", ATTR{{idProduct}}==\"{}\", "
+        "TAG+=\"uaccess\"' | sudo tee -a /etc/udev/rules.d/70-palpate.rules; sudo "
+        "udevadm control --reload; plug it in again",
+        device.vendor, device.product);
+}
+
+Fault forbidden(const UsbDevice& device, const KnownUsb& kind, const Node& node,
+                const Facts& facts) {
+    const std::string by_group = way_to_node(node, facts);
+    return {"device-permission", true,
+            fmt::format("{} is plugged in, but you may not open it ({})", called(device, kind),
+                        node.path),
+            by_group.empty() ? by_rule(device) : by_group};
+}
+
+Fault without_backend(const UsbDevice& device, const KnownUsb& kind,
+                      const devices::DeviceFinding& finding) {
+    const bool by_service = kind.through == Through::service;
+    return {by_service ? "device-service" : "device-library", true,
+            fmt::format("{} is plugged in, but its {} does not answer: {}", called(device, kind),
+                        by_service ? "service" : "library", finding.missing),
+            by_service
+                ? "sudo apt install spacenavd; sudo systemctl enable --now spacenavd"
+                : fmt::format("install the vendor's library (docs/devices/{}.md){}{}", kind.backend,
+                              kind.firmware ? "; " : "", kind.firmware ? kind.firmware : "")};
+}
+
+void judge_plugged(const UsbDevice& device, const Facts& facts, std::vector<Fault>& faults) {
+    const KnownUsb* const kind = known(device);
+    if (!kind) return;
+    const Node* const closed = closed_node(device, *kind, facts.account);
+    if (closed) faults.push_back(forbidden(device, *kind, *closed, facts));
+    // A library that opens the bus finds nothing there as long as it may not.
+    const bool is_explained = closed != nullptr && kind->through == Through::usb;
+    const auto* const finding = finding_of(facts, kind->backend);
+    if (finding && !finding->found && !is_explained)
+        faults.push_back(without_backend(device, *kind, *finding));
+    if (kind->through == Through::serial && device.serial.empty()) {
+        faults.push_back({"device-port", true,
+                          called(device, *kind) +
+                              " is plugged in, but has no serial port: the kernel's driver cdc_acm "
+                              "is not loaded",
+                          "sudo modprobe cdc_acm; plug it in again"});
+    }
+    if (kind->through != Through::service && device.may_sleep) {
+        faults.push_back({"device-sleep", false,
+                          called(device, *kind) +
+                              " may be put to sleep by the kernel while it is not used, and then "
+                              "answers late",
+                          fmt::format("echo on | sudo tee {}/power/control", device.folder)});
+    }
+}
+
+}  // namespace
+
+std::vector<Fault> device_faults(const Facts& facts) {
+    std::vector<Fault> faults;
+    for (const UsbDevice& device : facts.machine.usb) judge_plugged(device, facts, faults);
+    const auto* const wanted = finding_of(facts, facts.wanted_device);
+    if (wanted && !wanted->found) {
+        faults.push_back(
+            {"device-missing", true,
+             fmt::format("{} cannot be used: {}", wanted->name, wanted->missing),
+             fmt::format("see docs/devices/{}.md; plugged in, switched on, its library "
+                         "or service there?",
+                         wanted->name)});
+    }
+    return faults;
+}
+
+}  // namespace palpate::doctor
