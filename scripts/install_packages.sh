@@ -14,7 +14,8 @@ groups (default: all)
   io       core, and what reads and writes files and reaches devices: ITK, VTK, CLI11, fmt, JSON,
            EGL and Mesa for pictures without a display, PNG, zlib, gnuplot, Boost, oneTBB
   viewer   io, and VTK's and Qt's windows and translations, Xvfb to test them
-  dev      clang, its sanitizers and fuzzer, clang-format, clang-tidy, shellcheck, Mono
+  dev      clang, its sanitizers and fuzzer, clang-format, clang-tidy, shellcheck,
+           Mono, lintian
   all      everything above
 TEXT
 }
@@ -24,7 +25,7 @@ io=("${core[@]}" libinsighttoolkit5-dev libvtk9-dev libcli11-dev libfmt-dev nloh
     libgdcm-dev libtiff-dev libpng-dev zlib1g-dev gnuplot-nox libboost-dev libegl-dev libegl1
     libgl1-mesa-dri libembree-dev libtbb-dev)
 viewer=("${io[@]}" libvtk9-qt-dev qtbase5-dev qttools5-dev qttools5-dev-tools qttranslations5-l10n xvfb)
-dev=(git mono-mcs mono-runtime clang clang-format-14 clang-tidy libclang-rt-14-dev shellcheck)
+dev=(git lintian pkg-config mono-mcs mono-runtime clang clang-format-14 clang-tidy libclang-rt-14-dev shellcheck)
 
 wanted=()
 for group in "${@:-all}"; do
