@@ -46,7 +46,8 @@ devices, and limits for real-time priority."
   palpate-program palpate-viewer)
 # The picture helper opens EGL at run time.
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "palpate-io-helper (= ${version}), libegl1")
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "gnuplot-nox, spacenavd")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS gnuplot-nox)  # figures of reports
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS spacenavd)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_CONTROL_EXTRA ${palpate_debian}/conffiles)
 
 palpate_package(helper palpate-io-helper science "readers of volume files for Palpate"
