@@ -15,8 +15,8 @@
  * Device axes: x to the right, y up, z towards the person. Forces in N, torques in N mm, times in s.
  *
  * Threads. Volumes, fields and meshes never change: any threads may use one at the same time. Data
- * and runs may be used by any threads, too; calls on the same run take turns, and
- * palpate_run_snapshot() then takes less than a microsecond, but starting, changing the device and
+ * and runs may be used by any threads, too; calls on the same run take turns. palpate_run_snapshot()
+ * never waits for the servo, but for another call on the run: starting, changing the device and
  * recording may take seconds. One renderer is for one thread at a time. Destroy a handle when no other
  * call uses it; handles made from it keep what they need. The servo has a thread of its own, at
  * real-time priority if the system grants it; it calls no function of yours. Callbacks may not call

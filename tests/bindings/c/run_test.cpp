@@ -23,7 +23,7 @@ struct Hand {
     std::atomic<double> force{0}, largest{0};
     std::atomic<int> reads{0}, closes{0};
     std::atomic<bool> lost{false};
-    std::thread::id thread;
+    std::atomic<std::thread::id> thread;
 };
 
 int32_t read_hand(palpate_reading* reading, void* context) {
@@ -93,37 +93,36 @@ class CRun : public testing::Test {
         return comes_true([&] { return wanted(now()); });
     }
 
+    Hand hand_;  // outlives the run
     palpate_data* data_ = nullptr;
     palpate_run* run_ = nullptr;
 };
 
 TEST_F(CRun, an_own_device_feels_the_ball_within_its_limit_on_a_thread_of_its_own) {
-    Hand hand;
-    const palpate_own_device own = device_of(hand);
+    const palpate_own_device own = device_of(hand_);
     ASSERT_EQ(create(&own), PALPATE_OK) << palpate_last_error();
     ASSERT_EQ(palpate_run_start(run_), PALPATE_OK) << palpate_last_error();
-    EXPECT_TRUE(comes_true([&] { return hand.force > 1.5; }));
-    EXPECT_LE(hand.largest, 2.0 + 1e-9);
-    EXPECT_NE(hand.thread, std::this_thread::get_id());
+    EXPECT_TRUE(comes_true([&] { return hand_.force > 1.5; }));
+    EXPECT_LE(hand_.largest, 2.0 + 1e-9);
+    EXPECT_NE(hand_.thread.load(), std::this_thread::get_id());
     const palpate_snapshot felt = now();
     EXPECT_EQ(felt.felt.mode, PALPATE_CONSTRAINED);
     EXPECT_NEAR(std::hypot(felt.felt.scp[0], felt.felt.scp[1], felt.felt.scp[2]), 20, 0.2);
     ASSERT_EQ(palpate_run_stop(run_), PALPATE_OK);
-    EXPECT_TRUE(comes_true([&] { return hand.force == 0; }));
+    EXPECT_TRUE(comes_true([&] { return hand_.force == 0; }));
     palpate_run_destroy(run_);
     run_ = nullptr;
-    EXPECT_EQ(hand.closes, 1);
-    EXPECT_EQ(hand.force, 0);
+    EXPECT_EQ(hand_.closes, 1);
+    EXPECT_EQ(hand_.force, 0);
 }
 
 TEST_F(CRun, a_device_that_reports_it_is_lost_gives_no_force_and_says_so_and_may_come_back) {
-    Hand hand;
-    const palpate_own_device own = device_of(hand);
+    const palpate_own_device own = device_of(hand_);
     ASSERT_EQ(create(&own), PALPATE_OK);
     ASSERT_EQ(palpate_run_start(run_), PALPATE_OK);
-    ASSERT_TRUE(comes_true([&] { return hand.force > 1; }));
-    hand.lost = true;
-    EXPECT_TRUE(comes_true([&] { return hand.force == 0; }));
+    ASSERT_TRUE(comes_true([&] { return hand_.force > 1; }));
+    hand_.lost = true;
+    EXPECT_TRUE(comes_true([&] { return hand_.force == 0; }));
     EXPECT_TRUE(shows([](const auto& s) { return s.device_status == PALPATE_DEVICE_LOST; }));
     std::array<char, 200> text{};
     size_t needed = 0;
@@ -131,22 +130,21 @@ TEST_F(CRun, a_device_that_reports_it_is_lost_gives_no_force_and_says_so_and_may
               PALPATE_OK);
     EXPECT_NE(std::string(text.data()).find("lost"), std::string::npos);
     EXPECT_EQ(needed, std::string(text.data()).size() + 1);
-    hand.lost = false;
+    hand_.lost = false;
     EXPECT_TRUE(shows([](const auto& s) { return s.device_status == PALPATE_DEVICE_READY; }));
 }
 
 TEST_F(CRun, devices_that_cannot_be_are_refused) {
-    Hand hand;
-    palpate_own_device own = device_of(hand);
+    palpate_own_device own = device_of(hand_);
     own.maximum_force = 0;
     EXPECT_EQ(create(&own), PALPATE_INVALID);
-    own = device_of(hand);
+    own = device_of(hand_);
     own.read = nullptr;
     EXPECT_EQ(create(&own), PALPATE_INVALID);
-    own = device_of(hand);
+    own = device_of(hand_);
     own.rate = NAN;
     EXPECT_EQ(create(&own), PALPATE_INVALID);
-    EXPECT_EQ(hand.closes, 0);
+    EXPECT_EQ(hand_.closes, 0);
     EXPECT_EQ(create(nullptr, "nothing-of-this-name"), PALPATE_INVALID);
     EXPECT_EQ(create(nullptr, "forcedimension:library=/nowhere/libdhd.so.3"), PALPATE_NO_DEVICE);
     EXPECT_EQ(run_, nullptr);
