@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "io/number.hpp"
-#include "palpate/devices/devices.hpp"
 
 namespace palpate::run {
 namespace {
@@ -41,7 +40,7 @@ std::unique_ptr<Device> open_for(const Field& field, double isovalue, const Setu
         io::append_number(text, rate);
         throw std::invalid_argument("rate " + text + " Hz: a live session runs at 250 to 8000 Hz");
     }
-    return devices::open_device(setup.device,
+    return setup.open_device(setup.device,
                                 {seen(field), isovalue, rate, [&](const DeviceInfo& info) {
                                      return transform_for(field.geometry(), info, setup);
                                  }});

@@ -15,7 +15,8 @@ groups (default: all)
            EGL and Mesa for pictures without a display, PNG, zlib, gnuplot, Boost, oneTBB, codecs of
            chunks, libcurl, python3-zarr and OpenIGTLink for tests
   viewer   io, and VTK's and Qt's windows and translations, Xvfb to test them
-  dev      clang, its sanitizers and fuzzer, clang-format, clang-tidy, shellcheck
+  dev      clang, its sanitizers and fuzzer, clang-format, clang-tidy, shellcheck,
+           Mono, lintian
   all      everything above
 TEXT
 }
@@ -26,7 +27,7 @@ io=("${core[@]}" libinsighttoolkit5-dev libvtk9-dev libcli11-dev libfmt-dev nloh
     libgl1-mesa-dri libembree-dev libtbb-dev libblosc-dev libzstd-dev liblz4-dev libcurl4-openssl-dev
     python3-zarr libopenigtlink-dev)
 viewer=("${io[@]}" libvtk9-qt-dev qtbase5-dev qttools5-dev qttools5-dev-tools qttranslations5-l10n xvfb)
-dev=(git clang clang-format-14 clang-tidy libclang-rt-14-dev shellcheck)
+dev=(git lintian pkg-config mono-mcs mono-runtime clang clang-format-14 clang-tidy libclang-rt-14-dev shellcheck)
 
 wanted=()
 for group in "${@:-all}"; do

@@ -62,7 +62,7 @@ if(STEP STREQUAL install)
   file(REMOVE_RECURSE ${WORK_DIR})  # nothing from an earlier run may help this one
   set(first ${WORK_DIR}/first-prefix)
   if("io" IN_LIST parts)
-    list(APPEND parts program)
+    list(APPEND parts io-helper program)
   endif()
   foreach(part IN LISTS parts)
     run(${CMAKE_COMMAND} --install ${BINARY_DIR} --prefix ${first} --config ${CONFIG}

@@ -29,6 +29,7 @@ MAY_SEE = {
     "stream": ("include", "io"),
     "devices": ("include", "io", "scenes"),
     "run": ("include", "io", "baselines", "scenes", "filters", "stream", "devices"),
+    "bindings/c": ("include", "io", "devices", "run"),
     "pictures": ("include", "io", "io/helper"),
     "pictures/vtk": ("include",),
     "pictures/helper": ("include", "io", "io/helper", "pictures", "pictures/vtk"),

@@ -3,7 +3,7 @@
 import sys
 from pathlib import Path
 
-FOLDERS = ("include src baselines scenes filters io stream devices run pictures evaluation apps tests "
+FOLDERS = ("include src baselines scenes filters io stream devices run doctor bridge bindings pictures evaluation apps tests "
            "benchmarks examples data cmake docs scripts .ci").split()
 CPP = (".cpp", ".hpp")
 

@@ -3,6 +3,7 @@
 // known.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -10,7 +11,7 @@
 #include <vector>
 
 #include "palpate/baselines/methods.hpp"
-#include "palpate/devices/options.hpp"
+#include "palpate/devices/devices.hpp"
 #include "palpate/io/frame_loader.hpp"
 #include "palpate/io/layers_file.hpp"
 #include "palpate/io/level.hpp"
@@ -71,10 +72,15 @@ struct PlaybackSetup {
     io::LoaderSettings loader;  ///< memory for frames, and whether the sequence loops
 };
 
+/// Opens the device of this name; throws as devices::open_device() does.
+using OpenDevice = std::function<std::unique_ptr<Device>(const devices::DeviceChoice& choice,
+                                                         const devices::DeviceScene& scene)>;
+
 struct Setup {
     FieldSetup field;
     RenderSetup render;
     devices::DeviceChoice device{"simulated", {}};
+    OpenDevice open_device = &devices::open_device;  ///< an application may have devices of its own
     Facing facing = Facing::anterior;
     ButtonSetup clutch = UsualButton{};
     ButtonSetup deadman;

@@ -1,0 +1,105 @@
+// Commands of the C interface to a run: each is checked here and carried out within a tick or two.
+#include "bindings/c/handles.hpp"
+#include "bindings/c/structs.hpp"
+#include "palpate/io/layers_file.hpp"
+#include "palpate/io/tool_file.hpp"
+
+namespace palpate::c {
+namespace {
+
+/// Sends the command that `make` makes for the run as it is now.
+template <class Make>
+palpate_status send(palpate_run* run, Make&& make) noexcept {
+    return guarded([&] {
+        const std::scoped_lock lock(given(run, "run").mutex);
+        if (!run->started) throw WrongState("the run was not started");
+        run->run->send(make(*run->run));
+    });
+}
+
+/// Sends the force settings in use, changed.
+template <class Change>
+palpate_status send_force(palpate_run* run, Change&& change) noexcept {
+    return send(run, [&](const run::Run& now) {
+        ForceSettings force = now.settings().force;
+        change(force);
+        return force;
+    });
+}
+
+}  // namespace
+
+extern "C" PALPATE_API palpate_status palpate_run_set_isovalue(palpate_run* run, double isovalue) {
+    return send(run, [&](const run::Run&) { return command::Isovalue{isovalue}; });
+}
+
+extern "C" PALPATE_API palpate_status palpate_run_set_forces(palpate_run* run, int32_t on) {
+    return send(run, [&](const run::Run&) { return command::Forces{on != 0}; });
+}
+
+extern "C" PALPATE_API palpate_status palpate_run_set_frozen(palpate_run* run, int32_t on) {
+    return send(run, [&](const run::Run&) { return command::Freeze{on != 0}; });
+}
+
+extern "C" PALPATE_API palpate_status palpate_run_set_clutch(palpate_run* run, int32_t on) {
+    return send(run, [&](const run::Run&) { return command::Clutch{on != 0}; });
+}
+
+extern "C" PALPATE_API palpate_status palpate_run_set_scale(palpate_run* run, double scale) {
+    return send(run, [&](const run::Run&) { return command::Scale{scale}; });
+}
+
+extern "C" PALPATE_API palpate_status palpate_run_set_transform(palpate_run* run,
+                                                                const palpate_transform* to) {
+    return send(run, [&](const run::Run&) { return transform_from(&given(to, "to")); });
+}
+
+extern "C" PALPATE_API palpate_status palpate_run_set_stiffness(palpate_run* run,
+                                                                double newton_per_mm) {
+    return send_force(run, [&](ForceSettings& force) { force.stiffness = newton_per_mm; });
+}
+
+extern "C" PALPATE_API palpate_status palpate_run_set_damping(palpate_run* run, double damping,
+                                                              double viscosity) {
+    return send_force(run, [&](ForceSettings& force) {
+        force.damping = damping;
+        force.viscosity = viscosity;
+    });
+}
+
+extern "C" PALPATE_API palpate_status palpate_run_set_force_limit(palpate_run* run, double newton) {
+    return send_force(run, [&](ForceSettings& force) { force.limit = newton; });
+}
+
+extern "C" PALPATE_API palpate_status palpate_run_set_friction(palpate_run* run,
+                                                               double static_coefficient,
+                                                               double dynamic_coefficient) {
+    return send(run, [&](const run::Run&) {
+        return Friction{static_coefficient, dynamic_coefficient};
+    });
+}
+
+extern "C" PALPATE_API palpate_status palpate_run_set_penetration(palpate_run* run,
+                                                                  double threshold) {
+    return send(run, [&](const run::Run& now) {
+        if (threshold == 0) return no_penetrability();
+        return penetrability_threshold(threshold, now.isovalue(), now.field().solid());
+    });
+}
+
+extern "C" PALPATE_API palpate_status palpate_run_set_tool(palpate_run* run, const char* tool) {
+    return send(run, [&](const run::Run& now) {
+        const double spacing = io::usual_spacing(now.field().geometry());
+        return command::UseTool{tool ? io::make_tool(io::tool_spec_from(tool), spacing) : nullptr};
+    });
+}
+
+extern "C" PALPATE_API palpate_status palpate_run_set_layers(palpate_run* run, const char* layers) {
+    return send(run, [&](const run::Run& now) {
+        if (!layers) return command::UseLayers{nullptr};
+        return command::UseLayers{std::make_shared<const Layers>(
+            io::layers_for(io::layers_named(layers), now.field().volume()))};
+    });
+}
+
+}  // namespace palpate::c

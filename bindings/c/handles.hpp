@@ -1,0 +1,38 @@
+// What the handles of the C interface hold.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "palpate-c/palpate.h"
+#include "palpate/devices/devices.hpp"
+#include "palpate/run/run.hpp"
+#include "palpate/surface.hpp"
+
+struct palpate_volume {
+    palpate::run::LoadedVolume loaded;
+};
+struct palpate_field {
+    palpate::Field field;
+    std::optional<double> isovalue;  ///< one that is worth feeling
+};
+struct palpate_mesh {
+    palpate::SurfaceMesh mesh;
+};
+struct palpate_renderer {
+    palpate::Renderer renderer;
+};
+struct palpate_device_list {
+    std::vector<palpate::devices::DeviceFinding> findings;
+};
+struct palpate_data {
+    std::shared_ptr<palpate::run::Data> data;
+};
+struct palpate_run {
+    /// Of calls from outside; the servo never takes it.
+    mutable std::mutex mutex;
+    std::shared_ptr<palpate::run::Data> data;
+    std::unique_ptr<palpate::run::Run> run;
+    bool started = false;
+};

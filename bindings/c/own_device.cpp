@@ -1,0 +1,133 @@
+// The thread of a caller's device: read, write, read, ... at a steady rate. The servo only ever
+// meets the newest reading and the newest force.
+#include "bindings/c/own_device.hpp"
+
+#include <pthread.h>
+
+#include <chrono>
+#include <csignal>
+
+#include "bindings/c/structs.hpp"
+
+namespace palpate::c {
+namespace {
+
+DeviceInfo info_from(const palpate_own_device& asked) {
+    DeviceInfo info;
+    info.name = name_of(asked);
+    info.model = asked.model ? asked.model : info.name;
+    info.limits.maximum_force = asked.maximum_force;
+    info.limits.maximum_torque = asked.maximum_torque;
+    if (asked.stiffness != 0) info.stiffness = asked.stiffness;
+    if (asked.physical_damping != 0) info.limits.physical_damping = asked.physical_damping;
+    const Vec3 low = vec3(asked.workspace_low), high = vec3(asked.workspace_high);
+    if (!low.isZero(0) || !high.isZero(0)) {
+        info.workspace_low = low;
+        info.workspace_high = high;
+    }
+    info.renders_torque = asked.maximum_torque > 0;
+    info.has_orientation = asked.has_orientation != 0;
+    info.buttons = asked.buttons;
+    return info;
+}
+
+void check(const palpate_own_device& asked, const DeviceInfo& info) {
+    if (!asked.read || !asked.write) throw std::invalid_argument("own.read or own.write is null");
+    if (!(asked.rate >= 50 && asked.rate <= 8000)) {
+        throw std::invalid_argument("own.rate: 50 to 8000 Hz, or 0 for 1000");
+    }
+    if (!(info.workspace_high.array() > info.workspace_low.array()).all()) {
+        throw std::invalid_argument("own.workspace_high has to be above own.workspace_low");
+    }
+    if (!(asked.maximum_force > 0)) {
+        throw std::invalid_argument(
+            "own.maximum_force: give what the device can take [N], above 0");
+    }
+    if (asked.buttons < 0 || asked.buttons > 32) {
+        throw std::invalid_argument("own.buttons: 0 to 32");
+    }
+    palpate::check(info.limits);
+}
+
+palpate_own_device with_defaults(palpate_own_device asked) {
+    if (asked.rate == 0) asked.rate = 1000;
+    return asked;
+}
+
+/// Runtimes that collect garbage (Mono, Boehm's collector) stop the threads that run their code by
+/// signals of their own. Blocked, those would stop the whole program for good.
+void let_runtimes_stop_this_thread() noexcept {
+    sigset_t theirs;
+    ::sigemptyset(&theirs);
+    ::sigaddset(&theirs, SIGPWR);
+    ::sigaddset(&theirs, SIGXCPU);
+    for (int signal = SIGRTMIN; signal <= SIGRTMAX; ++signal) ::sigaddset(&theirs, signal);
+    ::pthread_sigmask(SIG_UNBLOCK, &theirs, nullptr);
+}
+
+}  // namespace
+
+std::string name_of(const palpate_own_device& asked) {
+    return asked.name ? asked.name : "own";
+}
+
+OwnDevice::OwnDevice(const palpate_own_device& asked)
+    : callbacks_(with_defaults(asked)), info_(info_from(asked)) {
+    check(callbacks_, info_);
+    thread_ = std::thread([this] { run(); });
+}
+
+OwnDevice::~OwnDevice() {
+    link_.stop();
+    done_ = true;
+    thread_.join();
+}
+
+std::string OwnDevice::problem() const {
+    return lost_ ? "the application's device '" + info_.name + "' reports that it is lost" : "";
+}
+
+void OwnDevice::run() noexcept {
+    devices::prepare_device_thread();
+    let_runtimes_stop_this_thread();
+    const auto period = std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 / callbacks_.rate));
+    auto next = std::chrono::steady_clock::now();
+    // Asked before the exchange: the last one comes after the stop, so it sends the zero.
+    for (bool last = false; !last;) {
+        last = done_;
+        exchange();
+        next = std::max(next + period, std::chrono::steady_clock::now() - period);
+        if (!last) std::this_thread::sleep_until(next);
+    }
+    try {
+        if (callbacks_.close) callbacks_.close(callbacks_.context);
+    } catch (...) {  // NOLINT(bugprone-empty-catch): nobody is left to be told
+    }
+}
+
+void OwnDevice::exchange() noexcept {
+    try {
+        auto reading = sized<palpate_reading>();
+        bool lost = callbacks_.read(&reading, callbacks_.context) != 0;
+        auto wrench = sized<palpate_wrench>();
+        const Wrench newest = link_.wrench();
+        put(newest.force, wrench.force);
+        put(newest.torque, wrench.torque);
+        lost |= callbacks_.write(&wrench, callbacks_.context) != 0;
+        lost_ = lost;
+        if (lost) return link_.report(DeviceStatus::lost);
+        const bool known = reading.status >= 0 && reading.status <= PALPATE_DEVICE_FINISHED;
+        DeviceReading measured;
+        measured.position = vec3(reading.position);
+        measured.orientation = quaternion(reading.orientation).toRotationMatrix();
+        measured.buttons = reading.buttons;
+        measured.age = reading.age;
+        measured.status = known ? static_cast<DeviceStatus>(reading.status) : DeviceStatus::fault;
+        link_.report(measured);
+    } catch (...) {
+        lost_ = true;
+        link_.report(DeviceStatus::fault);
+    }
+}
+
+}  // namespace palpate::c

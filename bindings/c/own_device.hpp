@@ -1,0 +1,43 @@
+// A device whose reading and writing are functions of the C interface's caller, on a thread of its
+// own.
+#pragma once
+
+#include <atomic>
+#include <string>
+#include <thread>
+
+#include "devices/link.hpp"
+#include "palpate-c/palpate.h"
+
+namespace palpate::c {
+
+class OwnDevice final : public Device {
+  public:
+    /// Throws std::invalid_argument for numbers that no device has, std::system_error without a
+    /// thread.
+    explicit OwnDevice(const palpate_own_device& asked);
+    /// Waits for a callback that runs.
+    ~OwnDevice() override;
+
+    DeviceInfo info() const override { return info_; }
+    std::string problem() const override;
+    DeviceReading read(double) noexcept override { return link_.read(); }
+    void write(const Wrench& wrench, double) noexcept override { link_.write(wrench); }
+    void stop() noexcept override { link_.stop(); }
+    bool is_stopping() const noexcept override { return link_.stopping(); }
+
+  private:
+    void run() noexcept;
+    void exchange() noexcept;
+
+    const palpate_own_device callbacks_;
+    DeviceInfo info_;
+    devices::Link link_;
+    std::atomic<bool> lost_{false}, done_{false};
+    std::thread thread_;  // last: it uses all of the above
+};
+
+/// "own" where the caller gave no name.
+std::string name_of(const palpate_own_device& asked);
+
+}  // namespace palpate::c

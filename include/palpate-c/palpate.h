@@ -1,0 +1,472 @@
+/* The C interface of Palpate (libpalpate-c): volumes, fields, renderers, live runs on devices, edits
+ * and recordings. C99. docs/c_api.md has the rules for growth and an example.
+ *
+ * Errors. Functions return a palpate_status; palpate_last_error() says in one line what was wrong and
+ * what to do, for the last call of the same thread. No exception leaves the library. Where a function
+ * fails, what its out-parameters point to is unchanged. A null handle or pointer is PALPATE_INVALID.
+ *
+ * Structs. Each begins with its own size. Write PALPATE_STRUCT(palpate_run_options, options); then
+ * every other member is 0, and 0 always means the default. A later library accepts structs of earlier
+ * ones; an earlier library refuses members that it does not know if they are not 0. A struct inside
+ * another never grows, and its size_of is not looked at. Enumerations and
+ * truth values (0: no) are int32_t. Matrices are three rows of three; quaternions are x, y, z, w.
+ *
+ * Space. Lengths in mm, physical space as in the file (LPS: x to the left, y to the back, z up).
+ * Device axes: x to the right, y up, z towards the person. Forces in N, torques in N mm, times in s.
+ *
+ * Threads. Volumes, fields and meshes never change: any threads may use one at the same time. Data
+ * and runs may be used by any threads, too; calls on the same run take turns. palpate_run_snapshot()
+ * never waits for the servo, but for another call on the run: starting, changing the device and
+ * recording may take seconds. One renderer is for one thread at a time. Destroy a handle when no other
+ * call uses it; handles made from it keep what they need. The servo has a thread of its own, at
+ * real-time priority if the system grants it; it calls no function of yours. Callbacks may not call
+ * the run that they belong to.
+ */
+#ifndef PALPATE_H
+#define PALPATE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#if defined(__GNUC__)
+#define PALPATE_API __attribute__((visibility("default")))
+#else
+#define PALPATE_API
+#endif
+
+/* Declares a struct with its size and all defaults. */
+#ifdef __cplusplus
+#define PALPATE_STRUCT(type, name) \
+    type name{};                   \
+    name.size_of = static_cast<uint32_t>(sizeof(type))
+#else
+#define PALPATE_STRUCT(type, name) type name = {.size_of = (uint32_t)sizeof(type)}
+#endif
+
+/* ---- Status and errors ------------------------------------------------------------------------ */
+
+typedef enum palpate_status {
+    PALPATE_OK = 0,
+    PALPATE_INVALID = 1,       /* an argument that cannot be */
+    PALPATE_INPUT = 2,         /* a file that cannot be read or is not valid */
+    PALPATE_OUTPUT = 3,        /* a file that cannot be written */
+    PALPATE_NO_DEVICE = 4,     /* the device is not available */
+    PALPATE_QUEUE_FULL = 5,    /* commands come faster than they are carried out: try again */
+    PALPATE_WRONG_STATE = 6,   /* not now, for example a run that was not started */
+    PALPATE_NOTHING_YET = 7,   /* no tick so far */
+    PALPATE_NO_MEMORY = 8,
+    PALPATE_SYSTEM = 9,        /* the system gives no thread, ... */
+    PALPATE_CANCELLED = 10,    /* a progress callback returned 0 */
+    PALPATE_INTERNAL = 11      /* a mistake of this library: please report it */
+} palpate_status;
+
+PALPATE_API const char *palpate_version(void); /* "0.1.0" */
+/* "" after a call without error. Valid until the next call of this thread. */
+PALPATE_API const char *palpate_last_error(void);
+
+/* ---- Volumes ---------------------------------------------------------------------------------- */
+
+typedef struct palpate_volume palpate_volume;
+
+enum { PALPATE_UINT8 = 0, PALPATE_INT16 = 1, PALPATE_UINT16 = 2, PALPATE_FLOAT32 = 3 };
+
+typedef struct palpate_geometry {
+    uint32_t size_of;
+    int32_t size[3];     /* samples along x, y, z; x varies fastest in memory */
+    double spacing[3];   /* [mm]; all 0: 1 */
+    double origin[3];    /* [mm] of the first sample */
+    double direction[9]; /* columns are the grid's axes, orthonormal; all 0: identity */
+} palpate_geometry;
+
+/* Copies the samples. */
+PALPATE_API palpate_status palpate_volume_copy(const palpate_geometry *geometry, int32_t type,
+                                               const void *samples, size_t bytes,
+                                               palpate_volume **out);
+/* Uses the samples where they are. They may not change. `release` (may be null) is called once, on
+ * any thread but the servo's, when nothing needs them any more; not if this call fails. */
+PALPATE_API palpate_status palpate_volume_adopt(const palpate_geometry *geometry, int32_t type,
+                                                const void *samples, size_t bytes,
+                                                void (*release)(void *context), void *context,
+                                                palpate_volume **out);
+
+typedef struct palpate_load_options {
+    uint32_t size_of;
+    int32_t smooth;     /* passes of the binomial kernel */
+    int32_t dequantize; /* rounds by which the rounding of integer data is taken back */
+    int32_t frame;      /* of a sequence this one alone, from 1; 0: all */
+    const char *series; /* of DICOM: UID or number; null: the only one */
+    /* Called from this thread with 0 to 1; returns 0 to cancel. */
+    int32_t (*progress)(double fraction, void *context);
+    void *context;
+} palpate_load_options;
+
+/* A file, a folder of DICOM or TIFF slices, a numbered series (heart_%03d.nrrd), or
+ * "synthetic:NAME:WxHxD". Files are read by the program palpate-io-helper. options: may be null. */
+PALPATE_API palpate_status palpate_volume_load(const char *name, const palpate_load_options *options,
+                                               palpate_volume **out);
+
+typedef struct palpate_volume_info {
+    uint32_t size_of;
+    int32_t type;
+    palpate_geometry geometry;
+    double minimum, maximum;
+    double isovalue; /* one that is worth feeling; NaN for constant data */
+    int32_t frames;  /* of a sequence, else 1 */
+    int32_t unused;
+} palpate_volume_info;
+PALPATE_API palpate_status palpate_volume_describe(const palpate_volume *volume,
+                                                   palpate_volume_info *out);
+/* Null for a null handle. As long as the handle lives. */
+PALPATE_API const void *palpate_volume_samples(const palpate_volume *volume);
+PALPATE_API void palpate_volume_destroy(palpate_volume *volume);
+
+/* ---- Fields: the samples continued over all of space ------------------------------------------ */
+
+typedef struct palpate_field palpate_field;
+typedef struct palpate_mesh palpate_mesh;
+
+enum { PALPATE_SOLID_ABOVE = 0, PALPATE_SOLID_BELOW = 1 };
+enum { PALPATE_CUBIC = 0, PALPATE_LINEAR = 1 };
+
+typedef struct palpate_field_options {
+    uint32_t size_of;
+    int32_t solid;          /* which side of the isovalue is solid */
+    int32_t interpolation;
+    int32_t has_background; /* 0: the data's minimum; its maximum where the solid is below */
+    double background;      /* density outside the grid */
+} palpate_field_options;
+
+PALPATE_API palpate_status palpate_field_create(const palpate_volume *volume,
+                                                const palpate_field_options *options,
+                                                palpate_field **out);
+/* Densities at `count` points (x, y, z of each) and gradients [1/mm]; either may be null. */
+PALPATE_API palpate_status palpate_field_values(const palpate_field *field, const double *points,
+                                                size_t count, double *densities, double *gradients);
+
+typedef struct palpate_ray_hit {
+    uint32_t size_of;
+    int32_t hit;
+    double point[3];  /* the segment's end without a hit */
+    double normal[3]; /* unit, out of the solid */
+} palpate_ray_hit;
+/* Where a segment first meets the isosurface. */
+PALPATE_API palpate_status palpate_field_ray(const palpate_field *field, double isovalue,
+                                             const double from[3], const double to[3],
+                                             palpate_ray_hit *out);
+PALPATE_API void palpate_field_destroy(palpate_field *field);
+
+/* The whole isosurface, closed, for display; triangles run counter-clockwise seen from outside. */
+PALPATE_API palpate_status palpate_mesh_create(const palpate_field *field, double isovalue,
+                                               palpate_mesh **out);
+PALPATE_API size_t palpate_mesh_vertex_count(const palpate_mesh *mesh);
+PALPATE_API size_t palpate_mesh_triangle_count(const palpate_mesh *mesh);
+/* Into the caller's arrays of 3 numbers each; either may be null. */
+PALPATE_API palpate_status palpate_mesh_read(const palpate_mesh *mesh, float *vertices,
+                                             uint32_t *triangles);
+PALPATE_API void palpate_mesh_destroy(palpate_mesh *mesh);
+
+/* ---- Renderers: one tick at a time, in your own loop ------------------------------------------ */
+
+typedef struct palpate_renderer palpate_renderer;
+
+typedef struct palpate_render_options {
+    uint32_t size_of;
+    int32_t has_isovalue;  /* 0: the volume's own or a suggested one */
+    double isovalue;
+    double stiffness;      /* [N/mm] 0: what the device is rated for; renderer: 0.5 */
+    double damping;        /* [N s/mm] */
+    double viscosity;      /* [N s/mm] */
+    double force_limit;    /* [N] 0: the device's; renderer: 3.3 */
+    double static_friction, dynamic_friction;
+    double penetration;    /* [device mm] at which the surface gives way; 0: never */
+    double scale;          /* physical mm per device mm; 0: fits the workspace; renderer: 1 */
+    double rate;           /* [Hz] 250 to 8000; 0: 1000 */
+    const char *tool;      /* "sphere:5", "needle", a file, ...; null: a point */
+    const char *layers;    /* a file or the name of a built-in set; null: none */
+} palpate_render_options;
+
+/* Where the device's space lies: physical = translation + scale * rotation * device. */
+typedef struct palpate_transform {
+    uint32_t size_of;
+    int32_t unused;
+    double rotation[9]; /* all 0: identity */
+    double translation[3];
+    double scale;       /* 0: 1 */
+} palpate_transform;
+
+typedef struct palpate_hand {
+    uint32_t size_of;
+    int32_t invalid;       /* not 0: no force, the proxy stays */
+    double time;           /* [s], rising */
+    double position[3];    /* [device mm] */
+    double orientation[4]; /* tool to device axes; all 0: identity */
+} palpate_hand;
+
+enum { PALPATE_FREE = 0, PALPATE_CONSTRAINED = 1 };
+/* How an update ended: done, continues in the next tick, on its way out of the solid, ... */
+enum {
+    PALPATE_DONE = 0,
+    PALPATE_OUT_OF_BUDGET = 1,
+    PALPATE_RECOVERING = 2,
+    PALPATE_REFUSED = 3,
+    PALPATE_NOT_FINITE = 4
+};
+
+typedef struct palpate_felt {
+    uint32_t size_of;
+    int32_t mode, status;
+    int32_t contacts;      /* points of a tool that touch */
+    double time;
+    double hip[3];         /* the hand [mm, physical] */
+    double scp[3];         /* the proxy [mm, physical]: draw the tool here */
+    double force[3];       /* [N, device axes] */
+    double torque[3];      /* [N mm, device axes] */
+    double hand[4];        /* orientations, tool to physical axes */
+    double proxy[4];
+    double density, isovalue;
+    int32_t layer, inside; /* layer touched (-1: none), and how many the proxy is inside of */
+} palpate_felt;
+
+/* The field is linear or smooth as it was made. transform: may be null. */
+PALPATE_API palpate_status palpate_renderer_create(const palpate_field *field,
+                                                   const palpate_render_options *options,
+                                                   const palpate_transform *transform,
+                                                   palpate_renderer **out);
+/* A tick: neither allocates, locks nor waits. */
+PALPATE_API palpate_status palpate_renderer_render(palpate_renderer *renderer,
+                                                   const palpate_hand *hand, palpate_felt *out);
+PALPATE_API palpate_status palpate_renderer_set_isovalue(palpate_renderer *renderer,
+                                                         double isovalue);
+PALPATE_API void palpate_renderer_destroy(palpate_renderer *renderer);
+
+/* ---- Devices ---------------------------------------------------------------------------------- */
+
+typedef struct palpate_device_list palpate_device_list;
+
+typedef struct palpate_device_finding {
+    uint32_t size_of;
+    int32_t found;       /* it could be opened now */
+    const char *name;    /* texts live as long as the list */
+    const char *what;    /* what was found */
+    const char *missing; /* what was looked for, and what to install */
+    const char *options; /* KEY=VALUE options with their defaults */
+} palpate_device_finding;
+
+/* Looks for all kinds of devices; takes up to a second. Moves nothing. */
+PALPATE_API palpate_status palpate_device_list_create(palpate_device_list **out);
+PALPATE_API size_t palpate_device_list_count(const palpate_device_list *list);
+PALPATE_API palpate_status palpate_device_list_get(const palpate_device_list *list, size_t index,
+                                                   palpate_device_finding *out);
+PALPATE_API void palpate_device_list_destroy(palpate_device_list *list);
+
+enum {
+    PALPATE_DEVICE_STARTING = 0,
+    PALPATE_DEVICE_READY = 1,
+    PALPATE_DEVICE_UNCALIBRATED = 2,
+    PALPATE_DEVICE_STALE = 3,
+    PALPATE_DEVICE_LOST = 4,
+    PALPATE_DEVICE_FAULT = 5,
+    PALPATE_DEVICE_FINISHED = 6
+};
+
+typedef struct palpate_reading {
+    uint32_t size_of;
+    int32_t status;        /* force only while READY */
+    double position[3];    /* [device mm] */
+    double orientation[4]; /* tool to device axes; all 0: identity */
+    double age;            /* [s] since it was measured; beyond 0.02 it counts as stale */
+    uint32_t buttons;      /* bit b: button b is held */
+    uint32_t unused;
+} palpate_reading;
+
+typedef struct palpate_wrench {
+    uint32_t size_of;
+    int32_t unused;
+    double force[3];  /* [N, device axes] */
+    double torque[3]; /* [N mm, device axes] */
+} palpate_wrench;
+
+/* A device of your own. Its callbacks run on a thread of their own, never on the servo's, one after
+ * the other: read, write, read, ... at `rate`. The newest reading and the newest force are exchanged
+ * without waiting. The force given to write is zero once the servo is silent for 20 ms, and after the
+ * run was stopped. `close` (may be null) is the last call, after a zero force; it is made for each time
+ * that the device was opened, also if palpate_run_create() fails afterwards. A callback that does not
+ * return keeps the last force on your device: give it limits of its own. */
+typedef struct palpate_own_device {
+    uint32_t size_of;
+    int32_t buttons;               /* how many */
+    const char *name, *model;      /* null: "own" */
+    double maximum_force;          /* [N] > 0; never exceeded */
+    double maximum_torque;         /* [N mm] 0: it renders none */
+    double stiffness;              /* [N/mm] it is rated for; 0: 0.5 */
+    double physical_damping;       /* [N s/mm] of device and hand; 0: 0.0025 */
+    double workspace_low[3];       /* [device mm]; all 0: -80 */
+    double workspace_high[3];      /* all 0: 80 */
+    double rate;                   /* [Hz] of the callbacks, 50 to 8000; 0: 1000 */
+    int32_t has_orientation;
+    int32_t unused;
+    /* Fills in *reading (its size is set, the rest 0). Returns 0, or not 0: the device is lost. */
+    int32_t (*read)(palpate_reading *reading, void *context);
+    /* Returns 0, or not 0: the device is lost. */
+    int32_t (*write)(const palpate_wrench *wrench, void *context);
+    void (*close)(void *context);
+    void *context;
+} palpate_own_device;
+
+/* ---- Data: what one or several runs feel, and edits of it ------------------------------------- */
+
+typedef struct palpate_data palpate_data;
+
+enum { PALPATE_CARVE = 0, PALPATE_ADD = 1, PALPATE_SMOOTH = 2, PALPATE_PAINT = 3 };
+
+typedef struct palpate_brush {
+    uint32_t size_of;
+    int32_t kind;
+    double radius;         /* [mm] > 0 */
+    double softness;       /* 0: a sharp edge, 1: as wide as the brush */
+    double rate;           /* [1/s] of a hand's brush; 0: 10, infinity: at once */
+    double level;          /* of a stroke: whose surface carve and add shape */
+    int32_t solid;         /* of a stroke: which side of `level` is solid */
+    int32_t has_value;     /* 0: carve leaves the background, add what lies as far above the level */
+    double value;          /* what it leaves; of a stroke it always counts, and for paint */
+} palpate_brush;
+
+typedef struct palpate_edit_state {
+    uint32_t size_of;
+    int32_t changed;    /* since the start or since it was saved */
+    uint64_t version;   /* as snapshots tell it */
+    uint64_t undo_steps, redo_steps;
+} palpate_edit_state;
+
+PALPATE_API palpate_status palpate_data_create(const palpate_volume *volume, palpate_data **out);
+/* The brush of every run on these data, which works where its proxy touches; null: none. */
+PALPATE_API palpate_status palpate_data_set_brush(palpate_data *data, const palpate_brush *brush);
+/* Single edits, each a step for undo; they return once every run has been sent them. */
+PALPATE_API palpate_status palpate_data_stroke(palpate_data *data, const palpate_brush *brush,
+                                               const double from[3], const double to[3]);
+PALPATE_API palpate_status palpate_data_fill(palpate_data *data, const int32_t low[3],
+                                             const int32_t high[3], double value);
+/* Puts the samples of another volume into the grid, its first at `at`: for simulations. */
+PALPATE_API palpate_status palpate_data_replace(palpate_data *data, const int32_t at[3],
+                                                const palpate_volume *samples);
+/* done (may be null): 0 if there was nothing to undo or redo. */
+PALPATE_API palpate_status palpate_data_undo(palpate_data *data, int32_t *done);
+PALPATE_API palpate_status palpate_data_redo(palpate_data *data, int32_t *done);
+PALPATE_API palpate_status palpate_data_edits(const palpate_data *data, palpate_edit_state *out);
+/* The samples as they are now, for display and for your own queries. */
+PALPATE_API palpate_status palpate_data_field(const palpate_data *data,
+                                              const palpate_field_options *options,
+                                              palpate_field **out);
+PALPATE_API palpate_status palpate_data_save(palpate_data *data, const char *path);
+/* Of a sequence: the speed at which it plays (1: as recorded, 0: it stands still), and its time [s]. */
+PALPATE_API palpate_status palpate_data_play(palpate_data *data, double speed);
+PALPATE_API palpate_status palpate_data_seek(palpate_data *data, double time);
+PALPATE_API void palpate_data_destroy(palpate_data *data);
+
+/* ---- Runs: a servo on a device ---------------------------------------------------------------- */
+
+typedef struct palpate_run palpate_run;
+
+enum {
+    PALPATE_ANTERIOR = 0,
+    PALPATE_POSTERIOR = 1,
+    PALPATE_LEFT = 2,
+    PALPATE_RIGHT = 3,
+    PALPATE_SUPERIOR = 4,
+    PALPATE_INFERIOR = 5
+};
+
+typedef struct palpate_run_options {
+    uint32_t size_of;
+    int32_t facing;                       /* side of the body that faces the person */
+    const palpate_field_options *field;   /* null: defaults; likewise below */
+    const palpate_render_options *render;
+    const char *device;                   /* "haply", "simulated:touchx,hand=press", ...; null: own,
+                                             else simulated */
+    const palpate_own_device *own;        /* found under its name; null: none */
+    const char *recording;                /* a new file to record into from the start; null: none */
+    int32_t no_real_time;                 /* not 0: do not ask for real-time priority */
+    int32_t deadman_button;               /* from 1: no force unless it is held; 0: none */
+} palpate_run_options;
+
+typedef struct palpate_snapshot {
+    uint32_t size_of;
+    int32_t device_status;
+    int64_t number;            /* of the tick, from 0 */
+    int64_t missed;            /* deadlines so far */
+    uint64_t version;          /* of the samples felt */
+    palpate_felt felt;
+    palpate_transform transform;
+    double position[3];        /* of the device [device mm] */
+    double normal[3];          /* of the surface at the proxy, out of the solid; 0: none */
+    double stiffness;          /* [N/mm] in use */
+    double moment;             /* [s] of a sequence */
+    uint32_t buttons;
+    int32_t frozen, clutched, forces_on;
+} palpate_snapshot;
+
+typedef struct palpate_report {
+    uint32_t size_of;
+    int32_t device_failed;     /* 1: it threw, 2: it hung; the session has ended without force */
+    int64_t ticks, missed, overruns, unrecorded;
+    int64_t lateness_p50_ns, lateness_p99_ns, lateness_max_ns;
+    int64_t compute_p50_ns, compute_p99_ns, compute_max_ns;
+} palpate_report;
+
+enum { PALPATE_TEXT_PROBLEM = 0, PALPATE_TEXT_PRIVILEGES = 1, PALPATE_TEXT_DEVICE = 2 };
+
+/* Opens the device and fits it to the data. Nothing moves before palpate_run_start(). */
+PALPATE_API palpate_status palpate_run_create(palpate_data *data, const palpate_run_options *options,
+                                              palpate_run **out);
+PALPATE_API palpate_status palpate_run_start(palpate_run *run);
+/* The force goes to zero and the servo ends, for good. */
+PALPATE_API palpate_status palpate_run_stop(palpate_run *run);
+/* Stops, finishes a recording, closes the device. */
+PALPATE_API void palpate_run_destroy(palpate_run *run);
+
+/* The newest tick. PALPATE_NOTHING_YET before the first. */
+PALPATE_API palpate_status palpate_run_snapshot(const palpate_run *run, palpate_snapshot *out);
+PALPATE_API palpate_status palpate_run_report(const palpate_run *run, palpate_report *out);
+/* What is wrong with device, edits or recording ("": nothing); what was granted of real time, a line
+ * each; the device's model. At most `size` bytes with the final zero; needed (may be null): how many
+ * bytes it takes. */
+PALPATE_API palpate_status palpate_run_text(const palpate_run *run, int32_t which, char *buffer,
+                                            size_t size, size_t *needed);
+
+/* Commands, carried out within a tick or two. */
+PALPATE_API palpate_status palpate_run_set_isovalue(palpate_run *run, double isovalue);
+PALPATE_API palpate_status palpate_run_set_forces(palpate_run *run, int32_t on);
+PALPATE_API palpate_status palpate_run_set_frozen(palpate_run *run, int32_t on);
+PALPATE_API palpate_status palpate_run_set_clutch(palpate_run *run, int32_t on);
+PALPATE_API palpate_status palpate_run_set_scale(palpate_run *run, double scale);
+PALPATE_API palpate_status palpate_run_set_transform(palpate_run *run, const palpate_transform *to);
+PALPATE_API palpate_status palpate_run_set_stiffness(palpate_run *run, double newton_per_mm);
+PALPATE_API palpate_status palpate_run_set_damping(palpate_run *run, double damping,
+                                                   double viscosity);
+PALPATE_API palpate_status palpate_run_set_force_limit(palpate_run *run, double newton);
+PALPATE_API palpate_status palpate_run_set_friction(palpate_run *run, double static_coefficient,
+                                                    double dynamic_coefficient);
+/* [device mm] 0: the surface never gives way. Levels beyond the one felt now are felt then. */
+PALPATE_API palpate_status palpate_run_set_penetration(palpate_run *run, double threshold);
+/* As in palpate_render_options; null: none. */
+PALPATE_API palpate_status palpate_run_set_tool(palpate_run *run, const char *tool);
+PALPATE_API palpate_status palpate_run_set_layers(palpate_run *run, const char *layers);
+
+/* Goes on with another device, and with everything that was asked for. */
+PALPATE_API palpate_status palpate_run_use_device(palpate_run *run, const char *device);
+/* Records into a new file (an existing one is never touched): the session starts anew. */
+PALPATE_API palpate_status palpate_run_record(palpate_run *run, const char *path);
+/* ticks (may be null): how many were recorded. */
+PALPATE_API palpate_status palpate_run_stop_recording(palpate_run *run, int64_t *ticks);
+/* Of the device "mouse": where its hand is to go [device mm]. */
+PALPATE_API palpate_status palpate_run_aim(palpate_run *run, const double position[3]);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,109 @@
+// A device written in C# feels a ball of 20 mm, while the garbage collector runs.
+using System;
+using System.Runtime.InteropServices;
+using System.Threading;
+using PalpateC;
+
+static class FeelsABall
+{
+    const int Side = 64;
+    static double depth = 30, force, largest;
+    static volatile bool closed;
+    static readonly ReadDevice read = Read;
+    static readonly WriteDevice write = Write;
+    static readonly CloseDevice close = delegate { closed = true; };
+
+    static int Read(ref Reading reading, IntPtr context)
+    {
+        if (depth > 16) depth -= 0.02;
+        reading.Status = 1;
+        reading.Position.Z = depth;
+        return 0;
+    }
+
+    static int Write(ref Wrench wrench, IntPtr context)
+    {
+        force = wrench.Force.Length;
+        largest = Math.Max(largest, force);
+        return 0;
+    }
+
+    static IntPtr Ball()
+    {
+        var samples = new float[Side * Side * Side];
+        for (int n = 0; n < samples.Length; ++n)
+        {
+            double x = n % Side - 31.5, y = n / Side % Side - 31.5, z = n / (Side * Side) - 31.5;
+            samples[n] = (float)(200 - 5 * Math.Sqrt(x * x + y * y + z * z));
+        }
+        var geometry = new Geometry
+        {
+            SizeOf = Native.SizeOf<Geometry>(), Size = new[] { Side, Side, Side },
+            Origin = new[] { -31.5, -31.5, -31.5 }, Spacing = new double[3], Direction = new double[9]
+        };
+        IntPtr volume;
+        Native.Check(Native.palpate_volume_copy(ref geometry, 3, samples,
+                                                (UIntPtr)(4 * samples.Length), out volume));
+        return volume;
+    }
+
+    static IntPtr Run(IntPtr data)
+    {
+        var render = new RenderOptions
+        {
+            SizeOf = Native.SizeOf<RenderOptions>(), HasIsovalue = 1, Isovalue = 100, Scale = 1,
+            Stiffness = 0.4
+        };
+        var own = new OwnDevice
+        {
+            SizeOf = Native.SizeOf<OwnDevice>(), Name = "csharp", MaximumForce = 2, Read = read,
+            Write = write, Close = close, Rate = 500
+        };
+        using (var unmanagedRender = new Unmanaged<RenderOptions>(render))
+        using (var unmanagedOwn = new Unmanaged<OwnDevice>(own))
+        {
+            var options = new RunOptions
+            {
+                SizeOf = Native.SizeOf<RunOptions>(), Render = unmanagedRender.Pointer,
+                Own = unmanagedOwn.Pointer, NoRealTime = 1
+            };
+            IntPtr run;
+            Native.Check(Native.palpate_run_create(data, ref options, out run));
+            return run;
+        }
+    }
+
+    static void Require(bool isTrue, string what)
+    {
+        if (!isTrue) throw new Exception("not so: " + what);
+    }
+
+    static void Main()
+    {
+        IntPtr volume = Ball(), data;
+        Native.Check(Native.palpate_data_create(volume, out data));
+        Native.palpate_volume_destroy(volume);
+        IntPtr run = Run(data);
+        Native.Check(Native.palpate_run_start(run));
+        var snapshot = new Snapshot { SizeOf = Native.SizeOf<Snapshot>() };
+        for (int frame = 0; frame < 1200 && force < 1; ++frame)
+        {
+            Status status = Native.palpate_run_snapshot(run, ref snapshot);
+            if (status != Status.NothingYet) Native.Check(status);
+            GC.Collect();
+            Thread.Sleep(16);
+        }
+        Native.Check(Native.palpate_run_snapshot(run, ref snapshot));
+        Require(force >= 1, "the ball was felt");
+        Require(largest <= 2, "the device's limit");
+        Require(snapshot.Felt.Mode == 1 && snapshot.ForcesOn == 1, "contact");
+        Require(Math.Abs(snapshot.Felt.Scp.Length - 20) < 0.2, "the proxy is on the ball");
+        Require(snapshot.Transform.Scale == 1, "the scale");
+        Require(Native.palpate_run_set_isovalue(run, double.NaN) == Status.Invalid, "a refusal");
+        Native.palpate_run_destroy(run);
+        Require(closed && force == 0, "the last force is zero, then the device is closed");
+        Native.palpate_data_destroy(data);
+        Console.WriteLine("palpate {0}: largest force {1:F2} N, proxy at {2:F2} mm", Native.Version,
+                          largest, snapshot.Felt.Scp.Length);
+    }
+}

@@ -1,0 +1,262 @@
+// Live runs through the C interface: the caller's own device, commands, edits, recordings, threads.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <thread>
+
+#include "support/eventually.hpp"
+#include "support/scratch_folder.hpp"
+#include "tests/bindings/c/ball.hpp"
+
+namespace palpate::c::test {
+namespace {
+
+using support::comes_true;
+
+/// A hand that moves along z from 40 to 30 mm (device axes: +z is towards the person) and stays.
+struct Hand {
+    std::atomic<double> depth{40};
+    std::atomic<double> force{0}, largest{0};
+    std::atomic<int> reads{0}, closes{0};
+    std::atomic<bool> lost{false};
+    std::atomic<std::thread::id> thread;
+};
+
+int32_t read_hand(palpate_reading* reading, void* context) {
+    auto& hand = *static_cast<Hand*>(context);
+    hand.thread = std::this_thread::get_id();
+    const double now = hand.depth;
+    if (now > 12) hand.depth = now - 0.02;
+    reading->status = PALPATE_DEVICE_READY;
+    reading->position[2] = now;
+    ++hand.reads;
+    return hand.lost;
+}
+
+int32_t write_hand(const palpate_wrench* wrench, void* context) {
+    auto& hand = *static_cast<Hand*>(context);
+    const double force = std::hypot(wrench->force[0], wrench->force[1], wrench->force[2]);
+    hand.force = force;
+    if (force > hand.largest) hand.largest = force;
+    return 0;
+}
+
+void close_hand(void* context) {
+    ++static_cast<Hand*>(context)->closes;
+}
+
+palpate_own_device device_of(Hand& hand) {
+    PALPATE_STRUCT(palpate_own_device, own);
+    own.maximum_force = 2;
+    own.stiffness = 0.5;
+    own.read = &read_hand;
+    own.write = &write_hand;
+    own.close = &close_hand;
+    own.context = &hand;
+    return own;
+}
+
+class CRun : public testing::Test {
+  protected:
+    ~CRun() override {
+        palpate_run_destroy(run_);
+        palpate_data_destroy(data_);
+    }
+
+    void SetUp() override {
+        palpate_volume* volume = ball();
+        ASSERT_EQ(palpate_data_create(volume, &data_), PALPATE_OK);
+        palpate_volume_destroy(volume);
+    }
+    palpate_status create(const palpate_own_device* own, const char* device = nullptr) {
+        PALPATE_STRUCT(palpate_render_options, render);
+        render.has_isovalue = 1;
+        render.isovalue = 100;
+        render.scale = 1;
+        PALPATE_STRUCT(palpate_run_options, options);
+        options.render = &render;
+        options.own = own;
+        options.device = device;
+        options.no_real_time = 1;
+        return palpate_run_create(data_, &options, &run_);
+    }
+    palpate_snapshot now() const {
+        PALPATE_STRUCT(palpate_snapshot, snapshot);
+        palpate_run_snapshot(run_, &snapshot);
+        return snapshot;
+    }
+    bool shows(const std::function<bool(const palpate_snapshot&)>& wanted) const {
+        return comes_true([&] { return wanted(now()); });
+    }
+
+    Hand hand_;  // outlives the run
+    palpate_data* data_ = nullptr;
+    palpate_run* run_ = nullptr;
+};
+
+TEST_F(CRun, an_own_device_feels_the_ball_within_its_limit_on_a_thread_of_its_own) {
+    const palpate_own_device own = device_of(hand_);
+    ASSERT_EQ(create(&own), PALPATE_OK) << palpate_last_error();
+    ASSERT_EQ(palpate_run_start(run_), PALPATE_OK) << palpate_last_error();
+    EXPECT_TRUE(comes_true([&] { return hand_.force > 1.5; }));
+    EXPECT_LE(hand_.largest, 2.0 + 1e-9);
+    EXPECT_NE(hand_.thread.load(), std::this_thread::get_id());
+    const palpate_snapshot felt = now();
+    EXPECT_EQ(felt.felt.mode, PALPATE_CONSTRAINED);
+    EXPECT_NEAR(std::hypot(felt.felt.scp[0], felt.felt.scp[1], felt.felt.scp[2]), 20, 0.2);
+    ASSERT_EQ(palpate_run_stop(run_), PALPATE_OK);
+    EXPECT_TRUE(comes_true([&] { return hand_.force == 0; }));
+    palpate_run_destroy(run_);
+    run_ = nullptr;
+    EXPECT_EQ(hand_.closes, 1);
+    EXPECT_EQ(hand_.force, 0);
+}
+
+TEST_F(CRun, a_device_that_reports_it_is_lost_gives_no_force_and_says_so_and_may_come_back) {
+    const palpate_own_device own = device_of(hand_);
+    ASSERT_EQ(create(&own), PALPATE_OK);
+    ASSERT_EQ(palpate_run_start(run_), PALPATE_OK);
+    ASSERT_TRUE(comes_true([&] { return hand_.force > 1; }));
+    hand_.lost = true;
+    EXPECT_TRUE(comes_true([&] { return hand_.force == 0; }));
+    EXPECT_TRUE(shows([](const auto& s) { return s.device_status == PALPATE_DEVICE_LOST; }));
+    std::array<char, 200> text{};
+    size_t needed = 0;
+    ASSERT_EQ(palpate_run_text(run_, PALPATE_TEXT_PROBLEM, text.data(), text.size(), &needed),
+              PALPATE_OK);
+    EXPECT_NE(std::string(text.data()).find("lost"), std::string::npos);
+    EXPECT_EQ(needed, std::string(text.data()).size() + 1);
+    hand_.lost = false;
+    EXPECT_TRUE(shows([](const auto& s) { return s.device_status == PALPATE_DEVICE_READY; }));
+}
+
+TEST_F(CRun, devices_that_cannot_be_are_refused) {
+    palpate_own_device own = device_of(hand_);
+    own.maximum_force = 0;
+    EXPECT_EQ(create(&own), PALPATE_INVALID);
+    own = device_of(hand_);
+    own.read = nullptr;
+    EXPECT_EQ(create(&own), PALPATE_INVALID);
+    own = device_of(hand_);
+    own.rate = NAN;
+    EXPECT_EQ(create(&own), PALPATE_INVALID);
+    EXPECT_EQ(hand_.closes, 0);
+    EXPECT_EQ(create(nullptr, "nothing-of-this-name"), PALPATE_INVALID);
+    EXPECT_EQ(create(nullptr, "forcedimension:library=/nowhere/libdhd.so.3"), PALPATE_NO_DEVICE);
+    EXPECT_EQ(run_, nullptr);
+}
+
+TEST_F(CRun, commands_show_in_snapshots) {
+    ASSERT_EQ(create(nullptr, "simulated:touchx,hand=hold"), PALPATE_OK) << palpate_last_error();
+    PALPATE_STRUCT(palpate_snapshot, none);
+    EXPECT_EQ(palpate_run_snapshot(run_, &none), PALPATE_WRONG_STATE);
+    EXPECT_EQ(palpate_run_set_isovalue(run_, 90), PALPATE_WRONG_STATE);
+    ASSERT_EQ(palpate_run_start(run_), PALPATE_OK);
+    EXPECT_EQ(palpate_run_start(run_), PALPATE_WRONG_STATE);
+    EXPECT_EQ(palpate_run_set_isovalue(run_, 90), PALPATE_OK);
+    EXPECT_TRUE(shows([](const auto& s) { return s.felt.isovalue == 90; }));
+    EXPECT_EQ(palpate_run_set_isovalue(run_, NAN), PALPATE_INVALID);
+    EXPECT_EQ(palpate_run_set_stiffness(run_, 0.3), PALPATE_OK);
+    EXPECT_TRUE(shows([](const auto& s) { return s.stiffness == 0.3; }));
+    EXPECT_EQ(palpate_run_set_forces(run_, 0), PALPATE_OK);
+    EXPECT_TRUE(shows([](const auto& s) { return s.forces_on == 0; }));
+    EXPECT_EQ(palpate_run_set_frozen(run_, 1), PALPATE_OK);
+    EXPECT_TRUE(shows([](const auto& s) { return s.frozen == 1; }));
+    EXPECT_EQ(palpate_run_set_scale(run_, 0.5), PALPATE_OK);
+    EXPECT_TRUE(shows([](const auto& s) { return s.transform.scale == 0.5; }));
+    EXPECT_EQ(palpate_run_set_friction(run_, 0.3, 0.2), PALPATE_OK);
+    EXPECT_EQ(palpate_run_set_penetration(run_, 1), PALPATE_OK);
+    EXPECT_EQ(palpate_run_set_penetration(run_, -1), PALPATE_INVALID);
+    EXPECT_EQ(palpate_run_set_penetration(run_, 0), PALPATE_OK);
+    EXPECT_EQ(palpate_run_set_tool(run_, "sphere:5"), PALPATE_OK);
+    EXPECT_EQ(palpate_run_set_tool(run_, "no-such-tool"), PALPATE_INVALID);
+    EXPECT_EQ(palpate_run_set_layers(run_, "no-such-set"), PALPATE_INPUT);
+    EXPECT_EQ(palpate_run_use_device(run_, "mouse"), PALPATE_OK) << palpate_last_error();
+    const std::array<double, 3> aim{0, 0, 30};
+    EXPECT_EQ(palpate_run_aim(run_, aim.data()), PALPATE_OK);
+    PALPATE_STRUCT(palpate_report, report);
+    EXPECT_TRUE(comes_true(
+        [&] { return palpate_run_report(run_, &report) == PALPATE_OK && report.ticks > 10; }));
+}
+
+TEST_F(CRun, edits_are_felt_undone_and_seen_in_a_field) {
+    ASSERT_EQ(create(nullptr, "simulated:touchx,hand=hold"), PALPATE_OK);
+    ASSERT_EQ(palpate_run_start(run_), PALPATE_OK);
+    const std::array<double, 3> origin{0, 0, 0};
+    double before = 0, after = 0;
+    const auto density = [&](double& into) {
+        palpate_field* field = nullptr;
+        ASSERT_EQ(palpate_data_field(data_, nullptr, &field), PALPATE_OK);
+        palpate_field_values(field, origin.data(), 1, &into, nullptr);
+        palpate_field_destroy(field);
+    };
+    density(before);
+    PALPATE_STRUCT(palpate_brush, brush);
+    brush.kind = PALPATE_CARVE;
+    brush.radius = 5;
+    brush.level = 100;
+    ASSERT_EQ(palpate_data_stroke(data_, &brush, origin.data(), origin.data()), PALPATE_OK)
+        << palpate_last_error();
+    density(after);
+    EXPECT_LT(after, before - 50);
+    EXPECT_TRUE(shows([](const auto& s) { return s.version == 1; }));
+    int32_t done = 0;
+    ASSERT_EQ(palpate_data_undo(data_, &done), PALPATE_OK);
+    EXPECT_EQ(done, 1);
+    density(after);
+    EXPECT_EQ(after, before);
+    PALPATE_STRUCT(palpate_edit_state, state);
+    ASSERT_EQ(palpate_data_edits(data_, &state), PALPATE_OK);
+    EXPECT_EQ(state.redo_steps, 1U);
+    ASSERT_EQ(palpate_data_undo(data_, &done), PALPATE_OK);
+    EXPECT_EQ(done, 0);
+    brush.radius = -1;
+    EXPECT_EQ(palpate_data_stroke(data_, &brush, origin.data(), origin.data()), PALPATE_INVALID);
+    EXPECT_EQ(palpate_data_play(data_, 1), PALPATE_INVALID);
+}
+
+TEST_F(CRun, a_recording_is_written_and_an_existing_file_is_left_alone) {
+    const support::ScratchFolder folder;
+    const std::string path = (folder.path() / "run.csv").string();
+    ASSERT_EQ(create(nullptr, "simulated:touchx,hand=hold"), PALPATE_OK);
+    ASSERT_EQ(palpate_run_record(run_, path.c_str()), PALPATE_OK) << palpate_last_error();
+    ASSERT_EQ(palpate_run_start(run_), PALPATE_OK);
+    EXPECT_TRUE(shows([](const auto& s) { return s.number > 100; }));
+    int64_t ticks = 0;
+    ASSERT_EQ(palpate_run_stop_recording(run_, &ticks), PALPATE_OK);
+    EXPECT_GT(ticks, 100);
+    EXPECT_GT(std::filesystem::file_size(path), 10'000U);
+    EXPECT_EQ(palpate_run_record(run_, path.c_str()), PALPATE_OUTPUT);
+}
+
+TEST_F(CRun, one_run_may_be_watched_and_commanded_from_two_threads_each_with_its_own_errors) {
+    ASSERT_EQ(create(nullptr, "simulated:touchx,hand=hold"), PALPATE_OK);
+    ASSERT_EQ(palpate_run_start(run_), PALPATE_OK);
+    std::atomic<int> wrong{0};
+    std::thread watcher([&] {
+        for (int i = 0; i < 300; ++i) {
+            PALPATE_STRUCT(palpate_snapshot, snapshot);
+            const palpate_status status = palpate_run_snapshot(run_, &snapshot);
+            if (status == PALPATE_OK && *palpate_last_error() != '\0') ++wrong;
+            if (status != PALPATE_OK && status != PALPATE_NOTHING_YET) ++wrong;
+        }
+    });
+    for (int i = 0; i < 300; ++i) {
+        const palpate_status status = palpate_run_set_isovalue(run_, i % 2 ? NAN : 80 + i % 7);
+        if (i % 2) {
+            EXPECT_EQ(status, PALPATE_INVALID);
+            EXPECT_STRNE(palpate_last_error(), "");
+        } else {
+            EXPECT_TRUE(status == PALPATE_OK || status == PALPATE_QUEUE_FULL);
+        }
+    }
+    watcher.join();
+    EXPECT_EQ(wrong, 0);
+}
+
+}  // namespace
+}  // namespace palpate::c::test
