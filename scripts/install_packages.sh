@@ -12,7 +12,8 @@ are left as they are; when nothing is missing, apt is not run.
 groups (default: all)
   core     compiler, CMake, Eigen, GoogleTest, Google Benchmark, Python for the rule checks
   io       core, and what reads and writes files and reaches devices: ITK, VTK, CLI11, fmt, JSON,
-           EGL and Mesa for pictures without a display, PNG, zlib, gnuplot, Boost, oneTBB
+           EGL and Mesa for pictures without a display, PNG, zlib, gnuplot, Boost, oneTBB;
+           for the Python module pybind11, NumPy, pip, and nibabel and zarr to test it
   viewer   io, and VTK's and Qt's windows and translations, Xvfb to test them
   dev      clang, its sanitizers and fuzzer, clang-format, clang-tidy, shellcheck
   all      everything above
@@ -20,9 +21,11 @@ TEXT
 }
 
 core=(g++ cmake ninja-build ccache libeigen3-dev libgtest-dev libgmock-dev libbenchmark-dev python3)
+python=(python3-dev pybind11-dev python3-numpy python3-pytest python3-nibabel python3-zarr
+        python3-setuptools python3-wheel python3-pip)
 io=("${core[@]}" libinsighttoolkit5-dev libvtk9-dev libcli11-dev libfmt-dev nlohmann-json3-dev
     libgdcm-dev libtiff-dev libpng-dev zlib1g-dev gnuplot-nox libboost-dev libegl-dev libegl1
-    libgl1-mesa-dri libembree-dev libtbb-dev)
+    libgl1-mesa-dri libembree-dev libtbb-dev "${python[@]}")
 viewer=("${io[@]}" libvtk9-qt-dev qtbase5-dev qttools5-dev qttools5-dev-tools qttranslations5-l10n xvfb)
 dev=(git clang clang-format-14 clang-tidy libclang-rt-14-dev shellcheck)
 

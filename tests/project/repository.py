@@ -3,7 +3,7 @@
 import sys
 from pathlib import Path
 
-FOLDERS = ("include src baselines scenes filters io devices run pictures evaluation apps tests "
+FOLDERS = ("include src baselines scenes filters io devices run pictures evaluation apps bindings tests "
            "benchmarks examples data cmake docs scripts .ci").split()
 CPP = (".cpp", ".hpp")
 

@@ -1,0 +1,45 @@
+// The extension module palpate._palpate. The package palpate (palpate/__init__.py) is what people
+// import.
+#include <dlfcn.h>
+
+#include <filesystem>
+
+#include "bindings/python/bindings.hpp"
+
+namespace {
+
+/// Where the package keeps the helper programs: beside this module.
+std::string folder_of_helpers() {
+    Dl_info info;
+    if (!dladdr(reinterpret_cast<const void*>(&folder_of_helpers), &info) || !info.dli_fname) {
+        return {};
+    }
+    return std::filesystem::absolute(info.dli_fname).parent_path() / "libexec/palpate";
+}
+
+}  // namespace
+
+/// Asked for by palpate::io (docs/package.md).
+extern "C" const char* palpate_helper_folder();
+extern "C" const char* palpate_helper_folder() {
+    static const std::string folder = folder_of_helpers();
+    return folder.c_str();
+}
+
+PYBIND11_MODULE(_palpate, module) {
+    using namespace palpate::python;
+    module.attr("__version__") = PALPATE_VERSION;
+    bind_errors();
+    bind_volumes(module);
+    bind_filters(module);
+    bind_files(module);
+    bind_fields(module);
+    bind_surfaces(module);
+    bind_settings(module);
+    bind_layers(module);
+    bind_tools(module);
+    bind_render_setup(module);
+    bind_renderer(module);
+    bind_offline(module);
+    bind_scenes(module);
+}
