@@ -18,6 +18,14 @@ void bind_tools(py::module_& module);
 void bind_render_setup(py::module_& module);
 void bind_renderer(py::module_& module);
 void bind_offline(py::module_& module);
+void bind_devices(py::module_& module);
+void bind_snapshots(py::module_& module);
+void bind_commands(py::module_& module);
+void bind_servo(py::module_& module);
+void bind_edits(py::module_& module);
+void bind_run(py::module_& module);
+void bind_recordings(py::module_& module);
+void bind_evaluation(py::module_& module);
 void bind_scenes(py::module_& module);
 
 }  // namespace palpate::python

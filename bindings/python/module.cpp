@@ -41,5 +41,13 @@ PYBIND11_MODULE(_palpate, module) {
     bind_render_setup(module);
     bind_renderer(module);
     bind_offline(module);
+    bind_devices(module);
+    bind_snapshots(module);
+    bind_commands(module);
+    bind_servo(module);
+    bind_edits(module);
+    bind_run(module);
+    bind_recordings(module);
+    bind_evaluation(module);
     bind_scenes(module);
 }

@@ -3,9 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
-
 #include <clocale>
+#include <limits>
 
 #include "support/scratch_folder.hpp"
 

@@ -6,13 +6,13 @@ points are x, y, z, orientations are unit quaternions w, x, y, z.
 """
 
 from ._palpate import *  # noqa: F401,F403
-from ._palpate import __version__
+from ._palpate import __version__, command
 from .arrays import as_volume
 from .errors import DeviceError, Error, InputError, OutputError, QueueFull, SeriesChoice
-from .trace import Trace, read_trace, read_trajectory, replay
+from .trace import Recording, Trace, read_recording, read_trace, read_trajectory, replay
 
-for _kind in (DeviceError, Error, InputError, OutputError, QueueFull, SeriesChoice, Trace,
-              as_volume, read_trace, read_trajectory, replay):
+for _kind in (DeviceError, Error, InputError, OutputError, QueueFull, Recording, SeriesChoice,
+              Trace, as_volume, read_recording, read_trace, read_trajectory, replay):
     _kind.__module__ = __name__
 
 __all__ = sorted(name for name in globals()

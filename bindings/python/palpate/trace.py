@@ -80,3 +80,28 @@ def read_trajectory(path):
     """A motion of the hand from CSV: (time [s], position [mm], orientation or None). Raises
     InputError."""
     return _palpate._read_trajectory(path)
+
+
+@dataclasses.dataclass(repr=False, eq=False)
+class Recording:
+    """A live session as it was recorded.
+
+    head: what it was at its start (version, begun, volume, solid, interpolation, background,
+    isovalue, device, rate, method, force, limits, transform). trace: its ticks; commands: for each
+    command, the number of the tick that it came before. complete: not cut off; lost: events that
+    the recording lost.
+    """
+    head: dict
+    trace: Trace
+    commands: numpy.ndarray
+    complete: bool
+    lost: int
+
+    def __repr__(self):
+        return f"Recording({len(self.trace)} ticks, {len(self.commands)} commands)"
+
+
+def read_recording(path):
+    """A recording as a Recording. Raises InputError; validate() renders it again."""
+    head, table, commands, complete, lost = _palpate._read_recording(path)
+    return Recording(head, Trace(**table), commands, complete, lost)
