@@ -149,8 +149,8 @@ void bind_live_writer(py::module_& module) {
 }  // namespace
 
 void bind_files(py::module_& module) {
-    bind_load(module);
     bind_loaded(module);
+    bind_load(module);
     bind_live_writer(module);
     module.def(
         "write", &write, py::arg("volume"), py::arg("path"), py::kw_only(),

@@ -61,11 +61,13 @@ def test_every_class_has_the_members_of_its_stub_and_no_other():
     wrong = []
     for name, nodes in stub_names(TREE.body).items():
         kind = getattr(palpate, name, None)
-        if not isinstance(nodes[0], ast.ClassDef) or issubclass(kind, Exception):
+        if not isinstance(nodes[0], ast.ClassDef):
+            continue
+        if isinstance(kind, type) and issubclass(kind, Exception):
             continue
         told = public(stub_names(nodes[0].body))
         there = set(members(kind))
-        if name == "Trace":
+        if hasattr(kind, "__dataclass_fields__"):
             there |= set(kind.__dataclass_fields__)
         if told != there:
             wrong.append((name, sorted(told - there), sorted(there - told)))
@@ -78,7 +80,7 @@ def test_parameters_have_the_names_of_the_stub():
             (getattr(palpate, node.name), node.body) for node in TREE.body
             if isinstance(node, ast.ClassDef)]:
         for name, nodes in stub_names(body).items():
-            function = getattr(owner, name)
+            function = getattr(owner, name, None)
             if not isinstance(nodes[0], ast.FunctionDef) or not callable(function):
                 continue
             if name == "__init__" and hasattr(owner, "_fields"):
