@@ -15,14 +15,14 @@ import palpate
 class FallingMass:
     """What the device's thread calls: info(), read(), and where there are, write() and close()."""
 
-    mass, damping = 0.1, 2.5  # kg, N s/m
+    mass, damping = 0.1, 20.0  # kg, N s/m: it falls in oil, and so bears late forces
 
     def __init__(self):
         self.height, self.speed, self.force = 8.0, 0.0, 0.0  # mm, m/s, N
         self.seen = time.monotonic()
 
     def info(self):
-        limits = palpate.DeviceLimits(maximum_force=20, physical_damping=0.0025)
+        limits = palpate.DeviceLimits(maximum_force=20, physical_damping=0.02)
         return palpate.DeviceInfo(name="falling mass", limits=limits)
 
     def read(self):
