@@ -55,7 +55,8 @@ void bind_edits(py::module_& module) {
                  return edit::Replace{at, samples};
              }),
              py::arg("at"), py::arg("samples"), "at: index (i, j, k) of the first one.");
-    py::class_<Editor>(module, "Editor", "Applies edits to samples, with undo. One thread at a time.")
+    py::class_<Editor>(module, "Editor",
+                       "Applies edits to samples, with undo. One thread at a time.")
         .def(py::init([](const Volume& volume, std::size_t history_bytes) {
                  return std::make_unique<Editor>(std::make_shared<const Samples>(volume),
                                                  history_bytes);
@@ -67,16 +68,19 @@ void bind_edits(py::module_& module) {
             [](Editor& e, const Edit& edit, bool same_step) {
                 return box_of(e.apply(edit, same_step ? EditStep::same : EditStep::own));
             },
-            py::arg("edit"), py::arg("same_step") = false,
-            py::call_guard<py::gil_scoped_release>(),
-            "The box of samples that changed, (low, high), or None. same_step: belongs to the last\n"
+            py::arg("edit"), py::arg("same_step") = false, py::call_guard<py::gil_scoped_release>(),
+            "The box of samples that changed, (low, high), or None. same_step: belongs to the "
+            "last\n"
             "step of undo().")
-        .def("undo", [](Editor& e) { return box_of(e.undo()); },
-             "The box of samples that changed, or None.")
-        .def("redo", [](Editor& e) { return box_of(e.redo()); },
-             "The box of samples that changed, or None.")
+        .def(
+            "undo", [](Editor& e) { return box_of(e.undo()); },
+            "The box of samples that changed, or None.")
+        .def(
+            "redo", [](Editor& e) { return box_of(e.redo()); },
+            "The box of samples that changed, or None.")
         .def_property_readonly(
-            "samples", [](const Editor& e) { return std::const_pointer_cast<Samples>(e.samples()); },
+            "samples",
+            [](const Editor& e) { return std::const_pointer_cast<Samples>(e.samples()); },
             "The current version: Samples, which do not change.")
         .def_property_readonly("undo_steps", &Editor::undo_steps)
         .def_property_readonly("redo_steps", &Editor::redo_steps);

@@ -30,7 +30,8 @@ void bind_evaluation(py::module_& module) {
         "contestants",
         [] {
             std::vector<std::string> names;
-            for (const auto& contestant : evaluation::contestants()) names.push_back(contestant.name);
+            for (const auto& contestant : evaluation::contestants())
+                names.push_back(contestant.name);
             return names;
         },
         "What experiments compare: all methods on the linear field, and 'smooth'.");

@@ -14,10 +14,16 @@ PythonDevice::PythonDevice(py::object self, DeviceInfo info, double rate)
     thread_ = std::thread([this] { run(); });
 }
 
-PythonDevice::~PythonDevice() {
+void PythonDevice::finish() {
     link_.stop();
     ending_ = true;
-    thread_.join();
+    if (std::this_thread::get_id() == asking_.load()) return;
+    const std::lock_guard lock(finish_);
+    if (thread_.joinable()) thread_.join();
+}
+
+PythonDevice::~PythonDevice() {
+    finish();
     const py::gil_scoped_acquire gil;
     self_ = py::object();
 }
@@ -33,6 +39,7 @@ void PythonDevice::set_problem(const std::string& problem) {
 }
 
 void PythonDevice::run() {
+    asking_ = std::this_thread::get_id();
     using namespace std::chrono;
     const auto period = duration_cast<steady_clock::duration>(duration<double>(1 / rate_));
     auto next = steady_clock::now();

@@ -18,8 +18,12 @@ class PythonDevice final : public Device {
     /// `self` has read() and may have write(force, torque) and close(). Starts the thread, which
     /// calls them `rate` [Hz] times a second. With the GIL. Throws std::invalid_argument.
     PythonDevice(py::object self, DeviceInfo info, double rate);
-    /// Ends the thread, after a last write of zero and close(). Without the GIL.
+    /// finish(). Without the GIL.
     ~PythonDevice() override;
+
+    /// Ends the thread, after a last write of zero and close(). Any thread, any number of times,
+    /// without the GIL; from the device's own functions it only asks for the end.
+    void finish();
 
     DeviceInfo info() const override { return info_; }
     /// What its functions raised.
@@ -42,6 +46,8 @@ class PythonDevice final : public Device {
     mutable std::mutex mutex_;  // of problem_
     std::string problem_;
     std::atomic<bool> ending_{false};
+    std::atomic<std::thread::id> asking_;  // the device's thread
+    std::mutex finish_;
     std::thread thread_;  // last: it uses all of the above
 };
 

@@ -46,9 +46,9 @@ py::tuple read(const fs::path& path) {
 void compare(const run::Replay::Tick& tick, const std::string& recording) {
     const auto differs = run::difference(tick.recorded, tick.again);
     if (!differs) return;
-    throw io::InputError(recording + ": tick " + std::to_string(tick.number) + " differs: " +
-                         differs->part + ": recorded " + differs->recorded + ", now " +
-                         differs->again);
+    throw io::InputError(recording + ": tick " + std::to_string(tick.number) +
+                         " differs: " + differs->part + ": recorded " + differs->recorded +
+                         ", now " + differs->again);
 }
 
 py::dict validate(const fs::path& path, const std::string& volume,
@@ -77,11 +77,12 @@ py::dict validate(const fs::path& path, const std::string& volume,
 
 void bind_recordings(py::module_& module) {
     module.def("_read_recording", &read, py::arg("path"));
-    module.def("validate", &validate, py::arg("path"), py::arg("volume") = "",
-               py::arg("progress") = py::none(),
-               "Renders every tick of a recording again and compares it bit for bit, with\n"
-               "`volume` in place of the recorded name where it is given. A dict of ticks, commands,\n"
-               "complete (not cut off) and lost events; InputError for the first tick that differs.");
+    module.def(
+        "validate", &validate, py::arg("path"), py::arg("volume") = "",
+        py::arg("progress") = py::none(),
+        "Renders every tick of a recording again and compares it bit for bit, with\n"
+        "`volume` in place of the recorded name where it is given. A dict of ticks, commands,\n"
+        "complete (not cut off) and lost events; InputError for the first tick that differs.");
 }
 
 }  // namespace palpate::python

@@ -76,10 +76,12 @@ std::shared_ptr<run::Run> make(const run::LoadedVolume& loaded, const std::optio
 
 void bind_playback(py::class_<run::Run, std::shared_ptr<run::Run>>& run) {
     using R = run::Run;
-    run.def("play", [](R& r, double speed) { r.data().player().play(speed); }, py::arg("speed"),
-            Unlocked(), "Of a sequence: seconds of it per second; 0 pauses.")
-        .def("seek", [](R& r, double time) { r.data().player().seek(time); }, py::arg("time"),
-             Unlocked(), "Goes to a time of the sequence [s].")
+    run.def(
+           "play", [](R& r, double speed) { r.data().player().play(speed); }, py::arg("speed"),
+           Unlocked(), "Of a sequence: seconds of it per second; 0 pauses.")
+        .def(
+            "seek", [](R& r, double time) { r.data().player().seek(time); }, py::arg("time"),
+            Unlocked(), "Goes to a time of the sequence [s].")
         .def_property_readonly(
             "problem",
             [](const R& r) {
@@ -92,12 +94,15 @@ void bind_playback(py::class_<run::Run, std::shared_ptr<run::Run>>& run) {
 
 void bind_editing(py::class_<run::Run, std::shared_ptr<run::Run>>& run) {
     using R = run::Run;
-    run.def("edit", [](R& r, const Edit& edit) { r.data().editor().apply(edit); },
-            py::arg("edit"), Unlocked(), "Makes an edit (Stroke, Fill, Replace): one undo step.")
-        .def("undo", [](R& r) { return r.data().editor().undo(); }, Unlocked(),
-             "False if there is nothing to undo.")
-        .def("redo", [](R& r) { return r.data().editor().redo(); }, Unlocked(),
-             "False if there is nothing to redo.")
+    run.def(
+           "edit", [](R& r, const Edit& edit) { r.data().editor().apply(edit); }, py::arg("edit"),
+           Unlocked(), "Makes an edit (Stroke, Fill, Replace): one undo step.")
+        .def(
+            "undo", [](R& r) { return r.data().editor().undo(); }, Unlocked(),
+            "False if there is nothing to undo.")
+        .def(
+            "redo", [](R& r) { return r.data().editor().redo(); }, Unlocked(),
+            "False if there is nothing to redo.")
         .def(
             "set_brush",
             [](R& r, const std::optional<run::HandBrush>& brush) {
@@ -105,9 +110,15 @@ void bind_editing(py::class_<run::Run, std::shared_ptr<run::Run>>& run) {
             },
             py::arg("brush"), Unlocked(), "A HandBrush that follows the proxy; None: only feel.")
         .def(
-            "save",
-            [](R& r, const fs::path& path) { return r.data().save(path, {}); }, py::arg("path"),
-            Unlocked(), "Writes the samples as they are now. Raises OutputError.");
+            "save", [](R& r, const fs::path& path) { return r.data().save(path, {}); },
+            py::arg("path"), Unlocked(), "Writes the samples as they are now. Raises OutputError.");
+}
+
+void start(const py::object& self) {
+    auto& r = self.cast<run::Run&>();
+    stop_at_exit<run::Run>(self, [](run::Run& running) { running.stop(); });
+    const py::gil_scoped_release unlocked;
+    r.start();
 }
 
 void send(run::Run& r, const Sent& sent) {
@@ -125,9 +136,10 @@ void bind_run(py::module_& module) {
         "A live run: a servo with its device, data and recording. Use it as a context manager.\n"
         "By one thread at a time.");
     live.def(py::init(&make), py::arg("loaded"), py::arg("setup") = py::none(),
-             "loaded: from load(). setup: Setup, by default Setup.live(). Opens the device; nothing\n"
+             "loaded: from load(). setup: Setup, by default Setup.live(). Opens the device; "
+             "nothing\n"
              "moves before start(). Raises ValueError, InputError, DeviceError.")
-        .def("start", &R::start, Unlocked(), "Once.")
+        .def("start", &start, "Once.")
         .def("stop", &R::stop, Unlocked(), "Forces go to zero; for good.")
         .def("send", &send, py::arg("command"), Unlocked(),
              "As Servo.send(). Raises ValueError, QueueFull.")
@@ -138,15 +150,14 @@ void bind_run(py::module_& module) {
         .def("stop_recording", &R::stop_recording, Unlocked(), "The number of its ticks.")
         .def("field", &R::field_now, Unlocked(), "A copy of the Field felt, edits included.")
         .def_property_readonly("device", &R::device, "DeviceInfo")
-        .def_property_readonly(
-            "privileges", [](const R& r) { return std::vector<std::string>(r.privileges()); })
+        .def_property_readonly("privileges",
+                               [](const R& r) { return std::vector<std::string>(r.privileges()); })
         .def_property_readonly("isovalue", &R::isovalue, "Asked for last [data units].")
         .def("__enter__",
-             [](const std::shared_ptr<R>& r) {
-                 r->start();
-                 return r;
-             },
-             Unlocked())
+             [](const py::object& self) {
+                 start(self);
+                 return self;
+             })
         .def("__exit__", [](R& r, const py::args&) {
             const py::gil_scoped_release unlocked;
             r.stop();

@@ -18,6 +18,11 @@ struct DeviceServo {
           isovalue(renderer.proxy.isovalue),
           servo(Session{renderer, {}}, *device, settings) {}
 
+    void stop() {
+        servo.stop();
+        device->finish();
+    }
+
     std::unique_ptr<PythonDevice> device;
     Field field;
     double isovalue;
@@ -40,6 +45,13 @@ Held make(const Renderer& renderer, const py::object& device, double rate, bool 
     return made_without_gil<DeviceServo>(renderer, std::move(its_device), settings);
 }
 
+void start(const py::object& self) {
+    auto& s = self.cast<DeviceServo&>();
+    stop_at_exit<DeviceServo>(self, [](DeviceServo& running) { running.stop(); });
+    const py::gil_scoped_release unlocked;
+    s.servo.start();
+}
+
 void send(DeviceServo& s, const Sent& sent) {
     if (!s.servo.send(command_of(sent, s.field, s.isovalue))) {
         const py::object type = py::module_::import("palpate.errors").attr("QueueFull");
@@ -56,32 +68,39 @@ void bind_servo(py::module_& module) {
         "A session that runs on a real-time thread of its own, with a device written in Python.\n"
         "The servo thread never takes the GIL. The device's functions run on another thread:\n"
         "info() -> DeviceInfo, read() -> DeviceReading, and, where there are, write(force [N],\n"
-        "torque [N mm]) and close(). While Python does not come back to them readings become stale\n"
+        "torque [N mm]) and close(). While Python does not come back to them readings become "
+        "stale\n"
         "after 20 ms and there is no force. For devices by name, sequences and recordings use Run.")
         .def(py::init(&make), py::arg("renderer"), py::arg("device"), py::kw_only(),
-             py::arg("rate") = 1000.0, py::arg("real_time") = true,
-             py::arg("device_rate") = 1000.0,
+             py::arg("rate") = 1000.0, py::arg("real_time") = true, py::arg("device_rate") = 1000.0,
              "rate [Hz] 250 to 8000. device_rate [Hz]: how often the device is asked.")
-        .def("start", [](DeviceServo& s) { s.servo.start(); }, Unlocked(), "Once.")
-        .def("stop", [](DeviceServo& s) { s.servo.stop(); }, Unlocked(),
-             "Zero force, and the end of the thread.")
+        .def("start", &start, "Once.")
+        .def("stop", &DeviceServo::stop, Unlocked(),
+             "Zero force, and the end of both threads: the device is written a last zero and "
+             "closed.")
         .def("send", &send, py::arg("command"),
              "A command of palpate.command, or ForceSettings, Friction, Penetrability,\n"
              "DeviceTransform or DeviceLimits. Never waits. Raises ValueError, QueueFull.")
-        .def("snapshot", [](const DeviceServo& s) { return s.servo.snapshot(); },
-             "The newest tick, a Snapshot; None before the first.")
-        .def("report", [](const DeviceServo& s) { return s.servo.report(); }, "ServoReport")
+        .def(
+            "snapshot", [](const DeviceServo& s) { return s.servo.snapshot(); },
+            "The newest tick, a Snapshot; None before the first.")
+        .def(
+            "report", [](const DeviceServo& s) { return s.servo.report(); }, "ServoReport")
         .def_property_readonly(
             "privileges",
             [](const DeviceServo& s) { return std::vector<std::string>(s.servo.privileges()); },
             "A sentence for each privilege of real time. After start().")
-        .def_property_readonly("device_problem",
-                               [](const DeviceServo& s) { return s.device->problem(); },
-                               "What the device's functions raised; usually empty.")
-        .def("__enter__", [](const Held& s) { s->servo.start(); return s; }, Unlocked())
+        .def_property_readonly(
+            "device_problem", [](const DeviceServo& s) { return s.device->problem(); },
+            "What the device's functions raised; usually empty.")
+        .def("__enter__",
+             [](const py::object& self) {
+                 start(self);
+                 return self;
+             })
         .def("__exit__", [](DeviceServo& s, const py::args&) {
             const py::gil_scoped_release unlocked;
-            s.servo.stop();
+            s.stop();
         });
 }
 

@@ -48,23 +48,25 @@ void bind_report(py::module_& module) {
 void bind_snapshots(py::module_& module) {
     using S = Snapshot;
     py::class_<S>(module, "Snapshot", "The newest tick of a live session, and its state.")
-        .def_property_readonly("tick", [](const S& s) { return s.session.tick; }, "Tick")
-        .def_property_readonly("device", [](const S& s) { return s.session.device; },
-                               "DeviceReading")
-        .def_property_readonly("transform", [](const S& s) { return s.session.transform; },
-                               "DeviceTransform in use.")
+        .def_property_readonly(
+            "tick", [](const S& s) { return s.session.tick; }, "Tick")
+        .def_property_readonly(
+            "device", [](const S& s) { return s.session.device; }, "DeviceReading")
+        .def_property_readonly(
+            "transform", [](const S& s) { return s.session.transform; }, "DeviceTransform in use.")
         .def_property_readonly("frozen", [](const S& s) { return s.session.frozen; })
         .def_property_readonly("clutched", [](const S& s) { return s.session.clutched; })
-        .def_property_readonly("moment", [](const S& s) { return s.session.moment; },
-                               "[s] of a sequence")
-        .def_property_readonly("version", [](const S& s) { return s.session.version; },
-                               "Of the samples.")
+        .def_property_readonly(
+            "moment", [](const S& s) { return s.session.moment; }, "[s] of a sequence")
+        .def_property_readonly(
+            "version", [](const S& s) { return s.session.version; }, "Of the samples.")
         .def_readonly("number", &S::number, "Of the tick, from 0.")
         .def_readonly("missed", &S::missed, "Deadlines so far.")
         .def_readonly("speed", &S::speed, "At which a sequence is played.")
         .def_readonly("stiffness", &S::stiffness, "[N/mm] in use")
-        .def_property_readonly("normal", [](const S& s) { return s.normal; },
-                               "At the SCP, unit, out of the solid, physical axes.")
+        .def_property_readonly(
+            "normal", [](const S& s) { return s.normal; },
+            "At the SCP, unit, out of the solid, physical axes.")
         .def_property_readonly("contacts", &contacts_of,
                                "Of a tool: (place [mm], normal, pressure [mm]); pressure 0: near.")
         .def_readonly("penetrability_on", &S::penetrability_on)

@@ -23,4 +23,17 @@ std::shared_ptr<T> made_without_gil(Arguments&&... arguments) {
     return {new T(std::forward<Arguments>(arguments)...), destroy};
 }
 
+/// Calls stop(object), without the GIL, when the process ends while `self` still holds the object.
+template <class T, class Stop>
+void stop_at_exit(const py::object& self, Stop stop) {
+    const std::weak_ptr<T> held = self.cast<std::shared_ptr<T>>();
+    const py::cpp_function at_exit([held, stop] {
+        const std::shared_ptr<T> object = held.lock();
+        if (!object) return;
+        const py::gil_scoped_release unlocked;
+        stop(*object);
+    });
+    py::module_::import("weakref").attr("finalize")(self, at_exit);
+}
+
 }  // namespace palpate::python

@@ -1,6 +1,9 @@
 """Live sessions from Python: devices in Python, runs, edits, recordings, and a hogged GIL."""
 
 import ctypes
+import os
+import subprocess
+import sys
 import threading
 import time
 
@@ -65,7 +68,6 @@ def test_a_device_in_python_is_asked_on_a_thread_of_its_own_and_feels_the_force(
         servo.send(palpate.command.Forces(False))
         until(lambda: not numpy.any(servo.snapshot().tick.force))
     assert len(device.threads) == 1 and threading.get_ident() not in device.threads
-    del servo
     assert device.closed and not numpy.any(device.forces[-1])
 
 
@@ -83,6 +85,41 @@ def test_a_device_that_raises_ends_its_force_and_says_what_it_raised():
         until(lambda: not numpy.any(servo.snapshot().tick.force))
         assert "cable pulled" in servo.device_problem
     assert not numpy.any(device.forces[-1])
+
+
+def test_a_program_that_ends_without_stopping_writes_zero_and_closes_the_device():
+    program = """
+import sys, time
+sys.path.insert(0, sys.argv[1])
+import live_test, palpate
+class Told(live_test.Still):
+    def close(self):
+        print("closed", not self.forces[-1].any(), max(f[2] for f in self.forces) > 0.1)
+servo = palpate.Servo(live_test.renderer(), Told(live_test.surface_height() - 0.5), real_time=False)
+servo.start()
+live_test.until(lambda: servo.snapshot() and servo.snapshot().tick.force[2] > 0.2)
+live_test.until(lambda: servo.snapshot().number > 200)
+run = palpate.Run(palpate.load("synthetic:sphere:16x16x16"), palpate.Setup(real_time=False))
+run.start()
+"""
+    ran = subprocess.run([sys.executable, "-B", "-c", program, os.path.dirname(__file__)],
+                         stdout=subprocess.PIPE, text=True, timeout=60, check=True)
+    assert ran.stdout.strip() == "closed True True"
+
+
+def test_a_device_may_stop_its_own_servo():
+    class Tired(Still):
+        def read(self):
+            if len(self.forces) == 20:
+                self.servo.stop()
+            return super().read()
+
+    device = Tired(50)
+    device.servo = palpate.Servo(renderer(), device, real_time=False)
+    device.servo.start()
+    until(lambda: device.closed)
+    device.servo.stop()
+    del device.servo
 
 
 def test_objects_that_are_no_device_are_refused():
