@@ -3,18 +3,25 @@
 #include <dlfcn.h>
 
 #include <filesystem>
+#include <string>
+#include <system_error>
 
 #include "bindings/python/bindings.hpp"
 
 namespace {
 
-/// Where the package keeps the helper programs: beside this module.
+/// Where the helper programs are: inside the package, as pip installs it, or in the prefix that it
+/// is installed in.
 std::string folder_of_helpers() {
     Dl_info info;
     if (!dladdr(reinterpret_cast<const void*>(&folder_of_helpers), &info) || !info.dli_fname) {
         return {};
     }
-    return std::filesystem::absolute(info.dli_fname).parent_path() / "libexec/palpate";
+    const auto package = std::filesystem::absolute(info.dli_fname).parent_path();
+    const auto inside = package / "libexec/palpate";
+    std::error_code error;
+    if (std::filesystem::is_directory(inside, error)) return inside;
+    return (package / PALPATE_LIBEXEC_FROM_PYTHON).lexically_normal();
 }
 
 }  // namespace

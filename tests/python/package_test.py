@@ -36,11 +36,11 @@ def installed(tmp_path_factory):
     return target
 
 
-def run_with(installed, folder):
+def run_with(installed, folder, prefix=None):
     environment = {name: value for name, value in os.environ.items()
                    if not name.startswith("PALPATE")}
     environment["PYTHONPATH"] = str(installed)
-    return subprocess.run([sys.executable, "-c", FEEL, installed], cwd=folder, env=environment,
+    return subprocess.run([sys.executable, "-c", FEEL, prefix or installed], cwd=folder, env=environment,
                           stderr=subprocess.PIPE, text=True, check=False)
 
 
@@ -49,6 +49,17 @@ def test_the_installed_package_reads_writes_and_has_its_data(installed, tmp_path
     assert ran.returncode == 0, ran.stderr
     assert list(installed.glob("palpate-*.dist-info"))
     assert {"py.typed", "__init__.pyi"} <= {path.name for path in (installed / "palpate").iterdir()}
+
+
+def test_the_installed_component_works_wherever_its_prefix_was_moved_to(tmp_path):
+    for component in ("palpate-python", "palpate-io"):
+        subprocess.run(["cmake", "--install", os.environ["PALPATE_BUILD"], "--component", component,
+                        "--prefix", tmp_path / "first"], check=True, stdout=subprocess.DEVNULL)
+    moved = (tmp_path / "first").rename(tmp_path / "moved")
+    packages = list(moved.glob("**/dist-packages"))
+    assert len(packages) == 1
+    ran = run_with(packages[0], tmp_path, moved)
+    assert ran.returncode == 0, ran.stderr
 
 
 def test_it_uses_the_helper_program_inside_the_package(installed, tmp_path):
