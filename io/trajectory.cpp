@@ -3,6 +3,8 @@
 
 #include <cmath>
 #include <optional>
+#include <stdexcept>
+#include <utility>
 
 #include "io/number.hpp"
 #include "io/trace_columns.hpp"
@@ -11,15 +13,30 @@
 namespace palpate::io {
 namespace {
 
-/// Unit to all digits; what is so already stays, to the bit.
-Quaternion orientation_from(const CsvReader& rows, const QuaternionColumns& columns) {
-    Quaternion q = columns.read(rows);
+constexpr const char* no_orientation =
+    "qw, qx, qy, qz are no orientation: a quaternion of length 1 is needed";
+
+/// Unit to all digits; what is so already stays, to the bit. Nothing if it is not nearly unit.
+std::optional<Quaternion> unit(Quaternion q) {
     const double squared = q.squaredNorm();
-    if (!(std::abs(squared - 1) <= 2e-3)) {
-        rows.fail("qw, qx, qy, qz are no orientation: a quaternion of length 1 is needed");
-    }
+    if (!(std::abs(squared - 1) <= 2e-3)) return std::nullopt;
     if (std::abs(squared - 1) > 1e-14) q.normalize();
     return q;
+}
+
+Quaternion orientation_from(const CsvReader& rows, const QuaternionColumns& columns) {
+    const auto q = unit(columns.read(rows));
+    if (!q) rows.fail(no_orientation);
+    return *q;
+}
+
+/// What is wrong with a row; empty if nothing is.
+std::string problem_of(const Trajectory& t, std::size_t row) {
+    if (!std::isfinite(t.time[row])) return "the time is not finite";
+    if (row > 0 && !(t.time[row] > t.time[row - 1])) {
+        return "the time does not come after that of the row before";
+    }
+    return t.position[row].allFinite() ? "" : "the position is not finite";
 }
 
 }  // namespace
@@ -56,6 +73,31 @@ Trajectory parse_trajectory(std::string_view text, const std::string& name) {
         throw InputError(name + ": has a header and no rows: add at least one position");
     }
     return trajectory;
+}
+
+Trajectory checked_trajectory(std::vector<double> time, std::vector<Vec3> position,
+                              std::vector<Quaternion> orientation) {
+    Trajectory t{std::move(time), std::move(position), std::move(orientation)};
+    const std::size_t rows = t.time.size();
+    if (rows == 0) throw std::invalid_argument("a trajectory needs at least one position");
+    if (t.position.size() != rows || (!t.orientation.empty() && t.orientation.size() != rows)) {
+        throw std::invalid_argument(
+            "a trajectory needs as many positions (and orientations) as times");
+    }
+    for (std::size_t row = 0; row < rows; ++row) {
+        std::string problem = problem_of(t, row);
+        if (problem.empty() && !t.orientation.empty()) {
+            const auto q = unit(t.orientation[row]);
+            if (q)
+                t.orientation[row] = *q;
+            else
+                problem = no_orientation;
+        }
+        if (!problem.empty()) {
+            throw std::invalid_argument("row " + std::to_string(row) + ": " + problem);
+        }
+    }
+    return t;
 }
 
 Trajectory read_trajectory(const std::filesystem::path& path) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <clocale>
+#include <limits>
 
 #include "support/scratch_folder.hpp"
 
@@ -97,6 +98,29 @@ TEST(Trajectory, of_garbage_is_refused_in_one_printable_line) {
     why_refused(std::string(3'000'000, 'x'));
     why_refused(std::string(300'000, ','));
     why_refused("t,x,y,z\n0,0,0," + std::string(1'000'000, '9') + "\n");
+}
+
+TEST(Trajectory, from_numbers_in_memory_is_checked_as_one_from_text) {
+    const std::vector<Vec3> two(2, Vec3(1, 2, 3));
+    const auto why = [](std::vector<double> time, std::vector<Vec3> at,
+                        std::vector<Quaternion> turns = {}) -> std::string {
+        try {
+            checked_trajectory(std::move(time), std::move(at), std::move(turns));
+        } catch (const std::invalid_argument& e) {
+            return e.what();
+        }
+        return "accepted";
+    };
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_EQ(why({0, 1}, two), "accepted");
+    EXPECT_TRUE(contains(why({}, {}), "at least one"));
+    EXPECT_TRUE(contains(why({0}, two), "as many"));
+    EXPECT_TRUE(contains(why({0, 0}, two), "row 1: the time does not come after"));
+    EXPECT_TRUE(contains(why({0, nan}, two), "row 1: the time is not finite"));
+    EXPECT_TRUE(contains(why({0}, {Vec3(nan, 0, 0)}), "row 0: the position"));
+    EXPECT_TRUE(contains(why({0}, {Vec3::Zero()}, {Quaternion(2, 0, 0, 0)}), "row 0: qw"));
+    const auto unit = checked_trajectory({0}, {Vec3::Zero()}, {Quaternion(1.0001, 0, 0, 0)});
+    EXPECT_EQ(unit.orientation[0].w(), 1);
 }
 
 TEST(Trajectory, file_that_is_not_there_or_is_a_folder_says_so) {

@@ -45,6 +45,7 @@ MAY_SEE = {
     "apps/viewer/slices": ("include", "pictures", "apps/viewer/model"),
     "apps/viewer/panel": (*LIBRARIES, "pictures", "apps/options", "apps/viewer/model"),
     "apps/viewer/window": (*LIBRARIES, *WINDOW),
+    "bindings/python": (*LIBRARIES, "evaluation"),
     "benchmarks": (*LIBRARIES, *WINDOW, "pictures", "tests"),
     "examples": LIBRARIES,
 }

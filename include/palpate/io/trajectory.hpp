@@ -26,7 +26,13 @@ struct Trajectory {
 /// number, an orientation that is not unit, time that does not increase.
 Trajectory parse_trajectory(std::string_view text, const std::string& name);
 
-/// The same from a file.
+/// From numbers in memory; without orientations if there are none. What is unit to a thousandth is
+/// made so to all digits. Throws std::invalid_argument, naming the row from 0, for vectors of other
+/// lengths, no rows and what parse_trajectory() refuses.
+Trajectory checked_trajectory(std::vector<double> time, std::vector<Vec3> position,
+                              std::vector<Quaternion> orientation = {});
+
+/// The same as parse_trajectory() from a file.
 Trajectory read_trajectory(const std::filesystem::path& path);
 
 }  // namespace palpate::io

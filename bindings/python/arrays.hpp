@@ -1,0 +1,67 @@
+// NumPy arrays from and to the values of Palpate.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "bindings/python/casters.hpp"
+#include "palpate/volume.hpp"
+
+namespace palpate::python {
+
+/// Doubles in C order; other arrays and lists are converted.
+using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+/// Shares the array's samples [z, y, x], without a copy; `copy` makes one where they cannot be
+/// shared. Throws std::invalid_argument, saying what is wrong and what to do.
+Volume volume_from(const py::array& array, const Geometry& geometry_but_size, bool copy);
+/// A view of the samples, [z, y, x], that cannot be written to and keeps them alive.
+py::array array_of(const Volume& volume);
+
+/// Points in the rows of an array of shape (n, 3). Throws std::invalid_argument, which calls the
+/// array `name`.
+std::vector<Vec3> points_from(const Doubles& array, const char* name);
+
+/// An array that takes the numbers over, without a copy.
+template <class T>
+py::array_t<T> array_from(std::vector<T> numbers, const std::vector<py::ssize_t>& shape) {
+    auto kept = std::make_unique<std::vector<T>>(std::move(numbers));
+    const T* data = kept->data();
+    const py::capsule owner(kept.release(),
+                            [](void* p) { delete static_cast<std::vector<T>*>(p); });
+    return py::array_t<T>(shape, data, owner);
+}
+template <class T>
+py::array_t<T> array_from(std::vector<T> numbers) {
+    const auto count = static_cast<py::ssize_t>(numbers.size());
+    return array_from(std::move(numbers), {count});
+}
+/// Shape (n, 3), without a copy.
+py::array_t<double> array_from(std::vector<Vec3> points);
+
+/// `of(row)` of each row: a number, or an Eigen vector of fixed size in a row of its own.
+template <class Row, class Of>
+auto column(const std::vector<Row>& rows, const Of& of) {
+    using Value = std::decay_t<decltype(of(rows.front()))>;
+    if constexpr (std::is_arithmetic_v<Value>) {
+        py::array_t<Value> array(static_cast<py::ssize_t>(rows.size()));
+        Value* to = array.mutable_data();
+        for (const Row& row : rows) *to++ = of(row);
+        return array;
+    } else {
+        constexpr py::ssize_t width = Value::SizeAtCompileTime;
+        py::array_t<double> array({static_cast<py::ssize_t>(rows.size()), width});
+        double* to = array.mutable_data();
+        for (const Row& row : rows) {
+            const Value value = of(row);
+            for (int i = 0; i < width; ++i) *to++ = value[i];
+        }
+        return array;
+    }
+}
+/// w, x, y, z.
+inline Eigen::Vector4d wxyz(const Quaternion& q) {
+    return {q.w(), q.x(), q.y(), q.z()};
+}
+
+}  // namespace palpate::python

@@ -1,0 +1,76 @@
+// The classes of palpate.command.
+#include "bindings/python/commands.hpp"
+
+#include "bindings/python/bindings.hpp"
+#include "palpate/io/layers_file.hpp"
+
+namespace palpate::python {
+namespace {
+
+struct MakeCommand {
+    const Field& field;
+    double isovalue;
+
+    Command operator()(const PressThrough& press) const {
+        return penetrability_for(press, field, isovalue);
+    }
+    Command operator()(const auto& command) const { return command; }
+};
+
+/// A command of one value.
+template <class C, class Value>
+void bind(py::module_& names, const char* name, const char* argument, Value C::*member,
+          const char* about) {
+    py::class_<C>(names, name, about)
+        .def(py::init([member](Value value) {
+                 C command{};
+                 command.*member = value;
+                 return command;
+             }),
+             py::arg(argument))
+        .def_readonly(argument, member)
+        .def("__repr__", [name = std::string(name), member](const C& command) {
+            return py::str("command.{}({!r})").format(name, command.*member);
+        });
+}
+
+}  // namespace
+
+Command command_of(const Sent& sent, const Field& field, double isovalue) {
+    return std::visit(MakeCommand{field, isovalue}, sent);
+}
+
+void bind_commands(py::module_& module) {
+    py::module_ names = module.def_submodule("command", "Commands to a running session.");
+    bind(names, "Isovalue", "isovalue", &command::Isovalue::isovalue, "[data units]");
+    bind(names, "Freeze", "on", &command::Freeze::on, "Hand and proxy stand still, no force.");
+    bind(names, "Clutch", "on", &command::Clutch::on, "As if a clutch button was held.");
+    bind(names, "Forces", "on", &command::Forces::on, "Forces on or off.");
+    bind(names, "Scale", "scale", &command::Scale::scale,
+         "Scales the volume about the SCP: physical mm per device mm.");
+    bind(names, "Moment", "time", &command::Moment::time, "Goes to a time of a sequence [s].");
+    bind(names, "Speed", "speed", &command::Speed::speed,
+         "Seconds of a sequence per second; negative: backwards; 0: paused.");
+    py::class_<command::Samples>(names, "Samples", "Another version of the samples, same grid.")
+        .def(py::init([](const std::shared_ptr<Samples>& samples, std::uint64_t version) {
+                 return command::Samples{samples, version};
+             }),
+             py::arg("samples").none(false), py::arg("version") = 0)
+        .def_readonly("version", &command::Samples::version);
+    py::class_<command::UseLayers>(names, "UseLayers", "Layers from the next tick on; None: none.")
+        .def(py::init([](const std::optional<io::LayersFile>& layers,
+                         const std::optional<Volume>& volume) {
+                 if (!layers) return command::UseLayers{};
+                 if (layers->units == "%" && !volume) {
+                     throw std::invalid_argument("layers in percent need the volume they are for");
+                 }
+                 return command::UseLayers{std::make_shared<const Layers>(
+                     volume ? io::layers_for(*layers, *volume) : layers->layers)};
+             }),
+             py::arg("layers"), py::arg("volume") = py::none());
+    py::class_<command::UseTool>(names, "UseTool", "Another tool; None: a point.")
+        .def(py::init([](const std::shared_ptr<Tool>& tool) { return command::UseTool{tool}; }),
+             py::arg("tool"));
+}
+
+}  // namespace palpate::python

@@ -1,0 +1,58 @@
+// Devices: which there are, their readings, and those that are written in Python.
+#include "palpate/devices/devices.hpp"
+
+#include "bindings/python/bindings.hpp"
+#include "bindings/python/record.hpp"
+
+namespace palpate::python {
+namespace {
+
+py::list found_devices() {
+    std::vector<devices::DeviceFinding> findings;
+    {
+        const py::gil_scoped_release unlocked;
+        findings = devices::find_devices();
+    }
+    py::list list;
+    for (const devices::DeviceFinding& f : findings) {
+        list.append(py::dict(py::arg("name") = f.name, py::arg("found") = f.found,
+                             py::arg("what") = f.what, py::arg("missing") = f.missing,
+                             py::arg("options") = f.options));
+    }
+    return list;
+}
+
+}  // namespace
+
+void bind_devices(py::module_& module) {
+    using I = DeviceInfo;
+    Record<I>(module, "DeviceInfo",
+              "Properties of a device. Axes: x to the right, y up, z towards the person.")
+        .field("name", &I::name, "Of the backend.")
+        .field("model", &I::model, "As the device reports it.")
+        .field("limits", &I::limits, "DeviceLimits: never exceeded by a servo.")
+        .field("stiffness", &I::stiffness, "[N/mm] it is rated for")
+        .field("workspace_low", &I::workspace_low, "[device mm]")
+        .field("workspace_high", &I::workspace_high, "[device mm] corners of the usable box")
+        .field("renders_force", &I::renders_force, "False: position only.")
+        .field("renders_torque", &I::renders_torque, "False: torque is ignored.")
+        .field("has_orientation", &I::has_orientation, "Readings turn.")
+        .field("buttons", &I::buttons, "How many.")
+        .done();
+    using R = DeviceReading;
+    Record<R>(module, "DeviceReading", "The newest measurement of a device.")
+        .field("position", &R::position, "[device mm]")
+        .field("orientation", &R::orientation, "Tool axes to device axes, shape (3, 3).")
+        .field("buttons", &R::buttons, "Bit b is set while button b is held.")
+        .field("age", &R::age, "[s] since it was measured")
+        .field("status", &R::status,
+               "'starting', 'ready', 'uncalibrated', 'stale', 'lost', 'fault', 'finished'.")
+        .done();
+    module.def("find_devices", &found_devices,
+               "Looks for every kind of device: dicts with name, found, what, missing, options.");
+    module.def("fit_workspace", &fit_workspace, py::arg("geometry"), py::arg("device"),
+               py::arg("facing") = Facing::anterior,
+               "The DeviceTransform that fits the whole grid into the device's workspace.");
+}
+
+}  // namespace palpate::python

@@ -1,0 +1,89 @@
+// Edits as values, and the editor with undo and redo.
+#include "palpate/editor.hpp"
+
+#include "bindings/python/bindings.hpp"
+#include "bindings/python/record.hpp"
+#include "palpate/run/brush.hpp"
+
+namespace palpate::python {
+namespace {
+
+using Box = std::pair<Index3, Index3>;
+
+std::optional<Box> box_of(const SampleBox& box) {
+    if (box.empty()) return std::nullopt;
+    return Box(box.low, box.high);
+}
+
+void bind_brushes(py::module_& module) {
+    Record<Brush>(module, "Brush", "A round brush.")
+        .field("kind", &Brush::kind, "'carve', 'add', 'smooth' or 'paint'.")
+        .field("radius", &Brush::radius, "[mm, physical] > 0")
+        .field("hardness", &Brush::hardness, "1: an edge two voxels wide; 0: as wide as the brush.")
+        .field("strength", &Brush::strength, "Part of the way to its target, above 0 to 1.")
+        .field("level", &Brush::level, "carve, add: the level that it shapes [data units].")
+        .field("solid", &Brush::solid, "'above' or 'below' that level.")
+        .field("value", &Brush::value, "That a full touch leaves [data units].")
+        .done();
+    using H = run::HandBrush;
+    Record<H>(module, "HandBrush", "A brush that follows the proxy while it touches.")
+        .field("kind", &H::kind, "'carve', 'add', 'smooth' or 'paint'.")
+        .field("radius", &H::radius, "[mm, physical]")
+        .field("hardness", &H::hardness, "As of Brush.")
+        .field("rate", &H::rate, "[1/s] after a second 1 - exp(-rate) of the change is done")
+        .field("value", &H::value, "That it leaves [data units]; None: the usual one.")
+        .done();
+    module.def("brush_for", &brush_for, py::arg("kind"), py::arg("field"), py::arg("isovalue"),
+               py::arg("radius"), "A Brush for the level that is felt; radius [mm].");
+}
+
+}  // namespace
+
+void bind_edits(py::module_& module) {
+    bind_brushes(module);
+    py::class_<edit::Stroke>(module, "Stroke", "A brush swept along a straight line.")
+        .def(py::init<Brush, Vec3, Vec3>(), py::arg("brush"), py::arg("start"), py::arg("end"),
+             "start and end [mm, physical].");
+    py::class_<edit::Fill>(module, "Fill", "Sets all samples of a box to one value.")
+        .def(py::init([](const Index3& low, const Index3& high, double value) {
+                 return edit::Fill{{low, high}, value};
+             }),
+             py::arg("low"), py::arg("high"), py::arg("value"),
+             "Corners (i, j, k), both in the box; value [data units].");
+    py::class_<edit::Replace>(module, "Replace", "Puts another volume's samples into the grid.")
+        .def(py::init([](const Index3& at, const Volume& samples) {
+                 return edit::Replace{at, samples};
+             }),
+             py::arg("at"), py::arg("samples"), "at: index (i, j, k) of the first one.");
+    py::class_<Editor>(module, "Editor",
+                       "Applies edits to samples, with undo. One thread at a time.")
+        .def(py::init([](const Volume& volume, std::size_t history_bytes) {
+                 return std::make_unique<Editor>(std::make_shared<const Samples>(volume),
+                                                 history_bytes);
+             }),
+             py::arg("volume"), py::arg("history_bytes") = std::size_t{512} << 20,
+             "history_bytes: most that undo and redo keep.")
+        .def(
+            "apply",
+            [](Editor& e, const Edit& edit, bool same_step) {
+                return box_of(e.apply(edit, same_step ? EditStep::same : EditStep::own));
+            },
+            py::arg("edit"), py::arg("same_step") = false, py::call_guard<py::gil_scoped_release>(),
+            "The box of samples that changed, (low, high), or None. same_step: belongs to the "
+            "last\n"
+            "step of undo().")
+        .def(
+            "undo", [](Editor& e) { return box_of(e.undo()); },
+            "The box of samples that changed, or None.")
+        .def(
+            "redo", [](Editor& e) { return box_of(e.redo()); },
+            "The box of samples that changed, or None.")
+        .def_property_readonly(
+            "samples",
+            [](const Editor& e) { return std::const_pointer_cast<Samples>(e.samples()); },
+            "The current version: Samples, which do not change.")
+        .def_property_readonly("undo_steps", &Editor::undo_steps)
+        .def_property_readonly("redo_steps", &Editor::redo_steps);
+}
+
+}  // namespace palpate::python

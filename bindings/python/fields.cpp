@@ -1,0 +1,110 @@
+// Fields: what is felt, and questions about it.
+#include "bindings/python/arrays.hpp"
+#include "bindings/python/bindings.hpp"
+#include "palpate/density.hpp"
+#include "palpate/field.hpp"
+#include "palpate/proxy.hpp"
+
+namespace palpate::python {
+namespace {
+
+py::array_t<double> values_at(const Field& field, const Doubles& points) {
+    const std::vector<Vec3> at = points_from(points, "points");
+    std::vector<double> values(at.size());
+    {
+        const py::gil_scoped_release unlocked;
+        for (std::size_t i = 0; i < at.size(); ++i) values[i] = value_at(field, at[i]);
+    }
+    return array_from(std::move(values));
+}
+
+py::array_t<double> gradients_at(const Field& field, const Doubles& points) {
+    std::vector<Vec3> at = points_from(points, "points");
+    {
+        const py::gil_scoped_release unlocked;
+        for (Vec3& point : at) point = gradient_at(field, point);
+    }
+    return array_from(std::move(at));
+}
+
+py::object ray(const Field& field, const io::Level& level, const Vec3& from, const Vec3& to) {
+    const RayHit hit = cast_ray(field, io::level_in(field.volume(), level), from, to);
+    return hit.hit ? py::object(py::make_tuple(hit.point, hit.normal)) : py::none();
+}
+
+void bind_samples(py::module_& module) {
+    py::class_<Samples, std::shared_ptr<Samples>>(
+        module, "Samples",
+        "One version of the numbers on a grid: a volume with its edits, or the frames of a\n"
+        "sequence. Versions do not change and share what is equal.")
+        .def(py::init<Volume>(), py::arg("volume"))
+        .def(py::init([](const std::vector<std::pair<double, Volume>>& frames, double period) {
+                 std::vector<Frame> made;
+                 for (const auto& [time, volume] : frames) made.push_back({time, volume});
+                 return std::make_shared<Samples>(std::move(made), period);
+             }),
+             py::arg("frames"), py::arg("period") = 0.0,
+             "Frames as pairs (time [s], Volume), times rising. With a period [s] they repeat.")
+        .def_property_readonly("geometry", &Samples::geometry, py::return_value_policy::copy)
+        .def_property_readonly("minimum", &Samples::minimum, "[data units]")
+        .def_property_readonly("maximum", &Samples::maximum, "[data units]")
+        .def_property_readonly("edited", [](const Samples& s) { return s.bricks() != nullptr; })
+        .def_property_readonly(
+            "times",
+            [](const Samples& self) {
+                std::vector<double> times;
+                for (const Frame& frame : self.frames()) times.push_back(frame.time);
+                return array_from(std::move(times));
+            },
+            "Of the frames [s].")
+        .def(
+            "volume",
+            [](const Samples& self, double time) { return flattened(self, self.moment_at(time)); },
+            py::arg("time") = 0.0, py::call_guard<py::gil_scoped_release>(),
+            "As one Volume, with all edits, at a time of a sequence [s].");
+}
+
+}  // namespace
+
+void bind_fields(py::module_& module) {
+    bind_samples(module);
+    py::class_<Field>(module, "Field",
+                      "What is felt: samples continued over all of space, and which side is solid.")
+        .def(py::init([](const Volume& volume, Solid solid, std::optional<double> background,
+                         Interpolation interpolation) {
+                 return Field(volume, solid, background, interpolation);
+             }),
+             py::arg("volume"), py::arg("solid") = Solid::above, py::arg("background") = py::none(),
+             py::arg("interpolation") = Interpolation::cubic,
+             "solid: 'above' or 'below' the isovalue. background [data units] is the density\n"
+             "outside the grid, by default the volume's minimum ('below': its maximum).\n"
+             "interpolation: 'cubic' (smooth) or 'linear' (of the paper).")
+        .def(py::init([](const std::shared_ptr<Samples>& samples, Solid solid,
+                         std::optional<double> background, Interpolation interpolation) {
+                 return Field(samples, solid, background, interpolation);
+             }),
+             py::arg("samples").none(false), py::arg("solid") = Solid::above,
+             py::arg("background") = py::none(), py::arg("interpolation") = Interpolation::cubic)
+        .def_property_readonly("geometry", &Field::geometry, py::return_value_policy::copy)
+        .def_property_readonly("volume", &Field::volume, py::return_value_policy::copy,
+                               "Before all edits; of a sequence its first frame.")
+        .def_property_readonly("solid", &Field::solid)
+        .def_property_readonly("interpolation", &Field::interpolation)
+        .def_property_readonly("background", &Field::background, "[data units]")
+        .def_property_readonly("range", &Field::range,
+                               "Greatest less least density, background included [data units].")
+        .def("value", &values_at, py::arg("points"),
+             "Density [data units], shape (n,), at physical points [mm], shape (n, 3).")
+        .def("gradient", &gradients_at, py::arg("points"),
+             "Gradient [data units / mm], physical axes, shape (n, 3), at points [mm], (n, 3).")
+        .def("cast_ray", &ray, py::arg("isovalue"), py::arg("start"), py::arg("end"),
+             "Where a straight segment [mm, physical] first meets the isosurface: (point [mm],\n"
+             "unit normal out of the solid), or None.")
+        .def("__repr__", [](const Field& f) {
+            return py::str("Field({!r}, solid={!r}, background={:g}, interpolation={!r})")
+                .format(py::cast(f.volume()), text_of(f.solid()), f.background(),
+                        text_of(f.interpolation()));
+        });
+}
+
+}  // namespace palpate::python

@@ -1,0 +1,60 @@
+// The extension module palpate._palpate. The package palpate (palpate/__init__.py) is what people
+// import.
+#include <dlfcn.h>
+
+#include <filesystem>
+#include <string>
+#include <system_error>
+
+#include "bindings/python/bindings.hpp"
+
+namespace {
+
+/// Where the helper programs are: inside the package, as pip installs it, or in the prefix that it
+/// is installed in.
+std::string folder_of_helpers() {
+    Dl_info info;
+    if (!dladdr(reinterpret_cast<const void*>(&folder_of_helpers), &info) || !info.dli_fname) {
+        return {};
+    }
+    const auto package = std::filesystem::absolute(info.dli_fname).parent_path();
+    const auto inside = package / "libexec/palpate";
+    std::error_code error;
+    if (std::filesystem::is_directory(inside, error)) return inside;
+    return (package / PALPATE_LIBEXEC_FROM_PYTHON).lexically_normal();
+}
+
+}  // namespace
+
+/// Asked for by palpate::io (docs/package.md).
+extern "C" const char* palpate_helper_folder();
+extern "C" const char* palpate_helper_folder() {
+    static const std::string folder = folder_of_helpers();
+    return folder.c_str();
+}
+
+PYBIND11_MODULE(_palpate, module) {
+    using namespace palpate::python;
+    module.attr("__version__") = PALPATE_VERSION;
+    bind_errors();
+    bind_volumes(module);
+    bind_filters(module);
+    bind_files(module);
+    bind_fields(module);
+    bind_surfaces(module);
+    bind_settings(module);
+    bind_layers(module);
+    bind_tools(module);
+    bind_render_setup(module);
+    bind_renderer(module);
+    bind_offline(module);
+    bind_devices(module);
+    bind_snapshots(module);
+    bind_commands(module);
+    bind_servo(module);
+    bind_edits(module);
+    bind_run(module);
+    bind_recordings(module);
+    bind_evaluation(module);
+    bind_scenes(module);
+}

@@ -1,0 +1,144 @@
+// Renders whole trajectories offline: arrays in, arrays out, without the GIL.
+#include "palpate/run/offline.hpp"
+
+#include "bindings/python/arrays.hpp"
+#include "bindings/python/bindings.hpp"
+#include "bindings/python/progress.hpp"
+#include "bindings/python/renderer.hpp"
+#include "bindings/python/trace_table.hpp"
+
+namespace palpate::python {
+
+py::dict columns_of(const std::vector<io::TraceRow>& rows) {
+    using Row = io::TraceRow;
+    py::dict table;
+    table["t"] = column(rows, [](const Row& r) { return r.t; });
+    table["hip"] = column(rows, [](const Row& r) { return r.hip; });
+    table["scp"] = column(rows, [](const Row& r) { return r.scp; });
+    table["force"] = column(rows, [](const Row& r) { return r.force; });
+    table["density"] = column(rows, [](const Row& r) { return r.density; });
+    table["isovalue"] = column(rows, [](const Row& r) { return r.isovalue; });
+    table["constrained"] = column(rows, [](const Row& r) { return r.constrained; });
+    table["tetrahedra"] = column(rows, [](const Row& r) { return r.tetrahedra; });
+    table["update_ns"] = column(rows, [](const Row& r) { return r.update_ns; });
+    table["layer"] = column(rows, [](const Row& r) { return int{r.layers.touched}; });
+    table["inside"] = column(rows, [](const Row& r) { return int{r.layers.inside}; });
+    table["torque"] = column(rows, [](const Row& r) { return r.torque; });
+    table["hand_orientation"] = column(rows, [](const Row& r) { return wxyz(r.tool.hand); });
+    table["proxy_orientation"] = column(rows, [](const Row& r) { return wxyz(r.tool.proxy); });
+    table["contacts"] = column(rows, [](const Row& r) { return r.tool.contacts; });
+    return table;
+}
+
+namespace {
+
+io::Trajectory trajectory_from(const Doubles& time, const Doubles& position,
+                               const std::optional<Doubles>& orientation) {
+    if (time.ndim() != 1) throw std::invalid_argument("time: an array of shape (n,) is needed");
+    std::vector<Quaternion> turns;
+    if (orientation) {
+        if (orientation->ndim() != 2 || orientation->shape(1) != 4) {
+            throw std::invalid_argument(
+                "orientation: an array of shape (n, 4) is needed: w, x, y, z");
+        }
+        for (py::ssize_t i = 0; i < orientation->shape(0); ++i) {
+            const double* q = orientation->data(i, 0);
+            turns.emplace_back(q[0], q[1], q[2], q[3]);
+        }
+    }
+    return io::checked_trajectory({time.data(), time.data() + time.size()},
+                                  points_from(position, "position"), std::move(turns));
+}
+
+/// A table with a column of ticks.
+template <class Value>
+struct OfTicks {
+    std::vector<std::int64_t> ticks;
+    std::vector<Value> values;
+
+    void add(std::int64_t tick, const Value& value) {
+        ticks.push_back(tick);
+        values.push_back(value);
+    }
+};
+
+py::dict dict_of(const run::OfflineSummary& s) {
+    using py::arg;
+    return py::dict(
+        arg("ticks") = s.ticks, arg("constrained") = s.constrained,
+        arg("out_of_budget") = s.out_of_budget, arg("recovering") = s.recovering,
+        arg("refused") = s.refused, arg("worst_surface_error") = s.worst_surface_error,
+        arg("largest_force") = s.largest_force, arg("largest_torque") = s.largest_torque,
+        arg("most_contacts") = s.most_contacts, arg("mean_tetrahedra") = s.mean_tetrahedra,
+        arg("mean_ns") = s.mean_ns, arg("p50_ns") = s.p50_ns, arg("p99_ns") = s.p99_ns,
+        arg("p999_ns") = s.p999_ns, arg("max_ns") = s.max_ns);
+}
+
+py::dict replay(const Field& field, const io::Level& isovalue, const Doubles& time,
+                const Doubles& position, const std::optional<Doubles>& orientation,
+                const RenderSetup& setup, bool path, bool poses, const ProgressFunction& progress) {
+    const io::Trajectory trajectory = trajectory_from(time, position, orientation);
+    Renderer renderer = offline_renderer(field, isovalue, setup);
+    if (poses && !renderer.settings.tool) {
+        throw std::invalid_argument("poses are those of a tool: give one");
+    }
+    std::vector<io::TraceRow> rows;
+    rows.reserve(trajectory.time.size());
+    OfTicks<Vec3> corners;
+    OfTicks<Pose> ways;
+    run::OfflineSinks sinks;
+    sinks.row = [&](const io::TraceRow& row) { rows.push_back(row); };
+    if (path) sinks.corner = [&](std::int64_t tick, const Vec3& at) { corners.add(tick, at); };
+    if (poses) sinks.pose = [&](std::int64_t tick, const Pose& pose) { ways.add(tick, pose); };
+    sinks.progress = progress_of(progress);
+    run::OfflineSummary summary;
+    {
+        const py::gil_scoped_release unlocked;
+        summary = run::render_offline(renderer, trajectory, sinks);
+    }
+    py::dict table = columns_of(rows);
+    table["summary"] = dict_of(summary);
+    if (renderer.settings.layers) {
+        py::list names;
+        for (const Layer& layer : renderer.settings.layers->layers) names.append(layer.name);
+        table["layer_names"] = py::tuple(names);
+    }
+    table["has_tool"] = renderer.settings.tool != nullptr;
+    if (path) {
+        table["path"] = py::make_tuple(array_from(std::move(corners.ticks)),
+                                       array_from(std::move(corners.values)));
+    }
+    if (poses) {
+        table["poses"] = py::make_tuple(
+            array_from(std::move(ways.ticks)),
+            column(ways.values, [](const Pose& pose) { return pose.position; }),
+            column(ways.values, [](const Pose& pose) { return wxyz(pose.orientation); }));
+    }
+    return table;
+}
+
+}  // namespace
+
+void bind_offline(py::module_& module) {
+    module.def("_replay", &replay, py::arg("field"), py::arg("isovalue"), py::arg("time"),
+               py::arg("position"), py::arg("orientation"), py::arg("setup"), py::arg("path"),
+               py::arg("poses"), py::arg("progress"));
+    module.def(
+        "_read_trajectory",
+        [](const std::filesystem::path& file) {
+            const io::Trajectory t = io::read_trajectory(file);
+            py::object turns = py::none();
+            if (!t.orientation.empty()) {
+                turns = column(t.orientation, [](const Quaternion& q) { return wxyz(q); });
+            }
+            return py::make_tuple(column(t.time, [](double s) { return s; }),
+                                  column(t.position, [](const Vec3& p) { return p; }), turns);
+        },
+        py::arg("path"));
+    module.def(
+        "_read_trace",
+        [](const std::filesystem::path& file) { return columns_of(io::read_trace(file)); },
+        py::arg("path"));
+}
+
+}  // namespace palpate::python

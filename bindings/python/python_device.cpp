@@ -1,0 +1,83 @@
+// The thread of a device that is written in Python.
+#include "bindings/python/python_device.hpp"
+
+#include <chrono>
+
+namespace palpate::python {
+
+PythonDevice::PythonDevice(py::object self, DeviceInfo info, double rate)
+    : self_(std::move(self)), info_(std::move(info)), rate_(rate) {
+    if (!(rate >= 1 && rate <= 8000)) {
+        throw std::invalid_argument("a device in Python is asked 1 to 8000 times a second");
+    }
+    check(info_.limits);
+    thread_ = std::thread([this] { run(); });
+}
+
+void PythonDevice::finish() {
+    link_.stop();
+    ending_ = true;
+    if (std::this_thread::get_id() == asking_.load()) return;
+    const std::lock_guard lock(finish_);
+    if (thread_.joinable()) thread_.join();
+}
+
+PythonDevice::~PythonDevice() {
+    finish();
+    const py::gil_scoped_acquire gil;
+    self_ = py::object();
+}
+
+std::string PythonDevice::problem() const {
+    const std::lock_guard lock(mutex_);
+    return problem_;
+}
+
+void PythonDevice::set_problem(const std::string& problem) {
+    const std::lock_guard lock(mutex_);
+    problem_ = problem;
+}
+
+void PythonDevice::run() {
+    asking_ = std::this_thread::get_id();
+    using namespace std::chrono;
+    const auto period = duration_cast<steady_clock::duration>(duration<double>(1 / rate_));
+    auto next = steady_clock::now();
+    while (!ending_ && step()) {
+        // Steps that are late are left out, not made up for.
+        next = std::max(next + period, steady_clock::now());
+        std::this_thread::sleep_until(next);
+    }
+    end();
+}
+
+/// False once a function has raised: there is no force then.
+bool PythonDevice::step() {
+    const py::gil_scoped_acquire gil;
+    try {
+        link_.report(self_.attr("read")().cast<DeviceReading>());
+        // Taken after the GIL was waited for, so that an old force is not sent.
+        const Wrench wrench = link_.wrench();
+        if (py::hasattr(self_, "write")) self_.attr("write")(wrench.force, wrench.torque);
+        return true;
+    } catch (const std::exception& error) {
+        link_.stop();
+        link_.report(DeviceStatus::fault);
+        set_problem(std::string("the device's function raised ") + error.what());
+        return false;
+    }
+}
+
+void PythonDevice::end() {
+    const py::gil_scoped_acquire gil;
+    try {
+        const Vec3 none = Vec3::Zero();
+        if (py::hasattr(self_, "write")) self_.attr("write")(none, none);
+        link_.wrench(), link_.wrench();  // the zero is out
+        if (py::hasattr(self_, "close")) self_.attr("close")();
+    } catch (const std::exception& error) {
+        set_problem(std::string("the device's function raised ") + error.what());
+    }
+}
+
+}  // namespace palpate::python

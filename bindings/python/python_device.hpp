@@ -1,0 +1,54 @@
+// A device that is written in Python. Its functions run on a thread of their own, which takes the
+// GIL; the servo thread exchanges readings and forces with that thread through a Link and never
+// waits for it.
+#pragma once
+
+#include <atomic>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "bindings/python/casters.hpp"
+#include "devices/link.hpp"
+
+namespace palpate::python {
+
+class PythonDevice final : public Device {
+  public:
+    /// `self` has read() and may have write(force, torque) and close(). Starts the thread, which
+    /// calls them `rate` [Hz] times a second. With the GIL. Throws std::invalid_argument.
+    PythonDevice(py::object self, DeviceInfo info, double rate);
+    /// finish(). Without the GIL.
+    ~PythonDevice() override;
+
+    /// Ends the thread, after a last write of zero and close(). Any thread, any number of times,
+    /// without the GIL; from the device's own functions it only asks for the end.
+    void finish();
+
+    DeviceInfo info() const override { return info_; }
+    /// What its functions raised.
+    std::string problem() const override;
+    DeviceReading read(double) noexcept override { return link_.read(); }
+    void write(const Wrench& wrench, double) noexcept override { link_.write(wrench); }
+    void stop() noexcept override { link_.stop(); }
+    bool is_stopping() const noexcept override { return link_.stopping(); }
+
+  private:
+    void run();
+    bool step();
+    void end();
+    void set_problem(const std::string& problem);
+
+    py::object self_;  // used with the GIL
+    const DeviceInfo info_;
+    const double rate_;
+    devices::Link link_;
+    mutable std::mutex mutex_;  // of problem_
+    std::string problem_;
+    std::atomic<bool> ending_{false};
+    std::atomic<std::thread::id> asking_;  // the device's thread
+    std::mutex finish_;
+    std::thread thread_;  // last: it uses all of the above
+};
+
+}  // namespace palpate::python

@@ -1,0 +1,88 @@
+// Recordings of live sessions: reading and validating them.
+#include "palpate/io/recording.hpp"
+
+#include "bindings/python/arrays.hpp"
+#include "bindings/python/bindings.hpp"
+#include "bindings/python/progress.hpp"
+#include "bindings/python/trace_table.hpp"
+#include "palpate/io/trace.hpp"
+#include "palpate/run/replay.hpp"
+
+namespace palpate::python {
+namespace {
+
+namespace fs = std::filesystem;
+
+py::dict dict_of(const io::RecordingHead& head) {
+    return py::dict(py::arg("version") = head.version, py::arg("begun") = head.begun,
+                    py::arg("volume") = head.volume.options, py::arg("solid") = head.solid,
+                    py::arg("interpolation") = head.interpolation,
+                    py::arg("background") = head.background, py::arg("isovalue") = head.isovalue,
+                    py::arg("device") = head.device, py::arg("rate") = head.rate,
+                    py::arg("method") = head.method, py::arg("force") = head.settings.force,
+                    py::arg("limits") = head.settings.device,
+                    py::arg("transform") = head.settings.transform);
+}
+
+py::tuple read(const fs::path& path) {
+    io::RecordingReader reader(path);
+    std::vector<io::TraceRow> rows;
+    std::vector<std::int64_t> commands;
+    {
+        const py::gil_scoped_release unlocked;
+        while (const auto event = reader.next()) {
+            if (const auto* tick = std::get_if<SessionTick>(&*event)) {
+                rows.push_back(io::trace_row(tick->tick));
+            } else {
+                commands.push_back(static_cast<std::int64_t>(rows.size()));
+            }
+        }
+    }
+    return py::make_tuple(dict_of(reader.head()), columns_of(rows), array_from(std::move(commands)),
+                          reader.complete(), reader.lost());
+}
+
+/// Throws io::InputError for the first tick that differs.
+void compare(const run::Replay::Tick& tick, const std::string& recording) {
+    const auto differs = run::difference(tick.recorded, tick.again);
+    if (!differs) return;
+    throw io::InputError(recording + ": tick " + std::to_string(tick.number) +
+                         " differs: " + differs->part + ": recorded " + differs->recorded +
+                         ", now " + differs->again);
+}
+
+py::dict validate(const fs::path& path, const std::string& volume,
+                  const ProgressFunction& progress) {
+    constexpr std::int64_t ticks_between_progress = 1024;
+    const auto tell = progress_of(progress);
+    std::int64_t ticks = 0, commands = 0;
+    io::RecordingReader reader(path);
+    {
+        const py::gil_scoped_release unlocked;
+        const run::LoadedVolume loaded =
+            run::load(run::recorded_source(reader.head(), path, volume), tell);
+        run::Replay replay(reader, loaded, path.string());
+        while (const auto tick = replay.next()) {
+            compare(*tick, path.string());
+            if (tick->number % ticks_between_progress == 0) tell(reader.progress());
+        }
+        ticks = replay.ticks();
+        commands = replay.commands();
+    }
+    return py::dict(py::arg("ticks") = ticks, py::arg("commands") = commands,
+                    py::arg("complete") = reader.complete(), py::arg("lost") = reader.lost());
+}
+
+}  // namespace
+
+void bind_recordings(py::module_& module) {
+    module.def("_read_recording", &read, py::arg("path"));
+    module.def(
+        "validate", &validate, py::arg("path"), py::arg("volume") = "",
+        py::arg("progress") = py::none(),
+        "Renders every tick of a recording again and compares it bit for bit, with\n"
+        "`volume` in place of the recorded name where it is given. A dict of ticks, commands,\n"
+        "complete (not cut off) and lost events; InputError for the first tick that differs.");
+}
+
+}  // namespace palpate::python

@@ -1,0 +1,169 @@
+// Live runs: a device by name, data that may be edited or played, recordings.
+#include "palpate/run/run.hpp"
+
+#include "bindings/python/arrays.hpp"
+#include "bindings/python/bindings.hpp"
+#include "bindings/python/commands.hpp"
+#include "bindings/python/record.hpp"
+#include "bindings/python/without_gil.hpp"
+
+namespace palpate::python {
+namespace {
+
+using Unlocked = py::call_guard<py::gil_scoped_release>;
+namespace fs = std::filesystem;
+
+/// run::Setup with what Python gives otherwise.
+struct Setup {
+    Solid solid = Solid::above;
+    std::optional<io::Level> background, isovalue;
+    std::optional<Interpolation> interpolation;
+    RenderSetup render;
+    std::string device = "simulated";
+    Facing facing = Facing::anterior;
+    std::optional<int> clutch, deadman;
+    double speed = 1;
+    bool loop = true;
+    std::uint64_t memory_bytes = std::uint64_t{1} << 30;
+    bool real_time = true;
+};
+
+run::Setup live_setup(const Setup& given) {
+    run::Setup setup;
+    setup.field = {given.solid, given.background, given.isovalue, given.interpolation};
+    setup.render = setup_of(given.render);
+    setup.device = devices::parse_device(given.device);
+    setup.facing = given.facing;
+    if (given.clutch) setup.clutch = run::Button{*given.clutch};
+    if (given.deadman) setup.deadman = run::Button{*given.deadman};
+    setup.playback = {given.speed, {given.memory_bytes, given.loop}};
+    setup.real_time = given.real_time;
+    return setup;
+}
+
+Setup usual_setup() {
+    Setup setup;
+    setup.render.given.force.start_below = run::live_start_below;
+    return setup;
+}
+
+void bind_setup(py::module_& module) {
+    using S = Setup;
+    Record<S>(module, "Setup", "How a volume is felt live; what is None is filled in.")
+        .field("solid", &S::solid, "'above' or 'below' the isovalue.")
+        .field("background", &S::background, "Level outside the data, or None.")
+        .field("isovalue", &S::isovalue, "A number [data units], '53%', or None: a suggested one.")
+        .field("interpolation", &S::interpolation, "'linear', 'cubic' or None: as the method.")
+        .field("render", &S::render, "RenderSetup")
+        .field("device", &S::device, "As for --device: 'simulated', 'haply:port=10001', ...")
+        .field("facing", &S::facing, "The side of the body that faces the person.")
+        .field("clutch", &S::clutch, "Number of the button, from 1; None: the usual one.")
+        .field("deadman", &S::deadman, "Number of the button, from 1; None: none.")
+        .field("speed", &S::speed, "Of a sequence, at the start.")
+        .field("loop", &S::loop, "A sequence begins again.")
+        .field("memory_bytes", &S::memory_bytes, "For frames of a sequence.")
+        .field("real_time", &S::real_time, "Ask for real-time priority.")
+        .done()
+        .def_static("live", &usual_setup,
+                    "The usual one: forces begin when the wanted one is small.");
+}
+
+std::shared_ptr<run::Run> make(const run::LoadedVolume& loaded, const std::optional<Setup>& given) {
+    const run::Setup setup = live_setup(given.value_or(usual_setup()));
+    std::shared_ptr<run::Data> data = made_without_gil<run::Data>(loaded, setup.playback);
+    return made_without_gil<run::Run>(std::move(data), setup);
+}
+
+void bind_playback(py::class_<run::Run, std::shared_ptr<run::Run>>& run) {
+    using R = run::Run;
+    run.def(
+           "play", [](R& r, double speed) { r.data().player().play(speed); }, py::arg("speed"),
+           Unlocked(), "Of a sequence: seconds of it per second; 0 pauses.")
+        .def(
+            "seek", [](R& r, double time) { r.data().player().seek(time); }, py::arg("time"),
+            Unlocked(), "Goes to a time of the sequence [s].")
+        .def_property_readonly(
+            "problem",
+            [](const R& r) {
+                const py::gil_scoped_release unlocked;
+                const std::string device = r.device_problem();
+                return device.empty() ? r.data().problem() : device;
+            },
+            "What is wrong with device, edits or frames; usually empty.");
+}
+
+void bind_editing(py::class_<run::Run, std::shared_ptr<run::Run>>& run) {
+    using R = run::Run;
+    run.def(
+           "edit", [](R& r, const Edit& edit) { r.data().editor().apply(edit); }, py::arg("edit"),
+           Unlocked(), "Makes an edit (Stroke, Fill, Replace): one undo step.")
+        .def(
+            "undo", [](R& r) { return r.data().editor().undo(); }, Unlocked(),
+            "False if there is nothing to undo.")
+        .def(
+            "redo", [](R& r) { return r.data().editor().redo(); }, Unlocked(),
+            "False if there is nothing to redo.")
+        .def(
+            "set_brush",
+            [](R& r, const std::optional<run::HandBrush>& brush) {
+                r.data().editor().set_brush(brush);
+            },
+            py::arg("brush"), Unlocked(), "A HandBrush that follows the proxy; None: only feel.")
+        .def(
+            "save", [](R& r, const fs::path& path) { return r.data().save(path, {}); },
+            py::arg("path"), Unlocked(), "Writes the samples as they are now. Raises OutputError.");
+}
+
+void start(const py::object& self) {
+    auto& r = self.cast<run::Run&>();
+    stop_at_exit<run::Run>(self, [](run::Run& running) { running.stop(); });
+    const py::gil_scoped_release unlocked;
+    r.start();
+}
+
+void send(run::Run& r, const Sent& sent) {
+    const Field field = r.field_now();
+    r.send(command_of(sent, field, r.isovalue()));
+}
+
+}  // namespace
+
+void bind_run(py::module_& module) {
+    bind_setup(module);
+    using R = run::Run;
+    py::class_<R, std::shared_ptr<R>> live(
+        module, "Run",
+        "A live run: a servo with its device, data and recording. Use it as a context manager.\n"
+        "By one thread at a time.");
+    live.def(py::init(&make), py::arg("loaded"), py::arg("setup") = py::none(),
+             "loaded: from load(). setup: Setup, by default Setup.live(). Opens the device; "
+             "nothing\n"
+             "moves before start(). Raises ValueError, InputError, DeviceError.")
+        .def("start", &start, "Once.")
+        .def("stop", &R::stop, Unlocked(), "Forces go to zero; for good.")
+        .def("send", &send, py::arg("command"), Unlocked(),
+             "As Servo.send(). Raises ValueError, QueueFull.")
+        .def("snapshot", &R::snapshot, "The newest tick, a Snapshot; None before the first.")
+        .def("report", &R::report, "ServoReport")
+        .def("record", &R::record, py::arg("path"), Unlocked(),
+             "Records from now on, to a new file. Raises OutputError.")
+        .def("stop_recording", &R::stop_recording, Unlocked(), "The number of its ticks.")
+        .def("field", &R::field_now, Unlocked(), "A copy of the Field felt, edits included.")
+        .def_property_readonly("device", &R::device, "DeviceInfo")
+        .def_property_readonly("privileges",
+                               [](const R& r) { return std::vector<std::string>(r.privileges()); })
+        .def_property_readonly("isovalue", &R::isovalue, "Asked for last [data units].")
+        .def("__enter__",
+             [](const py::object& self) {
+                 start(self);
+                 return self;
+             })
+        .def("__exit__", [](R& r, const py::args&) {
+            const py::gil_scoped_release unlocked;
+            r.stop();
+        });
+    bind_playback(live);
+    bind_editing(live);
+}
+
+}  // namespace palpate::python

@@ -1,0 +1,74 @@
+// Named synthetic volumes and motions of a hand.
+#include "bindings/python/arrays.hpp"
+#include "bindings/python/bindings.hpp"
+#include "bindings/python/record.hpp"
+#include "palpate/scenes/motions.hpp"
+#include "palpate/scenes/volumes.hpp"
+
+namespace palpate::python {
+namespace {
+
+py::array_t<double> exact_at(const scenes::Scene& scene, const Doubles& points) {
+    if (!scene.exact) {
+        throw std::invalid_argument(scene.name + " has no analytic density");
+    }
+    std::vector<double> values;
+    for (const Vec3& point : points_from(points, "points")) values.push_back(scene.exact(point));
+    return array_from(std::move(values));
+}
+
+py::tuple motion(const std::string& name, const Field& field, const io::Level& level,
+                 const scenes::MotionSettings& settings) {
+    const double isovalue = io::level_in(field.volume(), level);
+    std::vector<scenes::HandSample> samples;
+    {
+        const py::gil_scoped_release unlocked;
+        samples = scenes::make_motion(name, field, isovalue, settings);
+    }
+    return py::make_tuple(column(samples, [](const scenes::HandSample& s) { return s.t; }),
+                          column(samples, [](const scenes::HandSample& s) { return s.position; }));
+}
+
+}  // namespace
+
+void bind_scenes(py::module_& module) {
+    using scenes::Scene;
+    py::class_<Scene>(module, "Scene", "A synthetic volume, and what is known about it.")
+        .def_readonly("name", &Scene::name)
+        .def_property_readonly("volume", [](const Scene& s) { return s.volume; })
+        .def_readonly("isovalue", &Scene::isovalue, "A good one to feel [data units].")
+        .def_readonly("description", &Scene::description)
+        .def("exact", &exact_at, py::arg("points"),
+             "The analytic density [data units], shape (n,), at points [mm], shape (n, 3).\n"
+             "ValueError where there is none.")
+        .def("__repr__", [](const Scene& s) {
+            return py::str("Scene({!r}, {!r}, isovalue={:g})")
+                .format(s.name, py::cast(s.volume), s.isovalue);
+        });
+    module.def(
+        "scene",
+        [](const std::string& name, std::optional<SampleType> type,
+           const std::optional<Geometry>& geometry) {
+            const py::gil_scoped_release unlocked;
+            return geometry ? scenes::make_volume(name, *geometry, type)
+                            : scenes::make_volume(name, type);
+        },
+        py::arg("name"), py::arg("type") = py::none(), py::arg("geometry") = py::none(),
+        "A synthetic volume: 'NAME' or 'NAME:WxHxD' of scene_names(), or NAME on a grid of yours.");
+    module.def("scene_names", &scenes::volume_names, "The names of all synthetic volumes.");
+    using M = scenes::MotionSettings;
+    Record<M>(module, "MotionSettings", "Of motion().")
+        .field("rate_hz", &M::rate_hz, "Samples a second.")
+        .field("duration_s", &M::duration_s, "[s]")
+        .field("speed_mm_s", &M::speed_mm_s, "Never faster [mm/s].")
+        .field("depth_mm", &M::depth_mm, "How deep the hand presses [mm].")
+        .field("seed", &M::seed, "Where from, which way, in which order.")
+        .done();
+    module.def("motion", &motion, py::arg("name"), py::arg("field"), py::arg("isovalue"),
+               py::arg("settings") = M{},
+               "A hand that looks for the surface itself: (time [s], shape (n,); position [mm,\n"
+               "physical], shape (n, 3)). One of motion_names().");
+    module.def("motion_names", &scenes::motion_names, "approach, press, slide, ...");
+}
+
+}  // namespace palpate::python

@@ -1,0 +1,107 @@
+// The servo with a device that is written in Python.
+#include "palpate/servo.hpp"
+
+#include "bindings/python/bindings.hpp"
+#include "bindings/python/commands.hpp"
+#include "bindings/python/python_device.hpp"
+#include "bindings/python/without_gil.hpp"
+
+namespace palpate::python {
+namespace {
+
+/// A servo and the device that it runs; the device goes last.
+struct DeviceServo {
+    DeviceServo(const Renderer& renderer, std::unique_ptr<PythonDevice> its_device,
+                const ServoSettings& settings)
+        : device(std::move(its_device)),
+          field(renderer.field),
+          isovalue(renderer.proxy.isovalue),
+          servo(Session{renderer, {}}, *device, settings) {}
+
+    void stop() {
+        servo.stop();
+        device->finish();
+    }
+
+    std::unique_ptr<PythonDevice> device;
+    Field field;
+    double isovalue;
+    Servo servo;
+};
+
+using Held = std::shared_ptr<DeviceServo>;
+using Unlocked = py::call_guard<py::gil_scoped_release>;
+
+Held make(const Renderer& renderer, const py::object& device, double rate, bool real_time,
+          double device_rate) {
+    const auto info = device.attr("info")().cast<DeviceInfo>();
+    if (!py::hasattr(device, "read")) {
+        throw py::type_error("a device needs the functions info() and read()");
+    }
+    ServoSettings settings;
+    settings.rate = rate;
+    settings.real_time = real_time;
+    auto its_device = std::make_unique<PythonDevice>(device, info, device_rate);
+    return made_without_gil<DeviceServo>(renderer, std::move(its_device), settings);
+}
+
+void start(const py::object& self) {
+    auto& s = self.cast<DeviceServo&>();
+    stop_at_exit<DeviceServo>(self, [](DeviceServo& running) { running.stop(); });
+    const py::gil_scoped_release unlocked;
+    s.servo.start();
+}
+
+void send(DeviceServo& s, const Sent& sent) {
+    if (!s.servo.send(command_of(sent, s.field, s.isovalue))) {
+        const py::object type = py::module_::import("palpate.errors").attr("QueueFull");
+        PyErr_SetString(type.ptr(), "no room for another command: send fewer");
+        throw py::error_already_set();
+    }
+}
+
+}  // namespace
+
+void bind_servo(py::module_& module) {
+    py::class_<DeviceServo, Held>(
+        module, "Servo",
+        "A session that runs on a real-time thread of its own, with a device written in Python.\n"
+        "The servo thread never takes the GIL. The device's functions run on another thread:\n"
+        "info() -> DeviceInfo, read() -> DeviceReading, and, where there are, write(force [N],\n"
+        "torque [N mm]) and close(). While Python does not come back to them readings become "
+        "stale\n"
+        "after 20 ms and there is no force. For devices by name, sequences and recordings use Run.")
+        .def(py::init(&make), py::arg("renderer"), py::arg("device"), py::kw_only(),
+             py::arg("rate") = 1000.0, py::arg("real_time") = true, py::arg("device_rate") = 1000.0,
+             "rate [Hz] 250 to 8000. device_rate [Hz]: how often the device is asked.")
+        .def("start", &start, "Once.")
+        .def("stop", &DeviceServo::stop, Unlocked(),
+             "Zero force, and the end of both threads: the device is written a last zero and "
+             "closed.")
+        .def("send", &send, py::arg("command"),
+             "A command of palpate.command, or ForceSettings, Friction, Penetrability,\n"
+             "DeviceTransform or DeviceLimits. Never waits. Raises ValueError, QueueFull.")
+        .def(
+            "snapshot", [](const DeviceServo& s) { return s.servo.snapshot(); },
+            "The newest tick, a Snapshot; None before the first.")
+        .def(
+            "report", [](const DeviceServo& s) { return s.servo.report(); }, "ServoReport")
+        .def_property_readonly(
+            "privileges",
+            [](const DeviceServo& s) { return std::vector<std::string>(s.servo.privileges()); },
+            "A sentence for each privilege of real time. After start().")
+        .def_property_readonly(
+            "device_problem", [](const DeviceServo& s) { return s.device->problem(); },
+            "What the device's functions raised; usually empty.")
+        .def("__enter__",
+             [](const py::object& self) {
+                 start(self);
+                 return self;
+             })
+        .def("__exit__", [](DeviceServo& s, const py::args&) {
+            const py::gil_scoped_release unlocked;
+            s.stop();
+        });
+}
+
+}  // namespace palpate::python

@@ -1,0 +1,102 @@
+// Isosurfaces as arrays, and meshes in files.
+#include "palpate/surface.hpp"
+
+#include "bindings/python/arrays.hpp"
+#include "bindings/python/bindings.hpp"
+#include "bindings/python/progress.hpp"
+#include "palpate/io/mesh_file.hpp"
+
+namespace palpate::python {
+namespace {
+
+using Triangles = std::vector<std::array<std::uint32_t, 3>>;
+using Indices = py::array_t<std::uint32_t, py::array::c_style | py::array::forcecast>;
+
+SurfaceMesh extract(const Field& field, const io::Level& level, double tolerance, bool normals,
+                    const ProgressFunction& progress) {
+    SurfaceOptions options;
+    options.tolerance = tolerance;
+    options.normals = normals;
+    const auto tell = progress_of(progress);
+    options.progress = [&tell](double fraction) {
+        tell(fraction);
+        return true;
+    };
+    const double isovalue = io::level_in(field.volume(), level);
+    const py::gil_scoped_release unlocked;
+    return extract_surface(field, isovalue, options);
+}
+
+SurfaceMesh mesh_from(const Doubles& vertices, const Indices& triangles) {
+    if (triangles.ndim() != 2 || triangles.shape(1) != 3) {
+        throw std::invalid_argument("triangles: an array of shape (m, 3) is needed");
+    }
+    SurfaceMesh mesh;
+    mesh.vertices = points_from(vertices, "vertices");
+    for (py::ssize_t i = 0; i < triangles.shape(0); ++i) {
+        for (const int corner : {0, 1, 2}) {
+            if (triangles.at(i, corner) >= mesh.vertices.size()) {
+                throw std::invalid_argument("triangle " + std::to_string(i) +
+                                            " names a vertex that there is not");
+            }
+        }
+        mesh.triangles.push_back({triangles.at(i, 0), triangles.at(i, 1), triangles.at(i, 2)});
+    }
+    return mesh;
+}
+
+/// A view of a mesh's numbers that keeps the mesh alive.
+template <class T, class Rows>
+py::array_t<T> view(const py::object& mesh, const Rows& rows) {
+    const auto count = static_cast<py::ssize_t>(rows.size());
+    const T* data = rows.empty() ? nullptr : rows.front().data();
+    py::array_t<T> array({count, py::ssize_t{3}}, data, mesh);
+    array.attr("flags").attr("writeable") = false;
+    return array;
+}
+
+}  // namespace
+
+void bind_surfaces(py::module_& module) {
+    py::class_<SurfaceMesh>(module, "Mesh", "An oriented triangle mesh.")
+        .def(py::init(&mesh_from), py::arg("vertices"), py::arg("triangles"),
+             "vertices [mm], shape (n, 3); triangles: their indices, shape (m, 3).")
+        .def_property_readonly(
+            "vertices",
+            [](const py::object& self) {
+                return view<double>(self, self.cast<const SurfaceMesh&>().vertices);
+            },
+            "[mm, physical], shape (n, 3); shared and read-only, as the others.")
+        .def_property_readonly(
+            "triangles",
+            [](const py::object& self) {
+                return view<std::uint32_t>(self, self.cast<const SurfaceMesh&>().triangles);
+            },
+            "Indices of vertices, uint32, shape (m, 3), counter-clockwise seen from outside.")
+        .def_property_readonly(
+            "normals",
+            [](const py::object& self) {
+                return view<double>(self, self.cast<const SurfaceMesh&>().normals);
+            },
+            "Unit, out of the solid, shape (n, 3); (0, 3) unless asked for.")
+        .def_property_readonly("enclosed_volume", &enclosed_volume, "Of a closed mesh [mm^3].")
+        .def("write",
+             py::overload_cast<const SurfaceMesh&, const std::filesystem::path&>(&io::write_mesh),
+             py::arg("path"), py::call_guard<py::gil_scoped_release>(),
+             "As .ply, .stl, .obj or .vtp, whole or not at all. Raises OutputError.")
+        .def("__repr__", [](const SurfaceMesh& m) {
+            return py::str("Mesh({} vertices, {} triangles)")
+                .format(m.vertices.size(), m.triangles.size());
+        });
+    module.def(
+        "extract", &extract, py::arg("field"), py::arg("isovalue"), py::kw_only(),
+        py::arg("tolerance") = 0.0, py::arg("normals") = false, py::arg("progress") = py::none(),
+        "The whole isosurface as one watertight Mesh. isovalue: a number [data units] or\n"
+        "'53%'. tolerance [voxel]: facets of a cubic field are split until they are as near;\n"
+        "normals: of a cubic field, those that are felt.");
+    module.def("read_mesh", &io::read_mesh, py::arg("path"),
+               py::call_guard<py::gil_scoped_release>(),
+               "The triangles of an .stl, .ply, .obj or .vtp file. Raises InputError.");
+}
+
+}  // namespace palpate::python

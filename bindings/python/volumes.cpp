@@ -1,0 +1,97 @@
+// Volumes and their place in space.
+#include "bindings/python/arrays.hpp"
+#include "bindings/python/bindings.hpp"
+#include "bindings/python/record.hpp"
+
+namespace palpate::python {
+namespace {
+
+Geometry geometry_of(const Vec3& spacing, const Vec3& origin, const Mat3& direction) {
+    Geometry geometry;
+    geometry.spacing = spacing;
+    geometry.origin = origin;
+    geometry.direction = direction;
+    return geometry;
+}
+
+py::object text_of_volume(const py::object& self) {
+    const auto& volume = self.cast<const Volume&>();
+    const Index3& size = volume.geometry().size;
+    return py::str("Volume({}x{}x{} {}, spacing {} mm, {:g} to {:g})")
+        .format(size[0], size[1], size[2], std::string(name_of(volume.type())),
+                py::cast(volume.geometry().spacing).attr("tolist")(), volume.minimum(),
+                volume.maximum());
+}
+
+void bind_geometry(py::module_& module) {
+    Record<Geometry>(module, "Geometry",
+                     "The grid in physical space (LPS, mm): sample (i, j, k) lies at\n"
+                     "origin + direction @ (spacing * (i, j, k)).")
+        .field("size", &Geometry::size, "Samples along x, y and z: int, shape (3,).")
+        .field("spacing", &Geometry::spacing, "Between neighbouring samples [mm], shape (3,).")
+        .field("origin", &Geometry::origin, "Physical position of sample (0, 0, 0) [mm].")
+        .field("direction", &Geometry::direction,
+               "Columns: unit vectors of the index axes, shape (3, 3).")
+        .done()
+        .def("physical", &physical_from_index, py::arg("index"),
+             "The physical point [mm] of an index (i, j, k), fractions allowed.")
+        .def("index", &index_from_physical, py::arg("physical"),
+             "The index (i, j, k) of a physical point [mm].")
+        .def_property_readonly("centre", &physical_centre,
+                               "The middle of the grid [mm, physical].");
+}
+
+}  // namespace
+
+void bind_volumes(py::module_& module) {
+    bind_geometry(module);
+    py::class_<Volume> volume(
+        module, "Volume",
+        "Samples on a regular grid. They do not change: edits make new versions (Editor).");
+    volume
+        .def(py::init([](const py::array& array, const Vec3& spacing, const Vec3& origin,
+                         const Mat3& direction, bool copy) {
+                 return volume_from(array, geometry_of(spacing, origin, direction), copy);
+             }),
+             py::arg("array"), py::arg("spacing") = Vec3(1, 1, 1),
+             py::arg("origin") = Vec3(0, 0, 0), py::arg("direction") = Mat3(Mat3::Identity()),
+             py::arg("copy") = false,
+             "Shares the samples of an array of shape (z, y, x) of uint8, int16, uint16 or "
+             "float32,\n"
+             "without a copy: do not write to it afterwards. An array that is not C-contiguous is\n"
+             "a ValueError; with copy=True it is copied. spacing and origin in mm (x, y, z), LPS.\n"
+             "as_volume() converts other types and understands nibabel and zarr.")
+        .def_property_readonly("geometry", &Volume::geometry, "A copy of its Geometry.",
+                               py::return_value_policy::copy)
+        .def_property_readonly(
+            "type", [](const Volume& v) { return std::string(name_of(v.type())); },
+            "'uint8', 'int16', 'uint16' or 'float32'.")
+        .def_property_readonly("minimum", &Volume::minimum, "Least sample [data units].")
+        .def_property_readonly("maximum", &Volume::maximum, "Greatest sample [data units].")
+        .def_property_readonly("nbytes", &Volume::bytes, "Bytes of the samples.")
+        .def_property_readonly("array", &array_of,
+                               "The samples as an array of shape (z, y, x), shared and read-only.")
+        .def(
+            "__array__",
+            [](const Volume& self, const py::object& dtype) -> py::object {
+                py::array array = array_of(self);
+                return dtype.is_none()
+                           ? py::object(array)
+                           : py::object(array.attr("astype")(dtype, py::arg("copy") = false));
+            },
+            py::arg("dtype") = py::none(), "For numpy.asarray(): shared and read-only.")
+        .def("__repr__", &text_of_volume)
+        .def(py::pickle(
+            [](const Volume& self) {
+                const Geometry& g = self.geometry();
+                return py::make_tuple(array_of(self), g.spacing, g.origin, g.direction);
+            },
+            [](const py::tuple& state) {
+                return volume_from(state[0].cast<py::array>(),
+                                   geometry_of(state[1].cast<Vec3>(), state[2].cast<Vec3>(),
+                                               state[3].cast<Mat3>()),
+                                   true);
+            }));
+}
+
+}  // namespace palpate::python

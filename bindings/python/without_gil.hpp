@@ -1,0 +1,39 @@
+// Objects that own threads which may want the GIL are destroyed without it.
+#pragma once
+
+#include <memory>
+#include <utility>
+
+#include "bindings/python/casters.hpp"
+
+namespace palpate::python {
+
+/// Made and destroyed without the GIL, whoever lets go of it last.
+template <class T, class... Arguments>
+std::shared_ptr<T> made_without_gil(Arguments&&... arguments) {
+    const auto destroy = [](T* object) {
+        if (PyGILState_Check()) {
+            const py::gil_scoped_release unlocked;
+            delete object;
+        } else {
+            delete object;
+        }
+    };
+    const py::gil_scoped_release unlocked;
+    return {new T(std::forward<Arguments>(arguments)...), destroy};
+}
+
+/// Calls stop(object), without the GIL, when the process ends while `self` still holds the object.
+template <class T, class Stop>
+void stop_at_exit(const py::object& self, Stop stop) {
+    const std::weak_ptr<T> held = self.cast<std::shared_ptr<T>>();
+    const py::cpp_function at_exit([held, stop] {
+        const std::shared_ptr<T> object = held.lock();
+        if (!object) return;
+        const py::gil_scoped_release unlocked;
+        stop(*object);
+    });
+    py::module_::import("weakref").attr("finalize")(self, at_exit);
+}
+
+}  // namespace palpate::python

@@ -1,0 +1,34 @@
+"""The tutorial in examples/python: each script runs and finds what it says."""
+
+import os
+import pathlib
+import re
+import subprocess
+import sys
+
+EXAMPLES = pathlib.Path(os.environ["PALPATE_SOURCE"]) / "examples" / "python"
+
+
+def output_of(script, *arguments):
+    return subprocess.run([sys.executable, "-B", EXAMPLES / script, *arguments], check=True,
+                          stdout=subprocess.PIPE, text=True, timeout=120).stdout
+
+
+def test_a_hand_that_presses_two_millimetres_into_a_head_feels_the_spring():
+    text = output_of("feel_a_ct.py")
+    forces = [float(f) for f in re.findall(r"force (\d\.\d+) N", text)]
+    assert forces[0] == 0 and 1.0 < forces[-1] < 1.7  # 0.8 N/mm, 2 mm deep along a ray
+    assert "Mesh(" in text
+
+
+def test_what_is_felt_lies_within_a_tenth_of_a_millimetre_of_the_analytic_surface():
+    rows = [line.split(",") for line in output_of("script_an_experiment.py").splitlines()[1:]]
+    assert len(rows) == 4 and all(int(row[2]) > 500 for row in rows)
+    assert all(float(row[3]) < 0.1 for row in rows)
+
+
+def test_a_device_in_python_comes_to_rest_on_the_floor():
+    rows = re.findall(r"height +(-?[\d.]+) mm +force ([\d.]+) N", output_of("write_a_device.py"))
+    # Its weight, 1 N, sinks the spring of 1 N/mm by a millimetre; a busy machine lets it sink more.
+    assert rows and -5 < float(rows[-1][0]) < 2
+    assert any(float(force) > 0.3 for _, force in rows)

@@ -1,0 +1,157 @@
+"""Replay in Python against the command line: the same bits, on synthetic and real volumes."""
+
+import csv
+import os
+import subprocess
+import threading
+import time
+
+import numpy
+import pytest
+
+import palpate
+
+PALPATE = os.environ["PALPATE"]
+# Volume, level, options of the command line and the same in Python.
+CASES = {
+    "torus": ("synthetic:torus:40x40x40", 0.5, [], {}),
+    "noise_with_friction": (
+        "synthetic:marschner-lobb:40x40x40", 0.5, ["--friction", "0.4,0.3", "--stiffness", "0.7"],
+        {"friction": palpate.Friction(static_coefficient=0.4, dynamic_coefficient=0.3),
+         "stiffness": 0.7}),
+    "head": (str(palpate.sample_volume()), palpate.SAMPLE_SKIN, [], {}),
+    "head_with_a_tool": (str(palpate.sample_volume()), palpate.SAMPLE_BONE, ["--tool", "sphere:3"],
+                         {"tool": "sphere:3"}),
+    "head_by_the_paper": (str(palpate.sample_volume()), palpate.SAMPLE_SKIN, ["--method", "paper"],
+                          {"method": "paper"}),
+}
+
+
+def motion_on(field, level):
+    settings = palpate.MotionSettings(duration_s=1.5, seed=3)
+    return palpate.motion("slide", field, level, settings)
+
+
+def field_for(name, settings):
+    volume = palpate.load(name).volume
+    linear = settings.get("method") == "paper"
+    return palpate.Field(volume, interpolation="linear" if linear else "cubic")
+
+
+def write_trajectory(path, seconds, position):
+    with open(path, "w", encoding="ascii") as file:
+        file.write("t,x,y,z\n")
+        for t, at in zip(seconds, position):
+            file.write(",".join(repr(float(number)) for number in (t, *at)) + "\n")
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_replay_is_bit_identical_to_the_command_line(tmp_path, case):
+    name, level, options, settings = CASES[case]
+    field = field_for(name, settings)
+    seconds, position = motion_on(field, level)
+    write_trajectory(tmp_path / "hand.csv", seconds, position)
+    subprocess.run([PALPATE, "replay", name, "--trajectory", tmp_path / "hand.csv", "--isovalue",
+                    str(level), "--output", tmp_path / "trace.csv", "--path", tmp_path / "path.csv",
+                    "--quiet", *options], check=True)
+    told = palpate.read_trace(tmp_path / "trace.csv")
+    ours = palpate.replay(field, level, seconds, position, path=True, **settings)
+    assert ours.constrained.sum() > 100  # the motion touches
+    for column in ("t", "hip", "scp", "force", "density", "isovalue", "constrained", "tetrahedra"):
+        assert numpy.array_equal(getattr(told, column), getattr(ours, column)), column
+    if "tool" in settings:
+        for column in ("torque", "proxy_orientation"):
+            assert numpy.array_equal(getattr(told, column), getattr(ours, column)), column
+        with open(tmp_path / "trace.csv", encoding="ascii") as file:
+            contacts = [int(row["contacts"]) for row in csv.DictReader(file)]
+        assert numpy.array_equal(contacts, ours.contacts)
+    with open(tmp_path / "path.csv", encoding="ascii") as file:
+        rows = [row for row in csv.reader(file) if row[0].isdigit()]
+    assert numpy.array_equal([int(row[0]) for row in rows], ours.path[0])
+    assert numpy.array_equal([[float(x) for x in row[1:]] for row in rows], ours.path[1])
+
+
+def test_a_renderer_tick_by_tick_gives_the_ticks_of_a_replay():
+    scene = palpate.scene("torus:40x40x40")
+    field = palpate.Field(scene.volume)
+    seconds, position = motion_on(field, scene.isovalue)
+    setup = palpate.RenderSetup.offline()
+    whole = palpate.replay(field, scene.isovalue, seconds, position, setup=setup)
+    renderer = palpate.Renderer(field, scene.isovalue, setup)
+    ticks = [renderer.render(t, at) for t, at in zip(seconds, position)]
+    assert numpy.array_equal([tick.scp for tick in ticks], whole.scp)
+    assert numpy.array_equal([tick.force for tick in ticks], whole.force)
+
+
+def test_a_copied_renderer_goes_on_exactly_as_its_original():
+    scene = palpate.scene("torus:40x40x40")
+    field = palpate.Field(scene.volume)
+    seconds, position = motion_on(field, scene.isovalue)
+    renderer = palpate.Renderer(field, scene.isovalue, palpate.RenderSetup.offline())
+    half = len(seconds) // 2
+    for t, at in zip(seconds[:half], position[:half]):
+        renderer.render(t, at)
+    other = renderer.copy()
+    for t, at in zip(seconds[half:], position[half:]):
+        assert numpy.array_equal(renderer.render(t, at).force, other.render(t, at).force)
+
+
+def test_replay_releases_the_gil():
+    scene = palpate.scene("torus:40x40x40")
+    field = palpate.Field(scene.volume)
+    seconds, position = motion_on(field, scene.isovalue)
+    repeats = 100
+    times = numpy.arange(len(seconds) * repeats) * 1e-3
+    positions = numpy.tile(position, (repeats, 1))
+    done = threading.Event()
+
+    def work():
+        palpate.replay(field, scene.isovalue, times, positions)
+        done.set()
+
+    thread = threading.Thread(target=work)
+    thread.start()
+    counted = 0
+    while not done.is_set():
+        counted += 1
+        time.sleep(0.0005)
+    thread.join()
+    assert counted > 10  # with the GIL held this thread would not run before the end
+
+
+def test_layers_and_penetrability_are_felt():
+    loaded = palpate.load(palpate.sample_volume())
+    field = palpate.Field(loaded.volume)
+    seconds, position = palpate.motion("press", field, palpate.SAMPLE_SKIN,
+                                       palpate.MotionSettings(depth_mm=25, duration_s=3))
+    layered = palpate.replay(field, palpate.SAMPLE_SKIN, seconds, position, layers="sample-head")
+    assert layered.layer_names and layered.inside.max() > 0
+    pressed = palpate.replay(field, palpate.SAMPLE_SKIN, seconds, position,
+                             penetrability=palpate.Penetrability(threshold=0.5))
+    assert pressed.isovalue.max() > palpate.SAMPLE_SKIN
+
+
+@pytest.mark.parametrize("change, words", [
+    ({"time": [0.0, 0.0]}, "row 1.*time"),
+    ({"time": [0.0]}, "as many positions"),
+    ({"time": [0.0, numpy.nan]}, "row 1"),
+    ({"position": numpy.zeros((2, 2))}, r"shape \(n, 3\)"),
+    ({"position": numpy.full((2, 3), numpy.inf)}, "row 0.*finite"),
+    ({"time": [], "position": numpy.zeros((0, 3))}, "at least one"),
+    ({"orientation": [[0, 0, 0, 0], [1, 0, 0, 0]]}, "row 0.*length 1"),
+    ({"isovalue": numpy.nan}, "isovalue"),
+    ({"poses": True}, "tool"),
+    ({"method": "best"}, "exact"),
+    ({"stiffness": -1}, "stiffness")])
+def test_bad_input_is_a_value_error_that_says_what_is_wrong(change, words):
+    scene = palpate.scene("torus:16x16x16")
+    given = {"isovalue": scene.isovalue, "time": [0.0, 0.001], "position": numpy.zeros((2, 3)),
+             **change}
+    with pytest.raises(ValueError, match=words):
+        palpate.replay(palpate.Field(scene.volume), **given)
+
+
+def test_a_setting_that_there_is_not_is_a_type_error():
+    scene = palpate.scene("torus:16x16x16")
+    with pytest.raises(TypeError, match="no field stifness"):
+        palpate.replay(palpate.Field(scene.volume), 0.5, [0.0], [[0, 0, 0]], stifness=1)

@@ -1,0 +1,178 @@
+"""Volumes and fields of the Python module: shared memory, other kinds of arrays, files, bad input."""
+
+import pickle
+
+import nibabel
+import numpy
+import pytest
+import zarr
+
+import palpate
+
+TYPES = ("uint8", "int16", "uint16", "float32")
+
+
+def samples(dtype, seed=1):
+    return numpy.random.default_rng(seed).integers(0, 200, (5, 6, 7)).astype(dtype)
+
+
+def address(array):
+    return array.__array_interface__["data"][0]
+
+
+@pytest.mark.parametrize("dtype", TYPES)
+def test_an_array_is_taken_over_and_given_back_without_a_copy(dtype):
+    array = samples(dtype)
+    volume = palpate.Volume(array, spacing=(1, 2, 3))
+    assert address(volume.array) == address(array)
+    assert address(numpy.asarray(volume)) == address(array)
+    assert volume.array.shape == (5, 6, 7) and volume.type == dtype
+    assert list(volume.geometry.size) == [7, 6, 5]
+    assert volume.minimum == array.min() and volume.maximum == array.max()
+    assert not volume.array.flags.writeable
+
+
+def test_samples_live_as_long_as_somebody_holds_them():
+    array = samples("float32")
+    expected = array.copy()
+    view = palpate.Volume(array).array
+    del array
+    assert numpy.array_equal(view, expected)
+
+
+@pytest.mark.parametrize("other", [
+    lambda a: a.T, lambda a: a[:, ::2], lambda a: numpy.asfortranarray(a)])
+def test_other_strides_are_refused_by_name_or_copied_when_asked(other):
+    array = other(samples("int16"))
+    with pytest.raises(ValueError, match="not C-contiguous.*copy=True"):
+        palpate.Volume(array)
+    assert numpy.array_equal(palpate.Volume(array, copy=True).array, array)
+
+
+@pytest.mark.parametrize("array, words", [
+    (numpy.zeros((3, 3)), "three axes"),
+    (numpy.zeros((3, 3, 3)), "float64.*as_volume"),
+    (numpy.zeros((3, 3, 3), ">i2"), "byte order"),
+    (numpy.full((3, 3, 3), numpy.nan, "float32"), "finite"),
+    (numpy.zeros((0, 3, 3), "uint8"), "size")])
+def test_arrays_that_are_no_volume_are_a_value_error_that_says_why(array, words):
+    with pytest.raises(ValueError, match=words):
+        palpate.Volume(array)
+
+
+def test_a_nibabel_image_keeps_its_place_and_its_samples():
+    array = samples("int16").T  # nibabel: x, y, z
+    affine = numpy.array([[-2.0, 0, 0, 10], [0, -3, 0, 20], [0, 0, 4, 30], [0, 0, 0, 1]])
+    volume = palpate.as_volume(nibabel.Nifti1Image(array, affine))
+    assert numpy.array_equal(volume.array, array.T)
+    assert address(volume.array) == address(array)
+    place = volume.geometry
+    for index in ((0, 0, 0), (1, 2, 3)):
+        ras = affine @ (*index, 1)
+        assert numpy.allclose(place.physical(index), ras[:3] * (-1, -1, 1))
+
+
+def test_a_nifti_file_read_by_nibabel_and_by_palpate_is_the_same(tmp_path):
+    affine = numpy.diag([1.5, 2.5, 3.5, 1])
+    affine[:3, 3] = (-5, 6, 7)
+    path = tmp_path / "small.nii.gz"
+    nibabel.save(nibabel.Nifti1Image(samples("int16").T, affine), path)
+    ours, theirs = palpate.load(path).volume, palpate.as_volume(nibabel.load(path))
+    assert numpy.array_equal(ours.array, theirs.array) and ours.type == theirs.type
+    for index in ((0, 0, 0), (3, 2, 1)):
+        assert numpy.allclose(ours.geometry.physical(index), theirs.geometry.physical(index))
+
+
+def test_zarr_arrays_and_other_types_are_converted():
+    array = samples("uint16")
+    volume = palpate.as_volume(zarr.array(array, chunks=(2, 3, 4)), spacing=(1, 1, 2))
+    assert numpy.array_equal(volume.array, array) and volume.type == "uint16"
+    assert palpate.as_volume(array.astype("float64")).type == "float32"
+    assert palpate.as_volume(array.astype(">u2")).type == "uint16"
+    assert palpate.as_volume(array > 100).type == "uint8"
+    frames = numpy.stack([array, array + 1])
+    assert numpy.array_equal(palpate.as_volume(frames, frame=1).array, array + 1)
+    with pytest.raises(ValueError, match="choose a frame"):
+        palpate.as_volume(frames)
+
+
+@pytest.mark.parametrize("extension", sorted({".nrrd", ".nhdr", ".mha", ".mhd", ".nii", ".nii.gz",
+                                              ".vti", ".tif", ".raw"}
+                                             & set(palpate.written_extensions())))
+def test_every_written_format_reads_back_the_same_samples(tmp_path, extension):
+    volume = palpate.Volume(samples("uint8"), spacing=(1, 2, 3))
+    path = tmp_path / f"volume{extension}"
+    palpate.write(volume, path)
+    raw = None
+    if extension == ".raw":
+        raw = palpate.RawLayout(size=(7, 6, 5), type="uint8", spacing=(1, 2, 3))
+    again = palpate.load(path, raw=raw).volume
+    assert numpy.array_equal(again.array, volume.array)
+    assert numpy.allclose(again.geometry.spacing, (1, 2, 3))
+
+
+def test_what_cannot_be_read_or_written_raises_errors_by_kind(tmp_path):
+    with pytest.raises(palpate.InputError, match="does not exist") as caught:
+        palpate.load(tmp_path / "nothing.nrrd")
+    assert isinstance(caught.value, ValueError) and isinstance(caught.value, palpate.Error)
+    (tmp_path / "text.nrrd").write_text("no volume")
+    with pytest.raises(palpate.InputError, match="text.nrrd"):
+        palpate.load(tmp_path / "text.nrrd")
+    with pytest.raises(palpate.OutputError) as caught:
+        palpate.write(palpate.Volume(samples("uint8")), tmp_path / "no" / "folder.nrrd")
+    assert isinstance(caught.value, OSError)
+    assert list(tmp_path.iterdir()) == [tmp_path / "text.nrrd"]
+    with pytest.raises(ValueError, match="cylinder"):
+        palpate.load("synthetic:nothing")
+
+
+def test_what_progress_raises_ends_the_work():
+    class Enough(Exception):
+        pass
+
+    def progress(_):
+        raise Enough
+
+    with pytest.raises(Enough):
+        palpate.dequantized(palpate.scene("torus:48x48x48", "uint8").volume, progress=progress)
+
+
+def test_a_pickled_volume_is_the_same():
+    volume = palpate.Volume(samples("float32"), spacing=(1, 2, 3), origin=(4, 5, 6))
+    again = pickle.loads(pickle.dumps(volume))
+    assert numpy.array_equal(again.array, volume.array) and again.geometry == volume.geometry
+
+
+def test_a_field_is_its_samples_at_samples_and_its_gradient_that_of_its_values():
+    scene = palpate.scene("torus:24x24x24", "float32")
+    points = numpy.random.default_rng(2).uniform(-8, 8, (50, 3))
+    linear = palpate.Field(scene.volume, interpolation="linear")
+    at = numpy.array([scene.volume.geometry.physical((3, 4, 5))])
+    assert linear.value(at)[0] == pytest.approx(scene.volume.array[5, 4, 3], abs=1e-12)
+    field = palpate.Field(scene.volume)
+    step = 1e-5
+    for axis in range(3):
+        aside = numpy.zeros(3)
+        aside[axis] = step
+        slope = (field.value(points + aside) - field.value(points - aside)) / (2 * step)
+        assert numpy.allclose(slope, field.gradient(points)[:, axis], atol=1e-6)
+    hit = field.cast_ray(scene.isovalue, (-20, 0, 0), (20, 0, 0))
+    assert hit and field.value(hit[0][None])[0] == pytest.approx(scene.isovalue, abs=1e-9)
+    assert field.cast_ray(scene.isovalue, (0, 0, 50), (1, 0, 50)) is None
+
+
+def test_a_surface_is_closed_and_its_vertices_lie_on_the_level(tmp_path):
+    scene = palpate.scene("sphere:24x24x24", "float32")
+    field = palpate.Field(scene.volume)
+    mesh = palpate.extract(field, scene.isovalue)
+    edges = numpy.concatenate([mesh.triangles[:, [a, b]] for a, b in ((0, 1), (1, 2), (2, 0))])
+    forward = set(map(tuple, edges))
+    assert len(forward) == len(edges) and all((b, a) in forward for a, b in forward)
+    # Only vertices that surface_margin moved are off the level.
+    on_level = numpy.abs(field.value(mesh.vertices) - scene.isovalue) < 1e-9
+    assert on_level.mean() > 0.9
+    assert mesh.enclosed_volume > 0
+    mesh.write(tmp_path / "sphere.ply")
+    assert len(palpate.read_mesh(tmp_path / "sphere.ply").triangles) == len(mesh.triangles)
+    with pytest.raises(ValueError, match="vertex that there is not"):
+        palpate.Mesh(numpy.zeros((2, 3)), [[0, 1, 2]])
