@@ -10,7 +10,8 @@ namespace {
 /// Samples round a point on which the field there depends, and those across the wall that it is on
 /// [voxel].
 constexpr double around = 3;
-constexpr double least_part = 1.0 / 64;
+/// How often a pull is halved.
+constexpr int most_halvings = 6;
 
 /// The box of samples round a ball, clipped to the grid; empty if it is background.
 SampleBox box_round(const Field& field, const Vec3& centre, double radius) {
@@ -41,7 +42,8 @@ double part_within_reach(const Field& field, const Pull& pull) noexcept {
     const Vec3 way = pull.to - pull.from;
     const double length = std::hypot(way.norm(), pull.turn);
     if (!std::isfinite(length)) return 1;  // the update refuses it
-    for (double part = 1; part >= least_part; part /= 2) {
+    double part = 1;
+    for (int halvings = 0; halvings <= most_halvings; ++halvings, part /= 2) {
         if (is_resident(field, pull.from + part * way, part * length + pull.arm)) return part;
     }
     return 0;

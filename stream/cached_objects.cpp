@@ -52,7 +52,7 @@ class CachedObjects : public Objects {
     std::optional<Bytes> seen(const Wanted& wanted, std::optional<Bytes> bytes) const {
         if (!bytes) return bytes;
         const std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
-        metadata_.fetch_xor(std::hash<std::string_view>{}(text) * 31 +
+        metadata_.fetch_xor(std::hash<std::string_view>{}(text)*31 +
                             std::hash<std::string>{}(wanted.key));
         return bytes;
     }
@@ -60,8 +60,8 @@ class CachedObjects : public Objects {
     std::string entry_name(const Wanted& wanted) const {
         std::string name = objects_->name_of(wanted.key) + '\n' + std::to_string(metadata_.load());
         if (wanted.range) {
-            name += '\n' + std::to_string(wanted.range->offset) + (wanted.range->from_end ? "e" : "+") +
-                    std::to_string(wanted.range->length);
+            name += '\n' + std::to_string(wanted.range->offset) +
+                    (wanted.range->from_end ? "e" : "+") + std::to_string(wanted.range->length);
         }
         return name;
     }

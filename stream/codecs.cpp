@@ -10,6 +10,7 @@
 #include <boost/crc.hpp>
 #include <cstdint>
 #include <cstring>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -181,9 +182,14 @@ Bytes packed_gzip(std::span<const std::byte> bytes, int level) {
 }
 
 Bytes packed_zstd(std::span<const std::byte> bytes, int level) {
+    const std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> job(ZSTD_createCCtx(),
+                                                                   &ZSTD_freeCCtx);
+    if (!job) throw std::bad_alloc();
+    ZSTD_CCtx_setParameter(job.get(), ZSTD_c_compressionLevel, level);
+    ZSTD_CCtx_setParameter(job.get(), ZSTD_c_checksumFlag, 1);
     Bytes out(ZSTD_compressBound(bytes.size()));
     const std::size_t size =
-        ZSTD_compress(out.data(), out.size(), bytes.data(), bytes.size(), level);
+        ZSTD_compress2(job.get(), out.data(), out.size(), bytes.data(), bytes.size());
     if (ZSTD_isError(size) != 0) throw std::runtime_error(ZSTD_getErrorName(size));
     out.resize(size);
     return out;

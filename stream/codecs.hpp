@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -31,7 +32,7 @@ constexpr std::size_t packed_at_most(std::size_t size) {
     return size + size / 8 + 65536;
 }
 
-/// What writers use.
+/// What writers use. gzip and zstd write a checksum, blosc none.
 std::vector<std::byte> packed_gzip(std::span<const std::byte> bytes, int level);
 std::vector<std::byte> packed_zstd(std::span<const std::byte> bytes, int level);
 /// Blosc with zstd and byte shuffle; `each`: bytes of a sample.

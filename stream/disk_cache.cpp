@@ -70,14 +70,15 @@ std::optional<Bytes> entry_of(int file, const std::string& name) {
     const EntryHead right;
     if (fstat(file, &status) != 0 || !read_all(file, &head, sizeof head)) return std::nullopt;
     const auto size = static_cast<std::uint64_t>(status.st_size);
-    if (head.magic != right.magic || head.name_bytes != name.size() ||
-        head.bytes > size || size != sizeof head + head.name_bytes + head.bytes) {
+    if (head.magic != right.magic || head.name_bytes != name.size() || head.bytes > size ||
+        size != sizeof head + head.name_bytes + head.bytes) {
         return std::nullopt;
     }
     std::string stored(head.name_bytes, '\0');
     Bytes bytes(head.bytes);
-    if (!read_all(file, stored.data(), stored.size()) || !read_all(file, bytes.data(), bytes.size()) ||
-        stored != name || checksum_of(name, bytes) != head.checksum) {
+    if (!read_all(file, stored.data(), stored.size()) ||
+        !read_all(file, bytes.data(), bytes.size()) || stored != name ||
+        checksum_of(name, bytes) != head.checksum) {
         return std::nullopt;
     }
     return bytes;
@@ -113,7 +114,8 @@ DiskCache::DiskCache(fs::path folder, std::uint64_t most_bytes)
 }
 
 fs::path DiskCache::path_of(const std::string& name) const {
-    const std::string text = hex(hash_of(name, 0xcbf29ce484222325U)) + hex(hash_of(name, 0x9e3779b97f4a7c15U));
+    const std::string text =
+        hex(hash_of(name, 0xcbf29ce484222325U)) + hex(hash_of(name, 0x9e3779b97f4a7c15U));
     return folder_ / text.substr(0, 2) / text.substr(2);
 }
 

@@ -93,7 +93,8 @@ class HttpClient::Worker {
         static const CURLcode ready = curl_global_init(CURL_GLOBAL_DEFAULT);
         multi_ = curl_multi_init();
         if (ready != CURLE_OK || multi_ == nullptr) throw std::bad_alloc();
-        curl_multi_setopt(multi_, CURLMOPT_MAX_HOST_CONNECTIONS, static_cast<long>(limits.requests));
+        curl_multi_setopt(multi_, CURLMOPT_MAX_HOST_CONNECTIONS,
+                          static_cast<long>(limits.requests));
         curl_multi_setopt(multi_, CURLMOPT_PIPELINING, static_cast<long>(CURLPIPE_MULTIPLEX));
         thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
     }
@@ -142,7 +143,8 @@ class HttpClient::Worker {
             curl_multi_perform(multi_, &running);
             int left = 0;
             while (const CURLMsg* const message = curl_multi_info_read(multi_, &left)) {
-                if (message->msg == CURLMSG_DONE) finish(message->easy_handle, message->data.result);
+                if (message->msg == CURLMSG_DONE)
+                    finish(message->easy_handle, message->data.result);
             }
             curl_multi_poll(multi_, nullptr, 0, pause_ms(), nullptr);
         }
@@ -209,10 +211,12 @@ class HttpClient::Worker {
         curl_easy_setopt(easy, CURLOPT_HTTP_VERSION, static_cast<long>(CURL_HTTP_VERSION_2TLS));
         curl_easy_setopt(easy, CURLOPT_PIPEWAIT, 1L);
         curl_easy_setopt(easy, CURLOPT_USERAGENT, "palpate");
-        const double bytes = static_cast<double>(std::min<std::uint64_t>(most_of(job.request), 1 << 30));
+        const double bytes =
+            static_cast<double>(std::min<std::uint64_t>(most_of(job.request), 1 << 30));
         const double limit_ms = 1e3 * (limits_.timeout_s + 1e-5 * bytes);
         curl_easy_setopt(easy, CURLOPT_TIMEOUT_MS, static_cast<long>(limit_ms));
-        curl_easy_setopt(easy, CURLOPT_CONNECTTIMEOUT_MS, static_cast<long>(1e3 * limits_.timeout_s));
+        curl_easy_setopt(easy, CURLOPT_CONNECTTIMEOUT_MS,
+                         static_cast<long>(1e3 * limits_.timeout_s));
         curl_easy_setopt(easy, CURLOPT_LOW_SPEED_LIMIT, 1L);
         curl_easy_setopt(easy, CURLOPT_LOW_SPEED_TIME,
                          std::max(1L, static_cast<long>(std::ceil(limits_.timeout_s))));
@@ -241,14 +245,15 @@ class HttpClient::Worker {
         release(job);
         const bool again = worth_another_attempt(code, status) || (code == CURLE_OK && !complete);
         if (!again && code == CURLE_OK) return give(job, "");
-        if (again && job->attempts < limits_.attempts) return retry(job, static_cast<double>(wait_s));
-        give(job, words_of(*job, code, status) + (job->attempts > 1 ? ", after " + std::to_string(job->attempts) +
-                                                                  " attempts"
-                                                            : ""));
+        if (again && job->attempts < limits_.attempts)
+            return retry(job, static_cast<double>(wait_s));
+        give(job, words_of(*job, code, status) +
+                      (job->attempts > 1 ? ", after " + std::to_string(job->attempts) + " attempts"
+                                         : ""));
     }
 
-    /// Each pause is about twice the one before, by chance between half and one and a half of it, so
-    /// that clients that failed together do not come back together.
+    /// Each pause is about twice the one before, by chance between half and one and a half of it,
+    /// so that clients that failed together do not come back together.
     void retry(const std::shared_ptr<Job>& job, double asked_s) {
         constexpr double first_s = 0.1, longest_s = 10, longest_asked_s = 30;
         traffic_.retries.fetch_add(1, std::memory_order_relaxed);
@@ -256,8 +261,8 @@ class HttpClient::Worker {
         const double pause_s =
             std::max(chance * std::min(longest_s, std::ldexp(first_s, job->attempts - 1)),
                      std::min(asked_s, longest_asked_s));
-        job->not_before =
-            Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(pause_s));
+        job->not_before = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                             std::chrono::duration<double>(pause_s));
         const std::lock_guard lock(mutex_);
         waiting_.push_back(job);
     }
@@ -286,7 +291,8 @@ class HttpClient::Worker {
         if (running_.size() >= static_cast<std::size_t>(limits_.requests)) return pause;
         for (const auto& job : waiting_) {
             const auto left =
-                std::chrono::ceil<std::chrono::milliseconds>(job->not_before - Clock::now()).count();
+                std::chrono::ceil<std::chrono::milliseconds>(job->not_before - Clock::now())
+                    .count();
             pause = std::clamp(static_cast<int>(left), 0, pause);
         }
         return pause;
@@ -308,7 +314,8 @@ HttpClient::HttpClient(const HttpLimits& limits, TrafficCount& traffic)
     : worker_(std::make_unique<Worker>(limits, traffic)) {}
 HttpClient::~HttpClient() = default;
 
-std::vector<HttpAnswer> HttpClient::get(std::span<const HttpRequest> requests, std::stop_token stop) {
+std::vector<HttpAnswer> HttpClient::get(std::span<const HttpRequest> requests,
+                                        std::stop_token stop) {
     return worker_->get(requests, std::move(stop));
 }
 

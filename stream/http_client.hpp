@@ -1,5 +1,5 @@
-// GET requests over HTTP, many at a time on one thread: kept connections, HTTP/2 where the server has
-// it, bounded numbers, retries, cancelling. Private to stream/.
+// GET requests over HTTP, many at a time on one thread: kept connections, HTTP/2 where the server
+// has it, bounded numbers, retries, cancelling. Private to stream/.
 #pragma once
 
 #include <memory>
@@ -26,9 +26,10 @@ struct HttpAnswer {
 };
 
 struct HttpLimits {
-    int requests = 8;       ///< at a time
-    double timeout_s = 10;  ///< without a byte; a whole request may take as long, and 10 s for each MB
-    int attempts = 5;       ///< of one request
+    int requests = 8;  ///< at a time
+    double timeout_s =
+        10;            ///< without a byte; a whole request may take as long, and 10 s for each MB
+    int attempts = 5;  ///< of one request
 };
 
 class HttpClient {

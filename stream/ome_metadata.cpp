@@ -95,6 +95,13 @@ std::optional<Range> range_of(const Json& attributes) {
     return Range{range[0], range[1]};
 }
 
+std::optional<Mat3> direction_of(const Json& attributes) {
+    const Json ours = attributes.value("palpate", Json::object());
+    if (!ours.is_object() || !ours.contains("direction")) return std::nullopt;
+    const std::vector<double> columns = numbers_of(ours["direction"], 9, "direction");
+    return Mat3(Eigen::Map<const Mat3>(columns.data()));
+}
+
 }  // namespace
 
 std::optional<OmeImage> ome_image(const Json& given) {
@@ -124,6 +131,7 @@ std::optional<OmeImage> ome_image(const Json& given) {
     }
     found.channels = channel_names(attributes);
     found.range = range_of(given);
+    found.direction = direction_of(given);
     return found;
 }
 

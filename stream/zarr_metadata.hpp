@@ -34,7 +34,8 @@ struct OmeImage {
     std::vector<OmeAxis> axes;  ///< the slowest first
     std::vector<OmeDataset> datasets;
     std::vector<std::string> channels;  ///< names, as far as they are given
-    std::optional<Range> range;         ///< as palpate convert writes it
+    std::optional<Range> range;         ///< as palpate convert writes it, and
+    std::optional<Mat3> direction;      ///< of the grid's axes; its translations are then in LPS
 };
 /// `attributes`: those of the group (Zarr 2: .zattrs; OME-Zarr 0.5: the member "ome" of them is
 /// looked into). Nothing if there is no multiscale image in it.

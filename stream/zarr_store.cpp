@@ -262,6 +262,7 @@ class Opening {
             level.geometry.spacing[i] = dataset.scale[a] * unit;
             level.geometry.origin[i] = dataset.translation[a] * unit;
         }
+        if (image.direction) level.geometry.direction = *image.direction;
         try {
             check(level.geometry);
         } catch (const std::invalid_argument& e) {
@@ -273,11 +274,13 @@ class Opening {
     /// The spacing that the caller gives is that of the finest level.
     void use_spacing() {
         if (!options_.spacing) return;
-        const Vec3 factor =
-            options_.spacing->cwiseQuotient(volume_.info.levels[0].geometry.spacing);
+        const Geometry finest = volume_.info.levels[0].geometry;
+        const Vec3 factor = options_.spacing->cwiseQuotient(finest.spacing);
         for (Level& level : volume_.info.levels) {
-            level.geometry.spacing = level.geometry.spacing.cwiseProduct(factor);
-            level.geometry.origin = level.geometry.origin.cwiseProduct(factor);
+            Geometry& grid = level.geometry;
+            grid.spacing = grid.spacing.cwiseProduct(factor);
+            const Vec3 apart = grid_axes_from_physical(finest, grid.origin - finest.origin);
+            grid.origin = finest.origin + finest.direction * apart.cwiseProduct(factor);
         }
     }
 

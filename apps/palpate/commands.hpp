@@ -16,6 +16,7 @@ void add_devices(CLI::App& app);
 void add_doctor(CLI::App& app);
 void add_replay(CLI::App& app);
 void add_extract(CLI::App& app);
+void add_convert(CLI::App& app);
 void add_render(CLI::App& app);
 void add_tool(CLI::App& app);
 void add_demo(CLI::App& app);

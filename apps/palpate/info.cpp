@@ -43,7 +43,8 @@ bool is_oblique(const Geometry& geometry) {
 std::string size_text(std::size_t bytes) {
     const auto b = static_cast<double>(bytes);
     if (b < 1e3) return fmt::format("{} bytes", bytes);
-    return b < 1e6 ? fmt::format("{:.1f} kB", b / 1e3) : fmt::format("{:.1f} MB", b / 1e6);
+    if (b < 1e6) return fmt::format("{:.1f} kB", b / 1e3);
+    return b < 1e10 ? fmt::format("{:.1f} MB", b / 1e6) : fmt::format("{:.1f} GB", b / 1e9);
 }
 
 /// "--dequantize: why"; empty where it is not worth it.
@@ -90,28 +91,55 @@ nlohmann::ordered_json json_of(const io::ValueInfo& values) {
     return json;
 }
 
+/// Of all samples of the grid.
+std::size_t bytes_of(const Samples& samples) {
+    return static_cast<std::size_t>(sample_count(samples.geometry())) * size_of(samples.type());
+}
+
+/// Of a store: size and spacing of each level, the finest first; of other volumes nothing.
+nlohmann::ordered_json levels_json(const run::LoadedVolume& loaded) {
+    auto levels = nlohmann::ordered_json::array();
+    if (!loaded.streamed) return levels;
+    for (const stream::Level& level : loaded.streamed->store->info().levels) {
+        const Geometry& g = level.geometry;
+        levels.push_back({{"size", {g.size[0], g.size[1], g.size[2]}},
+                          {"spacing_mm", {g.spacing[0], g.spacing[1], g.spacing[2]}}});
+    }
+    return levels;
+}
+
+void print_levels(const stream::Store& store) {
+    const std::vector<stream::Level>& levels = store.info().levels;
+    for (std::size_t i = 0; levels.size() > 1 && i < levels.size(); ++i) {
+        const Geometry& g = levels[i].geometry;
+        fmt::print("level {:<6} {} x {} x {}, spacing {:g} x {:g} x {:g} mm\n", i, g.size[0],
+                   g.size[1], g.size[2], g.spacing[0], g.spacing[1], g.spacing[2]);
+    }
+}
+
 nlohmann::ordered_json json_of(const run::LoadedVolume& loaded, const run::Histogram& histogram,
                                const std::vector<double>& suggested,
                                const std::optional<filters::Terraces>& terraces) {
-    const Volume& volume = loaded.volume;
-    const Geometry& g = volume.geometry();
+    const auto samples = run::start_samples(loaded);
+    const Geometry& g = samples->geometry();
     const auto list = [](const auto& v) { return nlohmann::json::array({v[0], v[1], v[2]}); };
     nlohmann::json direction = nlohmann::json::array();
     for (int axis = 0; axis < 3; ++axis) direction.push_back(list(Vec3(g.direction.col(axis))));
     return {{"name", loaded.name},
             {"format", loaded.format},
             {"size", list(g.size)},
-            {"type", name_of(volume.type())},
+            {"type", name_of(samples->type())},
+            {"levels", levels_json(loaded)},
             {"spacing_mm", list(g.spacing)},
             {"origin_mm", list(g.origin)},
             {"direction", direction},
             {"orientation", orientation(g)},
             {"values", json_of(loaded.values)},
-            {"minimum", volume.minimum()},
-            {"maximum", volume.maximum()},
+            {"minimum", samples->minimum()},
+            {"maximum", samples->maximum()},
             {"mean", histogram.mean},
             {"standard_deviation", histogram.deviation},
-            {"memory_bytes", volume.bytes()},
+            {"memory_bytes", bytes_of(*samples)},
             {"time_steps", loaded.time_steps},
             {"frame_times_s", loaded.sequence.times},
             {"histogram",
@@ -147,13 +175,14 @@ void print_histogram(const run::Histogram& fine) {
 void print_text(const run::LoadedVolume& loaded, const run::Histogram& histogram,
                 const std::vector<double>& suggested,
                 const std::optional<filters::Terraces>& terraces) {
-    const Volume& volume = loaded.volume;
-    const Geometry& g = volume.geometry();
+    const auto samples = run::start_samples(loaded);
+    const Geometry& g = samples->geometry();
     const Vec3 extent = g.size.cast<double>().cwiseProduct(g.spacing);
     fmt::print("{}\n", loaded.name);
     fmt::print("format       {}\n", loaded.format);
     fmt::print("size         {} x {} x {} samples, {}\n", g.size[0], g.size[1], g.size[2],
-               name_of(volume.type()));
+               name_of(samples->type()));
+    if (loaded.streamed) print_levels(*loaded.streamed->store);
     if (loaded.time_steps > 1) fmt::print("time steps   {}\n", loaded.time_steps);
     const std::vector<double>& times = loaded.sequence.times;
     if (!times.empty()) {
@@ -173,11 +202,11 @@ void print_text(const run::LoadedVolume& loaded, const run::Histogram& histogram
                    *loaded.values.padding);
     }
     fmt::print("range        {:g} to {:g}, mean {:.4g}, standard deviation {:.4g}\n",
-               volume.minimum(), volume.maximum(), histogram.mean, histogram.deviation);
-    fmt::print("memory       {}\n", size_text(volume.bytes()));
+               samples->minimum(), samples->maximum(), histogram.mean, histogram.deviation);
+    fmt::print("memory       {}\n", size_text(bytes_of(*samples)));
     std::string levels;
     for (const double level : suggested) {
-        const double part = (level - volume.minimum()) / volume.range();
+        const double part = (level - loaded.volume.minimum()) / loaded.volume.range();
         levels += fmt::format("{}{:.6g} ({:.0f}%)", levels.empty() ? "" : ", ", level, 100 * part);
     }
     fmt::print("isovalues    {}\n",
@@ -208,7 +237,8 @@ void add_info(CLI::App& app) {
         if (own && *own > loaded.volume.minimum() && *own < loaded.volume.maximum()) {
             suggested.insert(suggested.begin(), *own);
         }
-        const std::optional<filters::Terraces> terraces = filters::terraces_of(loaded.volume);
+        std::optional<filters::Terraces> terraces;
+        if (!loaded.streamed) terraces = filters::terraces_of(loaded.volume);
         if (*json) {
             print_json(json_of(loaded, histogram, suggested, terraces));
         } else {

@@ -15,6 +15,7 @@ int main(int argc, char** argv) {
         add_info(app);
         add_replay(app);
         add_extract(app);
+        add_convert(app);
         add_tool(app);
         add_render(app);
         add_demo(app);

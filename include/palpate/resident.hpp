@@ -3,6 +3,7 @@
 // (samples.hpp). See docs/streaming.md.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <span>
 #include <vector>
@@ -72,7 +73,7 @@ class ResidentBricks {
   private:
     static constexpr int page_shift = 4;
     static constexpr int page_edge = 1 << page_shift;
-    using Page = std::array<ResidentBrick, page_edge * page_edge * page_edge>;
+    using Page = std::array<ResidentBrick, std::size_t{page_edge} * page_edge * page_edge>;
 
     std::size_t page_of(const Index3& brick) const {
         return (std::size_t(brick[2] >> page_shift) * std::size_t(pages_along_[1]) +

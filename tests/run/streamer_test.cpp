@@ -18,22 +18,15 @@ namespace {
 using support::comes_true;
 using support::ScratchFolder;
 
-/// A ball of 120 mm in a volume of several bricks along each axis, as a raw file.
+/// A ball of 120 mm in a volume of several bricks along each axis, as a file.
 struct BallFile {
     ScratchFolder folder;
     Volume volume = scenes::make_volume("sphere:200x190x180").volume;
-    std::string path = (folder.path() / "ball.raw").string();
+    std::string path = (folder.path() / "ball.nrrd").string();
 
     BallFile() { io::write_volume(volume, path); }
 
-    std::map<std::string, std::string> names() const {
-        const Geometry& g = volume.geometry();
-        return {{"volume", path},
-                {"dims", "200x190x180"},
-                {"type", std::string(name_of(volume.type()))},
-                {"spacing", std::to_string(g.spacing[0]) + "," + std::to_string(g.spacing[1]) +
-                                "," + std::to_string(g.spacing[2])}};
-    }
+    std::map<std::string, std::string> names() const { return {{"volume", path}}; }
     Source streamed() const {
         auto given = names();
         given["memory"] = "yes";

@@ -34,8 +34,8 @@ void expect_formula(const Store& store, int level, const SampleBox& box) {
     for (int z = box.low[2]; z <= box.high[2]; ++z) {
         for (int y = box.low[1]; y <= box.high[1]; ++y) {
             for (int x = box.low[0]; x <= box.high[0]; ++x) {
-                wrong += std::to_integer<int>(bytes[at++]) !=
-                         virtual_sample(level, Index3(x, y, z));
+                wrong +=
+                    std::to_integer<int>(bytes[at++]) != virtual_sample(level, Index3(x, y, z));
             }
         }
     }
@@ -140,8 +140,8 @@ TEST(Http, a_missing_chunk_is_fill_and_missing_metadata_an_error) {
     const Volume volume = volume_of(*store);
     EXPECT_EQ(volume.sample(Index3(0, 0, 0)), 'x');
     EXPECT_EQ(volume.sample(Index3(0, 0, 3)), 9);
-    const std::string message = message_of<io::InputError>(
-        [&] { (void)open_store(server.address("no.zarr"), quick()); });
+    const std::string message =
+        message_of<io::InputError>([&] { (void)open_store(server.address("no.zarr"), quick()); });
     EXPECT_TRUE(contains(message, "no Zarr folder")) << message;
 }
 
@@ -266,7 +266,8 @@ TEST(DiskCache, survives_processes_that_are_killed_while_they_use_it) {
                 const auto store = open_store(address, options);
                 std::mt19937 random(static_cast<unsigned>(10 * round + p));
                 while (true) {
-                    const Index3 at(static_cast<int>(random() % 700), static_cast<int>(random() % 700), 384);
+                    const Index3 at(static_cast<int>(random() % 700),
+                                    static_cast<int>(random() % 700), 384);
                     (void)read_box(*store, 0, {at, at});
                 }
             }

@@ -1,0 +1,146 @@
+// palpate convert: any volume as multiscale OME-Zarr or as another file, in bounded memory.
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "apps/options/source_options.hpp"
+#include "apps/palpate/commands.hpp"
+#include "apps/palpate/outputs.hpp"
+#include "apps/palpate/progress.hpp"
+#include "palpate/io/written_formats.hpp"
+#include "palpate/stream/convert.hpp"
+
+namespace palpate::app {
+namespace {
+
+struct ConvertWords {
+    SourceOptions source;
+    std::string output;
+    std::string ome_version = "0.5";
+    int level = 0;
+    int channel = 0;
+    bool compress = false;
+    bool json = false;
+    stream::ConvertOptions zarr;
+};
+
+/// What is read by the box stays where it is; all else is loaded.
+std::shared_ptr<const stream::Store> opened(const ConvertWords& words) {
+    const run::Source source = words.source.source();
+    const auto* const file = std::get_if<run::FileSource>(&source.from);
+    stream::StoreOptions options;
+    if (file) {
+        options.raw = file->raw;
+        options.spacing = file->spacing;
+    }
+    options.channel = words.channel;
+    options.time = source.frame.value_or(0);
+    const bool filtered = source.smooth > 0 || source.dequantize > 0 || source.prefilter;
+    if (file && !filtered && stream::is_store(file->path, options)) {
+        auto store = stream::open_store(file->path, options);
+        if (!words.source.quiet) {
+            for (const std::string& note : store->info().notes) {
+                fmt::print(stderr, "palpate: note: {}: {}\n", file->path, note);
+            }
+        }
+        return store;
+    }
+    run::LoadedVolume loaded = load_for_terminal(words.source);
+    return stream::store_of(loaded.volume, loaded.name);
+}
+
+void to_zarr(const ConvertWords& words, const stream::Store& store) {
+    stream::ConvertOptions options = words.zarr;
+    options.zarr_version = words.ome_version == "0.4" ? 2 : 3;
+    stream::Converted converted;
+    {
+        ProgressBar bar("converting", words.source.quiet);
+        options.progress = [&](double fraction) { bar.at(fraction); };
+        converted = stream::convert_to_zarr(store, words.level, words.output, options);
+    }
+    if (words.json) {
+        print_json({{"format", "OME-Zarr " + words.ome_version},
+                    {"levels", converted.levels},
+                    {"chunks", converted.chunks},
+                    {"kept", converted.kept},
+                    {"empty", converted.empty},
+                    {"minimum", converted.range.minimum},
+                    {"maximum", converted.range.maximum}});
+    } else if (!words.source.quiet) {
+        fmt::print("{}: OME-Zarr {}, {} levels, {} chunks ({} kept from before, {} empty)\n",
+                   words.output, words.ome_version, converted.levels, converted.chunks,
+                   converted.kept, converted.empty);
+    }
+}
+
+void to_file(const ConvertWords& words, const stream::Store& store) {
+    ProgressBar bar("converting", words.source.quiet);
+    io::WriteOptions options;
+    options.compress = words.compress;
+    options.progress = [&](double fraction) { bar.at(fraction); };
+    stream::write_plain(store, words.level, words.output, options);
+    if (words.json) print_json({{"format", std::string(io::written_extension_of(words.output))}});
+}
+
+void convert(const ConvertWords& words) {
+    check_outputs({words.source.name()}, {words.output});
+    const auto store = opened(words);
+    const auto levels = static_cast<int>(store->info().levels.size());
+    if (words.level >= levels) {
+        throw std::invalid_argument(
+            fmt::format("--level {}: {} has {} levels, numbered from 0", words.level,
+                        words.source.name(), levels));
+    }
+    const bool zarr = std::filesystem::path(words.output).extension() == ".zarr";
+    zarr ? to_zarr(words, *store) : to_file(words, *store);
+    stop_if_interrupted();
+}
+
+}  // namespace
+
+void add_convert(CLI::App& app) {
+    auto words = std::make_shared<ConvertWords>();
+    CLI::App* command =
+        app.add_subcommand("convert", "Write a volume as multiscale OME-Zarr or as another file");
+    command->footer(
+        "OUT is a folder *.zarr, or a file of any format that is written. VOLUME may also be a\n"
+        "*.zarr folder or an http://, https:// or s3:// address of one. OME-Zarr grows in\n"
+        "OUT.partial; the same command continues after an interruption.\n\n"
+        "Example:\n  palpate convert head.nrrd head.zarr --ome-version 0.4");
+    words->source.add_to(*command);
+    command->add_option("OUT", words->output, "Folder *.zarr, or file to write")->required();
+    command->add_option("--ome-version", words->ome_version, "Of OME-Zarr: 0.4 (Zarr 2), 0.5 (Zarr 3)")
+        ->check(CLI::IsMember({"0.4", "0.5"}))
+        ->capture_default_str();
+    command->add_option("--chunk", words->zarr.chunk, "Samples of a chunk along each axis")
+        ->check(CLI::Range(8, 512))
+        ->capture_default_str();
+    command
+        ->add_option_function<std::string>(
+            "--compression",
+            [words](const std::string& text) {
+                words->zarr.compression = text == "none"   ? stream::Compression::none
+                                          : text == "gzip" ? stream::Compression::gzip
+                                          : text == "zstd" ? stream::Compression::zstd
+                                                           : stream::Compression::blosc;
+            },
+            "Of chunks: none, gzip, zstd, blosc")
+        ->check(CLI::IsMember({"none", "gzip", "zstd", "blosc"}))
+        ->default_str("zstd");
+    command->add_flag("--compress", words->compress, "Compress the samples of another file");
+    command->add_option("--level", words->level, "Which level of a store is taken")
+        ->check(CLI::Range(0, 63))
+        ->capture_default_str();
+    command->add_option("--channel", words->channel, "Which channel of a store is taken, from 0")
+        ->check(CLI::Range(0, 1023))
+        ->capture_default_str();
+    command->add_option("--threads", words->zarr.threads, "That read, pack and write chunks")
+        ->check(CLI::Range(1, 256))
+        ->capture_default_str();
+    command->add_flag("--json", words->json, "Print the summary as JSON");
+    command->callback([words] { convert(*words); });
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,43 @@
+// Writes the files of a multiscale OME-Zarr image. Private to stream/.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "palpate/stream/convert.hpp"
+#include "stream/chunked_array.hpp"
+#include "stream/pyramid.hpp"
+
+namespace palpate::stream {
+
+class ZarrWriter {
+  public:
+    ZarrWriter(std::filesystem::path folder, SampleType type, std::vector<CoarserGrid> levels,
+               const ConvertOptions& options);
+
+    const std::vector<CoarserGrid>& levels() const { return levels_; }
+    /// Of all levels and of the image. Throws io::OutputError, as the next one does.
+    void write_metadata(const std::optional<Range>& range) const;
+    /// Writes a chunk under another name and renames it, after having read it back. One whose
+    /// samples are all 0 is not written; returns false then.
+    bool write_chunk(int level, const Index3& chunk, const Bytes& samples) const;
+    /// The samples of a chunk that was written before; nothing if it is not there or not whole.
+    std::optional<Bytes> written_chunk(int level, const Index3& chunk) const;
+    /// Chunks along each axis.
+    Index3 chunks_of(int level) const;
+
+  private:
+    std::filesystem::path path_of(int level, const Index3& chunk) const;
+    Bytes packed(const Bytes& samples) const;
+
+    std::filesystem::path folder_;
+    SampleType type_;
+    std::vector<CoarserGrid> levels_;
+    ConvertOptions options_;
+    std::vector<ChunkedArray> arrays_;
+};
+
+/// All of a small file in a folder that is being made. Throws io::OutputError.
+void put_file(const std::filesystem::path& path, std::span<const std::byte> bytes);
+
+}  // namespace palpate::stream
