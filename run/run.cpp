@@ -41,9 +41,9 @@ std::unique_ptr<Device> open_for(const Field& field, double isovalue, const Setu
         throw std::invalid_argument("rate " + text + " Hz: a live session runs at 250 to 8000 Hz");
     }
     return setup.open_device(setup.device,
-                                {seen(field), isovalue, rate, [&](const DeviceInfo& info) {
-                                     return transform_for(field.geometry(), info, setup);
-                                 }});
+                             {seen(field), isovalue, rate, [&](const DeviceInfo& info) {
+                                  return transform_for(field.geometry(), info, setup);
+                              }});
 }
 
 /// Puts what a run begins with into its recording. Waits while the queue is full; the servo does

@@ -17,9 +17,6 @@ constexpr double smoothing = 0.05;
 Streamer::Streamer(const LoadedVolume& loaded)
     : loader_(loaded.streamed->store, loaded.volume, loaded.streamed->loader) {
     newest_.samples = loader_.empty();
-    const Vec3 centre = physical_centre(loader_.geometry());
-    const stream::Interest middle{centre, centre};
-    loader_.look({&middle, 1});
     thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
 

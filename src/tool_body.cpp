@@ -48,7 +48,8 @@ class Facet {
     }
     double distance(const Vec3& p) const {
         bool above = !flat_;
-        for (std::size_t i = 0; above && i < 3; ++i) above = (p - corners_[i]).dot(inwards_[i]) >= 0;
+        for (std::size_t i = 0; above && i < 3; ++i)
+            above = (p - corners_[i]).dot(inwards_[i]) >= 0;
         if (above) return std::abs((p - corners_[0]).dot(normal_));
         return std::min({distance_to_edge(p, corners_[0], corners_[1]),
                          distance_to_edge(p, corners_[1], corners_[2]),
@@ -62,13 +63,14 @@ class Facet {
     /// triangles share counts for exactly one of them, so a line enters as often as it leaves.
     bool crosses(double x, double y, double& z) const {
         bool inside = false;
-        for (std::size_t i = 0; i < 3; ++i) inside ^= passes(corners_[i], corners_[(i + 1) % 3], x, y);
+        for (std::size_t i = 0; i < 3; ++i)
+            inside ^= passes(corners_[i], corners_[(i + 1) % 3], x, y);
         if (!inside) return false;
         const double low = this->low()[2], high = this->high()[2];
-        z = std::abs(normal_[2]) > 0
-                ? corners_[0][2] -
-                      ((x - corners_[0][0]) * normal_[0] + (y - corners_[0][1]) * normal_[1]) / normal_[2]
-                : low;
+        z = std::abs(normal_[2]) > 0 ? corners_[0][2] - ((x - corners_[0][0]) * normal_[0] +
+                                                         (y - corners_[0][1]) * normal_[1]) /
+                                                            normal_[2]
+                                     : low;
         z = std::clamp(z, low, high);
         return true;
     }
@@ -116,7 +118,8 @@ struct Places {
 };
 
 /// Changes the sign of all distances inside.
-void turn_inside(const Places& places, std::span<const Facet> facets, std::vector<float>& distances) {
+void turn_inside(const Places& places, std::span<const Facet> facets,
+                 std::vector<float>& distances) {
     std::vector<bool> turns(distances.size());
     for (const Facet& facet : facets) {
         // One layer of places: the lines that may cross it.

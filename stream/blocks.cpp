@@ -2,7 +2,9 @@
 #include "stream/blocks.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cstring>
+#include <thread>
 
 namespace palpate::stream {
 namespace {
@@ -32,7 +34,60 @@ void copy_box(const SampleBox& from, const std::byte* source, const SampleBox& t
     }
 }
 
+/// Calls `work(place, box)` for each piece of a level that holds samples of `box`.
+template <class Work>
+void for_each_piece(const Level& grid, const SampleBox& box, Work&& work) {
+    const Index3 last = grid.geometry.size - Index3::Ones();
+    const Index3 first = box.low.cwiseQuotient(grid.chunk);
+    const Index3 end = box.high.cwiseQuotient(grid.chunk);
+    for (int k = first[2]; k <= end[2]; ++k) {
+        for (int j = first[1]; j <= end[1]; ++j) {
+            for (int i = first[0]; i <= end[0]; ++i) {
+                const Index3 low = Index3(i, j, k).cwiseProduct(grid.chunk);
+                work(Index3(i, j, k),
+                     SampleBox{low, (low + grid.chunk - Index3::Ones()).cwiseMin(last)});
+            }
+        }
+    }
+}
+
 }  // namespace
+
+void read_by_pieces(const Store& store, int level, const SampleBox& box, std::span<std::byte> out,
+                    int threads, const std::stop_token& stop) {
+    const StoreInfo& info = store.info();
+    std::vector<SampleBox> pieces;
+    for_each_piece(
+        info.levels[static_cast<std::size_t>(level)], box,
+        [&](const Index3&, const SampleBox& piece) {
+            pieces.push_back({piece.low.cwiseMax(box.low), piece.high.cwiseMin(box.high)});
+        });
+    std::atomic<std::size_t> next{0};
+    std::mutex mutex;
+    std::exception_ptr problem;
+    const auto work = [&] {
+        try {
+            std::vector<std::byte> bytes;
+            for (std::size_t i = next++; i < pieces.size(); i = next++) {
+                bytes.resize(bytes_of(pieces[i], info.type));
+                store.read(level, pieces[i], bytes, stop);
+                copy_box(pieces[i], bytes.data(), box, out.data(), size_of(info.type));
+            }
+        } catch (...) {
+            next = pieces.size();
+            const std::scoped_lock lock(mutex);
+            if (!problem) problem = std::current_exception();
+        }
+    };
+    {
+        std::vector<std::jthread> others;
+        for (int i = 1; i < threads && std::size_t(i) < pieces.size(); ++i) {
+            others.emplace_back(work);
+        }
+        work();
+    }
+    if (problem) std::rethrow_exception(problem);
+}
 
 void BrickLoader::Blocks::read(int level, const SampleBox& box, std::span<std::byte> out,
                                std::stop_token stop) {
@@ -44,19 +99,19 @@ void BrickLoader::Blocks::read(int level, const SampleBox& box, std::span<std::b
     if (is_row || bytes_of(piece, info.type) > most_bytes_ / 4) {
         return store_.read(level, box, out, stop);
     }
-    const Index3 last = grid.geometry.size - Index3::Ones();
-    const Index3 first = box.low.cwiseQuotient(grid.chunk),
-                 end = box.high.cwiseQuotient(grid.chunk);
-    for (int k = first[2]; k <= end[2]; ++k) {
-        for (int j = first[1]; j <= end[1]; ++j) {
-            for (int i = first[0]; i <= end[0]; ++i) {
-                const Index3 low = Index3(i, j, k).cwiseProduct(grid.chunk);
-                const SampleBox own{low, (low + grid.chunk - Index3::Ones()).cwiseMin(last)};
-                const Bytes bytes = block(level, {i, j, k}, own, stop);
-                copy_box(own, bytes->data(), box, out.data(), size_of(info.type));
-            }
-        }
-    }
+    for_each_piece(grid, box, [&](const Index3& at, const SampleBox& own) {
+        if (!has(level, at)) block(level, at, own, stop);
+    });
+    for_each_piece(grid, box, [&](const Index3& at, const SampleBox& own) {
+        const Bytes bytes = block(level, at, own, stop);
+        copy_box(own, bytes->data(), box, out.data(), size_of(info.type));
+    });
+}
+
+/// True for a piece that is kept or that a thread reads now.
+bool BrickLoader::Blocks::has(int level, const Index3& at) const {
+    const std::scoped_lock lock(mutex_);
+    return kept_.contains({level, at[0], at[1], at[2]});
 }
 
 BrickLoader::Blocks::Bytes BrickLoader::Blocks::block(int level, const Index3& at,

@@ -11,12 +11,17 @@
 
 namespace palpate::stream {
 
+/// Store::read() of a large box by several threads, piece by piece.
+void read_by_pieces(const Store& store, int level, const SampleBox& box, std::span<std::byte> out,
+                    int threads, const std::stop_token& stop);
+
 /// Any thread may call any function.
 class BrickLoader::Blocks {
   public:
     Blocks(const Store& store, std::uint64_t most_bytes) : store_(store), most_bytes_(most_bytes) {}
 
-    /// As Store::read(). Pieces small enough to keep are read whole, and each by one thread.
+    /// As Store::read(). Pieces small enough to keep are read whole, and each by one thread; first
+    /// those that no other thread reads, so that threads with neighbouring boxes share the work.
     void read(int level, const SampleBox& box, std::span<std::byte> out, std::stop_token stop);
     std::uint64_t bytes() const;
 
@@ -30,6 +35,7 @@ class BrickLoader::Blocks {
     };
 
     Bytes block(int level, const Index3& at, const SampleBox& box, std::stop_token stop);
+    bool has(int level, const Index3& at) const;
     void forget_old(const Key& but);
 
     const Store& store_;

@@ -82,7 +82,8 @@ class Partial {
         : out_(out), folder_(out.string() + ".partial"), note_(folder_ / "palpate-convert.json") {
         std::error_code error;
         if (fs::exists(fs::symlink_status(out, error))) {
-            throw io::OutputError(out.string() + ": is there already; remove it or give another name");
+            throw io::OutputError(out.string() +
+                                  ": is there already; remove it or give another name");
         }
         fs::create_directory(folder_, error);
         if (error) {
@@ -92,13 +93,15 @@ class Partial {
         lock_ = ::open(folder_.c_str(), O_RDONLY | O_CLOEXEC | O_DIRECTORY);
         if (lock_ >= 0 && ::flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
             ::close(lock_);
-            throw io::OutputError(folder_.string() + ": another process is writing it; wait for that");
+            throw io::OutputError(folder_.string() +
+                                  ": another process is writing it; wait for that");
         }
         std::ifstream in(note_);
         const std::string before((std::istreambuf_iterator<char>(in)), {});
         const std::string text = job.dump(1);
         if (before == text) return;
-        for (const auto& entry : fs::directory_iterator(folder_)) fs::remove_all(entry.path(), error);
+        for (const auto& entry : fs::directory_iterator(folder_))
+            fs::remove_all(entry.path(), error);
         put_file(note_, std::as_bytes(std::span(text)));
     }
     ~Partial() {
@@ -135,14 +138,15 @@ std::vector<double> grid_numbers(const Geometry& grid) {
 /// What a run has to have in common with the one that it continues.
 nlohmann::json job_of(const Store& from, int level, const ConvertOptions& options) {
     const StoreInfo& info = from.info();
-    nlohmann::json job = {{"source", info.address},
-                          {"format", info.format},
-                          {"level", level},
-                          {"grid", grid_numbers(info.levels.at(static_cast<std::size_t>(level)).geometry)},
-                          {"type", name_of(info.type)},
-                          {"zarr", options.zarr_version},
-                          {"chunk", options.chunk},
-                          {"compression", static_cast<int>(options.compression)}};
+    nlohmann::json job = {
+        {"source", info.address},
+        {"format", info.format},
+        {"level", level},
+        {"grid", grid_numbers(info.levels.at(static_cast<std::size_t>(level)).geometry)},
+        {"type", name_of(info.type)},
+        {"zarr", options.zarr_version},
+        {"chunk", options.chunk},
+        {"compression", static_cast<int>(options.compression)}};
     std::error_code error;
     if (fs::is_regular_file(info.address, error)) {
         job["bytes"] = fs::file_size(info.address, error);
@@ -185,7 +189,8 @@ void for_rows(const SampleBox& box, int chunk, std::size_t each, Copy&& copy) {
     std::size_t at = 0;
     for (int z = 0; z < size[2]; ++z) {
         for (int y = 0; y < size[1]; ++y, at += row) {
-            copy((static_cast<std::size_t>(z) * edge + static_cast<std::size_t>(y)) * edge * each, at, row);
+            copy((static_cast<std::size_t>(z) * edge + static_cast<std::size_t>(y)) * edge * each,
+                 at, row);
         }
     }
 }
@@ -232,7 +237,8 @@ class Conversion {
         }
     }
 
-    void convert(const Store& written, int level, std::int64_t number, const std::stop_token& stop) {
+    void convert(const Store& written, int level, std::int64_t number,
+                 const std::stop_token& stop) {
         const Index3 count = writer_.chunks_of(level);
         const Index3 chunk(static_cast<int>(number % count[0]),
                            static_cast<int>(number / count[0] % count[1]),
@@ -242,19 +248,23 @@ class Conversion {
         box.low = chunk * options_.chunk;
         box.high = (box.low.array() + options_.chunk).min(grid.size.array()) - 1;
         const std::size_t each = size_of(from_.info().type);
-        Bytes samples(static_cast<std::size_t>((box.high - box.low + Index3::Ones()).cast<std::int64_t>().prod()) * each);
+        Bytes samples(static_cast<std::size_t>(
+                          (box.high - box.low + Index3::Ones()).cast<std::int64_t>().prod()) *
+                      each);
         if (const auto before = writer_.written_chunk(level, chunk)) {
-            for_rows(box, options_.chunk, each, [&](std::size_t whole, std::size_t part, std::size_t row) {
-                std::memcpy(samples.data() + part, before->data() + whole, row);
-            });
+            for_rows(box, options_.chunk, each,
+                     [&](std::size_t whole, std::size_t part, std::size_t row) {
+                         std::memcpy(samples.data() + part, before->data() + whole, row);
+                     });
             ++kept_;
         } else {
             make(written, level, box, samples, stop);
             const auto edge = static_cast<std::size_t>(options_.chunk);
             Bytes whole_chunk(edge * edge * edge * each);
-            for_rows(box, options_.chunk, each, [&](std::size_t whole, std::size_t part, std::size_t row) {
-                std::memcpy(whole_chunk.data() + whole, samples.data() + part, row);
-            });
+            for_rows(box, options_.chunk, each,
+                     [&](std::size_t whole, std::size_t part, std::size_t row) {
+                         std::memcpy(whole_chunk.data() + whole, samples.data() + part, row);
+                     });
             if (!writer_.write_chunk(level, chunk, whole_chunk)) ++empty_;
         }
         if (level == 0) seen_.take(from_.info().type, samples);

@@ -30,6 +30,8 @@ double least_finite(SampleType type, std::span<const std::byte> bytes) {
     return std::isfinite(least) ? least : 0;
 }
 
+/// That read an overview at a time.
+constexpr int threads = 16;
 /// Most reads for an overview of a level that is too large to be read whole: of rows, or of pieces.
 constexpr std::int64_t most_rows = 4096;
 constexpr std::int64_t most_pieces = 512;
@@ -44,7 +46,7 @@ Volume whole_level(const Store& store, int level, std::stop_token stop) {
     const Geometry& geometry = store.info().levels[static_cast<std::size_t>(level)].geometry;
     const SampleType type = store.info().type;
     std::vector<std::byte> bytes(static_cast<std::size_t>(sample_count(geometry)) * size_of(type));
-    store.read(level, whole_box(geometry), bytes, stop);
+    read_by_pieces(store, level, whole_box(geometry), bytes, threads, stop);
     return volume_from(geometry, type, std::move(bytes));
 }
 

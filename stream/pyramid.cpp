@@ -83,7 +83,8 @@ void take_means(SampleType type, std::span<const std::byte> finer, const SampleB
                     for (int k = low[2]; k <= high[2]; ++k) {
                         for (int j = low[1]; j <= high[1]; ++j) {
                             for (int i = low[0]; i <= high[0]; ++i) {
-                                sum += static_cast<double>(sample_at<T>(finer, finer_box, {i, j, k}));
+                                sum +=
+                                    static_cast<double>(sample_at<T>(finer, finer_box, {i, j, k}));
                             }
                         }
                     }

@@ -43,7 +43,8 @@ int slab_of(const Level& level, SampleType type) {
     return std::clamp(static_cast<int>(most / row), 1, std::max(1, level.chunk[2]));
 }
 
-void write_slabs(const Store& from, int level, io::PendingFile& file, const io::Progress& progress) {
+void write_slabs(const Store& from, int level, io::PendingFile& file,
+                 const io::Progress& progress) {
     const Level& grid = from.info().levels.at(static_cast<std::size_t>(level));
     const Index3& size = grid.geometry.size;
     const int slab = slab_of(grid, from.info().type);

@@ -83,8 +83,7 @@ Json array3(const Geometry& grid, SampleType type, const ConvertOptions& options
             {"chunk_grid",
              {{"name", "regular"},
               {"configuration", {{"chunk_shape", Json(std::vector<int>(3, options.chunk))}}}}},
-            {"chunk_key_encoding",
-             {{"name", "default"}, {"configuration", {{"separator", "/"}}}}},
+            {"chunk_key_encoding", {{"name", "default"}, {"configuration", {{"separator", "/"}}}}},
             {"fill_value", 0},
             {"codecs", codecs3(options.compression, size_of(type))},
             {"dimension_names", {"z", "y", "x"}},
@@ -119,7 +118,8 @@ void put_file(const fs::path& path, std::span<const std::byte> bytes) {
     std::error_code error;
     fs::create_directories(path.parent_path(), error);
     std::ofstream file(temporary, std::ios::binary);
-    file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    file.write(reinterpret_cast<const char*>(bytes.data()),
+               static_cast<std::streamsize>(bytes.size()));
     file.close();
     if (file) fs::rename(temporary, path, error);
     if (!file || error) {
@@ -146,7 +146,8 @@ void ZarrWriter::write_metadata(const std::optional<Range>& range) const {
     if (finest.direction != Mat3::Identity()) {
         // OME-Zarr has no directions before version 0.6.
         for (int column = 0; column < 3; ++column) {
-            for (int row = 0; row < 3; ++row) ours["direction"].push_back(finest.direction(row, column));
+            for (int row = 0; row < 3; ++row)
+                ours["direction"].push_back(finest.direction(row, column));
         }
     }
     if (range) ours["range"] = {range->minimum, range->maximum};

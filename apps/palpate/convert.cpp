@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "apps/options/source_options.hpp"
 #include "apps/palpate/commands.hpp"
@@ -19,46 +20,55 @@ struct ConvertWords {
     SourceOptions source;
     std::string output;
     std::string ome_version = "0.5";
-    int level = 0;
-    int channel = 0;
     bool compress = false;
     bool json = false;
     stream::ConvertOptions zarr;
 };
 
-/// What is read by the box stays where it is; all else is loaded.
-std::shared_ptr<const stream::Store> opened(const ConvertWords& words) {
-    const run::Source source = words.source.source();
-    const auto* const file = std::get_if<run::FileSource>(&source.from);
-    stream::StoreOptions options;
-    if (file) {
-        options.raw = file->raw;
-        options.spacing = file->spacing;
-    }
-    options.channel = words.channel;
-    options.time = source.frame.value_or(0);
-    const bool filtered = source.smooth > 0 || source.dequantize > 0 || source.prefilter;
-    if (file && !filtered && stream::is_store(file->path, options)) {
-        auto store = stream::open_store(file->path, options);
-        if (!words.source.quiet) {
-            for (const std::string& note : store->info().notes) {
-                fmt::print(stderr, "palpate: note: {}: {}\n", file->path, note);
-            }
-        }
-        return store;
-    }
-    run::LoadedVolume loaded = load_for_terminal(words.source);
-    return stream::store_of(loaded.volume, loaded.name);
+/// A store and the level of it that is taken.
+struct Taken {
+    std::shared_ptr<const stream::Store> store;
+    int level = 0;
+};
+
+/// The store that a source can be read as; nothing: it is loaded.
+std::optional<run::StoreSource> store_of(const run::Source& source) {
+    if (source.smooth > 0 || source.dequantize > 0 || source.prefilter) return std::nullopt;
+    if (const auto* store = std::get_if<run::StoreSource>(&source.from)) return *store;
+    const auto* file = std::get_if<run::FileSource>(&source.from);
+    if (!file) return std::nullopt;
+    run::StoreSource store{file->path, {}, {}};
+    store.options.raw = file->raw;
+    store.options.spacing = file->spacing;
+    if (!stream::is_store(file->path, store.options)) return std::nullopt;
+    return store;
 }
 
-void to_zarr(const ConvertWords& words, const stream::Store& store) {
+/// What is read by the box stays where it is; all else is loaded.
+Taken opened(const ConvertWords& words) {
+    const run::Source source = words.source.source();
+    if (auto from = store_of(source)) {
+        from->options.time = source.frame.value_or(0);
+        auto store = stream::open_store(from->address, from->options);
+        if (!words.source.quiet) {
+            for (const std::string& note : store->info().notes) {
+                fmt::print(stderr, "palpate: note: {}: {}\n", from->address, note);
+            }
+        }
+        return {std::move(store), from->loader.level};
+    }
+    run::LoadedVolume loaded = load_for_terminal(words.source);
+    return {stream::store_of(loaded.volume, loaded.name)};
+}
+
+void to_zarr(const ConvertWords& words, const Taken& taken) {
     stream::ConvertOptions options = words.zarr;
     options.zarr_version = words.ome_version == "0.4" ? 2 : 3;
     stream::Converted converted;
     {
         ProgressBar bar("converting", words.source.quiet);
         options.progress = [&](double fraction) { bar.at(fraction); };
-        converted = stream::convert_to_zarr(store, words.level, words.output, options);
+        converted = stream::convert_to_zarr(*taken.store, taken.level, words.output, options);
     }
     if (words.json) {
         print_json({{"format", "OME-Zarr " + words.ome_version},
@@ -75,26 +85,25 @@ void to_zarr(const ConvertWords& words, const stream::Store& store) {
     }
 }
 
-void to_file(const ConvertWords& words, const stream::Store& store) {
+void to_file(const ConvertWords& words, const Taken& taken) {
     ProgressBar bar("converting", words.source.quiet);
     io::WriteOptions options;
     options.compress = words.compress;
     options.progress = [&](double fraction) { bar.at(fraction); };
-    stream::write_plain(store, words.level, words.output, options);
+    stream::write_plain(*taken.store, taken.level, words.output, options);
     if (words.json) print_json({{"format", std::string(io::written_extension_of(words.output))}});
 }
 
 void convert(const ConvertWords& words) {
     check_outputs({words.source.name()}, {words.output});
-    const auto store = opened(words);
-    const auto levels = static_cast<int>(store->info().levels.size());
-    if (words.level >= levels) {
-        throw std::invalid_argument(
-            fmt::format("--level {}: {} has {} levels, numbered from 0", words.level,
-                        words.source.name(), levels));
+    const Taken taken = opened(words);
+    const auto levels = static_cast<int>(taken.store->info().levels.size());
+    if (taken.level >= levels) {
+        throw std::invalid_argument(fmt::format("--level {}: {} has {} levels, numbered from 0",
+                                                taken.level, words.source.name(), levels));
     }
     const bool zarr = std::filesystem::path(words.output).extension() == ".zarr";
-    zarr ? to_zarr(words, *store) : to_file(words, *store);
+    zarr ? to_zarr(words, taken) : to_file(words, taken);
     stop_if_interrupted();
 }
 
@@ -111,7 +120,8 @@ void add_convert(CLI::App& app) {
         "Example:\n  palpate convert head.nrrd head.zarr --ome-version 0.4");
     words->source.add_to(*command);
     command->add_option("OUT", words->output, "Folder *.zarr, or file to write")->required();
-    command->add_option("--ome-version", words->ome_version, "Of OME-Zarr: 0.4 (Zarr 2), 0.5 (Zarr 3)")
+    command
+        ->add_option("--ome-version", words->ome_version, "Of OME-Zarr: 0.4 (Zarr 2), 0.5 (Zarr 3)")
         ->check(CLI::IsMember({"0.4", "0.5"}))
         ->capture_default_str();
     command->add_option("--chunk", words->zarr.chunk, "Samples of a chunk along each axis")
@@ -130,12 +140,6 @@ void add_convert(CLI::App& app) {
         ->check(CLI::IsMember({"none", "gzip", "zstd", "blosc"}))
         ->default_str("zstd");
     command->add_flag("--compress", words->compress, "Compress the samples of another file");
-    command->add_option("--level", words->level, "Which level of a store is taken")
-        ->check(CLI::Range(0, 63))
-        ->capture_default_str();
-    command->add_option("--channel", words->channel, "Which channel of a store is taken, from 0")
-        ->check(CLI::Range(0, 1023))
-        ->capture_default_str();
     command->add_option("--threads", words->zarr.threads, "That read, pack and write chunks")
         ->check(CLI::Range(1, 256))
         ->capture_default_str();

@@ -65,8 +65,8 @@ SampleBox StrokeReach::box() const {
 
 double poses_of(const edit::Sweep& sweep, const Geometry& geometry) {
     const Vec3 turn = rotation_between(sweep.from.orientation, sweep.to.orientation);
-    const double way = (sweep.to.position - sweep.from.position).norm() +
-                       turn.norm() * arm_of(sweep, geometry);
+    const double way =
+        (sweep.to.position - sweep.from.position).norm() + turn.norm() * arm_of(sweep, geometry);
     return 1 + std::ceil(way / (0.25 * geometry.spacing.minCoeff()));
 }
 
@@ -88,9 +88,8 @@ SweepReach::SweepReach(const edit::Sweep& sweep, const Geometry& geometry)
         const Mat3 to_tool =
             turned(sweep.from.orientation, t * turn).toRotationMatrix().transpose();
         poses_.push_back({to_tool * grid, to_tool * (geometry.origin - position)});
-        const Mat3 to_index =
-            geometry.spacing.cwiseInverse().asDiagonal() * geometry.direction.transpose() *
-            to_tool.transpose();
+        const Mat3 to_index = geometry.spacing.cwiseInverse().asDiagonal() *
+                              geometry.direction.transpose() * to_tool.transpose();
         const Vec3 at = index_from_physical(geometry, position) + to_index * middle;
         const Vec3 around = to_index.cwiseAbs() * half;
         box_ = united(box_, samples_within(at - around, at + around));
@@ -103,8 +102,7 @@ double SweepReach::weight(const Index3& at) const {
     const double none = radius_ + 0.5 * edge_;
     double nearest = none;
     for (std::size_t i = 0; i < poses_.size();) {
-        const double d =
-            body_.distance(poses_[i].rotation * index + poses_[i].translation);
+        const double d = body_.distance(poses_[i].rotation * index + poses_[i].translation);
         nearest = std::min(nearest, d);
         if (nearest <= full) return 1;
         // Nearer than that at none of the poses that are passed over.

@@ -29,7 +29,10 @@ std::vector<Known> known_tools() {
         return distance_to_segment(p, {0, 0, 0}, {0, 0, 12});
     };
     return {{box_tool({6, 9, 4}, 0.5),
-             [](const Vec3& p) { return distance_to_box(p, {3, 4.5, 2}); }, 0},
+             [](const Vec3& p) {
+                 return distance_to_box(p, {3, 4.5, 2});
+             },
+             0},
             {sphere_tool(5, 0.5), [](const Vec3& p) { return p.norm() - 5; }, 0.03},
             {rod_tool(12, 0.5), capsule, 0.15},
             {needle_tool(20, 1.5, 0.5),
@@ -133,16 +136,16 @@ TEST(ToolBody, refuses_lengths_that_are_none_and_meshes_too_fine_for_it) {
     ToolShape fine;
     fine.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     fine.triangles.assign(20'001, {0, 1, 2});
-    EXPECT_THROW(
-        ToolBody(std::make_shared<const Tool>(Tool({Vec3::Zero()}, {}, true, fine)), 1, 1),
-        std::invalid_argument);
+    EXPECT_THROW(ToolBody(std::make_shared<const Tool>(Tool({Vec3::Zero()}, {}, true, fine)), 1, 1),
+                 std::invalid_argument);
 }
 
 /// A block of solid with a body's sweep carved out of it.
 struct Carved {
-    Geometry geometry = support::grid(Index3::Constant(48), {1, 1, 1}, {-20, 5, 9}, oblique_direction());
-    std::shared_ptr<const Samples> block = samples_of(
-        volume_of<std::int16_t>(geometry, [](const Index3&) { return 200; }));
+    Geometry geometry =
+        support::grid(Index3::Constant(48), {1, 1, 1}, {-20, 5, 9}, oblique_direction());
+    std::shared_ptr<const Samples> block =
+        samples_of(volume_of<std::int16_t>(geometry, [](const Index3&) { return 200; }));
     Brush brush = brush_for(BrushKind::carve, Field(block, Solid::above, 0), 100, 0.5);
 
     edit::Sweep sweep(const Tool& tool, const Pose& from, const Pose& to) const {
@@ -185,8 +188,8 @@ TEST(Sweep, of_a_turning_tool_takes_away_what_it_passed_through_and_nothing_else
                 for (int k = 0; k <= 300; ++k) {
                     const Pose at{from.position + k / 300.0 * (to.position - from.position),
                                   turned(from.orientation, k / 300.0 * turn)};
-                    is = std::min(is, known.distance(at.orientation.conjugate() *
-                                                     (p - at.position)));
+                    is = std::min(is,
+                                  known.distance(at.orientation.conjugate() * (p - at.position)));
                 }
                 if (std::abs(is - c.brush.radius) < 0.3) continue;  // of a voxel
                 const bool gone = after->sample(index.cast<int>()) < 100;

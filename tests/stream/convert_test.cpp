@@ -51,8 +51,8 @@ TEST(Convert, every_type_version_and_compression_reads_back_with_its_place_and_r
     for (const int version : {2, 3}) {
         for (const Compression compression :
              {Compression::none, Compression::gzip, Compression::zstd, Compression::blosc}) {
-            for (const SampleType type : {SampleType::uint8, SampleType::int16, SampleType::uint16,
-                                          SampleType::float32}) {
+            for (const SampleType type :
+                 {SampleType::uint8, SampleType::int16, SampleType::uint16, SampleType::float32}) {
                 const Volume volume = some_volume(type);
                 const fs::path out = folder / ("v" + std::to_string(number++) + ".zarr");
                 ConvertOptions options;
@@ -91,8 +91,8 @@ TEST(Convert, each_coarser_level_is_the_mean_of_the_finer_one_and_lies_where_it_
             const Index3 factor =
                 grid.spacing.cwiseQuotient(finer.geometry().spacing).array().round().cast<int>();
             // The centre of the samples that make the first one.
-            EXPECT_TRUE(grid.origin.isApprox(physical_from_index(
-                finer.geometry(), (factor.cast<double>() - Vec3::Ones()) / 2)));
+            EXPECT_TRUE(grid.origin.isApprox(
+                physical_from_index(finer.geometry(), (factor.cast<double>() - Vec3::Ones()) / 2)));
             for (int z = 0; z < grid.size[2]; ++z) {
                 for (int y = 0; y < grid.size[1]; ++y) {
                     for (int x = 0; x < grid.size[0]; ++x) {
@@ -248,8 +248,8 @@ TEST(Convert, a_level_behind_http_becomes_a_local_image) {
     const auto remote = open_store(server.address("virtual.zarr"));
     (void)convert_to_zarr(*remote, 7, folder / "v.zarr", {});
     const auto local = open_store(folder / "v.zarr");
-    EXPECT_TRUE(local->info().levels[0].geometry.origin.isApprox(
-        remote->info().levels[7].geometry.origin));
+    EXPECT_TRUE(
+        local->info().levels[0].geometry.origin.isApprox(remote->info().levels[7].geometry.origin));
     expect_same_boxes(*local, volume_of(*remote, 7), 11);
 }
 

@@ -117,8 +117,7 @@ TEST(BrickLoader, a_coarser_level_is_interpolated_where_it_lies_in_space) {
 TEST(BrickLoader, memory_is_bounded_and_what_the_hand_needs_arrives_wherever_it_goes) {
     const Volume volume = noise_of(SampleType::uint8, grid({640, 320, 320}), 4);
     const auto store = store_of(volume, {64, 64, 64});
-    BrickLoader loader(store, overview_of(*store, 1000),
-                       {.memory = least_memory, .threads = 2});
+    BrickLoader loader(store, overview_of(*store, 1000), {.memory = least_memory, .threads = 2});
     Random random(6);
     Field field(loader.empty());
     for (int n = 0; n < 20; ++n) {

@@ -30,7 +30,7 @@ std::shared_ptr<const Samples> empty_samples(const Store& store, const Volume& o
 struct BrickLoaderSettings {
     int level = 0;                                  ///< of the store that is felt
     std::uint64_t memory = std::uint64_t{1} << 29;  ///< [bytes] most that bricks and pieces take
-    int threads = 8;                                ///< that read at a time
+    int threads = 16;                               ///< that read at a time
     /// Feel a coarser level until the bricks of `level` are there (ProxyUpdate::level says so).
     bool coarse_first = false;
 };
