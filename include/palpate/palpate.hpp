@@ -17,6 +17,7 @@
 #include "palpate/editor.hpp"
 #include "palpate/lattice.hpp"
 #include "palpate/cubic.hpp"
+#include "palpate/kept_piece.hpp"
 #include "palpate/density.hpp"
 #include "palpate/proxy.hpp"
 #include "palpate/tool.hpp"
