@@ -4,7 +4,9 @@
 namespace palpate::cubic {
 
 Piece piece_of(const Tetrahedron& t, const Neighbours& samples) {
-    return piece_of(t, samples.data() + 13, 3, 9, 0);
+    Piece piece;
+    make_piece(piece, t, samples.data() + 13, 3, 9, 0);
+    return piece;
 }
 
 LatticePoint locate(const Vec3& index) {

@@ -157,8 +157,12 @@ void Field::look() noexcept {
     const bool changing = samples_->bricks() || moment_.weight > 0 || offset_ != 0 || resident_;
     plain_ = changing ? Index3(Index3::Zero()) : Index3(size_ - Index3::Ones());
     tolerance_ = std::max(1e-12 * range_, 8 * std::numeric_limits<double>::epsilon() * largest);
+    lowest_ = (low - offset_) - range_;
+    highest_ = (high - offset_) + range_;
     if (!shows_labels_) return;
     range_ = 1;
+    lowest_ = -1;
+    highest_ = 2;
     offset_ = 0;
     tolerance_ = 1e-12;
     plain_.setZero();

@@ -8,9 +8,6 @@
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
-#include <cstring>
-#include <limits>
 #include <type_traits>
 
 #include "palpate/lattice.hpp"
@@ -65,87 +62,13 @@ struct Piece : Expansion {
     Piece operator-() const;
 };
 
-/// A sample and its neighbours, to the bit.
-class KeptSamples {
-  public:
-    template <class T>
-    void keep(const T* centre, std::ptrdiff_t row, std::ptrdiff_t slice) {
-        type_ = type_of<T>;
-        std::byte* to = bytes_.data();
-        for (const std::ptrdiff_t z : {-slice, std::ptrdiff_t{0}, slice}) {
-            for (const std::ptrdiff_t y : {z - row, z, z + row}) {
-                std::memcpy(to, centre + y - 1, 3 * sizeof(T));
-                to += 3 * sizeof(T);
-            }
-        }
-    }
-    template <class T>
-    bool are(const T* centre, std::ptrdiff_t row, std::ptrdiff_t slice) const {
-        if (type_ != type_of<T>) return false;
-        const std::byte* kept = bytes_.data();
-        bool same = true;
-        for (const std::ptrdiff_t z : {-slice, std::ptrdiff_t{0}, slice}) {
-            for (const std::ptrdiff_t y : {z - row, z, z + row}) {
-                same &= same_three<T>(kept, centre + y - 1);
-                kept += 3 * sizeof(T);
-            }
-        }
-        return same;
-    }
-
-  private:
-    template <class T>
-    static constexpr int type_of = static_cast<int>(sizeof(T)) * (std::is_signed_v<T> ? -1 : 1);
-    /// Without a call or a branch: each of them costs as much as all the rest.
-    template <class Bits>
-    static Bits difference_at(const std::byte* a, const std::byte* b) {
-        Bits x, y;
-        std::memcpy(&x, a, sizeof x);
-        std::memcpy(&y, b, sizeof y);
-        return x ^ y;
-    }
-    template <class T>
-    static bool same_three(const std::byte* a, const T* from) {
-        const auto* b = reinterpret_cast<const std::byte*>(from);
-        if constexpr (sizeof(T) == 1) {
-            return (difference_at<std::uint16_t>(a, b) |
-                    difference_at<std::uint8_t>(a + 2, b + 2)) == 0;
-        } else if constexpr (sizeof(T) == 2) {
-            return (difference_at<std::uint32_t>(a, b) |
-                    difference_at<std::uint16_t>(a + 4, b + 4)) == 0;
-        } else if constexpr (sizeof(T) == 4) {
-            return (difference_at<std::uint64_t>(a, b) |
-                    difference_at<std::uint32_t>(a + 8, b + 8)) == 0;
-        } else {
-            return (difference_at<std::uint64_t>(a, b) |
-                    difference_at<std::uint64_t>(a + 8, b + 8) |
-                    difference_at<std::uint64_t>(a + 16, b + 16)) == 0;
-        }
-    }
-
-    int type_ = 0;  // none
-    std::array<std::byte, 27 * sizeof(double)> bytes_{};
-};
-
-/// The piece that an update made last, for the next one, which mostly begins in its tetrahedron. It
-/// is used only where all that it was made from is the same, so results do not depend on it.
-struct KeptPiece {
-    double isovalue = 0;  ///< less the field's offset [data units]
-    double sign = 0;
-    Tetrahedron tetrahedron;
-    Piece piece;  ///< of the excess, sign * (f - isovalue)
-    /// Nothing in the tetrahedron's cube lies above: the greatest excess of the samples round it,
-    /// once it was looked for, times `scale`.
-    double most = std::numeric_limits<double>::infinity();
-};
-
 /// The cubic of a tetrahedron from the neighbours of its sample. Each Bernstein coefficient of it
 /// is a mean of these samples with weights >= 0, so the field never leaves their range.
 Piece piece_of(const Tetrahedron& tetrahedron, const Neighbours& samples);
 /// The same from samples that lie as Field::visit_around() shows them, less `isovalue`.
 template <class T>
-Piece piece_of(const Tetrahedron& tetrahedron, const T* centre, std::ptrdiff_t row,
-               std::ptrdiff_t slice, double isovalue);
+void make_piece(Piece& piece, const Tetrahedron& tetrahedron, const T* centre, std::ptrdiff_t row,
+                std::ptrdiff_t slice, double isovalue);
 
 /// A tetrahedron that contains the point (index space, every |coordinate| <= farthest_index).
 LatticePoint locate(const Vec3& index);
@@ -183,7 +106,7 @@ struct Rows {
 /// What is odd along e is made of differences of the planes e = 1 and e = -1. In their names the
 /// place along d and s follows: dm0 is at d = -1, s = 0.
 template <class T>
-inline void add_odd(Piece& p, const Rows<T>& r) {
+inline void set_odd(Piece& p, const Rows<T>& r) {
     using Sum = typename Rows<T>::Sum;
     const auto difference = [](const T* plus, const T* minus, std::ptrdiff_t at) {
         return Sum(plus[at]) - Sum(minus[at]);
@@ -204,7 +127,7 @@ inline void add_odd(Piece& p, const Rows<T>& r) {
 
 /// What is even along e is made of the plane e = 0 and the sums of the other two.
 template <class T>
-inline void add_even(Piece& p, const Rows<T>& r, double isovalue) {
+inline void set_even(Piece& p, const Rows<T>& r, double isovalue) {
     using Sum = typename Rows<T>::Sum;
     const auto sum = [](const T* plus, const T* minus, std::ptrdiff_t at) {
         return Sum(plus[at]) + Sum(minus[at]);
@@ -245,15 +168,13 @@ inline void add_even(Piece& p, const Rows<T>& r, double isovalue) {
 
 // docs/smooth.md says where the coefficients come from.
 template <class T>
-inline Piece piece_of(const Tetrahedron& t, const T* centre, std::ptrdiff_t row,
-                      std::ptrdiff_t slice, double isovalue) {
+inline void make_piece(Piece& p, const Tetrahedron& t, const T* centre, std::ptrdiff_t row,
+                       std::ptrdiff_t slice, double isovalue) {
     const std::array<std::ptrdiff_t, 3> stride{1, row, slice};
     const detail::Rows<T> rows(centre, t.sign[0] * stride[t.axis[0]], t.sign[1] * stride[t.axis[1]],
                                t.sign[2] * stride[t.axis[2]]);
-    Piece p;
-    detail::add_odd(p, rows);
-    detail::add_even(p, rows, isovalue);
-    return p;
+    detail::set_odd(p, rows);
+    detail::set_even(p, rows, isovalue);
 }
 
 inline Piece Piece::operator-() const {

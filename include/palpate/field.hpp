@@ -4,6 +4,7 @@
 // between two frames.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string_view>
@@ -57,6 +58,11 @@ class Field {
     void show_labels(std::uint32_t labels) noexcept;
     /// Bits of the labels of the sample `at` and its neighbours, whether they are shown or not.
     std::uint32_t labels_around(const Index3& at) const noexcept;
+    /// True after show_labels().
+    bool shows_labels() const noexcept { return shows_labels_; }
+    /// Where labels are shown: the 1 or 0 of the sample `at` and its neighbours, in the order of
+    /// Neighbours. This is what visit_around() shows of labels.
+    std::array<std::uint8_t, 27> shown_around(const Index3& at) const;
     /// Feels the same samples in another way from now on.
     void set_interpolation(Interpolation to) noexcept { interpolation_ = to; }
 
@@ -83,6 +89,9 @@ class Field {
     double offset() const { return offset_; }
     /// A density computed from cell(), offset included.
     double with_offset(double density) const { return offset_ == 0 ? density : density + offset_; }
+    /// A level [data units], less offset(), as a proxy uses it: one far beyond the data separates
+    /// them as one just beyond them does, and leaves digits to the distance between two.
+    double within_reach(double level) const { return std::clamp(level, lowest_, highest_); }
     /// 1 / spacing [voxel/mm].
     const Vec3& voxels_per_mm() const { return voxels_per_mm_; }
 
@@ -142,7 +151,6 @@ class Field {
     CellSamples shown_cell(const Index3& cell) const;
     template <class Visit>
     auto visit_gathered(const Index3& at, Visit& visit) const;
-    std::array<std::uint8_t, 27> shown_around(const Index3& at) const;
     void look() noexcept;
 
     std::shared_ptr<const Samples> samples_;
@@ -156,6 +164,7 @@ class Field {
     double range_ = 1;
     double tolerance_ = 0;
     double offset_ = 0;
+    double lowest_ = 0, highest_ = 0;  // levels that a proxy uses
     Vec3 voxels_per_mm_;
     double sign_ = 1;
     Index3 size_;

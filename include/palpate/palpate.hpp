@@ -20,6 +20,7 @@
 #include "palpate/editor.hpp"
 #include "palpate/lattice.hpp"
 #include "palpate/cubic.hpp"
+#include "palpate/kept_piece.hpp"
 #include "palpate/density.hpp"
 #include "palpate/proxy.hpp"
 #include "palpate/tool_proxy.hpp"

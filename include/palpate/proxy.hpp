@@ -6,8 +6,8 @@
 #include <limits>
 #include <optional>
 
-#include "palpate/cubic.hpp"
 #include "palpate/density.hpp"
+#include "palpate/kept_piece.hpp"
 
 namespace palpate {
 

@@ -113,11 +113,14 @@ double LabelTissues::share(const Vec3& physical, std::uint32_t labels) const {
 }
 
 int LabelTissues::largest(const Vec3& physical, std::uint32_t among) const {
-    if (std::has_single_bit(among)) return std::countr_zero(among);
+    // std::has_single_bit() is a function call on most processors.
+    const auto is_single = [&] { return (among & (among - 1)) == 0; };
+    if (among == 0) return -1;
+    if (is_single()) return std::countr_zero(among);
     const Vec3 index = index_from_physical(state_.labels->geometry(), physical);
     among &= state_.labels->labels_around((index.array() + 0.5).floor().matrix().cast<int>());
     if (among == 0) return -1;
-    if (std::has_single_bit(among)) return std::countr_zero(among);
+    if (is_single()) return std::countr_zero(among);
     int best = -1;
     double most = 0;
     for (int label = 0; label <= static_cast<int>(layers_.layers.size()); ++label) {

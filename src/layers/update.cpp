@@ -109,6 +109,18 @@ class LayersTick {
         return stable(force, input_.limits);
     }
 
+    /// The same, kept while what it depends on stays.
+    const ForceSettings& force() {
+        const int inside = tissues_.inside(update_);
+        if (!has_force_ || force_touched_ != state_.touched || force_inside_ != inside) {
+            force_ = force_now();
+            has_force_ = true;
+            force_touched_ = state_.touched;
+            force_inside_ = inside;
+        }
+        return force_;
+    }
+
     ProxySettings bound() {
         const NextLayers next = tissues_.bound();
         ProxySettings settings = input_.proxy;
@@ -124,6 +136,7 @@ class LayersTick {
     }
 
     void move_to(const Vec3& hand) {
+        has_force_ = false;
         gradient_ = gradient();
         ProxySettings settings = bound();
         const ProxyMethod method = state_.needle.inserted ? &update_straight : input_.method;
@@ -147,7 +160,7 @@ class LayersTick {
         state_.spring.touching &= touching;
         if (!touching) return;
         distance_ = (update_.scp - update_.hip).norm() * input_.device_per_volume;
-        spring_force_ = state_.spring.move(distance_, force_now().stiffness);
+        spring_force_ = state_.spring.move(distance_, force().stiffness);
     }
 
     /// Friction pulls aside; only what presses counts. In grooves and corners the normal is that of
@@ -224,7 +237,7 @@ class LayersTick {
         felt_.inside = static_cast<std::int8_t>(tissues_.inside(update_));
         r.felt = felt_;
         if (!moved()) return r;
-        r.force = force_now();
+        r.force = force();
         const bool touching = update_.mode == Mode::constrained;
         Vec3 force = Vec3::Zero();
         if (touching && distance_ > 0) {
@@ -264,6 +277,9 @@ class LayersTick {
     const StepObserver observer_;
     ProxyUpdate update_;
     LayersFelt felt_;
+    ForceSettings force_;  // of the last move, if it has_force_: of what was touched and around
+    bool has_force_ = false;
+    int force_touched_ = -1, force_inside_ = 0;
     double gradient_ = 0;      // magnitude at the SCP [data units / mm]
     double distance_ = 0;      // of SCP and HIP [device mm]
     double spring_force_ = 0;  // [N]

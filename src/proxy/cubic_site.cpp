@@ -11,6 +11,10 @@ namespace {
 
 using Bernstein = std::array<double, 4>;
 
+bool rises(const Bernstein& b) {
+    return b[0] <= b[1] && b[1] <= b[2] && b[2] <= b[3];
+}
+
 /// The root of a cubic whose coefficients rise from at most 0 to above 0, from the side below 0.
 double rising_root(const Bernstein& b, double tolerance) {
     const double a1 = 3 * (b[1] - b[0]);
@@ -37,6 +41,10 @@ double rising_root(const Bernstein& b, double tolerance) {
 }  // namespace
 
 double certified_part(const Bernstein& bernstein, double tolerance) {
+    // Mostly there is one root and nothing to halve.
+    if (bernstein[0] <= 0 && bernstein[3] > 0 && rises(bernstein)) {
+        return rising_root(bernstein, tolerance);
+    }
     constexpr int deepest = 48;
     struct Part {
         Bernstein b;
@@ -51,7 +59,7 @@ double certified_part(const Bernstein& bernstein, double tolerance) {
         const Bernstein& b = part.b;
         if (b[1] <= 0 && b[2] <= 0 && b[3] <= 0) continue;
         if (b[0] > 0 || part.depth == deepest) return part.begin;
-        if (b[0] <= b[1] && b[1] <= b[2] && b[2] <= b[3]) {
+        if (rises(b)) {
             return part.begin + part.size * rising_root(b, tolerance);
         }
         const double b01 = 0.5 * (b[0] + b[1]), b12 = 0.5 * (b[1] + b[2]),
@@ -67,26 +75,29 @@ double certified_part(const Bernstein& bernstein, double tolerance) {
 
 CubicSite::CubicSite(const Field& f, double level, double s, const LatticePoint& at)
     : field(f),
-      isovalue(within_reach(f, level)),
+      isovalue(f.within_reach(level)),
       sign(s),
       point(at),
       range(cubic::scale * f.range()) {}
 
 CubicSite::CubicSite(const Proxy& proxy, const Field& f, const LatticePoint& at)
-    : CubicSite(f, proxy.isovalue - f.offset(), f.sign(), at) {
+    : field(f),
+      isovalue(f.within_reach(proxy.isovalue - f.offset())),
+      sign(f.sign()),
+      point(at),
+      range(cubic::scale * f.range()),
+      kept(proxy.kept) {
     if (proxy.behind) {
-        behind = within_reach(f, *proxy.behind - f.offset());
+        behind = f.within_reach(*proxy.behind - f.offset());
         thickness = cubic::scale * std::max(0.0, sign * (isovalue - behind));
         if (proxy.turned) exchange_levels();
     }
-    const cubic::KeptPiece& last = proxy.kept;
-    made = last.isovalue == isovalue && last.sign == sign &&
-           same_frame(last.tetrahedron, at.tetrahedron) &&
-           f.visit_around(at.tetrahedron.cell, [&](const auto* centre, auto row, auto slice) {
+    made = kept.isovalue == isovalue && kept.sign == sign &&
+           same_frame(kept.tetrahedron, at.tetrahedron) &&
+           visit_cube([&](const auto* centre, auto row, auto slice) {
                return proxy.kept_samples.are(centre, row, slice);
            });
-    if (made) kept = last;
-    if (is_layer() || kept.most == std::numeric_limits<double>::infinity()) look_at_cube();
+    if (!made || is_layer() || kept.most == std::numeric_limits<double>::infinity()) look_at_cube();
 }
 
 void CubicSite::exchange_levels() {
@@ -103,19 +114,23 @@ void CubicSite::turn() {
 }
 
 double CubicSite::density() {
-    return field.with_offset(isovalue + sign * excess() / cubic::scale);
+    if (!expanded && !made) make_piece();
+    const double here = expanded ? at_point.value : kept.piece(point.folded);
+    return field.with_offset(isovalue + sign * here / cubic::scale);
 }
 
-void CubicSite::keep(Proxy& proxy) const {
+void CubicSite::keep(Proxy& proxy) {
     if (!made || !kept_is_new) return;
     proxy.kept = kept;
-    field.visit_around(point.tetrahedron.cell, [&](const auto* centre, auto row, auto slice) {
+    visit_cube([&](const auto* centre, auto row, auto slice) {
         proxy.kept_samples.keep(centre, row, slice);
     });
 }
 
 void CubicSite::move_to(const LatticePoint& at) {
     point = at;
+    ++frame;
+    has_shown = false;
     made = made && same_frame(kept.tetrahedron, at.tetrahedron);
     kept.most = std::numeric_limits<double>::infinity();
     if (is_layer()) room = -kept.most;
@@ -124,6 +139,8 @@ void CubicSite::move_to(const LatticePoint& at) {
 
 void CubicSite::return_to(const CubicSite& before) {
     point = before.point;
+    ++frame;
+    has_shown = false;
     if (turned != before.turned) exchange_levels();
     kept = before.kept;
     room = before.room;
@@ -134,9 +151,12 @@ void CubicSite::return_to(const CubicSite& before) {
 
 void CubicSite::cross(unsigned wall) {
     point.tetrahedron = across(point.tetrahedron, wall);
+    ++frame;
     made = false;
     expanded = false;
-    if (wall == wall_face) look_at_cube();
+    if (wall != wall_face) return;
+    has_shown = false;
+    look_at_cube();
 }
 
 void CubicSite::look_at_cube() {
@@ -155,10 +175,9 @@ void CubicSite::look_at_cube() {
                      : isovalue - best([](auto a, auto b) { return std::min(a, b); });
     };
     const auto most = [&](double s) {
-        return cubic::scale * field.visit_around(point.tetrahedron.cell,
-                                                 [&](const auto* centre, auto row, auto slice) {
-                                                     return greatest(s, centre, row, slice);
-                                                 });
+        return cubic::scale * visit_cube([&](const auto* centre, auto row, auto slice) {
+                   return greatest(s, centre, row, slice);
+               });
     };
     kept.most = most(sign);
     if (is_layer()) room = thickness - most(-sign);
@@ -174,9 +193,9 @@ void CubicSite::expand() {
 void CubicSite::make_piece() {
     const Tetrahedron& t = point.tetrahedron;
     const auto make = [&](const auto* centre, std::ptrdiff_t row, std::ptrdiff_t slice) {
-        kept.piece = cubic::piece_of(t, centre, row, slice, isovalue);
+        cubic::make_piece(kept.piece, t, centre, row, slice, isovalue);
     };
-    field.visit_around(t.cell, make);
+    visit_cube(make);
     if (sign < 0) kept.piece = -kept.piece;
     kept.isovalue = isovalue;
     kept.sign = sign;
@@ -185,7 +204,8 @@ void CubicSite::make_piece() {
     kept_is_new = true;
 }
 
-double CubicSite::advance(const Vec3& step, double level, unsigned walls) {
+[[gnu::always_inline]] inline double CubicSite::advance_inlined(const Vec3& step, double level,
+                                                                unsigned walls) {
     cubic::Expansion& from = at_point;
     if (!expanded) expand();
     // Along the step the Hessian changes by the third derivatives, which are the same everywhere.
@@ -222,6 +242,10 @@ double CubicSite::advance(const Vec3& step, double level, unsigned walls) {
     return t;
 }
 
+double CubicSite::advance(const Vec3& step, double level, unsigned walls) {
+    return advance_inlined(step, level, walls);
+}
+
 WalkEnd walk(CubicSite& site, const Vec3& displacement, double level, Progress& progress) {
     if (site.reaches(level)) {
         // Rounding must not hold a start, nor add up to more than what counts as inside.
@@ -230,13 +254,18 @@ WalkEnd walk(CubicSite& site, const Vec3& displacement, double level, Progress& 
     }
     Vec3 direction = displacement;
     double left = 1;
+    const auto is_outside = [&] {
+        return site.field.is_background_around(site.point.tetrahedron.cell);
+    };
+    bool outside = is_outside();
     while (progress.budget-- > 0) {
-        if (site.field.is_background_around(site.point.tetrahedron.cell)) {
+        if (outside) {
             const Vec3 along = unfold(site.point.tetrahedron, direction);
             const Index3& size = site.field.geometry().size;
             const double t = stretch_outside(site.index(), along, left, -2, size, 1);
             if (t > 0) {
                 site.move_to(cubic::locate(site.index() + t * along));
+                outside = is_outside();
                 direction = fold(site.point.tetrahedron, along);
                 left -= t;
                 ++progress.tetrahedra;
@@ -249,7 +278,7 @@ WalkEnd walk(CubicSite& site, const Vec3& displacement, double level, Progress& 
         const bool at_wall = exit.wall != no_wall;
         const unsigned walls = at_wall ? 1U << exit.wall : 0;
         if (site.reaches(level) || site.reaches_behind()) {
-            const double t = site.advance(step, level, walls);
+            const double t = site.advance_inlined(step, level, walls);
             progress.tetrahedra += t * exit.t > 0;
             if (t < 1) return WalkEnd::surface;
         } else {
@@ -259,6 +288,7 @@ WalkEnd walk(CubicSite& site, const Vec3& displacement, double level, Progress& 
         if (!at_wall) return WalkEnd::target;
         progress.report(StepKind::cross, site);
         site.cross(exit.wall);
+        if (exit.wall == wall_face) outside = is_outside();
         direction = reflect(direction, exit.wall);
         left -= exit.t;
     }

@@ -3,7 +3,11 @@
 // (docs/smooth.md).
 #pragma once
 
-#include "palpate/cubic.hpp"
+#include <array>
+#include <cstdint>
+#include <limits>
+
+#include "palpate/kept_piece.hpp"
 #include "proxy/site.hpp"
 
 namespace palpate {
@@ -25,12 +29,13 @@ struct CubicSite {
     double behind = 0;
     double thickness = std::numeric_limits<double>::infinity();
     bool turned = false;
+    int frame = 0;          // another number for each tetrahedron that it comes to
     cubic::KeptPiece kept;  // its `most` is that of the point's cube; its piece may be another's
 
     static CubicSite of(const Proxy& proxy, const Field& f, const LatticePoint& at) {
         return {proxy, f, at};
     }
-    void keep(Proxy& proxy) const;
+    void keep(Proxy& proxy);
 
     static LatticePoint located(const Vec3& index) { return cubic::locate(index); }
     Vec3 index() const { return cubic::index_of(point); }
@@ -62,11 +67,14 @@ struct CubicSite {
     void move_to(const LatticePoint& at);
     /// Back to where a copy of this site was made, without the work of move_to().
     void return_to(const CubicSite& before);
-    /// The vector to a point in index space, folded [voxel].
-    Vec3 folded_to(const Vec3& index) const {
+    /// A point in index space, seen from the cube's centre, index axes [voxel].
+    Vec3 from_sample(const Vec3& index) const {
         const Index3& cell = point.tetrahedron.cell;
-        const Vec3 from_sample(index[0] - cell[0], index[1] - cell[1], index[2] - cell[2]);
-        return fold(point.tetrahedron, from_sample) - point.folded;
+        return {index[0] - cell[0], index[1] - cell[1], index[2] - cell[2]};
+    }
+    /// The vector to such a point, folded [voxel].
+    Vec3 folded_to(const Vec3& index) const {
+        return fold(point.tetrahedron, from_sample(index)) - point.folded;
     }
 
     /// Goes to the end of a step (folded) inside the tetrahedron, on the walls of the mask.
@@ -81,7 +89,20 @@ struct CubicSite {
     void cross(unsigned wall);
 
   private:
+    friend WalkEnd walk(CubicSite& site, const Vec3& displacement, double level,
+                        Progress& progress);
+    /// advance(), for the one caller that spends its time there.
+    double advance_inlined(const Vec3& step, double level, unsigned walls);
     void exchange_levels();
+    /// Field::visit_around() at the cube, for which labels are gathered once.
+    template <class Visit>
+    auto visit_cube(Visit&& visit) {
+        const Index3& at = point.tetrahedron.cell;
+        if (!field.shows_labels()) return field.visit_around(at, visit);
+        if (!has_shown) shown = field.shown_around(at);
+        has_shown = true;
+        return visit(shown.data() + 13, std::ptrdiff_t{3}, std::ptrdiff_t{9});
+    }
     /// Finds `most` and, in a layer, `room`.
     void look_at_cube();
     /// Piece and expansion at the point.
@@ -91,6 +112,8 @@ struct CubicSite {
     cubic::Expansion at_point;
     // By how much the lowest sample of the point's cube lies above the level behind.
     double room = std::numeric_limits<double>::infinity();
+    std::array<std::uint8_t, 27> shown{};  // of labels: Field::shown_around() at the cube
+    bool has_shown = false;
     bool made = false;         // `kept.piece` is that of the point's tetrahedron
     bool expanded = false;     // `at_point` is that at the point
     bool kept_is_new = false;  // not what the proxy has

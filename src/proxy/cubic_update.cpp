@@ -59,12 +59,10 @@ struct Foot {
     double squared() const { return along * along + across * across; }
 };
 
-/// A curvature that brings the target's depth near its centre (or past it) is cut: along each
-/// principal direction the displacement is at most 1 / `least` times that on a plane.
-Foot foot_of(const Contact& c, const Curvature& k, double least, double longest) {
+/// From the displacements [mm] along the principal directions of the greatest and the least
+/// curvature.
+Foot foot_of(const Curvature& k, double at_greatest, double at_least, double longest) {
     // Of a function of a symmetric matrix only its values at the two eigenvalues matter.
-    const double at_greatest = c.aside / std::max(1 + c.depth * k.greatest, least);
-    const double at_least = c.aside / std::max(1 + c.depth * k.least, least);
     const double rate = (at_greatest - at_least) * k.per_apart;
     Foot foot{at_greatest + rate * (k.tt - k.greatest), rate * k.ta, 0};
     const double squared = foot.squared();
@@ -78,6 +76,21 @@ Foot foot_of(const Contact& c, const Curvature& k, double least, double longest)
     return foot;
 }
 
+/// Where a slide goes, and where the fall after it is aimed. A curvature that brings the target's
+/// depth near its centre (or past it) is cut: along each principal direction a slide is as long as
+/// on a plane at most, an aim 2.5 times that.
+struct Feet {
+    Foot slide, aim;
+};
+
+Feet feet_of(const Contact& c, const Curvature& k, double longest_aim) {
+    const double greatest = 1 + c.depth * k.greatest, least = 1 + c.depth * k.least;
+    const double at_greatest = c.aside / std::max(greatest, 0.4);
+    const double at_least = c.aside / std::max(least, 0.4);
+    return {foot_of(k, greatest > 1 ? at_greatest : c.aside, least > 1 ? at_least : c.aside, far),
+            foot_of(k, at_greatest, at_least, longest_aim)};
+}
+
 /// An update that is under way.
 class CubicDescent {
   public:
@@ -89,7 +102,8 @@ class CubicDescent {
           hip_(progress.target),
           range_(site.range),
           shortest_(progress.geometry.spacing.minCoeff()),
-          friction_pending_(has_friction(settings.friction) || has_friction(settings.behind)) {}
+          friction_pending_(has_friction(settings.friction) || has_friction(settings.behind)),
+          frame_(look()) {}
 
     Rest run() {
         int failures = 0;
@@ -123,20 +137,40 @@ class CubicDescent {
   private:
     enum class End { moved, at_target, at_rest, target_changed };
 
+    /// The target and lengths as the site's tetrahedron sees them. Mostly the next moves stay in
+    /// it.
+    struct Frame {
+        int number;
+        Vec3 target;      ///< from the cube's centre, folded [voxel]
+        Vec3 mm, per_mm;  ///< of a voxel along each axis, and the inverse
+    };
+    Frame look() const {
+        const Tetrahedron& t = site_.point.tetrahedron;
+        return {site_.frame, fold(t, site_.from_sample(progress_.target)),
+                fold_lengths(t, progress_.geometry.spacing),
+                fold_lengths(t, site_.field.voxels_per_mm())};
+    }
+    const Frame& frame() {
+        if (frame_.number != site_.frame) frame_ = look();
+        return frame_;
+    }
+    void set_target(const Vec3& index) {
+        progress_.target = index;
+        frame_ = look();
+    }
+
     // Vectors are folded, in millimetres. A walk changes the frame.
-    Vec3 h_mm() const {
-        return site_.folded_to(progress_.target)
-            .cwiseProduct(fold_lengths(site_.point.tetrahedron, progress_.geometry.spacing));
+    Vec3 h_mm() {
+        const Frame& f = frame();
+        return (f.target - site_.point.folded).cwiseProduct(f.mm);
     }
-    Vec3 per_mm() const {
-        return fold_lengths(site_.point.tetrahedron, site_.field.voxels_per_mm());
-    }
+    const Vec3& per_mm() { return frame().per_mm; }
 
     /// One round: a straight motion through free space, or a slide and a fall. `h` leads to the
     /// target.
     End move(const Vec3& h, int failures) {
         if (!site_.in_contact()) return fall_to_target();
-        const Vec3 per = per_mm();
+        const Vec3& per = per_mm();
         const Vec3 g = site_.here().gradient.cwiseProduct(per);
         const double along = dot(g, h);
         if (along <= 0) return fall_to_target();
@@ -167,13 +201,13 @@ class CubicDescent {
     }
 
     End fall_to_target() {
-        const Vec3 to_target = site_.folded_to(progress_.target);
+        const Vec3 to_target = frame().target - site_.point.folded;
         const WalkEnd end = walk(site_, to_target, site_.level(), progress_);
         progress_.report(StepKind::free_move, site_);
         if (end != WalkEnd::target) return End::moved;
         if (progress_.target == hip_) return End::at_target;
         // Friction moved the target back to a point in free space, where there is no friction.
-        progress_.target = hip_;
+        set_target(hip_);
         friction_pending_ = true;
         return End::target_changed;
     }
@@ -193,26 +227,28 @@ class CubicDescent {
     /// surface's curvature says that the target's foot is. After failures shorter and higher.
     void slide(const Vec3& h, const Contact& c, double each, int failures) {
         const Vec3 across = c.across();
-        const Vec3 per = per_mm();
+        const Vec3& per = per_mm();
         const Curvature k = curvature_of(site_.here().hessian, c.along.cwiseProduct(per),
                                          across.cwiseProduct(per), each);
         const double shrink = 1.0 / (1 << (2 * failures));
-        const Foot step = foot_of(c, k, 1, far);
-        const Foot aim = foot_of(c, k, 0.4, shortest_);
+        const auto [step, aim] = feet_of(c, k, shortest_);
         double lift = 0.55 * shrink * shrink * std::max(0.0, step.rise);
         if (failures > 0) lift += 0.05 * failures * shrink * std::sqrt(step.squared());
         const auto place = [&](const Foot& foot, double height) -> Vec3 {
             return (shrink * foot.along) * c.along + (shrink * foot.across) * across +
                    height * c.normal;
         };
-        const Vec3 from_foot =
-            unfold(site_.point.tetrahedron, h - place(aim, 0.5 * shrink * shrink * aim.rise));
+        const Vec3 from_foot = h - place(aim, 0.5 * shrink * shrink * aim.rise);
+        const int number = site_.frame;
+        const Tetrahedron before = site_.point.tetrahedron;
         if (!go(place(step, lift), h, site_.slide_level(), progress_)) return;
         progress_.report(StepKind::slide, site_);
         if (site_.in_contact()) return;
         const Vec3 left = h_mm();
         // Aim past the foot, in case the surface lies lower.
-        const Vec3 to_foot = left - fold(site_.point.tetrahedron, from_foot);
+        const Vec3 to_foot = left - (site_.frame == number ? from_foot
+                                                           : fold(site_.point.tetrahedron,
+                                                                  unfold(before, from_foot)));
         if (go(2 * to_foot, left, site_.level(), progress_)) {
             progress_.report(StepKind::slide, site_);
         }
@@ -227,8 +263,8 @@ class CubicDescent {
         proxy_.sliding = c.aside > mu * c.depth;
         if (!proxy_.sliding) return false;
         const double back = std::min(c.aside, friction.dynamic_coefficient * c.depth);
-        progress_.target -=
-            unfold(site_.point.tetrahedron, (back * c.along).cwiseProduct(per_mm()));
+        set_target(progress_.target -
+                   unfold(site_.point.tetrahedron, (back * c.along).cwiseProduct(per_mm())));
         return true;
     }
 
@@ -276,6 +312,7 @@ class CubicDescent {
     const double range_;     // scaled like the site's excess
     const double shortest_;  // spacing [mm]
     bool friction_pending_;
+    Frame frame_;
 };
 
 }  // namespace

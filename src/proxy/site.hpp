@@ -12,14 +12,6 @@
 
 namespace palpate {
 
-/// A level far beyond the data separates them as one just beyond them does, and leaves digits to
-/// the distance between two.
-inline double within_reach(const Field& field, double level) {
-    const double low = std::min(field.samples().minimum(), field.background()) - field.offset();
-    const double high = std::max(field.samples().maximum(), field.background()) - field.offset();
-    return std::clamp(level, low - field.range(), high + field.range());
-}
-
 /// A lattice point with the samples of its cell and the linear field of its tetrahedron, both less
 /// the field's offset, like the isovalue. Its excess, sign * (f - isovalue), is > 0 in the solid.
 /// Of a layer (Proxy::behind) the excess stays above -thickness; a site that is turned looks at it
@@ -51,8 +43,8 @@ struct Site {
     }
     /// Keeps the site on the solid side of a second level, towards which it may be turned.
     void bound(double level, bool turn_to_it) {
-        isovalue = within_reach(field, isovalue);
-        behind = within_reach(field, level);
+        isovalue = field.within_reach(isovalue);
+        behind = field.within_reach(level);
         thickness = std::max(0.0, sign * (isovalue - behind));
         if (turn_to_it) turn();
     }
@@ -171,7 +163,8 @@ void for_each_incident(const LatticePoint& point, Visit&& visit) {
     const unsigned on = walls_at(point.folded);
     if (visit(point.tetrahedron) || on == 0) return;
     const auto first = static_cast<unsigned>(std::countr_zero(on));
-    if (std::popcount(on) > 2) {
+    const unsigned but_first = on & (on - 1);
+    if ((but_first & (but_first - 1)) != 0) {
         const Incident incident = incident_tetrahedra(point);
         for (int i = 1; i < incident.count; ++i) {
             if (visit(incident.tetrahedra[i])) return;

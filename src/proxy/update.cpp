@@ -73,24 +73,9 @@ ProxyUpdate refuse_update(const Proxy& proxy, const Field& field, const Vec3& hi
     return result;
 }
 
-LatticePoint scp_in(const Field& field, const Proxy& proxy) {
-    if (proxy.interpolation == field.interpolation()) return proxy.scp;
-    return locate(field.interpolation(), index_from_physical(field.geometry(), proxy.scp_physical));
-}
-
 bool is_finite(const Proxy& proxy) {
     const Vec3& physical = proxy.scp_physical;
     return is_finite(sum_of(proxy.scp.folded) + physical[0] + physical[1] + physical[2]);
-}
-
-bool accepts(const Proxy& proxy, const Field& field, const Vec3& hip_index) {
-    const auto near = [&](int a) {
-        // Mostly the first comparison is enough: the grid begins at 0.
-        return std::abs(hip_index[a]) <= farthest_hip ||
-               (hip_index[a] > 0 && hip_index[a] <= field.geometry().size[a] + farthest_hip);
-    };
-    return near(0) && near(1) && near(2) &&
-           field.sign() * proxy.isovalue > -std::numeric_limits<double>::infinity();
 }
 
 template <class AnySite>

@@ -3,18 +3,32 @@
 // one.
 #pragma once
 
+#include <cmath>
+#include <limits>
+
 #include "proxy/cubic_site.hpp"
 
 namespace palpate {
 
 /// False for a HIP (index space) that is not finite or too far from the grid (farthest_hip), and
 /// for an isovalue that is NaN or at which all of space is solid.
-bool accepts(const Proxy& proxy, const Field& field, const Vec3& hip_index);
+inline bool accepts(const Proxy& proxy, const Field& field, const Vec3& hip_index) {
+    const auto near = [&](int a) {
+        // Mostly the first comparison is enough: the grid begins at 0.
+        return std::abs(hip_index[a]) <= farthest_hip ||
+               (hip_index[a] > 0 && hip_index[a] <= field.geometry().size[a] + farthest_hip);
+    };
+    return near(0) && near(1) && near(2) &&
+           field.sign() * proxy.isovalue > -std::numeric_limits<double>::infinity();
+}
 /// The result of an update that changed nothing.
 ProxyUpdate refuse_update(const Proxy& proxy, const Field& field, const Vec3& hip,
                           UpdateStatus why = UpdateStatus::refused);
 /// The SCP in the lattice of a field, also after an update on one of another interpolation.
-LatticePoint scp_in(const Field& field, const Proxy& proxy);
+inline LatticePoint scp_in(const Field& field, const Proxy& proxy) {
+    if (proxy.interpolation == field.interpolation()) return proxy.scp;
+    return locate(field.interpolation(), index_from_physical(field.geometry(), proxy.scp_physical));
+}
 /// False if the SCP is NaN or infinite.
 bool is_finite(const Proxy& proxy);
 

@@ -89,7 +89,7 @@ bool renew(Surroundings& known, const Field& field) {
 
 Around::Around(const Field& field, double isovalue, Surroundings& surroundings, int work)
     : field_(field),
-      level_(within_reach(field, isovalue - field.offset())),
+      level_(field.within_reach(isovalue - field.offset())),
       known_(surroundings),
       work_(work),
       shortest_(field.geometry().spacing.minCoeff()),

@@ -16,7 +16,7 @@ using enum HapticProperty;
 
 namespace {
 
-constexpr double never = std::numeric_limits<double>::infinity();
+constexpr double no_puncture = std::numeric_limits<double>::infinity();
 
 /// Levels of a field in parts of its range from an isovalue, with these stiffnesses.
 Layers layers_of(const TestField& test, std::initializer_list<double> parts,
@@ -63,10 +63,10 @@ struct Loop {
 };
 
 struct Balance {
-    double most_gained = -never;  ///< of all loops [J]
-    double lost = 0;              ///< in all of them [J]
+    double most_gained = -no_puncture;  ///< of all loops [J]
+    double lost = 0;                    ///< in all of them [J]
     int punctures = 0, contacts = 0;
-    double least_lost = never;  ///< of the loops with a puncture [J]
+    double least_lost = no_puncture;  ///< of the loops with a puncture [J]
 };
 
 /// The work of the force on the hand round each of many loops that begin and end in free space.
@@ -126,7 +126,7 @@ TestField smoothed(const TestField& test) {
 
 TEST(LayersEnergy, is_not_made_by_surfaces_that_hold) {
     const TestField test = smoothed(marschner_lobb_field());
-    expect_passive(test, layers_of(test, {-0.1, 0.1}, {0.4, 1.5}, never), 51);
+    expect_passive(test, layers_of(test, {-0.1, 0.1}, {0.4, 1.5}, no_puncture), 51);
 }
 TEST(LayersEnergy, is_not_made_by_surfaces_that_give_way) {
     const TestField test = smoothed(marschner_lobb_field());
@@ -140,7 +140,7 @@ TEST(LayersEnergy, is_not_made_in_thin_layers_of_noise) {
 }
 TEST(LayersEnergy, is_not_made_by_stiffness_that_varies_along_a_surface) {
     const TestField test = smoothed(marschner_lobb_field());
-    Layers layers = layers_of(test, {0}, {1}, never);
+    Layers layers = layers_of(test, {0}, {1}, no_puncture);
     layers[stiffness].gradient.knots = {{0, 0}, {0.3, 1}};
     expect_passive(test, layers, 54);
 }
