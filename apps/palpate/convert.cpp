@@ -91,7 +91,13 @@ void to_file(const ConvertWords& words, const Taken& taken) {
     options.compress = words.compress;
     options.progress = [&](double fraction) { bar.at(fraction); };
     stream::write_plain(*taken.store, taken.level, words.output, options);
-    if (words.json) print_json({{"format", std::string(io::written_extension_of(words.output))}});
+    const Index3& size =
+        taken.store->info().levels[static_cast<std::size_t>(taken.level)].geometry.size;
+    if (words.json) {
+        print_json({{"format", std::string(io::written_extension_of(words.output))}});
+    } else if (!words.source.quiet) {
+        fmt::print("{}: {} x {} x {} samples\n", words.output, size[0], size[1], size[2]);
+    }
 }
 
 void convert(const ConvertWords& words) {

@@ -1,4 +1,4 @@
-// Stage 7, cubic: the piece of the smooth field that a proxy keeps from one update to the next, and
+// Stage 8, cubic: the piece of the smooth field that a proxy keeps from one update to the next, and
 // the samples that it was made from, by which the next update knows whether it still holds.
 #pragma once
 

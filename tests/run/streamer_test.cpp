@@ -18,10 +18,11 @@ namespace {
 using support::comes_true;
 using support::ScratchFolder;
 
-/// A ball of 120 mm in a volume of several bricks along each axis, as a file.
+/// A ball in a volume of two bricks along each axis, as a file. Its overview is the whole volume, so
+/// its range is known.
 struct BallFile {
     ScratchFolder folder;
-    Volume volume = scenes::make_volume("sphere:200x190x180").volume;
+    Volume volume = scenes::make_volume("sphere:128x126x125").volume;
     std::string path = (folder.path() / "ball.nrrd").string();
 
     BallFile() { io::write_volume(volume, path); }
@@ -41,10 +42,10 @@ io::Trajectory stroke(const Volume& volume) {
     const Vec3 centre = physical_centre(volume.geometry());
     io::Trajectory trajectory;
     for (int i = 0; i < 3000; ++i) {
-        const double a = 0.002 * i, r = 100 - 0.03 * i;
+        const double a = 0.002 * i, r = 64 - 0.019 * i;
         trajectory.time.push_back(0.001 * i);
         trajectory.position.push_back(
-            centre + Vec3(r * std::cos(a), r * std::sin(a), 40 * std::sin(0.001 * i)));
+            centre + Vec3(r * std::cos(a), r * std::sin(a), 25 * std::sin(0.001 * i)));
     }
     return trajectory;
 }
