@@ -66,11 +66,11 @@ class KeptSamples {
     template <class T>
     using Word = std::conditional_t<sizeof(T) == 1, std::uint32_t, std::uint64_t>;
     template <class T>
-    static constexpr Word<T> first_three =
-        std::bit_cast<Word<T>>(std::array<T, 4>{T(-1), T(-1), T(-1), T(0)});
+    static constexpr Word<T> first_three = std::bit_cast<Word<T>>(std::array<T, 4>{T(-1), T(-1),
+                                                                                   T(-1), T(0)});
     template <class T>
-    static constexpr Word<T> last_three =
-        std::bit_cast<Word<T>>(std::array<T, 4>{T(0), T(-1), T(-1), T(-1)});
+    static constexpr Word<T> last_three = std::bit_cast<Word<T>>(std::array<T, 4>{T(0), T(-1),
+                                                                                  T(-1), T(-1)});
     /// The nine rows, each with the sample after it, but the last one with that before it: these
     /// lie among the 27, whatever the distance of the rows.
     template <class T, class Visit>

@@ -18,8 +18,8 @@ namespace {
 using support::comes_true;
 using support::ScratchFolder;
 
-/// A ball in a volume of two bricks along each axis, as a file. Its overview is the whole volume, so
-/// its range is known.
+/// A ball in a volume of two bricks along each axis, as a file. Its overview is the whole volume,
+/// so its range is known.
 struct BallFile {
     ScratchFolder folder;
     Volume volume = scenes::make_volume("sphere:128x126x125").volume;
