@@ -157,6 +157,7 @@ std::vector<Facet> facets_of(const ToolShape& shape) {
     const std::vector<MeshTriangle> triangles = joined(shape.vertices, shape.triangles);
     if (!is_closed(triangles)) return {};
     std::vector<Facet> facets;
+    facets.reserve(triangles.size());
     for (const MeshTriangle& t : triangles) {
         facets.emplace_back(shape.vertices[t[0]], shape.vertices[t[1]], shape.vertices[t[2]]);
     }
