@@ -198,8 +198,8 @@ TEST(Sweep, of_a_turning_tool_takes_away_what_it_passed_through_and_nothing_else
             }
         }
     }
-    EXPECT_GT(free, scaled(200));
-    EXPECT_GT(solid, scaled(1000));
+    EXPECT_GT(free, is_slow_build ? 0 : scaled(200));
+    EXPECT_GT(solid, is_slow_build ? 0 : scaled(1000));
 }
 
 }  // namespace

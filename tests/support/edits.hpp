@@ -81,10 +81,12 @@ inline edit::Stroke random_stroke(Random& random, const Geometry& geometry, Samp
     return stroke;
 }
 
-/// A tool's shape swept in and round the grid: a point, a line, a ball, a box or a burr.
+/// A tool's shape swept in and round the grid: a point, a line, a ball, a box or a burr. The brush
+/// reaches two voxels at most, because the cost of a body's distances grows with the reach cubed.
 inline edit::Sweep random_sweep(Random& random, const Geometry& geometry, SampleType type) {
-    const edit::Stroke like = random_stroke(random, geometry, type);
+    edit::Stroke like = random_stroke(random, geometry, type);
     const double voxel = geometry.spacing.minCoeff(), spacing = voxel;
+    like.brush.radius = std::min(like.brush.radius, 2 * voxel);
     const double size = random.uniform(0.5, 2) * voxel;
     const Tool tools[] = {point_tool(), rod_tool(size, spacing), sphere_tool(size, spacing),
                           box_tool({size, 2 * size, 0.7 * size}, spacing),
