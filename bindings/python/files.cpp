@@ -73,6 +73,16 @@ py::dict values_of(const run::LoadedVolume& loaded) {
 void bind_loaded(py::module_& module) {
     py::class_<run::LoadedVolume>(module, "LoadedVolume",
                                   "A volume and what is known about it: from load().")
+        .def(py::init(
+                 [](const Volume& volume, const std::string& name, std::optional<double> isovalue) {
+                     run::LoadedVolume loaded{volume, run::source_named(name), name};
+                     loaded.isovalue = isovalue;
+                     return loaded;
+                 }),
+             py::arg("volume"), py::arg("name") = "array", py::arg("isovalue") = py::none(),
+             "A volume of yours, for Run. name: what recordings call it; to validate them, write "
+             "the\n"
+             "volume to a file of that name. isovalue: a good one [data units].")
         .def_property_readonly(
             "volume", [](const run::LoadedVolume& l) { return l.volume; },
             "The Volume; of a sequence its first frame.")
@@ -150,6 +160,7 @@ void bind_live_writer(py::module_& module) {
 
 void bind_files(py::module_& module) {
     bind_loaded(module);
+    py::implicitly_convertible<Volume, run::LoadedVolume>();
     bind_load(module);
     bind_live_writer(module);
     module.def(

@@ -136,7 +136,8 @@ void bind_run(py::module_& module) {
         "A live run: a servo with its device, data and recording. Use it as a context manager.\n"
         "By one thread at a time.");
     live.def(py::init(&make), py::arg("loaded"), py::arg("setup") = py::none(),
-             "loaded: from load(). setup: Setup, by default Setup.live(). Opens the device; "
+             "loaded: from load(), or a Volume. setup: Setup, by default Setup.live(). Opens the "
+             "device; "
              "nothing\n"
              "moves before start(). Raises ValueError, InputError, DeviceError.")
         .def("start", &start, "Once.")

@@ -200,6 +200,25 @@ def test_a_run_with_the_simulated_device_records_what_validates(tmp_path):
             pytest.fail("an existing file was replaced")
 
 
+def test_a_numpy_array_is_felt_edited_and_recorded(tmp_path):
+    array = numpy.ascontiguousarray(palpate.scene("sphere:32x32x32", "float32").volume.array)
+    place = {"origin": (-15.5, -15.5, -15.5)}
+    volume = palpate.Volume(array, **place)
+    name = tmp_path / "ball.mha"
+    run = palpate.Run(palpate.LoadedVolume(volume, str(name)),
+                      palpate.Setup(isovalue=0.5, real_time=False))
+    run.record(tmp_path / "ball.csv")
+    with run:
+        run.edit(palpate.Fill((0, 0, 0), (3, 3, 3), 0))
+        until(lambda: run.snapshot() and run.snapshot().number > 100)
+    run.stop_recording()
+    del run
+    palpate.write(palpate.Volume(array, **place), name)
+    assert palpate.validate(tmp_path / "ball.csv")["complete"]
+    with palpate.Run(volume, palpate.Setup(isovalue="50%", real_time=False)) as other:
+        until(lambda: other.snapshot() is not None)
+
+
 def test_an_edit_of_a_run_is_felt_and_undone():
     loaded = palpate.load("synthetic:sphere:32x32x32")
     with palpate.Run(loaded, palpate.Setup(real_time=False)) as run:
