@@ -52,7 +52,7 @@ def test_the_installed_package_reads_writes_and_has_its_data(installed, tmp_path
 
 
 def test_the_installed_component_works_wherever_its_prefix_was_moved_to(tmp_path):
-    for component in ("palpate-python", "palpate-io"):
+    for component in ("palpate-python", "palpate-io-helper"):
         subprocess.run(["cmake", "--install", os.environ["PALPATE_BUILD"], "--component", component,
                         "--prefix", tmp_path / "first"], check=True, stdout=subprocess.DEVNULL)
     moved = (tmp_path / "first").rename(tmp_path / "moved")
