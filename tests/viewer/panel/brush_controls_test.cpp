@@ -80,7 +80,7 @@ TEST_F(Brushes, setters_show_and_emit_nothing) {
     set();
     QSignalSpy undo(&panel, &Panel::undo_asked), redo(&panel, &Panel::redo_asked),
         save(&panel, &Panel::save_asked);
-    panel.set_brush({BrushKind::smooth, 7, 0.3, 12, 100.0, true});
+    panel.set_brush({BrushKind::smooth, 7, 0.3, 12, 100.0, false, true});
     panel.brush_controls().set_history(3, 1, true);
     panel.brush_controls().set_reason("A sequence cannot be edited.");
     panel.brush_controls().set_reason({});
