@@ -253,7 +253,7 @@ TEST_F(Brushes, a_sequence_cannot_be_edited_and_it_says_why) {
 }
 
 TEST_F(Brushes, another_volume_begins_with_the_brush_off_and_a_radius_that_fits) {
-    edit({BrushKind::carve, 7, 0.5, 20, -800.0, true});
+    edit({BrushKind::carve, 7, 0.5, 20, -800.0, false, true});
     panel.brush_controls().set_history(2, 1, true);
     Geometry small;
     small.size = {12, 12, 12};
