@@ -78,14 +78,15 @@ class LabelsInWindow : public InWindow {
         Q_EMIT box.activated(box.currentIndex());
         QTest::qWait(60);
     }
-    /// The wheel over the scene, until a layer of that name is touched.
+    /// The wheel over the scene, until a layer of that name is touched. A whole notch may be more
+    /// than a layer holds: the hand would be through it between two looks.
     bool press_until_on(const std::string& name) {
         const auto on = [&] {
             const int touched = now().session.tick.layers.touched;
             return touched >= 0 && layers()->layers[std::size_t(touched)].name == name;
         };
         for (int i = 0; i < 300 && !on(); ++i) {
-            turn_wheel(window_->views().scene(), 1);
+            turn_wheel(window_->views().scene(), 1, 30);
             QTest::qWait(15);
         }
         return on();

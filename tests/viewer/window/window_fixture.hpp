@@ -86,11 +86,13 @@ class InWindow : public testing::Test {
     double force() const { return now().session.tick.force.norm(); }
 
     /// In the middle of a widget, a notch forward for each step.
-    void turn_wheel(QWidget& widget, int steps) {
+    /// `notch`: of each step; 120 is that of a common wheel.
+    void turn_wheel(QWidget& widget, int steps, int notch = 120) {
         const QPointF at = QRectF(widget.rect()).center();
         for (int i = 0; i < std::abs(steps); ++i) {
-            QWheelEvent event(at, widget.mapToGlobal(at.toPoint()), {}, {0, steps > 0 ? 120 : -120},
-                              Qt::NoButton, Qt::NoModifier, Qt::NoScrollPhase, false);
+            QWheelEvent event(at, widget.mapToGlobal(at.toPoint()), {},
+                              {0, steps > 0 ? notch : -notch}, Qt::NoButton, Qt::NoModifier,
+                              Qt::NoScrollPhase, false);
             QApplication::sendEvent(&widget, &event);
             QTest::qWait(20);
         }
