@@ -91,20 +91,44 @@ void read_by_pieces(const Store& store, int level, const SampleBox& box, std::sp
 
 void BrickLoader::Blocks::read(int level, const SampleBox& box, std::span<std::byte> out,
                                std::stop_token stop) {
+    if (!keeps(level)) return store_.read(level, box, out, stop);
     const StoreInfo& info = store_.info();
-    const Level& grid = info.levels[static_cast<std::size_t>(level)];
-    const SampleBox piece{Index3::Zero(), grid.chunk - Index3::Ones()};
-    // A piece that is a row or a plane costs nothing to read in parts.
-    const bool is_row = grid.chunk[1] == 1 && grid.chunk[2] == 1;
-    if (is_row || bytes_of(piece, info.type) > most_bytes_ / 4) {
-        return store_.read(level, box, out, stop);
-    }
+    const Level& grid = grid_of(level);
     for_each_piece(grid, box, [&](const Index3& at, const SampleBox& own) {
         if (!has(level, at)) block(level, at, own, stop);
     });
     for_each_piece(grid, box, [&](const Index3& at, const SampleBox& own) {
         const Bytes bytes = block(level, at, own, stop);
         copy_box(own, bytes->data(), box, out.data(), size_of(info.type));
+    });
+}
+
+const Level& BrickLoader::Blocks::grid_of(int level) const {
+    return store_.info().levels[static_cast<std::size_t>(level)];
+}
+
+/// False for pieces that are too large, and for rows, which cost nothing to read in parts.
+bool BrickLoader::Blocks::keeps(int level) const {
+    const Index3& chunk = grid_of(level).chunk;
+    const SampleBox piece{Index3::Zero(), chunk - Index3::Ones()};
+    const bool is_row = chunk[1] == 1 && chunk[2] == 1;
+    return !is_row && bytes_of(piece, store_.info().type) <= most_bytes_ / 4;
+}
+
+bool BrickLoader::Blocks::has_unread(int level, const SampleBox& box) const {
+    bool unread = false;
+    if (!keeps(level)) return unread;
+    for_each_piece(grid_of(level), box,
+                   [&](const Index3& at, const SampleBox&) { unread = unread || !has(level, at); });
+    return unread;
+}
+
+void BrickLoader::Blocks::read_one(int level, const SampleBox& box, std::stop_token stop) {
+    bool found = false;
+    for_each_piece(grid_of(level), box, [&](const Index3& at, const SampleBox& own) {
+        if (found || has(level, at)) return;
+        found = true;
+        block(level, at, own, stop);
     });
 }
 

@@ -23,6 +23,10 @@ class BrickLoader::Blocks {
     /// As Store::read(). Pieces small enough to keep are read whole, and each by one thread; first
     /// those that no other thread reads, so that threads with neighbouring boxes share the work.
     void read(int level, const SampleBox& box, std::span<std::byte> out, std::stop_token stop);
+    /// True if some piece of a box is neither kept nor being read.
+    bool has_unread(int level, const SampleBox& box) const;
+    /// Reads one such piece, if there is one.
+    void read_one(int level, const SampleBox& box, std::stop_token stop);
     std::uint64_t bytes() const;
 
   private:
@@ -36,6 +40,8 @@ class BrickLoader::Blocks {
 
     Bytes block(int level, const Index3& at, const SampleBox& box, std::stop_token stop);
     bool has(int level, const Index3& at) const;
+    bool keeps(int level) const;
+    const Level& grid_of(int level) const;
     void forget_old(const Key& but);
 
     const Store& store_;

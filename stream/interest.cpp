@@ -12,6 +12,10 @@ constexpr double look_ahead = 0.5;
 constexpr double farthest = 16;
 /// Bricks ahead of a moving hand count as this much farther than those it is in.
 constexpr double ahead_factor = 0.5;
+/// A hand that goes farther than this meanwhile [bricks] has left what it is in before that can
+/// come: then what it reaches in that time comes first, and what it is in counts as this much
+/// farther [bricks].
+constexpr double fast = 1, late_penalty = 1;
 /// Samples round a ball that an update may look at, more than reach.cpp's [voxel].
 constexpr double margin = 5;
 
@@ -52,7 +56,9 @@ std::vector<Index3> wanted_bricks(const Geometry& geometry, const Index3& count,
         const Segment pull{proxy, proxy + shortened(in_bricks(hand.hand) - proxy)};
         const Vec3 velocity = hand.velocity.allFinite() ? hand.velocity : Vec3::Zero();
         const Vec3 soon = in_bricks(hand.proxy + look_ahead * velocity) - proxy;
-        const Segment path{proxy, proxy + shortened(soon)};
+        const bool is_fast = soon.norm() > fast;
+        const Vec3 begin = is_fast ? Vec3(pull.to + 0.5 * shortened(soon)) : proxy;
+        const Segment path{begin, begin + shortened(soon)};
         const Vec3 low = proxy.cwiseMin(pull.to).cwiseMin(path.to) - Vec3::Constant(radius);
         const Vec3 high = proxy.cwiseMax(pull.to).cwiseMax(path.to) + Vec3::Constant(radius);
         const Vec3 last = (count - Index3::Ones()).cast<double>();
@@ -62,9 +68,11 @@ std::vector<Index3> wanted_bricks(const Geometry& geometry, const Index3& count,
             for (int j = first[1]; j <= end[1]; ++j) {
                 for (int i = first[0]; i <= end[0]; ++i) {
                     const Vec3 centre = Vec3(i, j, k) + Vec3::Constant(0.5);
-                    const double near = distance(pull, centre);
-                    const double ahead = distance(path, centre) +
-                                         ahead_factor * std::min(1.0, (centre - proxy).norm());
+                    const double near = distance(pull, centre) + (is_fast ? late_penalty : 0);
+                    const double to_path = distance(path, centre);
+                    const double ahead =
+                        is_fast ? to_path
+                                : to_path + ahead_factor * std::min(1.0, (centre - proxy).norm());
                     const double score = std::min(near, ahead);
                     if (score <= radius + 1) scored.push_back({score, {i, j, k}});
                 }

@@ -142,13 +142,14 @@ int BrickLoader::coarse_level() const {
     return std::min(coarser, 2);
 }
 
-/// Needs the lock. The most urgent brick that no thread reads.
+/// Needs the lock. The most urgent brick of which something is to be read: all threads work for the
+/// first, so that it is there soon.
 std::optional<BrickLoader::Job> BrickLoader::next_job() {
     const int coarse = required_.empty() ? coarse_level() : 0;
     const Clock::time_point now = Clock::now();
     const auto rests = [&](const Place& place) {
         const auto failed = failed_.find(place);
-        return in_flight_.contains(place) || (failed != failed_.end() && now < failed->second);
+        return failed != failed_.end() && now < failed->second;
     };
     // First something everywhere near, then the level that is felt.
     for (const int level : {coarse, 0}) {
@@ -156,7 +157,13 @@ std::optional<BrickLoader::Job> BrickLoader::next_job() {
             const Place place{array_of(brick)};
             const auto held = held_.find(place);
             if (held != held_.end() && held->second <= level) continue;
-            if (!rests(place)) return Job{brick, level};
+            if (rests(place)) continue;
+            const auto read = in_flight_.find(place);
+            if (read == in_flight_.end()) return Job{brick, level, false};
+            const int coarser = read->second;
+            if (blocks_->has_unread(settings_.level + coarser, source_of(brick, coarser))) {
+                return Job{brick, coarser, true};
+            }
         }
     }
     return std::nullopt;
@@ -168,6 +175,12 @@ void BrickLoader::work(const std::stop_token& stop) {
         const std::optional<Job> job = next_job();
         if (!job) {
             changed_.wait_for(lock, stop, std::chrono::milliseconds(500), [] { return false; });
+            continue;
+        }
+        if (job->helps) {
+            lock.unlock();
+            help(*job, stop);
+            lock.lock();
             continue;
         }
         const Place place{array_of(job->brick)};
@@ -190,6 +203,15 @@ void BrickLoader::work(const std::stop_token& stop) {
             problem_ = problem;
         }
         changed_.notify_all();
+    }
+}
+
+/// What fails here fails for the thread that makes the brick, too, which says so.
+void BrickLoader::help(const Job& job, const std::stop_token& stop) const {
+    try {
+        blocks_->read_one(settings_.level + job.coarser, source_of(job.brick, job.coarser), stop);
+    } catch (const Cancelled&) {
+    } catch (const std::exception&) {
     }
 }
 

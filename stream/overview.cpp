@@ -136,36 +136,32 @@ Volume overview_of(const Store& store, std::int64_t samples, std::stop_token sto
     return thinned_level(store, samples, stop);
 }
 
+/// The samples of the store that a brick is made of.
+SampleBox BrickLoader::source_of(const Index3& brick, int coarser) const {
+    const SampleBox box = empty_->resident()->box_of(brick);
+    if (coarser == 0) return box;
+    const Geometry& grid =
+        store_->info().levels[static_cast<std::size_t>(settings_.level + coarser)].geometry;
+    const auto index_in = [&](const Index3& at) {
+        return index_from_physical(grid, physical_from_index(geometry_, at.cast<double>()));
+    };
+    const Vec3 a = index_in(box.low), b = index_in(box.high);
+    const Vec3 last = (grid.size - Index3::Ones()).cast<double>();
+    const auto inside = [&](const Vec3& at) {
+        return Index3(at.cwiseMax(Vec3::Zero()).cwiseMin(last).cast<int>());
+    };
+    return {inside(a.cwiseMin(b).array().floor()), inside(a.cwiseMax(b).array().ceil())};
+}
+
 ResidentBrick BrickLoader::read(const Index3& brick, int coarser, std::stop_token stop) {
     const SampleType type = overview_.type();
     const std::size_t each = size_of(type);
     const SampleBox box = empty_->resident()->box_of(brick);
     const Index3 origin = brick * ResidentBricks::edge - Index3::Constant(ResidentBricks::margin);
     const std::shared_ptr<std::byte[]> samples(new std::byte[ResidentBricks::per_brick * each]());
-    SampleBox from = box;
+    const SampleBox from = source_of(brick, coarser);
     const Geometry& grid =
         store_->info().levels[static_cast<std::size_t>(settings_.level + coarser)].geometry;
-    if (coarser > 0) {
-        const auto index_in = [&](const Index3& at) {
-            return index_from_physical(grid, physical_from_index(geometry_, at.cast<double>()));
-        };
-        const Vec3 a = index_in(box.low), b = index_in(box.high);
-        const Index3 last = grid.size - Index3::Ones();
-        from.low = a.cwiseMin(b)
-                       .array()
-                       .floor()
-                       .cast<int>()
-                       .matrix()
-                       .cwiseMax(Index3::Zero())
-                       .cwiseMin(last);
-        from.high = a.cwiseMax(b)
-                        .array()
-                        .ceil()
-                        .cast<int>()
-                        .matrix()
-                        .cwiseMax(Index3::Zero())
-                        .cwiseMin(last);
-    }
     const Index3 size = from.high - from.low + Index3::Ones();
     std::vector<std::byte> bytes(static_cast<std::size_t>(size.cast<std::int64_t>().prod()) * each);
     blocks_->read(settings_.level + coarser, from, bytes, stop);

@@ -129,7 +129,7 @@ TEST(BrickLoader, memory_is_bounded_and_what_the_hand_needs_arrives_wherever_it_
             if (const auto version = loader.take()) field.use(version->samples);
             const SampleBox box{(at - Vec3::Constant(10)).cast<int>(),
                                 (at + Vec3::Constant(10)).cast<int>()};
-            return field.samples().resident()->has(box);
+            return field.samples().resident()->has(box) && loader.status().missing == 0;
         };
         ASSERT_TRUE(comes_true(arrived)) << n;
         const Index3 index = at.cast<int>();
@@ -243,24 +243,42 @@ TEST(Overview, is_the_finest_level_that_is_small_enough_or_single_samples) {
     }
 }
 
-TEST(Interest, the_bricks_at_hand_and_proxy_come_first_and_those_ahead_before_those_behind) {
+class Wanted : public testing::Test {
+  protected:
     const Geometry geometry = grid({2000, 2000, 2000});
     const Index3 count = ResidentBricks(geometry.size).count();
-    const Interest hand{Vec3(1000, 1000, 1000), Vec3(1100, 1000, 1000), Vec3(600, 0, 0)};
-    const auto wanted = wanted_bricks(geometry, count, {&hand, 1}, 400);
-    ASSERT_FALSE(wanted.empty());
-    EXPECT_LE(wanted.size(), 400U);
-    const auto place = [&](const Index3& brick) {
-        return std::ranges::find(wanted, brick) - wanted.begin();
-    };
     const Index3 at_proxy = ResidentBricks::brick_of({1000, 1000, 1000});
     const Index3 at_hand = ResidentBricks::brick_of({1100, 1000, 1000});
+    std::vector<Index3> wanted;
+
+    void look(double speed) {
+        const Interest hand{Vec3(1000, 1000, 1000), Vec3(1100, 1000, 1000), Vec3(speed, 0, 0)};
+        wanted = wanted_bricks(geometry, count, {&hand, 1}, 400);
+        EXPECT_LE(wanted.size(), 400U);
+    }
+    std::ptrdiff_t place(const Index3& brick) const {
+        return std::ranges::find(wanted, brick) - wanted.begin();
+    }
+};
+
+TEST_F(Wanted, of_a_slow_hand_what_it_is_in_comes_first_and_all_of_its_reach_is_wanted) {
+    look(60);
     EXPECT_LT(place(at_proxy), 4);
     EXPECT_LT(place(at_hand), 4);
-    EXPECT_LT(place(at_hand + Index3(2, 0, 0)), place(at_proxy - Index3(3, 0, 0)));
-    for (const Index3& brick : bricks_round(geometry, hand.hand, (hand.hand - hand.proxy).norm())) {
+    for (const Index3& brick : bricks_round(geometry, {1100, 1000, 1000}, 100)) {
         EXPECT_LT(place(brick), std::ptrdiff_t(wanted.size())) << brick.transpose();
     }
+}
+
+TEST_F(Wanted, of_a_fast_hand_what_it_reaches_meanwhile_comes_before_what_it_leaves) {
+    look(600);
+    EXPECT_LT(place(at_hand + Index3(4, 0, 0)), 8);
+    EXPECT_LT(place(at_hand + Index3(4, 0, 0)), place(at_proxy));
+    EXPECT_LT(place(at_hand), place(at_proxy - Index3(3, 0, 0)));
+    EXPECT_LT(place(at_proxy), std::ptrdiff_t(wanted.size()));
+}
+
+TEST_F(Wanted, a_hand_that_is_nowhere_wants_nothing) {
     const Interest broken{Vec3::Constant(not_a_number), Vec3(0, 0, 0)};
     EXPECT_TRUE(wanted_bricks(geometry, count, {&broken, 1}, 400).empty());
 }

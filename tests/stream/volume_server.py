@@ -23,12 +23,9 @@ import time
 import urllib.parse
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 
+import numpy
+
 SIZE, CHUNK, PERIOD, RADIUS, LEVELS = 12288, 64, 768, 256, 8
-
-
-def value_of(square):
-    """Of a square of a distance [voxel]."""
-    return max(0, min(255, math.floor(128.5 + (RADIUS - math.sqrt(square)) / 2)))
 
 
 def squares(level, chunk):
@@ -69,22 +66,10 @@ class VirtualVolume:
         repeat = PERIOD // math.gcd(PERIOD, CHUNK * 2**level)
         key = (level, *(p % repeat for p in place))
         if key not in self.made:
-            z, y, x = (squares(level, p) for p in place)
-            low, high = (sum(f(a) for a in (z, y, x)) for f in (min, max))
-            if value_of(low) == value_of(high):
-                data = bytes([value_of(low)]) * CHUNK**3
-            else:
-                known = {}
-                data = bytearray()
-                for a in z:
-                    for b in y:
-                        for c in x:
-                            square = a + b + c
-                            value = known.get(square)
-                            if value is None:
-                                value = known[square] = value_of(square)
-                            data.append(value)
-                data = bytes(data)
+            z, y, x = (numpy.array(squares(level, p)) for p in place)
+            square = z[:, None, None] + y[None, :, None] + x[None, None, :]
+            values = numpy.floor(128.5 + (RADIUS - numpy.sqrt(square)) / 2)
+            data = numpy.clip(values, 0, 255).astype(numpy.uint8).tobytes()
             self.made[key] = gzip.compress(data, 1) if self.compressed else data
         return self.made[key]
 

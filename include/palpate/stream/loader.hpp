@@ -105,11 +105,14 @@ class BrickLoader {
     struct Job {
         Index3 brick;
         int coarser;
+        bool helps;  ///< another thread makes the brick; this one reads a piece of it
     };
     using Clock = std::chrono::steady_clock;
     class Blocks;
 
     void work(const std::stop_token& stop);
+    void help(const Job& job, const std::stop_token& stop) const;
+    SampleBox source_of(const Index3& brick, int coarser) const;
     std::optional<Job> next_job();
     void put(const Job& job, const ResidentBrick& brick);
     void make_room();
