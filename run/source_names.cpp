@@ -105,6 +105,8 @@ std::optional<StoreSource> store_of(const FileSource& file, const Names& names) 
     }
     StoreSource store{file.path, options, {}};
     store.loader.level = count_of(names, "level");
+    // Only a network has to be waited for; each thread has a stack in memory that is locked.
+    if (!is_web_address(file.path)) store.loader.threads = 4;
     return store;
 }
 
