@@ -75,8 +75,8 @@ BrickLoader::~BrickLoader() {
 }
 
 void BrickLoader::look(std::span<const Interest> hands) {
-    std::vector<Index3> wanted =
-        wanted_bricks(geometry_, bricks_.count(), hands, most_bricks_ - most_bricks_ / 8);
+    std::vector<Index3> wanted = wanted_bricks(geometry_, empty_->resident()->count(), hands,
+                                               most_bricks_ - most_bricks_ / 8);
     const std::scoped_lock lock(mutex_);
     wanted_ = std::move(wanted);
     changed_.notify_all();
