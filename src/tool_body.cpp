@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -36,7 +37,10 @@ double distance_to_edge(const Vec3& p, const Vec3& a, const Vec3& b) {
 /// A triangle with what its distance from points needs.
 class Facet {
   public:
-    Facet(const Vec3& a, const Vec3& b, const Vec3& c) : corners_{a, b, c} {
+    Facet(const Vec3& a, const Vec3& b, const Vec3& c)
+        : corners_{a, b, c}, middle_((a + b + c) / 3) {
+        for (const Vec3& corner : corners_)
+            radius_ = std::max(radius_, slack * (corner - middle_).norm());
         const Vec3 across = (b - a).cross(c - a);
         const double twice = across.norm();
         flat_ = !(twice > 0);
@@ -45,6 +49,11 @@ class Facet {
         for (std::size_t i = 0; i < 3; ++i) {
             inwards_[i] = normal_.cross(corners_[(i + 1) % 3] - corners_[i]);
         }
+    }
+    /// Whether no point of it is nearer to p than that, by the ball around it; false may be wrong.
+    bool is_beyond(const Vec3& p, double distance) const {
+        const double apart = distance + radius_;
+        return (p - middle_).squaredNorm() > apart * apart;
     }
     double distance(const Vec3& p) const {
         bool above = !flat_;
@@ -84,7 +93,11 @@ class Facet {
         return x < a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
     }
 
+    static constexpr double slack = 1 + 1e-6;  // more than distances of floats are off by
+
     std::array<Vec3, 3> corners_;
+    Vec3 middle_;
+    double radius_ = 0;
     Vec3 normal_ = Vec3::Zero();
     std::array<Vec3, 3> inwards_{};
     bool flat_ = false;
@@ -122,8 +135,10 @@ void turn_inside(const Places& places, std::span<const Facet> facets,
                  std::vector<float>& distances) {
     std::vector<bool> turns(distances.size());
     for (const Facet& facet : facets) {
-        // One layer of places: the lines that may cross it.
-        Vec3 low = facet.low(), high = facet.high();
+        // One layer of places: the lines that may cross it, and one more on each side. A line along
+        // an edge could be lost by rounding for one of its two triangles.
+        Vec3 low = facet.low() - Vec3::Constant(places.step);
+        Vec3 high = facet.high() + Vec3::Constant(places.step);
         low[2] = high[2] = places.first[2];
         places.visit(low, high, [&](const Index3& foot) {
             const Vec3 line = places.at(foot);
@@ -169,22 +184,28 @@ std::vector<float> distances_from(std::span<const Facet> facets, std::span<const
                                   const Places& places, double reach) {
     std::vector<float> distances(static_cast<std::size_t>(places.size.cast<double>().prod()),
                                  static_cast<float>(reach));
-    const auto lower = [&](const Vec3& low, const Vec3& high, auto&& distance) {
-        const Vec3 all = Vec3::Constant(reach);
-        places.visit(low - all, high + all, [&](const Index3& i) {
+    const Vec3 all = Vec3::Constant(reach);
+    // Facets from all over the shape come first, so that most places soon know that others are beyond.
+    std::size_t stride = facets.size() * 5 / 8 + 1;
+    while (std::gcd(stride, facets.size()) > 1) ++stride;
+    for (std::size_t n = 0; n < facets.size(); ++n) {
+        const Facet& facet = facets[n * stride % facets.size()];
+        places.visit(facet.low() - all, facet.high() + all, [&](const Index3& i) {
             float& least = distances[places.number(i)];
-            least = std::min(least, static_cast<float>(distance(places.at(i))));
+            const Vec3 p = places.at(i);
+            if (!facet.is_beyond(p, least))
+                least = std::min(least, static_cast<float>(facet.distance(p)));
         });
-    };
-    for (const Facet& facet : facets) {
-        lower(facet.low(), facet.high(), [&](const Vec3& p) { return facet.distance(p); });
     }
     if (!facets.empty()) {
         turn_inside(places, facets, distances);
         return distances;
     }
     for (const Vec3& point : points) {
-        lower(point, point, [&](const Vec3& p) { return (p - point).norm(); });
+        places.visit(point - all, point + all, [&](const Index3& i) {
+            float& least = distances[places.number(i)];
+            least = std::min(least, static_cast<float>((places.at(i) - point).norm()));
+        });
     }
     return distances;
 }

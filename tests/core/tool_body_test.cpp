@@ -112,6 +112,29 @@ TEST(ToolBody, of_a_closed_mesh_is_what_it_encloses_whichever_way_its_faces_are_
     }
 }
 
+// Corners and edges of regular shapes lie on the lines along which the sides are counted.
+TEST(ToolBody, is_outside_all_around_whatever_its_places_are) {
+    Random random(11);
+    for (int i = 0; i < scaled(40) + 1; ++i) {
+        const double size = random.uniform(0.3, 3), spacing = size * random.uniform(0.3, 1);
+        const double step = size * random.uniform(0.1, 0.8), reach = 3 * step;
+        for (const Tool& tool : {sphere_tool(size, spacing), burr_tool(size, spacing),
+                                 box_tool({size, 2 * size, 0.7 * size}, spacing),
+                                 needle_tool(4 * size, size, spacing)}) {
+            const ToolBody body(std::make_shared<const Tool>(tool), step, reach);
+            const Vec3 middle = 0.5 * (body.low() + body.high());
+            const Vec3 half = 0.5 * (body.high() - body.low()) + Vec3::Constant(0.99 * reach);
+            for (int n = 0; n < 200; ++n) {
+                const Vec3 p = middle + half.cwiseProduct(random.point(-1, 1));
+                const double apart = distance_to_box(p - middle, half - Vec3::Constant(0.99 * reach));
+                if (apart > 2 * step) {
+                    ASSERT_GT(body.distance(p), 0) << size << ", " << step;
+                }
+            }
+        }
+    }
+}
+
 TEST(ToolBody, without_a_closed_shape_is_its_points) {
     Random random(5);
     ToolShape open = tube(random);

@@ -146,9 +146,11 @@ inline double distance_to_sweep(const Vec3& p, const edit::Sweep& sweep, const G
     const Vec3 turn = rotation_between(sweep.from.orientation, sweep.to.orientation);
     const double arm = body.low().cwiseAbs().cwiseMax(body.high().cwiseAbs()).norm() +
                        reach_of(sweep.brush, geometry);
+    constexpr double far = std::numeric_limits<double>::infinity();  // no brush changes it
+    if (distance_to_segment(p, sweep.from.position, sweep.to.position) > arm) return far;
     const double way = (sweep.to.position - sweep.from.position).norm() + turn.norm() * arm;
     const int steps = static_cast<int>(std::ceil(way / (0.25 * geometry.spacing.minCoeff())));
-    double nearest = std::numeric_limits<double>::infinity();
+    double nearest = far;
     for (int i = 0; i <= steps; ++i) {
         const double t = steps > 0 ? double(i) / steps : 0;
         const Vec3 position = sweep.from.position + t * (sweep.to.position - sweep.from.position);
