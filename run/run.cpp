@@ -209,6 +209,7 @@ std::string Run::device_problem() const {
 }
 
 void Run::send(const Command& command) {
+    check(command, settings_, kind_of(field_));
     const bool waited = isovalue_waits(settings_);
     const std::int64_t after = last_tick();
     if (!servo_->send(command)) {

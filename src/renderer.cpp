@@ -241,7 +241,7 @@ static void check_with_tool(const RendererSettings& s) {
                                                          : nullptr;
     if (wrong) {
         throw std::invalid_argument(std::string(wrong) +
-                                    " can be felt with a point only: take the tool point");
+                                    " can be felt with a point only: switch it off, or take the tool point");
     }
 }
 

@@ -98,7 +98,9 @@ void check(const SessionSettings& s) {
     }
 }
 
-void check(const Command& command, const RendererSettings& settings, const FieldKind& field) {
+/// The settings that a command leaves. Checks what is the command's alone.
+static RendererSettings changed_by(const Command& command, const RendererSettings& settings,
+                                   const FieldKind& field) {
     const Solid solid = field.solid;
     RendererSettings changed = settings;
     const Overloaded check_one{
@@ -126,26 +128,38 @@ void check(const Command& command, const RendererSettings& settings, const Field
             if (to.layers) check(*to.layers, solid);
             changed.layers = to.layers;
         },
-        [&](const command::UseTool& to) { check_tool(to.tool.get(), changed.method, field); },
+        [&](const command::UseTool& to) {
+            check_tool(to.tool.get(), changed.method, field);
+            changed.tool = to.tool;
+        },
         [&](const ForceSettings& to) { changed.force = to; },
         [&](const Friction& to) { changed.proxy.friction = to; },
-        [&](const Penetrability& to) { check(to, solid); },
+        [&](const Penetrability& to) {
+            check(to, solid);
+            changed.penetrability = to;
+        },
         [&](const DeviceTransform& to) { changed.transform = to; },
         [](const DeviceLimits& to) { check(to); },
     };
     std::visit(check_one, command);
-    changed.tool.reset();  // beside one, other things rest
-    check(changed);
+    return changed;
+}
+
+void check(const Command& command, const RendererSettings& settings, const FieldKind& field) {
+    check(changed_by(command, settings, field));
 }
 
 CheckedCommand::CheckedCommand(Command command, const RendererSettings& settings,
                                const FieldKind& field)
     : command_(std::move(command)) {
-    check(command_, settings, field);
+    RendererSettings changed = changed_by(command_, settings, field);
+    changed.tool.reset();
+    check(changed);
 }
 
 void apply(Session& session, const Command& command) {
     Renderer& renderer = session.renderer;
+    check(command, renderer.settings, kind_of(renderer.field));
     const CheckedCommand checked(command, renderer.settings, kind_of(renderer.field));
     if (std::holds_alternative<command::UseTool>(command)) make_room_for_tools(renderer);
     apply(session, checked);

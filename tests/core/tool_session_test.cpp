@@ -112,6 +112,41 @@ TEST(ToolSession, a_point_tool_feels_what_the_point_feels) {
     EXPECT_GT(together, 3600);
 }
 
+TEST(ToolSession, a_point_tool_follows_levels_edits_and_friction_as_the_point_does) {
+    RendererSettings settings = at_once();
+    settings.proxy.friction = {0.3, 0.3};
+    const Field field = smooth(ramp_field());
+    Session point{make_renderer(field, 30, settings), {}};
+    settings.tool = std::make_shared<const Tool>(point_tool());
+    Session tool{make_renderer(field, 30, settings), {}};
+    Random random(7);
+    auto samples = field.shared_samples();
+    int constrained = 0;
+    for (int i = 0; i < 6000; ++i) {
+        std::optional<Command> command;
+        if (i % 500 == 250) command = command::Isovalue{random.uniform(24, 33)};
+        if (i % 700 == 350) {
+            const Vec3 scp = point.renderer.proxy.scp_physical;
+            const Brush brush{.kind = BrushKind::carve, .radius = 4, .level = 30, .value = 0};
+            samples = edited(samples, edit::Stroke{brush, scp, scp}).samples;
+            command = command::Samples{samples, std::uint64_t(i)};
+        }
+        for (Session* session : {&point, &tool}) {
+            if (command) palpate::apply(*session, *command);
+        }
+        DeviceReading reading;
+        reading.status = DeviceStatus::ready;
+        reading.position = at_depth(31 + 6 * std::sin(0.004 * i));
+        reading.position[0] += 3 * std::sin(0.003 * i);
+        const SessionTick a = advance(point, i * period, reading);
+        const SessionTick b = advance(tool, i * period, reading);
+        constrained += a.tick.proxy.mode == Mode::constrained;
+        ASSERT_NEAR((a.tick.proxy.scp - b.tick.proxy.scp).norm(), 0, 1e-3) << i;
+        ASSERT_NEAR((a.tick.force - b.tick.force).norm(), 0, 1e-3) << i;
+    }
+    EXPECT_GT(constrained, 500);
+}
+
 TEST(ToolSession, force_and_torque_stay_within_the_device_and_stop_together) {
     RendererSettings settings = settings_with(one_arm({3, 0, 1}));
     settings.device.maximum_force = 0.5;
@@ -234,6 +269,34 @@ TEST(ToolSession, what_a_tool_cannot_do_yet_is_refused_in_words) {
     Session session{make_renderer(ramp_field(), 30), {}};
     EXPECT_THROW(apply(session, command::UseTool{one_arm({1, 0, 0})}), std::invalid_argument);
     EXPECT_NO_THROW(apply(session, command::UseTool{nullptr}));
+}
+
+TEST(ToolSession, a_command_for_what_only_a_point_feels_is_refused_and_changes_nothing) {
+    const auto tool = one_arm({1, 0, 0});
+    const Field field = smooth(ramp_field());
+    RendererSettings settings = settings_with(nullptr);
+    ForceSettings magnet = settings.force, texture = settings.force;
+    magnet.magnet = {1, 0.1};
+    texture.texture.amplitude = 0.1;
+    const std::vector<Command> others{penetrability_threshold(1, 30, Solid::above),
+                                      command::UseLayers{std::make_shared<const Layers>()}, magnet,
+                                      texture};
+    for (const Command& other : others) {
+        Session session{make_renderer(field, 30, settings_with(tool)), {}};
+        EXPECT_THROW(apply(session, other), std::invalid_argument) << other.index();
+        EXPECT_NO_THROW(check(session.renderer.settings));
+        // Nor can a tool be taken up beside one of them.
+        session = {make_renderer(field, 30, settings), {}};
+        apply(session, other);
+        EXPECT_THROW(apply(session, command::UseTool{tool}), std::invalid_argument);
+        EXPECT_FALSE(session.renderer.settings.tool);
+        // A servo cannot know what is felt by the time: there it rests.
+        session = {make_renderer(field, 30, settings_with(tool)), {}};
+        make_room_for_tools(session.renderer);
+        apply(session, CheckedCommand(other, settings, kind_of(field)));
+        const Tick tick = advance(session, 0, {.status = DeviceStatus::ready}).tick;
+        EXPECT_EQ(tick.proxy.status, UpdateStatus::done);
+    }
 }
 
 TEST(ToolSession, rotational_settings_that_are_not_stable_are_refused_or_lowered) {

@@ -86,6 +86,25 @@ TEST(Run, a_command_that_cannot_be_carried_out_changes_nothing) {
     EXPECT_TRUE(ticks_go_on(s.live));
 }
 
+TEST(Run, what_only_a_point_feels_and_a_tool_exclude_each_other_and_recordings_go_on) {
+    ScratchFolder scratch;
+    BallRun s;
+    const auto tool = std::make_shared<const Tool>(sphere_tool(2, 0.5));
+    const Penetrability soft = penetrability_threshold(1, 30, s.live.field().solid());
+    s.live.send(soft);
+    EXPECT_THROW(s.live.send(command::UseTool{tool}), std::invalid_argument);
+    s.live.send(no_penetrability());
+    s.live.send(command::UseTool{tool});
+    EXPECT_THROW(s.live.send(soft), std::invalid_argument);
+    EXPECT_EQ(s.live.settings().tool, tool);
+    s.live.record(scratch / "tool.rec");  // begins anew with the settings of the moment
+    EXPECT_TRUE(ticks_go_on(s.live));
+    EXPECT_GT(s.live.stop_recording(), 0);
+    s.live.send(command::UseTool{nullptr});
+    EXPECT_NO_THROW(s.live.send(soft));
+    EXPECT_TRUE(ticks_go_on(s.live));
+}
+
 TEST(Run, the_mouse_moves_the_hand) {
     BallRun s;
     s.live.mouse()->aim({10, 20, 30});

@@ -76,6 +76,7 @@ void RunController::send(const Command& command) {
 }
 
 void RunController::restore(const RendererSettings& settings) {
+    if (!settings.tool) send(command::UseTool{nullptr});  // beside one, other things are refused
     send(settings.force);
     send(settings.proxy.friction);
     send(settings.penetrability);
