@@ -89,8 +89,7 @@ void read_by_pieces(const Store& store, int level, const SampleBox& box, std::sp
     if (problem) std::rethrow_exception(problem);
 }
 
-void BrickLoader::Blocks::read(int level, const SampleBox& box, std::span<std::byte> out,
-                               std::stop_token stop) {
+void Blocks::read(int level, const SampleBox& box, std::span<std::byte> out, std::stop_token stop) {
     if (!keeps(level)) return store_.read(level, box, out, stop);
     const StoreInfo& info = store_.info();
     const Level& grid = grid_of(level);
@@ -103,19 +102,19 @@ void BrickLoader::Blocks::read(int level, const SampleBox& box, std::span<std::b
     });
 }
 
-const Level& BrickLoader::Blocks::grid_of(int level) const {
+const Level& Blocks::grid_of(int level) const {
     return store_.info().levels[static_cast<std::size_t>(level)];
 }
 
 /// False for pieces that are too large, and for rows, which cost nothing to read in parts.
-bool BrickLoader::Blocks::keeps(int level) const {
+bool Blocks::keeps(int level) const {
     const Index3& chunk = grid_of(level).chunk;
     const SampleBox piece{Index3::Zero(), chunk - Index3::Ones()};
     const bool is_row = chunk[1] == 1 && chunk[2] == 1;
     return !is_row && bytes_of(piece, store_.info().type) <= most_bytes_ / 4;
 }
 
-bool BrickLoader::Blocks::has_unread(int level, const SampleBox& box) const {
+bool Blocks::has_unread(int level, const SampleBox& box) const {
     bool unread = false;
     if (!keeps(level)) return unread;
     for_each_piece(grid_of(level), box,
@@ -123,7 +122,7 @@ bool BrickLoader::Blocks::has_unread(int level, const SampleBox& box) const {
     return unread;
 }
 
-void BrickLoader::Blocks::read_one(int level, const SampleBox& box, std::stop_token stop) {
+void Blocks::read_one(int level, const SampleBox& box, std::stop_token stop) {
     bool found = false;
     for_each_piece(grid_of(level), box, [&](const Index3& at, const SampleBox& own) {
         if (found || has(level, at)) return;
@@ -133,13 +132,13 @@ void BrickLoader::Blocks::read_one(int level, const SampleBox& box, std::stop_to
 }
 
 /// True for a piece that is kept or that a thread reads now.
-bool BrickLoader::Blocks::has(int level, const Index3& at) const {
+bool Blocks::has(int level, const Index3& at) const {
     const std::scoped_lock lock(mutex_);
     return kept_.contains({level, at[0], at[1], at[2]});
 }
 
-BrickLoader::Blocks::Bytes BrickLoader::Blocks::block(int level, const Index3& at,
-                                                      const SampleBox& box, std::stop_token stop) {
+Blocks::Bytes Blocks::block(int level, const Index3& at, const SampleBox& box,
+                            std::stop_token stop) {
     const Key key{level, at[0], at[1], at[2]};
     std::promise<Bytes> promise;
     std::shared_future<Bytes> others;
@@ -177,7 +176,7 @@ BrickLoader::Blocks::Bytes BrickLoader::Blocks::block(int level, const Index3& a
 }
 
 /// Drops the pieces that were not used for longest. Who reads one has its own share of it.
-void BrickLoader::Blocks::forget_old(const Key& but) {
+void Blocks::forget_old(const Key& but) {
     while (bytes_ > most_bytes_ && ages_.back() != but) {
         const auto oldest = kept_.find(ages_.back());
         bytes_ -= oldest->second.size;
@@ -186,7 +185,7 @@ void BrickLoader::Blocks::forget_old(const Key& but) {
     }
 }
 
-std::uint64_t BrickLoader::Blocks::bytes() const {
+std::uint64_t Blocks::bytes() const {
     const std::scoped_lock lock(mutex_);
     return bytes_;
 }

@@ -16,7 +16,7 @@ void read_by_pieces(const Store& store, int level, const SampleBox& box, std::sp
                     int threads, const std::stop_token& stop);
 
 /// Any thread may call any function.
-class BrickLoader::Blocks {
+class Blocks {
   public:
     Blocks(const Store& store, std::uint64_t most_bytes) : store_(store), most_bytes_(most_bytes) {}
 

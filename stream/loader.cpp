@@ -17,6 +17,8 @@ constexpr std::size_t fewest_bricks = 64;
 constexpr std::chrono::seconds pause_after_failure{2};
 /// Of the memory, the part of decoded pieces.
 constexpr std::uint64_t pieces_part = 4;
+/// Bricks that the hands need first: a cube of three round one.
+constexpr std::size_t most_urgent = 27;
 
 const Level& level_of(const Store& store, int level) {
     const auto count = static_cast<int>(store.info().levels.size());
@@ -126,7 +128,11 @@ BrickLoaderStatus BrickLoader::status() const {
     const std::scoped_lock lock(mutex_);
     status.resident = held_.size();
     status.wanted = wanted_.size();
-    for (const Index3& brick : wanted_) status.missing += !held_.contains({array_of(brick)});
+    for (std::size_t i = 0; i < wanted_.size(); ++i) {
+        const bool missing = !held_.contains({array_of(wanted_[i])});
+        status.missing += missing;
+        status.urgent += missing && i < most_urgent;
+    }
     status.bytes = pieces + held_.size() * ResidentBricks::per_brick * size_of(overview_.type());
     status.most_bytes = std::max(most_bytes_, status.bytes);
     status.loaded = loaded_;

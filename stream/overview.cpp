@@ -6,18 +6,10 @@
 
 #include "palpate/stream/loader.hpp"
 #include "stream/blocks.hpp"
+#include "stream/sample_bytes.hpp"
 
 namespace palpate::stream {
 namespace {
-
-/// Samples that are not finite become `instead`, as io::read_volume() does it.
-void make_finite(SampleType type, std::span<std::byte> bytes, double instead) {
-    if (type != SampleType::float32) return;
-    auto* samples = reinterpret_cast<float*>(bytes.data());
-    for (std::size_t i = 0; i < bytes.size() / sizeof(float); ++i) {
-        if (!std::isfinite(samples[i])) samples[i] = static_cast<float>(instead);
-    }
-}
 
 /// The least finite sample; 0 if there is none, or none of floats.
 double least_finite(SampleType type, std::span<const std::byte> bytes) {

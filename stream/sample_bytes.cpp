@@ -46,6 +46,11 @@ void SampleBytes::convert(std::span<std::byte> raw, std::byte* to) const {
     if (type() == SampleType::float32) replace_non_finite(to, count, static_cast<float>(fill));
 }
 
+void make_finite(SampleType type, std::span<std::byte> bytes, double instead) {
+    if (type != SampleType::float32) return;
+    replace_non_finite(bytes.data(), bytes.size() / sizeof(float), static_cast<float>(instead));
+}
+
 void check_request(const Geometry& grid, const SampleBox& box, SampleType type, std::size_t bytes) {
     if (box.empty() || (box.low.array() < 0).any() ||
         (box.high.array() >= grid.size.array()).any()) {

@@ -23,6 +23,9 @@ struct SampleBytes {
     void convert(std::span<std::byte> raw, std::byte* to) const;
 };
 
+/// Samples that are not finite become `instead`, as io::read_volume() does it.
+void make_finite(SampleType type, std::span<std::byte> bytes, double instead);
+
 /// Throws std::invalid_argument unless the box is not empty, inside the grid, and `bytes` are those
 /// of its samples: a mistake of the caller.
 void check_request(const Geometry& grid, const SampleBox& box, SampleType type, std::size_t bytes);

@@ -9,6 +9,7 @@
 #include "palpate/io/error.hpp"
 #include "palpate/reach.hpp"
 #include "stream/interest.hpp"
+#include "stream/volumes_store.hpp"
 #include "support/constants.hpp"
 #include "support/edits.hpp"
 #include "support/eventually.hpp"
@@ -19,54 +20,13 @@ namespace {
 
 using namespace palpate::support;
 
-/// Levels that are volumes, read in pieces of some size; a test may interfere with each read.
-class VolumeStore : public Store {
-  public:
-    VolumeStore(std::vector<Volume> levels, const Index3& chunk) : levels_(std::move(levels)) {
-        info_.address = "volumes";
-        info_.type = levels_.front().type();
-        for (const Volume& level : levels_) info_.levels.push_back({level.geometry(), chunk});
-    }
-    const StoreInfo& info() const override { return info_; }
-    Traffic traffic() const override { return {.requests = reads_}; }
-    void read(int level, const SampleBox& box, std::span<std::byte> out,
-              std::stop_token stop) const override {
-        ++reads_;
-        if (before_read) before_read(level, box, stop);
-        const Volume& volume = levels_.at(std::size_t(level));
-        const std::size_t each = size_of(volume.type());
-        const Index3& size = volume.geometry().size;
-        std::byte* to = out.data();
-        for (int k = box.low[2]; k <= box.high[2]; ++k) {
-            for (int j = box.low[1]; j <= box.high[1]; ++j) {
-                const auto* row = static_cast<const std::byte*>(volume.data()) +
-                                  ((std::size_t(k) * size[1] + j) * size[0] + box.low[0]) * each;
-                const auto bytes = std::size_t(box.high[0] - box.low[0] + 1) * each;
-                std::memcpy(to, row, bytes);
-                to += bytes;
-            }
-        }
-    }
-
-    std::function<void(int, const SampleBox&, const std::stop_token&)> before_read;
-
-  private:
-    std::vector<Volume> levels_;
-    StoreInfo info_;
-    mutable std::atomic<std::uint64_t> reads_{0};
-};
-
-std::shared_ptr<VolumeStore> store_of(Volume volume, const Index3& chunk = {32, 32, 32}) {
-    return std::make_shared<VolumeStore>(std::vector{std::move(volume)}, chunk);
-}
-
 constexpr std::uint64_t least_memory = 64 * ResidentBricks::per_brick * 4 / 3 + 1000;
 
 TEST(BrickLoader, bricks_hold_the_samples_of_the_store_and_their_margins) {
     for (const SampleType type : sample_types) {
         for (const Index3& chunk : {Index3(130, 1, 1), Index3(32, 48, 7), Index3(500, 500, 500)}) {
             const Volume volume = noise_of(type, grid({130, 66, 70}), 3);
-            const auto store = store_of(volume, chunk);
+            const auto store = store_in_pieces(volume, chunk);
             BrickLoader loader(store, overview_of(*store),
                                {.memory = least_memory * size_of(type), .threads = 1});
             for (const Index3& at : {Index3(0, 0, 0), Index3(1, 0, 1), Index3(2, 1, 1)}) {
@@ -96,7 +56,7 @@ TEST(BrickLoader, a_coarser_level_is_interpolated_where_it_lies_in_space) {
     coarse.spacing *= 2;
     coarse.origin += 0.5 * fine.spacing;
     const auto store =
-        std::make_shared<VolumeStore>(std::vector{ramp(fine), ramp(coarse)}, Index3(16, 16, 16));
+        std::make_shared<VolumesStore>(std::vector{ramp(fine), ramp(coarse)}, Index3(16, 16, 16));
     BrickLoader loader(store, overview_of(*store), {.memory = 4 * least_memory, .threads = 1});
     const ResidentBrick exact = loader.read({0, 0, 0}, 0), between = loader.read({0, 0, 0}, 1);
     EXPECT_EQ(exact.level, 0);
@@ -116,7 +76,7 @@ TEST(BrickLoader, a_coarser_level_is_interpolated_where_it_lies_in_space) {
 
 TEST(BrickLoader, memory_is_bounded_and_what_the_hand_needs_arrives_wherever_it_goes) {
     const Volume volume = noise_of(SampleType::uint8, grid({640, 320, 320}), 4);
-    const auto store = store_of(volume, {64, 64, 64});
+    const auto store = store_in_pieces(volume, {64, 64, 64});
     BrickLoader loader(store, overview_of(*store, 1000), {.memory = least_memory, .threads = 2});
     Random random(6);
     Field field(loader.empty());
@@ -144,7 +104,7 @@ TEST(BrickLoader, memory_is_bounded_and_what_the_hand_needs_arrives_wherever_it_
 
 TEST(BrickLoader, events_lead_from_version_to_version) {
     const Volume volume = noise_of(SampleType::uint8, grid({640, 200, 200}), 5);
-    const auto store = store_of(volume);
+    const auto store = store_in_pieces(volume);
     BrickLoader loader(store, overview_of(*store, 1000), {.memory = least_memory, .threads = 2});
     std::map<std::array<int, 3>, int> present;
     for (int x = 0; x < 640; x += 60) {
@@ -169,7 +129,7 @@ TEST(BrickLoader, events_lead_from_version_to_version) {
 }
 
 TEST(BrickLoader, a_brick_that_cannot_be_had_is_told_and_tried_again) {
-    const auto store = store_of(noise_of(SampleType::uint8, grid({100, 100, 100}), 7));
+    const auto store = store_in_pieces(noise_of(SampleType::uint8, grid({100, 100, 100}), 7));
     std::atomic<bool> broken{true};
     store->before_read = [&](int, const SampleBox&, const std::stop_token&) {
         if (broken) throw io::InputError("volumes: gone; plug it in again");
@@ -188,7 +148,7 @@ TEST(BrickLoader, a_brick_that_cannot_be_had_is_told_and_tried_again) {
 
 TEST(BrickLoader, waits_for_all_that_an_update_may_look_at_and_refuses_what_does_not_fit) {
     const Volume volume = noise_of(SampleType::uint8, grid({1000, 400, 400}), 8);
-    const auto store = store_of(volume, {64, 64, 64});
+    const auto store = store_in_pieces(volume, {64, 64, 64});
     BrickLoader loader(store, overview_of(*store, 1000), {.memory = least_memory, .threads = 2});
     loader.wait_for({500, 200, 200}, 40);
     const Field field(loader.take()->samples);
@@ -199,7 +159,7 @@ TEST(BrickLoader, waits_for_all_that_an_update_may_look_at_and_refuses_what_does
 }
 
 TEST(BrickLoader, ends_at_once_while_a_read_hangs) {
-    const auto store = store_of(noise_of(SampleType::uint8, grid({100, 100, 100}), 9));
+    const auto store = store_in_pieces(noise_of(SampleType::uint8, grid({100, 100, 100}), 9));
     Volume overview = overview_of(*store);
     std::atomic<bool> reading{false};
     store->before_read = [&](int, const SampleBox&, const std::stop_token& stop) {
@@ -217,7 +177,7 @@ TEST(BrickLoader, ends_at_once_while_a_read_hangs) {
 }
 
 TEST(BrickLoader, refuses_levels_that_are_not_there_and_too_little_memory) {
-    const auto store = store_of(noise_of(SampleType::uint8, grid({10, 10, 10}), 1));
+    const auto store = store_in_pieces(noise_of(SampleType::uint8, grid({10, 10, 10}), 1));
     const Volume overview = overview_of(*store);
     EXPECT_THROW(BrickLoader(store, overview, {.level = 1}), std::invalid_argument);
     EXPECT_THROW(BrickLoader(store, overview, {.level = -1}), std::invalid_argument);
@@ -227,11 +187,11 @@ TEST(BrickLoader, refuses_levels_that_are_not_there_and_too_little_memory) {
 TEST(Overview, is_the_finest_level_that_is_small_enough_or_single_samples) {
     const Volume fine = noise_of(SampleType::uint16, grid({90, 80, 70}), 2);
     const Volume coarse = noise_of(SampleType::uint16, grid({9, 8, 7}, {10, 10, 10}), 3);
-    const VolumeStore both({fine, coarse}, {16, 16, 16});
+    const VolumesStore both({fine, coarse}, {16, 16, 16});
     EXPECT_TRUE(same_bits(overview_of(both), fine));
     EXPECT_TRUE(same_bits(overview_of(both, 1000), coarse));
     for (const Index3& chunk : {Index3(90, 1, 1), Index3(16, 16, 16)}) {
-        const VolumeStore one({fine}, chunk);
+        const VolumesStore one({fine}, chunk);
         const Volume thin = overview_of(one, 1000);
         EXPECT_LE(sample_count(thin.geometry()), 1000);
         EXPECT_GT(sample_count(thin.geometry()), 200);

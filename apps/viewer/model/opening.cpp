@@ -60,7 +60,9 @@ Opened open(const run::Source& source, const io::Progress& progress) {
     run::LoadedVolume loaded = loaded_from(source, [&](double part) { progress(0.9 * part); });
     run::Histogram histogram = run::histogram_of(
         loaded.volume, bins, run::padding_of(loaded.volume, loaded.values.padding));
-    auto terraces = source.dequantize > 0 ? std::nullopt : filters::terraces_of(loaded.volume);
+    // An overview's rounding says nothing about the samples that are felt.
+    const bool none = source.dequantize > 0 || loaded.streamed;
+    auto terraces = none ? std::nullopt : filters::terraces_of(loaded.volume);
     progress(1);
     return {std::move(loaded), std::move(histogram), std::move(terraces)};
 }

@@ -10,7 +10,8 @@ namespace palpate::viewer {
 struct Opened {
     run::LoadedVolume loaded;
     run::Histogram histogram;  ///< of 256 bins, as `palpate info`
-    /// What rounding does to its surfaces; nothing where it has no levels, or was dequantized.
+    /// What rounding does to its surfaces; nothing where it has no levels, was dequantized, or is a
+    /// store.
     std::optional<filters::Terraces> terraces = {};
 
     /// The grey levels that the file suggests, or those between which nearly all samples lie [data

@@ -41,9 +41,9 @@ constexpr SurfaceLimits limits_of_others{2'000'000, 20'000};
 }  // namespace
 
 BackgroundRenderer::BackgroundRenderer() {
-    connect(&felt_, &SurfaceSource::made, this, &BackgroundRenderer::paint);
-    connect(&felt_, &SurfaceSource::finished, this, [this] { announce_ = true; });
-    connect(&felt_, &SurfaceSource::problem, this, &BackgroundRenderer::problem);
+    connect(&felt_, &PatchedSource::made, this, &BackgroundRenderer::paint);
+    connect(&felt_, &PatchedSource::finished, this, [this] { announce_ = true; });
+    connect(&felt_, &PatchedSource::problem, this, &BackgroundRenderer::problem);
     rest_.setSingleShot(true);
     rest_.setInterval(rest_ms);
     connect(&rest_, &QTimer::timeout, this, [this] {
@@ -114,14 +114,17 @@ void BackgroundRenderer::match_sources() {
             if (found != old.end()) others_[i] = std::move(*found);
         }
     };
-    claim([](const SurfaceSource& s, const SeenSurface& w) { return s.level() == w.level; });
-    claim([](const SurfaceSource&, const SeenSurface&) { return true; });
+    claim([](const PatchedSource& s, const SeenSurface& w) { return s.level() == w.level; });
+    claim([](const PatchedSource&, const SeenSurface&) { return true; });
     for (std::size_t i = 0; i < wanted.size(); ++i) {
         if (!others_[i]) {
-            others_[i] = std::make_unique<SurfaceSource>(limits_of_others);
-            connect(others_[i].get(), &SurfaceSource::made, this, &BackgroundRenderer::paint);
-            connect(others_[i].get(), &SurfaceSource::problem, this, &BackgroundRenderer::problem);
-            if (request_.field) others_[i]->set_field(*request_.field, wanted[i].level);
+            others_[i] = std::make_unique<PatchedSource>(limits_of_others);
+            connect(others_[i].get(), &PatchedSource::made, this, &BackgroundRenderer::paint);
+            connect(others_[i].get(), &PatchedSource::problem, this, &BackgroundRenderer::problem);
+            if (request_.field) {
+                others_[i]->set_field(*request_.field, wanted[i].level);
+                others_[i]->set_patch(patch_);
+            }
         }
         others_[i]->set_level(wanted[i].level);
     }
@@ -149,6 +152,7 @@ void BackgroundRenderer::set_overlay(std::vector<DrawnSurface> surfaces) {
 
 void BackgroundRenderer::set_field(const Field& field, double isovalue) {
     request_.field = field;
+    patch_.reset();
     felt_.set_field(field, isovalue);
     for (std::size_t i = 0; i < others_.size(); ++i) {
         others_[i]->set_field(field, request_.look.surfaces[i].level);
@@ -169,8 +173,15 @@ void BackgroundRenderer::update_field(const Field& field, const std::optional<Sa
     if (request_.look.volume || request_.look.slices) paint();
 }
 
+void BackgroundRenderer::set_patch(const std::optional<ScenePatch>& patch) {
+    patch_ = patch;
+    felt_.set_patch(patch);
+    for (const auto& source : others_) source->set_patch(patch);
+}
+
 void BackgroundRenderer::clear() {
     request_.field.reset();
+    patch_.reset();
     felt_.clear();
     for (const auto& source : others_) source->clear();
     overlay_.clear();
@@ -196,6 +207,12 @@ void BackgroundRenderer::take(RenderedImage image) {
         announce_ = false;
         Q_EMIT surface_ready(felt_.surface().isovalue, felt_.surface().seconds);
     }
+}
+
+bool BackgroundRenderer::shows_whole() const {
+    const auto extracting = [](const auto& source) { return source->extracting_whole(); };
+    return shown_ && shown_->number == request_.number && !shown_->moving &&
+           !felt_.extracting_whole() && std::ranges::none_of(others_, extracting);
 }
 
 bool BackgroundRenderer::settled() const {

@@ -9,9 +9,9 @@
 #include <optional>
 #include <vector>
 
+#include "apps/viewer/scene/patched_source.hpp"
 #include "apps/viewer/scene/render_request.hpp"
 #include "apps/viewer/scene/render_thread.hpp"
-#include "apps/viewer/scene/surface_source.hpp"
 
 namespace palpate::viewer {
 
@@ -26,6 +26,8 @@ class BackgroundRenderer : public QObject {
     void set_field(const Field& field, double isovalue);
     /// As Scene::update_field().
     void update_field(const Field& field, const std::optional<SampleBox>& changed);
+    /// As Scene::set_patch().
+    void set_patch(const std::optional<ScenePatch>& patch);
     void clear();
     void set_isovalue(double isovalue);
     void set_most_triangles(std::size_t triangles) { felt_.set_most_triangles(triangles); }
@@ -39,6 +41,8 @@ class BackgroundRenderer : public QObject {
     /// Null before the first.
     const std::shared_ptr<const RenderedImage>& shown() const { return shown_; }
     bool settled() const;
+    /// The fine picture of the newest camera is there, of the surfaces of the whole data at least.
+    bool shows_whole() const;
     double frame_seconds() const { return frame_seconds_; }
 
   Q_SIGNALS:
@@ -56,12 +60,13 @@ class BackgroundRenderer : public QObject {
 
     RenderRequest request_;
     std::shared_ptr<const RenderedImage> shown_;
+    std::optional<ScenePatch> patch_;
     bool announce_ = false;  // the felt surface is finished, but not yet drawn
     double frame_seconds_ = 0;
     bool broken_ = false;  // no render thread can draw
     QTimer rest_;
-    SurfaceSource felt_;
-    std::vector<std::unique_ptr<SurfaceSource>> others_;  // as in the look
+    PatchedSource felt_;
+    std::vector<std::unique_ptr<PatchedSource>> others_;  // as in the look
     std::vector<DrawnSurface> overlay_;
     std::unique_ptr<RenderThread> quick_, fine_;
 };

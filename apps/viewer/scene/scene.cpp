@@ -70,6 +70,7 @@ ViewSize Scene::view_size() const {
 void Scene::set_field(const Field& field, double isovalue) {
     parts_->snapshot.reset();
     parts_->pressed.reset();
+    parts_->patch_detail.reset();
     parts_->patched_level = std::nan("");
     parts_->wanted.crosshair = physical_centre(field.geometry());
     parts_->background.set_field(field, isovalue);
@@ -84,6 +85,7 @@ void Scene::update_field(const Field& field, const std::optional<SampleBox>& cha
 
 void Scene::clear() {
     parts_->snapshot.reset();
+    parts_->patch_detail.reset();
     parts_->background.clear();
     refresh();
     changed();
@@ -238,7 +240,8 @@ void Scene::refresh() {
 /// A patch stays until the proxy has moved by a part of a voxel.
 std::optional<Contact> Scene::contact(const Field& field) {
     const Look& look = parts_->wanted.look;
-    auto contact = contact_of(parts_->snapshot, field, look.tetrahedra || look.planes);
+    auto contact =
+        contact_of(parts_->snapshot, finest_at_proxy(field), look.tetrahedra || look.planes);
     if (!contact) return contact;
     contact->brush = parts_->brush;
     if (!parts_->pressed || !look.surface) return contact;

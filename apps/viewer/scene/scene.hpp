@@ -12,6 +12,7 @@
 
 #include "apps/viewer/model/look.hpp"
 #include "apps/viewer/model/measurement.hpp"
+#include "apps/viewer/model/patch_choice.hpp"
 #include "apps/viewer/scene/cut_handles.hpp"
 #include "apps/viewer/scene/navigation.hpp"
 #include "palpate/servo.hpp"
@@ -22,6 +23,7 @@ namespace palpate::viewer {
 
 struct Contact;
 struct DrawnSurface;
+struct ScenePatch;
 
 /// Parallel projection. The static part (surface, volume, slices, box) is rendered on threads of
 /// its own, quickly while something changes and finely after that; the widget draws hand, proxy and
@@ -42,6 +44,14 @@ class Scene : public QVTKOpenGLNativeWidget {
     /// too few and takes microseconds. As often as versions come: the newest is shown. Throws
     /// std::invalid_argument where nothing, or another grid, is shown.
     void update_field(const Field& field, const std::optional<SampleBox>& changed = {});
+    /// A finer part of the data, whose surface is drawn in place of theirs; until the next
+    /// set_field(). Nothing: none.
+    void set_patch(const std::optional<ScenePatch>& patch);
+    /// Points of what is seen; nothing while nothing is shown.
+    std::optional<SeenPoints> seen_points() const;
+    bool is_in_view(const Vec3& point) const;
+    /// The picture is the fine one of the newest camera and look; a patch may still come.
+    bool shows_whole() const;
     /// An empty scene.
     void clear();
     /// The surface is extracted again in the background, coarse first; the newest isovalue wins.
@@ -136,6 +146,7 @@ class Scene : public QVTKOpenGLNativeWidget {
     void refresh();
     void lay_out();
     std::optional<Contact> contact(const Field& field);
+    const Field& finest_at_proxy(const Field& field) const;
 
     std::unique_ptr<Parts> parts_;
     QTimer refresh_;

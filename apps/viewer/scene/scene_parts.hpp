@@ -31,7 +31,8 @@ struct Scene::Parts {
     double brush = 0;
     std::vector<Measurement> measurements;
     LengthUnit unit = LengthUnit::automatic;
-    std::optional<double> pressed;  // to this level
+    std::shared_ptr<const DetailField> patch_detail;  // null: none
+    std::optional<double> pressed;                    // to this level
     std::shared_ptr<const RenderMesh> patch;
     Vec3 patched = Vec3::Zero();  // where, and at which level
     double patched_level = std::nan("");

@@ -21,8 +21,12 @@ std::vector<std::size_t> zeros_of(const std::vector<std::uint8_t>& flags) {
 
 }  // namespace
 
-SurfaceBlocks::SurfaceBlocks(const Geometry& geometry, int every, Interpolation interpolation)
-    : geometry_(geometry), every_(every), reach_(interpolation == Interpolation::cubic ? 2 : 1) {
+SurfaceBlocks::SurfaceBlocks(const Geometry& geometry, int every, Interpolation interpolation,
+                             const Vec3& origin)
+    : geometry_(geometry),
+      every_(every),
+      origin_(origin),
+      reach_(interpolation == Interpolation::cubic ? 2 : 1) {
     // The cells of the ring count: from -1 to the last sample; round samples, to one after it.
     const Index3 cells_there = coarse_size(geometry.size, every) + Index3::Constant(reach_);
     count_ = (cells_there.array() + cells - 1) / cells;
@@ -73,7 +77,7 @@ SurfaceBlocks::Outcome SurfaceBlocks::renew(const Field& field, double isovalue,
     std::atomic<bool> too_many{false};
     const bool all = for_each_at_once(zeros_of(fresh_), [&](std::size_t b) {
         if (!go_on()) return false;
-        auto mesh = block_mesh(field, isovalue, first_cell(b), cells, physical_centre(geometry_));
+        auto mesh = block_mesh(field, isovalue, first_cell(b), cells, origin_);
         const auto count = [](const auto& m) { return m ? m->triangle_count() : 0; };
         triangles += count(mesh) - count(meshes_[b]);
         meshes_[b] = std::move(mesh);

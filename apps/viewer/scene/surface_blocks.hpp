@@ -19,7 +19,12 @@ class SurfaceBlocks {
     static constexpr int cells = 32;  ///< along each axis of a block
 
     /// Of the full grid. Nothing is made yet. `every`: of the coarse version; 1: the field itself.
-    SurfaceBlocks(const Geometry& geometry, int every, Interpolation interpolation);
+    /// Positions count from `origin` [mm, physical].
+    SurfaceBlocks(const Geometry& geometry, int every, Interpolation interpolation,
+                  const Vec3& origin);
+    /// From the middle of the grid.
+    SurfaceBlocks(const Geometry& geometry, int every, Interpolation interpolation)
+        : SurfaceBlocks(geometry, every, interpolation, physical_centre(geometry)) {}
 
     int every() const { return every_; }
     /// These samples, of the full grid, are no longer what they were: the blocks that they touch
@@ -48,6 +53,7 @@ class SurfaceBlocks {
 
     Geometry geometry_;
     int every_;
+    Vec3 origin_;
     int reach_;  // of a block's cells: samples before the first and after the last
     Index3 count_;
     MeshBlocks meshes_, simple_;

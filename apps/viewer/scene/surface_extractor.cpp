@@ -56,7 +56,7 @@ SurfaceExtractor::~SurfaceExtractor() {
 void SurfaceExtractor::ask(std::uint64_t request, const Field& field, double isovalue) {
     {
         const std::lock_guard lock(mutex_);
-        next_.emplace(Request{request, field, isovalue, true, limits_.most_triangles, {}});
+        next_.emplace(Request{request, field, isovalue, true, limits_.most_triangles, {}, origin_});
         waiting_ = true;
     }
     changed_.notify_all();
@@ -68,7 +68,8 @@ void SurfaceExtractor::update(std::uint64_t request, const Field& field, double 
         const std::lock_guard lock(mutex_);
         const bool anew = next_ && next_->anew;
         const SampleBox all = next_ ? united(next_->changed, changed) : changed;
-        next_.emplace(Request{request, field, isovalue, anew, limits_.most_triangles, all});
+        next_.emplace(
+            Request{request, field, isovalue, anew, limits_.most_triangles, all, origin_});
         waiting_ = true;
     }
     changed_.notify_all();
@@ -77,6 +78,11 @@ void SurfaceExtractor::update(std::uint64_t request, const Field& field, double 
 void SurfaceExtractor::set_most_triangles(std::size_t triangles) {
     const std::lock_guard lock(mutex_);
     limits_.most_triangles = triangles;
+}
+
+void SurfaceExtractor::set_origin(const Vec3& origin) {
+    const std::lock_guard lock(mutex_);
+    origin_ = origin;
 }
 
 void SurfaceExtractor::forget() {
@@ -123,12 +129,13 @@ void SurfaceExtractor::take_up(Request request) {
     request_.emplace(std::move(request));
     if (other) coarse_.clear();
     for (auto& [step, samples] : coarse_) samples.mark(changed);
-    const std::vector<int> steps = steps_for(request_->field.geometry().size);
+    const std::vector<int> steps =
+        limits_.coarse_first ? steps_for(request_->field.geometry().size) : std::vector{1};
     if (anew) {
         finer_.reset();
         streaming_ = false;
         moving_step_ = 0;
-        shown_.emplace(request_->field.geometry(), steps.front(), request_->field.interpolation());
+        shown_ = blocks_of(steps.front());
         steps_.assign(steps.begin() + 1, steps.end());
         return;
     }
@@ -146,6 +153,12 @@ Field SurfaceExtractor::field_of(const SurfaceBlocks& blocks) {
     return coarse_.try_emplace(blocks.every(), blocks.every()).first->second.of(request_->field);
 }
 
+SurfaceBlocks SurfaceExtractor::blocks_of(int every) const {
+    const Field& field = request_->field;
+    return {field.geometry(), every, field.interpolation(),
+            request_->origin.value_or(physical_centre(field.geometry()))};
+}
+
 /// All has changed: the first surface is coarse enough to be shown at once. A finer one is kept and
 /// updated when there is time.
 void SurfaceExtractor::stream(const std::vector<int>& steps) {
@@ -161,7 +174,7 @@ void SurfaceExtractor::stream(const std::vector<int>& steps) {
         steps_.insert(steps_.begin(), shown_->every());
         finer_ = std::move(shown_);
     }
-    shown_.emplace(request_->field.geometry(), moving_step_, request_->field.interpolation());
+    shown_ = blocks_of(moving_step_);
 }
 
 void SurfaceExtractor::carry_out(const std::stop_token& stop) {
@@ -187,8 +200,7 @@ bool SurfaceExtractor::make_first(const std::function<bool()>& go_on) {
                                            coarse ? request_->most_triangles : no_limit);
         if (outcome == SurfaceBlocks::Outcome::done) break;
         if (outcome == SurfaceBlocks::Outcome::interrupted) return false;
-        shown_.emplace(request_->field.geometry(), shown_->every() + 1,
-                       request_->field.interpolation());
+        shown_ = blocks_of(shown_->every() + 1);
         steps_.clear();
     }
     publish(steps_.empty());
@@ -199,7 +211,7 @@ bool SurfaceExtractor::make_first(const std::function<bool()>& go_on) {
 /// False if a newer request waits; the finished blocks of the step are kept.
 bool SurfaceExtractor::make_finer(const std::function<bool()>& go_on) {
     const int step = finer_ ? finer_->every() : steps_.front();
-    if (!finer_) finer_.emplace(request_->field.geometry(), step, request_->field.interpolation());
+    if (!finer_) finer_ = blocks_of(step);
     switch (finer_->renew(field_of(*finer_), request_->isovalue, go_on, request_->most_triangles)) {
         case SurfaceBlocks::Outcome::interrupted:
             return false;

@@ -38,6 +38,8 @@ struct ExtractedSurface {
 struct SurfaceLimits {
     std::size_t most_triangles = 6'000'000;  ///< past that, coarser: some 0.5 GB
     std::size_t moving_triangles = 40'000;
+    bool coarse_first = true;  ///< else the full surface at once, and a coarser one where that has
+                               ///< too many triangles
 };
 
 class SurfaceExtractor {
@@ -64,6 +66,9 @@ class SurfaceExtractor {
                 const SampleBox& changed);
     /// Of surfaces asked for from now on.
     void set_most_triangles(std::size_t triangles);
+    /// [mm, physical] From which positions count, of surfaces asked for from now on; without it the
+    /// middle of their grid.
+    void set_origin(const Vec3& origin);
     /// Cancels all requests.
     void forget();
 
@@ -75,11 +80,13 @@ class SurfaceExtractor {
         bool anew;  // or only `changed`
         std::size_t most_triangles;
         SampleBox changed;  // since the last request that was taken up
+        std::optional<Vec3> origin;
     };
     void run(const std::stop_token& stop);
     void carry_out(const std::stop_token& stop);
     void take_up(Request request);
     Field field_of(const SurfaceBlocks& blocks);
+    SurfaceBlocks blocks_of(int every) const;
     void stream(const std::vector<int>& steps);
     bool make_first(const std::function<bool()>& go_on);
     bool make_finer(const std::function<bool()>& go_on);
@@ -89,6 +96,7 @@ class SurfaceExtractor {
 
     Results results_;
     SurfaceLimits limits_;
+    std::optional<Vec3> origin_;
     std::mutex mutex_;
     std::condition_variable_any changed_;
     std::optional<Request> next_;

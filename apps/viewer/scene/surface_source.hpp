@@ -26,6 +26,9 @@ class SurfaceSource : public QObject {
     /// From the next surface on.
     void set_most_triangles(std::size_t triangles) { extractor_.set_most_triangles(triangles); }
 
+    /// As SurfaceExtractor::set_origin().
+    void set_origin(const Vec3& origin) { extractor_.set_origin(origin); }
+
     double level() const { return level_; }
     /// Of the newest level that is there: one that is dragged is seen to move.
     const ExtractedSurface& surface() const { return surface_; }

@@ -48,4 +48,14 @@ inline SliceMap slice_map(const SlicePlane& plane, const Geometry& geometry, con
     return map;
 }
 
+/// The map of another grid with the same directions, drawn in the same place.
+inline SliceMap map_of(const Geometry& other, const SlicePlane& plane, const Geometry& geometry,
+                       const SliceMap& map) {
+    if (other == geometry) return map;
+    const Vec3 first = physical_from_index(other, index_from_slice(plane, other, Vec3::Zero()));
+    const Vec3 at = slice_from_index(plane, geometry, index_from_physical(geometry, first));
+    const auto [mm_u, mm_v] = spacing_of(plane, other);
+    return {map.pixel(at[0], at[1]), map.per_mm * mm_u, map.per_mm * mm_v, map.per_mm};
+}
+
 }  // namespace palpate::viewer

@@ -53,15 +53,17 @@ SlicePane::SlicePane(int axis, QWidget* parent) : QWidget(parent), axis_(axis) {
 SlicePane::~SlicePane() = default;
 
 const Geometry& SlicePane::geometry() const {
-    return content_->samples.field().geometry();
+    return content_->grid;
 }
 
-void SlicePane::set_field(const Field& field, double isovalue) {
+void SlicePane::set_field(const Field& field, double isovalue,
+                          const std::optional<Geometry>& counted) {
+    const Geometry grid = counted.value_or(field.geometry());
     const bool same = content_ &&
                       content_->samples.field().volume().data() == field.volume().data() &&
-                      geometry() == field.geometry();
+                      geometry() == grid;
     const auto usual = same ? content_->usual : std::nullopt;
-    content_ = std::make_unique<Content>(field, slice_plane(field.geometry(), axis_));
+    content_ = std::make_unique<Content>(field, grid, slice_plane(grid, axis_));
     content_->usual = usual;
     style_.isovalue = isovalue;
     if (!same) {
@@ -77,7 +79,7 @@ void SlicePane::set_field(const Field& field, double isovalue) {
 }
 
 void SlicePane::update_field(const Field& field) {
-    if (!content_ || geometry() != field.geometry()) {
+    if (!content_ || content_->samples.field().geometry() != field.geometry()) {
         throw std::invalid_argument("the pane shows no other version of these data");
     }
     content_->newer = field;
@@ -122,8 +124,20 @@ void SlicePane::set_crosshair(const Vec3& physical) {
 }
 
 /// Of the slice through the crosshair, along the grid axis. The samples follow when it is painted.
+/// Farther out than two layers all is the same.
 double SlicePane::layer() const {
-    return content_->samples.nearest(index_from_physical(geometry(), crosshair_)[axis_]);
+    const double at = index_from_physical(geometry(), crosshair_)[axis_];
+    return std::clamp(at, -2.0, geometry().size[axis_] + 1.0);
+}
+
+/// The same in another grid; whole where it is but for rounding.
+double SlicePane::layer_in(const Geometry& other) const {
+    if (other == geometry()) return layer();
+    constexpr double hair = 1e-6;
+    Vec3 index = Vec3::Zero();
+    index[axis_] = layer();
+    const double at = index_from_physical(other, physical_from_index(geometry(), index))[axis_];
+    return std::abs(at - std::round(at)) < hair ? std::round(at) : at;
 }
 
 void SlicePane::show_snapshot(const std::optional<Snapshot>& snapshot) {
@@ -194,8 +208,9 @@ Vec3 SlicePane::physical_from_slice(const Vec3& slice) const {
 
 /// (u, v) as the nearest sample's if it lies outside the data.
 Vec3 SlicePane::in_data(Vec3 slice) const {
-    slice[0] = std::clamp(slice[0], 0.0, content_->samples.width() - 1.0);
-    slice[1] = std::clamp(slice[1], 0.0, content_->samples.height() - 1.0);
+    const auto [width, height] = samples_of(content_->plane, geometry());
+    slice[0] = std::clamp(slice[0], 0.0, width - 1.0);
+    slice[1] = std::clamp(slice[1], 0.0, height - 1.0);
     return slice;
 }
 
@@ -224,7 +239,7 @@ void SlicePane::picture_changed() {
 void SlicePane::make_picture(const SliceMap& where) {
     Content& c = *content_;
     const double scale = devicePixelRatioF();
-    const bool moved = layer() != c.samples.position();
+    const bool moved = layer() != c.layer;
     if (!c.picture.isNull() && c.picture.size() == (QSizeF(size()) * scale).toSize()) {
         if (!moved && !c.newer) return;
         const auto wait = rest * c.took_ms - c.made.elapsed();
@@ -236,12 +251,74 @@ void SlicePane::make_picture(const SliceMap& where) {
     c.made.start();
     if (c.newer) c.samples.use(*c.newer);
     c.newer.reset();
-    c.samples.go_to(layer());
+    c.layer = layer();
+    c.samples.go_to(layer_in(c.samples.field().geometry()));
     SliceStyle style = style_;
     style.window = {low_, high_};
-    c.picture = slice_picture(c.samples, c.plane, where, style, size(), scale);
+    const SliceMap map = map_of(c.samples.field().geometry(), c.plane, c.grid, where);
+    c.picture = slice_picture(c.samples, c.plane, map, style, size(), scale, finer_slice(where));
     c.took_ms = c.made.elapsed();
     c.made.start();
+}
+
+void SlicePane::set_detail(std::shared_ptr<const DetailField> detail) {
+    if (!content_ || detail == content_->finer) return;
+    content_->finer = std::move(detail);
+    content_->finer_samples.reset();
+    if (content_->finer) content_->finer_samples.emplace(content_->finer->field, content_->plane);
+    picture_changed();
+}
+
+std::optional<SeenBox> SlicePane::seen() const {
+    if (!content_ || !isVisible()) return std::nullopt;
+    const SliceMap where = map();
+    const QPointF low = where.sample({0, 0}), high = where.sample(QPointF(width(), height()));
+    const auto at = [&](const QPointF& p) {
+        return physical_from_slice(in_data({p.x(), p.y(), layer()}));
+    };
+    return SeenBox{at(low), at(high), 1 / (where.per_mm * devicePixelRatioF())};
+}
+
+const DetailField* SlicePane::shown_detail() const {
+    if (!content_ || !content_->finer) return nullptr;
+    // The layers before and after the slice, and one more of each for a smooth field.
+    const DetailField& finer = *content_->finer;
+    const double at = layer_in(finer.field.geometry());
+    const bool begins = finer.at_begin(axis_) || std::floor(at) >= 1;
+    const bool ends =
+        finer.at_end(axis_) || std::ceil(at) + 1 <= finer.field.geometry().size[axis_] - 1;
+    return begins && ends ? content_->finer.get() : nullptr;
+}
+
+/// Where the finer part is drawn: not at its edges, where samples that a contour needs are outside,
+/// but up to the end of the data and beyond.
+std::optional<FinerSlice> SlicePane::finer_slice(const SliceMap& where) {
+    const DetailField* const finer = shown_detail();
+    if (!finer) return std::nullopt;
+    const Geometry& grid = finer->field.geometry();
+    SliceSamples& samples = *content_->finer_samples;
+    samples.go_to(layer_in(grid));
+    constexpr double edge = 1.5, beyond = 1e6;
+    const SliceMap map = map_of(grid, content_->plane, geometry(), where);
+    const auto range = [&](const ScreenAxis& s, int count) {
+        const bool first = s.flip ? finer->at_end(s.axis) : finer->at_begin(s.axis);
+        const bool last = s.flip ? finer->at_begin(s.axis) : finer->at_end(s.axis);
+        return std::pair{first ? -beyond : edge, last ? beyond : count - 1 - edge};
+    };
+    const auto [left, right] = range(content_->plane.right, samples.width());
+    const auto [top, bottom] = range(content_->plane.down, samples.height());
+    const QRectF drawn(map.pixel(left, top), map.pixel(right, bottom));
+    return FinerSlice{&samples, map, drawn & QRectF(rect())};
+}
+
+/// Of the finest data that are there.
+double SlicePane::value_there(const Vec3& physical) const {
+    const DetailField* const finer = shown_detail();
+    if (!finer) return value_at(content_->samples.field(), physical);
+    const Vec3 index = index_from_physical(finer->field.geometry(), physical);
+    const Vec3 last = (finer->field.geometry().size - Index3::Constant(2)).cast<double>();
+    const bool inside = (index.array() >= 1).all() && (index.array() <= last.array()).all();
+    return value_at(inside ? finer->field : content_->samples.field(), physical);
 }
 
 void SlicePane::paintEvent(QPaintEvent*) {
@@ -255,8 +332,7 @@ void SlicePane::paintEvent(QPaintEvent*) {
     const SliceMap where = map();
     make_picture(where);
     painter.drawImage(QPointF(0, 0), content_->picture);
-    const SliceSheet sheet{content_->plane, geometry(), where, content_->samples.position(),
-                           size()};
+    const SliceSheet sheet{content_->plane, geometry(), where, content_->layer, size()};
     paint_crosshair(painter, sheet, sheet.pixel(crosshair_));
     if (snapshot_) {
         paint_brush(painter, sheet, snapshot_->session.tick.proxy.scp, brush_);
@@ -275,16 +351,16 @@ void SlicePane::paintEvent(QPaintEvent*) {
 }
 
 void SlicePane::paint_words(QPainter& painter) const {
-    const SliceSamples& samples = content_->samples;
+    const double layer = content_->layer;
     const int layers = geometry().size[axis_];
+    const bool in_data = layer >= -0.5 && layer <= layers - 0.5;
     const Vec3 middle = point_at(QPointF(rect().center()));
     painter.setFont(font());
-    paint_corner(
-        painter, size(), Qt::AlignLeft | Qt::AlignTop,
-        {title(),
-         samples.in_data() ? QString("%1 / %2").arg(std::lround(samples.position()) + 1).arg(layers)
-                           : tr("outside the data"),
-         QString::fromStdString(position_text(content_->plane, geometry(), middle))});
+    paint_corner(painter, size(), Qt::AlignLeft | Qt::AlignTop,
+                 {title(),
+                  in_data ? QString("%1 / %2").arg(std::lround(layer) + 1).arg(layers)
+                          : tr("outside the data"),
+                  QString::fromStdString(position_text(content_->plane, geometry(), middle))});
     // Short where the letter of the lower edge is, so that narrow panes have room for both.
     paint_corner(painter, size(), Qt::AlignRight | Qt::AlignBottom,
                  {tr("W %1", "window, in the corner").arg(high_ - low_, 0, 'g', 5),
@@ -295,7 +371,7 @@ void SlicePane::paint_words(QPainter& painter) const {
     if (!(index.cwiseAbs().maxCoeff() <= farthest_index)) return;
     const auto mm = [](double x) { return QString::number(x, 'f', 1); };
     QStringList words{QString("(%1, %2, %3) mm").arg(mm(at[0]), mm(at[1]), mm(at[2])),
-                      QString::number(value_at(samples.field(), at), 'g', 6)};
+                      QString::number(value_there(at), 'g', 6)};
     if (style_.overlay && style_.overlay_look.shown) {
         const QString there = overlay_words(*style_.overlay, at);
         if (!there.isEmpty()) words.push_front(there);
@@ -335,8 +411,13 @@ void SlicePane::aim_at(const QPointF& pixel) {
     Q_EMIT probe_aimed(physical_from_slice({at.x(), at.y(), drag_layer_}));
 }
 
-/// Whole layers, up towards the patient's left, back or head.
+/// Whole layers, up towards the patient's left, back or head; where coarser ones are shown, as far
+/// as from one of those to the next.
 double SlicePane::next_layer(double from, int steps) const {
+    const DetailField* const finer = shown_detail();
+    const Field& shown = finer ? finer->field : content_->samples.field();
+    const double ratio = shown.geometry().spacing[axis_] / geometry().spacing[axis_];
+    steps *= std::max(1, static_cast<int>(std::lround(ratio)));
     if (geometry().direction(content_->plane.anatomical, axis_) < 0) steps = -steps;
     constexpr double hair = 1e-6;
     const double layer =

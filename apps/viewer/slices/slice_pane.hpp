@@ -9,6 +9,8 @@
 #include <optional>
 #include <vector>
 
+#include "apps/viewer/model/detail_choice.hpp"
+#include "apps/viewer/model/detail_field.hpp"
 #include "apps/viewer/model/measurement.hpp"
 #include "apps/viewer/slices/slice_map.hpp"
 #include "apps/viewer/slices/slice_picture.hpp"
@@ -30,13 +32,21 @@ class SlicePane : public QWidget {
 
     /// Another volume: the crosshair goes to its centre, the whole slice is seen, the grey levels
     /// are the usual ones. For the same samples with another solid side or background all of these
-    /// stay.
-    void set_field(const Field& field, double isovalue);
+    /// stay. `counted`: the grid in which slices are counted and stepped through, where the field
+    /// is an overview of it.
+    void set_field(const Field& field, double isovalue,
+                   const std::optional<Geometry>& counted = {});
     /// Another version of the data that are shown, on the same grid: edited, or at another moment.
     /// Only image and contour change; redrawn as often as leaves most of the time to others, the
     /// newest last. Throws std::invalid_argument where nothing, or another grid,
     /// is shown.
     void update_field(const Field& field);
+    /// A finer part of the data, drawn in their place; null: none.
+    void set_detail(std::shared_ptr<const DetailField> detail);
+    /// The part of the slice that is seen; nothing while the pane shows none.
+    std::optional<SeenBox> seen() const;
+    /// What set_detail() set, where the slice shows it; else null.
+    const DetailField* shown_detail() const;
     void clear();
     /// The level of the contour [data units].
     void set_isovalue(double isovalue);
@@ -102,6 +112,9 @@ class SlicePane : public QWidget {
     SliceMap map() const;
     double margin() const;
     double layer() const;
+    double layer_in(const Geometry& other) const;
+    std::optional<FinerSlice> finer_slice(const SliceMap& where);
+    double value_there(const Vec3& physical) const;
     Vec3 physical_from_slice(const Vec3& slice) const;
     Vec3 in_data(Vec3 slice) const;
     void picture_changed();

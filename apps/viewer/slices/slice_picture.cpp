@@ -2,6 +2,7 @@
 #include "apps/viewer/slices/slice_picture.hpp"
 
 #include <QPainter>
+#include <QRegion>
 
 #include <algorithm>
 #include <cmath>
@@ -51,7 +52,7 @@ QImage grey_image(const SliceSamples& samples, const QRect& part, const SliceSty
 }
 
 void draw_grey(QImage& picture, const SliceSamples& samples, const SliceMap& map,
-               const SliceStyle& style, const QRect& cells) {
+               const SliceStyle& style, const QRect& cells, const QRectF& drawn) {
     const QRect part = cells & QRect(0, 0, samples.width(), samples.height());
     if (part.isEmpty() || !samples.in_data()) return;
     QImage image = grey_image(samples, part, style);
@@ -65,11 +66,13 @@ void draw_grey(QImage& picture, const SliceSamples& samples, const SliceMap& map
     }
     QPainter painter(&picture);
     painter.setRenderHint(QPainter::SmoothPixmapTransform);
+    painter.setClipRect(drawn);
     painter.drawImage(target, image, QRectF(image.rect()));
 }
 
+/// `drawn`: the pixels of the picture in which the contour is drawn.
 void draw_contour(QImage& picture, const SliceSamples& samples, const SliceMap& map,
-                  double isovalue, const QColor& colour, const QRect& part) {
+                  double isovalue, const QColor& colour, const QRect& part, const QRegion& drawn) {
     const double scale = picture.devicePixelRatio();
     const ContourDetail detail = std::min(map.per_u, map.per_v) * scale < smallest_exact_cell
                                      ? ContourDetail::cells
@@ -83,17 +86,31 @@ void draw_contour(QImage& picture, const SliceSamples& samples, const SliceMap& 
         mask.draw(a.x(), a.y(), b.x(), b.y(), scale * contour_radius);
     }
     const std::array<int, 3> ink{colour.red(), colour.green(), colour.blue()};
-    for (int y = 0; y < mask.height(); ++y) {
+    const auto draw_row = [&](int y, int first, int last) {
         const std::uint8_t* const covered = mask.row(y);
         auto* const line = reinterpret_cast<QRgb*>(picture.scanLine(y));
-        for (int x = 0; x < mask.width(); ++x) {
+        for (int x = first; x <= last; ++x) {
             const int c = covered[x];
             if (c == 0) continue;
             const auto mix = [c](int under, int over) { return under + (over - under) * c / 255; };
             line[x] = qRgb(mix(qRed(line[x]), ink[0]), mix(qGreen(line[x]), ink[1]),
                            mix(qBlue(line[x]), ink[2]));
         }
+    };
+    for (const QRect& rect : drawn) {
+        for (int y = rect.top(); y <= rect.bottom(); ++y) draw_row(y, rect.left(), rect.right());
     }
+}
+
+/// Grey levels over what is there, and black where they end.
+void draw_finer_grey(QImage& picture, const FinerSlice& finer, const SliceStyle& style,
+                     const QSize& size) {
+    {
+        QPainter painter(&picture);
+        painter.fillRect(finer.drawn, Qt::black);
+    }
+    draw_grey(picture, *finer.samples, finer.map, style, seen(*finer.samples, finer.map, size),
+              finer.drawn);
 }
 
 }  // namespace
@@ -103,23 +120,34 @@ QColor contour_colour() {
 }
 
 QImage slice_picture(const SliceSamples& samples, const SlicePlane& plane, const SliceMap& map,
-                     const SliceStyle& style, const QSize& size, double scale) {
+                     const SliceStyle& style, const QSize& size, double scale,
+                     const std::optional<FinerSlice>& finer) {
     QImage picture((QSizeF(size) * scale).toSize().expandedTo(QSize(1, 1)), QImage::Format_RGB32);
     picture.setDevicePixelRatio(scale);
     picture.fill(Qt::black);
     const QRect cells = seen(samples, map, size);
-    draw_grey(picture, samples, map, style, cells);
+    draw_grey(picture, samples, map, style, cells, QRectF(QPointF(0, 0), QSizeF(size)));
+    if (finer) draw_finer_grey(picture, *finer, style, size);
     if (style.overlay && style.overlay_look.shown) {
         draw_overlay(picture, plane, samples.field().geometry(), map, samples.position(),
                      *style.overlay, style.overlay_look);
     }
+    const QRegion inside =
+        finer ? QRectF(scale * finer->drawn.topLeft(), scale * finer->drawn.size()).toAlignedRect()
+              : QRect();
+    const auto contour = [&](double level, const QColor& colour) {
+        const QRect all = picture.rect();
+        draw_contour(picture, samples, map, level, colour, cells, QRegion(all) - inside);
+        if (!finer) return;
+        draw_contour(picture, *finer->samples, finer->map, level, colour,
+                     seen(*finer->samples, finer->map, size), inside & all);
+    };
     for (const SeenSurface& other : style.surfaces) {
         const Colour& c = other.colour;
         if (!other.shown) continue;
-        draw_contour(picture, samples, map, other.level,
-                     QColor::fromRgbF(c.red, c.green, c.blue).lighter(130), cells);
+        contour(other.level, QColor::fromRgbF(c.red, c.green, c.blue).lighter(130));
     }
-    draw_contour(picture, samples, map, style.isovalue, contour_colour(), cells);
+    contour(style.isovalue, contour_colour());
     return picture;
 }
 

@@ -3,8 +3,10 @@
 
 #include <QColor>
 #include <QImage>
+#include <QRectF>
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "apps/viewer/model/colour_map.hpp"
@@ -28,9 +30,17 @@ struct SliceStyle {
     OverlayLook overlay_look;
 };
 
+/// A finer part of the slice, drawn in its place.
+struct FinerSlice {
+    const SliceSamples* samples;
+    SliceMap map;
+    QRectF drawn;  ///< [pixels] where
+};
+
 /// The slice as it is seen through `map` in a widget of `size`, `scale` device pixels a pixel;
 /// black where there are no data. Nothing is drawn beyond what is seen.
 QImage slice_picture(const SliceSamples& samples, const SlicePlane& plane, const SliceMap& map,
-                     const SliceStyle& style, const QSize& size, double scale);
+                     const SliceStyle& style, const QSize& size, double scale,
+                     const std::optional<FinerSlice>& finer = {});
 
 }  // namespace palpate::viewer

@@ -270,6 +270,64 @@
     </message>
 </context>
 <context>
+    <name>Streaming</name>
+    <message>
+        <source>%1 MB</source>
+        <translation>%1 MB</translation>
+    </message>
+    <message>
+        <source>%1 GB</source>
+        <translation>%1 GB</translation>
+    </message>
+    <message>
+        <source>single samples</source>
+        <translation>einzelne Abtastwerte</translation>
+    </message>
+    <message>
+        <source>felt: level %1, seen: level %2</source>
+        <translation>gefühlt: Stufe %1, gesehen: Stufe %2</translation>
+    </message>
+    <message>
+        <source>%1 of %2 bricks missing</source>
+        <translation>%1 von %2 Blöcken fehlen</translation>
+    </message>
+    <message>
+        <source>%1 of %2 tiles missing</source>
+        <translation>%1 von %2 Kacheln fehlen</translation>
+    </message>
+    <message>
+        <source>cannot be read now, tried again</source>
+        <translation>jetzt nicht lesbar, wird wieder versucht</translation>
+    </message>
+    <message>
+        <source>The hand: %1 bricks in memory (%2), %3 wanted, %4 missing, %5 at once</source>
+        <translation>Die Hand: %1 Blöcke im Speicher (%2), %3 gebraucht, %4 fehlen, %5 davon eilig</translation>
+    </message>
+    <message>
+        <source>Pictures: %1 tiles wanted, %2 missing, %3 coming, %4 failed; %5 in memory</source>
+        <translation>Bilder: %1 Kacheln gebraucht, %2 fehlen, %3 kommen, %4 gescheitert; %5 im Speicher</translation>
+    </message>
+    <message>
+        <source>Read: %1 by %2 requests, %3 tried again, %4 found in the disk cache</source>
+        <translation>Gelesen: %1 in %2 Anfragen, %3 wiederholt, %4 im Zwischenspeicher gefunden</translation>
+    </message>
+    <message>
+        <source>The whole is seen at level %1</source>
+        <translation>Das Ganze ist auf Stufe %1 zu sehen</translation>
+    </message>
+    <message>
+        <source>The hand waits: %1</source>
+        <translation>Die Hand wartet: %1</translation>
+    </message>
+    <message numerus="yes">
+        <source>The hand waits: %n brick(s) round it are being read</source>
+        <translation>
+            <numerusform>Die Hand wartet: %n Block um sie wird gelesen</numerusform>
+            <numerusform>Die Hand wartet: %n Blöcke um sie werden gelesen</numerusform>
+        </translation>
+    </message>
+</context>
+<context>
     <name>TimelineWords</name>
     <message>
         <source>%1, live</source>
@@ -1607,10 +1665,6 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
         <translation>%1 ms je Bild</translation>
     </message>
     <message>
-        <source>%1, %2, %3 mm   %4 %5   slope %6 /mm</source>
-        <translation>%1, %2, %3 mm   %4 %5   Steigung %6 /mm</translation>
-    </message>
-    <message>
         <source>Saved %1</source>
         <translation>%1 gespeichert</translation>
     </message>
@@ -1901,6 +1955,14 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
     <message>
         <source>Tools</source>
         <translation>Werkzeuge</translation>
+    </message>
+    <message>
+        <source>%1, %2, %3 mm</source>
+        <translation>%1, %2, %3 mm</translation>
+    </message>
+    <message>
+        <source>%1 %2   slope %3 /mm</source>
+        <translation>%1 %2   Steigung %3 /mm</translation>
     </message>
 </context>
 <context>

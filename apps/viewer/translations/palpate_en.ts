@@ -2,6 +2,16 @@
 <!DOCTYPE TS>
 <TS version="2.1" language="en">
 <context>
+    <name>Streaming</name>
+    <message numerus="yes">
+        <source>The hand waits: %n brick(s) round it are being read</source>
+        <translation>
+            <numerusform>The hand waits: %n brick round it is being read</numerusform>
+            <numerusform>The hand waits: %n bricks round it are being read</numerusform>
+        </translation>
+    </message>
+</context>
+<context>
     <name>palpate::viewer::BrushControls</name>
     <message numerus="yes">
         <source>%n steps</source>

@@ -7,9 +7,10 @@ namespace palpate::viewer {
 
 void Content::start_run(std::shared_ptr<Opened> volume, const run::Setup& setup) {
     close();
-    auto live = std::make_unique<run::Run>(
-        std::make_shared<run::Data>(volume->loaded, setup.playback), setup);
+    auto data = std::make_shared<run::Data>(volume->loaded, setup.playback);
+    auto live = std::make_unique<run::Run>(data, setup);
     live->start();
+    data_ = std::move(data);
     live_ = std::move(live);
     volume_ = std::move(volume);
     Q_EMIT run_started();
@@ -27,6 +28,7 @@ void Content::start_playback(std::shared_ptr<Opened> volume, Playback playback) 
 void Content::close() {
     Q_EMIT closing();
     live_.reset();
+    data_.reset();
     playback_.reset();
     volume_.reset();
     saved_.reset();
@@ -92,6 +94,22 @@ std::optional<Snapshot> Content::snapshot() const {
 Field Content::field_at(const Snapshot& snapshot) {
     Field field = live_ ? live_->field_seen() : playback_->field_at(snapshot);
     field.set_time(snapshot.session.moment);
+    return field;
+}
+
+std::optional<Field> Content::felt_at(const Snapshot& snapshot, const Vec3& point) {
+    if (!live_ || !live_->data().is_streamed()) return field_at(snapshot);
+    Field field = live_->field_now();
+    const ResidentBricks* const resident = field.samples().resident();
+    if (!resident) return field;
+    constexpr double most = 1e9;
+    const Vec3 index = index_from_physical(field.geometry(), point);
+    if (!(index.cwiseAbs().maxCoeff() < most)) return std::nullopt;
+    const Index3 at = index.array().round().cast<int>();
+    constexpr int near = 2;
+    if (!resident->has({at - Index3::Constant(near), at + Index3::Constant(near)})) {
+        return std::nullopt;
+    }
     return field;
 }
 

@@ -42,6 +42,8 @@ class Content : public QObject {
     void set_session(const QString& path);
     /// Null unless there is a live run.
     run::Run* live() const { return live_.get(); }
+    /// The live run's data, for threads that may outlive the run.
+    const std::shared_ptr<run::Data>& data() const { return data_; }
     /// Null unless the run's data can be edited.
     run::VolumeEditor* editor() const;
     /// Null unless the run's data are a sequence.
@@ -65,8 +67,11 @@ class Content : public QObject {
     OuterSurface outer_surface() const;
     /// What is felt now, or was at the time shown. Nothing before the first tick.
     std::optional<Snapshot> snapshot() const;
-    /// The data of such a snapshot.
+    /// The data of such a snapshot; of a store the overview.
     Field field_at(const Snapshot& snapshot);
+    /// The data that are felt, which have all samples that a field needs at this point [mm,
+    /// physical]; nothing while a store's have not come.
+    std::optional<Field> felt_at(const Snapshot& snapshot, const Vec3& point);
 
   Q_SIGNALS:
     void closing();
@@ -84,6 +89,7 @@ class Content : public QObject {
     std::shared_ptr<Opened> volume_;
     std::optional<run::Source> saved_;
     QString session_;
+    std::shared_ptr<run::Data> data_;
     std::unique_ptr<run::Run> live_;
     std::optional<Playback> playback_;
     double time_ = 0;

@@ -67,7 +67,10 @@ void DisplayController::clear() {
 void DisplayController::show_field(const Field& field, double isovalue) {
     isovalue_ = isovalue;
     shown_.reset();
-    views_.set_field(field, isovalue);
+    const auto& streamed = content_.volume()->loaded.streamed;
+    std::optional<Geometry> counted;  // a store's level that is felt
+    if (streamed) counted = run::start_samples(content_.volume()->loaded)->geometry();
+    views_.set_field(field, isovalue, counted);
 }
 
 void DisplayController::show_volume(const Field& field, double isovalue,
@@ -137,6 +140,10 @@ void DisplayController::observe_level(const Snapshot& now) {
 void DisplayController::observe_data(const Snapshot& now) {
     const Field field = content_.field_at(now);
     if (shown_ && same_samples(*shown_, field)) return;
+    // The overview of a store is a version of its own each time, with the same samples.
+    if (shown_ && content_.volume()->loaded.streamed && changed_between(*shown_, field).empty()) {
+        return;
+    }
     shown_ = field;
     views_.update_field(field);
 }

@@ -8,6 +8,8 @@
 #include <QFileInfo>
 #include <QSettings>
 
+#include "palpate/run/source.hpp"
+
 namespace palpate::viewer {
 namespace {
 
@@ -22,8 +24,9 @@ QString last_folder() {
     return QSettings().value("folder", QDir::currentPath()).toString();
 }
 
-bool is_synthetic(const QString& path) {
-    return path.startsWith("synthetic:");
+/// A synthetic volume or a web address.
+bool is_no_file(const QString& path) {
+    return path.startsWith("synthetic:") || run::is_web_address(path.toStdString());
 }
 
 }  // namespace
@@ -72,11 +75,11 @@ QString ask_open_tool_name(QWidget* window) {
 }
 
 void remember_folder(const QString& path) {
-    if (!is_synthetic(path)) QSettings().setValue("folder", QFileInfo(path).absolutePath());
+    if (!is_no_file(path)) QSettings().setValue("folder", QFileInfo(path).absolutePath());
 }
 
 void remember_file(const QString& path) {
-    const QString name = is_synthetic(path) ? path : QFileInfo(path).absoluteFilePath();
+    const QString name = is_no_file(path) ? path : QFileInfo(path).absoluteFilePath();
     QStringList recent = recent_files();
     recent.removeAll(name);
     recent.prepend(name);
@@ -92,7 +95,7 @@ QString time_stamp() {
 }
 
 QString short_name(const QString& path) {
-    return is_synthetic(path) ? path : QFileInfo(QDir::cleanPath(path)).fileName();
+    return path.startsWith("synthetic:") ? path : QFileInfo(QDir::cleanPath(path)).fileName();
 }
 
 }  // namespace palpate::viewer

@@ -7,18 +7,10 @@
 #include "apps/viewer/scene/scene.hpp"
 #include "apps/viewer/window/content.hpp"
 #include "apps/viewer/window/recording_controller.hpp"
+#include "apps/viewer/window/streaming_words.hpp"
 
 namespace palpate::viewer {
 namespace {
-
-/// Why there is no force although the hand may expect one; empty: nothing holds it back.
-QString reason_of(const Snapshot& now) {
-    if (!now.forces_on) return Hints::tr("Forces are off: the space bar switches them on");
-    if (now.session.frozen) return Hints::tr("Frozen: F lets hand and proxy move again");
-    if (now.session.clutched) return Hints::tr("The volume hangs on the hand: C puts it down");
-    if (waits_for_hand(now)) return Hints::tr("Withdraw a little to feel forces again");
-    return {};
-}
 
 /// A label that lets the mouse through.
 QLabel* label_over(QWidget& owner, const char* name, const QString& style) {
@@ -52,6 +44,23 @@ Hints::Hints(const Content& content, const RecordingController& recordings, Scen
       recording_(label_over(scene, "recording_clock",
                             "background-color: rgba(0, 0, 0, 150); color: white;")) {
     connect(&recordings, &RecordingController::changed, this, [this] { recorded_.start(); });
+}
+
+/// Why there is no force although the hand may expect one; empty: nothing holds it back. Data that
+/// come within a moment need no words.
+QString Hints::reason_of(const Snapshot& now) {
+    constexpr qint64 moment_ms = 300;
+    const bool waits = now.session.tick.proxy.status == UpdateStatus::waiting;
+    if (!waits) waiting_.invalidate();
+    if (waits && !waiting_.isValid()) waiting_.start();
+    if (!now.forces_on) return tr("Forces are off: the space bar switches them on");
+    if (now.session.frozen) return tr("Frozen: F lets hand and proxy move again");
+    if (now.session.clutched) return tr("The volume hangs on the hand: C puts it down");
+    if (waits && waiting_.elapsed() > moment_ms && content_.data()) {
+        return waiting_words(content_.data()->streaming());
+    }
+    if (waits_for_hand(now)) return tr("Withdraw a little to feel forces again");
+    return {};
 }
 
 void Hints::observe(const std::optional<Snapshot>& now) {

@@ -25,6 +25,7 @@ class Hints : public QObject {
     void observe(const std::optional<Snapshot>& now);
 
   private:
+    QString reason_of(const Snapshot& now);
     void show_depth(const std::optional<Snapshot>& now);
 
     const Content& content_;
@@ -32,6 +33,7 @@ class Hints : public QObject {
     Scene& scene_;
     QLabel *reason_, *depth_, *recording_;
     QElapsedTimer recorded_;
+    QElapsedTimer waiting_;  // for data; invalid: the hand does not
 };
 
 }  // namespace palpate::viewer

@@ -26,6 +26,7 @@
 #include "apps/viewer/scene/scene.hpp"
 #include "apps/viewer/window/file_dialogs.hpp"
 #include "apps/viewer/window/menus.hpp"
+#include "apps/viewer/window/streaming_words.hpp"
 #include "apps/viewer/window/views.hpp"
 #include "apps/viewer/window/welcome.hpp"
 #include "palpate/density.hpp"
@@ -50,12 +51,14 @@ MainWindow::MainWindow(const RunRequest& request)
       welcome_(new Welcome(this)),
       panel_(new Panel(this)),
       timeline_(new Timeline(this)),
+      streaming_(new QLabel),
       readout_(new QLabel),
       frame_time_(new QLabel),
       messages_(this),
       measuring_(content_, *views_, messages_),
       overlays_(content_, *views_, *panel_, messages_),
       display_(content_, *views_, *panel_, measuring_, overlays_),
+      details_(content_, *views_),
       run_(request, content_, *panel_, messages_),
       layers_(content_, overlays_, *panel_, messages_),
       tools_(content_, *panel_, messages_),
@@ -101,6 +104,8 @@ void MainWindow::build() {
     dock->setWidget(panel_);
     addDockWidget(Qt::RightDockWidgetArea, dock);
     panel_->clear();
+    streaming_->setObjectName("streaming");
+    statusBar()->addPermanentWidget(streaming_);
     readout_->setObjectName("readout");
     readout_->setToolTip(tr("The proxy: where it is (LPS) [mm], the sample there and its slope"));
     statusBar()->addPermanentWidget(readout_);
@@ -198,6 +203,7 @@ void MainWindow::tick() {
     ++rounds_;
     playing_.advance();
     const auto now = display_.observe();
+    details_.observe(now);
     rest_or_wake(now);
     probe_.observe();
     hints_.observe(now);
@@ -209,6 +215,7 @@ void MainWindow::tick() {
         playing_.observe();
     }
     if (now && rounds_ % device_rounds == 0) run_.observe(*now);
+    if (rounds_ % device_rounds == 0) show_streaming();
     if (rounds_ % device_rounds == 0) {
         actions_.refresh();
         setWindowModified(editing_.unsaved() != nullptr);
@@ -227,15 +234,28 @@ void MainWindow::tick() {
 void MainWindow::show_readout(const Snapshot& now) {
     const Vec3& at = now.session.tick.proxy.scp;
     if (!at.allFinite()) return readout_->clear();
-    const Field field = content_.field_at(now);
     const QString units = QString::fromStdString(content_.volume()->loaded.values.units);
     const auto number = [](double value) { return QString::number(value, 'f', 1); };
-    QString felt = felt_text(now.session.tick.layers, content_.layers());
-    if (!felt.isEmpty()) felt += "   ";
-    readout_->setText(felt + tr("%1, %2, %3 mm   %4 %5   slope %6 /mm")
-                                 .arg(number(at[0]), number(at[1]), number(at[2]),
-                                      QString::number(value_at(field, at), 'g', 4), units,
-                                      QString::number(gradient_at(field, at).norm(), 'g', 3)));
+    QString words = felt_text(now.session.tick.layers, content_.layers());
+    if (!words.isEmpty()) words += "   ";
+    words += tr("%1, %2, %3 mm").arg(number(at[0]), number(at[1]), number(at[2]));
+    if (const auto field = content_.felt_at(now, at)) {
+        words += "   " + tr("%1 %2   slope %3 /mm")
+                             .arg(QString::number(value_at(*field, at), 'g', 4), units,
+                                  QString::number(gradient_at(*field, at).norm(), 'g', 3));
+    }
+    readout_->setText(words);
+}
+
+/// Of a store: levels, and what is missing. Words that stay the same cost nothing.
+void MainWindow::show_streaming() {
+    streaming_->setVisible(details_.active());
+    if (!details_.active()) return;
+    const auto hand = content_.data() ? content_.data()->streaming() : stream::BrickLoaderStatus{};
+    const DetailController::State seen = details_.state();
+    const QString words = streaming_words(hand, seen);
+    if (streaming_->text() != words) streaming_->setText(words);
+    streaming_->setToolTip(streaming_tip(hand, seen));
 }
 
 /// Looks less often at a hand that rests.
@@ -251,7 +271,7 @@ void MainWindow::rest_or_wake(const std::optional<Snapshot>& now) {
 bool MainWindow::settled() const {
     return !files_.loading() && !editing_.saving() && !probe_.travelling() && overlays_.settled() &&
            layers_.settled() && tools_.settled() &&
-           (!content_.volume() || views_->scene().settled());
+           (!content_.volume() || (views_->scene().settled() && details_.settled()));
 }
 
 void MainWindow::save_picture(const QString& path, bool whole_window) {

@@ -7,6 +7,7 @@
 
 #include "apps/viewer/window/actions.hpp"
 #include "apps/viewer/window/content.hpp"
+#include "apps/viewer/window/detail_controller.hpp"
 #include "apps/viewer/window/display_controller.hpp"
 #include "apps/viewer/window/edit_controller.hpp"
 #include "apps/viewer/window/file_controller.hpp"
@@ -53,6 +54,7 @@ class MainWindow : public QMainWindow {
     MeasureController& measuring() { return measuring_; }
     OverlayController& overlays() { return overlays_; }
     DisplayController& display() { return display_; }
+    DetailController& details() { return details_; }
     Messages& messages() { return messages_; }
     Content& content() { return content_; }
     const run::Run* live() const { return content_.live(); }
@@ -84,18 +86,20 @@ class MainWindow : public QMainWindow {
     void use(const Preferences& preferences);
     void tick();
     void show_readout(const Snapshot& now);
+    void show_streaming();
     void rest_or_wake(const std::optional<Snapshot>& now);
 
     Views* views_;
     Welcome* welcome_;
     Panel* panel_;
     Timeline* timeline_;
-    QLabel *readout_, *frame_time_;
+    QLabel *streaming_, *readout_, *frame_time_;
     Messages messages_;
     Content content_;
     MeasureController measuring_;
     OverlayController overlays_;
     DisplayController display_;
+    DetailController details_;
     RunController run_;
     LayersController layers_;
     ToolController tools_;

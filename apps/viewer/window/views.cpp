@@ -96,10 +96,10 @@ void Views::show_panes() {
     down_->setVisible(!alone_ ? slices_shown_ : alone_->parent() == down_);
 }
 
-void Views::set_field(const Field& field, double isovalue) {
+void Views::set_field(const Field& field, double isovalue, const std::optional<Geometry>& counted) {
     isovalue_ = isovalue;
     scene_->set_field(field, isovalue);
-    for (SlicePane* pane : slices_) pane->set_field(field, isovalue);
+    for (SlicePane* pane : slices_) pane->set_field(field, isovalue, counted);
     set_crosshair(physical_centre(field.geometry()));
     touched_ = false;
 }

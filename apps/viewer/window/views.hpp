@@ -25,11 +25,14 @@ class Views : public QWidget {
   public:
     explicit Views(QWidget* parent = nullptr);
 
-    void set_field(const Field& field, double isovalue);
+    /// `counted`: as SlicePane::set_field().
+    void set_field(const Field& field, double isovalue,
+                   const std::optional<Geometry>& counted = {});
     /// Another version of the data that are shown: edited, or at another moment.
     void update_field(const Field& field);
     void clear();
     void set_isovalue(double isovalue);
+    double isovalue() const { return isovalue_; }
     /// `layers` are seen with it; null: none.
     void set_look(const Look& look, const SharedLayers& layers);
     /// Null: none.

@@ -17,6 +17,8 @@
 
 namespace palpate::stream {
 
+class Blocks;
+
 /// A volume of few samples that shows all of a store: its coarsest level that is fine enough, or
 /// single samples of a store without levels. At most `samples` of them, one at least. Blocks.
 /// Throws as Store::read().
@@ -59,6 +61,7 @@ struct BrickLoaderStatus {
     std::size_t resident = 0;      ///< bricks in memory
     std::size_t wanted = 0;        ///< bricks that the hands may need soon
     std::size_t missing = 0;       ///< of those, not in memory
+    std::size_t urgent = 0;        ///< of those, among the first that the hands need
     std::uint64_t bytes = 0;       ///< that bricks and decoded pieces take
     std::uint64_t most_bytes = 0;  ///< that they have taken at a time
     std::uint64_t loaded = 0;      ///< bricks so far
@@ -108,7 +111,6 @@ class BrickLoader {
         bool helps;  ///< another thread makes the brick; this one reads a piece of it
     };
     using Clock = std::chrono::steady_clock;
-    class Blocks;
 
     void work(const std::stop_token& stop);
     void help(const Job& job, const std::stop_token& stop) const;

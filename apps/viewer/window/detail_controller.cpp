@@ -1,0 +1,238 @@
+// Chooses levels and parts for the views, from what they show.
+#include "apps/viewer/window/detail_controller.hpp"
+
+#include <algorithm>
+
+#include "apps/viewer/scene/hand_over.hpp"
+#include "apps/viewer/scene/scene.hpp"
+#include "apps/viewer/scene/surface_patch.hpp"
+#include "apps/viewer/scene/thread_priority.hpp"
+#include "apps/viewer/slices/slice_pane.hpp"
+#include "apps/viewer/window/content.hpp"
+#include "apps/viewer/window/views.hpp"
+
+namespace palpate::viewer {
+namespace {
+
+/// What decoded pieces may take: a quarter of what the hand has, but enough for a screen.
+constexpr std::uint64_t least_memory = std::uint64_t{1} << 27, memory_part = 4;
+constexpr std::int64_t most_slice_samples = 1 << 21, most_patch_samples = 1 << 24;
+constexpr std::int64_t most_pieces = 1 << 16;
+/// Between two versions of what has not come as a whole: drawing and extracting take time.
+constexpr std::chrono::milliseconds slice_interval{250}, patch_interval{1500};
+/// Requests at a time, of the sixteen of a store: while the hand lacks nothing, while it fills its
+/// memory round it, while it needs something at once.
+constexpr int most_reads = 6, fewer_reads = 3, fewest_reads = 1;
+/// A view that is still for so long is worth a finer surface.
+constexpr qint64 rest_ms = 200;
+
+std::uint64_t memory_of(const run::StreamedVolume& streamed) {
+    return std::max(least_memory, streamed.loader.memory / memory_part);
+}
+
+bool touches(const std::optional<Snapshot>& now) {
+    return now && now->session.tick.proxy.mode == Mode::constrained &&
+           now->session.tick.proxy.scp.allFinite();
+}
+
+}  // namespace
+
+/// The part of the scene that is wanted, for the reader's threads.
+struct DetailController::Joining {
+    std::mutex mutex;
+    std::optional<PatchChoice> patch;
+    Field overview;
+
+    /// The samples of a part that is still wanted.
+    std::optional<Volume> of(const stream::Detail& detail) {
+        std::optional<PatchChoice> now;
+        {
+            const std::scoped_lock lock(mutex);
+            now = patch;
+        }
+        if (!now || now->level != detail.of.level || !(now->box == detail.of.box)) return {};
+        return joined_samples(detail.volume, overview, *now);
+    }
+};
+
+DetailController::DetailController(Content& content, Views& views)
+    : content_(content), views_(views) {
+    const auto begin_live = [this] { begin(content_.live()->field_seen()); };
+    connect(&content, &Content::closing, this, &DetailController::end);
+    connect(&content, &Content::run_started, this, begin_live);
+    connect(&content, &Content::field_replaced, this, begin_live);
+    connect(&content, &Content::playback_started, this,
+            [this] { begin(content_.playback()->field()); });
+}
+
+DetailController::~DetailController() = default;
+
+void DetailController::end() {
+    reader_.reset();
+    ++generation_;
+    slices_ = {};
+    patch_.reset();
+    view_.reset();
+    chosen_for_.reset();
+    made_ = {};
+    joining_.reset();
+    store_ = {};
+    held_.reset();
+}
+
+void DetailController::begin(const Field& field) {
+    end();
+    const run::LoadedVolume& loaded = content_.volume()->loaded;
+    if (!loaded.streamed) return;
+    held_ = loaded.streamed->store;
+    store_ = {&held_->info(), loaded.streamed->loader.level, loaded.volume.geometry()};
+    interpolation_ = field.interpolation();
+    memory_ = memory_of(*loaded.streamed);
+    joining_ = std::shared_ptr<Joining>(new Joining{{}, {}, field});
+    stream::DetailSettings settings;
+    settings.memory = memory_;
+    settings.threads = std::clamp(loaded.streamed->loader.threads / 2, 1, most_reads);
+    settings.begin_thread = lower_thread_priority;
+    if (content_.live()) {
+        settings.most_at_a_time = [data = content_.data()] {
+            const stream::BrickLoaderStatus hand = data->streaming();
+            return hand.urgent > 0 ? fewest_reads : hand.missing > 0 ? fewer_reads : most_reads;
+        };
+    }
+    reader_ = std::make_unique<stream::DetailReader>(
+        held_, loaded.volume, settings,
+        [this, generation = generation_, field, info = store_.info,
+         joining = joining_](int viewer, stream::Detail detail) {
+            std::optional<Volume> volume = detail.volume;
+            if (viewer == scene) volume = joining->of(detail);
+            if (!volume) return;
+            const auto level = static_cast<std::size_t>(detail.of.level);
+            auto shown = std::make_shared<const DetailField>(DetailField{
+                Field(*std::move(volume), field.solid(), field.background(), field.interpolation()),
+                detail.of.box, info->levels[level].geometry.size, detail.of.level, detail.missing,
+                detail.changed});
+            hand_over(this, [this, generation, viewer, shown] { take(generation, viewer, shown); });
+        });
+}
+
+void DetailController::take(std::uint64_t generation, int viewer,
+                            const std::shared_ptr<const DetailField>& made) {
+    if (generation != generation_) return;
+    const auto is = [&](int level, const SampleBox& box) {
+        return made->level == level && made->box == box;
+    };
+    auto& shown = made_[static_cast<std::size_t>(viewer)];
+    if (viewer == scene) {
+        if (!patch_ || !is(patch_->level, patch_->box)) return;
+        shown = made;
+        views_.scene().set_patch(
+            ScenePatch{made, {store_.overview, patch_->low, patch_->high}});
+        return;
+    }
+    const auto& wanted = slices_[static_cast<std::size_t>(viewer)];
+    if (!wanted || !is(wanted->level, wanted->box)) return;
+    shown = made;
+    views_.slice(viewer).set_detail(made);
+}
+
+void DetailController::observe(const std::optional<Snapshot>& now) {
+    if (!reader_) return;
+    for (int axis = 0; axis < scene; ++axis) observe_slice(axis);
+    observe_scene(now);
+}
+
+void DetailController::observe_slice(int axis) {
+    auto& wanted = slices_[static_cast<std::size_t>(axis)];
+    const auto seen = views_.slice(axis).seen();
+    const DetailLimits limits{most_slice_samples, memory_, most_pieces};
+    const auto level = seen ? level_for(store_, *seen, limits) : std::nullopt;
+    if (!level) {
+        if (wanted) reader_->forget(axis);
+        wanted.reset();
+        if (seen) views_.slice(axis).set_detail(nullptr);
+        return;
+    }
+    if (wanted && wanted->level == *level && has_slice(store_, *wanted, *seen, axis)) return;
+    wanted = {*level, slice_box(store_, *level, *seen, axis)};
+    reader_->want(axis, coarse_to_fine(store_, *level, wanted->box), slice_interval);
+}
+
+/// Once the view rests and the picture of it is there, whose depths tell what is seen.
+void DetailController::observe_scene(const std::optional<Snapshot>& now) {
+    const Scene& shown = views_.scene();
+    if (!shown.isVisible()) return;
+    const SceneView view{shown.camera(), shown.width(), shown.height(), views_.isovalue()};
+    if (!(view_ == view)) {
+        view_ = view;
+        rested_.start();
+        return;
+    }
+    if (rested_.elapsed() < rest_ms || !shown.shows_whole()) return;
+    const bool left = touches(now) && patch_ && chosen_for_ == view && !is_in_patch(*now);
+    if (chosen_for_ == view && !left) return;
+    chosen_for_ = view;
+    rested_.start();
+    choose_patch(now);
+}
+
+bool DetailController::is_in_patch(const Snapshot& now) const {
+    const Vec3 index = index_from_physical(store_.overview, now.session.tick.proxy.scp);
+    return (index.array() >= patch_->low.array()).all() &&
+           (index.array() <= patch_->high.array()).all();
+}
+
+void DetailController::choose_patch(const std::optional<Snapshot>& now) {
+    auto seen = views_.scene().seen_points();
+    if (!seen) return;
+    if (touches(now) && views_.scene().is_in_view(now->session.tick.proxy.scp)) {
+        seen->middle = now->session.tick.proxy.scp;
+        seen->points.push_back(seen->middle);
+    }
+    const DetailLimits limits{most_patch_samples, memory_, most_pieces};
+    if (patch_ && is_enough(*patch_, store_, *seen, interpolation_, limits)) return;
+    patch_ = patch_for(store_, *seen, interpolation_, limits);
+    {
+        const std::scoped_lock lock(joining_->mutex);
+        joining_->patch = patch_;
+    }
+    if (patch_) {
+        return reader_->want(scene, coarse_to_fine(store_, patch_->level, patch_->box),
+                             patch_interval);
+    }
+    reader_->forget(scene);
+    made_[scene].reset();
+    views_.scene().set_patch(std::nullopt);
+}
+
+bool DetailController::settled() const {
+    if (!reader_) return true;
+    const stream::DetailStatus status = reader_->status();
+    const auto shows = [&](const auto& wanted, int viewer) {
+        const auto& made = made_[static_cast<std::size_t>(viewer)];
+        return !wanted || (made && made->level == wanted->level && made->box == wanted->box &&
+                           made->missing == 0);
+    };
+    bool all = !views_.scene().isVisible() || (chosen_for_ && chosen_for_ == view_);
+    for (int axis = 0; axis < scene; ++axis) {
+        all = all && shows(slices_[static_cast<std::size_t>(axis)], axis);
+    }
+    return (all && shows(patch_, scene)) || status.failed > 0;
+}
+
+DetailController::State DetailController::state() const {
+    State state;
+    if (!reader_) return state;
+    state.reading = reader_->status();
+    state.felt = store_.finest;
+    const auto& levels = store_.info->levels;
+    for (std::size_t l = 0; l < levels.size(); ++l) {
+        if (levels[l].geometry == store_.overview) state.overview = static_cast<int>(l);
+    }
+    state.finest = state.overview;
+    for (const auto& made : made_) {
+        if (made && (!state.finest || made->level < *state.finest)) state.finest = made->level;
+    }
+    return state;
+}
+
+}  // namespace palpate::viewer

@@ -1,0 +1,261 @@
+// Boxes for pictures: coarse first, the store's samples in the end, bounded, behind the hands.
+#include "palpate/stream/detail.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "palpate/io/error.hpp"
+#include "palpate/stream/loader.hpp"
+#include "stream/store_support.hpp"
+#include "stream/volumes_store.hpp"
+#include "support/constants.hpp"
+#include "support/edits.hpp"
+#include "support/eventually.hpp"
+
+namespace palpate::stream {
+namespace {
+
+using namespace palpate::support;
+
+/// What a reader has made, for each viewer.
+class Seen {
+  public:
+    DetailReader::Made made() {
+        return [this](int viewer, Detail detail) {
+            const std::scoped_lock lock(mutex_);
+            all_[viewer].push_back(std::move(detail));
+        };
+    }
+    std::vector<Detail> of(int viewer) const {
+        const std::scoped_lock lock(mutex_);
+        const auto found = all_.find(viewer);
+        return found == all_.end() ? std::vector<Detail>{} : found->second;
+    }
+    bool complete(int viewer) const {
+        const auto all = of(viewer);
+        return !all.empty() && all.back().missing == 0;
+    }
+
+  private:
+    mutable std::mutex mutex_;
+    std::map<int, std::vector<Detail>> all_;
+};
+
+std::vector<std::byte> bytes_of(const Volume& volume) {
+    const auto* const first = static_cast<const std::byte*>(volume.data());
+    return {first, first + volume.bytes()};
+}
+
+/// Samples that grow linearly through space, the same in a level of any spacing.
+Volume ramp(const Geometry& geometry) {
+    std::vector<float> samples;
+    for (int k = 0; k < geometry.size[2]; ++k) {
+        for (int j = 0; j < geometry.size[1]; ++j) {
+            for (int i = 0; i < geometry.size[0]; ++i) {
+                const Vec3 at = physical_from_index(geometry, Vec3(i, j, k));
+                samples.push_back(static_cast<float>(at[0] + 2 * at[1] - 3 * at[2]));
+            }
+        }
+    }
+    return {geometry, std::move(samples)};
+}
+
+/// Levels of 96, 48, 24 and 12 samples along each axis.
+std::vector<Volume> ramps() {
+    std::vector<Volume> levels;
+    for (int size = 96, step = 1; size >= 12; size /= 2, step *= 2) {
+        levels.push_back(ramp(grid(cube(size), Vec3::Constant(step),
+                                   Vec3::Constant(0.5 * (step - 1)))));
+    }
+    return levels;
+}
+
+constexpr std::chrono::milliseconds often{1};
+
+DetailSettings settings_of(int threads) {
+    DetailSettings settings;
+    settings.threads = threads;
+    return settings;
+}
+
+TEST(DetailReader, a_complete_box_has_the_samples_of_the_store) {
+    Random random(7);
+    for (const SampleType type : sample_types) {
+        for (const Index3& chunk : {Index3(70, 1, 1), Index3(32, 16, 7), Index3(500, 500, 500)}) {
+            const Volume volume = noise_of(type, grid({70, 66, 50}, {1, 2, 3}, {4, 5, 6}), 3);
+            const auto store = store_in_pieces(volume, chunk);
+            Seen seen;
+            DetailReader reader(store, overview_of(*store, 4000), settings_of(2), seen.made());
+            for (int round = 0; round < 3; ++round) {
+                std::mt19937 engine(static_cast<unsigned>(random.below(1000)));
+                const SampleBox box = test::random_box(engine, volume.geometry().size);
+                const int viewer = round;
+                reader.want(viewer, {{0, box}});
+                ASSERT_TRUE(comes_true([&] { return seen.complete(viewer); }));
+                const Detail made = seen.of(viewer).back();
+                EXPECT_EQ(made.of, (DetailBox{0, box}));
+                EXPECT_EQ(bytes_of(made.volume), test::box_of(volume, box));
+                const Vec3 first = physical_from_index(made.volume.geometry(), Vec3::Zero());
+                EXPECT_EQ(first, physical_from_index(volume.geometry(), box.low.cast<double>()));
+            }
+        }
+    }
+}
+
+TEST(DetailReader, what_is_missing_is_interpolated_from_the_coarse_box_then_from_the_overview) {
+    auto levels = ramps();
+    const auto store = std::make_shared<VolumesStore>(levels, cube(16));
+    std::atomic<bool> coarse_fails{false}, fine_fails{true};
+    store->before_read = [&](int level, const SampleBox&, const std::stop_token&) {
+        if (level == 0 ? fine_fails : coarse_fails) throw io::InputError("the network is away");
+    };
+    const Volume overview = levels.back();
+    for (const bool only_overview : {false, true}) {
+        coarse_fails = only_overview;
+        fine_fails = true;
+        Seen seen;
+        DetailReader reader(store, overview, settings_of(2), seen.made());
+        const SampleBox box{{10, 20, 30}, {69, 75, 66}};
+        reader.want(0, {{2, {{2, 4, 7}, {18, 19, 17}}}, {0, box}}, often);
+        ASSERT_TRUE(comes_true([&] { return !seen.of(0).empty(); }));
+        const Detail first = seen.of(0).front();
+        EXPECT_EQ(first.missing, first.pieces);
+        // A ramp is the same at every level, except that it stops at the last samples.
+        const auto samples = first.volume.samples<float>();
+        const Volume exact = ramp(first.volume.geometry());
+        const auto expected = exact.samples<float>();
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+            ASSERT_NEAR(samples[i], expected[i], 1e-3) << i << ' ' << only_overview;
+        }
+        EXPECT_FALSE(reader.status().problem.empty());
+        fine_fails = false;
+        ASSERT_TRUE(comes_true([&] { return seen.complete(0); })) << "they are tried again";
+        EXPECT_EQ(bytes_of(seen.of(0).back().volume), test::box_of(levels[0], box));
+        EXPECT_EQ(reader.status().missing, 0U);
+        EXPECT_TRUE(reader.status().problem.empty());
+    }
+}
+
+TEST(DetailReader, versions_say_which_samples_have_changed) {
+    auto levels = ramps();
+    levels[0] = noise_of(SampleType::float32, levels[0].geometry(), 5);
+    const auto store = std::make_shared<VolumesStore>(levels, cube(16));
+    Seen seen;
+    std::atomic<int> allowed{0};
+    DetailSettings settings = settings_of(1);
+    settings.most_at_a_time = [&] { return allowed.load(); };
+    store->before_read = [&](int level, const SampleBox&, const std::stop_token&) {
+        if (level != 0) return;
+        // Between two pieces there is time to publish.
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    };
+    DetailReader reader(store, levels.back(), settings, seen.made());
+    reader.want(0, {{1, {{5, 5, 5}, {40, 40, 40}}}, {0, {{11, 12, 13}, {80, 79, 78}}}},
+                often);
+    allowed = 1;
+    ASSERT_TRUE(comes_true([&] { return seen.complete(0); }));
+    const auto all = seen.of(0);
+    ASSERT_GT(all.size(), 3U);
+    std::size_t different = 0;
+    for (std::size_t v = 1; v < all.size(); ++v) {
+        const auto before = all[v - 1].volume.samples<float>(), now = all[v].volume.samples<float>();
+        const Index3& size = all[v].volume.geometry().size;
+        for (std::size_t i = 0; i < now.size(); ++i) {
+            if (now[i] == before[i]) continue;
+            const auto n = static_cast<int>(i);
+            const Index3 at(n % size[0], n / size[0] % size[1], n / (size[0] * size[1]));
+            ++different;
+            ASSERT_TRUE((at.array() >= all[v].changed.low.array()).all() &&
+                        (at.array() <= all[v].changed.high.array()).all());
+        }
+    }
+    EXPECT_GT(different, 1000U);
+}
+
+TEST(DetailReader, reads_no_more_at_a_time_than_it_may_and_waits_while_that_is_none) {
+    const auto store = std::make_shared<VolumesStore>(ramps(), cube(8));
+    std::atomic<int> allowed{0}, at_once{0}, most{0}, reads{0};
+    store->before_read = [&](int, const SampleBox&, const std::stop_token&) {
+        ++reads;
+        const int now = ++at_once;
+        if (now > most) most = now;
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        --at_once;
+    };
+    Seen seen;
+    DetailSettings settings = settings_of(6);
+    settings.most_at_a_time = [&] { return allowed.load(); };
+    DetailReader reader(store, ramps().back(), settings, seen.made());
+    reader.want(3, {{0, {{0, 0, 0}, {63, 63, 40}}}});
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    EXPECT_EQ(reads, 0);
+    EXPECT_EQ(reader.status().missing, reader.status().wanted);
+    allowed = 2;
+    ASSERT_TRUE(comes_true([&] { return seen.complete(3); }));
+    EXPECT_EQ(most, 2);
+}
+
+TEST(DetailReader, what_is_no_longer_wanted_is_not_read_and_what_is_kept_is_not_read_again) {
+    const auto store = std::make_shared<VolumesStore>(ramps(), cube(16));
+    std::mutex mutex;
+    std::multiset<std::array<int, 3>> read;
+    std::atomic<bool> hold{true};
+    store->before_read = [&](int level, const SampleBox& box, const std::stop_token&) {
+        while (hold) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        const std::scoped_lock lock(mutex);
+        if (level == 0) read.insert({box.low[0], box.low[1], box.low[2]});
+    };
+    Seen seen;
+    DetailReader reader(store, ramps().back(), settings_of(2), seen.made());
+    const DetailBox first{0, {{0, 0, 0}, {31, 31, 31}}}, second{0, {{48, 48, 48}, {95, 79, 79}}};
+    reader.want(0, {first});
+    ASSERT_TRUE(comes_true([&] { return reader.status().coming == 2; }));
+    reader.want(0, {second});
+    hold = false;
+    ASSERT_TRUE(comes_true([&] { return seen.complete(0); }));
+    EXPECT_EQ(seen.of(0).back().of, second);
+    {
+        const std::scoped_lock lock(mutex);
+        EXPECT_EQ(read.size(), 2 + 12U) << "two of the first box were under way";
+    }
+    // The same again, and a part of it for another viewer: all of it is kept.
+    reader.want(0, {first});
+    ASSERT_TRUE(comes_true([&] { return seen.of(0).back().of == first && seen.complete(0); }));
+    reader.want(1, {{1, {{0, 0, 0}, {15, 15, 15}}}, {0, {{4, 4, 4}, {27, 27, 27}}}},
+                std::chrono::hours(1));
+    ASSERT_TRUE(comes_true([&] { return seen.complete(1); }));
+    const std::scoped_lock lock(mutex);
+    EXPECT_EQ(read.size(), 8 + 12U);
+    EXPECT_EQ(seen.of(1).size(), 1U) << "nothing coarse where all is kept";
+}
+
+TEST(DetailReader, refuses_boxes_that_are_not_in_the_store) {
+    const auto store = std::make_shared<VolumesStore>(ramps(), cube(16));
+    DetailReader reader(store, ramps().back(), settings_of(1), [](int, const Detail&) {});
+    const SampleBox good{{0, 0, 0}, {5, 5, 5}};
+    EXPECT_THROW(reader.want(0, {}), std::invalid_argument);
+    EXPECT_THROW(reader.want(0, {{4, good}}), std::invalid_argument);
+    EXPECT_THROW(reader.want(0, {{-1, good}}), std::invalid_argument);
+    EXPECT_THROW(reader.want(0, {{0, {{0, 0, 0}, {96, 5, 5}}}}), std::invalid_argument);
+    EXPECT_THROW(reader.want(0, {{0, {{3, 0, 0}, {2, 5, 5}}}}), std::invalid_argument);
+    EXPECT_EQ(reader.status().wanted, 0U);
+}
+
+TEST(DetailReader, ends_at_once_while_reads_wait) {
+    const auto store = std::make_shared<VolumesStore>(ramps(), cube(16));
+    store->before_read = [](int, const SampleBox&, const std::stop_token& stop) {
+        while (!stop.stop_requested()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        throw Cancelled{};
+    };
+    Seen seen;
+    {
+        DetailReader reader(store, ramps().back(), settings_of(4), seen.made());
+        reader.want(0, {{0, {{0, 0, 0}, {63, 63, 63}}}});
+        ASSERT_TRUE(comes_true([&] { return reader.status().coming == 4; }));
+    }
+    EXPECT_TRUE(seen.of(0).empty());
+}
+
+}  // namespace
+}  // namespace palpate::stream
