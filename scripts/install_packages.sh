@@ -18,6 +18,7 @@ groups (default: all)
   viewer   io, and VTK's and Qt's windows and translations, Xvfb to test them
   dev      clang, its sanitizers and fuzzer, clang-format, clang-tidy, shellcheck,
            Mono, lintian
+  docs     MkDocs and Doxygen, for the documentation as a site
   all      everything above
 TEXT
 }
@@ -31,6 +32,7 @@ io=("${core[@]}" libinsighttoolkit5-dev libvtk9-dev libcli11-dev libfmt-dev nloh
     libopenigtlink-dev "${python[@]}")
 viewer=("${io[@]}" libvtk9-qt-dev qtbase5-dev qttools5-dev qttools5-dev-tools qttranslations5-l10n xvfb)
 dev=(git lintian pkg-config mono-mcs mono-runtime clang clang-format-14 clang-tidy libclang-rt-14-dev shellcheck)
+docs=(mkdocs doxygen python3-pygments libjs-jquery)
 
 wanted=()
 for group in "${@:-all}"; do
@@ -39,7 +41,8 @@ for group in "${@:-all}"; do
         io) wanted+=("${io[@]}") ;;
         viewer) wanted+=("${viewer[@]}") ;;
         dev) wanted+=("${dev[@]}") ;;
-        all) wanted+=("${viewer[@]}" "${dev[@]}") ;;
+        docs) wanted+=("${docs[@]}") ;;
+        all) wanted+=("${viewer[@]}" "${dev[@]}" "${docs[@]}") ;;
         -h | --help) usage; exit 0 ;;
         *) echo "install_packages.sh: no group '$group'" >&2; usage >&2; exit 2 ;;
     esac
