@@ -374,7 +374,7 @@ def convert(client: Client, source: str, out: str, *, level: int = 0, dequantize
 
     source: what open_store() opens, with `options` for it (raw, spacing, channel, time). dequantize:
     rounds (40; 0: none), smooth: passes, prefilter: sharpened(); in this order. block: samples of a
-    piece of work along each axis, a multiple of chunk; a task takes about 20 bytes for each of
+    piece of work along each axis, a multiple of chunk; a task takes about 12 bytes for each of
     (block + 64)^3 samples. progress(stage, done, all) may raise to stop; the next call with the same
     arguments goes on. Raises InputError, OutputError, ValueError.
     """
