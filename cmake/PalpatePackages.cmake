@@ -86,6 +86,7 @@ if(TARGET palpate_python)
 This package has the Python module."
     palpate-python)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3, python3-numpy, palpate-io-helper (= ${version})")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS python3-distributed)  # palpate.distributed, palpate.study
 endif()
 
 set(CPACK_COMPONENTS_ALL ${palpate_packaged})

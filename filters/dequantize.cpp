@@ -15,6 +15,7 @@
 
 #include "filters/round.hpp"
 #include "filters/sites.hpp"
+#include "palpate/filters/dequantize_parts.hpp"
 
 namespace palpate::filters {
 namespace {
@@ -25,26 +26,26 @@ constexpr double half_level = 511.0 / 1024, half_level_of_mask = 127.0 / 256;
 constexpr int usual_coarsest = 16, mask_step = 4;
 /// A step is chosen if it bends half of the surfaces by no more than this [levels].
 constexpr double chosen_bend = 0.5, enough = 0.5;
+constexpr double most_sites = 3e4;
 /// From this bend on a coarse step moves a sample less, from twice of it on not at all [levels].
 constexpr double most_bend = 0.55, most_bend_of_mask = 0.05;
 /// Samples in a task: some 50 us of work.
 constexpr int grain = 16384;
 
-/// The coarsest step over which a good part of the surfaces is straight to within the rounding; so
-/// about as long as the terraces are wide.
-int coarsest_for(const Volume& volume, double level) {
-    if (is_mask(volume, level)) return mask_step;
+/// Is a good part of the surfaces straight to within the rounding?
+bool straight_over(std::span<const SurfaceSite> sites, double level) {
+    double all = 0, straight = 0;
+    for (const SurfaceSite& site : sites) {
+        all += site.slope;
+        if (site.bend <= chosen_bend * level) straight += site.slope;
+    }
+    return straight >= enough * all && all > 0;
+}
+
+/// The coarsest step over which they are; so about as long as the terraces are wide.
+int coarsest_for(double level, const std::function<std::vector<SurfaceSite>(int)>& sites) {
     for (int step = usual_coarsest; step > 1; step /= 2) {
-        double all = 0, straight = 0;
-        for_sites(volume, 3e4, [&](const Index3& at) {
-            const double slope = slope_at(volume, at);
-            if (slope == 0) return;
-            all += slope;
-            const Smooth smooth = smooth_at(volume, at, step);
-            const bool bent = std::abs(smooth.mean - smooth.twice) > chosen_bend * level;
-            if (!bent) straight += slope;
-        });
-        if (straight >= enough * all && all > 0) return step;
+        if (straight_over(sites(step), level)) return step;
     }
     return 1;
 }
@@ -55,12 +56,6 @@ int rounds_of(int step, int finest, bool mask) {
     if (step == 2) return 20;
     if (step == 4) return mask ? 10 : 6;
     return 2;
-}
-
-std::vector<int> steps_from(int coarsest) {
-    std::vector<int> steps;
-    for (int step = coarsest; step >= 1; step /= 2) steps.push_back(step);
-    return steps;
 }
 
 void check(const DequantizeOptions& options) {
@@ -106,6 +101,52 @@ std::vector<float> float_samples(const Volume& volume) {
 
 }  // namespace
 
+std::vector<SurfaceSite> sites_of(const VolumePart& part, const SampleBox& core, int step) {
+    std::vector<SurfaceSite> sites;
+    for_sites(part.whole, most_sites, core, [&](const Index3& at) {
+        const Index3 inside = at - part.low;
+        const double slope = slope_at(part.samples, inside);
+        if (slope == 0) return;
+        const Smooth smooth = smooth_at(part.samples, inside, step);
+        sites.push_back({at, slope, std::abs(smooth.mean - smooth.twice)});
+    });
+    return sites;
+}
+
+DequantizePlan plan_of(double level, double minimum, double maximum,
+                       const DequantizeOptions& options,
+                       const std::function<std::vector<SurfaceSite>(int)>& sites) {
+    check(options);
+    DequantizePlan plan{level, minimum, maximum, is_mask(minimum, maximum, level), {}};
+    const int coarsest = options.coarsest ? *options.coarsest
+                         : plan.mask      ? mask_step
+                                          : coarsest_for(level, sites);
+    for (int step = coarsest; step >= 1; step /= 2) {
+        plan.rounds.push_back({step, rounds_of(step, options.rounds, plan.mask)});
+    }
+    return plan;
+}
+
+void run_rounds(const Volume& volume, std::span<float> state, const DequantizePlan& plan,
+                const DequantizePlan::Rounds& rounds, int threads,
+                const std::function<void()>& at_slice) {
+    const double bend = plan.mask ? most_bend_of_mask : most_bend;
+    const double half = plan.mask ? half_level_of_mask : half_level;
+    const RoundSettings settings{.step = rounds.step,
+                                 .half = float(half * plan.level),
+                                 .straight = rounds.step == 1
+                                                 ? std::numeric_limits<float>::infinity()
+                                                 : float(bend * plan.level),
+                                 .least = float(plan.minimum),
+                                 .greatest = float(plan.maximum)};
+    const int cores = tbb::info::default_concurrency();  // of more, oneTBB would complain
+    tbb::task_arena arena(threads == 0 ? cores : std::min(threads, cores));
+    const ForRows rows = for_rows(arena, volume.geometry().size[0]);
+    for (int round = 0; round < rounds.count; ++round) {
+        run_round(volume, state, settings, rows, at_slice);
+    }
+}
+
 Volume dequantized(const Volume& volume, const DequantizeOptions& options) {
     check(options);
     const std::optional<double> level = options.level ? options.level : level_of(volume);
@@ -113,30 +154,20 @@ Volume dequantized(const Volume& volume, const DequantizeOptions& options) {
         if (volume.type() == SampleType::float32) return volume;
         return {volume.geometry(), float_samples(volume)};
     }
-    const std::vector<int> steps =
-        steps_from(options.coarsest ? *options.coarsest : coarsest_for(volume, *level));
-    const bool mask = is_mask(volume, *level);
-    const double bend = mask ? most_bend_of_mask : most_bend;
-    const double half = mask ? half_level_of_mask : half_level;
+    const VolumePart all_of_it{volume, Index3::Zero(), volume.geometry().size};
+    const DequantizePlan plan =
+        plan_of(*level, volume.minimum(), volume.maximum(), options,
+                [&](int step) { return sites_of(all_of_it, whole_of(volume), step); });
     double all = 0, done = 0;  // slices
-    for (const int step : steps) all += rounds_of(step, options.rounds, mask);
+    for (const auto& rounds : plan.rounds) all += rounds.count;
     all *= volume.geometry().size[2];
 
     std::vector<float> state = float_samples(volume);
-    const int cores = tbb::info::default_concurrency();  // of more, oneTBB would complain
-    tbb::task_arena arena(options.threads == 0 ? cores : std::min(options.threads, cores));
-    const ForRows rows = for_rows(arena, volume.geometry().size[0]);
-    for (const int step : steps) {
-        const RoundSettings settings{
-            .step = step,
-            .half = float(half * *level),
-            .straight = step == 1 ? std::numeric_limits<float>::infinity() : float(bend * *level)};
-        for (int round = 0; round < rounds_of(step, options.rounds, mask); ++round) {
-            run_round(volume, state, settings, rows, [&] {
-                done += 1;
-                if (options.progress) options.progress(done / all);
-            });
-        }
+    for (const auto& rounds : plan.rounds) {
+        run_rounds(volume, state, plan, rounds, options.threads, [&] {
+            done += 1;
+            if (options.progress) options.progress(done / all);
+        });
     }
     return {volume.geometry(), std::move(state)};
 }

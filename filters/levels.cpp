@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "filters/sites.hpp"
-#include "palpate/filters/dequantize.hpp"
+#include "palpate/filters/dequantize_parts.hpp"
 
 namespace palpate::filters {
 namespace {
@@ -19,7 +19,7 @@ constexpr std::size_t most_levels = 65536;
 
 /// The values that occur, ascending; empty if there are more than most_levels.
 template <class T>
-std::vector<double> values_of(std::span<const T> samples) {
+std::vector<double> values_in(std::span<const T> samples) {
     std::vector<double> values;
     if constexpr (std::is_integral_v<T>) {
         constexpr int lowest = std::numeric_limits<T>::lowest();
@@ -44,14 +44,9 @@ std::vector<double> values_of(std::span<const T> samples) {
     return values;
 }
 
-std::vector<double> values_of(const Volume& volume) {
-    return with_type(volume.type(),
-                     [&](auto zero) { return values_of(volume.samples<decltype(zero)>()); });
-}
-
 /// Are these gaps whole numbers of the smallest? Rounding to float disturbs them a little, and
 /// large ones more than a fiftieth of the smallest, so only small ones can tell.
-bool on_levels(const std::vector<double>& values, double smallest) {
+bool on_levels(std::span<const double> values, double smallest) {
     for (std::size_t i = 1; i < values.size(); ++i) {
         const double count = (values[i] - values[i - 1]) / smallest;
         if (count < 8 && std::abs(count - std::round(count)) > 0.02) return false;
@@ -66,15 +61,23 @@ constexpr double steepest = 6;
 
 }  // namespace
 
-std::optional<double> level_of(const Volume& volume) {
-    const std::vector<double> values = values_of(volume);
+std::vector<double> values_of(const Volume& volume) {
+    return with_type(volume.type(),
+                     [&](auto zero) { return values_in(volume.samples<decltype(zero)>()); });
+}
+
+std::optional<double> level_of(std::span<const double> values, bool whole_numbers) {
     if (values.size() < 2) return std::nullopt;
     double smallest = std::numeric_limits<double>::infinity();
     for (std::size_t i = 1; i < values.size(); ++i) {
         smallest = std::min(smallest, values[i] - values[i - 1]);
     }
-    if (volume.type() == SampleType::float32 && !on_levels(values, smallest)) return std::nullopt;
+    if (!whole_numbers && !on_levels(values, smallest)) return std::nullopt;
     return smallest;
+}
+
+std::optional<double> level_of(const Volume& volume) {
+    return level_of(values_of(volume), volume.type() != SampleType::float32);
 }
 
 std::optional<Terraces> terraces_of(const Volume& volume) {
@@ -82,10 +85,10 @@ std::optional<Terraces> terraces_of(const Volume& volume) {
     if (!level) return std::nullopt;
     Terraces terraces;
     terraces.level = *level;
-    terraces.mask = is_mask(volume, *level);
+    terraces.mask = is_mask(volume.minimum(), volume.maximum(), *level);
     if (terraces.mask) return terraces;
     double all = 0, stepped = 0, tilt = 0;
-    for_sites(volume, 2e5, [&](const Index3& at) {
+    for_sites(volume.geometry().size, 2e5, whole_of(volume), [&](const Index3& at) {
         const double slope = slope_at(volume, at) / *level;
         all += slope;
         if (slope == 0 || slope > steepest) return;

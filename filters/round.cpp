@@ -134,7 +134,7 @@ class Round {
         const std::size_t at = slice(z) + row(y);
         float* state = state_.data() + at;
         const float half = settings_.half, per_straight = 1 / settings_.straight;
-        const auto least = float(volume_.minimum()), greatest = float(volume_.maximum());
+        const float least = settings_.least, greatest = settings_.greatest;
         with_type(volume_.type(), [&](auto zero) {
             const auto* own = static_cast<const decltype(zero)*>(volume_.data()) + at;
             for (int i = 0; i < nx_; ++i) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <span>
 
 #include "palpate/volume.hpp"
@@ -20,6 +21,9 @@ struct RoundSettings {
     /// A sample keeps its value where one smoothing more would change it by more than this [data
     /// units]: there the data are not straight over the distance `step`.
     float straight = 0;
+    /// Bounds of the samples [data units].
+    float least = -std::numeric_limits<float>::infinity();
+    float greatest = std::numeric_limits<float>::infinity();
 };
 
 /// Takes `state` (x fastest, as many as the volume's samples) through one round; the formula is in

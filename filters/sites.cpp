@@ -14,13 +14,18 @@ double near_sample(const Volume& volume, const Index3& at) {
 
 }  // namespace
 
-void for_sites(const Volume& volume, double most, const std::function<void(const Index3&)>& work) {
-    const Index3 size = volume.geometry().size;
-    const double apart = std::cbrt(double(sample_count(volume.geometry())) / most);
+void for_sites(const Index3& size, double most, const SampleBox& core,
+               const std::function<void(const Index3&)>& work) {
+    const double apart = std::cbrt(double(size.cast<std::int64_t>().prod()) / most);
     const int stride = std::max(1, int(std::ceil(apart)));
-    for (int k = 1; k < size[2] - 1; k += stride) {
-        for (int j = 1; j < size[1] - 1; j += stride) {
-            for (int i = 1; i < size[0] - 1; i += stride) work({i, j, k});
+    // The first of 1, 1 + stride, ... in the core, and the last sample before its end or the
+    // border.
+    const Index3 first =
+        Index3::Ones() + (core.low.cwiseMax(1).array() - 1 + stride - 1).matrix() / stride * stride;
+    const Index3 last = core.high.cwiseMin(size - 2 * Index3::Ones());
+    for (int k = first[2]; k <= last[2]; k += stride) {
+        for (int j = first[1]; j <= last[1]; j += stride) {
+            for (int i = first[0]; i <= last[0]; i += stride) work({i, j, k});
         }
     }
 }
@@ -32,10 +37,6 @@ double slope_at(const Volume& volume, const Index3& at) {
         slope[axis] = (near_sample(volume, at + two) - near_sample(volume, at - two)) / 4;
     }
     return slope.norm();
-}
-
-bool is_mask(const Volume& volume, double level) {
-    return volume.range() <= 1.5 * level;
 }
 
 Smooth smooth_at(const Volume& volume, const Index3& at, int step) {

@@ -7,14 +7,22 @@
 
 namespace palpate::filters {
 
-/// Calls work for up to about `most` samples, at even distances, none on the border.
-void for_sites(const Volume& volume, double most, const std::function<void(const Index3&)>& work);
+/// Calls work for up to about `most` samples of a grid, at even distances, none on the border; only
+/// for those in `core`.
+void for_sites(const Index3& size, double most, const SampleBox& core,
+               const std::function<void(const Index3&)>& work);
+
+inline SampleBox whole_of(const Volume& volume) {
+    return {Index3::Zero(), volume.geometry().size - Index3::Ones()};
+}
 
 /// Slope over four samples, so that a terrace or two is no plateau [data units a sample].
 double slope_at(const Volume& volume, const Index3& at);
 
 /// True for samples of two values only, `level` apart.
-bool is_mask(const Volume& volume, double level);
+inline bool is_mask(double minimum, double maximum, double level) {
+    return maximum - minimum <= 1.5 * level;
+}
 
 struct Smooth {
     double mean;   ///< b, the binomial mean of the 27 neighbours `step` apart [data units]

@@ -14,23 +14,25 @@ groups (default: all)
   io       core, and what reads and writes files and reaches devices: ITK, VTK, CLI11, fmt, JSON,
            EGL and Mesa for pictures without a display, PNG, zlib, gnuplot, Boost, oneTBB, codecs of
            chunks, libcurl, OpenIGTLink for tests;
-           for the Python module pybind11, NumPy, pip, and nibabel and zarr to test it
+           for the Python module pybind11, NumPy, Dask, pip, and nibabel and zarr to test it
   viewer   io, and VTK's and Qt's windows and translations, Xvfb to test them
   dev      clang, its sanitizers and fuzzer, clang-format, clang-tidy, shellcheck,
            Mono, lintian
+  docs     MkDocs and Doxygen, for the documentation as a site
   all      everything above
 TEXT
 }
 
 core=(g++ cmake ninja-build ccache libeigen3-dev libgtest-dev libgmock-dev libbenchmark-dev python3)
 python=(python3-dev pybind11-dev python3-numpy python3-pytest python3-nibabel python3-zarr
-        python3-setuptools python3-wheel python3-pip)
+        python3-setuptools python3-wheel python3-pip python3-dask python3-distributed)
 io=("${core[@]}" libinsighttoolkit5-dev libvtk9-dev libcli11-dev libfmt-dev nlohmann-json3-dev
     libgdcm-dev libtiff-dev libpng-dev zlib1g-dev gnuplot-nox libboost-dev libegl-dev libegl1
     libgl1-mesa-dri libembree-dev libtbb-dev libblosc-dev libzstd-dev liblz4-dev libcurl4-openssl-dev
     libopenigtlink-dev "${python[@]}")
 viewer=("${io[@]}" libvtk9-qt-dev qtbase5-dev qttools5-dev qttools5-dev-tools qttranslations5-l10n xvfb)
 dev=(git lintian pkg-config mono-mcs mono-runtime clang clang-format-14 clang-tidy libclang-rt-14-dev shellcheck)
+docs=(mkdocs doxygen python3-pygments libjs-jquery)
 
 wanted=()
 for group in "${@:-all}"; do
@@ -39,7 +41,8 @@ for group in "${@:-all}"; do
         io) wanted+=("${io[@]}") ;;
         viewer) wanted+=("${viewer[@]}") ;;
         dev) wanted+=("${dev[@]}") ;;
-        all) wanted+=("${viewer[@]}" "${dev[@]}") ;;
+        docs) wanted+=("${docs[@]}") ;;
+        all) wanted+=("${viewer[@]}" "${dev[@]}" "${docs[@]}") ;;
         -h | --help) usage; exit 0 ;;
         *) echo "install_packages.sh: no group '$group'" >&2; usage >&2; exit 2 ;;
     esac

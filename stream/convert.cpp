@@ -18,6 +18,7 @@
 
 #include "io/helper_process.hpp"
 #include "palpate/io/error.hpp"
+#include "palpate/stream/growing_image.hpp"
 #include "stream/stores.hpp"
 #include "stream/zarr_writer.hpp"
 
@@ -180,56 +181,35 @@ class SeenRange {
     Range range_{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
 };
 
-/// The part of a chunk that lies in the grid, out of the whole one or into it.
-template <class Copy>
-void for_rows(const SampleBox& box, int chunk, std::size_t each, Copy&& copy) {
-    const Index3 size = box.high - box.low + Index3::Ones();
-    const std::size_t row = static_cast<std::size_t>(size[0]) * each;
-    const std::size_t edge = static_cast<std::size_t>(chunk);
-    std::size_t at = 0;
-    for (int z = 0; z < size[2]; ++z) {
-        for (int y = 0; y < size[1]; ++y, at += row) {
-            copy((static_cast<std::size_t>(z) * edge + static_cast<std::size_t>(y)) * edge * each,
-                 at, row);
-        }
-    }
-}
-
 class Conversion {
   public:
     Conversion(const Store& from, int level, const ConvertOptions& options, const Partial& partial)
         : from_(from),
           level_(level),
           options_(options),
-          folder_(partial.folder()),
-          writer_(partial.folder(), from.info().type,
-                  pyramid_of(from.info().levels.at(static_cast<std::size_t>(level)).geometry,
-                             options.chunk),
-                  options) {
-        for (int l = 0; l < levels(); ++l) total_ += chunks(l);
+          image_(partial.folder(), from.info().type,
+                 from.info().levels.at(static_cast<std::size_t>(level)).geometry, options) {
+        for (int l = 0; l < image_.levels(); ++l) total_ += chunks(l);
     }
 
     Converted run() {
-        writer_.write_metadata({});
-        const auto written = open_zarr(folder_objects(folder_), folder_.string(), {});
+        image_.write_metadata({});
         std::int64_t before = 0;
-        for (int l = 0; l < levels(); ++l) {
+        for (int l = 0; l < image_.levels(); ++l) {
             in_parallel(
                 chunks(l), options_.threads,
-                [&](std::int64_t i, const std::stop_token& stop) { convert(*written, l, i, stop); },
+                [&](std::int64_t i, const std::stop_token& stop) { convert(l, i, stop); },
                 [&](std::int64_t done) { tell(before + done); });
             before += chunks(l);
         }
         tell(total_);
-        writer_.write_metadata(seen_.range());
-        return {levels(), static_cast<std::uint64_t>(total_), kept_, empty_, seen_.range()};
+        image_.write_metadata(seen_.range());
+        return {image_.levels(), static_cast<std::uint64_t>(total_), kept_, empty_, seen_.range()};
     }
 
   private:
-    int levels() const { return static_cast<int>(writer_.levels().size()); }
     std::int64_t chunks(int level) const {
-        const Index3 count = writer_.chunks_of(level);
-        return std::int64_t{count[0]} * count[1] * count[2];
+        return image_.chunks(level).cast<std::int64_t>().prod();
     }
     void tell(std::int64_t done) const {
         if (options_.progress) {
@@ -237,61 +217,34 @@ class Conversion {
         }
     }
 
-    void convert(const Store& written, int level, std::int64_t number,
-                 const std::stop_token& stop) {
-        const Index3 count = writer_.chunks_of(level);
+    void convert(int level, std::int64_t number, const std::stop_token& stop) {
+        const Index3 count = image_.chunks(level);
         const Index3 chunk(static_cast<int>(number % count[0]),
                            static_cast<int>(number / count[0] % count[1]),
                            static_cast<int>(number / count[0] / count[1]));
-        const Geometry& grid = writer_.levels()[static_cast<std::size_t>(level)].geometry;
-        SampleBox box;
-        box.low = chunk * options_.chunk;
-        box.high = (box.low.array() + options_.chunk).min(grid.size.array()) - 1;
-        const std::size_t each = size_of(from_.info().type);
-        Bytes samples(static_cast<std::size_t>(
-                          (box.high - box.low + Index3::Ones()).cast<std::int64_t>().prod()) *
-                      each);
-        if (const auto before = writer_.written_chunk(level, chunk)) {
-            for_rows(box, options_.chunk, each,
-                     [&](std::size_t whole, std::size_t part, std::size_t row) {
-                         std::memcpy(samples.data() + part, before->data() + whole, row);
-                     });
+        auto samples = image_.written(level, chunk);
+        if (samples) {
             ++kept_;
         } else {
-            make(written, level, box, samples, stop);
-            const auto edge = static_cast<std::size_t>(options_.chunk);
-            Bytes whole_chunk(edge * edge * edge * each);
-            for_rows(box, options_.chunk, each,
-                     [&](std::size_t whole, std::size_t part, std::size_t row) {
-                         std::memcpy(whole_chunk.data() + whole, samples.data() + part, row);
-                     });
-            if (!writer_.write_chunk(level, chunk, whole_chunk)) ++empty_;
+            samples =
+                level == 0 ? read(image_.box(0, chunk), stop) : image_.means(level, chunk, stop);
+            if (!image_.write(level, chunk, *samples)) ++empty_;
         }
-        if (level == 0) seen_.take(from_.info().type, samples);
+        if (level == 0) seen_.take(from_.info().type, *samples);
     }
 
-    /// The finest level comes from the source, each other one from the level before.
-    void make(const Store& written, int level, const SampleBox& box, Bytes& samples,
-              const std::stop_token& stop) const {
-        if (level == 0) {
-            from_.read(level_, box, samples, stop);
-            return;
-        }
-        const Geometry& finer = writer_.levels()[static_cast<std::size_t>(level) - 1].geometry;
-        const Index3& factor = writer_.levels()[static_cast<std::size_t>(level)].factor;
-        const SampleBox wanted = finer_box(box, factor, finer);
-        Bytes below(static_cast<std::size_t>(
-                        (wanted.high - wanted.low + Index3::Ones()).cast<std::int64_t>().prod()) *
-                    size_of(from_.info().type));
-        written.read(level - 1, wanted, below, stop);
-        take_means(from_.info().type, below, wanted, factor, box, samples);
+    Bytes read(const SampleBox& box, const std::stop_token& stop) const {
+        const Index3 size = box.high - box.low + Index3::Ones();
+        Bytes samples(static_cast<std::size_t>(size.cast<std::int64_t>().prod()) *
+                      size_of(from_.info().type));
+        from_.read(level_, box, samples, stop);
+        return samples;
     }
 
     const Store& from_;
     int level_;
     const ConvertOptions& options_;
-    fs::path folder_;
-    ZarrWriter writer_;
+    GrowingImage image_;
     SeenRange seen_;
     std::int64_t total_ = 0;
     std::atomic<std::uint64_t> kept_ = 0, empty_ = 0;
@@ -301,13 +254,7 @@ class Conversion {
 
 Converted convert_to_zarr(const Store& from, int level, const fs::path& out,
                           const ConvertOptions& options) {
-    if (options.zarr_version != 2 && options.zarr_version != 3) {
-        throw std::invalid_argument("Zarr version " + std::to_string(options.zarr_version) +
-                                    " cannot be written; there are 2 and 3");
-    }
-    if (options.chunk < 8 || options.chunk > 512) {
-        throw std::invalid_argument("chunks have 8 to 512 samples along each axis");
-    }
+    check_format(options);
     if (options.threads < 1 || options.threads > 256) {
         throw std::invalid_argument("there are 1 to 256 threads");
     }

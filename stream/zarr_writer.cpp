@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <fstream>
+#include <stdexcept>
 
 #include "palpate/io/error.hpp"
 #include "stream/zarr_metadata.hpp"
@@ -106,22 +107,33 @@ Json image_of(const std::vector<CoarserGrid>& levels) {
     return {{"axes", axes}, {"datasets", datasets}, {"type", "mean"}, {"name", "image"}};
 }
 
-void put_json(const fs::path& path, const Json& json) {
+void put_json(const fs::path& path, const Json& json, const std::string& temporary) {
     const std::string text = json.dump(1);
-    put_file(path, std::as_bytes(std::span(text)));
+    put_file(path, std::as_bytes(std::span(text)), temporary);
 }
 
 }  // namespace
 
-void put_file(const fs::path& path, std::span<const std::byte> bytes) {
-    const fs::path temporary = path.string() + ".part";
+void check_format(const ConvertOptions& options) {
+    if (options.zarr_version != 2 && options.zarr_version != 3) {
+        throw std::invalid_argument("Zarr version " + std::to_string(options.zarr_version) +
+                                    " cannot be written; there are 2 and 3");
+    }
+    if (options.chunk < 8 || options.chunk > 512) {
+        throw std::invalid_argument("chunks have 8 to 512 samples along each axis");
+    }
+}
+
+void put_file(const fs::path& path, std::span<const std::byte> bytes,
+              const std::string& temporary) {
+    const fs::path before = path.string() + temporary;
     std::error_code error;
     fs::create_directories(path.parent_path(), error);
-    std::ofstream file(temporary, std::ios::binary);
+    std::ofstream file(before, std::ios::binary);
     file.write(reinterpret_cast<const char*>(bytes.data()),
                static_cast<std::streamsize>(bytes.size()));
     file.close();
-    if (file) fs::rename(temporary, path, error);
+    if (file) fs::rename(before, path, error);
     if (!file || error) {
         throw io::OutputError(path.string() + ": cannot be written (" +
                               (error ? error.message() : io::reason(errno)) +
@@ -130,8 +142,12 @@ void put_file(const fs::path& path, std::span<const std::byte> bytes) {
 }
 
 ZarrWriter::ZarrWriter(fs::path folder, SampleType type, std::vector<CoarserGrid> levels,
-                       const ConvertOptions& options)
-    : folder_(std::move(folder)), type_(type), levels_(std::move(levels)), options_(options) {
+                       const ConvertOptions& options, std::string temporary)
+    : folder_(std::move(folder)),
+      type_(type),
+      levels_(std::move(levels)),
+      options_(options),
+      temporary_(std::move(temporary)) {
     for (std::size_t i = 0; i < levels_.size(); ++i) {
         const Geometry& grid = levels_[i].geometry;
         arrays_.push_back(options_.zarr_version == 2
@@ -156,18 +172,19 @@ void ZarrWriter::write_metadata(const std::optional<Range>& range) const {
         const Geometry& grid = levels_[i].geometry;
         const fs::path level = folder_ / std::to_string(i);
         put_json(level / (two ? ".zarray" : "zarr.json"),
-                 two ? array2(grid, type_, options_) : array3(grid, type_, options_));
+                 two ? array2(grid, type_, options_) : array3(grid, type_, options_), temporary_);
     }
     if (two) {
         image["version"] = "0.4";
-        put_json(folder_ / ".zgroup", {{"zarr_format", 2}});
-        put_json(folder_ / ".zattrs", {{"multiscales", {image}}, {"palpate", ours}});
+        put_json(folder_ / ".zgroup", {{"zarr_format", 2}}, temporary_);
+        put_json(folder_ / ".zattrs", {{"multiscales", {image}}, {"palpate", ours}}, temporary_);
     } else {
         put_json(folder_ / "zarr.json",
                  {{"zarr_format", 3},
                   {"node_type", "group"},
                   {"attributes",
-                   {{"ome", {{"version", "0.5"}, {"multiscales", {image}}}}, {"palpate", ours}}}});
+                   {{"ome", {{"version", "0.5"}, {"multiscales", {image}}}}, {"palpate", ours}}}},
+                 temporary_);
     }
 }
 
@@ -197,7 +214,7 @@ Bytes ZarrWriter::packed(const Bytes& samples) const {
 
 bool ZarrWriter::write_chunk(int level, const Index3& chunk, const Bytes& samples) const {
     if (std::ranges::all_of(samples, [](std::byte b) { return b == std::byte{0}; })) return false;
-    put_file(path_of(level, chunk), packed(samples));
+    put_file(path_of(level, chunk), packed(samples), temporary_);
     const auto back = written_chunk(level, chunk);
     if (!back || *back != samples) {
         throw io::OutputError(path_of(level, chunk).string() +

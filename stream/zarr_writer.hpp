@@ -10,10 +10,13 @@
 
 namespace palpate::stream {
 
+/// Of what is written, not how. Throws std::invalid_argument.
+void check_format(const ConvertOptions& options);
+
 class ZarrWriter {
   public:
     ZarrWriter(std::filesystem::path folder, SampleType type, std::vector<CoarserGrid> levels,
-               const ConvertOptions& options);
+               const ConvertOptions& options, std::string temporary);
 
     const std::vector<CoarserGrid>& levels() const { return levels_; }
     /// Of all levels and of the image. Throws io::OutputError, as the next one does.
@@ -34,10 +37,13 @@ class ZarrWriter {
     SampleType type_;
     std::vector<CoarserGrid> levels_;
     ConvertOptions options_;
+    std::string temporary_;
     std::vector<ChunkedArray> arrays_;
 };
 
-/// All of a small file in a folder that is being made. Throws io::OutputError.
-void put_file(const std::filesystem::path& path, std::span<const std::byte> bytes);
+/// All of a small file in a folder that is being made; while it is written its name ends in
+/// `temporary`. Throws io::OutputError.
+void put_file(const std::filesystem::path& path, std::span<const std::byte> bytes,
+              const std::string& temporary = ".part");
 
 }  // namespace palpate::stream

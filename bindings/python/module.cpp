@@ -40,6 +40,9 @@ PYBIND11_MODULE(_palpate, module) {
     bind_volumes(module);
     bind_filters(module);
     bind_files(module);
+    bind_stores(module);
+    bind_growing_images(module);
+    bind_dequantize_parts(module);
     bind_fields(module);
     bind_surfaces(module);
     bind_settings(module);

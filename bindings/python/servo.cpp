@@ -32,8 +32,8 @@ struct DeviceServo {
 using Held = std::shared_ptr<DeviceServo>;
 using Unlocked = py::call_guard<py::gil_scoped_release>;
 
-Held make(const Renderer& renderer, const py::object& device, double rate, bool real_time,
-          double device_rate) {
+Held make_servo(const Renderer& renderer, const py::object& device, double rate, bool real_time,
+                double device_rate) {
     const auto info = device.attr("info")().cast<DeviceInfo>();
     if (!py::hasattr(device, "read")) {
         throw py::type_error("a device needs the functions info() and read()");
@@ -45,14 +45,14 @@ Held make(const Renderer& renderer, const py::object& device, double rate, bool 
     return made_without_gil<DeviceServo>(renderer, std::move(its_device), settings);
 }
 
-void start(const py::object& self) {
+void start_servo(const py::object& self) {
     auto& s = self.cast<DeviceServo&>();
     stop_at_exit<DeviceServo>(self, [](DeviceServo& running) { running.stop(); });
     const py::gil_scoped_release unlocked;
     s.servo.start();
 }
 
-void send(DeviceServo& s, const Sent& sent) {
+void send_to_servo(DeviceServo& s, const Sent& sent) {
     if (!s.servo.send(command_of(sent, s.field, s.isovalue))) {
         const py::object type = py::module_::import("palpate.errors").attr("QueueFull");
         PyErr_SetString(type.ptr(), "no room for another command: send fewer");
@@ -71,14 +71,14 @@ void bind_servo(py::module_& module) {
         "torque [N mm]) and close(). While Python does not come back to them readings become "
         "stale\n"
         "after 20 ms and there is no force. For devices by name, sequences and recordings use Run.")
-        .def(py::init(&make), py::arg("renderer"), py::arg("device"), py::kw_only(),
+        .def(py::init(&make_servo), py::arg("renderer"), py::arg("device"), py::kw_only(),
              py::arg("rate") = 1000.0, py::arg("real_time") = true, py::arg("device_rate") = 1000.0,
              "rate [Hz] 250 to 8000. device_rate [Hz]: how often the device is asked.")
-        .def("start", &start, "Once.")
+        .def("start", &start_servo, "Once.")
         .def("stop", &DeviceServo::stop, Unlocked(),
              "Zero force, and the end of both threads: the device is written a last zero and "
              "closed.")
-        .def("send", &send, py::arg("command"),
+        .def("send", &send_to_servo, py::arg("command"),
              "A command of palpate.command, or ForceSettings, Friction, Penetrability,\n"
              "DeviceTransform or DeviceLimits. Never waits. Raises ValueError, QueueFull.")
         .def(
@@ -95,7 +95,7 @@ void bind_servo(py::module_& module) {
             "What the device's functions raised; usually empty.")
         .def("__enter__",
              [](const py::object& self) {
-                 start(self);
+                 start_servo(self);
                  return self;
              })
         .def("__exit__", [](DeviceServo& s, const py::args&) {

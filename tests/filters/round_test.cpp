@@ -16,7 +16,9 @@ void row_by_row(int count, const std::function<void(int, int)>& work) {
     for (int row = count; row-- > 0;) work(row, row + 1);
 }
 
-void expect_round(const Volume& volume, const RoundSettings& settings) {
+void expect_round(const Volume& volume, RoundSettings settings) {
+    settings.least = float(volume.minimum());
+    settings.greatest = float(volume.maximum());
     support::Grid slow = support::grid_of(volume);
     std::vector<float> fast(slow.samples.begin(), slow.samples.end());
     int slices = 0;

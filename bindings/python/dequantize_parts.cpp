@@ -1,0 +1,102 @@
+// Dequantizing by parts, for palpate.distributed: what parts say of the whole, and rounds on a part.
+#include "palpate/filters/dequantize_parts.hpp"
+
+#include <pybind11/functional.h>
+
+#include "bindings/python/arrays.hpp"
+#include "bindings/python/bindings.hpp"
+
+namespace palpate::python {
+namespace {
+
+py::tuple sites_of(const Volume& part, const Index3& low, const Index3& whole,
+                   const Index3& core_low, const Index3& core_high, int step) {
+    std::vector<filters::SurfaceSite> sites;
+    {
+        const py::gil_scoped_release unlocked;
+        sites = filters::sites_of({part, low, whole}, {core_low, core_high - Index3::Ones()}, step);
+    }
+    return py::make_tuple(column(sites,
+                                 [](const filters::SurfaceSite& s) -> Vec3 {
+                                     return s.at.cast<double>();
+                                 }),
+                          column(sites, [](const filters::SurfaceSite& s) { return s.slope; }),
+                          column(sites, [](const filters::SurfaceSite& s) { return s.bend; }));
+}
+
+/// `sites(step)`: slopes and bends of the whole volume's sites, in the order of the samples.
+filters::DequantizePlan plan_of(double level, double minimum, double maximum, int rounds,
+                                const std::function<std::pair<Doubles, Doubles>(int)>& sites) {
+    filters::DequantizeOptions options;
+    options.rounds = rounds;
+    return filters::plan_of(level, minimum, maximum, options, [&](int step) {
+        const auto [slopes, bends] = sites(step);
+        std::vector<filters::SurfaceSite> all(static_cast<std::size_t>(slopes.size()));
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            all[i].slope = slopes.data()[i];
+            all[i].bend = bends.data()[i];
+        }
+        return all;
+    });
+}
+
+/// `state` after rounds (step, count); without a state, of the samples themselves.
+Volume rounds_of(const Volume& samples, const std::optional<Volume>& state,
+                 const filters::DequantizePlan& plan,
+                 const std::vector<std::pair<int, int>>& rounds) {
+    std::vector<float> values;
+    if (state) {
+        const auto own = state->samples<float>();
+        values.assign(own.begin(), own.end());
+    } else {
+        with_type(samples.type(), [&](auto zero) {
+            const auto own = samples.samples<decltype(zero)>();
+            values.assign(own.begin(), own.end());
+        });
+    }
+    if (static_cast<std::int64_t>(values.size()) != sample_count(samples.geometry())) {
+        throw std::invalid_argument("state and samples are of one box");
+    }
+    for (const auto& [step, count] : rounds) {
+        filters::run_rounds(samples, values, plan, {step, count}, 1, [] {});
+    }
+    return {samples.geometry(), std::move(values)};
+}
+
+}  // namespace
+
+void bind_dequantize_parts(py::module_& module) {
+    using filters::DequantizePlan;
+    py::class_<DequantizePlan>(module, "_DequantizePlan")
+        .def(py::init(&plan_of))
+        .def_property_readonly("rounds",
+                               [](const DequantizePlan& plan) {
+                                   std::vector<std::pair<int, int>> rounds;
+                                   for (const auto& r : plan.rounds)
+                                       rounds.emplace_back(r.step, r.count);
+                                   return rounds;
+                               })
+        .def(py::pickle(
+            [](const DequantizePlan& plan) {
+                return py::make_tuple(plan.level, plan.minimum, plan.maximum, plan.mask);
+            },
+            [](const py::tuple& state) {
+                return DequantizePlan{state[0].cast<double>(), state[1].cast<double>(),
+                                      state[2].cast<double>(), state[3].cast<bool>(), {}};
+            }));
+    module.def("_values_of", [](const Volume& part) {
+        std::vector<double> values;
+        {
+            const py::gil_scoped_release unlocked;
+            values = filters::values_of(part);
+        }
+        return array_from(std::move(values));
+    });
+    module.def("_level_of", [](const std::vector<double>& values, bool whole_numbers) {
+        return filters::level_of(values, whole_numbers);
+    });
+    module.def("_sites_of", &sites_of);
+    module.def("_rounds_of", &rounds_of, py::call_guard<py::gil_scoped_release>());
+}
+
+}  // namespace palpate::python

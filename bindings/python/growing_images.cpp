@@ -1,0 +1,119 @@
+// Images that grow chunk by chunk, for palpate.distributed. Reading and writing runs without the GIL.
+#include "palpate/stream/growing_image.hpp"
+
+#include "bindings/python/bindings.hpp"
+
+namespace palpate::python {
+namespace {
+
+namespace fs = std::filesystem;
+using Unlocked = py::call_guard<py::gil_scoped_release>;
+
+stream::Compression compression_of(const std::string& name) {
+    if (name == "none") return stream::Compression::none;
+    if (name == "gzip") return stream::Compression::gzip;
+    if (name == "zstd") return stream::Compression::zstd;
+    if (name == "blosc") return stream::Compression::blosc;
+    throw std::invalid_argument("no compression '" + name +
+                                "'; there are none, gzip, zstd and blosc");
+}
+
+std::unique_ptr<stream::GrowingImage> growing_image(const fs::path& folder, SampleType type,
+                                                    const Geometry& finest,
+                                                    const std::string& ome_version, int chunk,
+                                                    const std::string& compression,
+                                                    const std::string& temporary) {
+    if (ome_version != "0.4" && ome_version != "0.5") {
+        throw std::invalid_argument("no OME-Zarr " + ome_version + "; there are 0.4 and 0.5");
+    }
+    stream::ConvertOptions options;
+    options.zarr_version = ome_version == "0.4" ? 2 : 3;
+    options.chunk = chunk;
+    options.compression = compression_of(compression);
+    return std::make_unique<stream::GrowingImage>(folder, type, finest, options, temporary);
+}
+
+/// The chunks of a box of samples; its corners are borders of chunks, or of the grid.
+template <class Work>
+void for_chunks(const stream::GrowingImage& image, int level, const Index3& low, const Index3& high,
+                Work&& work) {
+    const Index3 edge = image.box(level, Index3::Zero()).high + Index3::Ones();
+    const Index3& size = image.geometry(level).size;
+    bool whole_chunks = true;
+    for (int a = 0; a < 3; ++a) {
+        whole_chunks = whole_chunks && low[a] >= 0 && low[a] % edge[a] == 0 && high[a] <= size[a] &&
+                       (high[a] == size[a] || high[a] % edge[a] == 0);
+    }
+    if (!whole_chunks) {
+        throw std::invalid_argument("a block ends where chunks end");
+    }
+    const Index3 first = low.array() / edge.array();
+    const Index3 last = (high.array() - 1) / edge.array();
+    for (int z = first[2]; z <= last[2]; ++z) {
+        for (int y = first[1]; y <= last[1]; ++y) {
+            for (int x = first[0]; x <= last[0]; ++x) work(Index3(x, y, z));
+        }
+    }
+}
+
+/// A box out of a volume whose first sample has the index `low`, x fastest.
+std::vector<std::byte> part_of(const Volume& volume, const Index3& low, const SampleBox& box) {
+    const std::size_t each = size_of(volume.type());
+    const Index3 size = box.high - box.low + Index3::Ones();
+    const std::size_t row = static_cast<std::size_t>(size[0]) * each;
+    const auto* const all = static_cast<const std::byte*>(volume.data());
+    const Index3& whole = volume.geometry().size;
+    std::vector<std::byte> samples;
+    samples.reserve(row * static_cast<std::size_t>(size[1]) * static_cast<std::size_t>(size[2]));
+    for (int z = box.low[2]; z <= box.high[2]; ++z) {
+        for (int y = box.low[1]; y <= box.high[1]; ++y) {
+            const auto line = std::int64_t{z - low[2]} * whole[1] + (y - low[1]);
+            const auto* const at =
+                all + static_cast<std::size_t>(line * whole[0] + box.low[0] - low[0]) * each;
+            samples.insert(samples.end(), at, at + row);
+        }
+    }
+    return samples;
+}
+
+void write_block(const stream::GrowingImage& image, const Index3& low, const Volume& block) {
+    for_chunks(image, 0, low, low + block.geometry().size, [&](const Index3& chunk) {
+        image.write(0, chunk, part_of(block, low, image.box(0, chunk)));
+    });
+}
+
+void make_coarser(const stream::GrowingImage& image, int level, const Index3& low,
+                  const Index3& high) {
+    for_chunks(image, level, low, high, [&](const Index3& chunk) {
+        image.write(level, chunk, image.means(level, chunk, {}));
+    });
+}
+
+}  // namespace
+
+void bind_growing_images(py::module_& module) {
+    using stream::GrowingImage;
+    py::class_<GrowingImage>(module, "_GrowingImage")
+        .def(py::init(&growing_image), py::arg("folder"), py::arg("type"), py::arg("finest"),
+             py::arg("ome_version"), py::arg("chunk"), py::arg("compression"), py::arg("temporary"))
+        .def_property_readonly("levels",
+                               [](const GrowingImage& image) {
+                                   std::vector<Geometry> grids;
+                                   for (int l = 0; l < image.levels(); ++l)
+                                       grids.push_back(image.geometry(l));
+                                   return grids;
+                               })
+        .def(
+            "write_metadata",
+            [](const GrowingImage& image, std::optional<std::pair<double, double>> range) {
+                image.write_metadata(
+                    range ? std::optional(stream::Range{range->first, range->second})
+                          : std::nullopt);
+            },
+            py::arg("range") = py::none(), Unlocked())
+        .def("write", &write_block, py::arg("low"), py::arg("block"), Unlocked())
+        .def("make_coarser", &make_coarser, py::arg("level"), py::arg("low"), py::arg("high"),
+             Unlocked());
+}
+
+}  // namespace palpate::python

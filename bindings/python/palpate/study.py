@@ -1,0 +1,109 @@
+"""Studies on Dask: one motion of the hand under many settings, a trace for each, on all workers
+(docs/beyond_one_machine.md)."""
+
+import dataclasses
+import functools
+import hashlib
+import json
+import os
+import pickle
+import re
+import zipfile
+import zlib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Optional, Union
+
+import numpy
+from distributed import Client
+
+from . import Field, RenderSetup, Trace, __version__, load, replay
+from .distributed import Progress, each_piece, seen, writer
+
+_ARRAYS = [f.name for f in dataclasses.fields(Trace) if f.default is dataclasses.MISSING]
+
+
+@functools.lru_cache(maxsize=1)
+def _field(source, options):
+    """A worker feels the same volume again and again."""
+    loading, feeling = pickle.loads(options)
+    return Field(load(source, **loading).volume, **feeling)
+
+
+def _write(path, key, trace):
+    """Whole or not at all; `key` says of what."""
+    before = path.with_name(f"{path.name}.{writer()}")
+    rest = json.dumps({"key": key, "summary": trace.summary, "layer_names": list(trace.layer_names),
+                       "has_tool": trace.has_tool})
+    with before.open("wb") as file:
+        numpy.savez_compressed(file, rest=rest, **{name: getattr(trace, name) for name in _ARRAYS})
+    before.replace(path)
+
+
+def _read(path):
+    """(key, Trace); None for a file that is not there or not whole: its parts have checksums."""
+    try:
+        with numpy.load(path) as file:
+            rest = json.loads(str(file["rest"]))
+            arrays = {name: file[name] for name in _ARRAYS}
+    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile, zlib.error):
+        return None
+    return rest["key"], Trace(**arrays, summary=rest["summary"], has_tool=rest["has_tool"],
+                              layer_names=tuple(rest["layer_names"]))
+
+
+def _replay(source, options, isovalue, motion, folder, work):
+    name, key, setup = work
+    path = Path(folder) / f"{name}.npz"
+    before = _read(path)
+    if before and before[0] == key:
+        return True
+    _write(path, key, replay(_field(source, options), isovalue, *motion, setup=setup))
+    return False
+
+
+def study(client: Client, source: str, isovalue: Union[float, str], time: Any, position: Any,
+          setups: Mapping[str, Union[RenderSetup, Mapping[str, Any]]], out: str, *,
+          orientation: Any = None, field: Optional[dict] = None, loading: Optional[dict] = None,
+          progress: Progress = None) -> dict[str, Trace]:
+    """replay() of one motion under each of the setups, on the workers of a Dask client: a Trace for
+    each name, with the bits of one machine (but for update_ns and the times in the summary).
+
+    source: what load() reads, with `loading` for it (smooth=1, dequantize=40, ...); field: of Field
+    (solid, background, interpolation). isovalue, time, position, orientation: as for replay().
+    setups: a RenderSetup or its fields by name. out: a folder that gets NAME.npz for each; traces that
+    are there already, whole and of the same work, are kept. progress('study', done, all) may raise to
+    stop. Raises ValueError, InputError.
+    """
+    for name in setups:
+        if not re.fullmatch(r"\w[\w.+=,-]*", name):
+            raise ValueError(f"{name!r}: names of setups become names of files: letters, digits and _.+=,-")
+    if "://" not in source and not source.startswith(("synthetic:", "live:")):
+        source = os.path.abspath(source)
+    made = {name: setup if isinstance(setup, RenderSetup) else _setup_of(setup)
+            for name, setup in setups.items()}
+    motion = [numpy.ascontiguousarray(a, dtype=float) if a is not None else None
+              for a in (time, position, orientation)]
+    options = pickle.dumps((loading or {}, field or {}))
+    same = hashlib.sha256(pickle.dumps((__version__, source, seen(source), isovalue, options)))
+    for array in motion:
+        same.update(b"none" if array is None else array.tobytes())
+    work = []
+    for name, setup in made.items():
+        key = same.copy()
+        key.update(pickle.dumps(setup))
+        work.append((name, key.hexdigest(), setup))
+    Path(out).mkdir(parents=True, exist_ok=True)
+    folder = os.path.abspath(out)
+    one = functools.partial(_replay, source, options, isovalue, motion, folder)
+    each_piece(client, "study", one, work, progress)
+    return {name: _read(Path(folder) / f"{name}.npz")[1] for name in setups}
+
+
+def _setup_of(fields):
+    setup = RenderSetup.offline()
+    for name, value in fields.items():
+        if name not in RenderSetup._fields:
+            raise ValueError(f"no field {name}; there are {', '.join(RenderSetup._fields)}")
+        setattr(setup, name, value)
+    return setup

@@ -1,0 +1,111 @@
+// Stores: samples that are read by the box, of files, chunked formats and web addresses. All reading
+// runs without the GIL.
+#include "bindings/python/bindings.hpp"
+#include "palpate/stream/store.hpp"
+
+namespace palpate::python {
+namespace {
+
+namespace fs = std::filesystem;
+using Unlocked = py::call_guard<py::gil_scoped_release>;
+
+struct OpenStore {
+    std::shared_ptr<const stream::Store> store;
+
+    const stream::StoreInfo& info() const { return store->info(); }
+    const stream::Level& level(int number) const {
+        if (number < 0 || number >= static_cast<int>(info().levels.size())) {
+            throw std::invalid_argument(
+                info().address + ": has " + std::to_string(info().levels.size()) +
+                " levels, numbered from 0; there is no level " + std::to_string(number));
+        }
+        return info().levels[static_cast<std::size_t>(number)];
+    }
+    Volume read(const Index3& low, const Index3& high, int number) const {
+        Geometry grid = level(number).geometry;
+        const SampleBox box{low, high - Index3::Ones()};  // as NumPy's slices
+        if ((low.array() < 0).any() || (high.array() > grid.size.array()).any() || box.empty()) {
+            throw std::invalid_argument("a box lies in the grid, and its low corner is below its "
+                                        "high one");
+        }
+        grid.origin = physical_from_index(grid, low.cast<double>());
+        grid.size = high - low;
+        return with_type(info().type, [&](auto zero) {
+            std::vector<decltype(zero)> samples(static_cast<std::size_t>(sample_count(grid)));
+            store->read(number, box, std::as_writable_bytes(std::span(samples)), {});
+            return Volume(grid, std::move(samples));
+        });
+    }
+};
+
+void bind_store(py::module_& module) {
+    py::class_<OpenStore>(module, "Store",
+                          "Samples that are read by the box, at one or more levels of detail: from\n"
+                          "open_store(). Nothing is held but what is asked for.")
+        .def_property_readonly("address", [](const OpenStore& s) { return s.info().address; })
+        .def_property_readonly(
+            "format", [](const OpenStore& s) { return s.info().format; },
+            "For people: 'OME-Zarr 0.5', 'NRRD', 'raw'.")
+        .def_property_readonly(
+            "type", [](const OpenStore& s) { return std::string(name_of(s.info().type)); },
+            "'uint8', 'int16', 'uint16' or 'float32'.")
+        .def_property_readonly(
+            "levels",
+            [](const OpenStore& s) {
+                std::vector<Geometry> grids;
+                for (const stream::Level& level : s.info().levels) grids.push_back(level.geometry);
+                return grids;
+            },
+            "The Geometry of each level, the finest first.")
+        .def_property_readonly(
+            "range",
+            [](const OpenStore& s) -> std::optional<std::pair<double, double>> {
+                if (!s.info().range) return std::nullopt;
+                return std::pair(s.info().range->minimum, s.info().range->maximum);
+            },
+            "(least, greatest) sample of the finest level, where the store says it; else None.")
+        .def_property_readonly("channels", [](const OpenStore& s) { return s.info().channels; })
+        .def_property_readonly("notes", [](const OpenStore& s) { return s.info().notes; })
+        .def("read", &OpenStore::read, py::arg("low"), py::arg("high"), py::arg("level") = 0,
+             Unlocked(),
+             "The samples from index low (x, y, z) to before high, as a Volume in its place.\n"
+             "Raises InputError where a piece is damaged or cannot be had.")
+        .def("__repr__", [](const OpenStore& s) {
+            const Index3& size = s.info().levels.front().geometry.size;
+            return py::str("Store({!r}, {}, {}x{}x{} {}, {} levels)")
+                .format(s.info().address, s.info().format, size[0], size[1], size[2],
+                        std::string(name_of(s.info().type)), s.info().levels.size());
+        });
+}
+
+void bind_open_store(py::module_& module) {
+    module.def(
+        "open_store",
+        [](const std::string& address, std::optional<io::RawLayout> raw,
+           std::optional<Vec3> spacing, int channel, int time, const fs::path& cache) {
+            stream::StoreOptions options;
+            options.raw = raw;
+            options.spacing = spacing;
+            options.channel = channel;
+            options.time = time;
+            options.cache_folder = cache;
+            if (!cache.empty()) options.cache_bytes = std::uint64_t{4} << 30;
+            return OpenStore{stream::open_store(address, options)};
+        },
+        py::arg("address"), py::kw_only(), py::arg("raw") = py::none(),
+        py::arg("spacing") = py::none(), py::arg("channel") = 0, py::arg("time") = 0,
+        py::arg("cache") = "", Unlocked(),
+        "Opens what is read by the box: OME-Zarr and other chunked formats, folders or http://,\n"
+        "https:// and s3:// addresses, and plain files whose samples are not compressed\n"
+        "(docs/streaming.md). cache: a folder that keeps what came over the network. Reads headers\n"
+        "only. Raises InputError.");
+}
+
+}  // namespace
+
+void bind_stores(py::module_& module) {
+    bind_store(module);
+    bind_open_store(module);
+}
+
+}  // namespace palpate::python

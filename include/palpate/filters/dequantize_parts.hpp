@@ -1,0 +1,63 @@
+// Dequantization part by part, for volumes that do not fit into memory, with the bits of
+// dequantized(): what it has to know of the whole volume, and rounds on a part. See docs/dequantize.md.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "palpate/filters/dequantize.hpp"
+
+namespace palpate::filters {
+
+/// The values that occur, ascending; empty for float samples of more than 65536. Those of a volume
+/// are those of its parts together.
+std::vector<double> values_of(const Volume& volume);
+/// level_of() a volume with these values. `whole_numbers`: its samples are integers.
+std::optional<double> level_of(std::span<const double> values, bool whole_numbers);
+
+/// A part of a volume that is in memory.
+struct VolumePart {
+    const Volume& samples;
+    Index3 low;    ///< of the whole volume's samples: the part's first
+    Index3 whole;  ///< size of the whole volume [samples]
+};
+
+/// A place that the choice of the coarsest step looks at; `step` as in a round.
+struct SurfaceSite {
+    Index3 at;         ///< in the whole volume
+    double slope = 0;  ///< [data units a sample]
+    double bend = 0;   ///< how much the data bend over a step [data units]
+};
+/// Those of the whole volume that lie in `core`, at most some 30,000 in all, in the order of the
+/// samples. The part has to reach 2 max(step, 1) samples farther than the core, or to the volume's
+/// border.
+std::vector<SurfaceSite> sites_of(const VolumePart& part, const SampleBox& core, int step);
+
+/// The rounds of a whole volume, and what each of them has to know of it.
+struct DequantizePlan {
+    struct Rounds {
+        int step = 1;
+        int count = 1;
+        /// A sample depends on others as far away as this, along each axis [samples].
+        int reach() const { return 2 * step * count; }
+    };
+    double level = 1;                 ///< distance between levels [data units]
+    double minimum = 0, maximum = 0;  ///< of the whole volume [data units]
+    bool mask = false;                ///< samples of two values
+    std::vector<Rounds> rounds;       ///< in their order
+};
+/// `sites(step)`: those of the whole volume, asked for until the coarsest step is found. Of the
+/// options, rounds and coarsest count. Throws std::invalid_argument as dequantized() does.
+DequantizePlan plan_of(double level, double minimum, double maximum,
+                       const DequantizeOptions& options,
+                       const std::function<std::vector<SurfaceSite>(int step)>& sites);
+
+/// Takes `state` (x fastest) through some rounds, on `threads` threads (0: all cores). It begins as
+/// the volume's own samples. Of a part of a volume, samples nearer than Rounds::reach() to a border
+/// that is not the volume's are wrong afterwards. `at_slice` is called after each slice.
+void run_rounds(const Volume& volume, std::span<float> state, const DequantizePlan& plan,
+                const DequantizePlan::Rounds& rounds, int threads,
+                const std::function<void()>& at_slice);
+
+}  // namespace palpate::filters

@@ -1,0 +1,52 @@
+// A multiscale OME-Zarr image that grows chunk by chunk. Several processes, also of several machines
+// with one file system, may write different chunks at the same time. convert_to_zarr() is made of it.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "palpate/stream/convert.hpp"
+
+namespace palpate::stream {
+
+class GrowingImage {
+  public:
+    /// Touches no file. Of the options, those of the format count. `temporary`: how names of files
+    /// end while they are written; processes that may write the same chunk at the same time (one of
+    /// them taken for dead) need different ones. Throws std::invalid_argument for options.
+    GrowingImage(std::filesystem::path folder, SampleType type, const Geometry& finest,
+                 const ConvertOptions& options, std::string temporary = ".part");
+    ~GrowingImage();
+    GrowingImage(const GrowingImage&) = delete;
+    GrowingImage& operator=(const GrowingImage&) = delete;
+
+    /// The finest and the coarser ones, down to one that fits into a chunk.
+    int levels() const;
+    const Geometry& geometry(int level) const;
+    /// Chunks along each axis.
+    Index3 chunks(int level) const;
+    /// The samples of a chunk that lie in the grid.
+    SampleBox box(int level, const Index3& chunk) const;
+
+    /// Of all levels: needed before anything is read. `range` of the finest level, once it is known.
+    /// Throws io::OutputError, like all that writes here.
+    void write_metadata(const std::optional<Range>& range) const;
+    /// The samples of box(level, chunk), x fastest. Read back and compared. False: all are 0, and
+    /// the chunk is not stored.
+    bool write(int level, const Index3& chunk, std::span<const std::byte> samples) const;
+    /// What was written before; nothing if it is not there or not whole.
+    std::optional<std::vector<std::byte>> written(int level, const Index3& chunk) const;
+    /// The samples of a chunk of a coarser level: means of the level before, which has to be
+    /// whole there. Throws what reading throws.
+    std::vector<std::byte> means(int level, const Index3& chunk, const std::stop_token& stop) const;
+
+  private:
+    struct Parts;
+    std::unique_ptr<const Parts> parts_;
+};
+
+}  // namespace palpate::stream

@@ -1,0 +1,154 @@
+"""Work on Dask has the bytes of one machine, though a worker is killed or the program stopped."""
+
+import os
+import pathlib
+import signal
+import subprocess
+
+import numpy
+import palpate
+import pytest
+
+distributed = pytest.importorskip("distributed")
+from palpate.distributed import HALO, _stages, convert  # noqa: E402
+
+PROGRAM = os.environ["PALPATE"]
+
+
+@pytest.fixture(scope="module")
+def cluster():
+    """Two worker processes, like two machines with one file system."""
+    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=True,
+                                  dashboard_address=None) as local:
+        yield local
+
+
+@pytest.fixture
+def client(cluster):
+    with distributed.Client(cluster) as connected:
+        yield connected
+
+
+def ball(folder, kind="uint8", size=(70, 50, 60)):
+    """A file whose samples are not compressed, of a ball on a gentle slope."""
+    x, y, z = (numpy.arange(n) - n / 2 for n in size)
+    r = numpy.sqrt(x ** 2 + y[:, None] ** 2 + z[:, None, None] ** 2)
+    values = numpy.clip(120 - 2.6 * r, 0, 255)
+    if kind == "mask":
+        values, kind = 255 * (r < 20), "uint8"
+    if kind == "float32":
+        values = values + 0.1 * numpy.sin(x)
+    path = folder / "ball.nrrd"
+    palpate.write(palpate.Volume(values.astype(kind), spacing=(0.5, 0.5, 0.7), origin=(1, 2, 3)), path)
+    return str(path)
+
+
+def files(folder):
+    return {str(p.relative_to(folder)): p.read_bytes() for p in pathlib.Path(folder).rglob("*")
+            if p.is_file()}
+
+
+def on_one_machine(source, out, *options):
+    subprocess.run([PROGRAM, "convert", "-q", source, out, *options], check=True)
+    return files(out)
+
+
+@pytest.mark.parametrize("kind, given", [
+    ("int16", {}), ("uint16", {"smooth": 3}), ("uint8", {"dequantize": 4}), ("mask", {"dequantize": 5}),
+    ("float32", {"dequantize": 3}), ("uint8", {"dequantize": 2, "smooth": 1, "prefilter": True})])
+def test_every_filter_and_type_has_the_bytes_of_one_machine(client, tmp_path, kind, given):
+    source = ball(tmp_path, kind)
+    words = [f"--{name}" + ("" if value is True else f"={value}") for name, value in given.items()]
+    expected = on_one_machine(source, tmp_path / "one.zarr", "--chunk", "16", *words)
+    done = convert(client, source, str(tmp_path / "many.zarr"), chunk=16, block=32, **given)
+    assert files(tmp_path / "many.zarr") == expected
+    assert done.kept == 0 and done.blocks > 12
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["ball.nrrd", "many.zarr", "one.zarr"]
+
+
+def test_a_level_of_a_zarr_has_the_bytes_of_one_machine(client, tmp_path):
+    source = str(tmp_path / "source.zarr")
+    on_one_machine(ball(tmp_path), source, "--chunk", "16", "--ome-version", "0.4")
+    expected = on_one_machine(source, tmp_path / "one.zarr", "--chunk", "8", "--level", "1",
+                              "--compression", "blosc", "--ome-version", "0.4")
+    convert(client, source, str(tmp_path / "many.zarr"), level=1, chunk=8, block=16, compression="blosc",
+            ome_version="0.4")
+    assert files(tmp_path / "many.zarr") == expected
+
+
+def test_a_worker_that_is_killed_on_the_way_changes_no_byte(client, tmp_path):
+    source = ball(tmp_path)
+    expected = on_one_machine(source, tmp_path / "one.zarr", "--chunk", "16", "--dequantize=8")
+    processes = client.run(os.getpid)
+    killed = []
+
+    def kill(stage, done, count):
+        if stage in ("state-1", "level-0") and done == 3 and len(killed) < 2:
+            killed.append(list(client.run(os.getpid).values())[0])
+            os.kill(killed[-1], signal.SIGKILL)
+
+    convert(client, source, str(tmp_path / "many.zarr"), chunk=16, block=32, dequantize=8, progress=kill)
+    assert len(killed) == 2 and killed[0] in processes.values()
+    assert files(tmp_path / "many.zarr") == expected
+
+
+def stop_at(stage, count):
+    def progress(now, done, _):
+        if now == stage and done == count:
+            raise KeyboardInterrupt
+    return progress
+
+
+@pytest.mark.parametrize("stage", ["survey", "state-0", "state-2", "level-0", "level-1"])
+def test_a_run_that_was_stopped_is_continued_with_what_is_whole(client, tmp_path, stage):
+    source, out = ball(tmp_path), str(tmp_path / "many.zarr")
+    expected = on_one_machine(source, tmp_path / "one.zarr", "--chunk", "16", "--dequantize=8")
+    with pytest.raises(KeyboardInterrupt):
+        convert(client, source, out, chunk=16, block=32, dequantize=8, progress=stop_at(stage, 1 if stage == "level-1" else 4))
+    assert not os.path.exists(out)
+    if stage == "level-1":  # a chunk that is damaged is made again
+        chunk = pathlib.Path(f"{out}.partial") / "0/c/1/1/1"
+        data = bytearray(chunk.read_bytes())
+        data[len(data) // 2] ^= 1
+        chunk.write_bytes(data)
+    done = convert(client, source, out, chunk=16, block=32, dequantize=8)
+    # Survey, the last whole stage or the levels before, and what there is of this one.
+    assert done.kept >= {"survey": 4, "state-0": 12 + 4, "state-2": 12 + 4, "level-0": 12 + 4,
+                         "level-1": 12 + 11 + 1}[stage]
+    assert files(out) == expected
+
+
+def test_other_work_is_not_continued(client, tmp_path):
+    source, out = ball(tmp_path), str(tmp_path / "many.zarr")
+    with pytest.raises(KeyboardInterrupt):
+        convert(client, source, out, chunk=16, block=32, progress=stop_at("level-0", 5))
+    palpate.write(palpate.Volume(palpate.load(source).volume.array + numpy.uint8(1)), source)
+    assert convert(client, source, out, chunk=16, block=32).kept == 0
+    assert palpate.open_store(out).range[0] == 1
+
+
+def test_what_is_there_and_what_cannot_be_is_refused_in_a_line(client, tmp_path):
+    source, out = ball(tmp_path), tmp_path / "out.zarr"
+    with pytest.raises(ValueError, match="multiple of chunk"):
+        convert(client, source, str(out), chunk=16, block=40)
+    with pytest.raises(ValueError, match="no compression"):
+        convert(client, source, str(out), compression="rar")
+    with pytest.raises(ValueError, match="levels"):
+        convert(client, source, str(out), level=2)
+    with pytest.raises(palpate.InputError, match="does not exist"):
+        convert(client, str(tmp_path / "gone.nrrd"), str(out))
+    with pytest.raises(palpate.OutputError, match="choose another folder"):
+        convert(client, source, str(tmp_path / "no" / "out.zarr"))
+    assert [p.name for p in tmp_path.iterdir()] == ["ball.nrrd"]
+    out.mkdir()
+    with pytest.raises(palpate.OutputError, match="is there already"):
+        convert(client, source, str(out))
+
+
+def test_stages_hold_all_rounds_in_their_order_and_reach_no_farther_than_the_halo():
+    rounds = [(16, 2), (8, 2), (4, 6), (2, 20), (1, 40)]
+    stages = _stages(rounds)
+    flat = [step for stage in stages for step, count in stage for _ in range(count)]
+    assert flat == [step for step, count in rounds for _ in range(count)]
+    assert all(sum(2 * step * count for step, count in stage) <= HALO for stage in stages)
+    assert len(stages) <= 11

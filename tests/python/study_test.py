@@ -1,0 +1,90 @@
+"""A study on Dask has the traces of one machine, and keeps those that are there and whole."""
+
+import os
+import signal
+
+import numpy
+import palpate
+import pytest
+
+distributed = pytest.importorskip("distributed")
+from palpate.study import study  # noqa: E402
+
+SETUPS = {"soft": {"stiffness": 0.2}, "hard": {"stiffness": 1.0}, "paper": {"method": "paper"},
+          "rough": palpate.RenderSetup(friction=palpate.Friction(static_coefficient=0.5,
+                                                                 dynamic_coefficient=0.4)),
+          "ball": {"tool": "sphere:2"}}
+SOURCE = "synthetic:torus:40x40x40"
+FIELD = {"interpolation": "linear"}
+
+
+@pytest.fixture(scope="module")
+def client():
+    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=True,
+                                  dashboard_address=None) as cluster:
+        with distributed.Client(cluster) as connected:
+            yield connected
+
+
+@pytest.fixture(scope="module")
+def motion():
+    scene = palpate.scene("torus:40x40x40")
+    settings = palpate.MotionSettings(duration_s=0.5, seed=9)
+    return scene.isovalue, *palpate.motion("slide", palpate.Field(scene.volume), scene.isovalue, settings)
+
+
+def same(trace, other):
+    return all(numpy.array_equal(getattr(trace, name), getattr(other, name))
+               for name in ("t", "hip", "scp", "force", "torque", "density", "constrained", "contacts",
+                            "proxy_orientation"))
+
+
+def on_one_machine(setup, motion, field):
+    own = {"setup": setup} if isinstance(setup, palpate.RenderSetup) else setup
+    return palpate.replay(palpate.Field(palpate.load(SOURCE).volume, **field), *motion, **own)
+
+
+def test_traces_have_the_bits_of_one_machine_though_a_worker_is_killed(client, motion, tmp_path):
+    setups = {name: setup for name, setup in SETUPS.items() if name != "ball"}
+    killed = []
+
+    def kill(stage, done, count):
+        assert (stage, count) == ("study", 4)
+        if not killed:
+            killed.append(list(client.run(os.getpid).values())[0])
+            os.kill(killed[0], signal.SIGKILL)
+
+    traces = study(client, SOURCE, *motion, setups, str(tmp_path), field=FIELD, progress=kill)
+    assert killed and list(traces) == list(setups)
+    for name, trace in traces.items():
+        one = on_one_machine(setups[name], motion, FIELD)
+        assert trace.constrained.any() and same(trace, one), name
+        assert trace.summary["largest_force"] == one.summary["largest_force"]
+    assert not same(traces["soft"], traces["hard"])
+
+
+def test_what_is_there_and_whole_is_kept_and_a_setup_is_added(client, motion, tmp_path):
+    first = {name: SETUPS[name] for name in ("soft", "hard", "rough")}
+    study(client, SOURCE, *motion, first, str(tmp_path))
+    before = {path.name: path.stat().st_mtime_ns for path in tmp_path.iterdir()}
+    damaged = bytearray((tmp_path / "hard.npz").read_bytes())
+    damaged[len(damaged) // 2] ^= 1
+    (tmp_path / "hard.npz").write_bytes(damaged)
+    second = {**first, "soft": {"stiffness": 0.3}, "ball": SETUPS["ball"]}
+    traces = study(client, SOURCE, *motion, second, str(tmp_path))
+    after = {path.name: path.stat().st_mtime_ns for path in tmp_path.iterdir()}
+    assert sorted(after) == ["ball.npz", "hard.npz", "rough.npz", "soft.npz"]
+    assert [name for name in before if after[name] == before[name]] == ["rough.npz"]
+    for name, trace in traces.items():
+        assert same(trace, on_one_machine(second[name], motion, {})), name
+    assert traces["ball"].has_tool and traces["ball"].contacts.max() > 0
+
+
+def test_wrong_names_and_fields_are_refused_before_anything_runs(client, motion, tmp_path):
+    with pytest.raises(ValueError, match="names of files"):
+        study(client, SOURCE, *motion, {"../up": {}}, str(tmp_path / "out"))
+    with pytest.raises(ValueError, match="no field colour"):
+        study(client, SOURCE, *motion, {"a": {"colour": 1}}, str(tmp_path / "out"))
+    with pytest.raises(palpate.InputError, match="gone.nrrd"):
+        study(client, str(tmp_path / "gone.nrrd"), *motion, {"a": {}}, str(tmp_path / "out"))
+    assert not list(tmp_path.rglob("*.npz"))
