@@ -27,7 +27,7 @@ python=(python3-dev pybind11-dev python3-numpy python3-pytest python3-nibabel py
         python3-setuptools python3-wheel python3-pip)
 io=("${core[@]}" libinsighttoolkit5-dev libvtk9-dev libcli11-dev libfmt-dev nlohmann-json3-dev
     libgdcm-dev libtiff-dev libpng-dev zlib1g-dev gnuplot-nox libboost-dev libegl-dev libegl1
-    libgl1-mesa-dri libembree-dev libtbb-dev libblosc-dev libzstd-dev liblz4-dev libcurl4-openssl-dev
+    libgl1-mesa-dri libembree-dev libtbb-dev libblosc-dev libzstd-dev liblz4-dev libxxhash-dev libcurl4-openssl-dev
     libopenigtlink-dev "${python[@]}")
 viewer=("${io[@]}" libvtk9-qt-dev qtbase5-dev qttools5-dev qttools5-dev-tools qttranslations5-l10n xvfb)
 dev=(git lintian pkg-config mono-mcs mono-runtime clang clang-format-14 clang-tidy libclang-rt-14-dev shellcheck)

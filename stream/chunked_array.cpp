@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "palpate/io/error.hpp"
+#include "stream/n5_block.hpp"
 
 namespace palpate::stream {
 namespace {
@@ -49,9 +50,9 @@ std::size_t ChunkedArray::samples_in_chunk() const {
 
 std::string key_of(const ChunkedArray& array, std::span<const std::int64_t> object) {
     std::string key = array.folder + (array.folder.empty() ? "" : "/") + array.prefix;
-    for (std::size_t a = 0; a < object.size(); ++a) {
-        if (a > 0) key += array.separator;
-        key += std::to_string(object[a]);
+    for (std::size_t i = 0; i < object.size(); ++i) {
+        if (i > 0) key += array.separator;
+        key += std::to_string(object[array.n5_blocks ? object.size() - 1 - i : i]);
     }
     return key;
 }
@@ -83,6 +84,11 @@ void check(const ChunkedArray& array) {
     }
 }
 
+Bytes unpacked_chunk(const ChunkedArray& array, Bytes packed) {
+    if (array.n5_blocks) return unpacked_n5_block(array, packed);
+    return decoded(array.codecs, std::move(packed), array.bytes_in_chunk());
+}
+
 ChunkReader::ChunkReader(std::shared_ptr<const Objects> objects, ChunkedArray array)
     : objects_(std::move(objects)), array_(std::move(array)) {
     check(array_);
@@ -95,7 +101,7 @@ std::optional<Bytes> ChunkReader::chunk(std::span<const std::int64_t> index,
         std::optional<Bytes> bytes = packed(index, key, attempt > 1, stop);
         if (!bytes) return bytes;
         try {
-            return decoded(array_.codecs, *std::move(bytes), array_.bytes_in_chunk());
+            return unpacked_chunk(array_, *std::move(bytes));
         } catch (const DamagedChunk& e) {
             if (attempt < attempts_at_damage) continue;
             throw io::InputError(objects_->name_of(key) + ": " + e.what() +

@@ -1,5 +1,5 @@
-// An array in chunks, as Zarr describes it: where each chunk lies and how its bytes become samples.
-// Private to stream/.
+// An array in chunks, as Zarr and N5 describe it: where each chunk lies and how its bytes become
+// samples. Private to stream/.
 #pragma once
 
 #include <cstdint>
@@ -33,6 +33,9 @@ struct ChunkedArray {
     std::string folder;  ///< the key of the array
     std::string prefix;  ///< of a chunk's name: "c/", "c." or none
     char separator = '.';
+    /// Chunks are blocks of N5: named with the fastest axis first, with a header, those at the end
+    /// of the array cut.
+    bool n5_blocks = false;
 
     std::size_t axes() const { return shape.size(); }
     std::size_t samples_in_chunk() const;
@@ -46,6 +49,9 @@ std::string key_of(const ChunkedArray& array, std::span<const std::int64_t> obje
 /// 1 to 8 axes, at least one sample along each, chunks of at most 1 GiB, shards of at most 2^20
 /// chunks.
 void check(const ChunkedArray& array);
+
+/// The bytes of a chunk's samples out of what is stored. Throws DamagedChunk.
+Bytes unpacked_chunk(const ChunkedArray& array, Bytes packed);
 
 /// Reads chunks of one array; keeps the last indices of shards. Safe from several threads.
 class ChunkReader {

@@ -1,8 +1,10 @@
 // The compressions of stored chunks; see the header.
 #include "stream/codecs.hpp"
 
+#define XXH_INLINE_ALL  // nothing to link
 #include <blosc.h>
 #include <lz4.h>
+#include <xxhash.h>
 #include <zlib.h>
 #include <zstd.h>
 
@@ -108,6 +110,59 @@ Bytes unlz4(std::span<const std::byte> packed, std::size_t most) {
     return out;
 }
 
+/// One block of an LZ4BlockOutputStream of lz4-java; all numbers are little-endian.
+struct Lz4Block {
+    static constexpr std::size_t header_bytes = 21;
+    bool stored_plain;  ///< without compression
+    std::size_t packed_size, size;
+    std::uint32_t checksum;
+};
+
+Lz4Block lz4_block_at(std::span<const std::byte> packed) {
+    static constexpr std::string_view magic = "LZ4Block";
+    if (packed.size() < Lz4Block::header_bytes ||
+        std::memcmp(packed.data(), magic.data(), magic.size()) != 0) {
+        throw DamagedChunk("is no whole stream of lz4 blocks");
+    }
+    const unsigned method = std::to_integer<unsigned>(packed[8]) & 0xF0U;
+    const Lz4Block block{method == 0x10, number_at(packed, 9), number_at(packed, 13),
+                         number_at(packed, 17)};
+    if ((method != 0x10 && method != 0x20) ||
+        block.packed_size > packed.size() - Lz4Block::header_bytes ||
+        (block.stored_plain && block.packed_size != block.size)) {
+        throw DamagedChunk("has a damaged header of an lz4 block");
+    }
+    return block;
+}
+
+Bytes unlz4_blocks(std::span<const std::byte> packed, std::size_t most) {
+    constexpr std::uint32_t seed = 0x9747B28C, checksum_bits = 0x0FFFFFFF;
+    Bytes out;
+    while (true) {
+        const Lz4Block block = lz4_block_at(packed);
+        packed = packed.subspan(Lz4Block::header_bytes);
+        if (block.size == 0) return out;  // the end
+        if (block.size > most - out.size()) too_long(most);
+        const std::size_t begin = out.size();
+        out.resize(begin + block.size);
+        if (block.stored_plain) {
+            std::memcpy(out.data() + begin, packed.data(), block.size);
+        } else {
+            const int got = LZ4_decompress_safe(reinterpret_cast<const char*>(packed.data()),
+                                                reinterpret_cast<char*>(out.data() + begin),
+                                                static_cast<int>(block.packed_size),
+                                                static_cast<int>(block.size));
+            if (got < 0 || static_cast<std::size_t>(got) != block.size) {
+                throw DamagedChunk("has a damaged lz4 block");
+            }
+        }
+        if ((XXH32(out.data() + begin, block.size, seed) & checksum_bits) != block.checksum) {
+            throw DamagedChunk("does not have the checksum of an lz4 block");
+        }
+        packed = packed.subspan(block.packed_size);
+    }
+}
+
 Bytes checked_crc32c(Bytes bytes) {
     if (bytes.size() < 4) throw DamagedChunk("is too short for its checksum");
     const std::size_t size = bytes.size() - 4;
@@ -128,6 +183,8 @@ Bytes undone(Codec codec, Bytes bytes, std::size_t most) {
             return unblosc(bytes, most);
         case Codec::lz4:
             return unlz4(bytes, most);
+        case Codec::lz4_blocks:
+            return unlz4_blocks(bytes, most);
         case Codec::crc32c:
             break;
     }

@@ -12,9 +12,16 @@
 
 namespace palpate::stream {
 
-enum class Codec { gzip, zstd, blosc, lz4, crc32c };
+enum class Codec {
+    gzip,
+    zstd,
+    blosc,
+    lz4,         ///< of numcodecs: the size and one block
+    lz4_blocks,  ///< of lz4-java, which N5 uses: blocks with sizes and checksums
+    crc32c
+};
 
-/// By the names of Zarr 2, Zarr 3 and N5; "zlib" is gzip, whose decoder knows both.
+/// By the names of Zarr 2 and 3; "zlib" is gzip, whose decoder knows both.
 std::optional<Codec> codec_named(std::string_view name);
 
 /// Bytes that are not what their codec writes; what() is without a file's name.

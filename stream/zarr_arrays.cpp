@@ -61,14 +61,6 @@ char separator_of(const std::string& text) {
     return text[0];
 }
 
-void checked(const ChunkedArray& array) {
-    try {
-        check(array);
-    } catch (const std::invalid_argument& e) {
-        throw BadMetadata(e.what());
-    }
-}
-
 [[noreturn]] void refuse_codec(const std::string& name) {
     throw BadMetadata("its codec '" + name +
                       "' is not read; store it with zstd, gzip, lz4 or blosc");
@@ -111,7 +103,7 @@ ChunkedArray zarr2_array(const Json& zarray, const std::string& folder) {
         if (!codec) refuse_codec(name);
         array.codecs = {*codec};
     }
-    checked(array);
+    check_array(array);
     return array;
 }
 
@@ -252,7 +244,7 @@ ChunkedArray zarr3_array(const Json& zarr, const std::string& folder) {
         refuse_codec(transformer.value("name", std::string("storage transformer")));
     }
     take_codecs(zarr.at("codecs"), array);
-    checked(array);
+    check_array(array);
     return array;
 }
 
