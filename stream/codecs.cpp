@@ -1,10 +1,7 @@
 // The compressions of stored chunks; see the header.
 #include "stream/codecs.hpp"
 
-#define XXH_INLINE_ALL  // nothing to link
 #include <blosc.h>
-#include <lz4.h>
-#include <xxhash.h>
 #include <zlib.h>
 #include <zstd.h>
 
@@ -16,23 +13,13 @@
 #include <string>
 #include <utility>
 
+#include "stream/hdf5_codecs.hpp"
+#include "stream/lz4_codecs.hpp"
+
 namespace palpate::stream {
 namespace {
 
 using Bytes = std::vector<std::byte>;
-
-[[noreturn]] void too_long(std::size_t most) {
-    throw DamagedChunk("unpacks to more than the " + std::to_string(most) +
-                       " bytes that its metadata declare");
-}
-
-std::uint32_t number_at(std::span<const std::byte> bytes, std::size_t at) {
-    std::uint32_t number = 0;
-    for (std::size_t i = 4; i-- > 0;) {
-        number = number << 8 | std::to_integer<std::uint32_t>(bytes[at + i]);
-    }
-    return number;
-}
 
 /// The end of a zlib stream, however it is left.
 struct Inflating {
@@ -61,11 +48,11 @@ Bytes gunzip(std::span<const std::byte> packed, std::size_t most) {
             continue;
         }
         if (status == Z_STREAM_END) break;
-        if (z.avail_out == 0) too_long(most);
+        if (z.avail_out == 0) unpacks_too_long(most);
         throw DamagedChunk(z.avail_in == 0 ? "ends within its gzip stream"
                                            : "is a damaged gzip stream");
     }
-    if (z.avail_out == 0) too_long(most);
+    if (z.avail_out == 0) unpacks_too_long(most);
     out.resize(out.size() - z.avail_out);
     return out;
 }
@@ -86,7 +73,7 @@ Bytes unblosc(std::span<const std::byte> packed, std::size_t most) {
     if (blosc_cbuffer_validate(packed.data(), packed.size(), &size) != 0) {
         throw DamagedChunk("is no whole blosc buffer");
     }
-    if (size > most) too_long(most);
+    if (size > most) unpacks_too_long(most);
     Bytes out(size);
     const int got = size == 0 ? 0 : blosc_decompress_ctx(packed.data(), out.data(), size, 1);
     if (got < 0 || static_cast<std::size_t>(got) != size) {
@@ -95,85 +82,17 @@ Bytes unblosc(std::span<const std::byte> packed, std::size_t most) {
     return out;
 }
 
-/// The size, four bytes, and a block.
-Bytes unlz4(std::span<const std::byte> packed, std::size_t most) {
-    if (packed.size() < 4) throw DamagedChunk("is too short for lz4");
-    const std::size_t size = number_at(packed, 0);
-    if (size > most) too_long(most);
-    Bytes out(size);
-    const int got = LZ4_decompress_safe(
-        reinterpret_cast<const char*>(packed.data() + 4), reinterpret_cast<char*>(out.data()),
-        static_cast<int>(packed.size() - 4), static_cast<int>(size));
-    if (got < 0 || static_cast<std::size_t>(got) != size) {
-        throw DamagedChunk("is a damaged lz4 block");
-    }
-    return out;
-}
-
-/// One block of an LZ4BlockOutputStream of lz4-java; all numbers are little-endian.
-struct Lz4Block {
-    static constexpr std::size_t header_bytes = 21;
-    bool stored_plain;  ///< without compression
-    std::size_t packed_size, size;
-    std::uint32_t checksum;
-};
-
-Lz4Block lz4_block_at(std::span<const std::byte> packed) {
-    static constexpr std::string_view magic = "LZ4Block";
-    if (packed.size() < Lz4Block::header_bytes ||
-        std::memcmp(packed.data(), magic.data(), magic.size()) != 0) {
-        throw DamagedChunk("is no whole stream of lz4 blocks");
-    }
-    const unsigned method = std::to_integer<unsigned>(packed[8]) & 0xF0U;
-    const Lz4Block block{method == 0x10, number_at(packed, 9), number_at(packed, 13),
-                         number_at(packed, 17)};
-    if ((method != 0x10 && method != 0x20) ||
-        block.packed_size > packed.size() - Lz4Block::header_bytes ||
-        (block.stored_plain && block.packed_size != block.size)) {
-        throw DamagedChunk("has a damaged header of an lz4 block");
-    }
-    return block;
-}
-
-Bytes unlz4_blocks(std::span<const std::byte> packed, std::size_t most) {
-    constexpr std::uint32_t seed = 0x9747B28C, checksum_bits = 0x0FFFFFFF;
-    Bytes out;
-    while (true) {
-        const Lz4Block block = lz4_block_at(packed);
-        packed = packed.subspan(Lz4Block::header_bytes);
-        if (block.size == 0) return out;  // the end
-        if (block.size > most - out.size()) too_long(most);
-        const std::size_t begin = out.size();
-        out.resize(begin + block.size);
-        if (block.stored_plain) {
-            std::memcpy(out.data() + begin, packed.data(), block.size);
-        } else {
-            const int got = LZ4_decompress_safe(reinterpret_cast<const char*>(packed.data()),
-                                                reinterpret_cast<char*>(out.data() + begin),
-                                                static_cast<int>(block.packed_size),
-                                                static_cast<int>(block.size));
-            if (got < 0 || static_cast<std::size_t>(got) != block.size) {
-                throw DamagedChunk("has a damaged lz4 block");
-            }
-        }
-        if ((XXH32(out.data() + begin, block.size, seed) & checksum_bits) != block.checksum) {
-            throw DamagedChunk("does not have the checksum of an lz4 block");
-        }
-        packed = packed.subspan(block.packed_size);
-    }
-}
-
 Bytes checked_crc32c(Bytes bytes) {
     if (bytes.size() < 4) throw DamagedChunk("is too short for its checksum");
     const std::size_t size = bytes.size() - 4;
-    if (crc32c_of({bytes.data(), size}) != number_at(bytes, size)) {
+    if (crc32c_of({bytes.data(), size}) != little_endian_at(bytes, size)) {
         throw DamagedChunk("does not have its checksum");
     }
     bytes.resize(size);
     return bytes;
 }
 
-Bytes undone(Codec codec, Bytes bytes, std::size_t most) {
+Bytes undone(Codec codec, Bytes bytes, std::size_t most, std::size_t each) {
     switch (codec) {
         case Codec::gzip:
             return gunzip(bytes, most);
@@ -185,6 +104,12 @@ Bytes undone(Codec codec, Bytes bytes, std::size_t most) {
             return unlz4(bytes, most);
         case Codec::lz4_blocks:
             return unlz4_blocks(bytes, most);
+        case Codec::hdf5_lz4:
+            return unhdf5_lz4(bytes, most);
+        case Codec::shuffle:
+            return unshuffled(bytes, each);
+        case Codec::fletcher32:
+            return checked_fletcher32(std::move(bytes));
         case Codec::crc32c:
             break;
     }
@@ -192,6 +117,19 @@ Bytes undone(Codec codec, Bytes bytes, std::size_t most) {
 }
 
 }  // namespace
+
+void unpacks_too_long(std::size_t most) {
+    throw DamagedChunk("unpacks to more than the " + std::to_string(most) +
+                       " bytes that its metadata declare");
+}
+
+std::uint32_t little_endian_at(std::span<const std::byte> bytes, std::size_t at) {
+    std::uint32_t number = 0;
+    for (std::size_t i = 4; i-- > 0;) {
+        number = number << 8 | std::to_integer<std::uint32_t>(bytes[at + i]);
+    }
+    return number;
+}
 
 std::optional<Codec> codec_named(std::string_view name) {
     constexpr std::string_view prefix = "numcodecs.";
@@ -209,10 +147,24 @@ std::optional<Codec> codec_named(std::string_view name) {
     return std::nullopt;
 }
 
-Bytes decoded(std::span<const Codec> codecs, Bytes packed, std::size_t size) {
+std::optional<Codec> codec_in_file(std::string_view name) {
+    static constexpr std::array<std::pair<std::string_view, Codec>, 6> codecs = {
+        {{"gzip", Codec::gzip},
+         {"zstd", Codec::zstd},
+         {"blosc", Codec::blosc},
+         {"shuffle", Codec::shuffle},
+         {"fletcher32", Codec::fletcher32},
+         {"hdf5_lz4", Codec::hdf5_lz4}}};
+    for (const auto& [known, codec] : codecs) {
+        if (name == known) return codec;
+    }
+    return std::nullopt;
+}
+
+Bytes decoded(std::span<const Codec> codecs, Bytes packed, std::size_t size, std::size_t each) {
     for (std::size_t i = 0; i < codecs.size(); ++i) {
         const bool last = i + 1 == codecs.size();
-        packed = undone(codecs[i], std::move(packed), last ? size : packed_at_most(size));
+        packed = undone(codecs[i], std::move(packed), last ? size : packed_at_most(size), each);
     }
     if (packed.size() != size) {
         throw DamagedChunk("has " + std::to_string(packed.size()) + " bytes instead of the " +

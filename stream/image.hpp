@@ -1,5 +1,6 @@
-// An image as the metadata of chunked formats describe it: axes, levels, channels; and the volume that
-// a choice of channel and time makes of it. What is read here is not trusted. Private to stream/.
+// An image as the metadata of chunked formats describe it: axes, levels, channels; and the volume
+// that a choice of channel and time makes of it. What is read here is not trusted. Private to
+// stream/.
 #pragma once
 
 #include <optional>
@@ -29,17 +30,18 @@ struct ImageLevel {
 struct Image {
     std::vector<ImageAxis> axes;  ///< the slowest first
     std::vector<ImageLevel> levels;
-    std::vector<std::string> channels = {};        ///< names, as far as they are given
-    std::optional<Range> range = std::nullopt;     ///< of the finest level
-    std::optional<Mat3> direction = std::nullopt;  ///< of the grid's axes; translations are then LPS
+    std::vector<std::string> channels = {};     ///< names, as far as they are given
+    std::optional<Range> range = std::nullopt;  ///< of the finest level
+    std::optional<Mat3> direction =
+        std::nullopt;  ///< of the grid's axes; translations are then LPS
 };
 
 /// The axes of an array that does not name them: its last three are z, y, x, before them c and t.
 /// Throws BadMetadata unless there are 2 to 5.
 std::vector<ImageAxis> usual_axes(std::size_t count);
 
-/// Completes a volume whose info has address, format and perhaps notes, channels and times, and whose
-/// arrays are those of the levels: type, range, levels, the choice of channel and time.
+/// Completes a volume whose info has address, format and perhaps notes, channels and times, and
+/// whose arrays are those of the levels: type, range, levels, the choice of channel and time.
 /// Throws BadMetadata, io::InputError about a choice that there is not.
 ChunkedVolume volume_of(const Image& image, ChunkedVolume begun, const StoreOptions& options);
 

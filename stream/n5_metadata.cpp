@@ -1,5 +1,6 @@
 // Attributes of N5 datasets and groups. Formats: https://github.com/saalfeldlab/n5 and n5-viewer,
-// https://github.com/bigdataviewer/bigdataviewer-core (BDV N5 format), Neuroglancer's n5 data source.
+// https://github.com/bigdataviewer/bigdataviewer-core (BDV N5 format), Neuroglancer's n5 data
+// source.
 #include "stream/n5_metadata.hpp"
 
 #include <algorithm>
@@ -105,11 +106,16 @@ std::optional<Numbers> factors_of(std::span<const Json> groups, const Json& leve
     return at == 0 ? std::optional(Numbers(axes, 1)) : std::nullopt;
 }
 
-Numbers factors_by_size(const ChunkedArray& finest, const ChunkedArray& coarse) {
-    Numbers factors;
-    for (std::size_t a = 0; a < finest.axes(); ++a) {
-        const auto fine = static_cast<double>(finest.shape[a]);
-        factors.push_back(std::max(1.0, std::round(fine / static_cast<double>(coarse.shape[a]))));
+/// Those of the first `at` levels, each to the next one: halves of odd sizes are rounded either
+/// way.
+Numbers factors_by_size(std::span<const ChunkedArray> arrays, std::size_t at) {
+    Numbers factors(arrays[0].axes(), 1);
+    for (std::size_t i = 0; i < at; ++i) {
+        for (std::size_t a = 0; a < factors.size(); ++a) {
+            const auto fine = static_cast<double>(arrays[i].shape[a]);
+            const auto coarse = static_cast<double>(arrays[i + 1].shape[a]);
+            factors[a] *= std::max(1.0, std::round(fine / coarse));
+        }
     }
     return factors;
 }
@@ -136,8 +142,7 @@ bool take_transform(const Json& transform, Image& image, ImageLevel& level) {
 std::vector<ImageAxis> n5_axes(std::span<const Json> groups, const Json& finest,
                                std::size_t count) {
     std::vector<ImageAxis> axes = usual_axes(count);
-    const Json& names =
-        finest.contains("axes") ? finest["axes"] : attribute(groups, "axes");
+    const Json& names = finest.contains("axes") ? finest["axes"] : attribute(groups, "axes");
     if (!names.is_array() || names.size() != count) return axes;
     for (std::size_t i = 0; i < count; ++i) {
         std::string name = names[i].is_string() ? names[i].get<std::string>() : "";
@@ -184,8 +189,10 @@ Image n5_image(std::span<const Json> groups, std::span<const Json> levels,
     if (!attribute(groups, "affineTransform").is_null()) {
         note_once(notes, "its affineTransform is not applied");
     }
+    for (const ChunkedArray& array : arrays) {
+        if (array.axes() != axes) throw BadMetadata("its levels have different axes");
+    }
     for (std::size_t i = 0; i < levels.size(); ++i) {
-        if (arrays[i].axes() != axes) throw BadMetadata("its levels have different axes");
         ImageLevel level{"", Numbers(axes, 1), Numbers(axes, 0)};
         if (take_transform(levels[i].value("transform", Json()), image, level)) {
             image.levels.push_back(level);
@@ -193,8 +200,9 @@ Image n5_image(std::span<const Json> groups, std::span<const Json> levels,
         }
         auto factors = factors_of(groups, levels[i], i, axes);
         if (!factors) {
-            factors = factors_by_size(arrays[0], arrays[i]);
-            note_once(notes, "it does not tell the scales of its levels: their sizes were compared");
+            factors = factors_by_size(arrays, i);
+            note_once(notes,
+                      "it does not tell the scales of its levels: their sizes were compared");
         }
         for (std::size_t a = 0; a < axes; ++a) {
             const double spacing = resolution ? resolution->spacing[a] : 1;

@@ -12,7 +12,6 @@ namespace {
 using Json = nlohmann::json;
 constexpr std::size_t most_n5_levels = 16;
 
-
 bool is_dataset(const Json& attributes) {
     return attributes.is_object() && attributes.contains("dimensions");
 }
@@ -64,8 +63,8 @@ class N5Opening {
         return attributes;
     }
 
-    /// How many folders PREFIX0, PREFIX1, ... have attributes in PREFIXnSUFFIX: asks for a few, then
-    /// for more and more at once.
+    /// How many folders PREFIX0, PREFIX1, ... have attributes in PREFIXnSUFFIX: asks for a few,
+    /// then for more and more at once.
     int count_of(const std::string& prefix, const std::string& suffix) const {
         constexpr int most = 1 << 16;
         int known = 0;

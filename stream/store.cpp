@@ -1,6 +1,7 @@
 // Chooses the kind of store that an address names.
 #include "palpate/stream/store.hpp"
 
+#include "io/located_chunks.hpp"
 #include "io/plain_samples.hpp"
 #include "palpate/io/error.hpp"
 #include "stream/remote_objects.hpp"
@@ -13,6 +14,13 @@ bool is_plain(const std::string& address, const StoreOptions& options) {
     io::ReadOptions read;
     read.raw = options.raw;
     return io::may_be_plain(address, read);
+}
+
+/// A file whose name says that it holds chunks, unless it is said to have no header.
+bool is_located(const std::string& address, const StoreOptions& options) {
+    std::error_code error;
+    return !options.raw && io::is_chunked_file(address) &&
+           std::filesystem::is_regular_file(address, error);
 }
 
 /// True if its name or its metadata are those of a chunked format.
@@ -39,6 +47,15 @@ std::shared_ptr<const Store> open_chunked(const std::shared_ptr<const Objects>& 
                          "(attributes.json); check the name");
 }
 
+/// The libraries that find chunks in a file need it on this machine.
+void check_not_located(const std::string& address) {
+    if (!io::is_chunked_file(address)) return;
+    throw io::InputError(
+        address +
+        ": HDF5 is read from this machine's disks only; download it, or convert it "
+        "to OME-Zarr where it lies");
+}
+
 void check_number(const std::string& address, const std::string& what, int wanted, int count) {
     if (wanted >= 0 && wanted < count) return;
     throw io::InputError(address + ": there is no " + what + " " + std::to_string(wanted) +
@@ -54,12 +71,18 @@ void check_choice(const StoreInfo& info, const StoreOptions& options) {
                  info.channels.empty() ? 1 : static_cast<int>(info.channels.size()));
 }
 
+bool is_chunked(const std::string& address) {
+    return is_remote(address) || is_chunked_folder(address) || is_located(address, {});
+}
+
 bool is_store(const std::string& address, const StoreOptions& options) {
-    return is_remote(address) || is_chunked_folder(address) || is_plain(address, options);
+    return is_remote(address) || is_chunked_folder(address) || is_located(address, options) ||
+           is_plain(address, options);
 }
 
 std::shared_ptr<const Store> open_store(const std::string& address, const StoreOptions& options) {
     if (is_remote(address)) {
+        check_not_located(address);
         auto objects = http_objects(address, options);
         if (!options.cache_folder.empty() && options.cache_bytes > 0) {
             objects = cached_objects(objects, options.cache_folder, options.cache_bytes);
@@ -69,6 +92,7 @@ std::shared_ptr<const Store> open_store(const std::string& address, const StoreO
     if (is_chunked_folder(address)) {
         return open_chunked(folder_objects(address), address, options);
     }
+    if (is_located(address, options)) return open_located(address, options);
     return open_plain_file(address, options);
 }
 

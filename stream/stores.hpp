@@ -12,6 +12,9 @@ namespace palpate::stream {
 /// Raw, NRRD, MetaImage and NIfTI files whose samples are not compressed.
 std::shared_ptr<const Store> open_plain_file(const std::string& path, const StoreOptions& options);
 
+/// Files of chunks that the helper process locates: io::is_chunked_file().
+std::shared_ptr<const Store> open_located(const std::string& path, const StoreOptions& options);
+
 /// Zarr or N5 below the objects' root; null if there are no metadata of the format. `address` is
 /// how messages name it.
 std::shared_ptr<const Store> open_zarr(std::shared_ptr<const Objects> objects,

@@ -70,8 +70,8 @@ TEST(N5, levels_have_the_scales_and_places_of_each_programs_attributes) {
         EXPECT_TRUE(info.levels[0].geometry.spacing.isApprox(finest));
         EXPECT_TRUE(info.levels[1].geometry.spacing.isApprox(finest.cwiseProduct(Vec3(2, 2, 1))));
         // In the middle of the samples that it is the mean of, unless it says where it is.
-        const Vec3 origin = moved ? Vec3(12e-6, 20e-6, 30e-6)
-                                  : Vec3(finest.cwiseProduct(Vec3(0.5, 0.5, 0)));
+        const Vec3 origin =
+            moved ? Vec3(12e-6, 20e-6, 30e-6) : Vec3(finest.cwiseProduct(Vec3(0.5, 0.5, 0)));
         EXPECT_TRUE(info.levels[1].geometry.origin.isApprox(origin))
             << info.levels[1].geometry.origin.transpose();
         EXPECT_EQ(info.notes.size(), bare ? 2U : 0U);
@@ -137,9 +137,9 @@ TEST(N5, over_http_it_is_found_by_its_name_or_without_it) {
     fs::copy(n5_written() / "group-scales.n5", folder / "scales", fs::copy_options::recursive);
     const VolumeServer other({"--folder", folder.path().string()});
     expect_samples(*open_store(other.address("scales")), 1, "group-1", Stored::uint16);
-    EXPECT_TRUE(contains(
-        message_of<io::InputError>([&] { (void)open_store(server.address("absent.n5")); }),
-        "has no metadata of Zarr (zarr.json, .zgroup, .zarray) or N5"));
+    EXPECT_TRUE(
+        contains(message_of<io::InputError>([&] { (void)open_store(server.address("absent.n5")); }),
+                 "has no metadata of Zarr (zarr.json, .zgroup, .zarray) or N5"));
 }
 
 TEST(N5, mutated_and_truncated_stores_are_refused_in_one_line_or_read) {
@@ -177,15 +177,15 @@ TEST(N5, blocks_that_are_not_possible_are_refused_with_what_is_wrong) {
         const char* what;
     };
     const std::string samples(8, 'x');
-    for (const Wrong& wrong : std::vector<Wrong>{
-             {header(1, {2, 2, 2}) + samples, "mode 1 instead of 0"},
-             {header(2, {2, 2, 2}) + samples, "mode 2 instead of 0"},
-             {header(0, {2, 2}) + samples, "another number of axes"},
-             {header(0, {2, 2, 3}) + samples, "size that is not possible"},
-             {header(0, {2, 0, 2}) + samples, "size that is not possible"},
-             {header(0, {2, 2, 0xFFFFFFFF}) + samples, "size that is not possible"},
-             {header(0, {2, 2, 1}) + samples, "8 bytes instead of the 4"},
-             {std::string("\0\0\0\3", 4), "too short for the header"}}) {
+    for (const Wrong& wrong :
+         std::vector<Wrong>{{header(1, {2, 2, 2}) + samples, "mode 1 instead of 0"},
+                            {header(2, {2, 2, 2}) + samples, "mode 2 instead of 0"},
+                            {header(0, {2, 2}) + samples, "another number of axes"},
+                            {header(0, {2, 2, 3}) + samples, "size that is not possible"},
+                            {header(0, {2, 0, 2}) + samples, "size that is not possible"},
+                            {header(0, {2, 2, 0xFFFFFFFF}) + samples, "size that is not possible"},
+                            {header(0, {2, 2, 1}) + samples, "8 bytes instead of the 4"},
+                            {std::string("\0\0\0\3", 4), "too short for the header"}}) {
         const ScratchFolder folder;
         put_dataset(folder / "a.n5", wrong.block);
         const auto store = open_store(folder / "a.n5");
@@ -200,20 +200,22 @@ TEST(N5, attributes_that_are_not_possible_are_refused_with_what_is_wrong) {
         const char* attributes;
         const char* what;
     };
-    for (const Wrong& wrong : std::vector<Wrong>{
-             {R"({"dimensions":[2,2,2],"blockSize":[2,2],"dataType":"uint8","compression":{"type":"raw"}})",
-              "do not agree"},
-             {R"({"dimensions":[2,2,0],"blockSize":[2,2,2],"dataType":"uint8","compression":{"type":"raw"}})",
-              "size in its metadata is not possible"},
-             {R"({"dimensions":[2,2,2],"blockSize":[2,2,2],"dataType":"string","compression":{"type":"raw"}})",
-              "type 'string'"},
-             {R"({"dimensions":[2,2,2],"blockSize":[2,2,2],"dataType":"uint8","compression":{"type":"bzip2"}})",
-              "'bzip2' is not read"},
-             {R"({"dimensions":[2,2,2],"blockSize":[9999,9999,9999],"dataType":"uint8","compression":{"type":"raw"}})",
-              "more than 1 GiB"},
-             {R"({"dimensions":[2,2,2],"blockSize":[2,2,2],"dataType":"uint8"})", "lack what they need"},
-             {R"({"n5":"2.0"})", "a group of N5 without samples"},
-             {"{", "is not JSON"}}) {
+    for (
+        const Wrong& wrong : std::vector<Wrong>{
+            {R"({"dimensions":[2,2,2],"blockSize":[2,2],"dataType":"uint8","compression":{"type":"raw"}})",
+             "do not agree"},
+            {R"({"dimensions":[2,2,0],"blockSize":[2,2,2],"dataType":"uint8","compression":{"type":"raw"}})",
+             "size in its metadata is not possible"},
+            {R"({"dimensions":[2,2,2],"blockSize":[2,2,2],"dataType":"string","compression":{"type":"raw"}})",
+             "type 'string'"},
+            {R"({"dimensions":[2,2,2],"blockSize":[2,2,2],"dataType":"uint8","compression":{"type":"bzip2"}})",
+             "'bzip2' is not read"},
+            {R"({"dimensions":[2,2,2],"blockSize":[9999,9999,9999],"dataType":"uint8","compression":{"type":"raw"}})",
+             "more than 1 GiB"},
+            {R"({"dimensions":[2,2,2],"blockSize":[2,2,2],"dataType":"uint8"})",
+             "lack what they need"},
+            {R"({"n5":"2.0"})", "a group of N5 without samples"},
+            {"{", "is not JSON"}}) {
         const ScratchFolder folder;
         put_dataset(folder / "a.n5", "", wrong.attributes);
         const std::string message =
