@@ -94,8 +94,7 @@ std::optional<StoreSource> store_of(const FileSource& file, const Names& names) 
     options.spacing = file.spacing;
     options.channel = count_of(names, "channel");
     const bool asked = names.contains("level") || names.contains("memory");
-    const bool chunked = is_web_address(file.path) || std::filesystem::is_directory(file.path) ||
-                         std::filesystem::path(file.path).extension() == ".ims";
+    const bool chunked = !file.raw && stream::is_chunked(file.path);
     if (!asked && !chunked && !is_large(file.path)) return std::nullopt;
     if (!is_web_address(file.path) && !stream::is_store(file.path, options)) {
         if (!asked) return std::nullopt;

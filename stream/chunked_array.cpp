@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "palpate/io/error.hpp"
+#include "stream/n5_block.hpp"
 
 namespace palpate::stream {
 namespace {
@@ -49,9 +50,9 @@ std::size_t ChunkedArray::samples_in_chunk() const {
 
 std::string key_of(const ChunkedArray& array, std::span<const std::int64_t> object) {
     std::string key = array.folder + (array.folder.empty() ? "" : "/") + array.prefix;
-    for (std::size_t a = 0; a < object.size(); ++a) {
-        if (a > 0) key += array.separator;
-        key += std::to_string(object[a]);
+    for (std::size_t i = 0; i < object.size(); ++i) {
+        if (i > 0) key += array.separator;
+        key += std::to_string(object[array.n5_blocks ? object.size() - 1 - i : i]);
     }
     return key;
 }
@@ -83,6 +84,15 @@ void check(const ChunkedArray& array) {
     }
 }
 
+Bytes unpacked_chunk(const ChunkedArray& array, Bytes packed, std::uint64_t skipped) {
+    if (array.n5_blocks) return unpacked_n5_block(array, packed);
+    std::vector<Codec> used;
+    for (std::size_t i = 0; i < array.codecs.size(); ++i) {
+        if (i >= 64 || (skipped >> i & 1) == 0) used.push_back(array.codecs[i]);
+    }
+    return decoded(used, std::move(packed), array.bytes_in_chunk(), array.bytes.size());
+}
+
 ChunkReader::ChunkReader(std::shared_ptr<const Objects> objects, ChunkedArray array)
     : objects_(std::move(objects)), array_(std::move(array)) {
     check(array_);
@@ -91,26 +101,29 @@ ChunkReader::ChunkReader(std::shared_ptr<const Objects> objects, ChunkedArray ar
 std::optional<Bytes> ChunkReader::chunk(std::span<const std::int64_t> index,
                                         std::stop_token stop) const {
     for (int attempt = 1;; ++attempt) {
-        std::string key;
-        std::optional<Bytes> bytes = packed(index, key, attempt > 1, stop);
-        if (!bytes) return bytes;
+        Packed got = packed(index, attempt > 1, stop);
+        if (!got.bytes) return std::nullopt;
         try {
-            return decoded(array_.codecs, *std::move(bytes), array_.bytes_in_chunk());
+            return unpacked_chunk(array_, *std::move(got.bytes), got.skipped);
         } catch (const DamagedChunk& e) {
             if (attempt < attempts_at_damage) continue;
-            throw io::InputError(objects_->name_of(key) + ": " + e.what() +
+            throw io::InputError(objects_->name_of(got.key) + ": " + e.what() +
                                  "; the chunk is damaged: copy it again");
         }
     }
 }
 
-std::optional<Bytes> ChunkReader::packed(std::span<const std::int64_t> index, std::string& key,
-                                         bool again, std::stop_token stop) const {
+ChunkReader::Packed ChunkReader::packed(std::span<const std::int64_t> index, bool again,
+                                        std::stop_token stop) const {
+    if (array_.shards) return packed_in_shard(index, again, std::move(stop));
+    if (array_.table) return packed_in_file(index, again, std::move(stop));
+    const std::string key = key_of(array_, index);
     const std::uint64_t most = packed_at_most(array_.bytes_in_chunk());
-    if (!array_.shards) {
-        key = key_of(array_, index);
-        return objects_->get({key, std::nullopt, most, true, again}, stop);
-    }
+    return {key, objects_->get({key, std::nullopt, most, true, again}, std::move(stop))};
+}
+
+ChunkReader::Packed ChunkReader::packed_in_shard(std::span<const std::int64_t> index, bool again,
+                                                 std::stop_token stop) const {
     std::vector<std::int64_t> shard(index.begin(), index.end());
     std::size_t inside = 0;
     for (std::size_t a = 0; a < shard.size(); ++a) {
@@ -119,17 +132,33 @@ std::optional<Bytes> ChunkReader::packed(std::span<const std::int64_t> index, st
             inside * static_cast<std::size_t>(count) + static_cast<std::size_t>(index[a] % count);
         shard[a] /= count;
     }
-    key = key_of(array_, shard);
+    const std::string key = key_of(array_, shard);
     const Index places = index_of(key, stop);
-    if (!places) return std::nullopt;
+    if (!places) return {key, std::nullopt};
     const std::uint64_t offset = (*places)[2 * inside], length = (*places)[2 * inside + 1];
-    if (offset == not_stored && length == not_stored) return std::nullopt;
-    if (length == 0) return Bytes{};
+    if (offset == not_stored && length == not_stored) return {key, std::nullopt};
+    if (length == 0) return {key, Bytes{}};
+    const std::uint64_t most = packed_at_most(array_.bytes_in_chunk());
     if (length > most || offset > UINT64_MAX / 2) {
         throw io::InputError(objects_->name_of(key) +
                              ": its index is not possible; the shard is damaged: copy it again");
     }
-    return objects_->get({key, ByteRange{offset, length}, most, true, again}, stop);
+    return {key, objects_->get({key, ByteRange{offset, length}, most, true, again}, stop)};
+}
+
+ChunkReader::Packed ChunkReader::packed_in_file(std::span<const std::int64_t> index, bool again,
+                                                std::stop_token stop) const {
+    const std::string& key = array_.folder;
+    const auto place = array_.table->find(index, stop);
+    if (!place) return {key, std::nullopt};
+    const std::uint64_t most = packed_at_most(array_.bytes_in_chunk());
+    if (place->length > most || place->offset > UINT64_MAX / 2) {
+        throw io::InputError(
+            objects_->name_of(key) +
+            ": a chunk of it lies where none can be; it is damaged: copy it again");
+    }
+    const ByteRange range{place->offset, place->length};
+    return {key, objects_->get({key, range, most, true, again}, stop), place->skipped};
 }
 
 ChunkReader::Index ChunkReader::index_of(const std::string& shard, std::stop_token stop) const {

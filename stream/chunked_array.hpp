@@ -1,5 +1,5 @@
-// An array in chunks, as Zarr describes it: where each chunk lies and how its bytes become samples.
-// Private to stream/.
+// An array in chunks, as Zarr, N5 and HDF5 describe it: where each chunk lies and how its bytes
+// become samples. Private to stream/.
 #pragma once
 
 #include <cstdint>
@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "stream/chunk_table.hpp"
 #include "stream/codecs.hpp"
 #include "stream/objects.hpp"
 #include "stream/sample_bytes.hpp"
@@ -33,6 +34,11 @@ struct ChunkedArray {
     std::string folder;  ///< the key of the array
     std::string prefix;  ///< of a chunk's name: "c/", "c." or none
     char separator = '.';
+    /// Chunks are blocks of N5: named with the fastest axis first, with a header, those at the end
+    /// of the array cut.
+    bool n5_blocks = false;
+    /// Where the chunks lie in the object `folder`; null: each chunk or shard is an object.
+    std::shared_ptr<const ChunkTable> table;
 
     std::size_t axes() const { return shape.size(); }
     std::size_t samples_in_chunk() const;
@@ -46,6 +52,10 @@ std::string key_of(const ChunkedArray& array, std::span<const std::int64_t> obje
 /// 1 to 8 axes, at least one sample along each, chunks of at most 1 GiB, shards of at most 2^20
 /// chunks.
 void check(const ChunkedArray& array);
+
+/// The bytes of a chunk's samples out of what is stored. Bit i of `skipped`: codec i was not used.
+/// Throws DamagedChunk.
+Bytes unpacked_chunk(const ChunkedArray& array, Bytes packed, std::uint64_t skipped = 0);
 
 /// Reads chunks of one array; keeps the last indices of shards. Safe from several threads.
 class ChunkReader {
@@ -62,8 +72,17 @@ class ChunkReader {
     using Index = std::shared_ptr<const std::vector<std::uint64_t>>;
     Index index_of(const std::string& shard, std::stop_token stop) const;
     Index fetched_index(const std::string& shard, std::stop_token stop) const;
-    std::optional<Bytes> packed(std::span<const std::int64_t> index, std::string& key, bool again,
-                                std::stop_token stop) const;
+    /// What is stored of a chunk.
+    struct Packed {
+        std::string key;  ///< of the object
+        std::optional<Bytes> bytes;
+        std::uint64_t skipped = 0;  ///< as in io::ChunkPlace
+    };
+    Packed packed(std::span<const std::int64_t> index, bool again, std::stop_token stop) const;
+    Packed packed_in_shard(std::span<const std::int64_t> index, bool again,
+                           std::stop_token stop) const;
+    Packed packed_in_file(std::span<const std::int64_t> index, bool again,
+                          std::stop_token stop) const;
 
     std::shared_ptr<const Objects> objects_;
     ChunkedArray array_;

@@ -2,7 +2,6 @@
 #include "stream/codecs.hpp"
 
 #include <blosc.h>
-#include <lz4.h>
 #include <zlib.h>
 #include <zstd.h>
 
@@ -14,23 +13,13 @@
 #include <string>
 #include <utility>
 
+#include "stream/hdf5_codecs.hpp"
+#include "stream/lz4_codecs.hpp"
+
 namespace palpate::stream {
 namespace {
 
 using Bytes = std::vector<std::byte>;
-
-[[noreturn]] void too_long(std::size_t most) {
-    throw DamagedChunk("unpacks to more than the " + std::to_string(most) +
-                       " bytes that its metadata declare");
-}
-
-std::uint32_t number_at(std::span<const std::byte> bytes, std::size_t at) {
-    std::uint32_t number = 0;
-    for (std::size_t i = 4; i-- > 0;) {
-        number = number << 8 | std::to_integer<std::uint32_t>(bytes[at + i]);
-    }
-    return number;
-}
 
 /// The end of a zlib stream, however it is left.
 struct Inflating {
@@ -59,11 +48,11 @@ Bytes gunzip(std::span<const std::byte> packed, std::size_t most) {
             continue;
         }
         if (status == Z_STREAM_END) break;
-        if (z.avail_out == 0) too_long(most);
+        if (z.avail_out == 0) unpacks_too_long(most);
         throw DamagedChunk(z.avail_in == 0 ? "ends within its gzip stream"
                                            : "is a damaged gzip stream");
     }
-    if (z.avail_out == 0) too_long(most);
+    if (z.avail_out == 0) unpacks_too_long(most);
     out.resize(out.size() - z.avail_out);
     return out;
 }
@@ -84,7 +73,7 @@ Bytes unblosc(std::span<const std::byte> packed, std::size_t most) {
     if (blosc_cbuffer_validate(packed.data(), packed.size(), &size) != 0) {
         throw DamagedChunk("is no whole blosc buffer");
     }
-    if (size > most) too_long(most);
+    if (size > most) unpacks_too_long(most);
     Bytes out(size);
     const int got = size == 0 ? 0 : blosc_decompress_ctx(packed.data(), out.data(), size, 1);
     if (got < 0 || static_cast<std::size_t>(got) != size) {
@@ -93,32 +82,17 @@ Bytes unblosc(std::span<const std::byte> packed, std::size_t most) {
     return out;
 }
 
-/// The size, four bytes, and a block.
-Bytes unlz4(std::span<const std::byte> packed, std::size_t most) {
-    if (packed.size() < 4) throw DamagedChunk("is too short for lz4");
-    const std::size_t size = number_at(packed, 0);
-    if (size > most) too_long(most);
-    Bytes out(size);
-    const int got = LZ4_decompress_safe(
-        reinterpret_cast<const char*>(packed.data() + 4), reinterpret_cast<char*>(out.data()),
-        static_cast<int>(packed.size() - 4), static_cast<int>(size));
-    if (got < 0 || static_cast<std::size_t>(got) != size) {
-        throw DamagedChunk("is a damaged lz4 block");
-    }
-    return out;
-}
-
 Bytes checked_crc32c(Bytes bytes) {
     if (bytes.size() < 4) throw DamagedChunk("is too short for its checksum");
     const std::size_t size = bytes.size() - 4;
-    if (crc32c_of({bytes.data(), size}) != number_at(bytes, size)) {
+    if (crc32c_of({bytes.data(), size}) != little_endian_at(bytes, size)) {
         throw DamagedChunk("does not have its checksum");
     }
     bytes.resize(size);
     return bytes;
 }
 
-Bytes undone(Codec codec, Bytes bytes, std::size_t most) {
+Bytes undone(Codec codec, Bytes bytes, std::size_t most, std::size_t each) {
     switch (codec) {
         case Codec::gzip:
             return gunzip(bytes, most);
@@ -128,6 +102,14 @@ Bytes undone(Codec codec, Bytes bytes, std::size_t most) {
             return unblosc(bytes, most);
         case Codec::lz4:
             return unlz4(bytes, most);
+        case Codec::lz4_blocks:
+            return unlz4_blocks(bytes, most);
+        case Codec::hdf5_lz4:
+            return unhdf5_lz4(bytes, most);
+        case Codec::shuffle:
+            return unshuffled(bytes, each);
+        case Codec::fletcher32:
+            return checked_fletcher32(std::move(bytes));
         case Codec::crc32c:
             break;
     }
@@ -135,6 +117,19 @@ Bytes undone(Codec codec, Bytes bytes, std::size_t most) {
 }
 
 }  // namespace
+
+void unpacks_too_long(std::size_t most) {
+    throw DamagedChunk("unpacks to more than the " + std::to_string(most) +
+                       " bytes that its metadata declare");
+}
+
+std::uint32_t little_endian_at(std::span<const std::byte> bytes, std::size_t at) {
+    std::uint32_t number = 0;
+    for (std::size_t i = 4; i-- > 0;) {
+        number = number << 8 | std::to_integer<std::uint32_t>(bytes[at + i]);
+    }
+    return number;
+}
 
 std::optional<Codec> codec_named(std::string_view name) {
     constexpr std::string_view prefix = "numcodecs.";
@@ -152,10 +147,24 @@ std::optional<Codec> codec_named(std::string_view name) {
     return std::nullopt;
 }
 
-Bytes decoded(std::span<const Codec> codecs, Bytes packed, std::size_t size) {
+std::optional<Codec> codec_in_file(std::string_view name) {
+    static constexpr std::array<std::pair<std::string_view, Codec>, 6> codecs = {
+        {{"gzip", Codec::gzip},
+         {"zstd", Codec::zstd},
+         {"blosc", Codec::blosc},
+         {"shuffle", Codec::shuffle},
+         {"fletcher32", Codec::fletcher32},
+         {"hdf5_lz4", Codec::hdf5_lz4}}};
+    for (const auto& [known, codec] : codecs) {
+        if (name == known) return codec;
+    }
+    return std::nullopt;
+}
+
+Bytes decoded(std::span<const Codec> codecs, Bytes packed, std::size_t size, std::size_t each) {
     for (std::size_t i = 0; i < codecs.size(); ++i) {
         const bool last = i + 1 == codecs.size();
-        packed = undone(codecs[i], std::move(packed), last ? size : packed_at_most(size));
+        packed = undone(codecs[i], std::move(packed), last ? size : packed_at_most(size), each);
     }
     if (packed.size() != size) {
         throw DamagedChunk("has " + std::to_string(packed.size()) + " bytes instead of the " +

@@ -12,10 +12,23 @@
 
 namespace palpate::stream {
 
-enum class Codec { gzip, zstd, blosc, lz4, crc32c };
+enum class Codec {
+    gzip,
+    zstd,
+    blosc,
+    lz4,         ///< of numcodecs: the size and one block
+    lz4_blocks,  ///< of lz4-java, which N5 uses: blocks with sizes and checksums
+    crc32c,
+    shuffle,  ///< of HDF5: first the first bytes of all samples, then the second ones, ...
+    fletcher32,
+    hdf5_lz4  ///< blocks with big-endian sizes
+};
 
-/// By the names of Zarr 2, Zarr 3 and N5; "zlib" is gzip, whose decoder knows both.
+/// By the names of Zarr 2 and 3; "zlib" is gzip, whose decoder knows both.
 std::optional<Codec> codec_named(std::string_view name);
+
+/// By the names that the helper process gives to the compressions of HDF5.
+std::optional<Codec> codec_in_file(std::string_view name);
 
 /// Bytes that are not what their codec writes; what() is without a file's name.
 class DamagedChunk : public std::runtime_error {
@@ -23,9 +36,16 @@ class DamagedChunk : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+/// Throws DamagedChunk: a chunk unpacks to more than `most` bytes.
+[[noreturn]] void unpacks_too_long(std::size_t most);
+
+/// A number of four bytes.
+std::uint32_t little_endian_at(std::span<const std::byte> bytes, std::size_t at);
+
 /// Undoes `codecs`, the first one first. The result has `size` bytes, or DamagedChunk is thrown.
+/// `each`: bytes of a sample, which shuffle has taken apart.
 std::vector<std::byte> decoded(std::span<const Codec> codecs, std::vector<std::byte> packed,
-                               std::size_t size);
+                               std::size_t size, std::size_t each = 1);
 
 /// Most bytes that `size` bytes may have when packed: no codec makes more of them.
 constexpr std::size_t packed_at_most(std::size_t size) {

@@ -1,7 +1,5 @@
 // Metadata of OME-Zarr images, versions 0.4 and 0.5: https://ngff.openmicroscopy.org.
-#include <array>
 #include <cmath>
-#include <utility>
 
 #include "palpate/io/error.hpp"
 #include "stream/zarr_metadata.hpp"
@@ -53,8 +51,8 @@ Placement placement_of(const Json& object, std::size_t axes) {
 }
 
 /// Version 0.4 and later give objects, earlier ones names or nothing (then t, c, z, y, x).
-std::vector<OmeAxis> axes_of(const Json& image) {
-    std::vector<OmeAxis> axes;
+std::vector<ImageAxis> axes_of(const Json& image) {
+    std::vector<ImageAxis> axes;
     const Json list = image.value("axes", Json({"t", "c", "z", "y", "x"}));
     if (!list.is_array() || list.empty() || list.size() > 8) {
         throw BadMetadata("its axes are not sensible");
@@ -104,7 +102,7 @@ std::optional<Mat3> direction_of(const Json& attributes) {
 
 }  // namespace
 
-std::optional<OmeImage> ome_image(const Json& given) {
+std::optional<Image> ome_image(const Json& given) {
     if (!given.is_object()) return std::nullopt;
     const Json& attributes =
         given.contains("ome") && given["ome"].is_object() ? given["ome"] : given;
@@ -112,7 +110,7 @@ std::optional<OmeImage> ome_image(const Json& given) {
     const Json& all = attributes["multiscales"];
     if (!all.is_array() || all.empty()) throw BadMetadata("its list of images is empty");
     const Json& image = all[0];
-    OmeImage found;
+    Image found;
     found.axes = axes_of(image);
     const std::size_t axes = found.axes.size();
     const Placement whole = placement_of(image, axes);
@@ -126,58 +124,13 @@ std::optional<OmeImage> ome_image(const Json& given) {
             place.translation[a] = whole.scale[a] * place.translation[a] + whole.translation[a];
             place.scale[a] *= whole.scale[a];
         }
-        found.datasets.push_back(
+        found.levels.push_back(
             {dataset.at("path").get<std::string>(), place.scale, place.translation});
     }
     found.channels = channel_names(attributes);
     found.range = range_of(given);
     found.direction = direction_of(given);
     return found;
-}
-
-namespace {
-
-using Unit = std::pair<const char*, double>;
-
-template <std::size_t N>
-double factor_in(const std::array<Unit, N>& units, const std::string& unit) {
-    for (const auto& [name, factor] : units) {
-        if (unit == name) return factor;
-    }
-    return 0;
-}
-
-}  // namespace
-
-double millimetres_in(const std::string& unit) {
-    static constexpr std::array<Unit, 15> units = {{{"millimeter", 1},
-                                                    {"millimetre", 1},
-                                                    {"mm", 1},
-                                                    {"micrometer", 1e-3},
-                                                    {"micrometre", 1e-3},
-                                                    {"micron", 1e-3},
-                                                    {"um", 1e-3},
-                                                    {"\u00b5m", 1e-3},
-                                                    {"\u03bcm", 1e-3},
-                                                    {"nanometer", 1e-6},
-                                                    {"nm", 1e-6},
-                                                    {"angstrom", 1e-7},
-                                                    {"centimeter", 10},
-                                                    {"meter", 1000},
-                                                    {"inch", 25.4}}};
-    return factor_in(units, unit);
-}
-
-double seconds_in(const std::string& unit) {
-    static constexpr std::array<Unit, 8> units = {{{"second", 1},
-                                                   {"s", 1},
-                                                   {"millisecond", 1e-3},
-                                                   {"ms", 1e-3},
-                                                   {"microsecond", 1e-6},
-                                                   {"minute", 60},
-                                                   {"hour", 3600},
-                                                   {"day", 86400}}};
-    return factor_in(units, unit);
 }
 
 }  // namespace palpate::stream

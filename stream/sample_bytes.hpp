@@ -26,6 +26,9 @@ struct SampleBytes {
 /// Samples that are not finite become `instead`, as io::read_volume() does it.
 void make_finite(SampleType type, std::span<std::byte> bytes, double instead);
 
+/// A fill value as the type that is kept has it; 0 if it is not finite.
+double fitting_fill(double fill, const SampleBytes& bytes);
+
 /// Throws std::invalid_argument unless the box is not empty, inside the grid, and `bytes` are those
 /// of its samples: a mistake of the caller.
 void check_request(const Geometry& grid, const SampleBox& box, SampleType type, std::size_t bytes);

@@ -1,6 +1,7 @@
 // Chooses the kind of store that an address names.
 #include "palpate/stream/store.hpp"
 
+#include "io/located_chunks.hpp"
 #include "io/plain_samples.hpp"
 #include "palpate/io/error.hpp"
 #include "stream/remote_objects.hpp"
@@ -15,14 +16,44 @@ bool is_plain(const std::string& address, const StoreOptions& options) {
     return io::may_be_plain(address, read);
 }
 
-/// The metadata of a Zarr group or array, of either version.
-bool is_zarr_folder(const std::filesystem::path& folder) {
+/// A file whose name says that it holds chunks, unless it is said to have no header.
+bool is_located(const std::string& address, const StoreOptions& options) {
+    std::error_code error;
+    return !options.raw && io::is_chunked_file(address) &&
+           std::filesystem::is_regular_file(address, error);
+}
+
+/// True if its name or its metadata are those of a chunked format.
+bool is_chunked_folder(const std::filesystem::path& folder) {
     std::error_code error;
     if (!std::filesystem::is_directory(folder, error)) return false;
-    for (const char* name : {"zarr.json", ".zattrs", ".zgroup", ".zarray"}) {
+    for (const char* name :
+         {"zarr.json", ".zattrs", ".zgroup", ".zarray", "attributes.json", "s0/attributes.json",
+          "setup0/attributes.json", "timepoint0/s0/attributes.json", "c0/s0/attributes.json"}) {
         if (std::filesystem::exists(folder / name, error)) return true;
     }
-    return folder.extension() == ".zarr";
+    return folder.extension() == ".zarr" || folder.extension() == ".n5";
+}
+
+/// The format that the name tells is looked for first: of a remote store, each costs a round trip.
+std::shared_ptr<const Store> open_chunked(const std::shared_ptr<const Objects>& objects,
+                                          const std::string& address, const StoreOptions& options) {
+    const bool named_n5 = address.find(".n5") != std::string::npos;
+    for (const auto open : {named_n5 ? open_n5 : open_zarr, named_n5 ? open_zarr : open_n5}) {
+        if (auto store = open(objects, address, options)) return store;
+    }
+    throw io::InputError(address +
+                         ": has no metadata of Zarr (zarr.json, .zgroup, .zarray) or N5 "
+                         "(attributes.json); check the name");
+}
+
+/// The libraries that find chunks in a file need it on this machine.
+void check_not_located(const std::string& address) {
+    if (!io::is_chunked_file(address)) return;
+    throw io::InputError(
+        address +
+        ": HDF5 is read from this machine's disks only; download it, or convert it "
+        "to OME-Zarr where it lies");
 }
 
 void check_number(const std::string& address, const std::string& what, int wanted, int count) {
@@ -40,19 +71,28 @@ void check_choice(const StoreInfo& info, const StoreOptions& options) {
                  info.channels.empty() ? 1 : static_cast<int>(info.channels.size()));
 }
 
+bool is_chunked(const std::string& address) {
+    return is_remote(address) || is_chunked_folder(address) || is_located(address, {});
+}
+
 bool is_store(const std::string& address, const StoreOptions& options) {
-    return is_remote(address) || is_zarr_folder(address) || is_plain(address, options);
+    return is_remote(address) || is_chunked_folder(address) || is_located(address, options) ||
+           is_plain(address, options);
 }
 
 std::shared_ptr<const Store> open_store(const std::string& address, const StoreOptions& options) {
     if (is_remote(address)) {
+        check_not_located(address);
         auto objects = http_objects(address, options);
         if (!options.cache_folder.empty() && options.cache_bytes > 0) {
             objects = cached_objects(objects, options.cache_folder, options.cache_bytes);
         }
-        return open_zarr(objects, address, options);
+        return open_chunked(objects, address, options);
     }
-    if (is_zarr_folder(address)) return open_zarr(folder_objects(address), address, options);
+    if (is_chunked_folder(address)) {
+        return open_chunked(folder_objects(address), address, options);
+    }
+    if (is_located(address, options)) return open_located(address, options);
     return open_plain_file(address, options);
 }
 

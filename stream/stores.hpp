@@ -12,9 +12,16 @@ namespace palpate::stream {
 /// Raw, NRRD, MetaImage and NIfTI files whose samples are not compressed.
 std::shared_ptr<const Store> open_plain_file(const std::string& path, const StoreOptions& options);
 
-/// Zarr below the objects' root; `address` is how messages name it.
+/// Files of chunks that the helper process locates: io::is_chunked_file().
+std::shared_ptr<const Store> open_located(const std::string& path, const StoreOptions& options);
+
+/// Zarr or N5 below the objects' root; null if there are no metadata of the format. `address` is
+/// how messages name it.
 std::shared_ptr<const Store> open_zarr(std::shared_ptr<const Objects> objects,
                                        const std::string& address, const StoreOptions& options);
+
+std::shared_ptr<const Store> open_n5(std::shared_ptr<const Objects> objects,
+                                     const std::string& address, const StoreOptions& options);
 
 /// Throws io::InputError about options.time or options.channel that a store does not have.
 void check_choice(const StoreInfo& info, const StoreOptions& options);

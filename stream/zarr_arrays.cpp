@@ -2,8 +2,6 @@
 // and v3/core, with the codecs of v3.
 #include <algorithm>
 #include <bit>
-#include <cmath>
-#include <limits>
 
 #include "stream/zarr_metadata.hpp"
 
@@ -49,9 +47,7 @@ void take_dtype(const Json& json, SampleBytes& bytes) {
 
 double fill_of(const Json& json) {
     if (json.is_boolean()) return json.get<bool>() ? 1 : 0;
-    if (!json.is_number()) return 0;  // none, NaN, infinite, or a text of bytes
-    const double fill = json.get<double>();
-    return std::isfinite(fill) && std::abs(fill) <= std::numeric_limits<float>::max() ? fill : 0;
+    return json.is_number() ? json.get<double>() : 0;  // none, NaN, infinite, or a text of bytes
 }
 
 char separator_of(const std::string& text) {
@@ -61,27 +57,9 @@ char separator_of(const std::string& text) {
     return text[0];
 }
 
-void checked(const ChunkedArray& array) {
-    try {
-        check(array);
-    } catch (const std::invalid_argument& e) {
-        throw BadMetadata(e.what());
-    }
-}
-
 [[noreturn]] void refuse_codec(const std::string& name) {
     throw BadMetadata("its codec '" + name +
                       "' is not read; store it with zstd, gzip, lz4 or blosc");
-}
-
-/// Fill values have to fit the type that is kept.
-double fitting(double fill, const SampleBytes& bytes) {
-    return with_type(bytes.type(), [&](auto zero) {
-        using T = decltype(zero);
-        const double low = static_cast<double>(std::numeric_limits<T>::lowest());
-        const double high = static_cast<double>(std::numeric_limits<T>::max());
-        return static_cast<double>(static_cast<T>(std::clamp(fill, low, high)));
-    });
 }
 
 }  // namespace
@@ -93,7 +71,7 @@ ChunkedArray zarr2_array(const Json& zarray, const std::string& folder) {
     array.shape = sizes_of(zarray.at("shape"), "shape");
     array.chunk = sizes_of(zarray.at("chunks"), "chunks");
     take_dtype(zarray.at("dtype"), array.bytes);
-    array.bytes.fill = fitting(fill_of(zarray.value("fill_value", Json())), array.bytes);
+    array.bytes.fill = fitting_fill(fill_of(zarray.value("fill_value", Json())), array.bytes);
     array.separator = separator_of(zarray.value("dimension_separator", std::string(".")));
     const std::string order = zarray.value("order", std::string("C"));
     if (order != "C" && order != "F")
@@ -111,7 +89,7 @@ ChunkedArray zarr2_array(const Json& zarray, const std::string& folder) {
         if (!codec) refuse_codec(name);
         array.codecs = {*codec};
     }
-    checked(array);
+    check_array(array);
     return array;
 }
 
@@ -245,14 +223,14 @@ ChunkedArray zarr3_array(const Json& zarr, const std::string& folder) {
     const auto stored = io::stored_named(name == "bool" ? "uint8" : name);
     if (!stored) refuse_type(name);
     array.bytes.stored = *stored;
-    array.bytes.fill = fitting(fill_of(zarr.value("fill_value", Json())), array.bytes);
+    array.bytes.fill = fitting_fill(fill_of(zarr.value("fill_value", Json())), array.bytes);
     for (std::size_t a = 0; a < array.axes(); ++a) array.stored_axes.push_back(static_cast<int>(a));
     take_key_encoding(zarr.at("chunk_key_encoding"), array);
     for (const Json& transformer : zarr.value("storage_transformers", Json::array())) {
         refuse_codec(transformer.value("name", std::string("storage transformer")));
     }
     take_codecs(zarr.at("codecs"), array);
-    checked(array);
+    check_array(array);
     return array;
 }
 

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "io/helper/child.hpp"
+#include "io/helper/images.hpp"
 #include "io/helper/library_words.hpp"
 #include "io/helper/protocol.hpp"
 #include "io/helper/readers.hpp"
@@ -163,6 +164,23 @@ nlohmann::json run_locate(const fs::path& path, const nlohmann::json& asked) {
             {"notes", plain.about.notes}};
 }
 
+nlohmann::json run_describe(const fs::path& path, const nlohmann::json& asked) {
+    limit_this_process(asked, 1 << 30);
+    return json_from(hdf5_image(path, asked.at("channel").get<int>(), asked.at("time").get<int>()));
+}
+
+nlohmann::json run_chunks(const fs::path& path, const nlohmann::json& asked) {
+    limit_this_process(asked, 1 << 30);
+    ChunkBox box;
+    box.array = asked.at("array").get<std::string>();
+    box.first = asked.at("first").get<std::array<std::int64_t, 3>>();
+    box.count = asked.at("count").get<std::array<std::int64_t, 3>>();
+    const auto count = static_cast<std::size_t>(box.count[0] * box.count[1] * box.count[2]);
+    const std::span<std::byte> memory = shared_samples(count * sizeof(ChunkPlace));
+    hdf5_places(path, box, {reinterpret_cast<ChunkPlace*>(memory.data()), count});
+    return nlohmann::json::object();
+}
+
 nlohmann::json run_read(const fs::path& path, const nlohmann::json& asked) {
     Request request;
     request.path = path;
@@ -276,28 +294,38 @@ nlohmann::json run_read_mesh(const fs::path& path, const nlohmann::json& asked) 
     return {{"vertices", size.vertices}, {"triangles", size.triangles}};
 }
 
+using Job = nlohmann::json (*)(const fs::path& path, const nlohmann::json& asked);
+
+/// By the first word of the command line; null for others and for "write".
+Job job_named(const std::string& name) {
+    static constexpr std::pair<const char*, Job> jobs[] = {{"read", run_read},
+                                                           {"locate", run_locate},
+                                                           {"describe", run_describe},
+                                                           {"chunks", run_chunks},
+                                                           {"read-mesh", run_read_mesh}};
+    for (const auto& [known, job] : jobs) {
+        if (name == known) return job;
+    }
+    return nullptr;
+}
+
 int run(int argc, char** argv) {
-    const bool of_mesh = argc == 4 && std::strcmp(argv[1], "read-mesh") == 0;
-    const bool reading = of_mesh || (argc == 4 && std::strcmp(argv[1], "read") == 0);
-    const bool locating = argc == 4 && std::strcmp(argv[1], "locate") == 0;
+    const Job reading = argc == 4 ? job_named(argv[1]) : nullptr;
     const bool writing = argc == 5 && std::strcmp(argv[1], "write") == 0;
     const auto work = [&] {
         const auto asked = nlohmann::json::parse(argv[3]);
-        if (of_mesh) return run_read_mesh(argv[2], asked);
-        if (locating) return run_locate(argv[2], asked);
-        return reading ? run_read(argv[2], asked) : run_write(argv[2], asked, argv[4]);
+        return reading ? reading(argv[2], asked) : run_write(argv[2], asked, argv[4]);
     };
     const auto words_of = [&](const std::exception& e) -> std::string {
         if (dynamic_cast<const Failure*>(&e)) return e.what();
         if (dynamic_cast<const std::bad_alloc*>(&e)) {
-            return of_mesh ? "not enough memory; simplify the mesh"
-                           : "not enough memory; crop or downsample the volume";
+            return reading == run_read_mesh ? "not enough memory; simplify the mesh"
+                                            : "not enough memory; crop or downsample the volume";
         }
         return "the format's library refused it (" + library_words(e.what(), 300) + "); " +
-               (reading || locating ? "it is damaged or of a kind that is not read"
-                                    : "is the disk full?");
+               (reading ? "it is damaged or of a kind that is not read" : "is the disk full?");
     };
-    return helper_status("palpate-io-helper", reading || locating || writing, work, words_of);
+    return helper_status("palpate-io-helper", reading || writing, work, words_of);
 }
 
 }  // namespace

@@ -1,7 +1,9 @@
 // The protocol between the library and its helper program.
 //   palpate-io-helper read PATH REQUEST       samples come back in descriptor 3
 //   palpate-io-helper locate PATH REQUEST     says where the samples lie in their file
-//   palpate-io-helper read-mesh PATH REQUEST  vertices and triangles come back in descriptor 3
+//   palpate-io-helper describe PATH REQUEST   says what image is in a file of chunks
+//   palpate-io-helper chunks PATH REQUEST     where some chunks of it lie comes back in descriptor
+//   3 palpate-io-helper read-mesh PATH REQUEST  vertices and triangles come back in descriptor 3
 //   palpate-io-helper write PATH REQUEST FOLDER   samples are given in descriptor 3; FOLDER, beside
 //                                             PATH, is created for the unfinished file and removed
 // REQUEST is JSON. Lines of JSON come back on descriptor 4: {"progress":0.5}, {"doing":"a file"},

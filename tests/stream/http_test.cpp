@@ -142,7 +142,7 @@ TEST(Http, a_missing_chunk_is_fill_and_missing_metadata_an_error) {
     EXPECT_EQ(volume.sample(Index3(0, 0, 3)), 9);
     const std::string message =
         message_of<io::InputError>([&] { (void)open_store(server.address("no.zarr"), quick()); });
-    EXPECT_TRUE(contains(message, "no Zarr folder")) << message;
+    EXPECT_TRUE(contains(message, "has no metadata of Zarr")) << message;
 }
 
 TEST(Http, shards_are_read_in_parts_and_a_server_without_parts_is_refused) {

@@ -1,14 +1,17 @@
-// Boxes of stores compared with whole volumes.
+// Boxes of stores compared with whole volumes, and stores that are damaged.
 #pragma once
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
+#include <filesystem>
 #include <random>
 #include <string>
 #include <vector>
 
 #include "io/stored.hpp"
+#include "io/volume_support.hpp"
 #include "palpate/stream/store.hpp"
 #include "support/scratch_folder.hpp"
 
@@ -76,6 +79,68 @@ inline void expect_same_boxes(const Store& store, const Volume& volume, unsigned
         ASSERT_EQ(read_box(store, level, box), box_of(volume, box))
             << box.low.transpose() << " to " << box.high.transpose();
     }
+}
+
+/// The samples of a .raw file with stored numbers, as `type`.
+inline std::vector<std::byte> converted(const std::string& raw, io::Stored stored,
+                                        SampleType type) {
+    const std::size_t count = raw.size() / io::size_of(stored);
+    std::vector<std::byte> samples(count * size_of(type));
+    io::convert(stored, reinterpret_cast<const std::byte*>(raw.data()), type, samples.data(),
+                count);
+    return samples;
+}
+
+inline Volume expected_volume(const Geometry& grid, const std::string& raw, io::Stored stored) {
+    const auto samples =
+        std::make_shared<std::vector<std::byte>>(converted(raw, stored, io::kept_as(stored)));
+    return Volume(grid, io::kept_as(stored), std::shared_ptr<const void>(samples, samples->data()),
+                  samples->size());
+}
+
+/// Opens and reads all of a store; true if it did, false if it was refused in one line.
+inline bool read_or_refused(const std::filesystem::path& path) {
+    try {
+        const auto store = open_store(path);
+        if (sample_count(store->info().levels[0].geometry) < 100'000) (void)volume_of(*store);
+        return true;
+    } catch (const io::InputError& error) {
+        EXPECT_TRUE(io::test::one_line_about(error.what(), path) ||
+                    support::contains(error.what(), path.string() + "/"))
+            << error.what();
+    }
+    return false;
+}
+
+/// Damages one file of a store (a folder, or a file itself), `times` times: cut short, or with a
+/// few bytes changed. How often it was refused; what is not refused is read.
+inline int refused_of_damaged(const std::filesystem::path& store, int times, std::mt19937& random) {
+    namespace fs = std::filesystem;
+    std::vector<fs::path> files = {store};
+    if (fs::is_directory(store)) {
+        files.clear();
+        for (const auto& entry : fs::recursive_directory_iterator(store)) {
+            if (entry.is_regular_file()) files.push_back(entry.path());
+        }
+    }
+    std::ranges::sort(files);
+    int refused = 0;
+    for (int i = 0; i < times; ++i) {
+        const fs::path& file = files[random() % files.size()];
+        const std::string good = support::bytes_of(file);
+        std::string bad = good;
+        if (i % 3 == 0) {
+            bad.resize(random() % good.size());
+        } else {
+            for (int flips = 0; flips < 1 + i % 4; ++flips) {
+                bad[random() % bad.size()] = static_cast<char>(random());
+            }
+        }
+        support::put_bytes(file, bad);
+        refused += !read_or_refused(store);
+        support::put_bytes(file, good);
+    }
+    return refused;
 }
 
 }  // namespace palpate::stream::test

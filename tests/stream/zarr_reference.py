@@ -233,4 +233,5 @@ def main():
         sys.stdout.buffer.write(numpy.ascontiguousarray(array).tobytes())
 
 
-main()
+if __name__ == "__main__":
+    main()

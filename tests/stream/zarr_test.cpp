@@ -30,22 +30,6 @@ const fs::path& written() {
     return folder.path();
 }
 
-/// The samples of a .raw file with stored numbers, as `type`.
-std::vector<std::byte> converted(const std::string& raw, io::Stored stored, SampleType type) {
-    const std::size_t count = raw.size() / io::size_of(stored);
-    std::vector<std::byte> samples(count * size_of(type));
-    io::convert(stored, reinterpret_cast<const std::byte*>(raw.data()), type, samples.data(),
-                count);
-    return samples;
-}
-
-Volume expected_volume(const Geometry& grid, const std::string& raw, io::Stored stored) {
-    const auto samples =
-        std::make_shared<std::vector<std::byte>>(converted(raw, stored, io::kept_as(stored)));
-    return Volume(grid, io::kept_as(stored), std::shared_ptr<const void>(samples, samples->data()),
-                  samples->size());
-}
-
 /// By the bytes of a sample and the type that the store gives them.
 io::Stored stored_of(const Store& store, std::size_t each) {
     using io::Stored;
@@ -193,47 +177,14 @@ TEST(OmeZarr, public_samples_of_both_versions_read_as_python_reads_them) {
     (void)volume_of(*series);
 }
 
-/// Opens and reads all of a store; true if it did, false if it was refused in one line.
-bool read_or_refused(const fs::path& path) {
-    try {
-        const auto store = open_store(path);
-        if (sample_count(store->info().levels[0].geometry) < 100'000) (void)volume_of(*store);
-        return true;
-    } catch (const io::InputError& error) {
-        EXPECT_TRUE(io::test::one_line_about(error.what(), path) ||
-                    contains(error.what(), path.string() + "/"))
-            << error.what();
-    }
-    return false;
-}
-
 TEST(Zarr, mutated_and_truncated_stores_are_refused_in_one_line_or_read) {
     std::mt19937 random(11);
     int refused = 0, tried = 0;
     for (const char* name : {"v2-5-gzip.zarr", "v2-12-lz4.zarr", "v2-17-blosc-lz4.zarr",
                              "v3-2.zarr", "v3-shards-0.zarr", "v3-shards-1.zarr", "ome.zarr"}) {
         if (!fs::exists(written() / name)) ADD_FAILURE() << name;
-        std::vector<fs::path> files;
-        for (const auto& entry : fs::recursive_directory_iterator(written() / name)) {
-            if (entry.is_regular_file()) files.push_back(entry.path());
-        }
-        std::ranges::sort(files);
-        for (int i = 0; i < 60; ++i) {
-            const fs::path& file = files[random() % files.size()];
-            const std::string good = bytes_of(file);
-            std::string bad = good;
-            if (i % 3 == 0) {
-                bad.resize(random() % good.size());
-            } else {
-                for (int flips = 0; flips < 1 + i % 4; ++flips) {
-                    bad[random() % bad.size()] = static_cast<char>(random());
-                }
-            }
-            put_bytes(file, bad);
-            refused += !read_or_refused(written() / name);
-            ++tried;
-            put_bytes(file, good);
-        }
+        refused += refused_of_damaged(written() / name, 60, random);
+        tried += 60;
     }
     EXPECT_GT(refused, tried / 3);
     EXPECT_EQ(tried, 420);

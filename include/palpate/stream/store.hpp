@@ -1,4 +1,4 @@
-// A store of samples that are read by the box: big plain files, OME-Zarr, N5 and others, on disk or
+// A store of samples that are read by the box: big plain files, OME-Zarr, N5, HDF5, on disk or
 // behind HTTP, at several levels of detail. Nothing is held but what is asked for.
 #pragma once
 
@@ -81,6 +81,10 @@ struct Cancelled {};
 /// or file of a chunked format, or a plain file whose samples lie in it uncompressed. Looks at the
 /// name and at most at the first bytes of a file.
 bool is_store(const std::string& address, const StoreOptions& options = {});
+
+/// True if it is one of these and no plain file: one that is read by the box without being asked
+/// for.
+bool is_chunked(const std::string& address);
 
 /// Opens a file, a folder, or an http://, https:// or s3:// address. Reads headers only. Throws
 /// io::InputError: what is wrong and what to do, one line.

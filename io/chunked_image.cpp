@@ -1,0 +1,78 @@
+// What a file of chunks says of the image in it, as JSON; see the header.
+#include "io/chunked_image.hpp"
+
+#include <stdexcept>
+
+#include "palpate/io/error.hpp"
+
+namespace palpate::io {
+namespace {
+
+constexpr std::size_t most_listed = 4096;  // channels, notes, levels
+
+std::vector<std::string> lines_from(const nlohmann::json& list, std::size_t longest) {
+    std::vector<std::string> lines;
+    for (const auto& line : list) {
+        if (lines.size() == most_listed) throw std::invalid_argument("a list is too long");
+        lines.push_back(one_line(line.get<std::string>().substr(0, longest)));
+    }
+    return lines;
+}
+
+ImageArray array_from(const nlohmann::json& json) {
+    ImageArray array;
+    array.id = json.at("id").get<std::string>();
+    array.shape = json.at("shape").get<std::array<std::int64_t, 3>>();
+    array.chunk = json.at("chunk").get<std::array<std::int64_t, 3>>();
+    array.stored = stored_named(json.at("stored").get<std::string>()).value();
+    array.swapped = json.at("swapped").get<bool>();
+    array.fill = json.at("fill").get<double>();
+    array.codecs = lines_from(json.at("codecs"), 64);
+    array.scale = json.at("scale").get<std::array<double, 3>>();
+    array.translation = json.at("translation").get<std::array<double, 3>>();
+    return array;
+}
+
+}  // namespace
+
+nlohmann::json json_from(const ChunkedImage& image) {
+    nlohmann::json json = {{"format", image.format},
+                           {"unit", image.unit},
+                           {"channels", image.channels},
+                           {"times", image.times},
+                           {"frame_interval", image.frame_interval},
+                           {"notes", image.notes},
+                           {"levels", nlohmann::json::array()}};
+    if (image.range) json["range"] = *image.range;
+    for (const ImageArray& array : image.levels) {
+        json["levels"].push_back({{"id", array.id},
+                                  {"shape", array.shape},
+                                  {"chunk", array.chunk},
+                                  {"stored", name_of(array.stored)},
+                                  {"swapped", array.swapped},
+                                  {"fill", array.fill},
+                                  {"codecs", array.codecs},
+                                  {"scale", array.scale},
+                                  {"translation", array.translation}});
+    }
+    return json;
+}
+
+ChunkedImage chunked_image_from(const nlohmann::json& json) {
+    constexpr std::size_t longest_name = 64, longest_note = 400;
+    ChunkedImage image;
+    image.format = one_line(json.at("format").get<std::string>().substr(0, longest_name));
+    image.unit = json.at("unit").get<std::string>();
+    image.channels = lines_from(json.at("channels"), longest_name);
+    image.times = json.at("times").get<int>();
+    image.frame_interval = json.at("frame_interval").get<double>();
+    if (json.contains("range")) image.range = json["range"].get<std::array<double, 2>>();
+    image.notes = lines_from(json.at("notes"), longest_note);
+    for (const auto& level : json.at("levels")) {
+        if (image.levels.size() == most_listed) throw std::invalid_argument("too many levels");
+        image.levels.push_back(array_from(level));
+    }
+    return image;
+}
+
+}  // namespace palpate::io

@@ -1,0 +1,252 @@
+// The two layouts of images in HDF5 that are read: Imaris 5.5
+// (https://imaris.oxinst.com/support/imaris-file-format) and BigDataViewer
+// (https://imagej.net/plugins/bdv, "XML/HDF5 File Format").
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <numeric>
+
+#include "io/helper/decode.hpp"
+#include "io/helper/hdf5_file.hpp"
+#include "io/helper/headers.hpp"
+#include "io/helper/images.hpp"
+#include "io/helper/xml.hpp"
+#include "io/number.hpp"
+
+namespace palpate::io {
+namespace {
+
+constexpr int most_levels = 64;
+
+std::string with_number(const char* format, int number) {
+    char text[64];
+    std::snprintf(text, sizeof text, format, number);
+    return text;
+}
+
+/// "2008-02-19 11:42:05.000" as seconds since some day.
+std::optional<double> seconds_of(const std::string& text) {
+    int year = 0, hour = 0, minute = 0;
+    unsigned month = 0, day = 0;
+    double second = 0;
+    if (std::sscanf(text.c_str(), "%d-%u-%u %d:%d:%lf", &year, &month, &day, &hour, &minute,
+                    &second) != 6) {
+        return std::nullopt;
+    }
+    const std::chrono::year_month_day date{std::chrono::year(year), std::chrono::month(month),
+                                           std::chrono::day(day)};
+    if (!date.ok()) return std::nullopt;
+    const auto days = std::chrono::sys_days(date).time_since_epoch().count();
+    return 86400.0 * static_cast<double>(days) + 3600.0 * hour + 60.0 * minute + second;
+}
+
+double imaris_interval(const Hdf5File& file, int times) {
+    if (times < 2) return 0;
+    const auto at = [&](int time) {
+        return seconds_of(file.text("/DataSetInfo/TimeInfo", with_number("TimePoint%d", time + 1).c_str()));
+    };
+    const auto first = at(0), last = at(times - 1);
+    return first && last && *last > *first ? (*last - *first) / (times - 1) : 0;
+}
+
+/// The values between the first and the last filled class of Imaris's histogram, if that counts
+/// every sample. Its classes lie between HistogramMin and HistogramMax, whether these are their
+/// outer borders or the middles of the outermost.
+std::optional<std::array<double, 2>> imaris_range(const Hdf5File& file, const std::string& channel,
+                                                  const ImageArray& finest) {
+    const auto low = file.number(channel, "HistogramMin"), high = file.number(channel, "HistogramMax");
+    const std::string histogram = channel + "/Histogram";
+    if (!low || !high || !(*low < *high) || !file.has(histogram)) return std::nullopt;
+    const std::vector<double> counts = file.numbers(histogram);
+    const double samples = static_cast<double>(finest.shape[0]) *
+                           static_cast<double>(finest.shape[1]) *
+                           static_cast<double>(finest.shape[2]);
+    if (counts.size() < 2 || std::accumulate(counts.begin(), counts.end(), 0.0) != samples) {
+        return std::nullopt;
+    }
+    const auto filled = [](double count) { return count > 0; };
+    const auto first = std::ranges::find_if(counts, filled) - counts.begin();
+    const auto last =
+        std::ssize(counts) - 1 - (std::find_if(counts.rbegin(), counts.rend(), filled) - counts.rbegin());
+    const double wide = (*high - *low) / static_cast<double>(counts.size() - 1);
+    const double narrow = (*high - *low) / static_cast<double>(counts.size());
+    const double least = std::min(*low + (static_cast<double>(first) - 0.5) * wide,
+                                  *low + static_cast<double>(first) * narrow);
+    const double most = std::max(*low + (static_cast<double>(last) + 0.5) * wide,
+                                 *low + static_cast<double>(last + 1) * narrow);
+    return std::array{std::max(least, *low), std::min(most, *high)};
+}
+
+/// Of a level and the next coarser one. Halves of odd sizes are rounded either way, so it is whole.
+double factor_between(std::int64_t fine, std::int64_t coarse) {
+    return std::max(1.0, std::round(static_cast<double>(fine) / static_cast<double>(coarse)));
+}
+
+/// Where a level lies whose samples are the means of `factor` ones of the finest.
+void place(ImageArray& level, const std::array<double, 3>& spacing, const std::array<double, 3>& origin,
+           const std::array<double, 3>& factor) {
+    for (std::size_t a = 0; a < 3; ++a) {
+        level.scale[a] = spacing[a] * factor[a];
+        level.translation[a] = origin[a] + spacing[a] * (factor[a] - 1) / 2;
+    }
+}
+
+std::string imaris_channel(int level, int time, int channel) {
+    return "/DataSet/ResolutionLevel " + std::to_string(level) + "/TimePoint " +
+           std::to_string(time) + "/Channel " + std::to_string(channel);
+}
+
+/// A level of Imaris: its dataset is longer than the image, up to a whole number of chunks.
+ImageArray imaris_level(const Hdf5File& file, const std::string& channel) {
+    ImageArray array = file.array(channel + "/Data");
+    static constexpr const char* names[3] = {"ImageSizeZ", "ImageSizeY", "ImageSizeX"};
+    for (std::size_t a = 0; a < 3; ++a) {
+        const auto size = file.number(channel, names[a]);
+        if (!size) continue;
+        if (*size < 1 || *size > static_cast<double>(array.shape[a])) {
+            throw Failure("its " + std::string(names[a]) +
+                          " is not that of its samples: the file is damaged; copy it again");
+        }
+        array.shape[a] = static_cast<std::int64_t>(*size);
+    }
+    return array;
+}
+
+ChunkedImage imaris_image(const Hdf5File& file, int channel, int time) {
+    ChunkedImage image;
+    image.format = "Imaris";
+    image.times = file.count([](int t) { return "/DataSet/ResolutionLevel 0/TimePoint " + std::to_string(t); });
+    const int channels = file.count([](int c) { return imaris_channel(0, 0, c); });
+    for (int c = 0; channels > 1 && c < channels; ++c) {
+        const std::string name = file.text("/DataSetInfo/Channel " + std::to_string(c), "Name");
+        image.channels.push_back(name.empty() ? "channel " + std::to_string(c) : name);
+    }
+    image.frame_interval = imaris_interval(file, image.times);
+    if (channel >= channels || time >= image.times) return image;
+    image.unit = file.text("/DataSetInfo/Image", "Unit");
+    if (image.unit.empty()) {
+        image.unit = "micrometer";
+        image.notes.emplace_back("it gives no unit of length: micrometres were taken, as Imaris does");
+    }
+    const int levels = file.count([&](int l) { return imaris_channel(l, time, channel); });
+    if (levels > most_levels) throw Failure("it has more than 64 levels");
+    std::array<double, 3> spacing = {1, 1, 1}, origin = {0, 0, 0}, factor = {1, 1, 1};
+    for (int l = 0; l < levels; ++l) {
+        ImageArray level = imaris_level(file, imaris_channel(l, time, channel));
+        for (std::size_t a = 0; a < 3; ++a) {
+            if (l > 0) {
+                factor[a] *= factor_between(image.levels.back().shape[a], level.shape[a]);
+                continue;
+            }
+            const std::string axis = std::to_string(2 - a);
+            const auto low = file.number("/DataSetInfo/Image", ("ExtMin" + axis).c_str());
+            const auto high = file.number("/DataSetInfo/Image", ("ExtMax" + axis).c_str());
+            if (!low || !high || !(*low < *high)) {
+                throw Failure("its extent (ExtMin, ExtMax) is missing or not possible; save it again");
+            }
+            spacing[a] = (*high - *low) / static_cast<double>(level.shape[a]);
+            origin[a] = *low + spacing[a] / 2;
+        }
+        place(level, spacing, origin, factor);
+        image.levels.push_back(level);
+    }
+    image.range = imaris_range(file, imaris_channel(0, time, channel), image.levels.at(0));
+    return image;
+}
+
+std::string bdv_moment(int time, int setup) {
+    return with_number("/t%05d", time) + with_number("/s%02d", setup);
+}
+
+/// Voxel size, unit and name of a setup, from the XML file beside the HDF5 file.
+struct BdvSetup {
+    std::array<double, 3> spacing = {1, 1, 1};
+    std::string unit, name;
+};
+
+std::vector<BdvSetup> setups_in(const std::filesystem::path& xml, int setups) {
+    std::vector<BdvSetup> all(static_cast<std::size_t>(setups));
+    const XmlElement root = read_xml(xml);
+    for (const XmlElement* setup : root.all("SequenceDescription/ViewSetups/ViewSetup")) {
+        const auto id = number_from<int>(trimmed(setup->text_of("id")));
+        if (!id || *id < 0 || *id >= setups) continue;
+        BdvSetup& one = all[static_cast<std::size_t>(*id)];
+        one.unit = trimmed(setup->text_of("voxelSize/unit"));
+        one.name = trimmed(setup->text_of("name"));
+        const std::vector<double> size = numbers_in(setup->text_of("voxelSize/size"), "voxelSize");
+        for (std::size_t i = 0; i < 3 && size.size() == 3; ++i) one.spacing[2 - i] = size[i];
+    }
+    return all;
+}
+
+/// Rows of x, y, z for each level.
+std::vector<std::array<double, 3>> rows_of(const Hdf5File& file, const std::string& dataset) {
+    const std::vector<double> numbers = file.numbers(dataset);
+    if (numbers.empty() || numbers.size() % 3 != 0 || numbers.size() > 3 * most_levels) {
+        throw Failure("its list of resolutions is damaged; copy it again");
+    }
+    std::vector<std::array<double, 3>> rows;
+    for (std::size_t i = 0; i < numbers.size(); i += 3) {
+        rows.push_back({numbers[i + 2], numbers[i + 1], numbers[i]});
+    }
+    return rows;
+}
+
+ChunkedImage bdv_image(const Hdf5File& file, const std::filesystem::path& path, int channel,
+                       int time) {
+    ChunkedImage image;
+    image.format = "BigDataViewer HDF5";
+    const int setups = file.count([](int s) { return with_number("/s%02d/resolutions", s); });
+    image.times = file.count([](int t) { return with_number("/t%05d", t); });
+    auto xml = path;
+    xml.replace_extension(".xml");
+    std::vector<BdvSetup> all(static_cast<std::size_t>(setups));
+    if (std::filesystem::exists(xml)) all = setups_in(xml, setups);
+    for (int s = 0; setups > 1 && s < setups; ++s) {
+        const std::string& name = all[static_cast<std::size_t>(s)].name;
+        image.channels.push_back(name.empty() ? "setup " + std::to_string(s) : name);
+    }
+    if (channel >= setups || time >= image.times) return image;
+    const BdvSetup& setup = all[static_cast<std::size_t>(channel)];
+    image.unit = setup.unit;
+    if (image.unit.empty()) {
+        image.unit = "millimeter";
+        image.notes.emplace_back("no XML file beside it gives its spacing: 1 mm was taken");
+    }
+    const std::string moment = bdv_moment(time, channel);
+    if (!file.has(moment)) {
+        throw Failure("has no setup " + std::to_string(channel) + " at time " +
+                      std::to_string(time) + "; choose another");
+    }
+    const auto factors = rows_of(file, with_number("/s%02d/resolutions", channel));
+    for (std::size_t l = 0; l < factors.size(); ++l) {
+        ImageArray level = file.array(moment + "/" + std::to_string(l) + "/cells");
+        // BigDataViewer keeps its 16 bits without a sign in HDF5's with one.
+        if (level.stored == Stored::int16) level.stored = Stored::uint16;
+        place(level, setup.spacing, {0, 0, 0}, factors[l]);
+        image.levels.push_back(level);
+    }
+    return image;
+}
+
+}  // namespace
+
+ChunkedImage hdf5_image(const std::filesystem::path& path, int channel, int time) {
+    const Hdf5File file(path);
+    if (file.has("/DataSet/ResolutionLevel 0/TimePoint 0/Channel 0/Data")) {
+        return imaris_image(file, channel, time);
+    }
+    if (file.has("/s00/resolutions")) return bdv_image(file, path, channel, time);
+    throw Failure(
+        "is an HDF5 file of another program; those of Imaris (5.5 and later) and BigDataViewer are "
+        "read");
+}
+
+void hdf5_places(const std::filesystem::path& path, const ChunkBox& box,
+                 std::span<ChunkPlace> places) {
+    Hdf5File(path).places(box.array, box.first, box.count, places);
+}
+
+}  // namespace palpate::io

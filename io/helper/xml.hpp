@@ -1,0 +1,29 @@
+// Small XML files, as image formats have them, by VTK's parser.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace palpate::io {
+
+struct XmlElement {
+    std::string name;  ///< without a prefix for its namespace
+    std::string text;
+    std::vector<std::pair<std::string, std::string>> attributes;
+    std::vector<XmlElement> inner;
+
+    /// Empty if there is none.
+    std::string attribute(const std::string& wanted) const;
+    /// All at the end of a path below this element: "ViewSetups/ViewSetup".
+    std::vector<const XmlElement*> all(const std::string& path) const;
+    /// The text of the first of them; empty if there is none.
+    std::string text_of(const std::string& path) const;
+};
+
+/// At most 64 MiB. Throws Failure, which names the file or `where`.
+XmlElement read_xml(const std::filesystem::path& file);
+XmlElement parse_xml(const std::string& text, const std::string& where);
+
+}  // namespace palpate::io

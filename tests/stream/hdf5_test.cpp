@@ -1,0 +1,197 @@
+// Imaris and BigDataViewer files against an independent writer and reader, and damaged ones.
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+
+#include "io/real_volumes.hpp"
+#include "io/volume_support.hpp"
+#include "stream/store_support.hpp"
+
+namespace palpate::stream::test {
+namespace {
+
+namespace fs = std::filesystem;
+using io::Stored;
+using io::test::real_volume;
+using support::bytes_of;
+using support::contains;
+using support::message_of;
+using support::ScratchFolder;
+
+std::string h5py(const std::string& arguments) {
+    return std::string(PALPATE_ZARR_PYTHON) + " -B " + PALPATE_STREAM_TESTS +
+           "/hdf5_reference.py " + arguments;
+}
+
+const fs::path& hdf5_written() {
+    static const ScratchFolder folder;
+    static const bool done = std::system(h5py("write " + folder.path().string()).c_str()) == 0;
+    if (!done) throw std::runtime_error("python3-h5py does not work");
+    return folder.path();
+}
+
+void expect_level(const Store& store, int level, const std::string& raw, Stored stored) {
+    const Geometry& grid = store.info().levels.at(static_cast<std::size_t>(level)).geometry;
+    expect_same_boxes(
+        store, expected_volume(grid, bytes_of(hdf5_written() / (raw + ".raw")), stored), 4, level);
+}
+
+/// By the end of a file's name: "...-i2.ims".
+Stored type_in(const std::string& name) {
+    const std::string type = name.substr(name.rfind('-') + 1, 2);
+    const std::string kind = type[0] == 'u' ? "uint" : type[0] == 'i' ? "int" : "float";
+    return *io::stored_named(kind + std::to_string(8 * (type[1] - '0')));
+}
+
+TEST(Hdf5, every_type_and_filter_reads_as_another_program_wrote_it) {
+    int files = 0;
+    for (const auto& entry : fs::directory_iterator(hdf5_written())) {
+        const std::string name = entry.path().filename().string();
+        if (!name.starts_with("ims-") || entry.path().extension() != ".ims") continue;
+        SCOPED_TRACE(name);
+        ASSERT_TRUE(is_store(entry.path()) && is_chunked(entry.path()));
+        const auto store = open_store(entry.path());
+        EXPECT_EQ(store->info().levels.at(0).geometry.size, Index3(17, 13, 11));
+        EXPECT_TRUE(store->info().levels[0].geometry.spacing.isApprox(Vec3(2e-3, 2e-3, 3e-3)));
+        EXPECT_TRUE(store->info().levels[0].geometry.origin.isApprox(Vec3(11e-3, 21e-3, 31.5e-3)));
+        expect_level(*store, 0, name, type_in(name));
+        ++files;
+    }
+    EXPECT_EQ(files, 24 + 9);
+}
+
+TEST(Hdf5, the_range_of_an_imaris_histogram_holds_every_sample) {
+    for (const auto& entry : fs::directory_iterator(hdf5_written())) {
+        const std::string name = entry.path().filename().string();
+        if (!name.starts_with("ims-") || entry.path().extension() != ".ims") continue;
+        const auto store = open_store(entry.path());
+        const Volume volume = volume_of(*store);
+        ASSERT_TRUE(store->info().range) << name;
+        // Imaris's numbers have three digits; wide integers are rounded to float32.
+        const double low = volume.minimum(), high = volume.maximum(), digits = 1e-3;
+        const Range& range = *store->info().range;
+        EXPECT_LE(range.minimum, low + digits + 1e-6 * std::abs(low)) << name;
+        EXPECT_GE(range.maximum, high - digits - 1e-6 * std::abs(high)) << name;
+        EXPECT_LE(range.maximum - range.minimum, 1.01 * (high - low) + 2 * digits) << name;
+    }
+}
+
+TEST(Hdf5, levels_channels_and_times_of_imaris_are_those_of_its_attributes) {
+    for (int time = 0; time < 3; ++time) {
+        for (int channel = 0; channel < 2; ++channel) {
+            StoreOptions options;
+            options.time = time;
+            options.channel = channel;
+            const auto store = open_store(hdf5_written() / "image.ims", options);
+            const StoreInfo& info = store->info();
+            EXPECT_EQ(info.format, "Imaris");
+            EXPECT_EQ(info.times, 3);
+            EXPECT_NEAR(info.frame_interval, 0.5, 1e-9);
+            EXPECT_EQ(info.channels, (std::vector<std::string>{"nuclei", "membrane"}));
+            EXPECT_TRUE(info.notes.empty());
+            ASSERT_EQ(info.levels.size(), 3U);
+            const Vec3 finest(0.5e-3, 1e-3, 2e-3), corner(0, 10e-3, 20e-3);
+            const Vec3 factors[] = {{1, 1, 1}, {2, 2, 1}, {4, 4, 2}};
+            for (int level = 0; level < 3; ++level) {
+                const Geometry& grid = info.levels[static_cast<std::size_t>(level)].geometry;
+                EXPECT_TRUE(grid.spacing.isApprox(finest.cwiseProduct(factors[level])));
+                EXPECT_TRUE(grid.origin.isApprox(corner + grid.spacing / 2));
+                expect_level(*store, level,
+                             "image-" + std::to_string(level) + "-" + std::to_string(time) + "-" +
+                                 std::to_string(channel),
+                             Stored::uint16);
+            }
+        }
+    }
+    StoreOptions beyond;
+    beyond.time = 3;
+    EXPECT_TRUE(contains(message_of<io::InputError>(
+                             [&] { (void)open_store(hdf5_written() / "image.ims", beyond); }),
+                         "no time 3: it has 3"));
+}
+
+TEST(Hdf5, a_chunk_that_is_not_stored_has_the_fill_value) {
+    const auto store = open_store(hdf5_written() / "missing.ims");
+    EXPECT_EQ(store->info().fill, -7);
+    expect_level(*store, 0, "missing", Stored::int16);
+    EXPECT_TRUE(contains(store->info().notes.at(0), "micrometres were taken"));
+}
+
+TEST(Hdf5, setups_and_times_of_bigdataviewer_are_channels_and_times_with_the_xml_s_voxels) {
+    for (int time = 0; time < 2; ++time) {
+        for (int setup = 0; setup < 2; ++setup) {
+            StoreOptions options;
+            options.time = time;
+            options.channel = setup;
+            for (const char* name : {"bdv.h5", "lonely.h5"}) {
+                const auto store = open_store(hdf5_written() / name, options);
+                const StoreInfo& info = store->info();
+                const bool lonely = std::string(name) == "lonely.h5";
+                EXPECT_EQ(info.channels.at(0), lonely ? "setup 0" : "left");
+                EXPECT_EQ(info.notes.size(), lonely ? 1U : 0U);
+                const Vec3 spacing = lonely       ? Vec3(1, 1, 1)
+                                     : setup == 0 ? Vec3(0.5e-3, 0.25e-3, 2e-3)
+                                                  : Vec3(1, 2, 3);
+                EXPECT_TRUE(info.levels.at(1).geometry.spacing.isApprox(
+                    spacing.cwiseProduct(Vec3(2, 2, 1))));
+                EXPECT_TRUE(info.levels[1].geometry.origin.isApprox(
+                    spacing.cwiseProduct(Vec3(0.5, 0.5, 0))));
+                for (int level = 0; level < 2; ++level) {
+                    expect_level(*store, level,
+                                 "bdv-" + std::to_string(level) + "-" + std::to_string(time) + "-" +
+                                     std::to_string(setup),
+                                 Stored::uint16);
+                }
+            }
+        }
+    }
+}
+
+TEST(Hdf5, a_public_file_of_imaris_reads_as_h5py_reads_it) {
+    const fs::path file = real_volume("minimal.ims");
+    if (!fs::exists(file)) GTEST_SKIP() << "no sample file";
+    const ScratchFolder folder;
+    const std::string raw = folder / "all.raw";
+    ASSERT_EQ(std::system(h5py("dump " + file.string() +
+                               " '/DataSet/ResolutionLevel 0/TimePoint 0/Channel 0/Data' > " + raw)
+                              .c_str()),
+              0);
+    const auto store = open_store(file);
+    const Geometry& grid = store->info().levels.at(0).geometry;
+    EXPECT_EQ(grid.size, Index3(128, 128, 1));
+    EXPECT_TRUE(grid.spacing.isApprox(Vec3(7e-3 / 128, 7e-3 / 128, 1e-4)));
+    expect_same_boxes(*store, expected_volume(grid, bytes_of(raw), Stored::uint16), 5);
+}
+
+TEST(Hdf5, what_is_not_read_is_refused_with_what_is_wrong) {
+    const std::pair<const char*, const char*> wrong[] = {
+        {"userblock", "user block"},         {"other", "of another program"},
+        {"filter", "32000 (lzf) is not read"}, {"half", "no usual integers or floats"},
+        {"extent", "extent"},                {"backwards", "extent"},
+        {"long", "ImageSizeX"},              {"link", "lies in another file"}};
+    for (const auto& [name, what] : wrong) {
+        const fs::path file = hdf5_written() / ("refused-" + std::string(name) + ".ims");
+        const std::string message = message_of<io::InputError>([&] { (void)open_store(file); });
+        EXPECT_TRUE(contains(message, what)) << message;
+        EXPECT_TRUE(io::test::one_line_about(message, file)) << message;
+    }
+    EXPECT_TRUE(contains(message_of<io::InputError>(
+                             [] { (void)open_store("http://127.0.0.1:9/scan.ims"); }),
+                         "from this machine's disks only"));
+}
+
+TEST(Hdf5, mutated_and_truncated_files_are_refused_in_one_line_or_read) {
+    std::mt19937 random(13);
+    int refused = 0;
+    const ScratchFolder folder;
+    for (const char* name : {"image.ims", "missing.ims", "bdv.h5"}) {
+        const std::string good = bytes_of(hdf5_written() / name);
+        const fs::path file = folder / name;
+        support::put_bytes(file, good);
+        refused += refused_of_damaged(file, 25, random);
+    }
+    EXPECT_GT(refused, 25);
+}
+
+}  // namespace
+}  // namespace palpate::stream::test
