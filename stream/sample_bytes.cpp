@@ -48,11 +48,11 @@ void SampleBytes::convert(std::span<std::byte> raw, std::byte* to) const {
     if (type() == SampleType::float32) replace_non_finite(to, count, static_cast<float>(fill));
 }
 
-<<<<<<< HEAD
 void make_finite(SampleType type, std::span<std::byte> bytes, double instead) {
     if (type != SampleType::float32) return;
     replace_non_finite(bytes.data(), bytes.size() / sizeof(float), static_cast<float>(instead));
-=======
+}
+
 double fitting_fill(double fill, const SampleBytes& bytes) {
     if (!std::isfinite(fill) || std::abs(fill) > std::numeric_limits<float>::max()) return 0;
     return with_type(bytes.type(), [&](auto zero) {
@@ -61,7 +61,6 @@ double fitting_fill(double fill, const SampleBytes& bytes) {
         const auto high = static_cast<double>(std::numeric_limits<T>::max());
         return static_cast<double>(static_cast<T>(std::clamp(fill, low, high)));
     });
->>>>>>> formats
 }
 
 void check_request(const Geometry& grid, const SampleBox& box, SampleType type, std::size_t bytes) {

@@ -53,6 +53,7 @@ BrushControls::BrushControls()
       on_(named(new QPushButton, "brush",
                 tr("While it is on, the probe edits the samples where it is"))),
       kinds_(new QButtonGroup(this)),
+      as_tool_(named(new QCheckBox(tr("Shape of the tool")), "brush_as_tool")),
       radius_(new Quantity("brush_radius", "mm", 1, 25, 0, Quantity::Scale::factors)),
       hardness_(new Quantity("brush_hardness", "", 0, 1, 0.05)),
       rate_box_(
@@ -91,9 +92,11 @@ void BrushControls::build() {
     value->setFocusProxy(value_);
     auto* form = new QFormLayout;
     form->setVerticalSpacing(3);
+    form->addRow(as_tool_);
     add_row(*form, tr("Radius"), radius_,
             tr("Where half of the effect is left [mm in the volume]: from a voxel to a quarter of "
-               "the grid"));
+               "the grid. With the shape of the tool: how far from its skin; with less than a "
+               "voxel, sharp corners stay where they are"));
     add_row(*form, tr("Hardness"), hardness_,
             tr("1: an edge of two voxels; 0: an edge as wide as the brush"));
     add_row(*form, tr("Rate"), rate,
@@ -131,6 +134,13 @@ void BrushControls::connect_inputs() {
         change([this, id](BrushChoice& c) {
             c.kind = static_cast<BrushKind>(id);
             c.value = values_[static_cast<std::size_t>(id)];
+        });
+    });
+    connect(as_tool_, &QCheckBox::clicked, this, [this](bool as_tool) {
+        radius_->drop();
+        change([&](BrushChoice& c) {
+            c.as_tool = as_tool;
+            c.radius = as_tool ? beyond_ : ball_;
         });
     });
     connect(at_once_, &QCheckBox::clicked, this, [this](bool at_once) {
@@ -194,6 +204,7 @@ void BrushControls::set_choice(const BrushChoice& choice) {
     choice_ = choice;
     values_[static_cast<std::size_t>(choice.kind)] = choice.value;
     if (std::isfinite(choice.rate)) rate_ = choice.rate;
+    (choice.as_tool ? beyond_ : ball_) = choice.radius;
     show_choice();
 }
 
@@ -208,6 +219,7 @@ void BrushControls::show_choice() {
     kinds_->button(static_cast<int>(choice_.kind))->setChecked(true);
     // Bold: dark palettes hardly show which button is pressed.
     for (auto* button : kinds_->buttons()) make_bold(*button, button->isChecked());
+    as_tool_->setChecked(choice_.as_tool);
     radius_->set_value(choice_.radius);
     hardness_->set_value(choice_.hardness);
     const bool at_once = std::isinf(choice_.rate);
@@ -226,8 +238,22 @@ void BrushControls::set_grid(const Geometry& geometry) {
     const double side = geometry.size.cast<double>().cwiseProduct(geometry.spacing).minCoeff();
     radius_->drop();
     radius_->set_ends(voxel, std::max(side / 4, 4 * voxel));  // some room also in a thin slab
-    choice_.radius = std::clamp(choice_.radius, radius_->low(), radius_->high());
+    ball_ = std::clamp(ball_, radius_->low(), radius_->high());
+    beyond_ = voxel;
+    choice_.radius = choice_.as_tool ? beyond_ : ball_;
     show_choice();
+}
+
+void BrushControls::set_tool(bool there) {
+    as_tool_->setEnabled(there);
+    as_tool_->setToolTip(there ? tr("The brush works with what the tool is, also while it turns")
+                               : tr("Take a tool on the page Feel first"));
+    if (!there && choice_.as_tool) {
+        change([&](BrushChoice& c) {
+            c.as_tool = false;
+            c.radius = ball_;
+        });
+    }
 }
 
 void BrushControls::set_fitting(double carve, double add) {

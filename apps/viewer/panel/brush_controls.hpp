@@ -29,6 +29,8 @@ class BrushControls : public QWidget {
     void set_grid(const Geometry& geometry);
     /// What "automatic" stands for now [data units]: for carving, and for adding and painting.
     void set_fitting(double carve, double add);
+    /// Whether a tool is in the hand, whose shape the brush can take. Without one it is a ball.
+    void set_tool(bool there);
     /// Shows a choice, even one that the controls would not allow.
     void set_choice(const BrushChoice& choice);
     const BrushChoice& choice() const { return choice_; }
@@ -63,12 +65,14 @@ class BrushControls : public QWidget {
     BrushChoice choice_;
     std::array<std::optional<double>, 4> values_;  // by kind
     double carve_fits_ = 0, add_fits_ = 0;
+    double ball_ = 3, beyond_ = 1;  // [mm] the radius of a ball, and beyond the skin of a tool
     double rate_ = 10;    // [1/s] while it is not at once
     bool typed_ = false;  // a whole number that does not count yet
     QWidget* body_;
     Note* reason_;
     QPushButton* on_;
     QButtonGroup* kinds_;
+    QCheckBox* as_tool_;
     Quantity* radius_;
     Quantity* hardness_;
     Quantity* rate_box_;

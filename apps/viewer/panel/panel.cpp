@@ -320,6 +320,7 @@ void Panel::show_effect() {
     force_->set_settings(now_.settings.force, now_.settings.proxy.friction, now_.settings.device);
     device_->set_scale(now_.settings.transform.scale);
     edit_->set_choice(now_.brush);
+    edit_->set_tool(now_.settings.tool != nullptr);
     show_fitting();
 }
 

@@ -122,7 +122,8 @@ void MainWindow::connect_parts() {
             [this](const QString& what) { messages_.show_problem(what); });
     const auto outline_brush = [this] {
         const BrushChoice& brush = panel_->brush();
-        views_->set_brush(content_.editor() && brush.on ? brush.radius : 0);
+        const bool ball = content_.editor() && brush.on && !brush.as_tool;  // a tool is drawn
+        views_->set_brush(ball ? brush.radius : 0);
     };
     connect(panel_, &Panel::brush_changed, this, outline_brush);
     connect(&content_, &Content::run_changed, this, outline_brush);

@@ -281,6 +281,35 @@ TEST_F(Brushes, a_refused_choice_goes_back_and_says_why) {
     EXPECT_EQ(chosen().size(), 2U);
 }
 
+TEST_F(Brushes, one_with_the_shape_of_the_tool_needs_a_tool_and_is_a_ball_again_without) {
+    edit({BrushKind::carve, 5, 1, 10, {}, false, true});
+    auto* shape = find<QCheckBox>("brush_as_tool");
+    EXPECT_FALSE(shape->isEnabled());
+    EXPECT_TRUE(shape->toolTip().contains("Feel"));
+    panel.brush_controls().set_tool(true);
+    EXPECT_TRUE(chosen().empty());
+    QTest::keyClick(shape, Qt::Key_Space);
+    auto made = chosen();
+    ASSERT_EQ(made.size(), 1U);
+    EXPECT_TRUE(made[0].as_tool);
+    EXPECT_EQ(made[0].radius, 1) << "a voxel beyond the skin";
+    type("brush_radius_box", "2.5");
+    QTest::keyClick(shape, Qt::Key_Space);
+    made = chosen();
+    ASSERT_EQ(made.size(), 2U);
+    EXPECT_EQ(made[0].radius, 2.5);
+    EXPECT_FALSE(made[1].as_tool);
+    EXPECT_EQ(made[1].radius, 5) << "the ball it was";
+    QTest::keyClick(shape, Qt::Key_Space);
+    EXPECT_EQ(chosen().back().radius, 2.5);
+    panel.brush_controls().set_tool(false);
+    made = chosen();
+    ASSERT_EQ(made.size(), 1U);
+    EXPECT_FALSE(made[0].as_tool);
+    EXPECT_EQ(made[0].radius, 5);
+    EXPECT_FALSE(shape->isChecked());
+}
+
 TEST_F(Brushes, without_a_volume_or_while_looking_at_a_recording_nothing_can_be_edited) {
     panel.brush_controls().toggle();
     edit();
