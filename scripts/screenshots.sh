@@ -72,3 +72,13 @@ screenshot tool 3 '"volume": {"volume": "'"$(pwd)"'/data/visible_human_head.nrrd
     "device": "simulated:sigma7,hand=press,turn=25", "look": {"box": false},
     "camera": {"focus": [196, 222, 100], "up": [0, 0, 1],
         "towards_viewer": [-0.75, -0.6, 0.1], "half_height": 42}' --tool burr:6 --tool-spacing 1
+
+# What a burr leaves that drills and turns, ball and shank.
+echo "== drilling"
+"$palpate" touch data/visible_human_head.nrrd --isovalue 40 --tool burr:8 --tool-spacing 1 \
+    --device simulated:sigma7,hand=press,turn=25 --brush 'carve tool' --seconds 12 --headless --quiet \
+    --save "$sessions/drilled.nrrd"
+screenshot drilled 4 '"volume": {"volume": "'"$sessions"'/drilled.nrrd"}, "isovalue": 40,
+    "look": {"box": false}, "slices_shown": false,
+    "camera": {"focus": [175, 225, 104], "up": [0, 0, 1],
+        "towards_viewer": [-0.8, -0.55, 0.25], "half_height": 60}'

@@ -76,7 +76,7 @@ void ToolControls::show(const Shown& now) {
                                                  .arg(QString::number(now.spacing, 'g', 3))
                                            : tr("%n points.", nullptr, count);
     about_->setText(points + ' ' +
-                    tr("Layers, pressing through, magnet and texture rest while it is felt."));
+                    tr("Layers, pressing through, magnet and texture are felt with a point only."));
 }
 
 void ToolControls::choose(int row, double scale) {

@@ -451,10 +451,6 @@
         <translation>Radius</translation>
     </message>
     <message>
-        <source>Where half of the effect is left [mm in the volume]: from a voxel to a quarter of the grid</source>
-        <translation>Wo noch die Hälfte der Wirkung ist [mm im Volumen]: von einem Voxel bis zu einem Viertel des Gitters</translation>
-    </message>
-    <message>
         <source>Hardness</source>
         <translation>Härte</translation>
     </message>
@@ -525,6 +521,22 @@
     <message>
         <source>Nothing is left to save</source>
         <translation>Alles ist gespeichert</translation>
+    </message>
+    <message>
+        <source>Shape of the tool</source>
+        <translation>Form des Werkzeugs</translation>
+    </message>
+    <message>
+        <source>Where half of the effect is left [mm in the volume]: from a voxel to a quarter of the grid. With the shape of the tool: how far from its skin; with less than a voxel, sharp corners stay where they are</source>
+        <translation>Wo noch die halbe Wirkung ist [mm im Volumen]: von einem Voxel bis zu einem Viertel des Gitters. Mit der Form des Werkzeugs: wie weit von seiner Haut; bei weniger als einem Voxel bleiben scharfe Ecken stehen</translation>
+    </message>
+    <message>
+        <source>The brush works with what the tool is, also while it turns</source>
+        <translation>Der Pinsel wirkt mit dem, was das Werkzeug ist, auch während es sich dreht</translation>
+    </message>
+    <message>
+        <source>Take a tool on the page Feel first</source>
+        <translation>Wählen Sie zuerst auf der Seite „Fühlen“ ein Werkzeug</translation>
     </message>
 </context>
 <context>
@@ -2900,8 +2912,8 @@ Ein Zug endet zwei Sekunden, nachdem die Hand alle Schichten verlassen hat.</tra
         <translation>Wievielmal so groß wie üblich das Werkzeug ist</translation>
     </message>
     <message>
-        <source>Layers, pressing through, magnet and texture rest while it is felt.</source>
-        <translation>Schichten, Durchdrücken, Magnet und Textur ruhen, solange damit gefühlt wird.</translation>
+        <source>Layers, pressing through, magnet and texture are felt with a point only.</source>
+        <translation>Schichten, Durchdrücken, Magnet und Textur sind nur mit einem Punkt zu fühlen.</translation>
     </message>
     <message>
         <source>Needle</source>

@@ -1,4 +1,5 @@
 // Tools in the window: choosing one, pressing and turning it with the mouse, files, sessions.
+#include <QCheckBox>
 #include <QComboBox>
 #include <QDragEnterEvent>
 #include <QDropEvent>
@@ -97,6 +98,33 @@ TEST_F(ToolInWindow, comes_from_a_mesh_that_is_dropped_and_goes_with_the_session
     EXPECT_EQ(tool()->points().size(), points);
     EXPECT_EQ(tool()->shape().triangles.size(), 4U);
     EXPECT_EQ(part<QComboBox>("tool").currentText(), "As given");
+}
+
+TEST_F(ToolInWindow, drills_with_its_own_shape) {
+    feel(ball);
+    auto& shape = part<QCheckBox>("brush_as_tool");
+    EXPECT_FALSE(shape.isEnabled());
+    choose("Burr");
+    press_until_force();
+    ASSERT_TRUE(shape.isEnabled());
+    shape.click();
+    QTest::keyClick(window_.get(), Qt::Key_B);
+    const auto edits = [&] { return window_->live()->data().editor().state(); };
+    ASSERT_TRUE(wait_until([&] { return edits().version > 0; }));
+    for (int i = 0; i < 10; ++i) {
+        turn_wheel(window_->views().scene(), 1);
+        QTest::qWait(50);
+    }
+    // The room that the tool has made for itself: nothing is solid where it is.
+    QTest::keyClick(window_.get(), Qt::Key_B);
+    ASSERT_TRUE(wait_until([&] { return window_->settled(); }));
+    const Tick tick = now().session.tick;
+    const Field field(edits().samples, Solid::above);
+    EXPECT_LT(value_at(field, tick.proxy.scp), tick.proxy.isovalue);
+    EXPECT_GT(value_at(Field(edits().samples->volume()), tick.proxy.scp), tick.proxy.isovalue);
+    save("tool-drilled");
+    choose("Point");
+    EXPECT_FALSE(window_->panel().brush().as_tool);
 }
 
 TEST_F(ToolInWindow, that_cannot_be_read_is_said_and_changes_nothing) {
