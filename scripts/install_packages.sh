@@ -18,6 +18,7 @@ groups (default: all)
   viewer   io, and VTK's and Qt's windows and translations, Xvfb to test them
   dev      clang, its sanitizers and fuzzer, clang-format, clang-tidy, shellcheck,
            Mono, lintian
+  windows  core, MinGW and Wine, and the headers that the libraries for Windows are built with; not in all
   all      everything above
 TEXT
 }
@@ -31,6 +32,8 @@ io=("${core[@]}" libinsighttoolkit5-dev libvtk9-dev libcli11-dev libfmt-dev nloh
     libopenigtlink-dev "${python[@]}")
 viewer=("${io[@]}" libvtk9-qt-dev qtbase5-dev qttools5-dev qttools5-dev-tools qttranslations5-l10n xvfb)
 dev=(git lintian pkg-config mono-mcs mono-runtime clang clang-format-14 clang-tidy libclang-rt-14-dev shellcheck)
+windows=("${core[@]}" g++-mingw-w64-x86-64-posix wine64 libz-mingw-w64-dev nlohmann-json3-dev
+    libboost-dev zip)
 
 wanted=()
 for group in "${@:-all}"; do
@@ -39,6 +42,7 @@ for group in "${@:-all}"; do
         io) wanted+=("${io[@]}") ;;
         viewer) wanted+=("${viewer[@]}") ;;
         dev) wanted+=("${dev[@]}") ;;
+        windows) wanted+=("${windows[@]}") ;;
         all) wanted+=("${viewer[@]}" "${dev[@]}") ;;
         -h | --help) usage; exit 0 ;;
         *) echo "install_packages.sh: no group '$group'" >&2; usage >&2; exit 2 ;;
