@@ -1,11 +1,6 @@
 // Dequantization: which rounds, on which threads.
 #include "palpate/filters/dequantize.hpp"
 
-#include <tbb/blocked_range.h>
-#include <tbb/info.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -14,6 +9,7 @@
 #include <vector>
 
 #include "filters/round.hpp"
+#include "filters/rows.hpp"
 #include "filters/sites.hpp"
 
 namespace palpate::filters {
@@ -27,8 +23,6 @@ constexpr int usual_coarsest = 16, mask_step = 4;
 constexpr double chosen_bend = 0.5, enough = 0.5;
 /// From this bend on a coarse step moves a sample less, from twice of it on not at all [levels].
 constexpr double most_bend = 0.55, most_bend_of_mask = 0.05;
-/// Samples in a task: some 50 us of work.
-constexpr int grain = 16384;
 
 /// The coarsest step over which a good part of the surfaces is straight to within the rounding; so
 /// about as long as the terraces are wide.
@@ -80,20 +74,6 @@ void check(const DequantizeOptions& options) {
     if (options.threads < 0) throw std::invalid_argument("a number of threads is 0 or more");
 }
 
-/// Rows of slices of `width` samples, on the threads of an arena or, if they are few, on this one.
-ForRows for_rows(tbb::task_arena& arena, int width) {
-    const int rows = std::max(1, grain / width);
-    return [&arena, rows](int count, const std::function<void(int, int)>& work) {
-        if (count <= rows || arena.max_concurrency() == 1) return work(0, count);
-        arena.execute([&] {
-            tbb::parallel_for(
-                tbb::blocked_range<int>(0, count, std::size_t(rows)),
-                [&](const tbb::blocked_range<int>& range) { work(range.begin(), range.end()); },
-                tbb::simple_partitioner());
-        });
-    };
-}
-
 std::vector<float> float_samples(const Volume& volume) {
     std::vector<float> samples(std::size_t(sample_count(volume.geometry())));
     with_type(volume.type(), [&](auto zero) {
@@ -123,9 +103,7 @@ Volume dequantized(const Volume& volume, const DequantizeOptions& options) {
     all *= volume.geometry().size[2];
 
     std::vector<float> state = float_samples(volume);
-    const int cores = tbb::info::default_concurrency();  // of more, oneTBB would complain
-    tbb::task_arena arena(options.threads == 0 ? cores : std::min(options.threads, cores));
-    const ForRows rows = for_rows(arena, volume.geometry().size[0]);
+    const ForRows rows = rows_in_parallel(options.threads, volume.geometry().size[0]);
     for (const int step : steps) {
         const RoundSettings settings{
             .step = step,

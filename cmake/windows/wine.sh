@@ -9,8 +9,8 @@ while [ "$build" != / ] && [ ! -e "$build/CMakeCache.txt" ]; do
 done
 [ "$build" != / ] || build=$PWD
 export WINEPREFIX=${WINEPREFIX:-$build/wine}
-# Wine would ask for Mono and Gecko; nothing here needs them.
-export WINEDEBUG=-all WINEDLLOVERRIDES="mscoree=;mshtml="
+# Nothing here needs Mono and Gecko, and programs that crash on purpose need no debugger.
+export WINEDEBUG=-all WINEDLLOVERRIDES="mscoree=;mshtml=;winedbg.exe="
 unset DISPLAY WAYLAND_DISPLAY
 
 wine=/usr/lib/wine/wine64

@@ -20,8 +20,8 @@ void touch_stack() {
 std::string ask_for_priority(int priority) {
     const int error = take_priority(priority);
     if (error == 0) return "real-time priority: Pro Audio of the Multimedia Class Scheduler";
-    const std::string no = "real-time priority: Pro Audio was not granted (error " +
-                           std::to_string(error) + ")";
+    const std::string no =
+        "real-time priority: Pro Audio was not granted (error " + std::to_string(error) + ")";
     if (::GetThreadPriority(::GetCurrentThread()) == THREAD_PRIORITY_TIME_CRITICAL) {
         return no + ", but time critical; start the service 'Multimedia Class Scheduler'";
     }

@@ -1,5 +1,5 @@
-// Servo: a thread that waits for a processor does not count as one that hangs. Linux, which tells them
-// apart.
+// Servo: a thread that waits for a processor does not count as one that hangs. Linux, which tells
+// them apart.
 #include <gtest/gtest.h>
 #include <pthread.h>
 #include <sched.h>
