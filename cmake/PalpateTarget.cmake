@@ -1,3 +1,21 @@
+# palpate_for_system(VARIABLE): from a list of sources, drops those of other systems. NAME_windows.cpp
+# stands for NAME.cpp on Windows, and NAME.cpp for it elsewhere.
+function(palpate_for_system variable)
+  set(kept ${${variable}})
+  foreach(source ${${variable}})
+    if(source MATCHES "^(.+)_windows\\.cpp$")
+      if(WIN32)
+        list(REMOVE_ITEM kept ${CMAKE_MATCH_1}.cpp)
+        # windows.h defines words such as far.
+        set_property(SOURCE ${source} PROPERTY SKIP_UNITY_BUILD_INCLUSION ON)
+      else()
+        list(REMOVE_ITEM kept ${source})
+      endif()
+    endif()
+  endforeach()
+  set(${variable} ${kept} PARENT_SCOPE)
+endfunction()
+
 # Compile options that every target of ours shares.
 function(palpate_target name)
   target_compile_features(${name} PUBLIC cxx_std_20)

@@ -1,43 +1,10 @@
 // Stores the newest reading and the newest wrench with their ages.
 #include "devices/link.hpp"
 
-#include <pthread.h>
-#include <sched.h>
-#include <sys/prctl.h>
-
 #include <algorithm>
-#include <csignal>
 #include <limits>
 
 namespace palpate::devices {
-
-std::int64_t monotonic_ns() noexcept {
-    return std::chrono::duration_cast<std::chrono::nanoseconds>(
-               std::chrono::steady_clock::now().time_since_epoch())
-        .count();
-}
-
-namespace {
-thread_local bool talks_to_a_device = false;
-}
-
-bool is_device_thread() noexcept {
-    return talks_to_a_device;
-}
-
-void prepare_device_thread() noexcept {
-    talks_to_a_device = true;
-    ::prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
-    sched_param parameter{};
-    parameter.sched_priority = 81;
-    ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &parameter);
-    sigset_t others;
-    ::sigfillset(&others);
-    for (const int crash : {SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT, SIGTRAP, SIGSYS}) {
-        ::sigdelset(&others, crash);
-    }
-    ::pthread_sigmask(SIG_BLOCK, &others, nullptr);
-}
 
 DeviceReading Link::read() const noexcept {
     const auto report = reading_.get();

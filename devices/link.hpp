@@ -70,5 +70,7 @@ bool is_device_thread() noexcept;
 
 /// The machine's monotonic clock [ns].
 std::int64_t monotonic_ns() noexcept;
+/// Sleeps until a time of it, as exactly as the system can once the thread is prepared.
+void sleep_until(std::int64_t ns) noexcept;
 
 }  // namespace palpate::devices

@@ -1,11 +1,6 @@
 // Dequantization: which rounds, on which threads.
 #include "palpate/filters/dequantize.hpp"
 
-#include <tbb/blocked_range.h>
-#include <tbb/info.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -14,6 +9,7 @@
 #include <vector>
 
 #include "filters/round.hpp"
+#include "filters/rows.hpp"
 #include "filters/sites.hpp"
 #include "palpate/filters/dequantize_parts.hpp"
 
@@ -29,8 +25,6 @@ constexpr double chosen_bend = 0.5, enough = 0.5;
 constexpr double most_sites = 3e4;
 /// From this bend on a coarse step moves a sample less, from twice of it on not at all [levels].
 constexpr double most_bend = 0.55, most_bend_of_mask = 0.05;
-/// Samples in a task: some 50 us of work.
-constexpr int grain = 16384;
 
 /// Is a good part of the surfaces straight to within the rounding?
 bool straight_over(std::span<const SurfaceSite> sites, double level) {
@@ -73,20 +67,6 @@ void check(const DequantizeOptions& options) {
         throw std::invalid_argument("the distance between levels must be a number above 0");
     }
     if (options.threads < 0) throw std::invalid_argument("a number of threads is 0 or more");
-}
-
-/// Rows of slices of `width` samples, on the threads of an arena or, if they are few, on this one.
-ForRows for_rows(tbb::task_arena& arena, int width) {
-    const int rows = std::max(1, grain / width);
-    return [&arena, rows](int count, const std::function<void(int, int)>& work) {
-        if (count <= rows || arena.max_concurrency() == 1) return work(0, count);
-        arena.execute([&] {
-            tbb::parallel_for(
-                tbb::blocked_range<int>(0, count, std::size_t(rows)),
-                [&](const tbb::blocked_range<int>& range) { work(range.begin(), range.end()); },
-                tbb::simple_partitioner());
-        });
-    };
 }
 
 std::vector<float> float_samples(const Volume& volume) {
@@ -139,9 +119,7 @@ void run_rounds(const Volume& volume, std::span<float> state, const DequantizePl
                                                  : float(bend * plan.level),
                                  .least = float(plan.minimum),
                                  .greatest = float(plan.maximum)};
-    const int cores = tbb::info::default_concurrency();  // of more, oneTBB would complain
-    tbb::task_arena arena(threads == 0 ? cores : std::min(threads, cores));
-    const ForRows rows = for_rows(arena, volume.geometry().size[0]);
+    const ForRows rows = rows_in_parallel(threads, volume.geometry().size[0]);
     for (int round = 0; round < rounds.count; ++round) {
         run_round(volume, state, settings, rows, at_slice);
     }

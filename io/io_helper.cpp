@@ -1,22 +1,14 @@
 // What every job of palpate-io-helper has in common; see the header.
 #include "io/io_helper.hpp"
 
-#include <unistd.h>
-
-#include <cerrno>
-#include <cstring>
 #include <system_error>
 
+#include "io/system.hpp"
 #include "palpate/io/error.hpp"
 
 namespace palpate::io {
 
 namespace fs = std::filesystem;
-
-std::uint64_t machine_memory() {
-    return static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) *
-           static_cast<std::uint64_t>(sysconf(_SC_PAGE_SIZE));
-}
 
 double bytes_in(const fs::path& path) {
     std::error_code error;
@@ -45,8 +37,8 @@ void check_readable(const fs::path& path) {
         throw InputError(name + ": is neither a file nor a folder; give a file");
     }
     const bool folder = status.type() == fs::file_type::directory;
-    if (access(path.c_str(), folder ? R_OK | X_OK : R_OK) != 0) {
-        throw InputError(name + ": " + std::strerror(errno) + "; check its permissions");
+    if (const int problem = why_unreadable(path, folder); problem != 0) {
+        throw InputError(name + ": " + reason(problem) + "; check its permissions");
     }
     if (!folder && fs::file_size(path, error) == 0) {
         throw InputError(name + ": is empty (0 bytes); copy or download it again");

@@ -15,9 +15,6 @@ inline constexpr HelperProgram io_helper{
     "close other programs or use a smaller volume",
     "files of its size take less; it is most likely damaged: export it again"};
 
-/// [bytes]
-std::uint64_t machine_memory();
-
 /// Bytes of a file, or of all files in a folder.
 double bytes_in(const std::filesystem::path& path);
 

@@ -1,6 +1,8 @@
-// Removes temporary files and folders whose process is dead.
+// Removes temporary files and folders whose process is dead. Linux.
 #include "io/leftovers.hpp"
 
+#include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 

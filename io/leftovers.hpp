@@ -1,9 +1,6 @@
 // Temporary files and folders beside outputs: how they are called, how other processes see that
-// they are in use, and how those of killed processes go. POSIX. Private to io/ and programs.
+// they are in use, and how those of killed processes go. Private to io/ and programs.
 #pragma once
-
-#include <fcntl.h>
-#include <sys/file.h>
 
 #include <filesystem>
 
@@ -16,11 +13,7 @@ std::filesystem::path temporary_in(const std::filesystem::path& folder);
 /// Locks what this process has created as long as the descriptor returned is open: then a process
 /// in another container or on another machine does not take it for a leftover. Below 0 where there
 /// are no locks; nothing else depends on it.
-inline int lock_temporary(const std::filesystem::path& path) {
-    const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
-    if (descriptor >= 0) (void)::flock(descriptor, LOCK_EX | LOCK_NB);
-    return descriptor;
-}
+int lock_temporary(const std::filesystem::path& path);
 
 /// Removes what processes that were killed have left in `folder`: files and folders that have a
 /// temporary name, belong to this user, are no symbolic links, and whose process neither lives nor

@@ -7,6 +7,7 @@
 
 #include "io/helper/protocol.hpp"
 #include "io/io_helper.hpp"
+#include "io/system.hpp"
 #include "palpate/io/error.hpp"
 #include "palpate/io/mesh_file.hpp"
 

@@ -1,15 +1,13 @@
-// Atomic output with POSIX calls, because streams report a full disk late or not at all.
+// Atomic output by descriptors, because streams report a full disk late or not at all.
 #include "palpate/io/output.hpp"
 
-#include <fcntl.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdio>
 #include <system_error>
 
 #include "io/leftovers.hpp"
+#include "io/system.hpp"
 
 namespace palpate::io {
 namespace {
@@ -18,11 +16,8 @@ constexpr std::size_t buffer_bytes = std::size_t{1} << 20;
 
 /// What to do about common errors.
 std::string remedy(int error) {
+    if (means_full(error)) return ": free some space or write elsewhere";
     switch (error) {
-        case ENOSPC:
-        case EDQUOT:
-        case EFBIG:
-            return ": free some space or write elsewhere";
         case EACCES:
         case EPERM:
         case EROFS:
@@ -52,9 +47,10 @@ std::filesystem::path folder_of(const std::filesystem::path& file) {
     return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
 }
 
-/// File systems without fsync say so; that is no loss of data.
-bool synchronise(int descriptor) {
-    return ::fsync(descriptor) == 0 || errno == EINVAL || errno == ENOTSUP || errno == ENOSYS;
+/// An empty path is the name of nothing.
+void remove_if_there(const std::filesystem::path& file) noexcept {
+    std::error_code ignored;
+    if (!file.empty()) std::filesystem::remove(file, ignored);
 }
 
 }  // namespace
@@ -63,7 +59,7 @@ PendingFile::PendingFile(const std::filesystem::path& target) : target_(followed
     buffer_.reserve(buffer_bytes);
     if (target_ == "-") {
         target_ = "standard output";
-        descriptor_ = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3);
+        descriptor_ = open_standard_output();
         if (descriptor_ < 0) fail("cannot be written: " + because(errno));
         return;
     }
@@ -74,13 +70,12 @@ PendingFile::PendingFile(const std::filesystem::path& target) : target_(followed
         fail("is a folder: name a file in it");
     }
     if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-        descriptor_ = ::open(target_.c_str(), O_WRONLY | O_CLOEXEC);
+        descriptor_ = open_to_write(target_);
         if (descriptor_ < 0) fail("cannot be opened for writing: " + because(errno));
         return;
     }
-    if (std::filesystem::exists(status) && ::access(target_.c_str(), W_OK) != 0) {
-        fail("exists and cannot be overwritten: " + because(errno));
-    }
+    const int problem = std::filesystem::exists(status) ? why_unwritable(target_) : 0;
+    if (problem != 0) fail("exists and cannot be overwritten: " + because(problem));
     open_temporary();
 }
 
@@ -98,11 +93,10 @@ void PendingFile::open_temporary() {
     }
     remove_leftovers(folder);
     // The mode that a plain open would give, or that of the file it replaces.
-    struct stat old {};
-    const bool replaces = ::stat(target_.c_str(), &old) == 0;
+    const auto old = std::filesystem::status(target_, error);
     do {
         temporary_ = temporary_in(folder);
-        descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        descriptor_ = create_to_write(temporary_);
     } while (descriptor_ < 0 && errno == EEXIST);
     if (descriptor_ < 0) {
         const int problem = errno;
@@ -110,9 +104,10 @@ void PendingFile::open_temporary() {
         fail("cannot be written: " + because(problem));
     }
     lock_ = lock_temporary(temporary_);
-    if (replaces && ::fchmod(descriptor_, old.st_mode & 07777) != 0) {
-        const int problem = errno;
-        fail("cannot be given the mode of the file it replaces: " + because(problem));
+    if (!std::filesystem::exists(old)) return;
+    std::filesystem::permissions(temporary_, old.permissions(), error);
+    if (error) {
+        fail("cannot be given the mode of the file it replaces: " + because(error.value()));
     }
 }
 
@@ -123,7 +118,7 @@ PendingFile::~PendingFile() {
 void PendingFile::discard() noexcept {
     if (descriptor_ >= 0) ::close(descriptor_);
     descriptor_ = -1;
-    if (!temporary_.empty()) ::unlink(temporary_.c_str());
+    remove_if_there(temporary_);
     temporary_.clear();
     if (lock_ >= 0) ::close(lock_);
     lock_ = -1;
@@ -170,11 +165,9 @@ void PendingFile::complete() {
 /// Not for good: what the target held before is kept under the temporary name.
 void PendingFile::put_in_place(bool for_good) {
     if (temporary_.empty()) return;
-    const char* const from = temporary_.c_str();
-    const char* const to = target_.c_str();
     in_place_ = true;
-    if (!for_good && ::renameat2(AT_FDCWD, from, AT_FDCWD, to, RENAME_EXCHANGE) == 0) return;
-    if (::rename(from, to) != 0) {
+    if (!for_good && exchange(temporary_, target_)) return;
+    if (!replace(temporary_, target_)) {
         const int problem = errno;
         in_place_ = false;
         fail("could not be put in place: " + because(problem));
@@ -185,9 +178,9 @@ void PendingFile::put_in_place(bool for_good) {
 void PendingFile::take_back() noexcept {
     if (!in_place_) return discard();
     if (temporary_.empty()) {
-        ::unlink(target_.c_str());
+        remove_if_there(target_);
     } else {
-        ::rename(temporary_.c_str(), target_.c_str());
+        replace(temporary_, target_);
         temporary_.clear();
     }
 }
@@ -196,10 +189,7 @@ void PendingFile::keep() noexcept {
     discard();  // what was there before
     if (!in_place_) return;
     // So that the name survives a power cut, too; the data is complete in any case.
-    const int parent = ::open(folder_of(target_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (parent < 0) return;
-    synchronise(parent);
-    ::close(parent);
+    synchronise_folder(folder_of(target_));
 }
 
 void PendingFile::commit_together(const std::vector<PendingFile*>& files) {

@@ -1,8 +1,6 @@
 // Reads and writes headerless files; see the header.
 #include "io/raw_file.hpp"
 
-#include <sys/mman.h>
-
 #include <algorithm>
 #include <bit>
 #include <cstring>
@@ -12,6 +10,7 @@
 #include "io/byte_order.hpp"
 #include "io/finite.hpp"
 #include "io/inflate.hpp"
+#include "io/system.hpp"
 #include "palpate/io/output.hpp"
 
 namespace palpate::io {
@@ -23,13 +22,6 @@ std::string layout_text(const RawLayout& raw) {
     return std::to_string(raw.size[0]) + "x" + std::to_string(raw.size[1]) + "x" +
            std::to_string(raw.size[2]) + " of " + std::string(name_of(raw.type)) +
            (raw.skip > 0 ? " after " + std::to_string(raw.skip) + " bytes" : "");
-}
-
-/// Anonymous memory, returned to the system as soon as the volume is destroyed.
-std::shared_ptr<std::byte> allocate(std::size_t bytes) {
-    void* at = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    if (at == MAP_FAILED) throw std::bad_alloc();
-    return {static_cast<std::byte*>(at), [bytes](std::byte* mapped) { munmap(mapped, bytes); }};
 }
 
 /// Copies a stream of bytes into the samples: skips some, fills, and counts the rest.
@@ -128,7 +120,7 @@ VolumeFile read_raw(const std::filesystem::path& path, const ReadOptions& option
     const std::uint64_t expected = expected_bytes(path, raw, options.memory_limit_bytes);
     const std::uint64_t bytes = expected - raw.skip;
     const bool packed = is_gzip(path);
-    const auto samples = allocate(bytes);
+    const auto samples = fresh_memory(bytes);
     Filler fill(samples.get(), bytes, raw.skip, options.progress);
     if (packed) {
         check_size(path, raw, expected, unpack(path, raw, expected, fill), true);

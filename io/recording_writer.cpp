@@ -1,6 +1,4 @@
 // Writes recordings: a thread takes events from the servo's queue and appends lines to a file.
-#include <fcntl.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -8,6 +6,7 @@
 #include <system_error>
 
 #include "io/recording_head.hpp"
+#include "io/system.hpp"
 #include "io/trace_columns.hpp"
 
 namespace palpate::io {
@@ -80,8 +79,7 @@ RecordingWriter::RecordingWriter(const std::filesystem::path& path, const Record
                           ": exists; a recording never replaces a file: choose another name");
     }
     const bool stream = std::filesystem::exists(status) && !std::filesystem::is_directory(status);
-    descriptor_ =
-        ::open(path.c_str(), O_WRONLY | O_CLOEXEC | (stream ? 0 : O_CREAT | O_EXCL), 0666);
+    descriptor_ = stream ? open_to_write(path) : create_to_write(path);
     if (descriptor_ < 0) {
         throw OutputError(path.string() + ": cannot be written: " + reason(errno) +
                           ": choose another place");
@@ -91,7 +89,7 @@ RecordingWriter::RecordingWriter(const std::filesystem::path& path, const Record
     flush();
     if (const std::string wrong = problem(); !wrong.empty()) {
         close();
-        if (seekable_) ::unlink(path_.c_str());
+        if (seekable_) std::filesystem::remove(path_, error);
         throw OutputError(wrong);
     }
     thread_ = std::jthread([this] { run(); });
@@ -118,7 +116,7 @@ void RecordingWriter::finish(std::int64_t lost) {
     buffer_ += end_mark;
     buffer_ += Json{{"ticks", ticks()}, {"lost", lost}, {"crc32", checksum_}}.dump() + "\n";
     flush();
-    (void)::fdatasync(descriptor_);
+    (void)synchronise(descriptor_);
     close();
     if (const std::string wrong = problem(); !wrong.empty()) throw OutputError(wrong);
 }
@@ -139,7 +137,7 @@ void RecordingWriter::sync() {
     while (!done_) {
         std::this_thread::sleep_for(between_writes);
         if (std::chrono::steady_clock::now() - last < between_syncs) continue;
-        (void)::fdatasync(descriptor_);  // pipes have no disk; a write tells what is wrong
+        (void)synchronise(descriptor_);  // pipes have no disk; a write tells what is wrong
         last = std::chrono::steady_clock::now();
     }
 }
@@ -183,11 +181,10 @@ void RecordingWriter::flush() {
     written_ += static_cast<std::int64_t>(done.rfind('\n') + 1);  // npos + 1 is 0
     if (!rest.empty()) {
         // What is there ends with a whole line. Should that fail, readers leave a torn line out.
-        if (seekable_) (void)!::ftruncate(descriptor_, written_);
+        if (seekable_) (void)truncate(descriptor_, written_);
         const std::scoped_lock lock(mutex_);
-        const bool full = error == ENOSPC || error == EDQUOT || error == EFBIG;
         problem_ = path_.string() + ": recording stopped: " + reason(error) +
-                   (full ? ": free some space" : ": record to another place") +
+                   (means_full(error) ? ": free some space" : ": record to another place") +
                    "; what was recorded before is kept";
     }
     buffer_.clear();

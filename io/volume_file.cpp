@@ -15,6 +15,7 @@
 #include "io/io_helper.hpp"
 #include "io/leftovers.hpp"
 #include "io/raw_file.hpp"
+#include "io/system.hpp"
 #include "palpate/io/written_formats.hpp"
 
 namespace palpate::io {

@@ -19,6 +19,7 @@ groups (default: all)
   dev      clang, its sanitizers and fuzzer, clang-format, clang-tidy, shellcheck,
            Mono, lintian
   docs     MkDocs and Doxygen, for the documentation as a site
+  windows  core, MinGW and Wine, and the headers that the libraries for Windows are built with; not in all
   all      everything above
 TEXT
 }
@@ -33,6 +34,8 @@ io=("${core[@]}" libinsighttoolkit5-dev libvtk9-dev libcli11-dev libfmt-dev nloh
 viewer=("${io[@]}" libvtk9-qt-dev qtbase5-dev qttools5-dev qttools5-dev-tools qttranslations5-l10n xvfb)
 dev=(git lintian pkg-config mono-mcs mono-runtime clang clang-format-14 clang-tidy libclang-rt-14-dev shellcheck)
 docs=(mkdocs doxygen python3-pygments libjs-jquery)
+windows=("${core[@]}" g++-mingw-w64-x86-64-posix wine64 libz-mingw-w64-dev nlohmann-json3-dev
+    libboost-dev libcli11-dev libfmt-dev zip)
 
 wanted=()
 for group in "${@:-all}"; do
@@ -42,6 +45,7 @@ for group in "${@:-all}"; do
         viewer) wanted+=("${viewer[@]}") ;;
         dev) wanted+=("${dev[@]}") ;;
         docs) wanted+=("${docs[@]}") ;;
+        windows) wanted+=("${windows[@]}") ;;
         all) wanted+=("${viewer[@]}" "${dev[@]}" "${docs[@]}") ;;
         -h | --help) usage; exit 0 ;;
         *) echo "install_packages.sh: no group '$group'" >&2; usage >&2; exit 2 ;;

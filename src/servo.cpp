@@ -3,11 +3,10 @@
 #include "palpate/servo.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
-#include <ctime>
 #include <stdexcept>
 
+#include "servo/clocks.hpp"
 #include "servo/privileges.hpp"
 #include "servo/watched_device.hpp"
 
@@ -21,22 +20,6 @@ constexpr int commands_per_tick = 16;
 constexpr std::int64_t settle_ns = 1'000'000;
 /// Interval at which start() and stop() check what the thread does.
 constexpr auto poll = std::chrono::microseconds(100);
-
-std::int64_t now_ns(clockid_t clock) {
-    timespec t{};
-    clock_gettime(clock, &t);
-    return t.tv_sec * second_ns + t.tv_nsec;
-}
-
-std::int64_t monotonic_ns() noexcept {
-    return now_ns(CLOCK_MONOTONIC);
-}
-
-void sleep_until(std::int64_t ns) {
-    const timespec t{ns / second_ns, ns % second_ns};
-    while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr) == EINTR) {
-    }
-}
 
 void add(std::atomic<std::int64_t>& counter, std::int64_t amount) {
     counter.store(counter.load(std::memory_order_relaxed) + amount, std::memory_order_relaxed);
@@ -101,6 +84,7 @@ struct Servo::Clock {
     std::int64_t period;
     std::int64_t zero;  // session time 0
     std::int64_t due;   // the next tick
+    Alarm alarm = {};
     std::int64_t last_start = 0;
     WorstTick worst = {};
 };
@@ -255,7 +239,7 @@ void Servo::run() noexcept {
     clock.zero = clock.due = monotonic_ns() + settle_ns;
     while (!stopping_.load(std::memory_order_acquire) &&
            device_->failure() == DeviceFailure::none) {
-        sleep_until(clock.due);
+        clock.alarm.sleep_until(clock.due);
         tick(clock);
     }
     device_->write({}, 1e-9 * static_cast<double>(monotonic_ns() - clock.zero));
@@ -264,7 +248,7 @@ void Servo::run() noexcept {
 
 void Servo::tick(Clock& clock) noexcept {
     const std::int64_t start = monotonic_ns();
-    const std::int64_t compute_start = now_ns(CLOCK_THREAD_CPUTIME_ID);
+    const std::int64_t compute_start = thread_cpu_ns();
     const std::int64_t number = ticks_.load(std::memory_order_relaxed);
     const double time = 1e-9 * static_cast<double>(start - clock.zero);
 
@@ -288,7 +272,7 @@ void Servo::tick(Clock& clock) noexcept {
 
     count(clock, number,
           {.start = start,
-           .compute = now_ns(CLOCK_THREAD_CPUTIME_ID) - compute_start,
+           .compute = thread_cpu_ns() - compute_start,
            .device = (after_read - before_read) + (after_write - before_write),
            .proxy = result.tick.update_ns});
 }

@@ -1,13 +1,11 @@
 // Plain files of samples, read where they lie: opening costs a header, whatever the file's size.
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <vector>
 
 #include "io/helper_process.hpp"
 #include "io/plain_samples.hpp"
+#include "io/system.hpp"
 #include "palpate/io/error.hpp"
 #include "stream/sample_bytes.hpp"
 #include "stream/stores.hpp"
@@ -61,7 +59,7 @@ class PlainFile : public Store {
     }
 
     PlainFile(const std::string& path, const StoreOptions& options, const io::PlainSamples& plain)
-        : file_(::open(plain.file.c_str(), O_RDONLY | O_CLOEXEC)) {
+        : file_(io::open_to_read(plain.file)) {
         if (file_.number() < 0) {
             throw io::InputError(path + ": " + io::reason(errno) + "; check its permissions");
         }
@@ -97,8 +95,7 @@ class PlainFile : public Store {
             static_cast<std::uint64_t>(from[0]);
         std::uint64_t at = first_ + sample * bytes_.size();
         for (std::span<std::byte> left = raw; !left.empty();) {
-            const ssize_t got =
-                ::pread(file_.number(), left.data(), left.size(), static_cast<off_t>(at));
+            const std::ptrdiff_t got = io::read_at(file_.number(), left.data(), left.size(), at);
             if (got < 0 && errno == EINTR) continue;
             if (got <= 0) {
                 throw io::InputError(info_.address + ": " +

@@ -1,8 +1,6 @@
 // Turns every failure into one clear line and the exit status of the contract.
 #include "apps/palpate/program.hpp"
 
-#include <fcntl.h>
-
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
@@ -13,6 +11,7 @@
 #include "apps/options/exit_status.hpp"
 #include "apps/options/impossible_values.hpp"
 #include "apps/palpate/commands.hpp"
+#include "apps/palpate/ends.hpp"
 
 namespace {
 
@@ -22,15 +21,6 @@ volatile std::sig_atomic_t stop_signal = 0;
 
 void on_signal(int number) {
     stop_signal = number;
-}
-
-/// A standard stream that is closed would give its number, and then its text, to the next file that
-/// is opened. In its place: one that cannot be written, so that this is an error and no damage.
-void occupy_closed_streams() {
-    for (int number = 0; number < 3; ++number) {
-        if (::fcntl(number, F_GETFD) >= 0) continue;
-        (void)::open("/dev/null", number == 0 ? O_WRONLY : O_RDONLY);  // takes the lowest number
-    }
 }
 
 int finish_output() {
@@ -67,6 +57,7 @@ int run(int argc, char** argv, const std::function<void(CLI::App&)>& add_command
         "VOLUME is a file (NRRD, MetaImage, NIfTI, TIFF, VTI, DICOM, raw), a folder with a DICOM "
         "series or a TIFF stack,\nor synthetic:NAME[:WxHxD].",
         "palpate");
+    app.allow_windows_style_options(false);  // a path may begin with a slash there, too
     app.set_version_flag("--version", "palpate " PALPATE_VERSION);
     app.require_subcommand(1);
     app.footer(
@@ -106,10 +97,7 @@ void stop_if_interrupted() {
 
 int run_program(int argc, char** argv, const std::function<void(CLI::App&)>& add_commands) {
     occupy_closed_streams();
-    // A closed terminal and Ctrl-\ too: a session lets go of its forces on the way out.
-    for (const int s : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) std::signal(s, on_signal);
-    std::signal(SIGXFSZ, SIG_IGN);  // a failed write, told as such
-    std::signal(SIGPIPE, SIG_IGN);  // a reader that has gone is a failed write, cleaned up after
+    handle_ends(on_signal);
     try {
         return run(argc, argv, add_commands);
     } catch (const ClaimsDoNotHold& broken) {

@@ -3,16 +3,25 @@
 
 #include <poll.h>
 #include <sys/ioctl.h>
+#include <termios.h>
 #include <unistd.h>
+
+#include <csignal>
+#include <initializer_list>
 
 namespace palpate::app {
 
-Keys::Keys() {
+/// The terminal's settings before keys were read one at a time.
+struct Keys::Before {
+    termios settings{};
+};
+
+Keys::Keys() : before_(std::make_unique<Before>()) {
     // A program in the background that touches its terminal is stopped: leave it alone then.
     if (!::isatty(STDIN_FILENO) || !::isatty(STDERR_FILENO)) return;
     if (::tcgetpgrp(STDIN_FILENO) != ::getpgrp()) return;
-    if (::tcgetattr(STDIN_FILENO, &before_) != 0) return;
-    termios raw = before_;
+    if (::tcgetattr(STDIN_FILENO, &before_->settings) != 0) return;
+    termios raw = before_->settings;
     raw.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
     raw.c_cc[VMIN] = 0;
     raw.c_cc[VTIME] = 0;
@@ -20,7 +29,11 @@ Keys::Keys() {
 }
 
 Keys::~Keys() {
-    if (available_) ::tcsetattr(STDIN_FILENO, TCSANOW, &before_);
+    if (available_) ::tcsetattr(STDIN_FILENO, TCSANOW, &before_->settings);
+}
+
+void stay_awake() {
+    for (const int s : {SIGTSTP, SIGTTIN, SIGTTOU}) std::signal(s, SIG_IGN);
 }
 
 std::size_t terminal_columns() {

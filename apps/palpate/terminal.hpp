@@ -1,9 +1,8 @@
 // Keys from a terminal, one at a time, without waiting.
 #pragma once
 
-#include <termios.h>
-
 #include <cstddef>
+#include <memory>
 #include <optional>
 
 namespace palpate::app {
@@ -22,9 +21,13 @@ class Keys {
     std::optional<char> next();
 
   private:
+    struct Before;
     bool available_ = false;
-    termios before_{};
+    std::unique_ptr<Before> before_;
 };
+
+/// A program that is suspended could not end the force: from now on Ctrl-Z does nothing.
+void stay_awake();
 
 /// Columns of the terminal on standard error; 80 if it does not tell.
 std::size_t terminal_columns();

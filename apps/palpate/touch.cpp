@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <csignal>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -315,8 +314,7 @@ void touch(const TouchOptions& options) {
     }
     start_recording(*run, options);
     const DeviceInfo device = run->device();
-    // A program that is suspended could not end the force: Ctrl-Z does nothing meanwhile.
-    for (const int s : {SIGTSTP, SIGTTIN, SIGTTOU}) std::signal(s, SIG_IGN);
+    stay_awake();
     auto begin = std::chrono::steady_clock::now();
     std::string unsaved = feel(*run, options, std::move(requests), commands, remote.get());
     while (auto pushed = remote ? remote->take_pushed() : nullptr) {

@@ -2,11 +2,7 @@
 // meets the newest reading and the newest force.
 #include "bindings/c/own_device.hpp"
 
-#include <pthread.h>
-
-#include <chrono>
-#include <csignal>
-
+#include "bindings/c/runtimes.hpp"
 #include "bindings/c/structs.hpp"
 
 namespace palpate::c {
@@ -54,17 +50,6 @@ palpate_own_device with_defaults(palpate_own_device asked) {
     return asked;
 }
 
-/// Runtimes that collect garbage (Mono, Boehm's collector) stop the threads that run their code by
-/// signals of their own. Blocked, those would stop the whole program for good.
-void let_runtimes_stop_this_thread() noexcept {
-    sigset_t theirs;
-    ::sigemptyset(&theirs);
-    ::sigaddset(&theirs, SIGPWR);
-    ::sigaddset(&theirs, SIGXCPU);
-    for (int signal = SIGRTMIN; signal <= SIGRTMAX; ++signal) ::sigaddset(&theirs, signal);
-    ::pthread_sigmask(SIG_UNBLOCK, &theirs, nullptr);
-}
-
 }  // namespace
 
 std::string name_of(const palpate_own_device& asked) {
@@ -90,14 +75,14 @@ std::string OwnDevice::problem() const {
 void OwnDevice::run() noexcept {
     devices::prepare_device_thread();
     let_runtimes_stop_this_thread();
-    const auto period = std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 / callbacks_.rate));
-    auto next = std::chrono::steady_clock::now();
+    const auto period = static_cast<std::int64_t>(1e9 / callbacks_.rate);  // [ns]
+    std::int64_t next = devices::monotonic_ns();
     // Asked before the exchange: the last one comes after the stop, so it sends the zero.
     for (bool last = false; !last;) {
         last = done_;
         exchange();
-        next = std::max(next + period, std::chrono::steady_clock::now() - period);
-        if (!last) std::this_thread::sleep_until(next);
+        next = std::max(next + period, devices::monotonic_ns() - period);
+        if (!last) devices::sleep_until(next);
     }
     try {
         if (callbacks_.close) callbacks_.close(callbacks_.context);

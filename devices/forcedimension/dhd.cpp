@@ -4,17 +4,10 @@
 #include <algorithm>
 #include <iterator>
 
+#include "devices/forcedimension/words.hpp"
+
 namespace palpate::devices::forcedimension {
 namespace {
-
-const char* const install =
-    "install Force Dimension's SDK for Linux (libdrd.so.3, libdhd.so.3) where the loader finds it, "
-    "or tell where it is: library=PATH";
-
-std::vector<std::string> names(const std::string& path) {
-    if (!path.empty()) return {path};
-    return {"libdrd.so.3", "libdrd.so", "libdhd.so.3", "libdhd.so"};
-}
 
 // clang-format off
 constexpr Model models[] = {
@@ -45,7 +38,8 @@ const Model& model_of(int system_type) {
     return found == std::end(models) ? any_model : *found;
 }
 
-Dhd::Dhd(const std::string& path) : library(names(path), install) {
+Dhd::Dhd(const std::string& path)
+    : library(path.empty() ? library_names() : std::vector<std::string>{path}, how_to_install) {
     library.need(get_device_count, "dhdGetDeviceCount");
     library.need(dhd_open, "dhdOpenID");
     library.need(dhd_close, "dhdClose");

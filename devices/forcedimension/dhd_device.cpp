@@ -3,8 +3,6 @@
 #include "devices/forcedimension/dhd_device.hpp"
 
 #include <algorithm>
-#include <cerrno>
-#include <ctime>
 #include <limits>
 
 namespace palpate::devices::forcedimension {
@@ -26,13 +24,6 @@ std::array<char, 128> clipped(std::string_view text) {
     std::array<char, 128> characters{};
     std::ranges::copy(text.substr(0, characters.size() - 1), characters.begin());
     return characters;
-}
-
-void sleep_until(std::int64_t time) {
-    const timespec until{static_cast<time_t>(time / 1'000'000'000),
-                         static_cast<long>(time % 1'000'000'000)};
-    while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == EINTR) {
-    }
 }
 
 std::string words_of(ForceOff cause) {
@@ -102,13 +93,13 @@ DhdDevice::DhdDevice(const std::string& library, const Settings& settings)
       info_(ask(settings)) {
     if (settings.initialise && !dhd_.has_drd()) {
         throw DeviceError("autoinit=yes: " + dhd_.library.path() +
-                          " cannot initialise devices: install libdrd.so.3 beside it, or "
+                          " cannot initialise devices: install libdrd beside it, or "
                           "library=PATH of that one");
     }
     if (settings.centre && !(renders_torque_ && dhd_.can_centre())) {
         throw DeviceError(renders_torque_
                               ? "centre=yes: " + dhd_.library.path() +
-                                    " cannot move devices: install libdrd.so.3 beside it, or "
+                                    " cannot move devices: install libdrd beside it, or "
                                     "library=PATH of that one"
                               : "centre=yes: " + info_.model + " has no motors at its wrist");
     }

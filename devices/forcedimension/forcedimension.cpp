@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "devices/forcedimension/dhd_device.hpp"
+#include "devices/forcedimension/words.hpp"
 
 namespace palpate::devices {
 namespace {
@@ -21,7 +22,8 @@ std::string version_of(const forcedimension::Dhd& dhd) {
 DeviceFinding forcedimension::find(const std::string& library) {
     DeviceFinding finding;
     finding.name = "forcedimension";
-    finding.options = "index=0,autoinit=no,centre=no,library=libdrd.so.3 or libdhd.so.3";
+    finding.options =
+        std::string("index=0,autoinit=no,centre=no,library=") + forcedimension::names_in_words;
     try {
         const Dhd dhd(library);
         const std::string sdk = "Force Dimension SDK" + version_of(dhd) + ", " + dhd.library.path();
@@ -30,9 +32,7 @@ DeviceFinding forcedimension::find(const std::string& library) {
         if (finding.found) {
             finding.what = std::to_string(count) + (count == 1 ? " device; " : " devices; ") + sdk;
         } else {
-            finding.missing = "no device (" + sdk +
-                              "): connect it and switch it on; your account must be able to open "
-                              "its USB device (the SDK's udev rule, 51-forcedimension.rules)";
+            finding.missing = "no device (" + sdk + "): " + how_to_attach;
         }
     } catch (const std::exception& error) {
         finding.missing = error.what();

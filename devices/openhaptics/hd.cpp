@@ -4,16 +4,11 @@
 #include <array>
 #include <cstdio>
 
+#include "devices/openhaptics/words.hpp"
+
 namespace palpate::devices::openhaptics {
-namespace {
 
-const char* const install =
-    "install 3D Systems' OpenHaptics and the Touch (or PHANToM) device driver for Linux, or tell "
-    "where the library is: library=PATH";
-
-}  // namespace
-
-Hd::Hd(const std::string& path) : library({path.empty() ? "libHD.so" : path}, install) {
+Hd::Hd(const std::string& path) : library({path.empty() ? library_name : path}, how_to_install) {
     library.need(init_device, "hdInitDevice");
     library.need(disable_device, "hdDisableDevice");
     library.need(make_current, "hdMakeCurrentDevice");

@@ -4,13 +4,15 @@
 #include <utility>
 
 #include "devices/openhaptics/phantom.hpp"
+#include "devices/openhaptics/words.hpp"
 
 namespace palpate::devices {
 
 DeviceFinding openhaptics::find(const std::string& library) {
     DeviceFinding finding;
     finding.name = "openhaptics";
-    finding.options = "name=NAME (the driver's default),reset=no,library=libHD.so";
+    finding.options = std::string("name=NAME (the driver's default),reset=no,library=") +
+                      openhaptics::library_name;
     try {
         const Hd hd(library);
         finding.found = true;

@@ -10,6 +10,8 @@
 #include <thread>
 #include <vector>
 
+#include "devices/openhaptics/words.hpp"
+
 namespace palpate::devices::openhaptics {
 namespace {
 
@@ -19,11 +21,6 @@ std::atomic<bool> attached{false};  // the driver has one loop per process, so t
 
 constexpr double weakest_torque = 48;  // [N mm] where the driver tells none
 constexpr auto longest_wait = 500ms;   // for the last frame
-
-const char* const how_to_attach =
-    "connect and switch on the device and set it up with the vendor's program (its name there, if "
-    "it is not the default one: name=NAME); your account must be able to open its /dev/ttyACM* or "
-    "/dev/hidraw* (the driver's udev rule)";
 
 /// The driver's figures where they make sense, otherwise those of an Omni or Touch.
 double number(const Hd& hd, unsigned int parameter, double low, double high, double otherwise) {

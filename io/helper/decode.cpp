@@ -1,22 +1,15 @@
 // Shared by the readers in the helper program; see the header.
 #include "io/helper/decode.hpp"
 
-#include <sys/mman.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
 #include <limits>
 #include <map>
 
 #include "io/finite.hpp"
-#include "io/helper/child.hpp"
-#include "io/helper/protocol.hpp"
-#include "io/helper/report.hpp"
 
 namespace palpate::io {
 namespace {
@@ -41,19 +34,6 @@ std::pair<double, double> range_of(Stored stored, std::span<const std::byte> sam
         }
         return range;
     });
-}
-
-std::span<std::byte> shared_samples(std::uint64_t bytes) {
-    if (ftruncate(samples_descriptor, static_cast<off_t>(bytes)) != 0) {
-        throw Failure("no memory for " + gigabytes(static_cast<double>(bytes)) +
-                      " of samples; use a smaller volume");
-    }
-    void* at = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, samples_descriptor, 0);
-    if (at == MAP_FAILED) {
-        throw Failure("no memory for " + gigabytes(static_cast<double>(bytes)) +
-                      " of samples; use a smaller volume");
-    }
-    return {static_cast<std::byte*>(at), bytes};
 }
 
 std::uint64_t checked_bytes(std::span<const std::int64_t> sizes, std::size_t bytes_per_sample,
@@ -97,29 +77,6 @@ void take_step(const Request& request, std::int64_t steps, const FrameTimes& tim
     result.times = times;
     result.notes.push_back("time step " + std::to_string(step) + " of " + std::to_string(steps) +
                            " (0 to " + std::to_string(steps - 1) + ") was taken");
-}
-
-MemoryBound::MemoryBound([[maybe_unused]] std::uint64_t more) {
-    rlimit limit{};
-    getrlimit(RLIMIT_DATA, &limit);
-    before_ = limit.rlim_cur;
-#ifndef PALPATE_SANITIZED
-    // The sixth number of statm: pages of data and stack.
-    std::ifstream statm("/proc/self/statm");
-    std::uint64_t pages = 0;
-    for (int i = 0; i < 6; ++i) statm >> pages;
-    const auto now = pages * static_cast<std::uint64_t>(sysconf(_SC_PAGE_SIZE));
-    if (!statm || more > UINT64_MAX / 4) return;
-    limit.rlim_cur = std::min<rlim_t>(before_, now + more + (rlim_t{64} << 20));
-    setrlimit(RLIMIT_DATA, &limit);
-#endif
-}
-
-MemoryBound::~MemoryBound() {
-    rlimit limit{};
-    getrlimit(RLIMIT_DATA, &limit);
-    limit.rlim_cur = before_;
-    setrlimit(RLIMIT_DATA, &limit);
 }
 
 void check_spacing(double spacing, const std::string& where) {
@@ -182,13 +139,6 @@ FrameTimes frame_times(double interval, double first, const std::string& unit,
     if (unit.empty()) notes.push_back("its header gives no unit of time: seconds were taken");
     const double second = known->second;
     return {interval * second, std::isfinite(first) ? first * second : 0};
-}
-
-void say_progress(double fraction) {
-    report({{"progress", fraction}});
-}
-void say_doing(const std::string& what) {
-    report({{"doing", what}});
 }
 
 std::string text_of(std::span<const std::int64_t> sizes) {

@@ -59,7 +59,7 @@ Result read_with(VolumeHeader header, const Request& request) {
     return result;
 }
 
-PlainSamples samples_of(VolumeHeader header, const Request& request) {
+PlainLayout samples_of(VolumeHeader header, const Request& request) {
     if (header.place.encoding != DataPlace::Encoding::raw) {
         throw Failure(
             "its samples are compressed or text, so they cannot be read piece by piece; save it "
@@ -72,7 +72,7 @@ PlainSamples samples_of(VolumeHeader header, const Request& request) {
             "volume of it");
     }
     check_raw_length(header);
-    PlainSamples plain;
+    PlainLayout plain;
     plain.stored = header.stored;
     plain.place = header.place;
     plain.place.offset += header.place.skip;
@@ -88,14 +88,14 @@ PlainSamples samples_of(VolumeHeader header, const Request& request) {
 
 }  // namespace
 
-PlainSamples nrrd_samples(const Request& request) {
-    PlainSamples plain = samples_of(nrrd_header(request), request);
+PlainLayout nrrd_samples(const Request& request) {
+    PlainLayout plain = samples_of(nrrd_header(request), request);
     plain.about.format = "NRRD";
     return plain;
 }
 
-PlainSamples meta_image_samples(const Request& request) {
-    PlainSamples plain = samples_of(meta_image_header(request), request);
+PlainLayout meta_image_samples(const Request& request) {
+    PlainLayout plain = samples_of(meta_image_header(request), request);
     plain.about.format = "MetaImage";
     return plain;
 }

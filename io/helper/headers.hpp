@@ -65,7 +65,7 @@ struct NiftiHeader : HeaderFacts {
 NiftiHeader check_nifti(const Request& request);
 
 /// Samples that lie uncompressed in a file, those of each volume together.
-struct PlainSamples {
+struct PlainLayout {
     Result about;  ///< of the first volume
     Stored stored = Stored::uint8;
     DataPlace place;

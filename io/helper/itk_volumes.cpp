@@ -110,7 +110,7 @@ void read_whole(itk::ImageIOBase& io, void* to) {
 
 }  // namespace
 
-PlainSamples nifti_samples(const Request& request) {
+PlainLayout nifti_samples(const Request& request) {
     if (is_gzip(request.path)) {
         throw Failure(
             "its samples are compressed, so they cannot be read piece by piece; save it as .nii, "
@@ -121,7 +121,7 @@ PlainSamples nifti_samples(const Request& request) {
     const auto io = itk::NiftiImageIO::New();
     io->SetFileName(request.path.string());
     io->ReadImageInformation();
-    PlainSamples plain;
+    PlainLayout plain;
     plain.stored = header.stored;
     plain.place = header.place;
     plain.slope = header.slope;

@@ -148,9 +148,9 @@ nlohmann::json run_locate(const fs::path& path, const nlohmann::json& asked) {
     if (asked.contains("spacing")) request.spacing = vec3_from(asked["spacing"]);
     limit_this_process(asked, 1 << 30);
     const std::string extension = extension_of(path);
-    const PlainSamples plain = extension == ".nrrd" || extension == ".nhdr" ? nrrd_samples(request)
-                               : extension == ".nii"                        ? nifti_samples(request)
-                                                     : meta_image_samples(request);
+    const PlainLayout plain = extension == ".nrrd" || extension == ".nhdr" ? nrrd_samples(request)
+                              : extension == ".nii"                        ? nifti_samples(request)
+                                                    : meta_image_samples(request);
     return {{"format", plain.about.format},
             {"geometry", json_from(plain.about.geometry)},
             {"stored", name_of(plain.stored)},

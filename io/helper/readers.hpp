@@ -20,9 +20,9 @@ Result read_vti(const Request& request);
 
 /// Where the samples of request.path lie, without reading them. Throws Failure where they cannot be
 /// read from there by the box: compressed, text, or those of several volumes mixed.
-PlainSamples nrrd_samples(const Request& request);
-PlainSamples meta_image_samples(const Request& request);
-PlainSamples nifti_samples(const Request& request);
+PlainLayout nrrd_samples(const Request& request);
+PlainLayout meta_image_samples(const Request& request);
+PlainLayout nifti_samples(const Request& request);
 
 /// DICOM's four letters after 128 bytes.
 bool looks_like_dicom(const std::filesystem::path& file);

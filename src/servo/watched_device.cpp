@@ -1,16 +1,7 @@
 // Tells a call that hangs: the watchdog sees it under way at three looks in a row, between which
-// its thread has waited or computed and not been kept from running by the machine. Linux.
+// its thread has waited or computed and not been kept from running by the machine.
 #include "servo/watched_device.hpp"
 
-#include <fcntl.h>
-#include <pthread.h>
-#include <unistd.h>
-
-#include <algorithm>
-#include <array>
-#include <chrono>
-#include <cstdio>
-#include <string_view>
 #include <utility>
 
 #include "servo/privileges.hpp"
@@ -23,29 +14,8 @@ constexpr std::uint64_t has_thrown = has_hung - 1;
 
 /// A call is given up at the third look that sees it: 10 to 15 ms after it began. What is left of
 /// Device::longest_force is for a watchdog that is woken late, and for the device's own thread.
-constexpr std::chrono::nanoseconds between_looks = std::chrono::milliseconds(5);
+constexpr std::int64_t between_looks_ns = 5'000'000;
 constexpr std::int64_t longest_call_ns = 7'500'000;  // between the looks that see it
-
-std::int64_t cpu_ns(clockid_t clock) noexcept {
-    timespec time{};
-    ::clock_gettime(clock, &time);
-    return time.tv_sec * std::int64_t{1'000'000'000} + time.tv_nsec;
-}
-
-/// Whether the thread could run or does, as opposed to waiting in the call. False if the system
-/// does not tell. Allocates nothing: the thread that hangs may hold the heap's lock.
-bool is_runnable(int thread) noexcept {
-    std::array<char, 64> path{};
-    std::snprintf(path.data(), path.size(), "/proc/self/task/%d/stat", thread);
-    const int file = ::open(path.data(), O_RDONLY | O_CLOEXEC);
-    if (file < 0) return false;
-    std::array<char, 128> text{};
-    const ssize_t size = ::read(file, text.data(), text.size());
-    ::close(file);
-    const std::string_view told(text.data(), static_cast<std::size_t>(std::max<ssize_t>(0, size)));
-    const std::size_t name_end = told.rfind(')');
-    return name_end != std::string_view::npos && told.substr(name_end).starts_with(") R");
-}
 
 }  // namespace
 
@@ -62,10 +32,7 @@ void WatchedDevice::watch(int priority) {
 }
 
 void WatchedDevice::watch_this_thread() noexcept {
-    clockid_t clock{};
-    ::pthread_getcpuclockid(::pthread_self(), &clock);
-    thread_clock_.store(clock);
-    thread_id_.store(::gettid());
+    thread_.store(calling_thread());
 }
 
 /// False if the device has failed: then, or before.
@@ -109,18 +76,19 @@ DeviceFailure WatchedDevice::failure() const noexcept {
 void WatchedDevice::look_after() noexcept {
     std::uint64_t seen = 0;
     std::int64_t cpu = 0, spent = 0;  // [ns] by the thread: in all, and in the call
+    Alarm alarm;
     while (!done_.load()) {
-        std::this_thread::sleep_for(between_looks);
+        alarm.sleep_until(monotonic_ns() + between_looks_ns);
         std::uint64_t count = calls_.load(std::memory_order_acquire);
         if (count >= has_thrown) return;
         if (count % 2 == 0) continue;
-        const std::int64_t cpu_before = std::exchange(cpu, cpu_ns(thread_clock_));
+        const std::int64_t cpu_before = std::exchange(cpu, cpu_ns(thread_.load()));
         if (std::exchange(seen, count) != count) {
             spent = 0;
             continue;
         }
         // A thread that could run but gets no processor does not hang: the machine is to blame.
-        spent += is_runnable(thread_id_) ? cpu - cpu_before : between_looks.count();
+        spent += is_runnable(thread_.load()) ? cpu - cpu_before : between_looks_ns;
         if (spent < longest_call_ns) continue;
         if (calls_.compare_exchange_strong(count, has_hung)) device_.stop();
     }

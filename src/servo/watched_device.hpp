@@ -3,10 +3,10 @@
 #pragma once
 
 #include <atomic>
-#include <ctime>
 #include <thread>
 
 #include "palpate/servo.hpp"
+#include "servo/clocks.hpp"
 
 namespace palpate {
 
@@ -44,8 +44,7 @@ class WatchedDevice {
     /// Counts begins and ends of calls: odd while one is under way. The two largest values say that
     /// the device has failed. One word, so that a call either returns or is given up.
     std::atomic<std::uint64_t> calls_{0};
-    std::atomic<int> thread_id_{0};          // of the servo thread, as the kernel counts
-    std::atomic<clockid_t> thread_clock_{};  // its CPU time
+    std::atomic<ThreadId> thread_{};  // of the servo
     std::atomic<bool> done_{false};
     std::thread watchdog_;
 };

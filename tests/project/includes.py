@@ -56,7 +56,8 @@ ALTERNATIVES = ("devices", "evaluation")
 PURE = ("include", "src", "baselines", "scenes")
 
 # What a stage needs of the system beyond the standard library, in its sources only.
-SYSTEM = {"servo": ("fcntl.h", "pthread.h", "sched.h", "sys/mman.h", "sys/prctl.h", "unistd.h")}
+SYSTEM = {"servo": ("fcntl.h", "pthread.h", "sched.h", "sys/mman.h", "sys/prctl.h", "unistd.h",
+                    "avrt.h", "timeapi.h", "windows.h")}
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]')
 STANDARD = re.compile(r"^[a-z_0-9]+$")

@@ -1,7 +1,9 @@
 // Replaces the global operators new and delete by ones that count. See allocation_counter.hpp.
 #include "support/allocation_counter.hpp"
 
+#include <algorithm>
 #include <atomic>
+#include <cstdint>
 #include <cstdlib>
 #include <new>
 
@@ -20,13 +22,23 @@ void* counted(std::size_t size) noexcept {
 void* counted(std::size_t size, std::align_val_t alignment) noexcept {
     count.fetch_add(1, std::memory_order_relaxed);
     ++thread_count;
-    const auto a = static_cast<std::size_t>(alignment);
-    return std::aligned_alloc(a, (size + a) / a * a);  // a multiple of a, never 0
+    // Not every C library has aligned_alloc: the block that holds the memory is noted before it.
+    const auto a = std::max(static_cast<std::size_t>(alignment), alignof(void*));
+    void* const block = std::malloc(sizeof(void*) + a + size);
+    if (!block) return nullptr;
+    const auto first = reinterpret_cast<std::uintptr_t>(block) + sizeof(void*);
+    void** const memory = reinterpret_cast<void**>((first + a - 1) / a * a);
+    memory[-1] = block;
+    return memory;
 }
 
 void give_back(void* memory) noexcept {
     thread_frees += memory != nullptr;
     std::free(memory);
+}
+
+void give_back(void* memory, std::align_val_t) noexcept {
+    give_back(memory ? static_cast<void**>(memory)[-1] : nullptr);
 }
 
 void* or_throw(void* memory) {
@@ -65,9 +77,9 @@ void operator delete(void* memory) noexcept {
 void operator delete(void* memory, std::size_t) noexcept {
     give_back(memory);
 }
-void operator delete(void* memory, std::align_val_t) noexcept {
-    give_back(memory);
+void operator delete(void* memory, std::align_val_t alignment) noexcept {
+    give_back(memory, alignment);
 }
-void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
-    give_back(memory);
+void operator delete(void* memory, std::size_t, std::align_val_t alignment) noexcept {
+    give_back(memory, alignment);
 }

@@ -14,7 +14,7 @@ bool comes_true(Condition&& condition) {
     const auto end = std::chrono::steady_clock::now() + 2min;
     while (!condition()) {
         if (std::chrono::steady_clock::now() > end) return false;
-        std::this_thread::sleep_for(500us);
+        std::this_thread::sleep_for(1ms);
     }
     return true;
 }

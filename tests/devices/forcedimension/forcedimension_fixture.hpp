@@ -2,7 +2,6 @@
 // waiting for what it does.
 #pragma once
 
-#include <dlfcn.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,6 +11,7 @@
 
 #include "devices/forcedimension/forcedimension.hpp"
 #include "devices/forcedimension/mock_dhd.hpp"
+#include "devices/vendor_library.hpp"
 #include "devices/vendor_polling.hpp"
 #include "support/scratch_folder.hpp"
 
@@ -28,9 +28,9 @@ using support::throughout;
 
 /// A stand-in that was just plugged in.
 inline MockDhd* plugged_in(const char* path) {
-    void* library = dlopen(path, RTLD_NOW);
-    if (!library) throw std::runtime_error(dlerror());
-    MockDhd* mock = reinterpret_cast<MockDhd* (*)()>(dlsym(library, "mock_dhd"))();
+    MockDhd* (*plug_in)() = nullptr;
+    VendorLibrary({path}, "build it").need(plug_in, "mock_dhd");
+    MockDhd* const mock = plug_in();
     const std::lock_guard lock(mock->mutex);
     mock->state = {};
     return mock;

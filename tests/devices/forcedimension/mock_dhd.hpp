@@ -1,4 +1,4 @@
-// What a test tells and asks a stand-in for libdhd.so.3; it finds this with dlsym(mock_dhd).
+// What a test tells and asks a stand-in for libdhd.so.3; it finds this by the function mock_dhd().
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// What a test tells and asks the stand-in for libHD.so; it finds this with dlsym(mock_hd).
+// What a test tells and asks the stand-in for libHD.so; it finds this by the function mock_hd().
 #pragma once
 
 #include <array>

@@ -2,14 +2,15 @@
 // waiting for what it does.
 #pragma once
 
-#include <dlfcn.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <memory>
 #include <string>
 
 #include "devices/openhaptics/mock_hd.hpp"
 #include "devices/openhaptics/openhaptics.hpp"
+#include "devices/vendor_library.hpp"
 #include "devices/vendor_polling.hpp"
 #include "support/scratch_folder.hpp"
 
@@ -23,13 +24,21 @@ using support::message_of;
 using support::MockHd;
 using support::throughout;
 
+/// Without its folder, which systems write in their own ways.
+inline std::string name_of(const char* library) {
+    return std::filesystem::path(library).filename().string();
+}
+
 class OpenHaptics : public testing::Test {
   protected:
     void SetUp() override {
-        void* library = dlopen(MOCK_HD, RTLD_NOW);
-        ASSERT_NE(library, nullptr) << dlerror();
-        hd_ = reinterpret_cast<MockHd* (*)()>(dlsym(library, "mock_hd"))();
-        reinterpret_cast<void (*)()>(dlsym(library, "mock_hd_reset"))();
+        const VendorLibrary library({MOCK_HD}, "build it");
+        MockHd* (*mock)() = nullptr;
+        void (*reset)() = nullptr;
+        library.need(mock, "mock_hd");
+        library.need(reset, "mock_hd_reset");
+        hd_ = mock();
+        reset();
     }
 
     static std::unique_ptr<Device> open(const std::string& options = "", double rate = 1000) {

@@ -26,7 +26,7 @@ TEST_F(OpenHaptics, a_missing_library_is_named_with_what_to_install) {
 TEST_F(OpenHaptics, looking_for_it_opens_no_device) {
     const DeviceFinding finding = openhaptics::find(MOCK_HD);
     EXPECT_TRUE(finding.found) << finding.missing;
-    EXPECT_TRUE(contains(finding.what, "libHD.so")) << finding.what;
+    EXPECT_TRUE(contains(finding.what, name_of(MOCK_HD))) << finding.what;
     EXPECT_TRUE(with([](MockHd& hd) { return hd.calls.empty(); }));
     const DeviceFinding usual = find_openhaptics();
     EXPECT_EQ(usual.name, "openhaptics");
@@ -41,7 +41,7 @@ TEST_F(OpenHaptics, a_library_without_a_function_that_is_needed_is_refused_by_it
     };
     const std::string message = message_of<DeviceError>(open_lacking);
     EXPECT_TRUE(contains(message, "hdUnschedule")) << message;
-    EXPECT_TRUE(contains(message, "lacking/libHD.so")) << message;
+    EXPECT_TRUE(contains(message, name_of(MOCK_HD_LACKING))) << message;
     EXPECT_FALSE(openhaptics::find(MOCK_HD_LACKING).found);
 }
 

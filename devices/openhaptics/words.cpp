@@ -1,0 +1,17 @@
+// How OpenHaptics is called and installed. Linux.
+#include "devices/openhaptics/words.hpp"
+
+namespace palpate::devices::openhaptics {
+
+const char* const library_name = "libHD.so";
+
+const char* const how_to_install =
+    "install 3D Systems' OpenHaptics and the Touch (or PHANToM) device driver for Linux, or tell "
+    "where the library is: library=PATH";
+
+const char* const how_to_attach =
+    "connect and switch on the device and set it up with the vendor's program (its name there, if "
+    "it is not the default one: name=NAME); your account must be able to open its /dev/ttyACM* or "
+    "/dev/hidraw* (the driver's udev rule)";
+
+}  // namespace palpate::devices::openhaptics

@@ -1,0 +1,59 @@
+// Removes temporary files and folders whose process is dead; see leftovers.hpp. Windows.
+#include <windows.h>
+
+#include <atomic>
+#include <string>
+#include <system_error>
+
+#include "io/leftovers.hpp"
+#include "io/number.hpp"
+
+namespace palpate::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view name_begin = ".palpate-", name_end = ".part";
+
+/// The process in ".palpate-PID-N.part"; 0 for any other name.
+DWORD process_of(std::string_view name) {
+    if (!name.starts_with(name_begin) || !name.ends_with(name_end)) return 0;
+    name.remove_prefix(name_begin.size());
+    name.remove_suffix(name_end.size());
+    const auto dash = name.find('-');
+    if (dash == std::string_view::npos || !number_from<unsigned>(name.substr(dash + 1))) return 0;
+    return number_from<DWORD>(name.substr(0, dash)).value_or(0);
+}
+
+bool is_dead(DWORD process) {
+    const HANDLE handle = ::OpenProcess(SYNCHRONIZE, FALSE, process);
+    if (!handle) return ::GetLastError() == ERROR_INVALID_PARAMETER;  // there is none
+    const bool ended = ::WaitForSingleObject(handle, 0) == WAIT_OBJECT_0;
+    ::CloseHandle(handle);
+    return ended;
+}
+
+}  // namespace
+
+fs::path temporary_in(const fs::path& folder) {
+    static std::atomic<unsigned> count = 0;
+    const std::string begin =
+        std::string(name_begin) + std::to_string(::GetCurrentProcessId()) + "-";
+    while (true) {
+        const fs::path path = folder / (begin + std::to_string(count++) + std::string(name_end));
+        std::error_code error;
+        if (!fs::exists(fs::symlink_status(path, error))) return path;
+    }
+}
+
+void remove_leftovers(const fs::path& folder) {
+    std::error_code error;
+    for (fs::directory_iterator entry(folder, error), end; entry != end && !error;
+         entry.increment(error)) {
+        const DWORD process = process_of(entry->path().filename().string());
+        std::error_code ignored;
+        if (process > 0 && is_dead(process)) fs::remove_all(entry->path(), ignored);
+    }
+}
+
+}  // namespace palpate::io

@@ -1,0 +1,80 @@
+// What io asks of the operating system; see the header. Linux.
+#include "io/system.hpp"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <new>
+
+namespace palpate::io {
+
+std::uint64_t machine_memory() {
+    return static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) *
+           static_cast<std::uint64_t>(sysconf(_SC_PAGE_SIZE));
+}
+
+std::shared_ptr<std::byte> fresh_memory(std::size_t bytes) {
+    void* at = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (at == MAP_FAILED) throw std::bad_alloc();
+    return {static_cast<std::byte*>(at), [bytes](std::byte* mapped) { munmap(mapped, bytes); }};
+}
+
+int why_unreadable(const std::filesystem::path& path, bool folder) {
+    return access(path.c_str(), folder ? R_OK | X_OK : R_OK) == 0 ? 0 : errno;
+}
+
+int why_unwritable(const std::filesystem::path& path) {
+    return access(path.c_str(), W_OK) == 0 ? 0 : errno;
+}
+
+bool means_full(int error) noexcept {
+    return error == ENOSPC || error == EDQUOT || error == EFBIG;
+}
+
+int open_to_read(const std::filesystem::path& path) {
+    return ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+}
+
+int open_to_write(const std::filesystem::path& path) {
+    return ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+}
+
+int open_standard_output() {
+    return ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3);
+}
+
+int create_to_write(const std::filesystem::path& path) {
+    return ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+}
+
+std::ptrdiff_t read_at(int descriptor, void* to, std::size_t bytes, std::uint64_t at) {
+    return ::pread(descriptor, to, bytes, static_cast<off_t>(at));
+}
+
+bool synchronise(int descriptor) {
+    return ::fsync(descriptor) == 0 || errno == EINVAL || errno == ENOTSUP || errno == ENOSYS;
+}
+
+bool truncate(int descriptor, std::int64_t bytes) {
+    return ::ftruncate(descriptor, bytes) == 0;
+}
+
+bool replace(const std::filesystem::path& from, const std::filesystem::path& to) {
+    return ::rename(from.c_str(), to.c_str()) == 0;
+}
+
+bool exchange(const std::filesystem::path& one, const std::filesystem::path& other) {
+    return ::renameat2(AT_FDCWD, one.c_str(), AT_FDCWD, other.c_str(), RENAME_EXCHANGE) == 0;
+}
+
+void synchronise_folder(const std::filesystem::path& folder) {
+    const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (descriptor < 0) return;
+    (void)synchronise(descriptor);
+    ::close(descriptor);
+}
+
+}  // namespace palpate::io

@@ -1,0 +1,49 @@
+// What io asks of the operating system beyond the standard library: memory, permissions, files by
+// descriptor. system.cpp for Linux, system_windows.cpp for Windows. Errors are left in errno.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+
+namespace palpate::io {
+
+/// [bytes]
+std::uint64_t machine_memory();
+
+/// Memory that is zero, returned to the system as soon as nobody holds it. Throws std::bad_alloc.
+std::shared_ptr<std::byte> fresh_memory(std::size_t bytes);
+
+/// 0 if this user may read the file or list the folder, otherwise the error number.
+int why_unreadable(const std::filesystem::path& path, bool folder);
+/// The same for writing a file.
+int why_unwritable(const std::filesystem::path& path);
+
+/// Whether an error of writing says that there is no room: the disk, a quota, a limit.
+bool means_full(int error) noexcept;
+
+// Descriptors; below 0 where one cannot be opened.
+
+int open_to_read(const std::filesystem::path& path);
+/// A file that is there, or a stream.
+int open_to_write(const std::filesystem::path& path);
+/// A descriptor of its own.
+int open_standard_output();
+/// Of a file that is not there yet.
+int create_to_write(const std::filesystem::path& path);
+
+/// How many bytes were read from a place of a file; below 0 on an error.
+std::ptrdiff_t read_at(int descriptor, void* to, std::size_t bytes, std::uint64_t at);
+/// The file's content to the disk. File systems without this say so; that is no loss of data.
+bool synchronise(int descriptor);
+bool truncate(int descriptor, std::int64_t bytes);
+
+/// Renames `from` to `to`, in place of what was there.
+bool replace(const std::filesystem::path& from, const std::filesystem::path& to);
+/// What had one name gets the other; false also where that cannot be done.
+bool exchange(const std::filesystem::path& one, const std::filesystem::path& other);
+/// So that the names in a folder survive a power cut.
+void synchronise_folder(const std::filesystem::path& folder);
+
+}  // namespace palpate::io
