@@ -1,5 +1,5 @@
-// What a file of chunks (HDF5, TIFF) says of the image in it, as the helper process tells its caller;
-// the chunks are then read where they lie. Private to io/ and stream/.
+// What a file of chunks (HDF5, TIFF) says of the image in it, as the helper process tells its
+// caller; the chunks are then read where they lie. Private to io/ and stream/.
 #pragma once
 
 #include <array>
@@ -18,9 +18,10 @@ struct ImageArray {
     std::string id;  ///< by which the helper finds it again
     std::array<std::int64_t, 3> shape = {1, 1, 1}, chunk = {1, 1, 1};  ///< [samples]
     Stored stored = Stored::uint8;
-    bool swapped = false;             ///< in the other byte order than the machine's
-    double fill = 0;                  ///< of chunks that are not stored
-    std::vector<std::string> codecs;  ///< in the order of decoding, by the names of stream/codecs.hpp
+    bool swapped = false;  ///< in the other byte order than the machine's
+    double fill = 0;       ///< of chunks that are not stored
+    std::vector<std::string>
+        codecs;  ///< in the order of decoding, by the names of stream/codecs.hpp
     std::array<double, 3> scale = {1, 1, 1}, translation = {0, 0, 0};  ///< [unit]
 };
 
@@ -32,13 +33,14 @@ struct ChunkedImage {
     double frame_interval = 0;                     ///< [s]; 0: the file does not say
     std::optional<std::array<double, 2>> range{};  ///< of the finest level [data units]
     std::vector<std::string> notes{};
-    std::vector<ImageArray> levels{};  ///< the finest first; none if there is no such channel or time
+    std::vector<ImageArray>
+        levels{};  ///< the finest first; none if there is no such channel or time
 };
 
 /// Where a chunk lies in its file. As the helper hands them over, in memory that both share.
 struct ChunkPlace {
     std::uint64_t offset = 0, length = 0;  ///< [bytes]; no length: it is not stored
-    std::uint64_t skipped = 0;             ///< bit i: codec i, in the order of decoding, was not used
+    std::uint64_t skipped = 0;  ///< bit i: codec i, in the order of decoding, was not used
 };
 
 nlohmann::json json_from(const ChunkedImage& image);

@@ -25,12 +25,8 @@ auto asked(const fs::path& path, const char* job_name, nlohmann::json request,
     request["caller"] = getpid();
     try {
         constexpr double seconds = 60;  // for metadata
-        const HelperJob job{io_helper,
-                            {},
-                            {job_name, path.string(), line_from(request)},
-                            memory,
-                            {},
-                            seconds,
+        const HelperJob job{io_helper, {}, {job_name, path.string(), line_from(request)},
+                            memory,    {}, seconds,
                             seconds};
         const HelperResult result = run_helper(job);
         if (!result.failure.empty()) throw InputError(path.string() + ": " + result.failure);
@@ -48,7 +44,7 @@ auto asked(const fs::path& path, const char* job_name, nlohmann::json request,
 
 }  // namespace
 
-bool is_chunked_file(const fs::path& path) {
+bool is_hdf5_name(const fs::path& path) {
     std::string extension = path.extension().string();
     std::ranges::transform(extension, extension.begin(),
                            [](unsigned char c) { return std::tolower(c); });

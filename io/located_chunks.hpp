@@ -1,5 +1,6 @@
-// What image is in a file of chunks (HDF5, TIFF), and where its chunks lie: the helper process looks,
-// so that no library parses the file in the process that drives the device. Private to io/ and stream/.
+// What image is in a file of chunks (HDF5, TIFF), and where its chunks lie: the helper process
+// looks, so that no library parses the file in the process that drives the device. Private to io/
+// and stream/.
 #pragma once
 
 #include <array>
@@ -12,15 +13,15 @@
 
 namespace palpate::io {
 
-/// True for names of files that describe_image() reads and no other function does:
-/// .ims, .h5, .hdf5.
-bool is_chunked_file(const std::filesystem::path& path);
+/// True for names that no other function reads: .ims, .h5, .hdf5.
+bool is_hdf5_name(const std::filesystem::path& path);
 
-/// The levels of one channel and time; none if there is no such channel or time. Throws InputError.
+/// Of HDF5 and of tiled TIFF: the levels of one channel and time; none if there is no such channel
+/// or time. Throws InputError.
 ChunkedImage describe_image(const std::filesystem::path& path, int channel, int time);
 
-/// Where `count` chunks along z, y, x lie, from `first` on, x fastest. Nothing is known of the places
-/// but that they are what the file says. Throws InputError.
+/// Where `count` chunks along z, y, x lie, from `first` on, x fastest. Nothing is known of the
+/// places but that they are what the file says. Throws InputError.
 std::vector<ChunkPlace> locate_chunks(const std::filesystem::path& path, const std::string& array,
                                       const std::array<std::int64_t, 3>& first,
                                       const std::array<std::int64_t, 3>& count);

@@ -22,7 +22,8 @@ std::optional<io::ChunkPlace> ChunkTable::find(std::span<const std::int64_t> chu
         page[a] = chunk[a] / page_side;
         first[a] = page[a] * page_side;
         count[a] = std::min(page_side, chunks_[a] - first[a]);
-        at = at * static_cast<std::size_t>(count[a]) + static_cast<std::size_t>(chunk[a] - first[a]);
+        at =
+            at * static_cast<std::size_t>(count[a]) + static_cast<std::size_t>(chunk[a] - first[a]);
     }
     const std::lock_guard lock(mutex_);
     auto found = pages_.find(page);

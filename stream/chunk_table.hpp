@@ -1,5 +1,5 @@
-// Where the chunks of an array lie in its one file (HDF5, TIFF): the helper process looks them up, a
-// page of 16 x 16 x 16 chunks at a time, when the first of them is wanted. Private to stream/.
+// Where the chunks of an array lie in its one file (HDF5, TIFF): the helper process looks them up,
+// a page of 16 x 16 x 16 chunks at a time, when the first of them is wanted. Private to stream/.
 #pragma once
 
 #include <filesystem>
@@ -36,7 +36,8 @@ class ChunkTable {
     std::filesystem::path file_;
     std::string id_;
     std::array<std::int64_t, 3> chunks_;
-    mutable std::mutex mutex_;  ///< also while the helper looks: the next thread wants the same page
+    mutable std::mutex
+        mutex_;  ///< also while the helper looks: the next thread wants the same page
     mutable std::map<PageIndex, Page> pages_;
     mutable std::list<PageIndex> order_;  ///< of pages_, the oldest first
 };

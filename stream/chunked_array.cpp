@@ -90,7 +90,9 @@ Bytes unpacked_chunk(const ChunkedArray& array, Bytes packed, std::uint64_t skip
     for (std::size_t i = 0; i < array.codecs.size(); ++i) {
         if (i >= 64 || (skipped >> i & 1) == 0) used.push_back(array.codecs[i]);
     }
-    return decoded(used, std::move(packed), array.bytes_in_chunk(), array.bytes.size());
+    return decoded(
+        used, std::move(packed), array.bytes_in_chunk(),
+        {array.bytes.size(), static_cast<std::size_t>(array.chunk.back()), array.bytes.swapped});
 }
 
 ChunkReader::ChunkReader(std::shared_ptr<const Objects> objects, ChunkedArray array)

@@ -15,6 +15,7 @@
 
 #include "stream/hdf5_codecs.hpp"
 #include "stream/lz4_codecs.hpp"
+#include "stream/tiff_codecs.hpp"
 
 namespace palpate::stream {
 namespace {
@@ -92,7 +93,7 @@ Bytes checked_crc32c(Bytes bytes) {
     return bytes;
 }
 
-Bytes undone(Codec codec, Bytes bytes, std::size_t most, std::size_t each) {
+Bytes undone(Codec codec, Bytes bytes, std::size_t most, const SampleRows& rows) {
     switch (codec) {
         case Codec::gzip:
             return gunzip(bytes, most);
@@ -107,7 +108,12 @@ Bytes undone(Codec codec, Bytes bytes, std::size_t most, std::size_t each) {
         case Codec::hdf5_lz4:
             return unhdf5_lz4(bytes, most);
         case Codec::shuffle:
-            return unshuffled(bytes, each);
+            return unshuffled(bytes, rows.each);
+        case Codec::lzw:
+            return unlzw(bytes, most);
+        case Codec::difference:
+            undo_differences(bytes, rows.each, rows.row, rows.swapped);
+            return bytes;
         case Codec::fletcher32:
             return checked_fletcher32(std::move(bytes));
         case Codec::crc32c:
@@ -148,10 +154,12 @@ std::optional<Codec> codec_named(std::string_view name) {
 }
 
 std::optional<Codec> codec_in_file(std::string_view name) {
-    static constexpr std::array<std::pair<std::string_view, Codec>, 6> codecs = {
+    static constexpr std::array<std::pair<std::string_view, Codec>, 8> codecs = {
         {{"gzip", Codec::gzip},
          {"zstd", Codec::zstd},
          {"blosc", Codec::blosc},
+         {"lzw", Codec::lzw},
+         {"difference", Codec::difference},
          {"shuffle", Codec::shuffle},
          {"fletcher32", Codec::fletcher32},
          {"hdf5_lz4", Codec::hdf5_lz4}}};
@@ -161,10 +169,11 @@ std::optional<Codec> codec_in_file(std::string_view name) {
     return std::nullopt;
 }
 
-Bytes decoded(std::span<const Codec> codecs, Bytes packed, std::size_t size, std::size_t each) {
+Bytes decoded(std::span<const Codec> codecs, Bytes packed, std::size_t size,
+              const SampleRows& rows) {
     for (std::size_t i = 0; i < codecs.size(); ++i) {
         const bool last = i + 1 == codecs.size();
-        packed = undone(codecs[i], std::move(packed), last ? size : packed_at_most(size), each);
+        packed = undone(codecs[i], std::move(packed), last ? size : packed_at_most(size), rows);
     }
     if (packed.size() != size) {
         throw DamagedChunk("has " + std::to_string(packed.size()) + " bytes instead of the " +

@@ -21,13 +21,22 @@ enum class Codec {
     crc32c,
     shuffle,  ///< of HDF5: first the first bytes of all samples, then the second ones, ...
     fletcher32,
-    hdf5_lz4  ///< blocks with big-endian sizes
+    hdf5_lz4,   ///< blocks with big-endian sizes
+    lzw,        ///< of TIFF
+    difference  ///< of TIFF: samples less the one before in their row
+};
+
+/// What some codecs have to know of the samples.
+struct SampleRows {
+    std::size_t each = 1;  ///< bytes of a sample
+    std::size_t row = 1;   ///< samples of a chunk's row
+    bool swapped = false;  ///< their bytes are in the other order than the machine's
 };
 
 /// By the names of Zarr 2 and 3; "zlib" is gzip, whose decoder knows both.
 std::optional<Codec> codec_named(std::string_view name);
 
-/// By the names that the helper process gives to the compressions of HDF5.
+/// By the names that the helper process gives to the compressions of HDF5 and TIFF.
 std::optional<Codec> codec_in_file(std::string_view name);
 
 /// Bytes that are not what their codec writes; what() is without a file's name.
@@ -43,9 +52,8 @@ class DamagedChunk : public std::runtime_error {
 std::uint32_t little_endian_at(std::span<const std::byte> bytes, std::size_t at);
 
 /// Undoes `codecs`, the first one first. The result has `size` bytes, or DamagedChunk is thrown.
-/// `each`: bytes of a sample, which shuffle has taken apart.
 std::vector<std::byte> decoded(std::span<const Codec> codecs, std::vector<std::byte> packed,
-                               std::size_t size, std::size_t each = 1);
+                               std::size_t size, const SampleRows& rows = {});
 
 /// Most bytes that `size` bytes may have when packed: no codec makes more of them.
 constexpr std::size_t packed_at_most(std::size_t size) {

@@ -7,7 +7,8 @@
 
 namespace palpate::stream {
 
-/// Puts the bytes of samples of `each` bytes together again; what is no whole sample stays at the end.
+/// Puts the bytes of samples of `each` bytes together again; what is no whole sample stays at the
+/// end.
 std::vector<std::byte> unshuffled(std::span<const std::byte> bytes, std::size_t each);
 
 /// Without its checksum, the last four bytes. Throws DamagedChunk if that is another.

@@ -1,4 +1,4 @@
-// Files of chunks that the helper process locates: Imaris and BigDataViewer's HDF5.
+// Files of chunks that the helper process locates: HDF5 and tiled TIFF; see the header.
 #include "stream/located_file.hpp"
 
 #include "io/located_chunks.hpp"

@@ -1,5 +1,5 @@
-// The ways in which formats put lz4 blocks into chunks. None unpacks more than `most` bytes; all throw
-// DamagedChunk. Private to stream/.
+// The ways in which formats put lz4 blocks into chunks. None unpacks more than `most` bytes; all
+// throw DamagedChunk. Private to stream/.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,8 @@ namespace palpate::stream {
 /// Of numcodecs: the size, four bytes, and one block.
 std::vector<std::byte> unlz4(std::span<const std::byte> packed, std::size_t most);
 
-/// Of lz4-java's LZ4BlockOutputStream, which N5 uses: blocks with sizes and checksums, the last empty.
+/// Of lz4-java's LZ4BlockOutputStream, which N5 uses: blocks with sizes and checksums, the last
+/// empty.
 std::vector<std::byte> unlz4_blocks(std::span<const std::byte> packed, std::size_t most);
 
 /// Of HDF5's filter 32004: the size, that of blocks, then each block after its packed size.

@@ -3,6 +3,7 @@
 
 #include "io/located_chunks.hpp"
 #include "io/plain_samples.hpp"
+#include "io/tiff_peek.hpp"
 #include "palpate/io/error.hpp"
 #include "stream/remote_objects.hpp"
 #include "stream/stores.hpp"
@@ -16,11 +17,19 @@ bool is_plain(const std::string& address, const StoreOptions& options) {
     return io::may_be_plain(address, read);
 }
 
-/// A file whose name says that it holds chunks, unless it is said to have no header.
+/// HDF5, or TIFF in tiles, unless it is said to have no header.
 bool is_located(const std::string& address, const StoreOptions& options) {
     std::error_code error;
-    return !options.raw && io::is_chunked_file(address) &&
-           std::filesystem::is_regular_file(address, error);
+    if (options.raw || !std::filesystem::is_regular_file(address, error)) return false;
+    if (io::is_hdf5_name(address)) return true;
+    const auto tiff = io::peek_tiff(address);
+    return tiff && tiff->tiled;
+}
+
+/// TIFF without coarser levels is read whole, unless it is large.
+bool is_pyramid(const std::string& address) {
+    const auto tiff = io::peek_tiff(address);
+    return tiff && tiff->tiled && tiff->has_levels;
 }
 
 /// True if its name or its metadata are those of a chunked format.
@@ -49,11 +58,12 @@ std::shared_ptr<const Store> open_chunked(const std::shared_ptr<const Objects>& 
 
 /// The libraries that find chunks in a file need it on this machine.
 void check_not_located(const std::string& address) {
-    if (!io::is_chunked_file(address)) return;
-    throw io::InputError(
-        address +
-        ": HDF5 is read from this machine's disks only; download it, or convert it "
-        "to OME-Zarr where it lies");
+    if (!io::is_hdf5_name(address) && !address.ends_with(".tif") && !address.ends_with(".tiff")) {
+        return;
+    }
+    throw io::InputError(address +
+                         ": HDF5 and TIFF are read from this machine's disks only; download it, or "
+                         "convert it to OME-Zarr where it lies");
 }
 
 void check_number(const std::string& address, const std::string& what, int wanted, int count) {
@@ -72,7 +82,9 @@ void check_choice(const StoreInfo& info, const StoreOptions& options) {
 }
 
 bool is_chunked(const std::string& address) {
-    return is_remote(address) || is_chunked_folder(address) || is_located(address, {});
+    std::error_code error;
+    return is_remote(address) || is_chunked_folder(address) || is_pyramid(address) ||
+           (io::is_hdf5_name(address) && std::filesystem::is_regular_file(address, error));
 }
 
 bool is_store(const std::string& address, const StoreOptions& options) {

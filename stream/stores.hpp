@@ -12,7 +12,7 @@ namespace palpate::stream {
 /// Raw, NRRD, MetaImage and NIfTI files whose samples are not compressed.
 std::shared_ptr<const Store> open_plain_file(const std::string& path, const StoreOptions& options);
 
-/// Files of chunks that the helper process locates: io::is_chunked_file().
+/// HDF5 and tiled TIFF, whose chunks the helper process locates.
 std::shared_ptr<const Store> open_located(const std::string& path, const StoreOptions& options);
 
 /// Zarr or N5 below the objects' root; null if there are no metadata of the format. `address` is

@@ -122,8 +122,9 @@ void add_convert(CLI::App& app) {
     command->footer(
         "OUT is a folder *.zarr, or a file of any format that is written. VOLUME may also be a\n"
         "*.zarr or *.n5 folder, an http://, https:// or s3:// address of one, or a file of Imaris\n"
-        "(.ims) or BigDataViewer (.h5). OME-Zarr grows in OUT.partial; the same command continues "
-        "after an interruption.\n\n"
+        "(.ims), BigDataViewer (.h5) or tiled TIFF. OME-Zarr grows in OUT.partial; the same "
+        "command\n"
+        "continues after an interruption.\n\n"
         "Example:\n  palpate convert head.nrrd head.zarr --ome-version 0.4");
     words->source.add_to(*command);
     command->add_option("OUT", words->output, "Folder *.zarr, or file to write")->required();

@@ -73,10 +73,11 @@ Hdf5File::Hdf5File(const std::filesystem::path& path)
              H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT)),
             H5Fclose) {
     if (!file_.is_open()) {
-        throw Failure(H5Fis_hdf5(path.c_str()) > 0
-                          ? "is damaged, cut off, or still open in the program that writes it; copy "
-                            "it again"
-                          : "is no HDF5 file; check its name");
+        throw Failure(
+            H5Fis_hdf5(path.c_str()) > 0
+                ? "is damaged, cut off, or still open in the program that writes it; copy "
+                  "it again"
+                : "is no HDF5 file; check its name");
     }
     const Hdf5Handle creation(H5Fget_create_plist(file_), H5Pclose);
     hsize_t user_block = 0;
@@ -132,8 +133,8 @@ std::vector<double> Hdf5File::numbers(const std::string& dataset) const {
         throw Failure(named(dataset) + " is too long");
     }
     std::vector<double> numbers(static_cast<std::size_t>(count));
-    if (count > 0 && H5Dread(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT,
-                             numbers.data()) < 0) {
+    if (count > 0 &&
+        H5Dread(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.data()) < 0) {
         throw Failure(named(dataset) + " cannot be read: the file is damaged; copy it again");
     }
     return numbers;

@@ -1,5 +1,5 @@
-// HDF5 files by libhdf5: groups, attributes, and where the chunks of a dataset lie in the file. Samples
-// are not read here.
+// HDF5 files by libhdf5: groups, attributes, and where the chunks of a dataset lie in the file.
+// Samples are not read here.
 #pragma once
 
 #include <hdf5.h>
@@ -45,7 +45,8 @@ class Hdf5File {
     bool has(const std::string& path) const;
     /// How many of PREFIX0, PREFIX1, ... there are: `name` makes each from its number.
     int count(const std::function<std::string(int)>& name) const;
-    /// An attribute that is a text or, as Imaris writes it, a list of characters; empty if there is none.
+    /// An attribute that is a text or, as Imaris writes it, a list of characters; empty if there is
+    /// none.
     std::string text(const std::string& object, const char* attribute) const;
     /// The same as a number.
     std::optional<double> number(const std::string& object, const char* attribute) const;

@@ -45,7 +45,8 @@ std::optional<double> seconds_of(const std::string& text) {
 double imaris_interval(const Hdf5File& file, int times) {
     if (times < 2) return 0;
     const auto at = [&](int time) {
-        return seconds_of(file.text("/DataSetInfo/TimeInfo", with_number("TimePoint%d", time + 1).c_str()));
+        return seconds_of(
+            file.text("/DataSetInfo/TimeInfo", with_number("TimePoint%d", time + 1).c_str()));
     };
     const auto first = at(0), last = at(times - 1);
     return first && last && *last > *first ? (*last - *first) / (times - 1) : 0;
@@ -56,7 +57,8 @@ double imaris_interval(const Hdf5File& file, int times) {
 /// outer borders or the middles of the outermost.
 std::optional<std::array<double, 2>> imaris_range(const Hdf5File& file, const std::string& channel,
                                                   const ImageArray& finest) {
-    const auto low = file.number(channel, "HistogramMin"), high = file.number(channel, "HistogramMax");
+    const auto low = file.number(channel, "HistogramMin"),
+               high = file.number(channel, "HistogramMax");
     const std::string histogram = channel + "/Histogram";
     if (!low || !high || !(*low < *high) || !file.has(histogram)) return std::nullopt;
     const std::vector<double> counts = file.numbers(histogram);
@@ -68,8 +70,8 @@ std::optional<std::array<double, 2>> imaris_range(const Hdf5File& file, const st
     }
     const auto filled = [](double count) { return count > 0; };
     const auto first = std::ranges::find_if(counts, filled) - counts.begin();
-    const auto last =
-        std::ssize(counts) - 1 - (std::find_if(counts.rbegin(), counts.rend(), filled) - counts.rbegin());
+    const auto last = std::ssize(counts) - 1 -
+                      (std::find_if(counts.rbegin(), counts.rend(), filled) - counts.rbegin());
     const double wide = (*high - *low) / static_cast<double>(counts.size() - 1);
     const double narrow = (*high - *low) / static_cast<double>(counts.size());
     const double least = std::min(*low + (static_cast<double>(first) - 0.5) * wide,
@@ -85,8 +87,8 @@ double factor_between(std::int64_t fine, std::int64_t coarse) {
 }
 
 /// Where a level lies whose samples are the means of `factor` ones of the finest.
-void place(ImageArray& level, const std::array<double, 3>& spacing, const std::array<double, 3>& origin,
-           const std::array<double, 3>& factor) {
+void place(ImageArray& level, const std::array<double, 3>& spacing,
+           const std::array<double, 3>& origin, const std::array<double, 3>& factor) {
     for (std::size_t a = 0; a < 3; ++a) {
         level.scale[a] = spacing[a] * factor[a];
         level.translation[a] = origin[a] + spacing[a] * (factor[a] - 1) / 2;
@@ -117,7 +119,8 @@ ImageArray imaris_level(const Hdf5File& file, const std::string& channel) {
 ChunkedImage imaris_image(const Hdf5File& file, int channel, int time) {
     ChunkedImage image;
     image.format = "Imaris";
-    image.times = file.count([](int t) { return "/DataSet/ResolutionLevel 0/TimePoint " + std::to_string(t); });
+    image.times = file.count(
+        [](int t) { return "/DataSet/ResolutionLevel 0/TimePoint " + std::to_string(t); });
     const int channels = file.count([](int c) { return imaris_channel(0, 0, c); });
     for (int c = 0; channels > 1 && c < channels; ++c) {
         const std::string name = file.text("/DataSetInfo/Channel " + std::to_string(c), "Name");
@@ -128,7 +131,8 @@ ChunkedImage imaris_image(const Hdf5File& file, int channel, int time) {
     image.unit = file.text("/DataSetInfo/Image", "Unit");
     if (image.unit.empty()) {
         image.unit = "micrometer";
-        image.notes.emplace_back("it gives no unit of length: micrometres were taken, as Imaris does");
+        image.notes.emplace_back(
+            "it gives no unit of length: micrometres were taken, as Imaris does");
     }
     const int levels = file.count([&](int l) { return imaris_channel(l, time, channel); });
     if (levels > most_levels) throw Failure("it has more than 64 levels");
@@ -144,7 +148,8 @@ ChunkedImage imaris_image(const Hdf5File& file, int channel, int time) {
             const auto low = file.number("/DataSetInfo/Image", ("ExtMin" + axis).c_str());
             const auto high = file.number("/DataSetInfo/Image", ("ExtMax" + axis).c_str());
             if (!low || !high || !(*low < *high)) {
-                throw Failure("its extent (ExtMin, ExtMax) is missing or not possible; save it again");
+                throw Failure(
+                    "its extent (ExtMin, ExtMax) is missing or not possible; save it again");
             }
             spacing[a] = (*high - *low) / static_cast<double>(level.shape[a]);
             origin[a] = *low + spacing[a] / 2;

@@ -17,9 +17,12 @@ struct ChunkBox {
 
 /// `channel` and `time` may be beyond what there is: then there are no levels. Throw Failure.
 ChunkedImage hdf5_image(const std::filesystem::path& path, int channel, int time);
+ChunkedImage tiff_image(const std::filesystem::path& path, int channel, int time);
 
 /// As many as there are in the box, x fastest. Throw Failure.
 void hdf5_places(const std::filesystem::path& path, const ChunkBox& box,
+                 std::span<ChunkPlace> places);
+void tiff_places(const std::filesystem::path& path, const ChunkBox& box,
                  std::span<ChunkPlace> places);
 
 }  // namespace palpate::io

@@ -166,7 +166,8 @@ nlohmann::json run_locate(const fs::path& path, const nlohmann::json& asked) {
 
 nlohmann::json run_describe(const fs::path& path, const nlohmann::json& asked) {
     limit_this_process(asked, 1 << 30);
-    return json_from(hdf5_image(path, asked.at("channel").get<int>(), asked.at("time").get<int>()));
+    const auto image_of = looks_like_tiff(path) ? tiff_image : hdf5_image;
+    return json_from(image_of(path, asked.at("channel").get<int>(), asked.at("time").get<int>()));
 }
 
 nlohmann::json run_chunks(const fs::path& path, const nlohmann::json& asked) {
@@ -177,7 +178,8 @@ nlohmann::json run_chunks(const fs::path& path, const nlohmann::json& asked) {
     box.count = asked.at("count").get<std::array<std::int64_t, 3>>();
     const auto count = static_cast<std::size_t>(box.count[0] * box.count[1] * box.count[2]);
     const std::span<std::byte> memory = shared_samples(count * sizeof(ChunkPlace));
-    hdf5_places(path, box, {reinterpret_cast<ChunkPlace*>(memory.data()), count});
+    const auto look_up = looks_like_tiff(path) ? tiff_places : hdf5_places;
+    look_up(path, box, {reinterpret_cast<ChunkPlace*>(memory.data()), count});
     return nlohmann::json::object();
 }
 

@@ -27,19 +27,6 @@ Description description_of(TIFF* tiff) {
     return description;
 }
 
-/// A unit's length [mm], as ImageJ's users write it; nothing for pixels and unknown units.
-std::optional<double> millimetres(const std::string& unit) {
-    static const std::map<std::string, double> known = {
-        {"nm", 1e-6},        {"nanometer", 1e-6},  {"um", 1e-3},        {"\\u00b5m", 1e-3},
-        {"\xc2\xb5m", 1e-3}, {"\xb5m", 1e-3},      {"\xce\xbcm", 1e-3}, {"micron", 1e-3},
-        {"microns", 1e-3},   {"micrometer", 1e-3}, {"mm", 1},           {"millimeter", 1},
-        {"cm", 10},          {"centimeter", 10},   {"m", 1000},         {"meter", 1000},
-        {"inch", 25.4},      {"in", 25.4}};
-    const auto found = known.find(lower(unit));
-    if (found == known.end()) return std::nullopt;
-    return found->second;
-}
-
 /// The distance between slices in ImageJ's unit. ImageJ leaves out a 1 where there are slices.
 std::optional<double> slice_distance(const Description& description) {
     if (const auto spacing = description.find("spacing"); spacing != description.end()) {
@@ -58,6 +45,18 @@ double count_in(const Description& description, const char* name) {
 }
 
 }  // namespace
+
+std::optional<double> millimetres_of(const std::string& unit) {
+    static const std::map<std::string, double> known = {
+        {"nm", 1e-6},        {"nanometer", 1e-6},  {"um", 1e-3},        {"\\u00b5m", 1e-3},
+        {"\xc2\xb5m", 1e-3}, {"\xb5m", 1e-3},      {"\xce\xbcm", 1e-3}, {"micron", 1e-3},
+        {"microns", 1e-3},   {"micrometer", 1e-3}, {"mm", 1},           {"millimeter", 1},
+        {"\xc3\x85", 1e-7},  {"cm", 10},           {"centimeter", 10},  {"m", 1000},
+        {"meter", 1000},     {"inch", 25.4},       {"in", 25.4}};
+    const auto found = known.find(lower(unit));
+    if (found == known.end()) return std::nullopt;
+    return found->second;
+}
 
 Moments image_j_moments(TIFF* tiff, std::size_t pages, std::vector<std::string>& notes) {
     const Description description = description_of(tiff);
@@ -91,7 +90,7 @@ std::optional<Vec3> image_j_spacing(TIFF* tiff) {
     const Description description = description_of(tiff);
     const auto unit = description.find("unit");
     if (!description.contains("ImageJ") || unit == description.end()) return std::nullopt;
-    const auto length = millimetres(unit->second);
+    const auto length = millimetres_of(unit->second);
     const auto distance = slice_distance(description);
     float x = 0, y = 0;
     TIFFGetField(tiff, TIFFTAG_XRESOLUTION, &x);

@@ -8,6 +8,7 @@
 
 #include "io/helper/readers.hpp"
 #include "io/helper/tiff_calibration.hpp"
+#include "io/helper/tiff_page.hpp"
 #include "io/inflate.hpp"
 
 namespace palpate::io {
@@ -15,79 +16,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void fail_damaged(const fs::path& file) {
-    throw Failure(quoted(file) + " is damaged or cut off (" +
-                  (first_tiff_error().empty() ? "libtiff" : first_tiff_error()) +
-                  "); copy it again");
-}
-
-struct Page {
-    std::uint32_t width = 0, height = 0;
-    Stored stored = Stored::uint8;
-    bool operator==(const Page&) const = default;
-};
-
-Tiff open(const fs::path& file) {
-    Tiff tiff = open_tiff(file, "rM");  // M: not mapped, a short file is an error
-    if (!tiff) {
-        throw Failure(quoted(file) + " is no TIFF file or is damaged (" + first_tiff_error() +
-                      "); check its name or copy it again");
-    }
-    return tiff;
-}
-
-Stored stored_from(std::uint16_t bits, std::uint16_t format, const fs::path& file) {
-    const bool is_signed = format == SAMPLEFORMAT_INT;
-    if (format == SAMPLEFORMAT_IEEEFP && bits == 32) return Stored::float32;
-    if (format == SAMPLEFORMAT_IEEEFP && bits == 64) return Stored::float64;
-    if (is_signed || format == SAMPLEFORMAT_UINT || format == SAMPLEFORMAT_VOID) {
-        if (bits == 8) return is_signed ? Stored::int8 : Stored::uint8;
-        if (bits == 16) return is_signed ? Stored::int16 : Stored::uint16;
-        if (bits == 32) return is_signed ? Stored::int32 : Stored::uint32;
-    }
-    throw Failure(quoted(file) + " has samples of " + std::to_string(bits) +
-                  " bits of a kind that is not read; save it with 8 or 16 bits");
-}
-
-std::string text_of(const Page& page) {
-    return std::to_string(page.width) + "x" + std::to_string(page.height) + " of " +
-           name_of(page.stored);
-}
-
-Page page_of(TIFF* tiff, const fs::path& file, std::vector<std::string>& notes) {
-    std::uint16_t samples = 1, bits = 1, format = SAMPLEFORMAT_UINT, photometric = 0;
-    Page page;
-    TIFFGetField(tiff, TIFFTAG_IMAGEWIDTH, &page.width);
-    TIFFGetField(tiff, TIFFTAG_IMAGELENGTH, &page.height);
-    TIFFGetFieldDefaulted(tiff, TIFFTAG_SAMPLESPERPIXEL, &samples);
-    TIFFGetFieldDefaulted(tiff, TIFFTAG_BITSPERSAMPLE, &bits);
-    TIFFGetFieldDefaulted(tiff, TIFFTAG_SAMPLEFORMAT, &format);
-    TIFFGetField(tiff, TIFFTAG_PHOTOMETRIC, &photometric);
-    if (samples != 1 || photometric == PHOTOMETRIC_PALETTE || photometric == PHOTOMETRIC_RGB) {
-        throw Failure(quoted(file) + " has colours (" + std::to_string(samples) +
-                      " values a sample); save it in grey");
-    }
-    const char* const white = "its zero means white: values were taken as they are";
-    if (photometric == PHOTOMETRIC_MINISWHITE &&
-        std::find(notes.begin(), notes.end(), white) == notes.end()) {
-        notes.emplace_back(white);
-    }
-    page.stored = stored_from(bits, format, file);
-    return page;
-}
-
 /// libtiff stops when it has enough bytes, before zlib's checksum; this reads on to it.
 void check_deflate(TIFF* tiff, const fs::path& file, std::uint32_t piece, bool tiled) {
     std::uint16_t compression = 0;
     TIFFGetField(tiff, TIFFTAG_COMPRESSION, &compression);
     if (compression != COMPRESSION_ADOBE_DEFLATE && compression != COMPRESSION_DEFLATE) return;
     const std::uint64_t bytes = TIFFGetStrileByteCount(tiff, piece);
-    if (bytes > fs::file_size(file)) fail_damaged(file);
+    if (bytes > fs::file_size(file)) fail_damaged_tiff(file);
     std::vector<std::byte> raw(bytes);
     const auto size = static_cast<tmsize_t>(bytes);
     const tmsize_t got = tiled ? TIFFReadRawTile(tiff, piece, raw.data(), size)
                                : TIFFReadRawStrip(tiff, piece, raw.data(), size);
-    if (got != size) fail_damaged(file);
+    if (got != size) fail_damaged_tiff(file);
     try {
         const auto most =
             static_cast<std::uint64_t>(tiled ? TIFFTileSize64(tiff) : TIFFStripSize64(tiff));
@@ -97,7 +37,7 @@ void check_deflate(TIFF* tiff, const fs::path& file, std::uint32_t piece, bool t
     }
 }
 
-void read_strips(TIFF* tiff, const fs::path& file, const Page& page, std::byte* to) {
+void read_strips(TIFF* tiff, const fs::path& file, const TiffPage& page, std::byte* to) {
     const std::size_t row = page.width * size_of(page.stored);
     std::uint32_t rows = page.height;
     TIFFGetFieldDefaulted(tiff, TIFFTAG_ROWSPERSTRIP, &rows);
@@ -105,11 +45,12 @@ void read_strips(TIFF* tiff, const fs::path& file, const Page& page, std::byte* 
     for (std::uint32_t strip = 0, y = 0; y < page.height; ++strip, y += rows) {
         check_deflate(tiff, file, strip, false);
         const auto bytes = static_cast<tmsize_t>(std::min(rows, page.height - y) * row);
-        if (TIFFReadEncodedStrip(tiff, strip, to + y * row, bytes) != bytes) fail_damaged(file);
+        if (TIFFReadEncodedStrip(tiff, strip, to + y * row, bytes) != bytes)
+            fail_damaged_tiff(file);
     }
 }
 
-void read_tiles(TIFF* tiff, const fs::path& file, const Page& page, std::byte* to,
+void read_tiles(TIFF* tiff, const fs::path& file, const TiffPage& page, std::byte* to,
                 const Request& request) {
     std::uint32_t width = 0, height = 0;
     TIFFGetField(tiff, TIFFTAG_TILEWIDTH, &width);
@@ -118,12 +59,13 @@ void read_tiles(TIFF* tiff, const fs::path& file, const Page& page, std::byte* t
     const std::size_t sample = size_of(page.stored);
     std::vector<std::byte> tile(checked_bytes(sizes, sample, UINT64_MAX, request));
     const auto bytes = static_cast<tmsize_t>(tile.size());
-    if (TIFFTileSize(tiff) != bytes) fail_damaged(file);
+    if (TIFFTileSize(tiff) != bytes) fail_damaged_tiff(file);
     for (std::uint32_t y = 0; y < page.height; y += height) {
         for (std::uint32_t x = 0; x < page.width; x += width) {
             const std::uint32_t number = TIFFComputeTile(tiff, x, y, 0, 0);
             check_deflate(tiff, file, number, true);
-            if (TIFFReadEncodedTile(tiff, number, tile.data(), bytes) != bytes) fail_damaged(file);
+            if (TIFFReadEncodedTile(tiff, number, tile.data(), bytes) != bytes)
+                fail_damaged_tiff(file);
             const std::size_t columns = std::min(width, page.width - x);
             for (std::uint32_t r = 0; r < std::min(height, page.height - y); ++r) {
                 std::memcpy(to + ((y + r) * std::size_t{page.width} + x) * sample,
@@ -141,38 +83,38 @@ struct Slice {
 
 /// The pages that are slices: thumbnails and masks are left out.
 std::vector<Slice> pages_of(const fs::path& file) {
-    const Tiff tiff = open(file);
+    const Tiff tiff = open_to_read(file);
     std::vector<Slice> slices;
     for (std::uint32_t page = 0;; ++page) {
         std::uint32_t kind = 0;
         TIFFGetField(tiff.get(), TIFFTAG_SUBFILETYPE, &kind);
         if ((kind & (FILETYPE_REDUCEDIMAGE | FILETYPE_MASK)) == 0) slices.push_back({file, page});
-        if (slices.size() > 1 << 20) fail_damaged(file);
-        if (!first_tiff_error().empty()) fail_damaged(file);
+        if (slices.size() > 1 << 20) fail_damaged_tiff(file);
+        if (!first_tiff_error().empty()) fail_damaged_tiff(file);
         if (TIFFReadDirectory(tiff.get()) == 0) break;
     }
-    if (!first_tiff_error().empty() || slices.empty()) fail_damaged(file);
+    if (!first_tiff_error().empty() || slices.empty()) fail_damaged_tiff(file);
     return slices;
 }
 
 Result read_slices(const std::vector<Slice>& slices, const Request& request) {
-    const auto told = image_j_spacing(open(slices.front().file).get());
+    const auto told = image_j_spacing(open_to_read(slices.front().file).get());
     Result result;
-    Page first;
+    TiffPage first;
     std::span<std::byte> samples;
     std::vector<std::byte> page_samples;
     Tiff tiff(nullptr, &TIFFClose);
     for (std::size_t i = 0; i < slices.size(); ++i) {
         const Slice& slice = slices[i];
         say_doing(slice.file.filename().string());
-        if (i == 0 || slice.file != slices[i - 1].file) tiff = open(slice.file);
+        if (i == 0 || slice.file != slices[i - 1].file) tiff = open_to_read(slice.file);
         if (slice.page != TIFFCurrentDirectory(tiff.get()) && TIFFReadDirectory(tiff.get()) == 0) {
-            fail_damaged(slice.file);
+            fail_damaged_tiff(slice.file);
         }
         while (slice.page != TIFFCurrentDirectory(tiff.get())) {
-            if (TIFFReadDirectory(tiff.get()) == 0) fail_damaged(slice.file);
+            if (TIFFReadDirectory(tiff.get()) == 0) fail_damaged_tiff(slice.file);
         }
-        const Page page = page_of(tiff.get(), slice.file, result.notes);
+        const TiffPage page = page_of(tiff.get(), slice.file, result.notes);
         if (i == 0) {
             first = page;
             const std::int64_t sizes[] = {page.width, page.height,
@@ -193,7 +135,7 @@ Result read_slices(const std::vector<Slice>& slices, const Request& request) {
         } else {
             read_strips(tiff.get(), slice.file, page, page_samples.data());
         }
-        if (!first_tiff_error().empty()) fail_damaged(slice.file);
+        if (!first_tiff_error().empty()) fail_damaged_tiff(slice.file);
         const std::size_t count = std::size_t{page.width} * page.height;
         convert(page.stored, page_samples.data(), result.type,
                 samples.data() + i * count * size_of(result.type), count);
@@ -287,7 +229,7 @@ bool looks_like_tiff(const fs::path& file) {
 Result read_tiff_file(const Request& request) {
     const std::vector<Slice> slices = pages_of(request.path);
     std::vector<std::string> notes;
-    const Moments moments = image_j_moments(open(request.path).get(), slices.size(), notes);
+    const Moments moments = image_j_moments(open_to_read(request.path).get(), slices.size(), notes);
     const auto each = static_cast<std::ptrdiff_t>(slices.size()) / moments.count;
     const auto begin = slices.begin() + checked_time_step(request, moments.count) * each;
     Result result = read_slices({begin, begin + each}, request);

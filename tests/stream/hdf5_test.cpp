@@ -105,9 +105,9 @@ TEST(Hdf5, levels_channels_and_times_of_imaris_are_those_of_its_attributes) {
     }
     StoreOptions beyond;
     beyond.time = 3;
-    EXPECT_TRUE(contains(message_of<io::InputError>(
-                             [&] { (void)open_store(hdf5_written() / "image.ims", beyond); }),
-                         "no time 3: it has 3"));
+    EXPECT_TRUE(contains(
+        message_of<io::InputError>([&] { (void)open_store(hdf5_written() / "image.ims", beyond); }),
+        "no time 3: it has 3"));
 }
 
 TEST(Hdf5, a_chunk_that_is_not_stored_has_the_fill_value) {
@@ -164,20 +164,23 @@ TEST(Hdf5, a_public_file_of_imaris_reads_as_h5py_reads_it) {
 }
 
 TEST(Hdf5, what_is_not_read_is_refused_with_what_is_wrong) {
-    const std::pair<const char*, const char*> wrong[] = {
-        {"userblock", "user block"},         {"other", "of another program"},
-        {"filter", "32000 (lzf) is not read"}, {"half", "no usual integers or floats"},
-        {"extent", "extent"},                {"backwards", "extent"},
-        {"long", "ImageSizeX"},              {"link", "lies in another file"}};
+    const std::pair<const char*, const char*> wrong[] = {{"userblock", "user block"},
+                                                         {"other", "of another program"},
+                                                         {"filter", "32000 (lzf) is not read"},
+                                                         {"half", "no usual integers or floats"},
+                                                         {"extent", "extent"},
+                                                         {"backwards", "extent"},
+                                                         {"long", "ImageSizeX"},
+                                                         {"link", "lies in another file"}};
     for (const auto& [name, what] : wrong) {
         const fs::path file = hdf5_written() / ("refused-" + std::string(name) + ".ims");
         const std::string message = message_of<io::InputError>([&] { (void)open_store(file); });
         EXPECT_TRUE(contains(message, what)) << message;
         EXPECT_TRUE(io::test::one_line_about(message, file)) << message;
     }
-    EXPECT_TRUE(contains(message_of<io::InputError>(
-                             [] { (void)open_store("http://127.0.0.1:9/scan.ims"); }),
-                         "from this machine's disks only"));
+    EXPECT_TRUE(contains(
+        message_of<io::InputError>([] { (void)open_store("http://127.0.0.1:9/scan.ims"); }),
+        "from this machine's disks only"));
 }
 
 TEST(Hdf5, mutated_and_truncated_files_are_refused_in_one_line_or_read) {

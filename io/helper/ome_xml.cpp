@@ -1,0 +1,159 @@
+// OME-XML in the description of a TIFF file; see the header.
+#include "io/helper/ome_xml.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <set>
+
+#include "io/helper/decode.hpp"
+#include "io/helper/tiff_calibration.hpp"
+#include "io/helper/xml.hpp"
+#include "io/number.hpp"
+
+namespace palpate::io {
+namespace {
+
+constexpr std::int64_t most_planes = 1 << 20;
+constexpr std::uint32_t no_page = UINT32_MAX;
+
+std::int64_t whole(const XmlElement& element, const char* name, std::int64_t otherwise,
+                   std::int64_t least = 1) {
+    const std::string text = trimmed(element.attribute(name));
+    if (text.empty()) return otherwise;
+    const auto number = number_from<std::int64_t>(text);
+    if (!number || *number < least || *number > 1 << 30) {
+        throw Failure("its OME-XML has the " + std::string(name) + " '" + text.substr(0, 40) +
+                      "', which is not possible; write it again");
+    }
+    return *number;
+}
+
+/// [mm]; nothing if it does not say.
+std::optional<double> length_of(const XmlElement& pixels, const std::string& name) {
+    const auto length = number_from<double>(trimmed(pixels.attribute(name)));
+    if (!length || !std::isfinite(*length) || *length <= 0) return std::nullopt;
+    const std::string unit = pixels.attribute(name + "Unit");
+    const auto millimetres = millimetres_of(unit.empty() ? "um" : unit);
+    return millimetres ? std::optional(*length * *millimetres) : std::nullopt;
+}
+
+void take_spacing(const XmlElement& pixels, OmeImage& image, std::vector<std::string>& notes) {
+    const auto x = length_of(pixels, "PhysicalSizeX"), y = length_of(pixels, "PhysicalSizeY"),
+               z = length_of(pixels, "PhysicalSizeZ");
+    if (!x || !y) {
+        notes.emplace_back("it does not tell its spacing: 1 mm was taken along every axis");
+        return;
+    }
+    image.spacing = {z.value_or(*x), *y, *x};
+    if (!z && image.sizes[0] > 1) {
+        notes.emplace_back(
+            "it does not tell the distance between slices: that of pixels was taken");
+    }
+}
+
+/// Which plane has which number, along z, channels and times, in an order such as "XYZCT".
+struct PlaneOrder {
+    std::array<std::size_t, 3> axes{};  ///< of OmeImage::sizes, the fastest first
+    explicit PlaneOrder(const std::string& name) {
+        static const std::string letters = "ZCT";
+        if (name.size() != 5 || name.substr(0, 2) != "XY") wrong(name);
+        for (std::size_t i = 0; i < 3; ++i) {
+            axes[i] = letters.find(name[2 + i]);
+            if (axes[i] == std::string::npos || std::count(name.begin(), name.end(), name[2 + i]) != 1)
+                wrong(name);
+        }
+    }
+    [[noreturn]] static void wrong(const std::string& name) {
+        throw Failure("its OME-XML has the DimensionOrder '" + name.substr(0, 40) +
+                      "', which is not possible; write it again");
+    }
+};
+
+/// Gives the planes from `at` (z, channel, time) on the pages from `page` on.
+void put_pages(OmeImage& image, const PlaneOrder& order, std::array<std::int64_t, 3> at,
+               std::int64_t page, std::int64_t count) {
+    for (std::int64_t i = 0; i < count; ++i) {
+        for (std::size_t a = 0; a < 3; ++a) {
+            if (at[a] >= image.sizes[a]) {
+                throw Failure("its OME-XML tells of more planes than it has; write it again");
+            }
+        }
+        image.pages[image.plane(at[0], at[1], at[2])] = static_cast<std::uint32_t>(page + i);
+        for (std::size_t i_axis = 0; i_axis < 3; ++i_axis) {
+            const std::size_t a = order.axes[i_axis];
+            if (++at[a] < image.sizes[a] || i_axis == 2) break;
+            at[a] = 0;
+        }
+    }
+}
+
+void take_pages(const XmlElement& pixels, OmeImage& image) {
+    const PlaneOrder order(pixels.attribute("DimensionOrder"));
+    const std::int64_t planes = image.sizes[0] * image.sizes[1] * image.sizes[2];
+    image.pages.assign(static_cast<std::size_t>(planes), no_page);
+    const auto all = pixels.all("TiffData");
+    if (all.empty()) put_pages(image, order, {0, 0, 0}, 0, planes);
+    std::set<std::string> files;  // one of another name is this one, renamed
+    for (const XmlElement* data : all) {
+        for (const XmlElement* in : data->all("UUID")) files.insert(in->attribute("FileName"));
+        files.erase("");
+        if (files.size() > 1) {
+            throw Failure("has planes in " + quoted(std::filesystem::path(*files.begin())) + ", others in " +
+                          quoted(std::filesystem::path(*files.rbegin())) + "; images over several files are not read");
+        }
+        const std::int64_t page = whole(*data, "IFD", 0, 0);
+        const bool alone = !data->attribute("IFD").empty();
+        const std::int64_t count = whole(*data, "PlaneCount", alone ? 1 : planes, 0);
+        if (count > planes) throw Failure("its OME-XML tells of more planes than it has");
+        put_pages(image, order,
+                  {whole(*data, "FirstZ", 0, 0), whole(*data, "FirstC", 0, 0),
+                   whole(*data, "FirstT", 0, 0)},
+                  page, count);
+    }
+    if (std::ranges::find(image.pages, no_page) != image.pages.end()) {
+        throw Failure("its OME-XML does not tell where all its planes are; write it again");
+    }
+}
+
+}  // namespace
+
+bool is_ome_xml(const std::string& description) {
+    return description.find("<OME") < 4096 && description.find("/OME>") != std::string::npos;
+}
+
+OmeImage ome_image(const std::string& xml, std::vector<std::string>& notes) {
+    const XmlElement root = parse_xml(xml, "its OME-XML");
+    if (!root.all("BinaryOnly").empty()) {
+        throw Failure("keeps its OME-XML in another file; images over several files are not read");
+    }
+    const auto images = root.all("Image");
+    const auto pixels = images.empty() ? images : images[0]->all("Pixels");
+    if (pixels.empty()) throw Failure("its OME-XML tells of no image; write it again");
+    if (images.size() > 1) {
+        notes.push_back("the first of its " + std::to_string(images.size()) + " images was taken");
+    }
+    OmeImage image;
+    image.format = "OME-TIFF";
+    image.sizes = {whole(*pixels[0], "SizeZ", 1), whole(*pixels[0], "SizeC", 1),
+                   whole(*pixels[0], "SizeT", 1)};
+    const double planes = static_cast<double>(image.sizes[0]) *
+                          static_cast<double>(image.sizes[1]) * static_cast<double>(image.sizes[2]);
+    if (planes > static_cast<double>(most_planes)) throw Failure("it has more than 2^20 planes");
+    take_spacing(*pixels[0], image, notes);
+    const auto interval = number_from<double>(trimmed(pixels[0]->attribute("TimeIncrement")));
+    if (interval && image.sizes[2] > 1) {
+        const std::string unit = pixels[0]->attribute("TimeIncrementUnit");
+        image.frame_interval =
+            frame_times(*interval, 0, unit.empty() ? "s" : unit, notes).interval;
+    }
+    const auto channels = pixels[0]->all("Channel");
+    for (std::size_t c = 0; image.sizes[1] > 1 && c < static_cast<std::size_t>(image.sizes[1]); ++c) {
+        const std::string name = c < channels.size() ? channels[c]->attribute("Name") : "";
+        image.channels.push_back(name.empty() ? "channel " + std::to_string(c) : name);
+    }
+    take_pages(*pixels[0], image);
+    return image;
+}
+
+}  // namespace palpate::io

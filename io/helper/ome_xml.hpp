@@ -1,0 +1,32 @@
+// OME-XML in the description of a TIFF file: sizes, spacing, channels, times, and which page each plane
+// is. https://docs.openmicroscopy.org/ome-model.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace palpate::io {
+
+struct OmeImage {
+    std::string format;
+    std::array<std::int64_t, 3> sizes = {1, 1, 1};  ///< of z, channels, times
+    std::array<double, 3> spacing = {1, 1, 1};      ///< z, y, x [mm]
+    std::vector<std::string> channels;              ///< names; empty: one
+    double frame_interval = 0;                      ///< [s]; 0: it does not say
+    std::vector<std::uint32_t> pages;               ///< of each plane
+
+    /// Its place in `pages`: z fastest, then channels.
+    std::size_t plane(std::int64_t z, std::int64_t channel, std::int64_t time) const {
+        return static_cast<std::size_t>((time * sizes[1] + channel) * sizes[0] + z);
+    }
+};
+
+bool is_ome_xml(const std::string& description);
+
+/// The first image in it; notes tell of others and of what is missing. Throws Failure, also for planes
+/// in several files.
+OmeImage ome_image(const std::string& xml, std::vector<std::string>& notes);
+
+}  // namespace palpate::io

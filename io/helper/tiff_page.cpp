@@ -1,0 +1,69 @@
+// A page of a TIFF file; see the header.
+#include "io/helper/tiff_page.hpp"
+
+#include <algorithm>
+
+namespace palpate::io {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+Stored stored_from(std::uint16_t bits, std::uint16_t format, const fs::path& file) {
+    const bool is_signed = format == SAMPLEFORMAT_INT;
+    if (format == SAMPLEFORMAT_IEEEFP && bits == 32) return Stored::float32;
+    if (format == SAMPLEFORMAT_IEEEFP && bits == 64) return Stored::float64;
+    if (is_signed || format == SAMPLEFORMAT_UINT || format == SAMPLEFORMAT_VOID) {
+        if (bits == 8) return is_signed ? Stored::int8 : Stored::uint8;
+        if (bits == 16) return is_signed ? Stored::int16 : Stored::uint16;
+        if (bits == 32) return is_signed ? Stored::int32 : Stored::uint32;
+    }
+    throw Failure(quoted(file) + " has samples of " + std::to_string(bits) +
+                  " bits of a kind that is not read; save it with 8 or 16 bits");
+}
+
+}  // namespace
+
+void fail_damaged_tiff(const fs::path& file) {
+    throw Failure(quoted(file) + " is damaged or cut off (" +
+                  (first_tiff_error().empty() ? "libtiff" : first_tiff_error()) +
+                  "); copy it again");
+}
+
+Tiff open_to_read(const fs::path& file, const std::string& more) {
+    Tiff tiff = open_tiff(file, ("rM" + more).c_str());  // M: not mapped, a short file is an error
+    if (!tiff) {
+        throw Failure(quoted(file) + " is no TIFF file or is damaged (" + first_tiff_error() +
+                      "); check its name or copy it again");
+    }
+    return tiff;
+}
+
+std::string text_of(const TiffPage& page) {
+    return std::to_string(page.width) + "x" + std::to_string(page.height) + " of " +
+           name_of(page.stored);
+}
+
+TiffPage page_of(TIFF* tiff, const fs::path& file, std::vector<std::string>& notes) {
+    std::uint16_t samples = 1, bits = 1, format = SAMPLEFORMAT_UINT, photometric = 0;
+    TiffPage page;
+    TIFFGetField(tiff, TIFFTAG_IMAGEWIDTH, &page.width);
+    TIFFGetField(tiff, TIFFTAG_IMAGELENGTH, &page.height);
+    TIFFGetFieldDefaulted(tiff, TIFFTAG_SAMPLESPERPIXEL, &samples);
+    TIFFGetFieldDefaulted(tiff, TIFFTAG_BITSPERSAMPLE, &bits);
+    TIFFGetFieldDefaulted(tiff, TIFFTAG_SAMPLEFORMAT, &format);
+    TIFFGetField(tiff, TIFFTAG_PHOTOMETRIC, &photometric);
+    if (samples != 1 || photometric == PHOTOMETRIC_PALETTE || photometric == PHOTOMETRIC_RGB) {
+        throw Failure(quoted(file) + " has colours (" + std::to_string(samples) +
+                      " values a sample); save it in grey");
+    }
+    const char* const white = "its zero means white: values were taken as they are";
+    if (photometric == PHOTOMETRIC_MINISWHITE &&
+        std::find(notes.begin(), notes.end(), white) == notes.end()) {
+        notes.emplace_back(white);
+    }
+    page.stored = stored_from(bits, format, file);
+    return page;
+}
+
+}  // namespace palpate::io

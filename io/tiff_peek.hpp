@@ -1,0 +1,17 @@
+// A look at the first page of a TIFF file, to choose a reader. Private to io/ and stream/.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+namespace palpate::io {
+
+struct TiffPeek {
+    bool tiled = false;
+    bool has_levels = false;  ///< coarser ones, in SubIFDs
+};
+
+/// Nothing if the name does not end in .tif or .tiff or the file does not begin as such a file does.
+std::optional<TiffPeek> peek_tiff(const std::filesystem::path& path);
+
+}  // namespace palpate::io
