@@ -2,15 +2,17 @@
 
 import os
 import pathlib
+import re
 import signal
 import subprocess
+import sys
+import time
 
+import distributed
 import numpy
 import palpate
 import pytest
-
-distributed = pytest.importorskip("distributed")
-from palpate.distributed import HALO, _stages, convert  # noqa: E402
+from palpate.distributed import HALO, _stages, convert
 
 PROGRAM = os.environ["PALPATE"]
 
@@ -152,3 +154,22 @@ def test_stages_hold_all_rounds_in_their_order_and_reach_no_farther_than_the_hal
     assert flat == [step for step, count in rounds for _ in range(count)]
     assert all(sum(2 * step * count for step, count in stage) <= HALO for stage in stages)
     assert len(stages) <= 11
+
+
+def test_the_program_says_in_a_line_what_is_wrong_and_goes_on_after_a_stop(tmp_path):
+    source, out = ball(tmp_path), tmp_path / "out.zarr"
+    command = [sys.executable, "-m", "palpate.distributed", source, out, "--chunk", "16", "--block", "16",
+               "--dequantize", "40", "--workers", "1"]
+    running = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+    records = pathlib.Path(f"{out}.work/records/state-0")
+    while running.poll() is None and not (records.exists() and any(records.iterdir())):
+        time.sleep(0.05)
+    running.send_signal(signal.SIGINT)
+    _, said = running.communicate(timeout=60)
+    assert running.returncode == 130 and "the same command goes on" in said
+    again = subprocess.run(command, check=True, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+    assert int(re.search(r"\((\d+) kept", again.stdout)[1]) > 60
+    assert files(out) == on_one_machine(source, tmp_path / "one.zarr", "--chunk", "16", "--dequantize")
+    refused = subprocess.run(command, check=False, stderr=subprocess.PIPE, text=True)
+    assert refused.returncode == 1 and "is there already" in refused.stderr
+    assert "Traceback" not in refused.stderr

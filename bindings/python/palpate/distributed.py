@@ -417,18 +417,18 @@ def main(arguments=None):
         if sys.stderr.isatty() or done == count:
             print(f"\r{stage}: {done} of {count}", end="\n" if done == count else "", file=sys.stderr)
 
-    with contextlib.ExitStack() as stack:
-        if scheduler:
-            client = stack.enter_context(Client(scheduler))
-        else:
-            cluster = stack.enter_context(LocalCluster(n_workers=workers, threads_per_worker=1,
-                                                       dashboard_address="127.0.0.1:0"))
+    try:
+        with contextlib.ExitStack() as stack:
+            cluster = scheduler or stack.enter_context(LocalCluster(
+                n_workers=workers, threads_per_worker=1, dashboard_address="127.0.0.1:0"))
             client = stack.enter_context(Client(cluster))
-        print(f"dashboard: {client.dashboard_link}", file=sys.stderr)
-        try:
+            print(f"dashboard: {client.dashboard_link}", file=sys.stderr)
             done = convert(client, progress=tell, **given)
-        except (ValueError, OSError) as error:
-            sys.exit(f"palpate.distributed: {error}")
+    except (ValueError, OSError) as error:
+        sys.exit(f"palpate.distributed: {error}")
+    except KeyboardInterrupt:
+        print("\npalpate.distributed: stopped; the same command goes on", file=sys.stderr)
+        sys.exit(130)
     print(f"{given['out']}: OME-Zarr {given['ome_version']}, {done.levels} levels, {done.blocks} blocks "
           f"({done.kept} kept from before)")
 
