@@ -147,6 +147,21 @@ def test_what_is_there_and_what_cannot_be_is_refused_in_a_line(client, tmp_path)
         convert(client, source, str(out))
 
 
+def test_a_worker_of_another_version_is_refused(client, tmp_path):
+    def become(version):
+        import palpate.distributed
+        palpate.distributed.__version__ = version
+
+    name = list(client.run(os.getpid))[0]
+    client.run(become, "0.0.1", workers=[name])
+    try:
+        with pytest.raises(ValueError, match="1 workers have another version .*: 0.0.1"):
+            convert(client, ball(tmp_path), str(tmp_path / "out.zarr"))
+    finally:
+        client.run(become, palpate.__version__, workers=[name])
+    assert [p.name for p in tmp_path.iterdir()] == ["ball.nrrd"]
+
+
 def test_stages_hold_all_rounds_in_their_order_and_reach_no_farther_than_the_halo():
     rounds = [(16, 2), (8, 2), (4, 6), (2, 20), (1, 40)]
     stages = _stages(rounds)
