@@ -27,7 +27,11 @@ def agree(path, what, said, expected):
 
 
 # The newest section with a date; above it is only what comes next.
-headings = re.findall(r"^## (.*)$", (ROOT / "CHANGELOG.md").read_text(encoding="utf-8"), re.MULTILINE)
+changes = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+headings = re.findall(r"^## (.*)$", changes, re.MULTILINE)
+# Branches that add lines are merged as a union of both sides, which may bring released notes back.
+if re.search(r"[^\n]\n#+ ", changes):
+    problems.append("CHANGELOG.md: a heading without an empty line before it: what has a merge done here?")
 if headings[0] != "Unreleased":
     problems.append("CHANGELOG.md: does not begin with a section Unreleased")
 newest, day = re.fullmatch(r"(\d+\.\d+\.\d+) - (\d{4}-\d{2}-\d{2})", headings[1]).groups()
