@@ -1,4 +1,5 @@
-// Dequantizing by parts, for palpate.distributed: what parts say of the whole, and rounds on a part.
+// Dequantizing by parts, for palpate.distributed: what parts say of the whole, and rounds on a
+// part.
 #include "palpate/filters/dequantize_parts.hpp"
 
 #include <pybind11/functional.h>
@@ -16,12 +17,10 @@ py::tuple sites_of(const Volume& part, const Index3& low, const Index3& whole,
         const py::gil_scoped_release unlocked;
         sites = filters::sites_of({part, low, whole}, {core_low, core_high - Index3::Ones()}, step);
     }
-    return py::make_tuple(column(sites,
-                                 [](const filters::SurfaceSite& s) -> Vec3 {
-                                     return s.at.cast<double>();
-                                 }),
-                          column(sites, [](const filters::SurfaceSite& s) { return s.slope; }),
-                          column(sites, [](const filters::SurfaceSite& s) { return s.bend; }));
+    return py::make_tuple(
+        column(sites, [](const filters::SurfaceSite& s) -> Vec3 { return s.at.cast<double>(); }),
+        column(sites, [](const filters::SurfaceSite& s) { return s.slope; }),
+        column(sites, [](const filters::SurfaceSite& s) { return s.bend; }));
 }
 
 /// `sites(step)`: slopes and bends of the whole volume's sites, in the order of the samples.
@@ -81,8 +80,11 @@ void bind_dequantize_parts(py::module_& module) {
                 return py::make_tuple(plan.level, plan.minimum, plan.maximum, plan.mask);
             },
             [](const py::tuple& state) {
-                return DequantizePlan{state[0].cast<double>(), state[1].cast<double>(),
-                                      state[2].cast<double>(), state[3].cast<bool>(), {}};
+                return DequantizePlan{state[0].cast<double>(),
+                                      state[1].cast<double>(),
+                                      state[2].cast<double>(),
+                                      state[3].cast<bool>(),
+                                      {}};
             }));
     module.def("_values_of", [](const Volume& part) {
         std::vector<double> values;

@@ -1,4 +1,5 @@
-// Images that grow chunk by chunk, for palpate.distributed. Reading and writing runs without the GIL.
+// Images that grow chunk by chunk, for palpate.distributed. Reading and writing runs without the
+// GIL.
 #include "palpate/stream/growing_image.hpp"
 
 #include "bindings/python/bindings.hpp"
@@ -106,9 +107,9 @@ void bind_growing_images(py::module_& module) {
         .def(
             "write_metadata",
             [](const GrowingImage& image, std::optional<std::pair<double, double>> range) {
-                image.write_metadata(
-                    range ? std::optional(stream::Range{range->first, range->second})
-                          : std::nullopt);
+                image.write_metadata(range
+                                         ? std::optional(stream::Range{range->first, range->second})
+                                         : std::nullopt);
             },
             py::arg("range") = py::none(), Unlocked())
         .def("write", &write_block, py::arg("low"), py::arg("block"), Unlocked())

@@ -1,5 +1,5 @@
-// Stores: samples that are read by the box, of files, chunked formats and web addresses. All reading
-// runs without the GIL.
+// Stores: samples that are read by the box, of files, chunked formats and web addresses. All
+// reading runs without the GIL.
 #include "bindings/python/bindings.hpp"
 #include "palpate/stream/store.hpp"
 
@@ -25,8 +25,9 @@ struct OpenStore {
         Geometry grid = level(number).geometry;
         const SampleBox box{low, high - Index3::Ones()};  // as NumPy's slices
         if ((low.array() < 0).any() || (high.array() > grid.size.array()).any() || box.empty()) {
-            throw std::invalid_argument("a box lies in the grid, and its low corner is below its "
-                                        "high one");
+            throw std::invalid_argument(
+                "a box lies in the grid, and its low corner is below its "
+                "high one");
         }
         grid.origin = physical_from_index(grid, low.cast<double>());
         grid.size = high - low;
@@ -39,9 +40,10 @@ struct OpenStore {
 };
 
 void bind_store(py::module_& module) {
-    py::class_<OpenStore>(module, "Store",
-                          "Samples that are read by the box, at one or more levels of detail: from\n"
-                          "open_store(). Nothing is held but what is asked for.")
+    py::class_<OpenStore>(
+        module, "Store",
+        "Samples that are read by the box, at one or more levels of detail: from\n"
+        "open_store(). Nothing is held but what is asked for.")
         .def_property_readonly("address", [](const OpenStore& s) { return s.info().address; })
         .def_property_readonly(
             "format", [](const OpenStore& s) { return s.info().format; },
@@ -97,7 +99,8 @@ void bind_open_store(py::module_& module) {
         py::arg("cache") = "", Unlocked(),
         "Opens what is read by the box: OME-Zarr and other chunked formats, folders or http://,\n"
         "https:// and s3:// addresses, and plain files whose samples are not compressed\n"
-        "(docs/streaming.md). cache: a folder that keeps what came over the network. Reads headers\n"
+        "(docs/streaming.md). cache: a folder that keeps what came over the network. Reads "
+        "headers\n"
         "only. Raises InputError.");
 }
 

@@ -65,6 +65,10 @@ class Site:
                     pages.append(path)
                 else:
                     self.copy(path)
+        navigation = (self.root / "docs/site/mkdocs.yml").read_text(encoding="utf-8")
+        left_out = [name for page in pages if (name := str(page.relative_to(self.root))) not in navigation]
+        if left_out:
+            sys.exit(f"docs/site/mkdocs.yml: its navigation lacks {', '.join(left_out)}")
         for page in pages:
             self.write(page.relative_to(self.root), self.linked(page))
         for path in sorted(self.shown):

@@ -64,7 +64,7 @@ typedef enum palpate_status {
     PALPATE_INTERNAL = 11      /* a mistake of this library: please report it */
 } palpate_status;
 
-PALPATE_API const char *palpate_version(void); /* "0.1.0" */
+PALPATE_API const char *palpate_version(void); /* MAJOR.MINOR.PATCH, as "0.2.0" */
 /* "" after a call without error. Valid until the next call of this thread. */
 PALPATE_API const char *palpate_last_error(void);
 

@@ -87,13 +87,15 @@ class Links(Folder):
 
 
 class Stage(Folder):
-    def site(self, **pages):
+    def site(self, left_out=None, **pages):
         for name in stage.PAGES:
             self.write(name, "# page\n")
         for name in ("site.css", "theme_extra.js"):
             self.write(f"docs/site/{name}", "")
         for name, text in pages.items():
             self.write(f"docs/{name}.md", text)
+        self.write("docs/site/mkdocs.yml", "\n".join(
+            [*stage.PAGES, *(f"docs/{name}.md" for name in pages if name != left_out)]))
         out = self.folder / "out"
         out.mkdir()
         stage.Site(self.folder, out).run()
@@ -111,6 +113,10 @@ class Stage(Folder):
     def test_a_link_to_what_is_not_there_is_found(self):
         with self.assertRaisesRegex(SystemExit, "one.md: links to ../gone.cpp"):
             self.site(one="[a](../gone.cpp)\n")
+
+    def test_a_page_that_the_navigation_lacks_is_found(self):
+        with self.assertRaisesRegex(SystemExit, "lacks docs/two.md"):
+            self.site(left_out="two", one="# one\n", two="# two\n")
 
     def test_lists_are_as_python_markdown_wants_them(self):
         self.assertEqual(stage.for_markdown("Text:\n- one\n  more\n  - inner\n\n  again\n- two\n\nEnd\n"),

@@ -77,9 +77,8 @@ std::vector<SurfaceSite> sites_by_parts(const Volume& volume, int edge, int step
 
 Volume by_parts(const Volume& volume, int edge, const DequantizeOptions& options) {
     const Index3 size = volume.geometry().size;
-    const auto plan =
-        plan_of(level_of(volume).value(), volume.minimum(), volume.maximum(), options,
-                [&](int step) { return sites_by_parts(volume, edge, step); });
+    const auto plan = plan_of(level_of(volume).value(), volume.minimum(), volume.maximum(), options,
+                              [&](int step) { return sites_by_parts(volume, edge, step); });
     const SampleBox whole{Index3::Zero(), size - Index3::Ones()};
     std::vector<float> state = floats_of(volume);
     for (const auto& rounds : plan.rounds) {
@@ -92,9 +91,8 @@ Volume by_parts(const Volume& volume, int edge, const DequantizeOptions& options
                 here[offset(around, at)] = state[offset(whole, at)];
             });
             run_rounds(part, here, plan, rounds, 1, [] {});
-            for_each(box, [&](const Index3& at) {
-                next[offset(whole, at)] = here[offset(around, at)];
-            });
+            for_each(box,
+                     [&](const Index3& at) { next[offset(whole, at)] = here[offset(around, at)]; });
         }
         state = std::move(next);
     }

@@ -5,11 +5,14 @@ ldconfig; the libraries of other packages are those of this system."""
 
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
 
 SOURCE, BUILD, CC = pathlib.Path(sys.argv[1]), sys.argv[2], sys.argv[3]
+VERSION = re.search(r"^project\(palpate VERSION ([\d.]+)", (SOURCE / "CMakeLists.txt").read_text(),
+                    re.MULTILINE).group(1)
 PACKAGES = {"palpate", "palpate-io-helper", "libpalpate-c0", "libpalpate-dev"}
 FILES = """usr/bin/palpate usr/bin/palpate-viewer usr/libexec/palpate/palpate-io-helper
     usr/libexec/palpate/palpate-evaluate usr/libexec/palpate/palpate-picture-helper
@@ -78,7 +81,7 @@ def later(package, folder):
     tree = folder / package.stem
     run("dpkg-deb", "-R", package, tree)
     control = tree / "DEBIAN/control"
-    control.write_text(control.read_text().replace("0.1.0-1", "0.1.0-2"))
+    control.write_text(control.read_text().replace(f"{VERSION}-1", f"{VERSION}-2"))
     made = folder / package.name.replace("-1_", "-2_")
     run("dpkg-deb", "--root-owner-group", "-Znone", "-b", tree, made)
     return made
@@ -120,7 +123,7 @@ def main():
             sys.exit(f"not installed: {sorted(missing)}")
         use(root.path, scratch)
         root.dpkg("-i", *(later(p, scratch) for p in made))
-        if set(root.installed().values()) != {"0.1.0-2"}:
+        if set(root.installed().values()) != {f"{VERSION}-2"}:
             sys.exit(f"after the upgrade: {root.installed()}")
         root.dpkg("-r", *names)
         if root.files() != ["etc/security/limits.d/palpate.conf"]:

@@ -1,8 +1,7 @@
 #!/usr/bin/env python3
-"""The source archive is reproducible and whole, and what it says of versions agrees."""
+"""The source archive is reproducible and whole."""
 
 import os
-import re
 import subprocess
 import sys
 import tarfile
@@ -10,10 +9,6 @@ import tempfile
 from pathlib import Path
 
 root = Path(sys.argv[1])
-version = re.search(r"^project\(palpate VERSION ([0-9.]+)", (root / "CMakeLists.txt").read_text(),
-                    re.MULTILINE).group(1)
-citation = (root / "CITATION.cff").read_text()
-assert f"\nversion: {version}\n" in citation, f"CITATION.cff does not cite {version}"
 
 git = ["git", "-C", root]
 if subprocess.run([*git, "rev-parse", "HEAD"], capture_output=True, check=False).returncode != 0:

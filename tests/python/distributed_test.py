@@ -2,15 +2,17 @@
 
 import os
 import pathlib
+import re
 import signal
 import subprocess
+import sys
+import time
 
+import distributed
 import numpy
 import palpate
 import pytest
-
-distributed = pytest.importorskip("distributed")
-from palpate.distributed import HALO, _stages, convert  # noqa: E402
+from palpate.distributed import HALO, _stages, convert
 
 PROGRAM = os.environ["PALPATE"]
 
@@ -145,6 +147,21 @@ def test_what_is_there_and_what_cannot_be_is_refused_in_a_line(client, tmp_path)
         convert(client, source, str(out))
 
 
+def test_a_worker_of_another_version_is_refused(client, tmp_path):
+    def become(version):
+        import palpate.distributed
+        palpate.distributed.__version__ = version
+
+    name = list(client.run(os.getpid))[0]
+    client.run(become, "0.0.1", workers=[name])
+    try:
+        with pytest.raises(ValueError, match="1 workers have another version .*: 0.0.1"):
+            convert(client, ball(tmp_path), str(tmp_path / "out.zarr"))
+    finally:
+        client.run(become, palpate.__version__, workers=[name])
+    assert [p.name for p in tmp_path.iterdir()] == ["ball.nrrd"]
+
+
 def test_stages_hold_all_rounds_in_their_order_and_reach_no_farther_than_the_halo():
     rounds = [(16, 2), (8, 2), (4, 6), (2, 20), (1, 40)]
     stages = _stages(rounds)
@@ -152,3 +169,22 @@ def test_stages_hold_all_rounds_in_their_order_and_reach_no_farther_than_the_hal
     assert flat == [step for step, count in rounds for _ in range(count)]
     assert all(sum(2 * step * count for step, count in stage) <= HALO for stage in stages)
     assert len(stages) <= 11
+
+
+def test_the_program_says_in_a_line_what_is_wrong_and_goes_on_after_a_stop(tmp_path):
+    source, out = ball(tmp_path), tmp_path / "out.zarr"
+    command = [sys.executable, "-m", "palpate.distributed", source, out, "--chunk", "16", "--block", "16",
+               "--dequantize", "40", "--workers", "1"]
+    running = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+    records = pathlib.Path(f"{out}.work/records/state-0")
+    while running.poll() is None and not (records.exists() and any(records.iterdir())):
+        time.sleep(0.05)
+    running.send_signal(signal.SIGINT)
+    _, said = running.communicate(timeout=60)
+    assert running.returncode == 130 and "the same command goes on" in said
+    again = subprocess.run(command, check=True, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+    assert int(re.search(r"\((\d+) kept", again.stdout)[1]) > 60
+    assert files(out) == on_one_machine(source, tmp_path / "one.zarr", "--chunk", "16", "--dequantize")
+    refused = subprocess.run(command, check=False, stderr=subprocess.PIPE, text=True)
+    assert refused.returncode == 1 and "is there already" in refused.stderr
+    assert "Traceback" not in refused.stderr

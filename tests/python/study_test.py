@@ -3,12 +3,11 @@
 import os
 import signal
 
+import distributed
 import numpy
 import palpate
 import pytest
-
-distributed = pytest.importorskip("distributed")
-from palpate.study import study  # noqa: E402
+from palpate.study import study
 
 SETUPS = {"soft": {"stiffness": 0.2}, "hard": {"stiffness": 1.0}, "paper": {"method": "paper"},
           "rough": palpate.RenderSetup(friction=palpate.Friction(static_coefficient=0.5,

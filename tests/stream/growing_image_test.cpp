@@ -1,5 +1,5 @@
-// An image that several writers make chunk by chunk, in any order, is the one that convert_to_zarr()
-// makes, to the byte.
+// An image that several writers make chunk by chunk, in any order, is the one that
+// convert_to_zarr() makes, to the byte.
 #include "palpate/stream/growing_image.hpp"
 
 #include <algorithm>

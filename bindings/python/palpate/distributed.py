@@ -129,7 +129,7 @@ def _sum_of(volume):
 # ---- What workers do -----------------------------------------------------------------------------------
 
 def _survey(job, block):
-    """The values, the range and the sites of a block, for the plan of dequantizing."""
+    """The values and the sites of a block, for the plan of dequantizing."""
     record = job.record("survey", block)
     found = _get(record)
     if found and found[8:9] == " " and f"{zlib.crc32(found[9:].encode()):08x}" == found[:8]:
@@ -138,7 +138,7 @@ def _survey(job, block):
     around = _grown(block, HALO, size)
     part = job.store().read(*around, level=job.level)
     own = _cut(part, around, block)
-    said = {"values": _palpate._values_of(own).tolist(), "range": [own.minimum, own.maximum], "sites": {}}
+    said = {"values": _palpate._values_of(own).tolist(), "sites": {}}
     for step in SITE_STEPS:
         columns = _palpate._sites_of(part, around[0], size, *block, step)
         said["sites"][str(step)] = [column.tolist() for column in columns]
@@ -193,6 +193,19 @@ def _make(job, stage, level, compute, only_verify, block):
 
 
 # ---- What the program that starts them does ------------------------------------------------------------
+
+def _version():
+    return __version__
+
+
+def check_workers(client):
+    """Workers of another version would compute other bits."""
+    others = {name: found for name, found in client.run(_version).items() if found != __version__}
+    if others:
+        name, found = next(iter(others.items()))
+        raise ValueError(f"{len(others)} workers have another version of Palpate than {__version__} "
+                         f"({name}: {found}): install the same one everywhere")
+
 
 def each_piece(client, stage, function, blocks, progress):
     """function(work) for all pieces of work on the workers; their results, in no order."""
@@ -274,7 +287,7 @@ class _Conversion:
     def dequantize(self, rounds):
         """Brings the volume through all stages; the name of the last one, None if there is none."""
         surveys = each_piece(self.client, "survey", functools.partial(_survey, self.job),
-                        _blocks(self.grid.size, self.edge), self.progress)
+                             _blocks(self.grid.size, self.edge), self.progress)
         self.count(surveys)
         plan = _plan([said for _, said in surveys], rounds, self.job.store().type != "float32")
         if plan is None:
@@ -381,7 +394,7 @@ def convert(client: Client, source: str, out: str, *, level: int = 0, dequantize
     out = os.path.abspath(out)
     if not source.startswith(("http://", "https://", "s3://")):
         source = os.path.abspath(source)
-    if block < 1 or block % chunk:
+    if block < 1 or chunk < 1 or block % chunk:
         raise ValueError(f"block is a multiple of chunk ({chunk}), not {block}")
     if not 0 <= smooth <= 64 or not 0 <= dequantize <= 1000:
         raise ValueError("smooth is 0 to 64 passes, dequantize 0 to 1000 rounds")
@@ -392,6 +405,7 @@ def convert(client: Client, source: str, out: str, *, level: int = 0, dequantize
     job = _Job(source, pickle.dumps(options or {}), json.dumps(seen(source)), level, f"{out}.partial", f"{out}.work", kind, smooth, prefilter,
                chunk, compression, ome_version)
     job.image("level-0")  # refuses a wrong format before anything is made
+    check_workers(client)
     note = json.dumps([__version__, repr(job), dequantize, block], indent=1)
     with _folders(out, note):
         return _Conversion(client, job, block, progress).run(dequantize)
@@ -417,18 +431,18 @@ def main(arguments=None):
         if sys.stderr.isatty() or done == count:
             print(f"\r{stage}: {done} of {count}", end="\n" if done == count else "", file=sys.stderr)
 
-    with contextlib.ExitStack() as stack:
-        if scheduler:
-            client = stack.enter_context(Client(scheduler))
-        else:
-            cluster = stack.enter_context(LocalCluster(n_workers=workers, threads_per_worker=1,
-                                                       dashboard_address="127.0.0.1:0"))
+    try:
+        with contextlib.ExitStack() as stack:
+            cluster = scheduler or stack.enter_context(LocalCluster(
+                n_workers=workers, threads_per_worker=1, dashboard_address="127.0.0.1:0"))
             client = stack.enter_context(Client(cluster))
-        print(f"dashboard: {client.dashboard_link}", file=sys.stderr)
-        try:
+            print(f"dashboard: {client.dashboard_link}", file=sys.stderr)
             done = convert(client, progress=tell, **given)
-        except (ValueError, OSError) as error:
-            sys.exit(f"palpate.distributed: {error}")
+    except (ValueError, OSError) as error:
+        sys.exit(f"palpate.distributed: {error}")
+    except KeyboardInterrupt:
+        print("\npalpate.distributed: stopped; the same command goes on", file=sys.stderr)
+        sys.exit(130)
     print(f"{given['out']}: OME-Zarr {given['ome_version']}, {done.levels} levels, {done.blocks} blocks "
           f"({done.kept} kept from before)")
 

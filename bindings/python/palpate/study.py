@@ -18,7 +18,7 @@ import numpy
 from distributed import Client
 
 from . import Field, RenderSetup, Trace, __version__, load, replay
-from .distributed import Progress, each_piece, seen, writer
+from .distributed import Progress, check_workers, each_piece, seen, writer
 
 _ARRAYS = [f.name for f in dataclasses.fields(Trace) if f.default is dataclasses.MISSING]
 
@@ -93,6 +93,7 @@ def study(client: Client, source: str, isovalue: Union[float, str], time: Any, p
         key = same.copy()
         key.update(pickle.dumps(setup))
         work.append((name, key.hexdigest(), setup))
+    check_workers(client)
     Path(out).mkdir(parents=True, exist_ok=True)
     folder = os.path.abspath(out)
     one = functools.partial(_replay, source, options, isovalue, motion, folder)

@@ -1,5 +1,6 @@
 // Dequantization part by part, for volumes that do not fit into memory, with the bits of
-// dequantized(): what it has to know of the whole volume, and rounds on a part. See docs/dequantize.md.
+// dequantized(): what it has to know of the whole volume, and rounds on a part. See
+// docs/dequantize.md.
 #pragma once
 
 #include <functional>

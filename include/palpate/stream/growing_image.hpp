@@ -1,5 +1,6 @@
-// A multiscale OME-Zarr image that grows chunk by chunk. Several processes, also of several machines
-// with one file system, may write different chunks at the same time. convert_to_zarr() is made of it.
+// A multiscale OME-Zarr image that grows chunk by chunk. Several processes, also of several
+// machines with one file system, may write different chunks at the same time. convert_to_zarr() is
+// made of it.
 #pragma once
 
 #include <filesystem>
@@ -32,8 +33,8 @@ class GrowingImage {
     /// The samples of a chunk that lie in the grid.
     SampleBox box(int level, const Index3& chunk) const;
 
-    /// Of all levels: needed before anything is read. `range` of the finest level, once it is known.
-    /// Throws io::OutputError, like all that writes here.
+    /// Of all levels: needed before anything is read. `range` of the finest level, once it is
+    /// known. Throws io::OutputError, like all that writes here.
     void write_metadata(const std::optional<Range>& range) const;
     /// The samples of box(level, chunk), x fastest. Read back and compared. False: all are 0, and
     /// the chunk is not stored.

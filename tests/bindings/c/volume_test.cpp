@@ -209,7 +209,7 @@ TEST(CHandles, that_are_null_are_refused_by_name_and_may_be_destroyed) {
     palpate_field_destroy(nullptr);
     palpate_run_destroy(nullptr);
     palpate_data_destroy(nullptr);
-    EXPECT_STREQ(palpate_version(), "0.1.0");
+    EXPECT_STREQ(palpate_version(), PALPATE_VERSION);
 }
 
 TEST(CDevices, the_list_has_the_simulated_device) {
