@@ -95,10 +95,10 @@ TEST(Tiff, levels_channels_and_times_of_an_ome_pyramid_are_those_of_its_xml) {
     }
     StoreOptions beyond;
     beyond.channel = 2;
-    EXPECT_TRUE(contains(
-        message_of<io::InputError>(
-            [&] { (void)open_store(tiff_written() / "pyramid-TCZYX.ome.tif", beyond); }),
-        "no channel 2: it has 2"));
+    EXPECT_TRUE(contains(message_of<io::InputError>([&] {
+                             (void)open_store(tiff_written() / "pyramid-TCZYX.ome.tif", beyond);
+                         }),
+                         "no channel 2: it has 2"));
 }
 
 TEST(Tiff, coarser_levels_are_sub_directories_or_reduced_pages) {
