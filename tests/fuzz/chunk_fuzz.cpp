@@ -1,5 +1,6 @@
-// Any bytes are a chunk that unpacks to its declared size, or damage of one line: all codecs, alone and
-// in the orders that formats use, and blocks of N5. The first byte chooses, the second gives the size.
+// Any bytes are a chunk that unpacks to its declared size, or damage of one line: all codecs, alone
+// and in the orders that formats use, and blocks of N5. The first byte chooses, the second gives
+// the size.
 #include <cstdint>
 #include <cstdlib>
 #include <sstream>

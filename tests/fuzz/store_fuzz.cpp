@@ -1,7 +1,7 @@
-// Any metadata, shards and chunks make a store whose samples can be read, or an error of one line. The
-// input is JSON with what lies where in a folder of Zarr or N5: {"s0/attributes.json": {...}, "c/0/0/0":
-// "00ff.."}, metadata as they are and bytes in hexadecimal digits. "located" is what the helper process
-// says of a file of HDF5 or TIFF.
+// Any metadata, shards and chunks make a store whose samples can be read, or an error of one line.
+// The input is JSON with what lies where in a folder of Zarr or N5: {"s0/attributes.json": {...},
+// "c/0/0/0": "00ff.."}, metadata as they are and bytes in hexadecimal digits. "located" is what the
+// helper process says of a file of HDF5 or TIFF.
 #include <cctype>
 #include <cmath>
 #include <cstdint>
@@ -94,8 +94,8 @@ void read_ends(const Store& store, int level) {
     const palpate::Index3 last =
         store.info().levels[static_cast<std::size_t>(level)].geometry.size.array() - 1;
     const palpate::Index3 few = last.cwiseMin(palpate::Index3(2, 2, 2));
-    for (const auto& box : {palpate::SampleBox{palpate::Index3::Zero(), few},
-                            palpate::SampleBox{last - few, last}}) {
+    for (const auto& box :
+         {palpate::SampleBox{palpate::Index3::Zero(), few}, palpate::SampleBox{last - few, last}}) {
         const auto count = static_cast<std::size_t>((few.array() + 1).prod());
         std::vector<std::byte> samples(count * palpate::size_of(store.info().type));
         try {

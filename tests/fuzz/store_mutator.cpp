@@ -1,5 +1,5 @@
-// Changes a value in the JSON that stands for a store, so that it stays JSON; of texts, which are bytes
-// in digits, a few digits.
+// Changes a value in the JSON that stands for a store, so that it stays JSON; of texts, which are
+// bytes in digits, a few digits.
 #include "fuzz/mutation.hpp"
 
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
