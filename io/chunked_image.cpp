@@ -1,6 +1,7 @@
 // What a file of chunks says of the image in it, as JSON; see the header.
 #include "io/chunked_image.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "palpate/io/error.hpp"
@@ -19,11 +20,20 @@ std::vector<std::string> lines_from(const nlohmann::json& list, std::size_t long
     return lines;
 }
 
+std::int64_t whole_from(const nlohmann::json& number) {
+    if (!number.is_number_integer()) throw std::invalid_argument("a number is not whole");
+    return number.get<std::int64_t>();
+}
+
+std::array<std::int64_t, 3> sizes_from(const nlohmann::json& list) {
+    return {whole_from(list.at(0)), whole_from(list.at(1)), whole_from(list.at(2))};
+}
+
 ImageArray array_from(const nlohmann::json& json) {
     ImageArray array;
     array.id = json.at("id").get<std::string>();
-    array.shape = json.at("shape").get<std::array<std::int64_t, 3>>();
-    array.chunk = json.at("chunk").get<std::array<std::int64_t, 3>>();
+    array.shape = sizes_from(json.at("shape"));
+    array.chunk = sizes_from(json.at("chunk"));
     array.stored = stored_named(json.at("stored").get<std::string>()).value();
     array.swapped = json.at("swapped").get<bool>();
     array.fill = json.at("fill").get<double>();
@@ -64,7 +74,8 @@ ChunkedImage chunked_image_from(const nlohmann::json& json) {
     image.format = one_line(json.at("format").get<std::string>().substr(0, longest_name));
     image.unit = json.at("unit").get<std::string>();
     image.channels = lines_from(json.at("channels"), longest_name);
-    image.times = json.at("times").get<int>();
+    image.times =
+        static_cast<int>(std::clamp<std::int64_t>(whole_from(json.at("times")), 0, 1 << 30));
     image.frame_interval = json.at("frame_interval").get<double>();
     if (json.contains("range")) image.range = json["range"].get<std::array<double, 2>>();
     image.notes = lines_from(json.at("notes"), longest_note);

@@ -1,5 +1,5 @@
-// A look at the first page of a TIFF file: the tags in its directory. "TIFF Revision 6.0", Adobe 1992;
-// BigTIFF: https://www.awaresystems.be/imaging/tiff/bigtiff.html.
+// A look at the first page of a TIFF file: the tags in its directory. "TIFF Revision 6.0", Adobe
+// 1992; BigTIFF: https://www.awaresystems.be/imaging/tiff/bigtiff.html.
 #include "io/tiff_peek.hpp"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 
 class TiffBytes {
   public:
-    explicit TiffBytes(const std::filesystem::path& path) : in_(path, std::ios::binary) {}
+    explicit TiffBytes(std::istream& in) : in_(in) {}
 
     void set_big_endian(bool big) { big_endian_ = big; }
     /// The next bytes; nothing at the end of the file.
@@ -32,7 +32,7 @@ class TiffBytes {
     void skip(std::size_t bytes) { in_.seekg(static_cast<std::streamoff>(bytes), std::ios::cur); }
 
   private:
-    std::ifstream in_;
+    std::istream& in_;
     bool big_endian_ = false;
 };
 
@@ -47,7 +47,12 @@ std::optional<TiffPeek> peek_tiff(const std::filesystem::path& path) {
         !std::filesystem::is_regular_file(path, error)) {
         return std::nullopt;
     }
-    TiffBytes bytes(path);
+    std::ifstream in(path, std::ios::binary);
+    return peek_tiff_in(in);
+}
+
+std::optional<TiffPeek> peek_tiff_in(std::istream& in) {
+    TiffBytes bytes(in);
     constexpr std::uint64_t little = 0x4949, big = 0x4D4D, classic = 42, large = 43;
     constexpr std::uint64_t tile_width = 322, sub_directories = 330, most_entries = 4096;
     const auto order = bytes.number(2);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <istream>
 #include <optional>
 
 namespace palpate::io {
@@ -11,7 +12,11 @@ struct TiffPeek {
     bool has_levels = false;  ///< coarser ones, in SubIFDs
 };
 
-/// Nothing if the name does not end in .tif or .tiff or the file does not begin as such a file does.
+/// Nothing if the name does not end in .tif or .tiff or the file does not begin as such a file
+/// does.
 std::optional<TiffPeek> peek_tiff(const std::filesystem::path& path);
+
+/// The same for what a stream holds, whatever its name.
+std::optional<TiffPeek> peek_tiff_in(std::istream& in);
 
 }  // namespace palpate::io

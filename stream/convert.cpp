@@ -143,6 +143,8 @@ nlohmann::json job_of(const Store& from, int level, const ConvertOptions& option
         {"source", info.address},
         {"format", info.format},
         {"level", level},
+        {"channel", info.channel},
+        {"time", info.time},
         {"grid", grid_numbers(info.levels.at(static_cast<std::size_t>(level)).geometry)},
         {"type", name_of(info.type)},
         {"zarr", options.zarr_version},

@@ -103,6 +103,8 @@ class Taking {
             volume_.fixed[c] = options_.channel;
         }
         check_choice(info, options_);
+        info.channel = options_.channel;
+        info.time = options_.time;
         for (const ChunkedArray& array : volume_.arrays) {
             for (std::size_t a = 0; a < array.axes(); ++a) {
                 if (volume_.fixed[a] >= array.shape[a]) {

@@ -79,6 +79,8 @@ class PlainFile : public Store {
             io::note_conversion(plain.stored, info_.notes);
         }
         check_choice(info_, options);
+        info_.channel = options.channel;
+        info_.time = options.time;
         first_ = plain.offset + static_cast<std::uint64_t>(options.time) *
                                     static_cast<std::uint64_t>(sample_count(grid())) *
                                     bytes_.size();

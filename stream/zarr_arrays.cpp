@@ -115,12 +115,14 @@ void transpose(const Json& codec, ChunkedArray& array) {
     }
     std::vector<std::int64_t> sorted = axes;
     std::ranges::sort(sorted);
+    bool permutes = sorted.size() == array.axes();
+    for (std::size_t a = 0; permutes && a < sorted.size(); ++a) {
+        permutes = sorted[a] == static_cast<std::int64_t>(a);
+    }
+    if (!permutes) throw BadMetadata("the order of its axes is no permutation of them");
     std::vector<int> stored;
-    for (std::size_t a = 0; a < axes.size(); ++a) {
-        if (axes.size() != array.axes() || sorted[a] != static_cast<std::int64_t>(a)) {
-            throw BadMetadata("the order of its axes is no permutation of them");
-        }
-        stored.push_back(array.stored_axes[static_cast<std::size_t>(axes[a])]);
+    for (const std::int64_t axis : axes) {
+        stored.push_back(array.stored_axes[static_cast<std::size_t>(axis)]);
     }
     array.stored_axes = stored;
 }

@@ -108,6 +108,12 @@ nlohmann::ordered_json levels_json(const run::LoadedVolume& loaded) {
     return levels;
 }
 
+nlohmann::ordered_json channels_json(const run::LoadedVolume& loaded) {
+    auto channels = nlohmann::ordered_json::array();
+    if (loaded.streamed) channels = loaded.streamed->store->info().channels;
+    return channels;
+}
+
 void print_levels(const stream::Store& store) {
     const std::vector<stream::Level>& levels = store.info().levels;
     for (std::size_t i = 0; levels.size() > 1 && i < levels.size(); ++i) {
@@ -115,6 +121,12 @@ void print_levels(const stream::Store& store) {
         fmt::print("level {:<6} {} x {} x {}, spacing {:g} x {:g} x {:g} mm\n", i, g.size[0],
                    g.size[1], g.size[2], g.spacing[0], g.spacing[1], g.spacing[2]);
     }
+}
+
+void print_channels(const stream::StoreInfo& info) {
+    std::string names;
+    for (const std::string& name : info.channels) names += (names.empty() ? "" : ", ") + name;
+    if (!names.empty()) fmt::print("channels     {} ({} was taken)\n", names, info.channel);
 }
 
 nlohmann::ordered_json json_of(const run::LoadedVolume& loaded, const run::Histogram& histogram,
@@ -130,6 +142,7 @@ nlohmann::ordered_json json_of(const run::LoadedVolume& loaded, const run::Histo
             {"size", list(g.size)},
             {"type", name_of(samples->type())},
             {"levels", levels_json(loaded)},
+            {"channels", channels_json(loaded)},
             {"spacing_mm", list(g.spacing)},
             {"origin_mm", list(g.origin)},
             {"direction", direction},
@@ -182,7 +195,10 @@ void print_text(const run::LoadedVolume& loaded, const run::Histogram& histogram
     fmt::print("format       {}\n", loaded.format);
     fmt::print("size         {} x {} x {} samples, {}\n", g.size[0], g.size[1], g.size[2],
                name_of(samples->type()));
-    if (loaded.streamed) print_levels(*loaded.streamed->store);
+    if (loaded.streamed) {
+        print_levels(*loaded.streamed->store);
+        print_channels(loaded.streamed->store->info());
+    }
     if (loaded.time_steps > 1) fmt::print("time steps   {}\n", loaded.time_steps);
     const std::vector<double>& times = loaded.sequence.times;
     if (!times.empty()) {

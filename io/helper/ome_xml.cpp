@@ -60,7 +60,8 @@ struct PlaneOrder {
         if (name.size() != 5 || name.substr(0, 2) != "XY") wrong(name);
         for (std::size_t i = 0; i < 3; ++i) {
             axes[i] = letters.find(name[2 + i]);
-            if (axes[i] == std::string::npos || std::count(name.begin(), name.end(), name[2 + i]) != 1)
+            if (axes[i] == std::string::npos ||
+                std::count(name.begin(), name.end(), name[2 + i]) != 1)
                 wrong(name);
         }
     }
@@ -99,8 +100,9 @@ void take_pages(const XmlElement& pixels, OmeImage& image) {
         for (const XmlElement* in : data->all("UUID")) files.insert(in->attribute("FileName"));
         files.erase("");
         if (files.size() > 1) {
-            throw Failure("has planes in " + quoted(std::filesystem::path(*files.begin())) + ", others in " +
-                          quoted(std::filesystem::path(*files.rbegin())) + "; images over several files are not read");
+            throw Failure("has planes in " + quoted(std::filesystem::path(*files.begin())) +
+                          ", others in " + quoted(std::filesystem::path(*files.rbegin())) +
+                          "; images over several files are not read");
         }
         const std::int64_t page = whole(*data, "IFD", 0, 0);
         const bool alone = !data->attribute("IFD").empty();
@@ -144,11 +146,11 @@ OmeImage ome_image(const std::string& xml, std::vector<std::string>& notes) {
     const auto interval = number_from<double>(trimmed(pixels[0]->attribute("TimeIncrement")));
     if (interval && image.sizes[2] > 1) {
         const std::string unit = pixels[0]->attribute("TimeIncrementUnit");
-        image.frame_interval =
-            frame_times(*interval, 0, unit.empty() ? "s" : unit, notes).interval;
+        image.frame_interval = frame_times(*interval, 0, unit.empty() ? "s" : unit, notes).interval;
     }
     const auto channels = pixels[0]->all("Channel");
-    for (std::size_t c = 0; image.sizes[1] > 1 && c < static_cast<std::size_t>(image.sizes[1]); ++c) {
+    for (std::size_t c = 0; image.sizes[1] > 1 && c < static_cast<std::size_t>(image.sizes[1]);
+         ++c) {
         const std::string name = c < channels.size() ? channels[c]->attribute("Name") : "";
         image.channels.push_back(name.empty() ? "channel " + std::to_string(c) : name);
     }

@@ -1,5 +1,5 @@
-// OME-XML in the description of a TIFF file: sizes, spacing, channels, times, and which page each plane
-// is. https://docs.openmicroscopy.org/ome-model.
+// OME-XML in the description of a TIFF file: sizes, spacing, channels, times, and which page each
+// plane is. https://docs.openmicroscopy.org/ome-model.
 #pragma once
 
 #include <array>
@@ -25,8 +25,8 @@ struct OmeImage {
 
 bool is_ome_xml(const std::string& description);
 
-/// The first image in it; notes tell of others and of what is missing. Throws Failure, also for planes
-/// in several files.
+/// The first image in it; notes tell of others and of what is missing. Throws Failure, also for
+/// planes in several files.
 OmeImage ome_image(const std::string& xml, std::vector<std::string>& notes);
 
 }  // namespace palpate::io

@@ -1,5 +1,6 @@
-// Tiled TIFF with levels of detail: OME-TIFF (https://docs.openmicroscopy.org/ome-model, "OME-TIFF"),
-// whose planes have coarser ones in their SubIFDs, and other tiled files of one page for each slice.
+// Tiled TIFF with levels of detail: OME-TIFF (https://docs.openmicroscopy.org/ome-model,
+// "OME-TIFF"), whose planes have coarser ones in their SubIFDs, and other tiled files of one page
+// for each slice.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -129,8 +130,9 @@ Layout layout_of(TIFF* tiff, const fs::path& file, std::vector<std::string>& not
         const std::size_t known = pages.whole.size() + pages.reduced.size();
         for (const std::uint32_t page : layout.image.pages) {
             if (page >= known) {
-                throw Failure("its OME-XML tells of page " + std::to_string(page) + ", but it has " +
-                              std::to_string(known) + "; it is cut off: copy it again");
+                throw Failure("its OME-XML tells of page " + std::to_string(page) +
+                              ", but it has " + std::to_string(known) +
+                              "; it is cut off: copy it again");
             }
         }
         return layout;
@@ -199,13 +201,13 @@ ChunkedImage tiff_image(const fs::path& path, int channel, int time) {
     for (std::size_t l = 0; l < std::min(levels, most_levels); ++l) {
         go_to(tiff.get(), path, layout, first, l);
         const Tiling tiling = tiling_of(tiff.get(), path, found.notes);
-        ImageArray level =
-            level_from(tiling, image.sizes[0], TIFFIsByteSwapped(tiff.get()) != 0);
+        ImageArray level = level_from(tiling, image.sizes[0], TIFFIsByteSwapped(tiff.get()) != 0);
         level.id = id_of(l, channel, time);
         for (std::size_t a = 0; a < 3; ++a) {
             if (l > 0) {
-                factor[a] *= std::max(1.0, std::round(static_cast<double>(found.levels.back().shape[a]) /
-                                                      static_cast<double>(level.shape[a])));
+                factor[a] *=
+                    std::max(1.0, std::round(static_cast<double>(found.levels.back().shape[a]) /
+                                             static_cast<double>(level.shape[a])));
             }
             level.scale[a] = image.spacing[a] * factor[a];
             level.translation[a] = image.spacing[a] * (factor[a] - 1) / 2;
@@ -238,9 +240,9 @@ void tiff_places(const fs::path& path, const ChunkBox& box, std::span<ChunkPlace
         }
         for (std::int64_t y = box.first[1]; y < box.first[1] + box.count[1]; ++y) {
             for (std::int64_t x = box.first[2]; x < box.first[2] + box.count[2]; ++x, ++at) {
-                const std::uint32_t tile = TIFFComputeTile(
-                    tiff.get(), static_cast<std::uint32_t>(x) * usual.tile_width,
-                    static_cast<std::uint32_t>(y) * usual.tile_height, 0, 0);
+                const std::uint32_t tile =
+                    TIFFComputeTile(tiff.get(), static_cast<std::uint32_t>(x) * usual.tile_width,
+                                    static_cast<std::uint32_t>(y) * usual.tile_height, 0, 0);
                 places[at] = {TIFFGetStrileOffset(tiff.get(), tile),
                               TIFFGetStrileByteCount(tiff.get(), tile), 0};
             }

@@ -242,6 +242,41 @@ TEST(Convert, a_level_of_a_store_becomes_a_plain_file_that_reads_the_same) {
     }
 }
 
+/// N5 of two channels, each of one value: 16 x 16 x 16 samples of a byte in blocks of 8^3.
+void put_two_channels(const fs::path& folder) {
+    fs::create_directories(folder);
+    put_bytes(folder / "attributes.json",
+              R"({"dimensions":[16,16,16,2],"blockSize":[8,8,8,1],"dataType":"uint8",)"
+              R"("compression":{"type":"raw"}})");
+    const std::string header("\0\0\0\4\0\0\0\x8\0\0\0\x8\0\0\0\x8\0\0\0\1", 20);
+    for (int block = 0; block < 16; ++block) {
+        const fs::path row = folder / std::to_string(block & 1) / std::to_string(block >> 1 & 1) /
+                             std::to_string(block >> 2 & 1);
+        fs::create_directories(row);
+        const char value = block < 8 ? '\x11' : '\x22';
+        put_bytes(row / std::to_string(block >> 3), header + std::string(512, value));
+    }
+}
+
+TEST(Convert, a_run_that_was_ended_is_not_continued_with_another_channel) {
+    const ScratchFolder folder;
+    put_two_channels(folder / "two.n5");
+    ConvertOptions options;
+    options.chunk = 8;
+    options.threads = 1;
+    options.progress = [](double) { throw Stop{}; };
+    EXPECT_THROW(
+        (void)convert_to_zarr(*open_store(folder / "two.n5"), 0, folder / "v.zarr", options), Stop);
+    options.progress = {};
+    StoreOptions other;
+    other.channel = 1;
+    const auto second = open_store(folder / "two.n5", other);
+    EXPECT_EQ(convert_to_zarr(*second, 0, folder / "v.zarr", options).kept, 0U);
+    const Volume volume = volume_of(*open_store(folder / "v.zarr"));
+    EXPECT_EQ(volume.minimum(), 0x22);
+    EXPECT_EQ(volume.maximum(), 0x22);
+}
+
 TEST(Convert, a_level_behind_http_becomes_a_local_image) {
     const ScratchFolder folder;
     const VolumeServer server({"--failures", "0.02"});

@@ -191,9 +191,9 @@ TEST(Hdf5, mutated_and_truncated_files_are_refused_in_one_line_or_read) {
         const std::string good = bytes_of(hdf5_written() / name);
         const fs::path file = folder / name;
         support::put_bytes(file, good);
-        refused += refused_of_damaged(file, 25, random);
+        refused += refused_of_damaged(file, 15, random);
     }
-    EXPECT_GT(refused, 25);
+    EXPECT_GT(refused, 15);
 }
 
 }  // namespace

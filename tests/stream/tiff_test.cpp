@@ -95,10 +95,10 @@ TEST(Tiff, levels_channels_and_times_of_an_ome_pyramid_are_those_of_its_xml) {
     }
     StoreOptions beyond;
     beyond.channel = 2;
-    EXPECT_TRUE(contains(
-        message_of<io::InputError>(
-            [&] { (void)open_store(tiff_written() / "pyramid-TCZYX.ome.tif", beyond); }),
-        "no channel 2: it has 2"));
+    EXPECT_TRUE(contains(message_of<io::InputError>([&] {
+                             (void)open_store(tiff_written() / "pyramid-TCZYX.ome.tif", beyond);
+                         }),
+                         "no channel 2: it has 2"));
 }
 
 TEST(Tiff, coarser_levels_are_sub_directories_or_reduced_pages) {
@@ -137,9 +137,9 @@ TEST(Tiff, mutated_and_truncated_files_are_refused_in_one_line_or_read) {
         const std::string good = bytes_of(tiff_written() / name);
         const fs::path file = folder / name;
         support::put_bytes(file, good);
-        refused += refused_of_damaged(file, 20, random);
+        refused += refused_of_damaged(file, 10, random);
         // The beginning and the end, where the directories are.
-        for (int i = 0; i < 20; ++i) {
+        for (int i = 0; i < 10; ++i) {
             std::string bad = good;
             const std::size_t near = random() % 400;
             bad[i % 2 == 0 ? near : bad.size() - 1 - near] = static_cast<char>(random());
@@ -147,7 +147,7 @@ TEST(Tiff, mutated_and_truncated_files_are_refused_in_one_line_or_read) {
             refused += !is_store(file) || !read_or_refused(file);
         }
     }
-    EXPECT_GT(refused, 25);
+    EXPECT_GT(refused, 12);
 }
 
 TEST(Lzw, a_small_stream_that_unpacks_to_more_than_declared_is_refused_at_the_first_byte) {

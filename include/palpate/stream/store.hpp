@@ -39,6 +39,7 @@ struct StoreInfo {
     int times = 1;
     double frame_interval = 0;            ///< [s] between two times; 0: the store does not say
     std::vector<std::string> notes = {};  ///< one sentence each, for people
+    int channel = 0, time = 0;            ///< that were chosen
 };
 
 /// What was asked of disk or network so far.
