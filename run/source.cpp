@@ -138,8 +138,7 @@ LoadedVolume loaded_of(const StoreSource& from, const Source& source,
     loaded.time_steps = info.times;
     const Index3& size = loaded.volume.geometry().size;
     loaded.notes.push_back(
-        "it is read as it is felt; pictures, histogram and suggested levels are "
-        "of an overview of " +
+        "it is read as it is felt; histogram and suggested levels are those of an overview of " +
         std::to_string(size[0]) + " x " + std::to_string(size[1]) + " x " +
         std::to_string(size[2]) + " samples");
     if (!info.range) {

@@ -7,8 +7,8 @@ usage() {
 usage: scripts/screenshots.sh DATA_FOLDER [BUILD_FOLDER]
 
 Opens the viewer of BUILD_FOLDER (build/dev) on a virtual display, on volumes of DATA_FOLDER
-(cthead_unc.nrrd, lobster.nrrd, daisy_pollen.nrrd), and writes docs/images/viewer-*.png. Also runs the
-demos of changing data and writes docs/images/demo-*.png.
+(cthead_unc.nrrd, lobster.nrrd, daisy_pollen.nrrd, visible_human_head.nrrd), and writes
+docs/images/viewer-*.png. Also runs the demos of changing data and writes docs/images/demo-*.png.
 TEXT
 }
 
@@ -68,6 +68,11 @@ screenshot local 2 '"volume": {"volume": "synthetic:sphere:14x14x14"}, "isovalue
     "look": {"surface_opacity": 0.4, "tetrahedra": true, "planes": true},
     "camera": {"focus": [-3.9, -0.4, -1.4], "up": [0, 0, 1],
         "towards_viewer": [-0.55, -0.75, 0.4], "half_height": 1.3}'
+"$palpate" convert "$data/visible_human_head.nrrd" "$sessions/head.zarr" --quiet
+screenshot store 2 '"volume": {"volume": "'"$sessions"'/head.zarr"}, "isovalue": 110,
+    "device": "simulated:hand=press", "look": {"box": false},
+    "camera": {"focus": [255, 200, 110], "up": [0, 0, 1],
+        "towards_viewer": [-0.3, -0.9, 0.1], "half_height": 60}'
 screenshot tool 3 '"volume": {"volume": "'"$(pwd)"'/data/visible_human_head.nrrd"}, "isovalue": 110,
     "device": "simulated:sigma7,hand=press,turn=25", "look": {"box": false},
     "camera": {"focus": [196, 222, 100], "up": [0, 0, 1],

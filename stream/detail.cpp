@@ -63,8 +63,8 @@ std::vector<SampleBox> parts_of(const Level& level, const SampleBox& box) {
         for (int j = first[1]; j <= last[1]; ++j) {
             for (int i = first[0]; i <= last[0]; ++i) {
                 const Index3 low = Index3(i, j, k).cwiseProduct(chunk);
-                parts.push_back({low.cwiseMax(box.low),
-                                 (low + chunk - Index3::Ones()).cwiseMin(box.high)});
+                parts.push_back(
+                    {low.cwiseMax(box.low), (low + chunk - Index3::Ones()).cwiseMin(box.high)});
             }
         }
     }
@@ -117,8 +117,8 @@ std::vector<Between> places_along(int axis, const Geometry& coarse, const Geomet
             index_from_physical(coarse, physical_from_index(grid, index))[axis], 0.0, double(last));
         const auto low = std::clamp<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(at), 0,
                                                     std::max<std::ptrdiff_t>(0, last - 1));
-        places.push_back({low * stride, std::min(low + 1, last) * stride,
-                          static_cast<float>(at - double(low))});
+        places.push_back(
+            {low * stride, std::min(low + 1, last) * stride, static_cast<float>(at - double(low))});
     }
     return places;
 }
@@ -140,14 +140,14 @@ void interpolate(const Volume& coarse, const Geometry& grid, const SampleBox& bo
                 const auto at = [&](std::ptrdiff_t in_y, std::ptrdiff_t in_z) {
                     return static_cast<float>(samples[i + in_y + in_z]);
                 };
-                row[static_cast<std::size_t>(i)] =
-                    mix(mix(at(y[j].low, z[k].low), at(y[j].high, z[k].low), y[j].part),
-                        mix(at(y[j].low, z[k].high), at(y[j].high, z[k].high), y[j].part),
-                        z[k].part);
+                row[static_cast<std::size_t>(i)] = mix(
+                    mix(at(y[j].low, z[k].low), at(y[j].high, z[k].low), y[j].part),
+                    mix(at(y[j].low, z[k].high), at(y[j].high, z[k].high), y[j].part), z[k].part);
             }
-            T* to = out + ((box.low[2] + static_cast<std::ptrdiff_t>(k)) * grid.size[1] +
-                           box.low[1] + static_cast<std::ptrdiff_t>(j)) *
-                              grid.size[0] +
+            T* to = out +
+                    ((box.low[2] + static_cast<std::ptrdiff_t>(k)) * grid.size[1] + box.low[1] +
+                     static_cast<std::ptrdiff_t>(j)) *
+                        grid.size[0] +
                     box.low[0];
             for (const Between& place : x) {
                 const float value = mix(row[static_cast<std::size_t>(place.low)],
@@ -376,8 +376,8 @@ void DetailReader::read(const Job& job, const std::stop_token& stop) {
             problem_ = problem;
         }
         const bool current = stage - work.stages.begin() == std::ptrdiff_t(work.stage);
-        ends = current && stage + 1 != work.stages.end() &&
-               !stage->has(Piece::State::waiting) && !stage->has(Piece::State::reading);
+        ends = current && stage + 1 != work.stages.end() && !stage->has(Piece::State::waiting) &&
+               !stage->has(Piece::State::reading);
     }
     if (ends) end_stage(work);
 }

@@ -65,8 +65,8 @@ Volume ramp(const Geometry& geometry) {
 std::vector<Volume> ramps() {
     std::vector<Volume> levels;
     for (int size = 96, step = 1; size >= 12; size /= 2, step *= 2) {
-        levels.push_back(ramp(grid(cube(size), Vec3::Constant(step),
-                                   Vec3::Constant(0.5 * (step - 1)))));
+        levels.push_back(
+            ramp(grid(cube(size), Vec3::Constant(step), Vec3::Constant(0.5 * (step - 1)))));
     }
     return levels;
 }
@@ -151,15 +151,15 @@ TEST(DetailReader, versions_say_which_samples_have_changed) {
         std::this_thread::sleep_for(std::chrono::milliseconds(2));
     };
     DetailReader reader(store, levels.back(), settings, seen.made());
-    reader.want(0, {{1, {{5, 5, 5}, {40, 40, 40}}}, {0, {{11, 12, 13}, {80, 79, 78}}}},
-                often);
+    reader.want(0, {{1, {{5, 5, 5}, {40, 40, 40}}}, {0, {{11, 12, 13}, {80, 79, 78}}}}, often);
     allowed = 1;
     ASSERT_TRUE(comes_true([&] { return seen.complete(0); }));
     const auto all = seen.of(0);
     ASSERT_GT(all.size(), 3U);
     std::size_t different = 0;
     for (std::size_t v = 1; v < all.size(); ++v) {
-        const auto before = all[v - 1].volume.samples<float>(), now = all[v].volume.samples<float>();
+        const auto before = all[v - 1].volume.samples<float>(),
+                   now = all[v].volume.samples<float>();
         const Index3& size = all[v].volume.geometry().size;
         for (std::size_t i = 0; i < now.size(); ++i) {
             if (now[i] == before[i]) continue;

@@ -48,7 +48,8 @@ class VolumesStore : public Store {
     mutable std::atomic<std::uint64_t> reads_{0};
 };
 
-inline std::shared_ptr<VolumesStore> store_in_pieces(Volume volume, const Index3& chunk = {32, 32, 32}) {
+inline std::shared_ptr<VolumesStore> store_in_pieces(Volume volume,
+                                                     const Index3& chunk = {32, 32, 32}) {
     return std::make_shared<VolumesStore>(std::vector{std::move(volume)}, chunk);
 }
 

@@ -135,7 +135,8 @@ Volume joined_samples(const Volume& fine, const Field& overview, const PatchChoi
         T* const samples = reinterpret_cast<T*>(bytes->data());
         for_each_at_once(layers, [&](std::size_t k) {
             for (int j = 0; j < grid.size[1]; ++j) {
-                const double across = std::min(weight[2][k], weight[1][static_cast<std::size_t>(j)]);
+                const double across =
+                    std::min(weight[2][k], weight[1][static_cast<std::size_t>(j)]);
                 T* const row = samples + (k * static_cast<std::size_t>(grid.size[1]) +
                                           static_cast<std::size_t>(j)) *
                                              static_cast<std::size_t>(grid.size[0]);
@@ -143,8 +144,7 @@ Volume joined_samples(const Volume& fine, const Field& overview, const PatchChoi
                     const double t = std::min(across, weight[0][static_cast<std::size_t>(i)]);
                     if (t >= 1) continue;
                     const double w = t * t * (3 - 2 * t);
-                    const Vec3 at =
-                        physical_from_index(grid, Vec3(i, j, static_cast<double>(k)));
+                    const Vec3 at = physical_from_index(grid, Vec3(i, j, static_cast<double>(k)));
                     const double value = w * double(row[i]) + (1 - w) * value_at(overview, at);
                     row[i] = std::is_integral_v<T> ? static_cast<T>(std::nearbyint(value))
                                                    : static_cast<T>(value);

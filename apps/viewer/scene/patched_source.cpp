@@ -16,8 +16,7 @@ SurfaceLimits limits_of_patch(SurfaceLimits limits) {
 
 }  // namespace
 
-PatchedSource::PatchedSource(const SurfaceLimits& limits)
-    : limits_(limits), whole_(limits) {
+PatchedSource::PatchedSource(const SurfaceLimits& limits) : limits_(limits), whole_(limits) {
     connect(&whole_, &SurfaceSource::made, this, &PatchedSource::put_together);
     connect(&whole_, &SurfaceSource::finished, this, &PatchedSource::finished);
     connect(&whole_, &SurfaceSource::problem, this, &PatchedSource::problem);

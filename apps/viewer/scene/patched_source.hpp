@@ -47,7 +47,7 @@ class PatchedSource : public QObject {
     SurfaceLimits limits_;
     SurfaceSource whole_;
     std::unique_ptr<SurfaceSource> finer_;  // from the first patch on: it has a thread
-    std::optional<ScenePatch> patch_;  // whose surface is made
+    std::optional<ScenePatch> patch_;       // whose surface is made
     /// What is shown of a patch.
     struct Finer {
         PatchBounds bounds;

@@ -35,8 +35,8 @@ PatchedSurface::Mesh PatchedSurface::cut(const Mesh& mesh, Keep keep) {
     for (std::size_t t = 0; t < mesh->triangles.size(); t += 3) {
         const auto corner = [&](std::size_t i) { return std::size_t(mesh->triangles[t + i]); };
         if (!is_kept(at[corner(0)], at[corner(1)], at[corner(2)])) continue;
-        kept.insert(kept.end(), {mesh->triangles[t], mesh->triangles[t + 1],
-                                 mesh->triangles[t + 2]});
+        kept.insert(kept.end(),
+                    {mesh->triangles[t], mesh->triangles[t + 1], mesh->triangles[t + 2]});
     }
     Mesh result = mesh;
     if (kept.empty()) {
@@ -51,19 +51,23 @@ PatchedSurface::Mesh PatchedSurface::cut(const Mesh& mesh, Keep keep) {
 
 ExtractedSurface PatchedSurface::of(const ExtractedSurface& whole, const ExtractedSurface& finer,
                                     const PatchBounds& bounds) {
+    if (bounds == bounds_ && whole == whole_ && finer == finer_) return both_;
     if (!(bounds == bounds_)) cuts_.clear();
     bounds_ = bounds;
+    whole_ = whole;
+    finer_ = finer;
     used_.clear();
     ExtractedSurface both = whole;
     for (auto& block : both.blocks) block = cut(block, Keep::outside);
     for (const auto& block : finer.blocks) both.blocks.push_back(cut(block, Keep::reaching_in));
     // Simplified triangles do not end with the cells: the two overlap a little while things move.
-    both.moving = joined(std::array{cut(whole.moving, Keep::not_inside),
-                                    cut(finer.moving, Keep::reaching_in)});
+    both.moving = joined(
+        std::array{cut(whole.moving, Keep::not_inside), cut(finer.moving, Keep::reaching_in)});
     both.every = std::max(whole.every, finer.every);
     both.finished = whole.finished && finer.finished;
     std::swap(cuts_, used_);
     used_.clear();
+    both_ = both;
     return both;
 }
 

@@ -29,7 +29,7 @@ struct ScenePatch {
     PatchBounds bounds;
 };
 
-/// Puts the two together. Blocks that did not change stay the same.
+/// Puts the two together. What did not change stays the same, block by block.
 class PatchedSurface {
   public:
     /// Of the whole surface the triangles outside, each of which lies in one cell; of the finer one
@@ -46,6 +46,7 @@ class PatchedSurface {
     Mesh cut(const Mesh& mesh, Keep keep);
 
     PatchBounds bounds_;
+    ExtractedSurface whole_, finer_, both_;                          // as they were last time
     std::map<std::pair<const RenderMesh*, Keep>, Cut> cuts_, used_;  // of last time, of this time
 };
 

@@ -8,10 +8,6 @@
         <translation>Alles, was sich öffnen lässt (*.nrrd *.nhdr *.mha *.mhd *.nii *.nii.gz *.dcm *.tif *.tiff *.vti *.raw *.raw.gz *.json *.csv);;Alle Dateien (*)</translation>
     </message>
     <message>
-        <source>Open a folder of slices</source>
-        <translation>Ordner mit Schichtbildern öffnen</translation>
-    </message>
-    <message>
         <source>Open raw data</source>
         <translation>Rohdaten öffnen</translation>
     </message>
@@ -38,6 +34,10 @@
     <message>
         <source>Tools (*.stl *.ply *.obj *.vtp *.csv);;All files (*)</source>
         <translation>Werkzeuge (*.stl *.ply *.obj *.vtp *.csv);;Alle Dateien (*)</translation>
+    </message>
+    <message>
+        <source>Open a folder of slices, or a Zarr image</source>
+        <translation>Ordner mit Schichten oder Zarr-Bild öffnen</translation>
     </message>
 </context>
 <context>
@@ -752,6 +752,10 @@ Auf dem Histogramm: Doppelklick für einen weiteren Punkt, ihn ziehen, Rechtskli
     <message>
         <source>%1; felt through the device %2</source>
         <translation>%1; gefühlt mit dem Gerät %2</translation>
+    </message>
+    <message>
+        <source>%1 channels, %2 times: Data &gt; Level, channel and time chooses another</source>
+        <translation>%1 Kanäle, %2 Zeiten: Daten &gt; Detailstufe, Kanal und Zeit wählt anderes</translation>
     </message>
 </context>
 <context>
@@ -1689,10 +1693,6 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
         <translation>Ö&amp;ffnen …</translation>
     </message>
     <message>
-        <source>Open a &amp;folder (DICOM, TIFF)…</source>
-        <translation>O&amp;rdner öffnen (DICOM, TIFF) …</translation>
-    </message>
-    <message>
         <source>Open raw &amp;data…</source>
         <translation>Roh&amp;daten öffnen …</translation>
     </message>
@@ -1975,6 +1975,18 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
     <message>
         <source>%1 %2   slope %3 /mm</source>
         <translation>%1 %2   Steigung %3 /mm</translation>
+    </message>
+    <message>
+        <source>Open a &amp;folder (DICOM, TIFF, Zarr)…</source>
+        <translation>&amp;Ordner öffnen (DICOM, TIFF, Zarr) …</translation>
+    </message>
+    <message>
+        <source>Open a&amp;n address…</source>
+        <translation>&amp;Adresse öffnen …</translation>
+    </message>
+    <message>
+        <source>&amp;Level, channel and time…</source>
+        <translation>Detailst&amp;ufe, Kanal und Zeit …</translation>
     </message>
 </context>
 <context>
@@ -2720,6 +2732,77 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
         <source>L %1</source>
         <comment>level, in the corner</comment>
         <translation>L %1</translation>
+    </message>
+</context>
+<context>
+    <name>palpate::viewer::StoreDialog</name>
+    <message>
+        <source>%1 MB</source>
+        <translation>%1 MB</translation>
+    </message>
+    <message>
+        <source>%1 GB</source>
+        <translation>%1 GB</translation>
+    </message>
+    <message>
+        <source>%1 TB</source>
+        <translation>%1 TB</translation>
+    </message>
+    <message>
+        <source>%1: %2 samples, every %3 mm, %4</source>
+        <translation>%1: %2 Abtastwerte, alle %3 mm, %4</translation>
+    </message>
+    <message>
+        <source>Look it up</source>
+        <translation>Nachsehen</translation>
+    </message>
+    <message>
+        <source>Reads which levels, channels and times there are</source>
+        <translation>Liest, welche Stufen, Kanäle und Zeiten es gibt</translation>
+    </message>
+    <message>
+        <source>Level, channel and time</source>
+        <translation>Detailstufe, Kanal und Zeit</translation>
+    </message>
+    <message>
+        <source>Open an address</source>
+        <translation>Adresse öffnen</translation>
+    </message>
+    <message>
+        <source>Address</source>
+        <translation>Adresse</translation>
+    </message>
+    <message>
+        <source>http, https or s3, or the folder or file of a volume that is read in parts</source>
+        <translation>http, https oder s3, oder Ordner oder Datei eines Volumens, das stückweise gelesen wird</translation>
+    </message>
+    <message>
+        <source>Level</source>
+        <translation>Stufe</translation>
+    </message>
+    <message>
+        <source>The level of detail that is felt, and the finest that is seen; 0 is the finest</source>
+        <translation>Die Detailstufe, die gefühlt wird, und die feinste, die zu sehen ist; 0 ist die feinste</translation>
+    </message>
+    <message>
+        <source>Channel</source>
+        <translation>Kanal</translation>
+    </message>
+    <message>
+        <source>Of an image with several</source>
+        <translation>Eines Bilds mit mehreren</translation>
+    </message>
+    <message>
+        <source>Time</source>
+        <translation>Zeit</translation>
+    </message>
+    <message>
+        <source>The moment of an image with several, from 0</source>
+        <translation>Der Zeitpunkt eines Bilds mit mehreren, ab 0</translation>
+    </message>
+    <message>
+        <source>Looking …</source>
+        <translation>Wird nachgesehen …</translation>
     </message>
 </context>
 <context>

@@ -101,8 +101,8 @@ void DetailController::begin(const Field& field) {
     }
     reader_ = std::make_unique<stream::DetailReader>(
         held_, loaded.volume, settings,
-        [this, generation = generation_, field, info = store_.info,
-         joining = joining_](int viewer, stream::Detail detail) {
+        [this, generation = generation_, field, info = store_.info, joining = joining_](
+            int viewer, stream::Detail detail) {
             std::optional<Volume> volume = detail.volume;
             if (viewer == scene) volume = joining->of(detail);
             if (!volume) return;
@@ -125,8 +125,7 @@ void DetailController::take(std::uint64_t generation, int viewer,
     if (viewer == scene) {
         if (!patch_ || !is(patch_->level, patch_->box)) return;
         shown = made;
-        views_.scene().set_patch(
-            ScenePatch{made, {store_.overview, patch_->low, patch_->high}});
+        views_.scene().set_patch(ScenePatch{made, {store_.overview, patch_->low, patch_->high}});
         return;
     }
     const auto& wanted = slices_[static_cast<std::size_t>(viewer)];
@@ -141,27 +140,44 @@ void DetailController::observe(const std::optional<Snapshot>& now) {
     observe_scene(now);
 }
 
-void DetailController::observe_slice(int axis) {
-    auto& wanted = slices_[static_cast<std::size_t>(axis)];
-    const auto seen = views_.slice(axis).seen();
+std::optional<int> DetailController::level_of_slice(const std::optional<SeenBox>& seen) const {
     const DetailLimits limits{most_slice_samples, memory_, most_pieces};
-    const auto level = seen ? level_for(store_, *seen, limits) : std::nullopt;
+    return seen ? level_for(store_, *seen, limits) : std::nullopt;
+}
+
+/// What is wanted for this slice is what it needs.
+bool DetailController::has(int axis, const std::optional<SeenBox>& seen) const {
+    const auto& wanted = slices_[static_cast<std::size_t>(axis)];
+    const auto level = level_of_slice(seen);
+    if (!level || !wanted) return level.has_value() == wanted.has_value();
+    return wanted->level == *level && has_slice(store_, *wanted, *seen, axis);
+}
+
+void DetailController::observe_slice(int axis) {
+    const auto seen = views_.slice(axis).seen();
+    if (has(axis, seen)) return;
+    auto& wanted = slices_[static_cast<std::size_t>(axis)];
+    const auto level = level_of_slice(seen);
     if (!level) {
-        if (wanted) reader_->forget(axis);
+        reader_->forget(axis);
         wanted.reset();
         if (seen) views_.slice(axis).set_detail(nullptr);
         return;
     }
-    if (wanted && wanted->level == *level && has_slice(store_, *wanted, *seen, axis)) return;
     wanted = {*level, slice_box(store_, *level, *seen, axis)};
     reader_->want(axis, coarse_to_fine(store_, *level, wanted->box), slice_interval);
+}
+
+DetailController::SceneView DetailController::view_now() const {
+    const Scene& scene = views_.scene();
+    return {scene.camera(), scene.width(), scene.height(), views_.isovalue()};
 }
 
 /// Once the view rests and the picture of it is there, whose depths tell what is seen.
 void DetailController::observe_scene(const std::optional<Snapshot>& now) {
     const Scene& shown = views_.scene();
     if (!shown.isVisible()) return;
-    const SceneView view{shown.camera(), shown.width(), shown.height(), views_.isovalue()};
+    const SceneView view = view_now();
     if (!(view_ == view)) {
         view_ = view;
         rested_.start();
@@ -212,9 +228,10 @@ bool DetailController::settled() const {
         return !wanted || (made && made->level == wanted->level && made->box == wanted->box &&
                            made->missing == 0);
     };
-    bool all = !views_.scene().isVisible() || (chosen_for_ && chosen_for_ == view_);
+    bool all = !views_.scene().isVisible() || chosen_for_ == view_now();
     for (int axis = 0; axis < scene; ++axis) {
-        all = all && shows(slices_[static_cast<std::size_t>(axis)], axis);
+        all = all && has(axis, views_.slice(axis).seen()) &&
+              shows(slices_[static_cast<std::size_t>(axis)], axis);
     }
     return (all && shows(patch_, scene)) || status.failed > 0;
 }

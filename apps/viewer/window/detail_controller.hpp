@@ -36,8 +36,8 @@ class DetailController : public QObject {
     struct State {
         stream::DetailStatus reading;
         int felt = 0;  ///< level of the store
-        /// The overview's level, and the finest that a picture shows; nothing: single samples of the
-        /// coarsest.
+        /// The overview's level, and the finest that a picture shows; nothing: single samples of
+        /// the coarsest.
         std::optional<int> overview, finest;
     };
     State state() const;
@@ -48,6 +48,8 @@ class DetailController : public QObject {
 
     void begin(const Field& field);
     void end();
+    std::optional<int> level_of_slice(const std::optional<SeenBox>& seen) const;
+    bool has(int axis, const std::optional<SeenBox>& seen) const;
     void observe_slice(int axis);
     void observe_scene(const std::optional<Snapshot>& now);
     void choose_patch(const std::optional<Snapshot>& now);
@@ -58,7 +60,7 @@ class DetailController : public QObject {
     Views& views_;
     SeenStore store_;
     Interpolation interpolation_ = Interpolation::linear;
-    std::uint64_t generation_ = 0;  // of readers
+    std::uint64_t generation_ = 0;                            // of readers
     std::array<std::optional<stream::DetailBox>, 3> slices_;  // as they are wanted
     std::optional<PatchChoice> patch_;
     /// A view of the scene for which a patch was chosen.
@@ -69,6 +71,7 @@ class DetailController : public QObject {
 
         bool operator==(const SceneView&) const = default;
     };
+    SceneView view_now() const;
     std::optional<SceneView> view_, chosen_for_;
     QElapsedTimer rested_;  // since the view is this one
     std::array<std::shared_ptr<const DetailField>, 4> made_;

@@ -1,6 +1,7 @@
 // Reads files, then starts the live run or the playback that they describe.
 #include "apps/viewer/window/file_controller.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <utility>
 
@@ -15,6 +16,7 @@
 #include "apps/viewer/window/recording_controller.hpp"
 #include "apps/viewer/window/run_controller.hpp"
 #include "apps/viewer/window/series_dialog.hpp"
+#include "apps/viewer/window/store_dialog.hpp"
 #include "palpate/io/sample_volume.hpp"
 
 namespace palpate::viewer {
@@ -89,8 +91,11 @@ void FileController::open_path(const QString& path) {
     if (LayersController::is_layers_file(path)) return layers_.open(path);
     if (path.endsWith(".json", Qt::CaseInsensitive)) return open_session(path);
     if (path.endsWith(".csv", Qt::CaseInsensitive)) return open_recording(path);
-    const run::Source source = run::source_named(path.toStdString());
-    lacks_layout(source) ? ask_layout(source) : open_volume(source);
+    messages_.guarded([&] {
+        // Looks at what it is: a store is felt while it is read.
+        const run::Source source = run::source_from({{"volume", path.toStdString()}});
+        lacks_layout(source) ? ask_layout(source) : open_volume(source);
+    });
 }
 
 void FileController::ask_layout(const run::Source& source) {
@@ -102,6 +107,28 @@ void FileController::ask_layout(const run::Source& source) {
         open_volume(known);
     });
     dialog->open();  // does not block the live run
+}
+
+void FileController::ask_address() {
+    auto* dialog = new StoreDialog(std::nullopt, 0, messages_.window());
+    dialog->setAttribute(Qt::WA_DeleteOnClose);
+    connect(dialog, &QDialog::accepted, this, [this, dialog] { open_volume(dialog->source()); });
+    dialog->open();  // does not block the live run
+}
+
+void FileController::ask_level() {
+    if (!content_.live()) return;
+    const run::Source felt = content_.source();
+    const auto* store = std::get_if<run::StoreSource>(&felt.from);
+    if (!store) return;
+    auto* dialog = new StoreDialog(*store, felt.frame.value_or(0), messages_.window());
+    dialog->setAttribute(Qt::WA_DeleteOnClose);
+    connect(dialog, &QDialog::accepted, this, [this, dialog, channel = store->options.channel] {
+        const run::Source chosen = dialog->source();
+        const bool same = std::get<run::StoreSource>(chosen.from).options.channel == channel;
+        same ? feel_again(chosen) : open_volume(chosen);
+    });
+    dialog->open();
 }
 
 void FileController::open_volume(const run::Source& source) {
@@ -132,18 +159,37 @@ void FileController::feel(std::shared_ptr<Opened> opened, const RunRequest& requ
     for (const std::string& note : opened->loaded.notes) {
         messages_.show_done(QString::fromStdString(note));
     }
+    tell_choices(*opened);
+}
+
+/// Of a store with several channels or times one is felt.
+void FileController::tell_choices(const Opened& opened) {
+    if (!opened.loaded.streamed) return;
+    const stream::StoreInfo& info = opened.loaded.streamed->store->info();
+    const auto channels = std::max<int>(1, static_cast<int>(info.channels.size()));
+    if (channels == 1 && info.times == 1) return;
+    messages_.show_done(tr("%1 channels, %2 times: Data > Level, channel and time chooses another")
+                            .arg(channels)
+                            .arg(info.times));
 }
 
 void FileController::dequantize(bool on) {
     if (!content_.live()) return;
-    SessionFile session = session_now();
+    run::Source source = content_.source();
     const auto& terraces = content_.volume()->terraces;
     const int rounds = terraces ? terraces->rounds() : filters::DequantizeOptions{}.rounds;
-    session.source.dequantize = on ? rounds : 0;
-    load(session.source,
-         [this, session, request = run_.take_request()](std::shared_ptr<Opened> opened) {
-             feel_session(std::move(opened), session, request);
-         });
+    source.dequantize = on ? rounds : 0;
+    feel_again(source);
+}
+
+/// Another reading of the same volume, in the same view.
+void FileController::feel_again(const run::Source& source) {
+    if (!content_.live()) return;
+    SessionFile session = session_now();
+    session.source = source;
+    load(source, [this, session, request = run_.take_request()](std::shared_ptr<Opened> opened) {
+        feel_session(std::move(opened), session, request);
+    });
 }
 
 void FileController::open_recording(const QString& path) {

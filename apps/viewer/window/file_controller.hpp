@@ -32,6 +32,11 @@ class FileController : public QObject {
     void open_path(const QString& path);
     /// Asks how the samples lie in a file without a header, and opens it.
     void ask_layout(const run::Source& source);
+    /// Asks for the address of a store, and opens it.
+    void ask_address();
+    /// Asks which level, channel and time of the store that is felt, and feels that instead: in the
+    /// same view, at the same level of density where the channel is the same.
+    void ask_level();
     /// Feels it, with the settings of the command line.
     void open_volume(const run::Source& source);
     /// The volume that comes with Palpate, felt at the skin.
@@ -52,6 +57,8 @@ class FileController : public QObject {
   private:
     using Then = std::function<void(std::shared_ptr<Opened>)>;
     void load(const run::Source& source, Then then);
+    void feel_again(const run::Source& source);
+    void tell_choices(const Opened& opened);
     void choose_series(const io::SeriesChoice& choice, const run::Source& source, const Then& then);
     void load_or_reuse(const run::Source& source, Then then);
     void feel(std::shared_ptr<Opened> opened, const RunRequest& request);

@@ -41,8 +41,8 @@ QString ask_open_name(QWidget* window) {
 }
 
 QString ask_open_folder(QWidget* window) {
-    return QFileDialog::getExistingDirectory(window, FileDialogs::tr("Open a folder of slices"),
-                                             last_folder());
+    return QFileDialog::getExistingDirectory(
+        window, FileDialogs::tr("Open a folder of slices, or a Zarr image"), last_folder());
 }
 
 QString ask_save_name(QWidget* window, const QString& title, const QString& name,

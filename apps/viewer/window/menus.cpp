@@ -42,7 +42,7 @@ void add_open_actions(MainWindow& window, Actions& actions, QMenu* menu) {
         };
     };
     actions.add(menu, "open", MainWindow::tr("&Open…"), QKeySequence::Open, open(ask_open_name));
-    actions.add(menu, "open_folder", MainWindow::tr("Open a &folder (DICOM, TIFF)…"),
+    actions.add(menu, "open_folder", MainWindow::tr("Open a &folder (DICOM, TIFF, Zarr)…"),
                 QKeySequence("Ctrl+Shift+O"), open(ask_open_folder));
     actions.add(menu, "open_raw", MainWindow::tr("Open raw &data…"), {}, [&window] {
         window.editing().settle_edits([&window] {
@@ -50,6 +50,9 @@ void add_open_actions(MainWindow& window, Actions& actions, QMenu* menu) {
             if (!path.isEmpty()) window.files().ask_layout(run::source_named(path.toStdString()));
         });
     });
+    actions.add(
+        menu, "open_address", MainWindow::tr("Open a&n address…"), QKeySequence("Ctrl+L"),
+        [&window] { window.editing().settle_edits([&window] { window.files().ask_address(); }); });
     QMenu* recent = menu->addMenu(MainWindow::tr("Open &recent"));
     recent->setObjectName("recent");
     QObject::connect(recent, &QMenu::aboutToShow, &window,
@@ -196,6 +199,10 @@ void make_data_menu(MainWindow& window, Actions& actions) {
         menu, "close_overlay_action", MainWindow::tr("&Close the overlay"), {},
         [&window] { window.overlays().close(); },
         [&window] { return window.overlays().overlay() != nullptr; });
+    actions.add(
+        menu, "choose_level", MainWindow::tr("&Level, channel and time…"), {},
+        [&window] { window.files().ask_level(); },
+        [&window] { return window.live() && window.live()->data().is_streamed(); });
     menu->addSeparator();
     actions.add(
         menu, "play_sequence", MainWindow::tr("&Play the sequence, or pause it"), QKeySequence("K"),

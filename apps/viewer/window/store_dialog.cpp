@@ -1,0 +1,203 @@
+// The form for an address, and what was found there.
+#include "apps/viewer/window/store_dialog.hpp"
+
+#include <QApplication>
+#include <QComboBox>
+#include <QDialogButtonBox>
+#include <QFormLayout>
+#include <QLabel>
+#include <QLineEdit>
+#include <QPointer>
+#include <QPushButton>
+#include <QSpinBox>
+#include <functional>
+
+#include "apps/options/exit_status.hpp"
+#include "apps/viewer/model/worker.hpp"
+#include "apps/viewer/panel/layout.hpp"
+#include "apps/viewer/scene/hand_over.hpp"
+
+namespace palpate::viewer {
+namespace {
+
+QString product(const Index3& size) {
+    return QString("%1 x %2 x %3").arg(size[0]).arg(size[1]).arg(size[2]);
+}
+
+QString product(const Vec3& spacing) {
+    const auto number = [](double mm) { return QString::number(mm, 'g', 4); };
+    return number(spacing[0]) + " x " + number(spacing[1]) + " x " + number(spacing[2]);
+}
+
+QString size_text(double bytes) {
+    const double mega = bytes / 1e6;
+    if (mega < 1000) return StoreDialog::tr("%1 MB").arg(mega, 0, 'f', mega < 10 ? 1 : 0);
+    return mega < 1e6 ? StoreDialog::tr("%1 GB").arg(mega / 1e3, 0, 'f', 1)
+                      : StoreDialog::tr("%1 TB").arg(mega / 1e6, 0, 'f', 1);
+}
+
+/// Of a request, while somebody waits before a dialog.
+constexpr int most_attempts = 2;
+constexpr double timeout_s = 5;
+
+/// Does `work` on a thread and then `then` on the window's, which never waits for it: a server may
+/// take its time, and the dialog may be gone by then.
+void look_up(std::function<void()> work, std::function<void()> then) {
+    const auto worker = std::make_shared<std::unique_ptr<Worker>>();
+    const auto changed = [worker, then = std::move(then)] {
+        hand_over(qApp, [worker, then] {
+            if (!*worker || !(*worker)->ended()) return;
+            worker->reset();
+            then();
+        });
+    };
+    *worker = std::make_unique<Worker>(
+        [work = std::move(work)](const io::Progress&) { work(); }, changed);
+}
+
+}  // namespace
+
+/// Written by the thread that looks.
+struct StoreDialog::Found {
+    stream::StoreInfo info;
+    run::StoreSource source;
+    QString problem;
+};
+
+QString level_words(const stream::StoreInfo& info, int level) {
+    const Geometry& grid = info.levels[static_cast<std::size_t>(level)].geometry;
+    const double bytes = double(sample_count(grid)) * double(size_of(info.type));
+    return StoreDialog::tr("%1: %2 samples, every %3 mm, %4")
+        .arg(QString::number(level), product(grid.size), product(grid.spacing), size_text(bytes));
+}
+
+StoreDialog::StoreDialog(const std::optional<run::StoreSource>& known, int time, QWidget* parent)
+    : QDialog(parent),
+      address_(named(new QLineEdit, "store_address")),
+      look_(named(new QPushButton(tr("Look it up")), "store_look",
+                  tr("Reads which levels, channels and times there are"))),
+      level_(named(new QComboBox, "store_level")),
+      channel_(named(new QComboBox, "store_channel")),
+      time_(named(new QSpinBox, "store_time")),
+      verdict_(named(new QLabel, "store_verdict")),
+      first_time_(time) {
+    setObjectName("store");
+    setWindowTitle(known ? tr("Level, channel and time") : tr("Open an address"));
+    auto* form = new QFormLayout;
+    address_->setPlaceholderText("https://…/image.zarr");
+    address_->setMinimumWidth(60 * fontMetrics().averageCharWidth());
+    add_row(*form, tr("Address"), row_of({address_, look_}, 0),
+            tr("http, https or s3, or the folder or file of a volume that is read in parts"));
+    add_row(*form, tr("Level"), level_,
+            tr("The level of detail that is felt, and the finest that is seen; 0 is the finest"));
+    add_row(*form, tr("Channel"), channel_, tr("Of an image with several"));
+    add_row(*form, tr("Time"), time_, tr("The moment of an image with several, from 0"));
+    form->addRow(verdict_);
+    verdict_->setWordWrap(true);
+    verdict_->setTextFormat(Qt::PlainText);
+    auto* buttons = new QDialogButtonBox(QDialogButtonBox::Open | QDialogButtonBox::Cancel);
+    accept_ = buttons->button(QDialogButtonBox::Open);
+    connect(buttons, &QDialogButtonBox::accepted, this, &QDialog::accept);
+    connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);
+    auto* fields = new QWidget;
+    fields->setLayout(form);
+    column_in(this, {fields, buttons})->setContentsMargins(9, 9, 9, 9);
+    connect(look_, &QPushButton::clicked, this, &StoreDialog::look);
+    connect(address_, &QLineEdit::returnPressed, this, &StoreDialog::look);
+    // Return in the line looks; it must not open what was found at another address.
+    for (auto* button : findChildren<QPushButton*>()) button->setAutoDefault(false);
+    connect(address_, &QLineEdit::textEdited, this, [this] {
+        looking_.reset();
+        found_.reset();
+        show_found();
+    });
+    if (known) {
+        known_ = *known;
+        first_level_ = known->loader.level;
+        first_channel_ = known->options.channel;
+        address_->setText(QString::fromStdString(known->address));
+        address_->setReadOnly(true);
+        look();
+    }
+    show_found();
+}
+
+void StoreDialog::look() {
+    const std::string address = address_->text().trimmed().toStdString();
+    if (address.empty()) return;
+    const auto found = std::make_shared<Found>();
+    found->source = known_;
+    looking_ = found;
+    found_.reset();
+    show_found();
+    verdict_->setText(tr("Looking …"));
+    look_up(
+        [found, address, is_known = address == known_.address] {
+            try {
+                if (!is_known) {
+                    // As a session keeps names: "level" says that it is a store.
+                    const run::Source source =
+                        run::source_from({{"volume", address}, {"level", "0"}});
+                    found->source = std::get<run::StoreSource>(source.from);
+                }
+                stream::StoreOptions options = found->source.options;
+                options.attempts = most_attempts;
+                options.timeout_s = timeout_s;
+                found->info = stream::open_store(address, options)->info();
+            } catch (const std::exception& e) {
+                found->problem = QString::fromStdString(app::failure_of(e).text);
+            }
+        },
+        [dialog = QPointer<StoreDialog>(this), found] {
+            if (dialog) dialog->take(found);
+        });
+}
+
+/// Unless another address was asked for since.
+void StoreDialog::take(const std::shared_ptr<Found>& found) {
+    if (found != looking_) return;
+    if (found->problem.isEmpty()) found_ = found;
+    show_found();
+    if (!found->problem.isEmpty()) verdict_->setText(found->problem);
+}
+
+void StoreDialog::show_found() {
+    const bool good = found_ != nullptr;
+    level_->clear();
+    channel_->clear();
+    verdict_->clear();
+    for (QWidget* field : {static_cast<QWidget*>(level_), static_cast<QWidget*>(channel_),
+                           static_cast<QWidget*>(time_)}) {
+        field->setEnabled(good);
+    }
+    accept_->setEnabled(good);
+    if (!good) return;
+    const stream::StoreInfo& info = found_->info;
+    for (int i = 0; i < static_cast<int>(info.levels.size()); ++i) {
+        level_->addItem(level_words(info, i));
+    }
+    level_->setCurrentIndex(std::min(first_level_, level_->count() - 1));
+    for (std::size_t i = 0; i < info.channels.size(); ++i) {
+        const QString name = QString::fromStdString(info.channels[i]);
+        channel_->addItem(name.isEmpty() ? QString::number(i) : QString("%1: %2").arg(i).arg(name));
+    }
+    channel_->setCurrentIndex(std::min(first_channel_, channel_->count() - 1));
+    channel_->setEnabled(channel_->count() > 1);
+    time_->setRange(0, std::max(0, info.times - 1));
+    time_->setValue(first_time_);
+    time_->setEnabled(info.times > 1);
+    verdict_->setText(QString::fromStdString(info.format));
+    accept_->setFocus();
+}
+
+run::Source StoreDialog::source() const {
+    run::StoreSource store = found_ ? found_->source : known_;
+    store.loader.level = std::max(0, level_->currentIndex());
+    store.options.channel = std::max(0, channel_->currentIndex());
+    run::Source source;
+    source.from = std::move(store);
+    if (time_->maximum() > 0) source.frame = time_->value();
+    return source;
+}
+
+}  // namespace palpate::viewer

@@ -1,0 +1,292 @@
+// The whole window with volumes that are read as they are felt: levels of detail, what is missing,
+// addresses, levels, channels and times.
+#include <QAction>
+#include <QComboBox>
+#include <QDialogButtonBox>
+#include <QLabel>
+#include <QLineEdit>
+#include <QPushButton>
+#include <QSpinBox>
+#include <QStatusBar>
+#include <filesystem>
+#include <fstream>
+
+#include "palpate/scenes/volumes.hpp"
+#include "palpate/stream/convert.hpp"
+#include "stream/volume_server.hpp"
+#include "viewer/window/window_fixture.hpp"
+
+namespace palpate::viewer::test {
+namespace {
+
+/// Long enough for a slow machine that others use, too.
+constexpr int patience_ms = 120'000;
+
+class Streaming : public InWindow {
+  protected:
+    /// A ring of 160 samples along each axis; its overview is level 1.
+    QString ring() {
+        const Volume volume = scenes::make_volume("torus:160x160x160").volume;
+        stream::ConvertOptions options;
+        options.chunk = 32;
+        convert_to_zarr(*stream::store_of(volume, "ring"), 0, scratch_.path() / "ring.zarr",
+                        options);
+        io::write_volume(volume, scratch_.path() / "ring.nrrd");
+        return scratch("ring.zarr");
+    }
+    bool wait_settled() {
+        return wait_until([&] { return window_->live() && window_->settled(); }, patience_ms);
+    }
+    QString status_line() { return part<QLabel>("streaming").text(); }
+    DetailController::State details() { return window_->details().state(); }
+};
+
+int differing(const QImage& a, const QImage& b) {
+    int count = 0;
+    for (int y = 0; y < a.height(); y += 2) {
+        for (int x = 0; x < a.width(); x += 2) {
+            const QColor one = a.pixelColor(x, y), other = b.pixelColor(x, y);
+            count += std::abs(one.red() - other.red()) + std::abs(one.green() - other.green()) > 24;
+        }
+    }
+    return count;
+}
+
+TEST_F(Streaming, a_store_looks_like_the_same_volume_in_memory) {
+    const QString store = ring();
+    auto& scene = window_->views().scene();
+    pictures::Camera camera;
+    camera.towards_viewer = Vec3(-0.3, -0.8, 0.6);
+    camera.half_height = 80;
+    // The overview suggests another level and other greys.
+    const auto look = [&] {
+        window_->run().send(command::Isovalue{60});
+        window_->views().set_window(0, 240);
+        scene.set_camera(camera);
+        QTest::qWait(300);
+    };
+    feel(scratch("ring.nrrd").toStdString());
+    look();
+    ASSERT_TRUE(wait_settled());
+    EXPECT_FALSE(part<QLabel>("streaming").isVisible()) << "nothing is streamed";
+    const QImage whole = scene.picture(), slice = window_->views().slice(2).grab().toImage();
+    save("in-memory");
+    feel(store.toStdString());
+    look();
+    ASSERT_TRUE(wait_settled());
+    save("store");
+    EXPECT_EQ(details().overview, 1);
+    EXPECT_EQ(details().finest, 0);
+    for (int axis = 0; axis < 3; ++axis) {
+        const DetailField* const shown = window_->views().slice(axis).shown_detail();
+        ASSERT_NE(shown, nullptr) << axis;
+        EXPECT_EQ(shown->level, 0);
+        EXPECT_EQ(shown->missing, 0U);
+    }
+    EXPECT_LT(differing(window_->views().slice(2).grab().toImage(), slice), 200);
+    // The ring fills a quarter of the picture; the surface of the overview differs nearly everywhere.
+    const int samples = scene.picture().width() * scene.picture().height() / 4;
+    EXPECT_LT(differing(scene.picture(), whole), samples / 50);
+}
+
+TEST_F(Streaming, zooming_and_stepping_bring_what_is_seen_then) {
+    feel(ring().toStdString());
+    ASSERT_TRUE(wait_settled());
+    SlicePane& pane = window_->views().slice(2);
+    const auto layer = [&] {
+        const Geometry& grid = window_->live()->field().geometry();
+        return index_from_physical(grid, pane.crosshair())[2];
+    };
+    const double before = layer();
+    turn_wheel(pane, 3);
+    EXPECT_NEAR(std::abs(layer() - before), 3, 0.6) << "samples of the level that is felt";
+    ASSERT_TRUE(wait_settled());
+    EXPECT_NE(pane.shown_detail(), nullptr);
+    turn_wheel(pane, 40);
+    ASSERT_TRUE(wait_settled());
+    ASSERT_NE(pane.shown_detail(), nullptr) << "far from where it began";
+    EXPECT_EQ(pane.shown_detail()->missing, 0U);
+    // The view turns: another part is seen, and chosen.
+    QTest::keyClick(window_.get(), Qt::Key_H);
+    auto& scene = window_->views().scene();
+    turn_wheel(scene, 8);
+    drag(scene, scene.rect().center(), scene.rect().center() + QPoint(60, 40));
+    ASSERT_TRUE(wait_settled());
+    EXPECT_EQ(details().finest, 0);
+    save("zoomed");
+    // An hidden pane needs nothing.
+    QTest::keyClick(window_.get(), Qt::Key_F7);
+    ASSERT_TRUE(wait_settled());
+    EXPECT_FALSE(pane.seen());
+}
+
+TEST_F(Streaming, another_isovalue_is_seen_as_finely) {
+    feel(ring().toStdString());
+    ASSERT_TRUE(wait_settled());
+    const QImage before = window_->views().scene().picture();
+    for (int i = 0; i < 5; ++i) QTest::keyClick(window_.get(), Qt::Key_Plus);
+    QTest::qWait(300);
+    ASSERT_TRUE(wait_settled());
+    EXPECT_GT(differing(window_->views().scene().picture(), before), 300);
+    EXPECT_EQ(details().finest, 0);
+}
+
+TEST_F(Streaming, the_sample_at_the_proxy_is_the_one_that_is_felt) {
+    feel(ring().toStdString());
+    ASSERT_TRUE(wait_settled());
+    press_until_force();
+    auto& readout = part<QLabel>("readout");
+    const QString level = QString::number(window_->live()->isovalue(), 'g', 4);
+    EXPECT_TRUE(wait_until([&] { return readout.text().contains("mm   " + level); }))
+        << readout.text().toStdString() << " for " << level.toStdString();
+}
+
+TEST_F(Streaming, an_address_is_typed_looked_up_and_felt_and_the_window_says_what_is_missing) {
+    const stream::test::VolumeServer server({"--delay", "40"});
+    const QString address = QString::fromStdString(server.address("virtual.zarr"));
+    QTest::keyClick(window_.get(), Qt::Key_L, Qt::ControlModifier);
+    auto& line = part<QLineEdit>("store_address");
+    ASSERT_TRUE(QTest::qWaitForWindowExposed(line.window()));
+    auto& levels = part<QComboBox>("store_level");
+    auto* open = line.window()->findChild<QDialogButtonBox*>()->button(QDialogButtonBox::Open);
+    EXPECT_FALSE(open->isEnabled());
+    QTest::keyClicks(&line, address + "x");
+    QTest::keyClick(&line, Qt::Key_Return);
+    auto& verdict = part<QLabel>("store_verdict");
+    ASSERT_TRUE(wait_until([&] { return verdict.text().contains("virtual.zarrx"); }, patience_ms))
+        << verdict.text().toStdString();
+    EXPECT_FALSE(open->isEnabled());
+    QTest::keyClick(&line, Qt::Key_Backspace);
+    EXPECT_TRUE(verdict.text().isEmpty()) << "that was another address";
+    QTest::keyClick(&line, Qt::Key_Return);
+    ASSERT_TRUE(wait_until([&] { return open->isEnabled(); }, patience_ms));
+    EXPECT_EQ(levels.count(), 8);
+    EXPECT_TRUE(levels.itemText(0).contains("12288 x 12288 x 12288"));
+    EXPECT_TRUE(levels.itemText(0).contains("1.9 TB"));
+    line.window()->grab().save(QString(PALPATE_PICTURES) + "/store-dialog.png");
+    levels.setFocus();
+    for (int i = 0; i < 3; ++i) QTest::keyClick(&levels, Qt::Key_Down);
+    QTest::mouseClick(open, Qt::LeftButton);
+    ASSERT_TRUE(wait_until([&] { return window_->live() != nullptr; }, patience_ms))
+        << window_->messages().problem().toStdString();
+    EXPECT_EQ(window_->live()->field().geometry().size, Index3::Constant(12288 >> 3));
+    // 1500 bricks at 25 requests a second and thread take a while: the window says so.
+    ASSERT_TRUE(wait_until([&] { return status_line().contains("bricks missing"); }, patience_ms));
+    EXPECT_TRUE(status_line().contains("felt: level 3"));
+    EXPECT_TRUE(part<QLabel>("streaming").toolTip().contains("requests"));
+    ASSERT_TRUE(wait_until([&] { return details().finest < details().overview; }, patience_ms))
+        << "pictures become finer while the hand's bricks come";
+    EXPECT_GE(details().finest, 3) << "not finer than what is felt";
+    EXPECT_EQ(window_->messages().problem(), "");
+    save("address");
+    ASSERT_TRUE(wait_until([&] { return window_->details().settled(); }, patience_ms));
+    save("address-finer");
+    EXPECT_EQ(QSettings().value("recent").toStringList().value(0), address);
+}
+
+TEST_F(Streaming, a_hand_that_waits_is_told_why) {
+    const stream::test::VolumeServer server({"--delay", "150"});
+    feel(server.address("virtual.zarr"));
+    ASSERT_NE(window_->live(), nullptr);
+    auto& hint = part<QLabel>("hint");
+    // The hand of the mouse goes farther than bricks have come.
+    QWidget& scene = window_->views().scene();
+    for (int i = 0; i < 400 && !hint.text().contains("waits"); ++i) {
+        turn_wheel(scene, 2);
+        QTest::qWait(20);
+    }
+    EXPECT_TRUE(hint.text().contains("waits")) << hint.text().toStdString();
+    save("waiting");
+    EXPECT_EQ(window_->messages().problem(), "");
+}
+
+/// An OME-Zarr 0.4 of 2 times, 2 channels and 2 levels, uncompressed: balls of another radius each.
+void put_image(const std::filesystem::path& folder) {
+    std::filesystem::create_directories(folder);
+    std::ofstream(folder / ".zgroup") << R"({"zarr_format": 2})";
+    std::ofstream(folder / ".zattrs") << R"({"multiscales": [{"version": "0.4", "axes": [
+        {"name": "t", "type": "time", "unit": "second"}, {"name": "c", "type": "channel"},
+        {"name": "z", "type": "space", "unit": "millimeter"},
+        {"name": "y", "type": "space", "unit": "millimeter"},
+        {"name": "x", "type": "space", "unit": "millimeter"}], "datasets": [
+        {"path": "0", "coordinateTransformations": [{"type": "scale", "scale": [1, 1, 1, 1, 1]}]},
+        {"path": "1", "coordinateTransformations": [{"type": "scale", "scale": [1, 1, 2, 2, 2]}]}]}]})";
+    for (int level = 0; level < 2; ++level) {
+        const int n = 32 >> level;
+        const std::string size = std::to_string(n);
+        const std::string grid = "[2, 2, " + size + ", " + size + ", " + size + "]";
+        const std::string chunk = "[1, 1, " + size + ", " + size + ", " + size + "]";
+        const auto array = folder / std::to_string(level);
+        std::filesystem::create_directories(array);
+        std::ofstream(array / ".zarray")
+            << R"({"zarr_format": 2, "shape": )" << grid << R"(, "chunks": )" << chunk
+            << R"(, "dtype": "|u1", "compressor": null, "fill_value": 0, "order": "C",)"
+            << R"( "filters": null, "dimension_separator": "."})";
+        for (int image = 0; image < 4; ++image) {
+            const double radius = (6 + 2 * image) / (level + 1.0);
+            std::string bytes;
+            for (int i = 0; i < n * n * n; ++i) {
+                const Vec3 at(i % n, i / n % n, i / (n * n));
+                const double inside = radius - (at - Vec3::Constant(0.5 * (n - 1))).norm();
+                bytes += static_cast<char>(std::clamp(128 + 30 * inside, 0.0, 255.0));
+            }
+            std::ofstream(array / (std::to_string(image / 2) + "." + std::to_string(image % 2) +
+                                   ".0.0.0"),
+                          std::ios::binary)
+                << bytes;
+        }
+    }
+}
+
+TEST_F(Streaming, of_several_levels_channels_and_times_another_is_chosen_while_one_is_felt) {
+    put_image(scratch_.path() / "image.zarr");
+    feel(scratch("image.zarr").toStdString());
+    ASSERT_NE(window_->live(), nullptr);
+    EXPECT_TRUE(window_->statusBar()->currentMessage().contains("2 channels, 2 times"));
+    auto* action = window_->findChild<QAction*>("choose_level");
+    ASSERT_NE(action, nullptr);
+    ASSERT_TRUE(wait_until([&] { return action->isEnabled(); }));
+    const auto choose = [&](int level, int channel, int time) {
+        action->trigger();
+        auto* dialog = window_->findChild<QDialog*>("store");
+        ASSERT_NE(dialog, nullptr);
+        auto* open = dialog->findChild<QDialogButtonBox*>()->button(QDialogButtonBox::Open);
+        ASSERT_TRUE(wait_until([&] { return open->isEnabled(); }));
+        EXPECT_FALSE(dialog->findChild<QLineEdit*>("store_address")->isEnabled() &&
+                     !dialog->findChild<QLineEdit*>("store_address")->isReadOnly());
+        auto* levels = dialog->findChild<QComboBox*>("store_level");
+        auto* channels = dialog->findChild<QComboBox*>("store_channel");
+        auto* times = dialog->findChild<QSpinBox*>("store_time");
+        EXPECT_TRUE(channels->isEnabled() && times->isEnabled());
+        const auto pick = [](QComboBox& box, int row) {
+            box.setFocus();
+            QTest::keyClick(&box, Qt::Key_Home);
+            for (int i = 0; i < row; ++i) QTest::keyClick(&box, Qt::Key_Down);
+        };
+        pick(*levels, level);
+        EXPECT_EQ(levels->currentIndex(), level);
+        pick(*channels, channel);
+        times->setValue(time);
+        int started = 0;
+        const auto counting = QObject::connect(&window_->content(), &Content::run_started,
+                                               [&started] { ++started; });
+        QTest::mouseClick(open, Qt::LeftButton);
+        EXPECT_TRUE(wait_until([&] { return started == 1 && window_->settled(); }));
+        QObject::disconnect(counting);
+    };
+    const auto felt = [&] { return std::get<run::StoreSource>(window_->content().source().from); };
+    const double level = window_->live()->isovalue();
+    choose(1, 0, 1);
+    EXPECT_EQ(felt().loader.level, 1);
+    EXPECT_EQ(window_->content().source().frame, 1);
+    EXPECT_EQ(window_->live()->field().geometry().size, Index3::Constant(16));
+    EXPECT_EQ(window_->live()->isovalue(), level) << "the same channel is felt as before";
+    choose(0, 1, 0);
+    EXPECT_EQ(felt().loader.level, 0);
+    EXPECT_EQ(felt().options.channel, 1);
+    EXPECT_EQ(window_->content().source().frame, 0);
+    EXPECT_EQ(window_->messages().problem(), "");
+}
+
+}  // namespace
+}  // namespace palpate::viewer::test
