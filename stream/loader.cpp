@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <stdexcept>
 
 #include "palpate/io/error.hpp"
@@ -28,8 +29,12 @@ const Level& level_of(const Store& store, int level) {
     return store.info().levels[static_cast<std::size_t>(level)];
 }
 
+std::uint64_t bytes_of_brick(SampleType type) {
+    return ResidentBricks::per_brick * size_of(type);
+}
+
 std::size_t most_bricks(const Store& store, std::uint64_t memory) {
-    const std::uint64_t each = ResidentBricks::per_brick * size_of(store.info().type);
+    const std::uint64_t each = bytes_of_brick(store.info().type);
     const auto count = static_cast<std::size_t>((memory - memory / pieces_part) / each);
     if (count < fewest_bricks) {
         throw std::invalid_argument("at least " +
@@ -122,12 +127,11 @@ void BrickLoader::wait_for(const Vec3& centre, double radius) {
 BrickLoaderStatus BrickLoader::status() const {
     BrickLoaderStatus status;
     status.traffic = store_->traffic();
-    const std::uint64_t pieces = blocks_->bytes();
     const std::scoped_lock lock(mutex_);
     status.resident = held_.size();
     status.wanted = wanted_.size();
     for (const Index3& brick : wanted_) status.missing += !held_.contains({array_of(brick)});
-    status.bytes = pieces + held_.size() * ResidentBricks::per_brick * size_of(overview_.type());
+    status.bytes = bytes();
     status.most_bytes = std::max(most_bytes_, status.bytes);
     status.loaded = loaded_;
     status.dropped = dropped_;
@@ -226,7 +230,7 @@ void BrickLoader::put(const Job& job, const ResidentBrick& brick) {
     events_.push_back({job.brick, job.coarser});
     ++loaded_;
     make_room();
-    note_bytes();
+    most_bytes_ = std::max(most_bytes_, bytes());
 }
 
 /// Needs the lock. Drops bricks that nobody wants, the farthest from what is wanted most first.
@@ -256,10 +260,43 @@ void BrickLoader::make_room() {
     bricks_ = bricks_.with(changes);
 }
 
-void BrickLoader::note_bytes() {
-    const std::uint64_t bytes =
-        blocks_->bytes() + held_.size() * ResidentBricks::per_brick * size_of(overview_.type());
-    most_bytes_ = std::max(most_bytes_, bytes);
+/// Needs the lock.
+std::uint64_t BrickLoader::bytes() const {
+    return blocks_->bytes() + other_bytes_ + held_.size() * bytes_of_brick(overview_.type());
+}
+
+void BrickLoader::read(const SampleBox& box, std::span<std::byte> out, std::stop_token stop) {
+    const Index3 at = ResidentBricks::brick_of(box.low);
+    ResidentBrick held;
+    {
+        const std::scoped_lock lock(mutex_);
+        if (const ResidentBrick* brick = bricks_.at(at)) held = *brick;
+    }
+    const SampleBox has = bricks_.box_of(at);
+    if (!held || held.level != 0 || (box.high.array() > has.high.array()).any()) {
+        blocks_->read(settings_.level, box, out, std::move(stop));
+        return;
+    }
+    const std::size_t each = size_of(overview_.type());
+    const std::size_t row = static_cast<std::size_t>(box.high[0] - box.low[0] + 1) * each;
+    const Index3 first = box.low - at * ResidentBricks::edge;
+    std::byte* to = out.data();
+    for (int z = 0; z <= box.high[2] - box.low[2]; ++z) {
+        for (int y = 0; y <= box.high[1] - box.low[1]; ++y, to += row) {
+            const Index3 in = first + Index3(0, y, z) + Index3::Constant(ResidentBricks::margin);
+            const auto from = in[0] + in[1] * ResidentBricks::row + in[2] * ResidentBricks::slice;
+            std::memcpy(to, held.samples.get() + static_cast<std::size_t>(from) * each, row);
+        }
+    }
+}
+
+void BrickLoader::leave_room(std::uint64_t bytes) {
+    const std::size_t less = static_cast<std::size_t>(bytes / bytes_of_brick(overview_.type()));
+    const std::size_t all = most_bricks(*store_, settings_.memory);
+    most_bricks_ = all - std::min(less, all - fewest_bricks);
+    const std::scoped_lock lock(mutex_);
+    other_bytes_ = bytes;
+    make_room();
 }
 
 }  // namespace palpate::stream

@@ -3,6 +3,7 @@
 
 #include "io/plain_samples.hpp"
 #include "palpate/io/error.hpp"
+#include "stream/edited_store.hpp"
 #include "stream/remote_objects.hpp"
 #include "stream/stores.hpp"
 
@@ -52,6 +53,7 @@ std::shared_ptr<const Store> open_store(const std::string& address, const StoreO
         }
         return open_zarr(objects, address, options);
     }
+    if (holds_edits(address)) return open_edits(address, options);
     if (is_zarr_folder(address)) return open_zarr(folder_objects(address), address, options);
     return open_plain_file(address, options);
 }
