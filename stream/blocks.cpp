@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <atomic>
-#include <thread>
 
 #include "stream/box_bytes.hpp"
+#include "stream/small_threads.hpp"
 
 namespace palpate::stream {
 namespace {
@@ -56,9 +56,9 @@ void read_by_pieces(const Store& store, int level, const SampleBox& box, std::sp
         }
     };
     {
-        std::vector<std::jthread> others;
+        SmallThreads others;
         for (int i = 1; i < threads && std::size_t(i) < pieces.size(); ++i) {
-            others.emplace_back(work);
+            others.start([&](const std::stop_token&) { work(); });
         }
         work();
     }

@@ -76,11 +76,10 @@ EditsNote note_from(const Json& json, const fs::path& folder, const StoreOptions
     of.spacing.reset();
     if (json.contains("raw")) {
         const Json& raw = json["raw"];
-        of.raw = io::RawLayout{three_of<Index3>(raw.at("size")),
-                               sample_type_from(raw.at("type").get<std::string>()),
-                               three_of<Vec3>(raw.at("spacing")),
-                               raw.at("skip").get<std::uint64_t>(),
-                               raw.at("big_endian").get<bool>()};
+        of.raw = io::RawLayout{
+            three_of<Index3>(raw.at("size")), sample_type_from(raw.at("type").get<std::string>()),
+            three_of<Vec3>(raw.at("spacing")), raw.at("skip").get<std::uint64_t>(),
+            raw.at("big_endian").get<bool>()};
     }
     if (json.contains("spacing")) of.spacing = three_of<Vec3>(json["spacing"]);
     note.level = json.at("level").get<int>();
@@ -139,8 +138,8 @@ void check_chunks(const EditsNote& note, const StoreInfo& original) {
 
 SampleBox chunk_box(const std::array<int, 3>& chunk, const Geometry& grid) {
     const Index3 low = EditsNote::chunk * Index3(chunk[0], chunk[1], chunk[2]);
-    return {low, (low + Index3::Constant(EditsNote::chunk - 1))
-                     .cwiseMin(grid.size - Index3::Ones())};
+    return {low,
+            (low + Index3::Constant(EditsNote::chunk - 1)).cwiseMin(grid.size - Index3::Ones())};
 }
 
 EditedStore::EditedStore(std::shared_ptr<const Store> original, std::shared_ptr<const Store> chunks,

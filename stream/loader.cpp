@@ -1,14 +1,18 @@
 // The loader's threads: which brick comes next, which one goes, and what is published.
 #include "palpate/stream/loader.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <fstream>
 #include <stdexcept>
 
 #include "palpate/io/error.hpp"
 #include "stream/blocks.hpp"
 #include "stream/interest.hpp"
+#include "stream/small_threads.hpp"
 
 namespace palpate::stream {
 namespace {
@@ -18,6 +22,8 @@ constexpr std::size_t fewest_bricks = 64;
 constexpr std::chrono::seconds pause_after_failure{2};
 /// Of the memory, the part of decoded pieces.
 constexpr std::uint64_t pieces_part = 4;
+/// Of the memory of the process.
+constexpr std::chrono::milliseconds between_counts{20};
 
 const Level& level_of(const Store& store, int level) {
     const auto count = static_cast<int>(store.info().levels.size());
@@ -44,6 +50,14 @@ std::size_t most_bricks(const Store& store, std::uint64_t memory) {
     return count;
 }
 
+/// That the process has in memory; 0 where the system does not say.
+std::uint64_t resident_bytes() {
+    std::ifstream file("/proc/self/statm");
+    std::uint64_t pages = 0, resident = 0;
+    file >> pages >> resident;
+    return resident * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+}
+
 std::array<int, 3> array_of(const Index3& at) {
     return {at[0], at[1], at[2]};
 }
@@ -67,17 +81,14 @@ BrickLoader::BrickLoader(std::shared_ptr<const Store> store, Volume overview,
       geometry_(empty_->geometry()),
       most_bricks_(most_bricks(*store_, settings.memory)),
       blocks_(std::make_unique<Blocks>(*store_, settings.memory / pieces_part)),
-      bricks_(geometry_.size) {
+      bricks_(geometry_.size),
+      threads_(std::make_unique<SmallThreads>()) {
     for (int i = 0; i < std::max(1, settings.threads); ++i) {
-        threads_.emplace_back([this](const std::stop_token& stop) { work(stop); });
+        threads_->start([this](const std::stop_token& stop) { work(stop); });
     }
 }
 
-BrickLoader::~BrickLoader() {
-    for (std::jthread& thread : threads_) thread.request_stop();
-    changed_.notify_all();
-    threads_.clear();
-}
+BrickLoader::~BrickLoader() = default;
 
 void BrickLoader::look(std::span<const Interest> hands) {
     std::vector<Index3> wanted = wanted_bricks(geometry_, empty_->resident()->count(), hands,
@@ -235,6 +246,7 @@ void BrickLoader::put(const Job& job, const ResidentBrick& brick) {
 
 /// Needs the lock. Drops bricks that nobody wants, the farthest from what is wanted most first.
 void BrickLoader::make_room() {
+    count_process();
     if (held_.size() <= most_bricks_) return;
     std::map<Place, int> wanted;
     for (const Index3& brick : wanted_) wanted[{array_of(brick)}] = 1;
@@ -291,12 +303,23 @@ void BrickLoader::read(const SampleBox& box, std::span<std::byte> out, std::stop
 }
 
 void BrickLoader::leave_room(std::uint64_t bytes) {
-    const std::size_t less = static_cast<std::size_t>(bytes / bytes_of_brick(overview_.type()));
-    const std::size_t all = most_bricks(*store_, settings_.memory);
-    most_bricks_ = all - std::min(less, all - fewest_bricks);
     const std::scoped_lock lock(mutex_);
     other_bytes_ = bytes;
     make_room();
+}
+
+/// Needs the lock. What else the process holds, and how many bricks that leaves room for.
+void BrickLoader::count_process() {
+    const Clock::time_point now = Clock::now();
+    if (settings_.whole_process && now - counted_ > between_counts) {
+        counted_ = now;
+        const std::uint64_t all = resident_bytes(), ours = bytes();
+        process_bytes_ = all > ours ? all - ours : 0;
+    }
+    const std::uint64_t others = other_bytes_ + process_bytes_;
+    const auto less = static_cast<std::size_t>(others / bytes_of_brick(overview_.type()));
+    const std::size_t all = most_bricks(*store_, settings_.memory);
+    most_bricks_ = all - std::min(less, all - fewest_bricks);
 }
 
 }  // namespace palpate::stream

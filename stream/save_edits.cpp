@@ -43,9 +43,9 @@ std::vector<CoarserGrid> levels_from(const StoreInfo& info, int level) {
 
 /// The place of a box of the finer level in the coarser one.
 SampleBox coarser_box(const SampleBox& box, const CoarserGrid& coarser) {
-    return {box.low.cwiseQuotient(coarser.factor),
-            box.high.cwiseQuotient(coarser.factor)
-                .cwiseMin(coarser.geometry.size - Index3::Ones())};
+    return {
+        box.low.cwiseQuotient(coarser.factor),
+        box.high.cwiseQuotient(coarser.factor).cwiseMin(coarser.geometry.size - Index3::Ones())};
 }
 
 /// The folder in which the edits grow.

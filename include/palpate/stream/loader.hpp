@@ -11,12 +11,13 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "palpate/stream/store.hpp"
 
 namespace palpate::stream {
+
+class SmallThreads;
 
 /// A volume of few samples that shows all of a store: its coarsest level that is fine enough, or
 /// single samples of a store without levels. At most `samples` of them, one at least. Blocks.
@@ -34,6 +35,9 @@ struct BrickLoaderSettings {
     int threads = 16;                               ///< that read at a time
     /// Feel a coarser level until the bricks of `level` are there (ProxyUpdate::level says so).
     bool coarse_first = false;
+    /// `memory` bounds all that the process takes, the program itself included; but a hand always
+    /// has 64 bricks.
+    bool whole_process = false;
 };
 
 /// A hand and where it goes. Points in mm, physical.
@@ -126,6 +130,7 @@ class BrickLoader {
     void make_room();
     int coarse_level() const;
     std::uint64_t bytes() const;
+    void count_process();
 
     const std::shared_ptr<const Store> store_;
     const BrickLoaderSettings settings_;
@@ -144,10 +149,12 @@ class BrickLoader {
     std::vector<Index3> wanted_;                 // most urgent first
     std::vector<Index3> required_;               // by wait_for()
     std::vector<BrickEvent> events_;
-    std::uint64_t other_bytes_ = 0;  // leave_room()
+    std::uint64_t other_bytes_ = 0;    // leave_room()
+    std::uint64_t process_bytes_ = 0;  // of the process, beyond bricks, pieces and edits
+    Clock::time_point counted_{};      // when those were
     std::uint64_t most_bytes_ = 0, loaded_ = 0, dropped_ = 0;
     std::string problem_;
-    std::vector<std::jthread> threads_;  // last: they use all of the above
+    const std::unique_ptr<SmallThreads> threads_;  // last: they use all of the above
 };
 
 }  // namespace palpate::stream
