@@ -46,12 +46,14 @@ void carve(benchmark::State& state) {
         const Edited after = edited(block, stroke);
         bytes = bytes_apart(*after.samples, *block);
     }
-    const Bricks table = no_bricks(block->geometry());
     state.counters["bricks"] = double(bytes) / Bricks::per_brick;
     state.counters["edited_bytes"] = double(bytes);
     // Beyond the samples, where a single sample was edited.
+    const Bricks none(block->geometry().size);
+    const edit::Fill one{{{0, 0, 0}, {0, 0, 0}}, 1};
     state.counters["table_share"] =
-        double(table.at.size() * sizeof(table.at.front())) / double(block->volume().bytes());
+        double(edited(block, one).samples->bricks()->table_bytes_apart(none)) /
+        double(block->volume().bytes());
 }
 BENCHMARK(carve)
     ->Name("changing/edit/carve_voxels")

@@ -113,6 +113,8 @@ def feel(options, port, speed, folder):
           flush=True)
     if options.validate:
         subprocess.run([options.palpate, "replay", "--validate", str(recording)], check=True)
+    if most > 1.05 * options.memory:
+        sys.exit(f"{most:.0f} MB are more than --memory and 5 %")
     return deepest <= (COARSE_MARGIN if options.coarse_first else MARGIN)
 
 

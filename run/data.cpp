@@ -5,10 +5,20 @@
 
 #include "palpate/io/raw_options.hpp"
 #include "palpate/io/written_formats.hpp"
+#include "palpate/stream/convert.hpp"
+#include "palpate/stream/edits.hpp"
 
 namespace palpate::run {
+namespace {
+
+bool is_zarr(const std::filesystem::path& path) {
+    return path.extension() == ".zarr" && !path.stem().empty();
+}
+
+}  // namespace
 
 void check_volume_name(const std::string& path, const Geometry& geometry) {
+    if (is_zarr(path)) return;
     const std::string problem = io::why_not_written(path, geometry);
     if (!problem.empty()) throw std::invalid_argument(problem);
 }
@@ -17,6 +27,8 @@ Data::Data(LoadedVolume loaded, const PlaybackSetup& playback)
     : loaded_(std::move(loaded)), start_(start_samples(loaded_)) {
     if (loaded_.streamed) {
         streamer_ = std::make_unique<Streamer>(loaded_);
+        editor_ =
+            std::make_unique<VolumeEditor>(start_, *streamer_, loaded_.streamed->loader.memory);
     } else if (loaded_.live) {
         player_ = std::make_unique<Player>(loaded_.live);
     } else if (loaded_.sequence.count() > 1) {
@@ -29,9 +41,6 @@ Data::Data(LoadedVolume loaded, const PlaybackSetup& playback)
 
 VolumeEditor& Data::editor() const {
     if (editor_) return *editor_;
-    if (streamer_) {
-        throw std::invalid_argument("a volume that is read as it is felt cannot be edited");
-    }
     throw std::invalid_argument(
         "a sequence cannot be edited: open one frame of it by its time step");
 }
@@ -48,7 +57,6 @@ void Data::update(Field& field) const {
 }
 
 std::unique_ptr<Servo> Data::attach(Session session, const StartServo& start) {
-    if (streamer_) return streamer_->attach(std::move(session), start);
     return player_ ? player_->attach(std::move(session), start)
                    : editor_->attach(std::move(session), start);
 }
@@ -56,7 +64,6 @@ std::unique_ptr<Servo> Data::attach(Session session, const StartServo& start) {
 void Data::detach(const Servo& servo) {
     if (editor_) editor_->detach(servo);
     if (player_) player_->detach(servo);
-    if (streamer_) streamer_->detach(servo);
 }
 
 stream::BrickLoaderStatus Data::streaming() const {
@@ -68,27 +75,51 @@ void Data::use_tool(const Servo& servo, std::shared_ptr<const Tool> tool) {
 }
 
 std::string Data::problem() const {
-    if (streamer_) return streamer_->status().problem;
+    const std::string missing = streamer_ ? streamer_->status().problem : "";
+    if (!missing.empty()) return missing;
     return player_ ? player_->state().problem : editor_->state().problem;
 }
 
+void Data::check_save_name(const std::string& path) const {
+    streamer_ ? stream::check_edits_name(path) : check_volume_name(path, start_->geometry());
+}
+
 void Data::require_saving() const {
-    if (streamer_) {
+    if (streamer_ && !editor_->state().changed) {
         throw std::invalid_argument(
-            "a volume that is read as it is felt is not saved: palpate convert copies it");
+            "nothing was edited since it was opened or saved: palpate convert copies the volume");
     }
 }
 
 std::string Data::save(const std::filesystem::path& path, const io::Progress& progress) {
     require_saving();
+    if (streamer_) return save_edits(path, progress);
     Field now(start_);
     update(now);
-    io::WriteOptions options;
-    options.progress = progress;
     const Volume volume = flattened(now.samples(), now.moment());
-    io::write_volume(volume, path, options);
+    if (is_zarr(path)) {
+        stream::ConvertOptions options;
+        options.progress = progress;
+        stream::convert_to_zarr(*stream::store_of(volume, loaded_.name), 0, path, options);
+    } else {
+        io::WriteOptions options;
+        options.progress = progress;
+        io::write_volume(volume, path, options);
+    }
     if (editor_) editor_->set_saved(now.shared_samples());
     return "saved " + path.string() + io::opening_words(path, volume);
+}
+
+/// What was edited of a store, beside it.
+std::string Data::save_edits(const std::filesystem::path& path, const io::Progress& progress) {
+    const auto& from = std::get<StoreSource>(loaded_.source.from);
+    stream::Opened opened{from.address, from.options};
+    opened.options.time = loaded_.source.frame.value_or(0);
+    const std::shared_ptr<const Samples> edits = editor_->state().samples;
+    stream::save_edits(*loaded_.streamed->store, opened, from.loader.level, *edits, path, progress);
+    editor_->set_saved(edits);
+    return "saved the edits of " + from.address + " as " + path.string() +
+           ": it opens as the edited volume while the original stays where it is";
 }
 
 }  // namespace palpate::run

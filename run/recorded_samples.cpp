@@ -16,16 +16,19 @@ std::function<Volume(int)> frames_of(const LoadedVolume& loaded) {
     };
 }
 
-BrickReader bricks_of(const LoadedVolume& loaded) {
+GridReader grid_of(const LoadedVolume& loaded) {
     if (!loaded.streamed) return {};
     auto loader = std::make_shared<stream::BrickLoader>(loaded.streamed->store, loaded.volume,
                                                         loaded.streamed->loader);
-    return [loader](const Index3& brick, int level) { return loader->read(brick, level); };
+    return {[loader](const Index3& brick, int level) { return loader->read(brick, level); },
+            [loader](const SampleBox& box, std::span<std::byte> out) { loader->read(box, out); }};
 }
 
 RecordedSamples::RecordedSamples(std::shared_ptr<const Samples> start,
-                                 std::function<Volume(int)> frame, BrickReader brick)
-    : kept_{{0, std::move(start)}}, frame_(std::move(frame)), brick_(std::move(brick)) {}
+                                 std::function<Volume(int)> frame, GridReader grid)
+    : kept_{{0, std::move(start)}}, frame_(std::move(frame)), grid_(std::move(grid)) {
+    if (const ResidentBricks* none = kept_.at(0)->resident()) bricks_ = *none;
+}
 
 Command RecordedSamples::whole(const Command& recorded) {
     return std::visit(Overloaded{[&](command::Samples samples) -> Command {
@@ -36,41 +39,53 @@ Command RecordedSamples::whole(const Command& recorded) {
                       recorded);
 }
 
+/// Of a large grid: edits with what is in memory.
+std::shared_ptr<const Samples> RecordedSamples::felt(std::shared_ptr<const Samples> edits) const {
+    return bricks_ ? std::make_shared<const Samples>(edits->with(*bricks_)) : edits;
+}
+
 std::shared_ptr<const Samples> RecordedSamples::made(const command::Samples& recorded) {
     if (!recorded.recipe) {
-        if (auto known = made_again(recorded.version)) return known;
+        if (auto known = made_again(recorded.version)) {
+            edits_version_ = recorded.version;
+            return felt(std::move(known));
+        }
         throw std::invalid_argument("the samples of version " + std::to_string(recorded.version) +
                                     " came from outside and are not in the recording");
     }
     return std::visit(
         Overloaded{[&](const FramesOf& frames) { return frames_of(frames); },
                    [&](const BricksOf& bricks) { return bricks_of(bricks, recorded.version); },
-                   [&](const EditOf& edit) { return edit_of(edit, recorded.version); }},
+                   [&](const EditOf& edit) {
+                       auto edits = edit_of(edit, recorded.version);
+                       edits_version_ = recorded.version;
+                       return felt(std::move(edits));
+                   }},
         *recorded.recipe);
 }
 
 std::shared_ptr<const Samples> RecordedSamples::bricks_of(const BricksOf& bricks,
                                                           std::uint64_t version) {
-    if (!brick_) throw std::invalid_argument("bricks of a large grid, which the volume is not");
-    const std::shared_ptr<const Samples> before = bricks_ ? bricks_ : kept_.at(0);
+    if (!bricks_ || !grid_.brick) {
+        throw std::invalid_argument("bricks of a large grid, which the volume is not");
+    }
     if (bricks.version != bricks_version_) {
         throw std::invalid_argument("bricks after version " + std::to_string(bricks.version) +
                                     ", but the last was " + std::to_string(bricks_version_));
     }
     std::vector<ResidentBricks::Change> changes;
     for (const BricksOf::Brick& brick : bricks.bricks) {
-        const Index3& count = before->resident()->count();
+        const Index3& count = bricks_->count();
         if ((brick.at.array() < 0).any() || (brick.at.array() >= count.array()).any()) {
             throw std::invalid_argument("a brick outside the grid");
         }
         changes.push_back(
-            {brick.at, brick.level < 0 ? ResidentBrick{} : brick_(brick.at, brick.level)});
+            {brick.at, brick.level < 0 ? ResidentBrick{} : grid_.brick(brick.at, brick.level)});
     }
-    bricks_ = std::make_shared<const Samples>(before->volume(), before->geometry(),
-                                              before->resident()->with(changes), before->minimum(),
-                                              before->maximum());
+    bricks_ = bricks_->with(changes);
     bricks_version_ = version;
-    return bricks_;
+    edits_at_[version] = edits_version_;
+    return felt(made_again(edits_version_));
 }
 
 std::shared_ptr<const Samples> RecordedSamples::edit_of(const EditOf& edit, std::uint64_t version) {
@@ -84,7 +99,7 @@ std::shared_ptr<const Samples> RecordedSamples::edit_of(const EditOf& edit, std:
         throw std::invalid_argument("the samples of version " + std::to_string(version) +
                                     " came about twice");
     }
-    auto samples = edited(before, edit.edit).samples;
+    auto samples = edited(before, edit.edit, grid_.box).samples;
     const auto parent = versions_.find(edit.version);
     versions_[version] = {edit, parent == versions_.end() ? 1 : parent->second.edits + 1};
     remember(version, samples);
@@ -124,7 +139,7 @@ std::shared_ptr<const Samples> RecordedSamples::made_again(std::uint64_t version
         samples = find(version);
     }
     for (std::size_t i = missing.size(); i-- > 0;) {
-        samples = edited(samples, versions_.at(missing[i]).made.edit).samples;
+        samples = edited(samples, versions_.at(missing[i]).made.edit, grid_.box).samples;
         remember(missing[i], samples);
     }
     return samples;
@@ -151,8 +166,8 @@ std::shared_ptr<const Samples> RecordedSamples::frames_of(const FramesOf& frames
 
 std::shared_ptr<const Samples> RecordedSamples::of(std::uint64_t version) {
     if (frames_) return frames_;
-    if (bricks_) return bricks_;
-    const auto samples = made_again(version);
+    const auto edits = edits_at_.find(version);
+    const auto samples = made_again(edits == edits_at_.end() ? version : edits->second);
     return samples ? samples : kept_.at(0);
 }
 

@@ -149,7 +149,7 @@ Replay::Replay(io::RecordingReader& reader, const LoadedVolume& loaded, std::str
       recording_(std::move(recording)),
       session_(recorded_session(reader.head(), loaded, recording_)),
       start_(session_.renderer.settings),
-      samples_(session_.renderer.field.shared_samples(), frames_of(loaded), bricks_of(loaded)) {}
+      samples_(session_.renderer.field.shared_samples(), frames_of(loaded), grid_of(loaded)) {}
 
 void Replay::carry_out(const Command& recorded) {
     try {

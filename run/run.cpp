@@ -36,7 +36,8 @@ std::string utc_now() {
 /// overview.
 Field seen(const Field& field) {
     if (!field.samples().resident()) return field;
-    return Field(field.volume(), field.solid(), field.background(), field.interpolation());
+    return Field(flattened(field.samples()), field.solid(), field.background(),
+                 field.interpolation());
 }
 
 std::unique_ptr<Device> open_for(const Field& field, double isovalue, const Setup& setup) {

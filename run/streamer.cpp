@@ -15,7 +15,9 @@ constexpr double smoothing = 0.05;
 }  // namespace
 
 Streamer::Streamer(const LoadedVolume& loaded)
-    : loader_(loaded.streamed->store, loaded.volume, loaded.streamed->loader) {
+    : loader_(loaded.streamed->store, loaded.volume, loaded.streamed->loader),
+      edits_(loader_.empty()),
+      bricks_(*loader_.empty()->resident()) {
     newest_.samples = loader_.empty();
     thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
@@ -25,13 +27,12 @@ Streamer::~Streamer() {
     thread_.join();
 }
 
-std::unique_ptr<Servo> Streamer::attach(Session session, const StartServo& start) {
+std::unique_ptr<Servo> Streamer::attach(Session session, const StartServo& start,
+                                        std::vector<Command> edits) {
     const std::scoped_lock lock(mutex_);
-    if (newest_.version > 0) apply(session, newest_);
-    std::vector<Command> begin;
-    if (newest_.version > 0) begin.push_back(history());
-    std::unique_ptr<Servo> servo = start(std::move(session), begin);
-    hands_.push_back({.servo = servo.get(), .version = newest_.version});
+    if (newest_.samples != loader_.empty()) apply(session, newest_);
+    std::unique_ptr<Servo> servo = start(std::move(session), history(std::move(edits)));
+    hands_.push_back({.servo = servo.get(), .got = first_ + versions_.size()});
     return servo;
 }
 
@@ -45,11 +46,31 @@ std::shared_ptr<const Samples> Streamer::samples() const {
     return newest_.samples;
 }
 
-/// What a recording that begins now needs: all that is in memory.
-command::Samples Streamer::history() const {
-    BricksOf all;
-    for (const auto& [at, level] : present_) all.bricks.push_back({{at[0], at[1], at[2]}, level});
-    return {nullptr, newest_.version, std::make_shared<const Recipe>(std::move(all))};
+std::uint64_t Streamer::next_version() const {
+    const std::scoped_lock lock(mutex_);
+    return last_ + 1;
+}
+
+void Streamer::use(const command::Samples& edits) {
+    const std::scoped_lock lock(mutex_);
+    edits_ = edits.samples;
+    publish(edits.version, edits.recipe);
+    send();
+}
+
+/// What a recording that begins now needs: the edits and all that is in memory. The last one has
+/// the number of the newest version.
+std::vector<Command> Streamer::history(std::vector<Command> edits) const {
+    std::vector<Command> all = std::move(edits);
+    if (bricks_version_ == 0) return all;
+    BricksOf bricks;
+    for (const auto& [at, level] : present_) {
+        bricks.bricks.push_back({{at[0], at[1], at[2]}, level});
+    }
+    const command::Samples memory{nullptr, bricks_version_,
+                                  std::make_shared<const Recipe>(std::move(bricks))};
+    all.insert(newest_.version == bricks_version_ ? all.end() : all.begin(), memory);
+    return all;
 }
 
 void Streamer::run(const std::stop_token& stop) {
@@ -89,7 +110,7 @@ void Streamer::look() {
 void Streamer::take() {
     auto loaded = loader_.take();
     if (!loaded) return;
-    BricksOf recipe{newest_.version, {}};
+    BricksOf recipe{bricks_version_, {}};
     for (const stream::BrickEvent& event : loaded->events) {
         recipe.bricks.push_back({event.brick, event.level});
         const std::array<int, 3> at{event.brick[0], event.brick[1], event.brick[2]};
@@ -99,24 +120,29 @@ void Streamer::take() {
             present_[at] = event.level;
         }
     }
-    newest_ = {std::move(loaded->samples), newest_.version + 1,
-               std::make_shared<const Recipe>(std::move(recipe))};
+    bricks_ = *loaded->samples->resident();
+    bricks_version_ = last_ + 1;
+    publish(bricks_version_, std::make_shared<const Recipe>(std::move(recipe)));
+}
+
+/// Puts edits and bricks together.
+void Streamer::publish(std::uint64_t version, std::shared_ptr<const Recipe> recipe) {
+    last_ = std::max(last_, version);
+    newest_ = {std::make_shared<const Samples>(edits_->with(bricks_)), version, std::move(recipe)};
     versions_.push_back(newest_);
 }
 
 /// Every version to every servo, in order, because a recording needs each step.
 void Streamer::send() {
+    const std::uint64_t all = first_ + versions_.size();
     for (Hand& hand : hands_) {
-        for (const command::Samples& version : versions_) {
-            if (version.version <= hand.version) continue;
-            if (!hand.servo->send(version)) break;
-            hand.version = version.version;
-        }
+        while (hand.got < all && hand.servo->send(versions_[hand.got - first_])) ++hand.got;
     }
-    std::erase_if(versions_, [&](const command::Samples& version) {
-        return std::ranges::all_of(
-            hands_, [&](const Hand& hand) { return hand.version >= version.version; });
-    });
+    while (!versions_.empty() &&
+           std::ranges::all_of(hands_, [&](const Hand& hand) { return hand.got > first_; })) {
+        versions_.pop_front();
+        ++first_;
+    }
 }
 
 }  // namespace palpate::run

@@ -5,6 +5,8 @@
 #include <chrono>
 #include <stdexcept>
 
+#include "palpate/run/streamer.hpp"
+
 namespace palpate::run {
 namespace {
 
@@ -21,27 +23,55 @@ constexpr double longest_step = 0.1;
 constexpr int attempts = 200;
 /// A command that was sent after tick n shows in tick n + sure at the latest.
 constexpr std::int64_t sure = 2;
+/// Of the memory of a volume that is read as it is felt: for edits, and for what undo needs.
+constexpr std::uint64_t edits_part = 4, history_part = 8;
+
+std::uint64_t bytes_of_edits(const Samples& samples) {
+    const Bricks* bricks = samples.bricks();
+    return bricks ? bricks->size() * Bricks::per_brick * size_of(samples.type()) : 0;
+}
 
 }  // namespace
 
 VolumeEditor::VolumeEditor(std::shared_ptr<const Samples> samples)
-    : editor_(samples), versions_{{samples, {}}} {
+    : VolumeEditor(std::move(samples), nullptr, 0) {}
+
+VolumeEditor::VolumeEditor(std::shared_ptr<const Samples> samples, Streamer& streamer,
+                           std::uint64_t memory)
+    : VolumeEditor(std::move(samples), &streamer, memory) {}
+
+VolumeEditor::VolumeEditor(std::shared_ptr<const Samples> samples, Streamer* streamer,
+                           std::uint64_t memory)
+    : streamer_(streamer),
+      memory_(memory),
+      editor_(streamer ? Editor(samples, memory / history_part,
+                                [this](const SampleBox& box, std::span<std::byte> out) {
+                                    read(box, out);
+                                })
+                       : Editor(samples)),
+      versions_{{samples, {}}} {
     publish();
     thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
 
 VolumeEditor::~VolumeEditor() {
     thread_.request_stop();
+    reading_.request_stop();
     thread_.join();
 }
 
 std::unique_ptr<Servo> VolumeEditor::attach(Session session, const StartServo& start) {
     const std::scoped_lock lock(mutex_);
-    const std::uint64_t version = version_of(editor_.samples());
-    palpate::apply(session, command::Samples{editor_.samples(), version});
     const Field field = session.renderer.field;
     const std::shared_ptr<const Tool> tool = session.renderer.settings.tool;
-    std::unique_ptr<Servo> servo = start(std::move(session), history());
+    std::unique_ptr<Servo> servo;
+    if (streamer_) {
+        servo = streamer_->attach(std::move(session), start, history());
+    } else {
+        const std::uint64_t version = version_of(editor_.samples());
+        palpate::apply(session, command::Samples{editor_.samples(), version});
+        servo = start(std::move(session), history());
+    }
     hands_.push_back({servo.get(), field, tool});
     new_step_ = true;
     return servo;
@@ -50,6 +80,7 @@ std::unique_ptr<Servo> VolumeEditor::attach(Session session, const StartServo& s
 void VolumeEditor::detach(const Servo& servo) {
     const std::scoped_lock lock(mutex_);
     std::erase_if(hands_, [&](const Hand& hand) { return hand.servo == &servo; });
+    if (streamer_) streamer_->detach(servo);
     new_step_ = true;
 }
 
@@ -109,15 +140,19 @@ std::uint64_t VolumeEditor::version_of(const std::shared_ptr<const Samples>& sam
     for (std::size_t i = versions_.size(); i-- > 0;) {
         // By owner: the memory of a version that has expired may be used again by this one.
         const auto& known = versions_[i].samples;
-        if (!known.owner_before(samples) && !samples.owner_before(known)) return i;
+        if (!known.owner_before(samples) && !samples.owner_before(known)) {
+            return versions_[i].recipe.version;
+        }
     }
     return 0;  // not reached: the editor holds what it made
 }
 
 void VolumeEditor::edit(const Edit& asked, EditStep step) {
     const std::uint64_t from = version_of(editor_.samples());
+    edited_bytes_ = bytes_of_edits(*editor_.samples());
     if (editor_.apply(asked, step).empty()) return;
-    command::Samples made{editor_.samples(), versions_.size(),
+    const std::uint64_t number = streamer_ ? streamer_->next_version() : versions_.size();
+    command::Samples made{editor_.samples(), number,
                           std::make_shared<const Recipe>(EditOf{from, asked})};
     versions_.push_back({editor_.samples(), {nullptr, made.version, made.recipe}});
     send(made);
@@ -141,6 +176,11 @@ void VolumeEditor::set_problem(const std::string& problem) {
 /// To every servo, even if one of them takes no commands.
 void VolumeEditor::send(const command::Samples& command) {
     publish();
+    if (streamer_) {
+        streamer_->use(command);
+        streamer_->leave_room(bytes_of_edits(*command.samples) + editor_.history_bytes());
+        return;
+    }
     bool refused = false;
     for (Hand& hand : hands_) {
         int attempt = 0;
@@ -150,6 +190,17 @@ void VolumeEditor::send(const command::Samples& command) {
     if (refused) throw std::runtime_error("the session takes no commands");
 }
 
+/// Samples of a brick that is edited for the first time.
+void VolumeEditor::read(const SampleBox& box, std::span<std::byte> out) {
+    edited_bytes_ += Bricks::per_brick * size_of(editor_.samples()->type());
+    if (edited_bytes_ > memory_ / edits_part) {
+        throw std::invalid_argument(
+            "the edits take more than " + std::to_string(memory_ / edits_part / 1000000) +
+            " MB, a quarter of the memory: allow more, or save them and open what was saved");
+    }
+    streamer_->read(box, out, reading_.get_token());
+}
+
 void VolumeEditor::run(const std::stop_token& stop) {
     while (!stop.stop_requested()) {
         std::this_thread::sleep_for(brush_interval);
@@ -157,7 +208,8 @@ void VolumeEditor::run(const std::stop_token& stop) {
         brush_taken_up_.wait(lock, stop, [this] { return brush_.has_value(); });
         try {
             for (Hand& hand : hands_) brush(hand);
-        } catch (const std::exception& e) {  // a servo that takes no commands, or no memory
+        } catch (const stream::Cancelled&) {  // the editor ends
+        } catch (const std::exception& e) {   // no commands taken, no memory, nothing to be read
             brush_.reset();
             set_problem(std::string("the brush was put down: ") + e.what());
         }
@@ -229,7 +281,7 @@ std::vector<Command> VolumeEditor::history() const {
     std::vector<Command> history;
     for (std::size_t i = 1; i < versions_.size(); ++i) history.emplace_back(versions_[i].recipe);
     const std::uint64_t now = version_of(editor_.samples());
-    if (now + 1 != versions_.size()) {
+    if (now != versions_.back().recipe.version) {
         history.emplace_back(command::Samples{nullptr, now});
     }
     return history;

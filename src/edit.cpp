@@ -6,7 +6,9 @@
 #include <cstring>
 #include <limits>
 #include <stdexcept>
+#include <vector>
 
+#include "edit/before.hpp"
 #include "edit/reach.hpp"
 
 namespace palpate {
@@ -32,20 +34,19 @@ T moved(T old, double aim, double part) {
 
 /// The 3 x 3 x 3 binomial mean of the samples before the edit; those beyond the border count as
 /// those on it.
-double blurred(const Samples& samples, const Index3& at) {
-    const Index3 last = samples.geometry().size - Index3::Ones();
+double blurred(const Before& before, const Index3& at) {
     double sum = 0;
     for (int n = 0; n < 27; ++n) {
         const Index3 by(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
-        const Index3 from = (at + by).cwiseMax(Index3::Zero()).cwiseMin(last);
-        sum += samples.sample(from) * (8 >> by.cwiseAbs().sum());
+        const Index3 from = (at + by).cwiseMax(Index3::Zero()).cwiseMin(before.last());
+        sum += before.sample(from) * (8 >> by.cwiseAbs().sum());
     }
     return sum / 64;
 }
 
 /// A sample where a brush has this effect.
 template <class T>
-T brushed(const Brush& brush, double w, const Samples& before, const Index3& at, T old) {
+T brushed(const Brush& brush, double w, const Before& before, const Index3& at, T old) {
     if (!(w > 0)) return old;  // or NaN, where the ends are so far apart that squares overflow
     if (brush.kind == BrushKind::paint) return moved(old, brush.value, w * brush.strength);
     if (brush.kind == BrushKind::smooth) {
@@ -61,45 +62,74 @@ T brushed(const Brush& brush, double w, const Samples& before, const Index3& at,
 /// Copies and changes the bricks that hold samples of a box; bricks that do not change stay shared.
 class Rewriting {
   public:
-    Rewriting(const Samples& before, const SampleBox& box)
+    Rewriting(Before& before, const SampleBox& box)
         : before_(before),
-          geometry_(before.geometry()),
-          box_{box.low.cwiseMax(Index3::Zero()),
-               box.high.cwiseMin(geometry_.size - Index3::Ones())},
-          minimum_(before.minimum()),
-          maximum_(before.maximum()) {}
+          box_{box.low.cwiseMax(Index3::Zero()), box.high.cwiseMin(before.last())},
+          minimum_(before.samples().minimum()),
+          maximum_(before.samples().maximum()) {}
 
-    /// `value(at, old)` gives the new value of a sample.
-    template <class T, class F>
-    Edited run(const std::shared_ptr<const Samples>& samples, F&& value) {
+    /// `value(at, old)` gives the new value of a sample, `reaches(at)` says whether it may differ.
+    /// `around`: how far the samples lie from it that it depends on.
+    template <class T>
+    Edited run(const std::shared_ptr<const Samples>& samples, int around, auto&& reaches,
+               auto&& value) {
         if (box_.empty()) return {samples, {}};
-        bricks_ = before_.bricks() ? *before_.bricks() : no_bricks(geometry_);
         // A sample on the border of a brick lies in the brick before as well.
         const Index3 first = (box_.low - Index3::Ones()).cwiseMax(Index3::Zero()) / Bricks::cells;
         const Index3 last = box_.high / Bricks::cells;
         for (int k = first[2]; k <= last[2]; ++k) {
             for (int j = first[1]; j <= last[1]; ++j) {
-                for (int i = first[0]; i <= last[0]; ++i) rewrite<T>({i, j, k}, value);
+                for (int i = first[0]; i <= last[0]; ++i) {
+                    if (before_.is_large() && !prepare({i, j, k}, around, reaches)) continue;
+                    rewrite<T>({i, j, k}, value);
+                }
             }
         }
         if (changed_.empty()) return {samples, {}};
-        return {std::make_shared<const Samples>(before_.volume(), std::move(bricks_), minimum_,
-                                                maximum_),
+        const Bricks bricks =
+            samples->bricks() ? *samples->bricks() : Bricks(samples->geometry().size);
+        return {std::make_shared<const Samples>(
+                    samples->with(bricks.with(changes_), minimum_, maximum_)),
                 changed_};
     }
 
   private:
+    /// The samples of a brick that the edit may change.
+    SampleBox part_of(const Index3& brick) const {
+        const Index3 low = brick * Bricks::cells;
+        return {box_.low.cwiseMax(low), box_.high.cwiseMin(low + Index3::Constant(Bricks::cells))};
+    }
+
+    /// Of a large grid: fetches what a brick needs; false if the edit does not reach it.
+    bool prepare(const Index3& brick, int around, auto&& reaches) {
+        bool reached = false;
+        const SampleBox part = part_of(brick);
+        for (int k = part.low[2]; k <= part.high[2] && !reached; ++k) {
+            for (int j = part.low[1]; j <= part.high[1] && !reached; ++j) {
+                for (int i = part.low[0]; i <= part.high[0] && !reached; ++i) {
+                    reached = reaches(Index3(i, j, k));
+                }
+            }
+        }
+        const bool held = before_.samples().bricks() && before_.samples().bricks()->at(brick);
+        if (!reached || (held && around == 0)) return reached;
+        const Index3 low = brick * Bricks::cells;
+        before_.fetch(
+            {low - Index3::Constant(around), low + Index3::Constant(Bricks::cells + around)});
+        return true;
+    }
+
     template <class T>
     std::shared_ptr<std::byte[]> copy_of(const Index3& low) const {
         auto brick = std::shared_ptr<std::byte[]>(new std::byte[Bricks::per_brick * sizeof(T)]());
-        auto* to = reinterpret_cast<T*>(brick.get());
-        const T* whole = static_cast<const T*>(before_.volume().data());
-        const Index3 end = (low + Index3::Constant(Bricks::samples)).cwiseMin(geometry_.size);
+        const Index3 end =
+            (low + Index3::Constant(Bricks::samples)).cwiseMin(before_.last() + Index3::Ones());
+        const auto row = static_cast<std::size_t>(end[0] - low[0]) * sizeof(T);
         for (int k = low[2]; k < end[2]; ++k) {
             for (int j = low[1]; j < end[1]; ++j) {
-                const auto from =
-                    (std::ptrdiff_t{k} * geometry_.size[1] + j) * geometry_.size[0] + low[0];
-                std::copy_n(whole + from, end[0] - low[0], to + place({low[0], j, k}, low));
+                const Index3 at(low[0], j, k);
+                const auto to = static_cast<std::size_t>(place(at, low)) * sizeof(T);
+                std::memcpy(brick.get() + to, before_.row(at), row);
             }
         }
         return brick;
@@ -110,12 +140,12 @@ class Rewriting {
                at[0] - low[0];
     }
 
-    template <class T, class F>
-    void rewrite(const Index3& brick, F&& value) {
+    template <class T>
+    void rewrite(const Index3& brick, auto&& value) {
         const Index3 low = brick * Bricks::cells;
-        const SampleBox part{box_.low.cwiseMax(low),
-                             box_.high.cwiseMin(low + Index3::Constant(Bricks::cells))};
-        auto& held = bricks_.at[bricks_.place(brick)];
+        const SampleBox part = part_of(brick);
+        const Bricks* before = before_.samples().bricks();
+        const Bricks::Brick held = before ? before->at(brick) : nullptr;
         std::shared_ptr<std::byte[]> fresh;
         if (held) {
             fresh = std::shared_ptr<std::byte[]>(new std::byte[Bricks::per_brick * sizeof(T)]);
@@ -140,15 +170,14 @@ class Rewriting {
             }
         }
         if (changed.empty()) return;
-        held = std::move(fresh);
+        changes_.push_back({brick, std::move(fresh)});
         changed_ = united(changed_, changed);
     }
 
-    const Samples& before_;
-    const Geometry& geometry_;
+    Before& before_;
     SampleBox box_, changed_;
     double minimum_, maximum_;
-    Bricks bricks_;
+    std::vector<Bricks::Change> changes_;
 };
 
 /// Whether a brush never changes a sample of this value. Saves computing its effect in the air.
@@ -159,32 +188,39 @@ bool is_beyond(const Brush& brush, double old) {
 }
 
 template <class T>
-Edited edited_by(const std::shared_ptr<const Samples>& samples, const Brush& brush,
+Edited edited_by(const std::shared_ptr<const Samples>& samples, Before& before, const Brush& brush,
                  const auto& reach) {
-    return Rewriting(*samples, reach.box()).run<T>(samples, [&](const Index3& at, T old) {
-        if (is_beyond(brush, double(old))) return old;
-        return brushed(brush, reach.weight(at), *samples, at, old);
-    });
+    return Rewriting(before, reach.box())
+        .run<T>(
+            samples, brush.kind == BrushKind::smooth ? 1 : 0,
+            [&](const Index3& at) { return reach.weight(at) > 0; },
+            [&](const Index3& at, T old) {
+                if (is_beyond(brush, double(old))) return old;
+                return brushed(brush, reach.weight(at), before, at, old);
+            });
 }
 
 template <class T>
-Edited edited_as(const std::shared_ptr<const Samples>& samples, const Edit& edit) {
+Edited edited_as(const std::shared_ptr<const Samples>& samples, const Edit& edit,
+                 const ReadSamples& read) {
     const Geometry& geometry = samples->geometry();
+    Before before(*samples, read);
     if (const auto* stroke = std::get_if<edit::Stroke>(&edit)) {
-        return edited_by<T>(samples, stroke->brush, StrokeReach(*stroke, geometry));
+        return edited_by<T>(samples, before, stroke->brush, StrokeReach(*stroke, geometry));
     }
     if (const auto* sweep = std::get_if<edit::Sweep>(&edit)) {
-        return edited_by<T>(samples, sweep->brush, SweepReach(*sweep, geometry));
+        return edited_by<T>(samples, before, sweep->brush, SweepReach(*sweep, geometry));
     }
+    const auto everywhere = [](const Index3&) { return true; };
     if (const auto* fill = std::get_if<edit::Fill>(&edit)) {
         const T value = fitted<T>(fill->value);
-        return Rewriting(*samples, fill->box).run<T>(samples, [&](const Index3&, T) {
+        return Rewriting(before, fill->box).run<T>(samples, 0, everywhere, [&](const Index3&, T) {
             return value;
         });
     }
     const auto& replace = std::get<edit::Replace>(edit);
     const SampleBox box{replace.at, replace.at + replace.samples.geometry().size - Index3::Ones()};
-    return Rewriting(*samples, box).run<T>(samples, [&](const Index3& at, T) {
+    return Rewriting(before, box).run<T>(samples, 0, everywhere, [&](const Index3& at, T) {
         return fitted<T>(replace.samples.sample(at - replace.at));
     });
 }
@@ -278,10 +314,16 @@ void check(const Edit& edit, const Samples& samples) {
     }
 }
 
-Edited edited(const std::shared_ptr<const Samples>& samples, const Edit& edit) {
+Edited edited(const std::shared_ptr<const Samples>& samples, const Edit& edit,
+              const ReadSamples& read) {
     check(edit, *samples);
+    if (samples->resident() && !read) {
+        throw std::invalid_argument(
+            "samples that are not in memory can only be edited as they are "
+            "read: give what reads them");
+    }
     return with_type(samples->type(),
-                     [&](auto zero) { return edited_as<decltype(zero)>(samples, edit); });
+                     [&](auto zero) { return edited_as<decltype(zero)>(samples, edit, read); });
 }
 
 Brush brush_for(BrushKind kind, const Field& field, double isovalue, double radius) {

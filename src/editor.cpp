@@ -6,8 +6,11 @@
 
 namespace palpate {
 
-Editor::Editor(std::shared_ptr<const Samples> samples, std::size_t history_bytes)
-    : samples_(std::move(samples)), saved_(samples_), most_bytes_(history_bytes) {
+Editor::Editor(std::shared_ptr<const Samples> samples, std::size_t history_bytes, ReadSamples read)
+    : samples_(std::move(samples)),
+      saved_(samples_),
+      most_bytes_(history_bytes),
+      read_(std::move(read)) {
     if (!samples_) throw std::invalid_argument("an editor needs samples");
 }
 
@@ -15,14 +18,16 @@ namespace {
 
 /// Bytes that only one of two versions holds, and those of a table of bricks.
 std::size_t bytes_between(const Samples& before, const Samples& after) {
+    const Bricks none(after.geometry().size);
+    const Bricks& old = before.bricks() ? *before.bricks() : none;
     return bytes_apart(before, after) + bytes_apart(after, before) +
-           after.bricks()->at.size() * sizeof(after.bricks()->at.front());
+           after.bricks()->table_bytes_apart(old);
 }
 
 }  // namespace
 
 SampleBox Editor::apply(const Edit& edit, EditStep step) {
-    Edited result = edited(samples_, edit);
+    Edited result = edited(samples_, edit, read_);
     begun_ |= step == EditStep::own;
     if (result.changed.empty()) return {};
     const bool same = !std::exchange(begun_, false) && undone_from_ > 0 && redo_steps() == 0;

@@ -144,6 +144,7 @@ void Field::look() noexcept {
     moment_ = samples_->moment_at(time_);
     data_ = samples_->frames()[moment_.from].volume.data();
     resident_ = samples_->resident();
+    bricks_ = samples_->bricks();
     type_ = samples_->type();
     const double low = std::min(samples_->minimum(), background_);
     const double high = std::max(samples_->maximum(), background_);
@@ -154,7 +155,7 @@ void Field::look() noexcept {
     if (offset_ != 0) largest = high - low;
     // Edited, interpolated or shifted samples take the slow path, so that plain ones have no extra
     // cost.
-    const bool changing = samples_->bricks() || moment_.weight > 0 || offset_ != 0 || resident_;
+    const bool changing = bricks_ || moment_.weight > 0 || offset_ != 0 || resident_;
     plain_ = changing ? Index3(Index3::Zero()) : Index3(size_ - Index3::Ones());
     tolerance_ = std::max(1e-12 * range_, 8 * std::numeric_limits<double>::epsilon() * largest);
     lowest_ = (low - offset_) - range_;
@@ -217,7 +218,7 @@ Neighbours Field::other_around(const Index3& at) const {
         return samples;
     }
     if ((resident_ || !is_inner(at)) && !shows_labels_) {
-        if (!samples_->bricks() && !(moment_.weight > 0) && !resident_) {
+        if (!bricks_ && !(moment_.weight > 0) && !resident_) {
             return with_type(type_, [&](auto zero) { return clipped<decltype(zero)>(at); });
         }
         for (int i = 0; i < 27; ++i) {
@@ -254,6 +255,20 @@ CellSamples Field::absolute_cell(const Index3& cell) const {
     return stored_cell(cell);
 }
 
+/// True if a cell that meets at a sample inside the grid lies in an edited brick.
+bool Field::is_edited_around(const Index3& at) const {
+    const Index3 low = at - Index3::Ones();
+    if (((low.array() / Bricks::cells) == (at.array() / Bricks::cells)).all()) {
+        return bricks_->of_cell(at);
+    }
+    bool edited = false;
+    for (int side = 0; side < 8; ++side) {
+        const Index3 cell(low[0] + (side & 1), low[1] + (side >> 1 & 1), low[2] + (side >> 2));
+        edited = edited || bricks_->of_cell(cell);
+    }
+    return edited;
+}
+
 /// What samples that are not in memory count as [data units].
 double Field::most_solid() const {
     return sign_ > 0 ? samples_->maximum() : samples_->minimum();
@@ -268,22 +283,22 @@ double Field::sample_at(const Index3& at) const {
 
 /// Of a cell inside the grid, as they are stored.
 CellSamples Field::stored_cell(const Index3& cell) const {
-    if (resident_) {
-        const ResidentBrick* brick = resident_->of_sample(cell);
-        if (brick) {
-            return corners(type_, brick->samples.get(), ResidentBricks::place_of(cell),
-                           ResidentBricks::row, ResidentBricks::slice);
-        }
+    const ResidentBrick* resident = resident_ ? resident_->of_sample(cell) : nullptr;
+    if (resident_ && !resident) {
         CellSamples samples;
         samples.fill(most_solid());
         return samples;
     }
-    if (const Bricks* bricks = samples_->bricks()) {
-        if (const std::byte* brick = bricks->of_cell(cell)) {
+    if (bricks_) {
+        if (const std::byte* brick = bricks_->of_cell(cell)) {
             constexpr std::ptrdiff_t row = Bricks::samples, slice = row * Bricks::samples;
             const auto at = (cell[0] & 15) + (cell[1] & 15) * row + (cell[2] & 15) * slice;
             return corners(type_, brick, at, row, slice);
         }
+    }
+    if (resident) {
+        return corners(type_, resident->samples.get(), ResidentBricks::place_of(cell),
+                       ResidentBricks::row, ResidentBricks::slice);
     }
     const std::ptrdiff_t at = cell[0] + cell[1] * row_ + cell[2] * slice_;
     CellSamples samples = corners(type_, data_, at, row_, slice_);

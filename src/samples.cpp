@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
+#include <map>
 #include <stdexcept>
+#include <tuple>
 
 namespace palpate {
 namespace {
@@ -52,6 +55,45 @@ void copy_brick(const std::byte* brick, const Index3& low, const Geometry& geome
     }
 }
 
+/// Gives the samples of an overview that lie in an edited brick its nearest samples.
+void show_brick(const Samples& samples, const Index3& low, const Geometry& overview,
+                std::byte* whole) {
+    const Geometry& geometry = samples.geometry();
+    const Index3 last =
+        (low + Index3::Constant(Bricks::cells - 1)).cwiseMin(geometry.size - Index3::Ones());
+    Vec3 lowest = Vec3::Constant(std::numeric_limits<double>::infinity()), highest = -lowest;
+    for (int corner = 0; corner < 8; ++corner) {
+        Vec3 at = low.cast<double>();
+        for (int a = 0; a < 3; ++a) at[a] = (corner >> a & 1) ? last[a] + 0.5 : low[a] - 0.5;
+        const Vec3 there = index_from_physical(overview, physical_from_index(geometry, at));
+        lowest = lowest.cwiseMin(there);
+        highest = highest.cwiseMax(there);
+    }
+    const Vec3 end = (overview.size - Index3::Ones()).cast<double>();
+    const Index3 first = lowest.array().ceil().max(0).min(end.array()).cast<int>();
+    const Index3 to = highest.array().floor().max(-1).min(end.array()).cast<int>();
+    with_type(samples.type(), [&](auto zero) {
+        auto* out = reinterpret_cast<decltype(zero)*>(whole);
+        for (int k = first[2]; k <= to[2]; ++k) {
+            for (int j = first[1]; j <= to[1]; ++j) {
+                for (int i = first[0]; i <= to[0]; ++i) {
+                    const Vec3 fine =
+                        index_from_physical(geometry, physical_from_index(overview, Vec3(i, j, k)));
+                    const Index3 at = fine.array().round().cast<int>();
+                    const bool here =
+                        (at.array() >= low.array()).all() && (at.array() <= last.array()).all();
+                    if (!here) continue;
+                    const auto place =
+                        (std::size_t(k) * std::size_t(overview.size[1]) + std::size_t(j)) *
+                            std::size_t(overview.size[0]) +
+                        std::size_t(i);
+                    out[place] = static_cast<decltype(zero)>(samples.sample(at));
+                }
+            }
+        }
+    });
+}
+
 template <class T>
 void blend(const Volume& from, const Volume& to, double weight, std::byte* whole) {
     const auto a = from.samples<T>();
@@ -65,12 +107,67 @@ void blend(const Volume& from, const Volume& to, double weight, std::byte* whole
 
 }  // namespace
 
-Bricks no_bricks(const Geometry& geometry) {
-    Bricks bricks;
-    // A grid of one sample has no cell inside; its samples still need a brick.
-    bricks.count = (geometry.size + Index3::Constant(Bricks::cells - 1)) / Bricks::cells;
-    bricks.at.resize(static_cast<std::size_t>(bricks.count.cast<std::int64_t>().prod()));
-    return bricks;
+// A grid of one sample has no cell inside; its samples still need a brick.
+Bricks::Bricks(const Index3& size)
+    : count_((size + Index3::Constant(cells - 1)) / cells),
+      blocks_((count_ + Index3::Constant(3)) / 4) {}
+
+Bricks Bricks::with(std::span<const Change> changes) const {
+    Bricks after = *this;
+    std::map<std::array<int, 3>, std::shared_ptr<Block>> changed;
+    for (const Change& change : changes) {
+        if ((change.brick.array() < 0).any() || (change.brick.array() >= count_.array()).any()) {
+            throw std::out_of_range("a brick outside the grid");
+        }
+        const Index3 at = change.brick / 4;
+        std::shared_ptr<Block>& block = changed[{at[0], at[1], at[2]}];
+        if (!block) {
+            const auto* before = blocks_.at(at);
+            block =
+                before && *before ? std::make_shared<Block>(**before) : std::make_shared<Block>();
+        }
+        Brick& brick = (*block)[place_in_block(change.brick)];
+        after.size_ += change.to ? 1 : 0;
+        after.size_ -= brick ? 1 : 0;
+        brick = change.to;
+    }
+    std::vector<Blocks::Change> blocks;
+    for (auto& [at, block] : changed) {
+        const bool empty = std::ranges::all_of(*block, [](const Brick& brick) { return !brick; });
+        blocks.push_back({{at[0], at[1], at[2]}, empty ? nullptr : std::move(block)});
+    }
+    after.blocks_ = blocks_.with(blocks);
+    return after;
+}
+
+void Bricks::for_each_apart(
+    const Bricks& other,
+    const std::function<void(const Index3&, const Brick&, const Brick&)>& visit) const {
+    const Brick none;
+    blocks_.for_each_apart(other.blocks_,
+                           [&](const Index3& at, const auto& mine, const auto& theirs) {
+                               if (mine == theirs) return;
+                               for (std::size_t i = 0; i < std::tuple_size_v<Block>; ++i) {
+                                   const Brick& a = mine ? (*mine)[i] : none;
+                                   const Brick& b = theirs ? (*theirs)[i] : none;
+                                   const auto in = static_cast<int>(i);
+                                   if (a != b)
+                                       visit(4 * at + Index3(in & 3, in >> 2 & 3, in >> 4), a, b);
+                               }
+                           });
+}
+
+void Bricks::for_each(const std::function<void(const Index3&, const Brick&)>& visit) const {
+    for_each_apart(Bricks(count_ * cells), [&](const Index3& brick, const Brick& samples,
+                                               const Brick&) { visit(brick, samples); });
+}
+
+std::size_t Bricks::table_bytes_apart(const Bricks& other) const {
+    std::size_t bytes = blocks_.bytes_apart(other.blocks_);
+    blocks_.for_each_apart(other.blocks_, [&](const Index3&, const auto& mine, const auto& theirs) {
+        bytes += mine && mine != theirs ? sizeof(Block) : 0;
+    });
+    return bytes;
 }
 
 Samples::Samples(Volume volume) : minimum_(volume.minimum()), maximum_(volume.maximum()) {
@@ -79,14 +176,26 @@ Samples::Samples(Volume volume) : minimum_(volume.minimum()), maximum_(volume.ma
 }
 
 Samples::Samples(Volume volume, Bricks bricks, double minimum, double maximum)
-    : Samples(std::move(volume)) {
-    const Bricks fitting = no_bricks(geometry());
-    if (bricks.count != fitting.count || bricks.at.size() != fitting.at.size()) {
+    : Samples(Samples(std::move(volume)).with(std::move(bricks), minimum, maximum)) {}
+
+Samples Samples::with(Bricks bricks, double minimum, double maximum) const {
+    if (bricks.count() != Bricks(geometry().size).count()) {
         throw std::invalid_argument("the bricks do not fit the grid");
     }
-    bricks_ = std::move(bricks);
-    minimum_ = std::min(minimum_, minimum);
-    maximum_ = std::max(maximum_, maximum);
+    Samples edited = *this;
+    edited.bricks_ = std::move(bricks);
+    edited.minimum_ = std::min(minimum_, minimum);
+    edited.maximum_ = std::max(maximum_, maximum);
+    return edited;
+}
+
+Samples Samples::with(ResidentBricks resident) const {
+    if (resident.count() != ResidentBricks(geometry().size).count()) {
+        throw std::invalid_argument("the bricks do not fit the grid");
+    }
+    Samples other = *this;
+    other.resident_ = std::move(resident);
+    return other;
 }
 
 Samples::Samples(std::vector<Frame> frames, double period)
@@ -141,17 +250,17 @@ double Samples::within(double time) const noexcept {
 }
 
 double Samples::sample(const Index3& i, const Moment& moment) const {
-    if (resident_) {
-        return sample_of(type(), resident_->of_sample(i)->samples.get(),
-                         static_cast<std::size_t>(ResidentBricks::place_of(i)));
-    }
-    if (const Bricks* edits = bricks()) {
-        const std::byte* brick = edits->of_cell(i);
+    if (bricks_) {
+        const std::byte* brick = bricks_->of_cell(i);
         if (brick) {
             const Index3 in(i[0] & 15, i[1] & 15, i[2] & 15);
             const auto at = (in[2] * Bricks::samples + in[1]) * Bricks::samples + in[0];
             return sample_of(type(), brick, static_cast<std::size_t>(at));
         }
+    }
+    if (resident_) {
+        return sample_of(type(), resident_->of_sample(i)->samples.get(),
+                         static_cast<std::size_t>(ResidentBricks::place_of(i)));
     }
     const double from = frames_[moment.from].volume.sample(i);
     if (!(moment.weight > 0)) return from;
@@ -164,7 +273,6 @@ Volume flattened(const Samples& samples, const Moment& moment) {
     const Bricks* bricks = samples.bricks();
     if (!between && !bricks) return from;
 
-    const Geometry& geometry = samples.geometry();
     const std::shared_ptr<std::byte[]> whole(new std::byte[from.bytes()]);
     if (between) {
         const Volume& to = samples.frames()[moment.to].volume;
@@ -173,26 +281,28 @@ Volume flattened(const Samples& samples, const Moment& moment) {
     } else {
         std::memcpy(whole.get(), from.data(), from.bytes());
     }
-    for (std::size_t i = 0; bricks && i < bricks->at.size(); ++i) {
-        if (!bricks->at[i]) continue;
-        const auto at = static_cast<int>(i);
-        const Index3 brick(at % bricks->count[0], at / bricks->count[0] % bricks->count[1],
-                           at / (bricks->count[0] * bricks->count[1]));
-        copy_brick(bricks->at[i].get(), brick * Bricks::cells, geometry, size_of(samples.type()),
-                   whole.get());
-    }
-    return {geometry, samples.type(), std::shared_ptr<const void>(whole, whole.get()),
+    const auto put = [&](const Index3& brick, const Bricks::Brick& edited) {
+        const Index3 low = brick * Bricks::cells;
+        if (samples.resident()) {
+            show_brick(samples, low, from.geometry(), whole.get());
+        } else {
+            copy_brick(edited.get(), low, from.geometry(), size_of(samples.type()), whole.get());
+        }
+    };
+    if (bricks) bricks->for_each(put);
+    return {from.geometry(), samples.type(), std::shared_ptr<const void>(whole, whole.get()),
             from.bytes()};
 }
 
 std::size_t bytes_apart(const Samples& samples, const Samples& other) {
     const Bricks* mine = samples.bricks();
     if (!mine) return 0;
-    const Bricks* theirs = other.bricks();
+    const Bricks none(samples.geometry().size);
     std::size_t apart = 0;
-    for (std::size_t i = 0; i < mine->at.size(); ++i) {
-        apart += mine->at[i] && (!theirs || theirs->at[i] != mine->at[i]);
-    }
+    mine->for_each_apart(other.bricks() ? *other.bricks() : none,
+                         [&](const Index3&, const Bricks::Brick& here, const Bricks::Brick&) {
+                             apart += here ? 1 : 0;
+                         });
     return apart * Bricks::per_brick * size_of(samples.type());
 }
 

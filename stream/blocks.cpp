@@ -3,36 +3,12 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cstring>
-#include <thread>
+
+#include "stream/box_bytes.hpp"
+#include "stream/small_threads.hpp"
 
 namespace palpate::stream {
 namespace {
-
-std::uint64_t bytes_of(const SampleBox& box, SampleType type) {
-    const Index3 size = box.high - box.low + Index3::Ones();
-    return static_cast<std::uint64_t>(size.cast<std::int64_t>().prod()) * size_of(type);
-}
-
-/// Copies the part of `from` that lies in `to`.
-void copy_box(const SampleBox& from, const std::byte* source, const SampleBox& to,
-              std::byte* target, std::size_t sample) {
-    const Index3 low = from.low.cwiseMax(to.low), high = from.high.cwiseMin(to.high);
-    const auto place = [&](const SampleBox& box, int y, int z) {
-        const Index3 size = box.high - box.low + Index3::Ones();
-        return (static_cast<std::size_t>(z - box.low[2]) * static_cast<std::size_t>(size[1]) +
-                static_cast<std::size_t>(y - box.low[1])) *
-                   static_cast<std::size_t>(size[0]) +
-               static_cast<std::size_t>(low[0] - box.low[0]);
-    };
-    const auto row = static_cast<std::size_t>(high[0] - low[0] + 1) * sample;
-    for (int z = low[2]; z <= high[2]; ++z) {
-        for (int y = low[1]; y <= high[1]; ++y) {
-            std::memcpy(target + place(to, y, z) * sample, source + place(from, y, z) * sample,
-                        row);
-        }
-    }
-}
 
 /// Calls `work(place, box)` for each piece of a level that holds samples of `box`.
 template <class Work>
@@ -80,9 +56,9 @@ void read_by_pieces(const Store& store, int level, const SampleBox& box, std::sp
         }
     };
     {
-        std::vector<std::jthread> others;
+        SmallThreads others;
         for (int i = 1; i < threads && std::size_t(i) < pieces.size(); ++i) {
-            others.emplace_back(work);
+            others.start([&](const std::stop_token&) { work(); });
         }
         work();
     }

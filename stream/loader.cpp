@@ -1,13 +1,18 @@
 // The loader's threads: which brick comes next, which one goes, and what is published.
 #include "palpate/stream/loader.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <fstream>
 #include <stdexcept>
 
 #include "palpate/io/error.hpp"
 #include "stream/blocks.hpp"
 #include "stream/interest.hpp"
+#include "stream/small_threads.hpp"
 
 namespace palpate::stream {
 namespace {
@@ -19,6 +24,8 @@ constexpr std::chrono::seconds pause_after_failure{2};
 constexpr std::uint64_t pieces_part = 4;
 /// Bricks that the hands need first: a cube of three round one.
 constexpr std::size_t most_urgent = 27;
+/// Of the memory of the process.
+constexpr std::chrono::milliseconds between_counts{20};
 
 const Level& level_of(const Store& store, int level) {
     const auto count = static_cast<int>(store.info().levels.size());
@@ -30,8 +37,12 @@ const Level& level_of(const Store& store, int level) {
     return store.info().levels[static_cast<std::size_t>(level)];
 }
 
+std::uint64_t bytes_of_brick(SampleType type) {
+    return ResidentBricks::per_brick * size_of(type);
+}
+
 std::size_t most_bricks(const Store& store, std::uint64_t memory) {
-    const std::uint64_t each = ResidentBricks::per_brick * size_of(store.info().type);
+    const std::uint64_t each = bytes_of_brick(store.info().type);
     const auto count = static_cast<std::size_t>((memory - memory / pieces_part) / each);
     if (count < fewest_bricks) {
         throw std::invalid_argument("at least " +
@@ -39,6 +50,14 @@ std::size_t most_bricks(const Store& store, std::uint64_t memory) {
                                     " MB of memory are needed to feel " + store.info().address);
     }
     return count;
+}
+
+/// That the process has in memory; 0 where the system does not say.
+std::uint64_t resident_bytes() {
+    std::ifstream file("/proc/self/statm");
+    std::uint64_t pages = 0, resident = 0;
+    file >> pages >> resident;
+    return resident * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
 }
 
 std::array<int, 3> array_of(const Index3& at) {
@@ -64,17 +83,14 @@ BrickLoader::BrickLoader(std::shared_ptr<const Store> store, Volume overview,
       geometry_(empty_->geometry()),
       most_bricks_(most_bricks(*store_, settings.memory)),
       blocks_(std::make_unique<Blocks>(*store_, settings.memory / pieces_part)),
-      bricks_(geometry_.size) {
+      bricks_(geometry_.size),
+      threads_(std::make_unique<SmallThreads>()) {
     for (int i = 0; i < std::max(1, settings.threads); ++i) {
-        threads_.emplace_back([this](const std::stop_token& stop) { work(stop); });
+        threads_->start([this](const std::stop_token& stop) { work(stop); });
     }
 }
 
-BrickLoader::~BrickLoader() {
-    for (std::jthread& thread : threads_) thread.request_stop();
-    changed_.notify_all();
-    threads_.clear();
-}
+BrickLoader::~BrickLoader() = default;
 
 void BrickLoader::look(std::span<const Interest> hands) {
     std::vector<Index3> wanted = wanted_bricks(geometry_, empty_->resident()->count(), hands,
@@ -124,7 +140,6 @@ void BrickLoader::wait_for(const Vec3& centre, double radius) {
 BrickLoaderStatus BrickLoader::status() const {
     BrickLoaderStatus status;
     status.traffic = store_->traffic();
-    const std::uint64_t pieces = blocks_->bytes();
     const std::scoped_lock lock(mutex_);
     status.resident = held_.size();
     status.wanted = wanted_.size();
@@ -133,7 +148,7 @@ BrickLoaderStatus BrickLoader::status() const {
         status.missing += missing;
         status.urgent += missing && i < most_urgent;
     }
-    status.bytes = pieces + held_.size() * ResidentBricks::per_brick * size_of(overview_.type());
+    status.bytes = bytes();
     status.most_bytes = std::max(most_bytes_, status.bytes);
     status.loaded = loaded_;
     status.dropped = dropped_;
@@ -232,11 +247,12 @@ void BrickLoader::put(const Job& job, const ResidentBrick& brick) {
     events_.push_back({job.brick, job.coarser});
     ++loaded_;
     make_room();
-    note_bytes();
+    most_bytes_ = std::max(most_bytes_, bytes());
 }
 
 /// Needs the lock. Drops bricks that nobody wants, the farthest from what is wanted most first.
 void BrickLoader::make_room() {
+    count_process();
     if (held_.size() <= most_bricks_) return;
     std::map<Place, int> wanted;
     for (const Index3& brick : wanted_) wanted[{array_of(brick)}] = 1;
@@ -262,10 +278,54 @@ void BrickLoader::make_room() {
     bricks_ = bricks_.with(changes);
 }
 
-void BrickLoader::note_bytes() {
-    const std::uint64_t bytes =
-        blocks_->bytes() + held_.size() * ResidentBricks::per_brick * size_of(overview_.type());
-    most_bytes_ = std::max(most_bytes_, bytes);
+/// Needs the lock.
+std::uint64_t BrickLoader::bytes() const {
+    return blocks_->bytes() + other_bytes_ + held_.size() * bytes_of_brick(overview_.type());
+}
+
+void BrickLoader::read(const SampleBox& box, std::span<std::byte> out, std::stop_token stop) {
+    const Index3 at = ResidentBricks::brick_of(box.low);
+    ResidentBrick held;
+    {
+        const std::scoped_lock lock(mutex_);
+        if (const ResidentBrick* brick = bricks_.at(at)) held = *brick;
+    }
+    const SampleBox has = bricks_.box_of(at);
+    if (!held || held.level != 0 || (box.high.array() > has.high.array()).any()) {
+        blocks_->read(settings_.level, box, out, std::move(stop));
+        return;
+    }
+    const std::size_t each = size_of(overview_.type());
+    const std::size_t row = static_cast<std::size_t>(box.high[0] - box.low[0] + 1) * each;
+    const Index3 first = box.low - at * ResidentBricks::edge;
+    std::byte* to = out.data();
+    for (int z = 0; z <= box.high[2] - box.low[2]; ++z) {
+        for (int y = 0; y <= box.high[1] - box.low[1]; ++y, to += row) {
+            const Index3 in = first + Index3(0, y, z) + Index3::Constant(ResidentBricks::margin);
+            const auto from = in[0] + in[1] * ResidentBricks::row + in[2] * ResidentBricks::slice;
+            std::memcpy(to, held.samples.get() + static_cast<std::size_t>(from) * each, row);
+        }
+    }
+}
+
+void BrickLoader::leave_room(std::uint64_t bytes) {
+    const std::scoped_lock lock(mutex_);
+    other_bytes_ = bytes;
+    make_room();
+}
+
+/// Needs the lock. What else the process holds, and how many bricks that leaves room for.
+void BrickLoader::count_process() {
+    const Clock::time_point now = Clock::now();
+    if (settings_.whole_process && now - counted_ > between_counts) {
+        counted_ = now;
+        const std::uint64_t all = resident_bytes(), ours = bytes();
+        process_bytes_ = all > ours ? all - ours : 0;
+    }
+    const std::uint64_t others = other_bytes_ + process_bytes_;
+    const auto less = static_cast<std::size_t>(others / bytes_of_brick(overview_.type()));
+    const std::size_t all = most_bricks(*store_, settings_.memory);
+    most_bricks_ = all - std::min(less, all - fewest_bricks);
 }
 
 }  // namespace palpate::stream

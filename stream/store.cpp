@@ -5,6 +5,7 @@
 #include "io/plain_samples.hpp"
 #include "io/tiff_peek.hpp"
 #include "palpate/io/error.hpp"
+#include "stream/edited_store.hpp"
 #include "stream/remote_objects.hpp"
 #include "stream/stores.hpp"
 
@@ -101,6 +102,7 @@ std::shared_ptr<const Store> open_store(const std::string& address, const StoreO
         }
         return open_chunked(objects, address, options);
     }
+    if (holds_edits(address)) return open_edits(address, options);
     if (is_chunked_folder(address)) {
         return open_chunked(folder_objects(address), address, options);
     }

@@ -76,7 +76,8 @@ void SourceOptions::add_streaming_to(CLI::App& command) {
         ->check(flaw_in_count);
     command
         .add_option("--memory", memory,
-                    "Most memory that what is felt may take (512MB); a plain file is then read as "
+                    "Most memory that the program may take while it feels (512MB for what is "
+                    "felt); a plain file is then read as "
                     "it is felt")
         ->transform(CLI::AsSizeValue(false));
     command.add_flag("--coarse-first", coarse_first,
@@ -95,7 +96,10 @@ run::Source SourceOptions::source() const {
     if (memory) given["memory"] = "yes";
     run::Source source = run::source_from(given);
     if (auto* store = std::get_if<run::StoreSource>(&source.from)) {
-        if (memory) store->loader.memory = *memory;
+        if (memory) {
+            store->loader.memory = *memory;
+            store->loader.whole_process = true;
+        }
         store->loader.coarse_first = coarse_first;
         store->options.cache_folder = cache_folder;
         store->options.cache_bytes = cache_folder.empty() ? 0 : cache_bytes;

@@ -1,4 +1,6 @@
 // The program `palpate`.
+#include <malloc.h>
+
 #include <algorithm>
 
 #include "apps/palpate/commands.hpp"
@@ -7,6 +9,8 @@
 #include "apps/palpate/window.hpp"
 
 int main(int argc, char** argv) {
+    // Bricks and pieces that are dropped go back to the system, whatever lies behind them.
+    mallopt(M_MMAP_THRESHOLD, 128 << 10);
     using namespace palpate::app;
     if (argc > 1 && argv[1] == evaluation_command) become_evaluation(argv);
     // What follows the command's name, for a command that becomes another program.

@@ -239,7 +239,9 @@ void print_report(const ServoReport& report, double seconds, const DeviceInfo& d
 /// Saves the volume for --save; without it, warns of edits that are lost.
 void save_at_end(run::Data& data, const RunOptions& options) {
     const bool quiet = options.source.quiet;
-    if (!options.save.empty()) {
+    if (!options.save.empty() && data.is_streamed() && !data.editor().state().changed) {
+        if (!quiet) fmt::print(stderr, "nothing was edited, so nothing was saved\n");
+    } else if (!options.save.empty()) {
         // After Ctrl-C as well: then without a bar, which would cancel it.
         std::string saved;
         {
@@ -249,8 +251,7 @@ void save_at_end(run::Data& data, const RunOptions& options) {
             });
         }
         if (!quiet) fmt::print(options.json ? stderr : stdout, "{}\n", saved);
-    } else if (!data.is_sequence() && !data.is_streamed() && data.editor().state().changed &&
-               !quiet) {
+    } else if (!data.is_sequence() && data.editor().state().changed && !quiet) {
         fmt::print(stderr, "the edits were not saved (--save FILE, or the command save FILE)\n");
     }
 }
@@ -304,7 +305,7 @@ void touch(const TouchOptions& options) {
     auto data = std::make_shared<run::Data>(load_for_terminal(options.source), setup.playback);
     auto run = std::make_unique<run::Run>(data, setup);
     warn_of_isovalue(run->field(), run->isovalue());
-    if (!options.save.empty()) run::check_volume_name(options.save, run->field().geometry());
+    if (!options.save.empty()) data->check_save_name(options.save);
     LiveCommands commands = commands_for(*run);
     std::vector<TimedRequest> requests;
     if (!options.commands.empty()) requests = read_commands(options.commands, commands);

@@ -3,6 +3,8 @@
 // the servo thread. See docs/changing_data.md.
 #pragma once
 
+#include <functional>
+#include <span>
 #include <variant>
 
 #include "palpate/field.hpp"
@@ -85,12 +87,19 @@ struct Edited {
     SampleBox changed;
 };
 
+/// Reads a box of the grid, both corners in it, before all edits, where not all samples are in
+/// memory: samples of the volume's type, x fastest. May wait, and throw what it likes.
+using ReadSamples = std::function<void(const SampleBox& box, std::span<std::byte> out)>;
+
 /// Throws std::invalid_argument, saying what is wrong, for an edit that cannot be made: numbers out
 /// of range or not finite, or samples that are a sequence (edit one frame of it instead).
 void check(const Edit& edit, const Samples& samples);
 /// The samples after an edit; values outside the sample type's range are clamped. The same input
-/// gives the same bits. Throws as check() does.
-Edited edited(const std::shared_ptr<const Samples>& samples, const Edit& edit);
+/// gives the same bits. Of a large grid `read` gives the samples of the bricks that are edited for
+/// the first time, whether they are in memory or not. Throws as check() does, for a large grid
+/// without `read`, and what that throws.
+Edited edited(const std::shared_ptr<const Samples>& samples, const Edit& edit,
+              const ReadSamples& read = {});
 
 /// A brush for the level that is felt: carving goes down to the field's background, adding and
 /// painting go as far above the level as the background lies below it.

@@ -16,13 +16,13 @@ enum class EditStep : std::uint8_t { own, same };
 class Editor {
   public:
     /// Keeps at most `history_bytes` of samples for undo() and redo(); the oldest steps are dropped
-    /// first.
+    /// first. `read`: what a large grid needs, see edited().
     explicit Editor(std::shared_ptr<const Samples> samples,
-                    std::size_t history_bytes = std::size_t{512} << 20);
+                    std::size_t history_bytes = std::size_t{512} << 20, ReadSamples read = {});
 
     /// The current version.
     const std::shared_ptr<const Samples>& samples() const { return samples_; }
-    /// Applies an edit and returns the box of samples that changed. Throws as check(Edit) does.
+    /// Applies an edit and returns the box of samples that changed. Throws as edited() does.
     SampleBox apply(const Edit& edit, EditStep step = EditStep::own);
     /// Undoes the last step, or redoes the step undone last. Returns the box of samples that
     /// changed; it is empty if there is no such step.
@@ -50,6 +50,7 @@ class Editor {
     std::size_t undone_from_ = 0;
     bool begun_ = false;  // a new step has begun, and changed nothing so far
     std::size_t most_bytes_;
+    ReadSamples read_;
 };
 
 }  // namespace palpate

@@ -143,6 +143,7 @@ class Field {
         };
         return size_.minCoeff() > 2 && inner(0) && inner(1) && inner(2);
     }
+    bool is_edited_around(const Index3& at) const;
     double most_solid() const;
     double sample_at(const Index3& index) const;
     CellSamples stored_cell(const Index3& cell) const;
@@ -158,6 +159,7 @@ class Field {
     Moment moment_;
     const void* data_ = nullptr;  // of the frame before the moment
     const ResidentBricks* resident_ = nullptr;
+    const Bricks* bricks_ = nullptr;
     std::ptrdiff_t row_ = 0;    // samples between neighbours in y
     std::ptrdiff_t slice_ = 0;  // samples between neighbours in z
     double background_ = 0;
@@ -209,7 +211,7 @@ inline auto Field::visit_around(const Index3& at, Visit&& visit) const {
             return visit(static_cast<const decltype(zero)*>(data_) + offset, row_, slice_);
         });
     }
-    if (resident_ && offset_ == 0 && is_inner(at)) {
+    if (resident_ && offset_ == 0 && is_inner(at) && !(bricks_ && is_edited_around(at))) {
         if (const ResidentBrick* brick = resident_->of_sample(at)) {
             return with_type(type_, [&](auto zero) {
                 const auto* samples = reinterpret_cast<const decltype(zero)*>(brick->samples.get());

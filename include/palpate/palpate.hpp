@@ -13,6 +13,7 @@
 #include "palpate/volume.hpp"
 #include "palpate/tool.hpp"
 #include "palpate/tool_body.hpp"
+#include "palpate/pages.hpp"
 #include "palpate/resident.hpp"
 #include "palpate/samples.hpp"
 #include "palpate/field.hpp"

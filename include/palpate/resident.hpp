@@ -3,12 +3,10 @@
 // (samples.hpp). See docs/streaming.md.
 #pragma once
 
-#include <array>
 #include <memory>
 #include <span>
-#include <vector>
 
-#include "palpate/volume.hpp"
+#include "palpate/pages.hpp"
 
 namespace palpate {
 
@@ -19,6 +17,8 @@ struct ResidentBrick {
     /// The level of detail that they come from: 0 is the grid's own, others are interpolated from
     /// coarser ones.
     std::uint8_t level = 0;
+
+    explicit operator bool() const { return samples != nullptr; }
 };
 
 /// A value; copies share their bricks. A brick has edge^3 samples and those around them (`margin`),
@@ -34,10 +34,7 @@ class ResidentBricks {
     static constexpr std::size_t per_brick = std::size_t{slice} * row;
 
     /// A brick that comes, or with null samples goes.
-    struct Change {
-        Index3 brick;
-        ResidentBrick to;
-    };
+    using Change = Pages<ResidentBrick, 4>::Change;
 
     /// None of a grid of this size.
     explicit ResidentBricks(const Index3& size);
@@ -45,9 +42,9 @@ class ResidentBricks {
     ResidentBricks with(std::span<const Change> changes) const;
 
     /// Bricks along each axis.
-    const Index3& count() const { return count_; }
+    const Index3& count() const { return bricks_.count(); }
     /// How many are in memory.
-    std::size_t size() const { return size_; }
+    std::size_t size() const { return bricks_.size(); }
     static Index3 brick_of(const Index3& sample) {
         return {sample[0] >> shift, sample[1] >> shift, sample[2] >> shift};
     }
@@ -56,10 +53,8 @@ class ResidentBricks {
     /// The brick that a sample inside the grid belongs to; null: not in memory.
     const ResidentBrick* of_sample(const Index3& sample) const { return at(brick_of(sample)); }
     const ResidentBrick* at(const Index3& brick) const {
-        const Page* page = pages_[page_of(brick)].get();
-        if (!page) return nullptr;
-        const ResidentBrick& found = (*page)[place_in_page(brick)];
-        return found.samples ? &found : nullptr;
+        const ResidentBrick* found = bricks_.at(brick);
+        return found && found->samples ? found : nullptr;
     }
     /// Place of a sample among those of its brick.
     static std::ptrdiff_t place_of(const Index3& sample) {
@@ -71,27 +66,8 @@ class ResidentBricks {
     bool has(const SampleBox& box) const;
 
   private:
-    static constexpr int page_shift = 4;
-    static constexpr int page_edge = 1 << page_shift;
-    using Page = std::array<ResidentBrick, std::size_t{page_edge} * page_edge * page_edge>;
-
-    std::size_t page_of(const Index3& brick) const {
-        return (std::size_t(brick[2] >> page_shift) * std::size_t(pages_along_[1]) +
-                std::size_t(brick[1] >> page_shift)) *
-                   std::size_t(pages_along_[0]) +
-               std::size_t(brick[0] >> page_shift);
-    }
-    static std::size_t place_in_page(const Index3& brick) {
-        constexpr int mask = page_edge - 1;
-        return std::size_t((((brick[2] & mask) << page_shift | (brick[1] & mask)) << page_shift) |
-                           (brick[0] & mask));
-    }
-
-    Index3 grid_;         // samples along each axis
-    Index3 count_;        // bricks
-    Index3 pages_along_;  // pages
-    std::size_t size_ = 0;
-    std::vector<std::shared_ptr<const Page>> pages_;  // null: none of its bricks is in memory
+    Index3 grid_;  // samples along each axis
+    Pages<ResidentBrick, 4> bricks_;
 };
 
 }  // namespace palpate

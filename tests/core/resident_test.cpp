@@ -3,8 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstring>
+#include <functional>
 #include <map>
 
+#include "palpate/edit.hpp"
 #include "palpate/field.hpp"
 #include "support/constants.hpp"
 #include "support/edits.hpp"
@@ -130,6 +134,137 @@ TEST(Resident, versions_are_what_a_map_of_bricks_says_and_share_what_stayed) {
     }
     const ResidentBricks::Change beyond{{20, 0, 0}, {}};
     EXPECT_THROW((void)bricks.with({&beyond, 1}), std::out_of_range);
+}
+
+/// Reads boxes of a volume, and counts how many.
+struct Reader {
+    const Volume& volume;
+    int boxes = 0;
+
+    void operator()(const SampleBox& box, std::span<std::byte> out) {
+        ++boxes;
+        const std::size_t each = size_of(volume.type());
+        const Index3& size = volume.geometry().size;
+        std::size_t to = 0;
+        for (int z = box.low[2]; z <= box.high[2]; ++z) {
+            for (int y = box.low[1]; y <= box.high[1]; ++y) {
+                const std::size_t row = std::size_t(box.high[0] - box.low[0] + 1) * each;
+                const std::size_t from = (std::size_t(z) * std::size_t(size[1]) + std::size_t(y)) *
+                                             std::size_t(size[0]) +
+                                         std::size_t(box.low[0]);
+                ASSERT_LE(to + row, out.size());
+                std::memcpy(out.data() + to,
+                            static_cast<const std::byte*>(volume.data()) + from * each, row);
+                to += row;
+            }
+        }
+        ASSERT_EQ(to, out.size());
+    }
+};
+
+TEST(Resident, edits_made_without_bricks_are_those_of_the_same_samples_in_one_piece) {
+    std::uint64_t seed = 40;
+    int changed = 0, neighbours = 0;
+    for (const SampleType type : sample_types) {
+        for (const Geometry& geometry : large_grids()) {
+            Random random(++seed);
+            const Volume volume = noise_of(type, geometry, seed);
+            Reader reader{volume};
+            PartOf part(volume);
+            auto plain = samples_of(volume);
+            auto large = part.samples();
+            EXPECT_THROW(edited(large, edit::Fill{}), std::invalid_argument) << "nothing reads it";
+            for (int i = 0; i < scaled(6) + 4; ++i) {
+                const Edit edit = random_edit(random, geometry, type);
+                const Edited expected = edited(plain, edit);
+                const Edited got = edited(large, edit, std::ref(reader));
+                ASSERT_EQ(got.changed, expected.changed);
+                ASSERT_EQ(got.samples->minimum(), expected.samples->minimum());
+                ASSERT_EQ(got.samples->maximum(), expected.samples->maximum());
+                plain = expected.samples;
+                large = got.samples;
+                changed += !got.changed.empty();
+            }
+            EXPECT_EQ(large->resident()->size(), 0U);
+            part.add_all();
+            const Field field(std::make_shared<const Samples>(large->with(part.bricks())),
+                              Solid::above, -7.25);
+            const Field same(plain, Solid::above, -7.25);
+            for (int i = 0; i < scaled(3000) + 10; ++i) {
+                const Index3 at(random.below(geometry.size[0] + 4) - 2,
+                                random.below(geometry.size[1] + 4) - 2,
+                                random.below(geometry.size[2] + 4) - 2);
+                ASSERT_EQ(field.cell(at), same.cell(at)) << at.transpose();
+                ASSERT_EQ(field.around(at), same.around(at)) << at.transpose();
+                const auto visited = [&](const Field& f) {
+                    return f.visit_around(at, [](const auto* p, auto row, auto slice) {
+                        return std::array{double(p[0]), double(p[1]), double(p[-row]),
+                                          double(p[slice]), double(p[-slice - row - 1])};
+                    });
+                };
+                ASSERT_EQ(visited(field), visited(same)) << at.transpose();
+                neighbours += field.around(at) != Field(volume, Solid::above, -7.25).around(at);
+            }
+        }
+    }
+    EXPECT_GT(changed, 30);
+    EXPECT_GT(neighbours, 50) << "few samples lie near an edit";
+}
+
+TEST(Resident, an_edit_reads_only_bricks_that_it_reaches_and_each_once) {
+    const Geometry geometry = grid(cube(100));
+    const Volume volume = noise_of(SampleType::uint8, geometry, 3);
+    Reader reader{volume};
+    Brush brush;
+    brush.kind = BrushKind::paint;
+    brush.radius = 1.5;
+    brush.value = 300;
+    // Along the diagonal: its box has 7^3 bricks.
+    const edit::Stroke stroke{brush, Vec3::Zero(), Vec3::Constant(99)};
+    const Edited once = edited(PartOf(volume).samples(), stroke, std::ref(reader));
+    EXPECT_GE(reader.boxes, 7);
+    EXPECT_LE(reader.boxes, 7 * 8);
+    const int before = reader.boxes;
+    edited(once.samples, stroke, std::ref(reader));
+    EXPECT_EQ(reader.boxes, before);
+}
+
+TEST(Resident, an_edited_brick_that_went_is_missing_and_comes_back_edited) {
+    const Geometry geometry = grid(cube(130));
+    const Volume volume = noise_of(SampleType::int16, geometry, 5);
+    Reader reader{volume};
+    PartOf part(volume);
+    part.add_all();
+    const edit::Fill fill{{{60, 60, 60}, {70, 70, 70}}, 99};
+    const Samples after = *edited(part.samples(), fill, std::ref(reader)).samples;
+    part.drop({0, 0, 0});
+    const Field without(std::make_shared<const Samples>(after.with(part.bricks())));
+    for (const double sample : without.cell({61, 61, 61})) EXPECT_EQ(sample, after.maximum());
+    for (const double sample : without.cell({65, 65, 65})) EXPECT_EQ(sample, 99);
+    part.add({0, 0, 0});
+    const Field again(std::make_shared<const Samples>(after.with(part.bricks())));
+    for (const double sample : again.cell({61, 61, 61})) EXPECT_EQ(sample, 99);
+    EXPECT_THROW(after.with(ResidentBricks(cube(64))), std::invalid_argument);
+}
+
+TEST(Resident, the_overview_shows_edits_that_its_samples_lie_in) {
+    const Geometry geometry = grid(cube(128));
+    const Volume volume = noise_of(SampleType::uint8, geometry, 6);
+    // A sample for 4 x 4 x 4, in the middle of them.
+    const Geometry coarse = grid(cube(32), Vec3::Constant(4), Vec3::Constant(1.5));
+    const Volume overview(coarse, std::vector<std::uint8_t>(32 * 32 * 32, 7));
+    Reader reader{volume};
+    const auto large =
+        std::make_shared<const Samples>(overview, geometry, ResidentBricks(geometry.size), 0, 255);
+    const edit::Fill fill{{{0, 16, 16}, {127, 47, 47}}, 200};
+    const Volume shown = flattened(*edited(large, fill, std::ref(reader)).samples);
+    ASSERT_EQ(shown.geometry(), coarse);
+    for_each_sample(coarse, [&](const Index3& at) {
+        const bool in_bricks = at[1] < 12 && at[2] < 12;
+        const bool filled = in_bricks && at[1] >= 4 && at[2] >= 4;
+        const double own = in_bricks ? volume.sample(4 * at + Index3::Constant(2)) : 7;
+        ASSERT_EQ(shown.sample(at), filled ? 200 : own) << at.transpose();
+    });
 }
 
 TEST(Resident, samples_refuse_bricks_of_another_grid_and_bounds_that_are_none) {

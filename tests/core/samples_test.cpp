@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <set>
 
 #include "support/constants.hpp"
@@ -67,15 +68,11 @@ TEST(Samples, neighbouring_bricks_hold_the_samples_between_them_alike) {
         const Volume whole = flattened(*after.samples);
         const auto bytes = size_of(whole.type());
         const Index3& size = whole.geometry().size;
-        for (std::size_t i = 0; i < bricks->at.size(); ++i) {
-            if (!bricks->at[i]) continue;
-            const int n = static_cast<int>(i);
-            const Index3 low(n % bricks->count[0] * 16,
-                             n / bricks->count[0] % bricks->count[1] * 16,
-                             n / (bricks->count[0] * bricks->count[1]) * 16);
+        bricks->for_each([&](const Index3& brick, const Bricks::Brick& samples) {
+            const Index3 low = brick * Bricks::cells;
             for (int at = 0; at < Bricks::per_brick; ++at) {
                 const Index3 sample = low + Index3(at % 17, at / 17 % 17, at / (17 * 17));
-                const std::byte* held = bricks->at[i].get() + static_cast<std::size_t>(at) * bytes;
+                const std::byte* held = samples.get() + static_cast<std::size_t>(at) * bytes;
                 if ((sample.array() >= size.array()).any()) {
                     const std::byte nothing[4] = {};
                     ASSERT_EQ(std::memcmp(held, nothing, bytes), 0) << "beyond the grid";
@@ -90,7 +87,7 @@ TEST(Samples, neighbouring_bricks_hold_the_samples_between_them_alike) {
                     0)
                     << sample.transpose();
             }
-        }
+        });
     });
 }
 
@@ -120,7 +117,7 @@ TEST(Samples, an_edit_makes_those_bricks_anew_that_hold_what_it_changed_and_shar
             EXPECT_EQ(after.samples.get(), &before);
             return;
         }
-        std::set<std::size_t> touched;
+        std::set<std::array<int, 3>> touched;
         const Bricks& now = *after.samples->bricks();
         for_each_sample(before.geometry(), [&](const Index3& at) {
             if (before.sample(at) == after.samples->sample(at)) return;
@@ -132,14 +129,26 @@ TEST(Samples, an_edit_makes_those_bricks_anew_that_hold_what_it_changed_and_shar
                     there = there && at[a] % 16 == 0 && at[a] > 0;
                     --brick[a];
                 }
-                if (there) touched.insert(now.place(brick));
+                if (there) touched.insert({brick[0], brick[1], brick[2]});
             }
         });
-        for (std::size_t i = 0; i < now.at.size(); ++i) {
-            const auto was = before.bricks() ? before.bricks()->at[i].get() : nullptr;
-            ASSERT_EQ(now.at[i].get() != was, touched.contains(i)) << "brick " << i;
-            (touched.contains(i) ? fresh : shared) += 1;
-        }
+        const Bricks none(before.geometry().size);
+        const Bricks& old = before.bricks() ? *before.bricks() : none;
+        std::set<std::array<int, 3>> apart;
+        now.for_each_apart(old, [&](const Index3& at, const auto& mine, const auto& theirs) {
+            ASSERT_EQ(mine, now.at(at));
+            ASSERT_EQ(theirs, old.at(at));
+            ASSERT_TRUE(mine);
+            apart.insert({at[0], at[1], at[2]});
+        });
+        ASSERT_EQ(apart, touched);
+        fresh += static_cast<std::int64_t>(apart.size());
+        std::size_t count = 0;
+        now.for_each([&](const Index3& at, const auto&) {
+            shared += !touched.contains({at[0], at[1], at[2]});
+            ++count;
+        });
+        ASSERT_EQ(now.size(), count);
         EXPECT_EQ(bytes_apart(*after.samples, before),
                   touched.size() * Bricks::per_brick * size_of(before.type()));
     });
@@ -154,11 +163,10 @@ TEST(Samples, flattened_without_edits_is_the_volume_itself) {
 
 TEST(Samples, bricks_that_do_not_fit_the_grid_are_refused) {
     const Volume volume = noise_volume<std::uint8_t>(grid(cube(33)), 1, 0, 256);
-    EXPECT_NO_THROW(Samples(volume, no_bricks(volume.geometry()), 0, 255));
-    EXPECT_THROW(Samples(volume, no_bricks(grid(cube(32))), 0, 255), std::invalid_argument);
-    Bricks few = no_bricks(volume.geometry());
-    few.at.pop_back();
-    EXPECT_THROW(Samples(volume, few, 0, 255), std::invalid_argument);
+    EXPECT_NO_THROW(Samples(volume, Bricks(volume.geometry().size), 0, 255));
+    EXPECT_THROW(Samples(volume, Bricks(cube(32)), 0, 255), std::invalid_argument);
+    const Bricks::Change beyond{{3, 0, 0}, {}};
+    EXPECT_THROW((void)Bricks(cube(33)).with({&beyond, 1}), std::out_of_range);
 }
 
 TEST(Samples, sequences_that_are_none_are_refused) {

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
+#include <fstream>
 
 #include "palpate/run/offline.hpp"
 #include "palpate/run/replay.hpp"
@@ -97,7 +99,6 @@ TEST(Streamed, a_live_run_touches_and_its_recording_repeats_bit_for_bit) {
                     now->session.tick.proxy.status == UpdateStatus::done;
         return contacts > 20;
     }));
-    EXPECT_THROW(data->editor(), std::invalid_argument);
     EXPECT_THROW(data->player(), std::invalid_argument);
     EXPECT_GT(data->streaming().loaded, 0U);
     // A second recording begins with bricks in memory.
@@ -123,6 +124,114 @@ TEST(Streamed, a_live_run_touches_and_its_recording_repeats_bit_for_bit) {
         EXPECT_GT(replay.ticks(), 100);
         EXPECT_GT(replay.commands(), 0);
     }
+}
+
+/// Replays a recording and expects the same ticks; returns how many there are.
+std::int64_t expect_same_again(const std::string& path) {
+    io::RecordingReader reader{std::filesystem::path(path)};
+    const LoadedVolume again = load(recorded_source(reader.head(), path));
+    Replay replay(reader, again, path);
+    while (const auto tick = replay.next()) {
+        const auto differs = difference(tick->recorded, tick->again);
+        EXPECT_FALSE(differs) << tick->number << " " << differs->part << " was "
+                              << differs->recorded << ", is " << differs->again;
+        if (differs) break;
+    }
+    return replay.ticks();
+}
+
+Edit ball_at(const Vec3& centre, double radius, const Field& field, double isovalue) {
+    return edit::Stroke{brush_for(BrushKind::carve, field, isovalue, radius), centre, centre};
+}
+
+TEST(Streamed, what_is_edited_is_felt_undone_recorded_and_repeats_bit_for_bit) {
+    const BallFile ball;
+    const auto data = std::make_shared<Data>(load(ball.streamed()));
+    run::Setup setup;
+    setup.device = devices::parse_device("simulated:hand=explore,seconds=60");
+    setup.real_time = false;
+    run::Run live(data, setup);
+    const std::string recording = (ball.folder.path() / "edits.csv").string();
+    live.record(recording);
+    live.start();
+    // Before any brick need be there: it is read.
+    const Vec3 centre = physical_centre(ball.volume.geometry());
+    const Geometry& geometry = ball.volume.geometry();
+    data->editor().apply(ball_at(centre, 9, live.field(), live.isovalue()));
+    const auto expected = edited(std::make_shared<const Samples>(ball.volume),
+                                 ball_at(centre, 9, live.field(), live.isovalue()));
+    const Index3 middle = index_from_physical(geometry, centre).array().round().cast<int>();
+    EXPECT_EQ(data->editor().state().samples->sample(middle), expected.samples->sample(middle));
+    EXPECT_NE(expected.samples->sample(middle), ball.volume.sample(middle));
+    HandBrush brush = usual_brush(geometry);
+    data->editor().set_brush(brush);
+    EXPECT_TRUE(comes_true([&] { return data->editor().state().undo_steps > 1; }))
+        << "the hand carves: " << data->editor().state().problem;
+    data->editor().set_brush(std::nullopt);
+    const std::string later = (ball.folder.path() / "later.csv").string();
+    live.record(later);  // begins with the edits and what is in memory
+    data->editor().apply(edit::Fill{{{5, 5, 5}, {30, 30, 30}}, 0});
+    EXPECT_TRUE(data->editor().undo());
+    EXPECT_TRUE(data->editor().undo());
+    EXPECT_TRUE(data->editor().redo());
+    const std::string last = (ball.folder.path() / "last.csv").string();
+    live.record(last);  // with steps that were undone
+    const std::uint64_t version = data->editor().state().version;
+    EXPECT_TRUE(comes_true([&] {
+        const auto now = live.snapshot();
+        return now && now->number > 300;
+    }));
+    EXPECT_GT(version, 0U);
+    const std::shared_ptr<const Samples> felt = live.field_now().shared_samples();
+    EXPECT_TRUE(felt->bricks());
+    EXPECT_GT(felt->resident()->size(), 0U);
+    live.stop();
+    live.stop_recording();
+    EXPECT_GT(expect_same_again(recording), 100);
+    expect_same_again(later);
+    EXPECT_GT(expect_same_again(last), 100);
+}
+
+TEST(Streamed, edits_have_a_quarter_of_the_memory_and_say_so) {
+    ScratchFolder folder;
+    const std::string path = (folder.path() / "large.raw").string();
+    std::filesystem::resize_file((std::ofstream(path), path), std::uintmax_t{512} << 20);
+    Source source = source_from(
+        {{"volume", path}, {"dims", "1024x1024x512"}, {"type", "uint8"}, {"memory", "yes"}});
+    std::get<StoreSource>(source.from).loader.memory = std::uint64_t{40} << 20;
+    Data data(load(source));
+    EXPECT_NO_THROW(data.editor().apply(edit::Fill{{{0, 0, 0}, {99, 99, 99}}, 9}));
+    const auto before = data.editor().state();
+    try {
+        data.editor().apply(edit::Fill{{{0, 0, 0}, {500, 500, 500}}, 9});
+        FAIL() << "500^3 samples are more than 10 MB";
+    } catch (const std::invalid_argument& e) {
+        EXPECT_NE(std::string(e.what()).find("10 MB"), std::string::npos) << e.what();
+    }
+    EXPECT_EQ(data.editor().state().version, before.version) << "it is made whole or not at all";
+    EXPECT_NO_THROW(data.editor().apply(edit::Fill{{{0, 0, 0}, {99, 99, 99}}, 8}));
+    EXPECT_LE(data.streaming().most_bytes, std::uint64_t{42} << 20);
+}
+
+TEST(Streamed, what_was_edited_is_saved_beside_the_original_and_opens_again) {
+    const BallFile ball;
+    Data data(load(ball.streamed()));
+    const std::string out = (ball.folder.path() / "ball-edits.zarr").string();
+    EXPECT_THROW(data.save(out, {}), std::invalid_argument) << "nothing was edited";
+    const edit::Fill fill{{{60, 60, 60}, {70, 64, 99}}, 0};
+    data.editor().apply(fill);
+    EXPECT_THROW(data.check_save_name("ball.nrrd"), std::invalid_argument);
+    EXPECT_TRUE(data.editor().state().changed);
+    EXPECT_NE(data.save(out, {}).find("ball-edits.zarr"), std::string::npos);
+    EXPECT_FALSE(data.editor().state().changed);
+    const auto expected = edited(std::make_shared<const Samples>(ball.volume), fill);
+    const LoadedVolume again = load(source_from({{"volume", out}}));
+    ASSERT_TRUE(again.streamed);
+    const Geometry& geometry = ball.volume.geometry();
+    std::vector<std::byte> bytes(ball.volume.bytes());
+    again.streamed->store->read(0, whole_box(geometry), bytes, {});
+    const Volume whole = flattened(*expected.samples);
+    EXPECT_EQ(std::memcmp(bytes.data(), whole.data(), bytes.size()), 0);
 }
 
 TEST(Streamed, sources_keep_level_and_channel_in_their_names) {

@@ -102,6 +102,35 @@ TEST(BrickLoader, memory_is_bounded_and_what_the_hand_needs_arrives_wherever_it_
     EXPECT_EQ(status.problem, "");
 }
 
+TEST(BrickLoader, where_memory_is_that_of_the_process_bricks_take_what_the_rest_leaves) {
+    const Geometry geometry = grid(cube(400));
+    const Volume volume(geometry, std::vector<std::uint8_t>(std::size_t{400} * 400 * 400, 1));
+    // More than the process has, so that there is room for the fewest bricks only, and for 104.
+    for (const bool whole : {true, false}) {
+        BrickLoaderSettings settings;
+        settings.memory = std::uint64_t{40} << 20;
+        settings.whole_process = whole;
+        BrickLoader loader(store_of(volume), noise_of(SampleType::uint8, grid(cube(8)), 1),
+                           settings);
+        std::size_t most = 0;
+        for (const double at : {100.0, 150.0, 200.0, 250.0, 300.0}) {
+            const Interest hand{Vec3::Constant(at), Vec3::Constant(at), Vec3::Zero()};
+            loader.look({&hand, 1});
+            EXPECT_TRUE(comes_true([&] {
+                loader.look({&hand, 1});
+                most = std::max(most, loader.status().resident);
+                return loader.status().missing == 0;
+            }));
+        }
+        EXPECT_GT(loader.status().loaded, 104U);
+        if (whole) {
+            EXPECT_LE(most, 65U);
+        } else {
+            EXPECT_GT(most, 85U);
+        }
+    }
+}
+
 TEST(BrickLoader, events_lead_from_version_to_version) {
     const Volume volume = noise_of(SampleType::uint8, grid({640, 200, 200}), 5);
     const auto store = store_in_pieces(volume);

@@ -121,21 +121,14 @@ bool same_but_for_edits(const Field& a, const Field& b) {
 
 SampleBox changed_between(const Field& a, const Field& b) {
     if (!same_but_for_edits(a, b)) return whole_box(b.geometry());
+    const Bricks none(b.geometry().size);
     const Bricks *old = a.samples().bricks(), *now = b.samples().bricks();
     SampleBox changed;
-    if (!old && !now) return changed;
-    const Index3 count = (now ? now : old)->count;
-    const std::size_t bricks = (now ? now : old)->at.size();
-    const auto of = [](const Bricks* all, std::size_t i) {
-        return all ? all->at[i].get() : nullptr;
-    };
-    for (std::size_t i = 0; i < bricks; ++i) {
-        if (of(old, i) == of(now, i)) continue;
-        const auto at = static_cast<int>(i);
-        const Index3 low = Bricks::cells * Index3(at % count[0], at / count[0] % count[1],
-                                                  at / (count[0] * count[1]));
-        changed = united(changed, {low, low + Index3::Constant(Bricks::cells)});
-    }
+    (now ? *now : none)
+        .for_each_apart(old ? *old : none, [&](const Index3& brick, const auto&, const auto&) {
+            const Index3 low = Bricks::cells * brick;
+            changed = united(changed, {low, low + Index3::Constant(Bricks::cells)});
+        });
     return changed;
 }
 

@@ -43,19 +43,24 @@ class Data {
     void use_tool(const Servo& servo, std::shared_ptr<const Tool> tool);
     /// Why edits or frames do not come; usually empty.
     std::string problem() const;
-    /// Throws std::invalid_argument for data that save() cannot write.
+    /// Throws std::invalid_argument for a name that save() cannot write to.
+    void check_save_name(const std::string& path) const;
+    /// Throws std::invalid_argument, saying why, where save() has nothing to write.
     void require_saving() const;
-    /// Writes the samples as they are now (of a sequence, at its moment) to a file, whole or not at
-    /// all. Returns a sentence: "saved FILE", and for a raw file how to open it again. Throws
-    /// io::OutputError, and as require_saving().
+    /// Writes the samples as they are now (of a sequence, at its moment) to a file or a folder
+    /// *.zarr, whole or not at all; of a store what was edited (stream::save_edits()). Returns a
+    /// sentence: "saved FILE", and for a raw file how to open it again. Throws io::OutputError, and
+    /// as require_saving().
     std::string save(const std::filesystem::path& path, const io::Progress& progress);
 
   private:
+    std::string save_edits(const std::filesystem::path& path, const io::Progress& progress);
+
     LoadedVolume loaded_;
     std::shared_ptr<const Samples> start_;
-    std::unique_ptr<VolumeEditor> editor_;
     std::unique_ptr<Player> player_;
     std::unique_ptr<Streamer> streamer_;
+    std::unique_ptr<VolumeEditor> editor_;  // uses the streamer, if there is one
 };
 
 }  // namespace palpate::run

@@ -5,6 +5,7 @@
 #include <deque>
 #include <functional>
 #include <map>
+#include <optional>
 
 #include "palpate/run/source.hpp"
 #include "palpate/session.hpp"
@@ -14,23 +15,27 @@ namespace palpate::run {
 /// Reads the frames of a sequence; null for a volume that is none.
 std::function<Volume(int)> frames_of(const LoadedVolume& loaded);
 
-/// Reads bricks of a large grid, given their place and level of detail; null for other data.
-using BrickReader = std::function<ResidentBrick(const Index3& brick, int level)>;
-BrickReader bricks_of(const LoadedVolume& loaded);
+/// Reads a large grid; both null for other data.
+struct GridReader {
+    std::function<ResidentBrick(const Index3& brick, int level)> brick;  ///< of a level of detail
+    ReadSamples box;  ///< of the level felt, before all edits
+};
+GridReader grid_of(const LoadedVolume& loaded);
 
 class RecordedSamples {
   public:
     /// `start`: the samples at the start of the recording. `frame` reads a frame of the sequence
     /// and may throw; null for data that are no sequence.
     explicit RecordedSamples(std::shared_ptr<const Samples> start,
-                             std::function<Volume(int)> frame = {}, BrickReader brick = {});
+                             std::function<Volume(int)> frame = {}, GridReader grid = {});
 
     /// The recorded command; if it is command::Samples, with the samples filled in. Throws
     /// std::invalid_argument for samples that cannot be made again, and as check(Edit) does.
     Command whole(const Command& recorded);
 
     /// The samples of a version that was made before; those of the start for an unknown version; of
-    /// a sequence the last frames. Repeats at most fifteen edits.
+    /// a sequence the last frames; of a large grid without any brick, with the edits that it had.
+    /// Repeats at most fifteen edits.
     std::shared_ptr<const Samples> of(std::uint64_t version);
 
     /// Number of versions in memory.
@@ -42,6 +47,7 @@ class RecordedSamples {
         int edits = 0;  ///< from the start
     };
 
+    std::shared_ptr<const Samples> felt(std::shared_ptr<const Samples> edits) const;
     std::shared_ptr<const Samples> made(const command::Samples& recorded);
     std::shared_ptr<const Samples> frames_of(const FramesOf& frames);
     std::shared_ptr<const Samples> bricks_of(const BricksOf& bricks, std::uint64_t version);
@@ -57,9 +63,11 @@ class RecordedSamples {
     std::function<Volume(int)> frame_;
     std::map<int, Volume> read_;  // frames of the last window
     std::shared_ptr<const Samples> frames_;
-    BrickReader brick_;
-    std::uint64_t bricks_version_ = 0;  // of the last bricks, which alone are kept
-    std::shared_ptr<const Samples> bricks_;
+    GridReader grid_;
+    // Of a large grid: what is in memory now, the edits now, and those of each version of bricks.
+    std::optional<ResidentBricks> bricks_;
+    std::uint64_t bricks_version_ = 0, edits_version_ = 0;
+    std::map<std::uint64_t, std::uint64_t> edits_at_;
 };
 
 }  // namespace palpate::run

@@ -1,7 +1,8 @@
 // Follows the hands of one or several runs that feel a store, and sends their servos the bricks
-// round them as they come into memory. It works in a thread of its own.
+// round them as they come into memory, with the edits on top. It works in a thread of its own.
 #pragma once
 
+#include <deque>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -23,19 +24,31 @@ class Streamer {
     Streamer(const Streamer&) = delete;
     Streamer& operator=(const Streamer&) = delete;
 
-    /// Starts a servo with what is in memory and keeps it up to date until detach(). What `start`
-    /// throws is passed on.
-    std::unique_ptr<Servo> attach(Session session, const StartServo& start);
+    /// Starts a servo with what is in memory and keeps it up to date until detach(). `edits`: what
+    /// a recording needs of them before its first tick (StartServo). What `start` throws is passed
+    /// on.
+    std::unique_ptr<Servo> attach(Session session, const StartServo& start,
+                                  std::vector<Command> edits = {});
     void detach(const Servo& servo);
+    /// The number for the next edit; those of bricks and edits are of one row.
+    std::uint64_t next_version() const;
+    /// From now on these edits are felt; `edits.samples` has no bricks in memory. A servo that
+    /// takes no commands at the moment gets them later.
+    void use(const command::Samples& edits);
+    /// Samples before all edits, see stream::BrickLoader.
+    void read(const SampleBox& box, std::span<std::byte> out, std::stop_token stop) {
+        loader_.read(box, out, std::move(stop));
+    }
+    void leave_room(std::uint64_t bytes) { loader_.leave_room(bytes); }
     /// What the servos feel now.
     std::shared_ptr<const Samples> samples() const;
     stream::BrickLoaderStatus status() const { return loader_.status(); }
 
   private:
-    /// An attached servo, what it has got, and where its hand was.
+    /// An attached servo, how many of the versions it has got, and where its hand was.
     struct Hand {
         Servo* servo;
-        std::uint64_t version = 0;
+        std::uint64_t got = 0;
         std::int64_t tick = -1;
         double time = 0;               // [s]
         Vec3 at = Vec3::Zero();        // [mm, physical]
@@ -46,13 +59,19 @@ class Streamer {
     void look();
     void take();
     void send();
-    command::Samples history() const;
+    void publish(std::uint64_t version, std::shared_ptr<const Recipe> recipe);
+    std::vector<Command> history(std::vector<Command> edits) const;
 
     stream::BrickLoader loader_;
     mutable std::mutex mutex_;
     std::vector<Hand> hands_;
-    std::vector<command::Samples> versions_;  // those that a servo may not have got yet, in order
+    std::deque<command::Samples> versions_;  // those that a servo may not have got yet
+    std::uint64_t first_ = 0;                // how many versions there were before those
     command::Samples newest_;
+    std::uint64_t last_ = 0;                // greatest number of a version so far
+    std::uint64_t bricks_version_ = 0;      // number of the last that brought bricks
+    std::shared_ptr<const Samples> edits_;  // no bricks in memory
+    ResidentBricks bricks_;
     std::map<std::array<int, 3>, int> present_;  // level of each brick in memory
     std::jthread thread_;                        // last: it uses all of the above
 };

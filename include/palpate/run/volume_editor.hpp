@@ -32,10 +32,16 @@ struct EditState {
 using StartServo =
     std::function<std::unique_ptr<Servo>(Session session, const std::vector<Command>& history)>;
 
+class Streamer;
+
 /// Any thread may call any function; state() does not wait for an edit.
 class VolumeEditor {
   public:
     explicit VolumeEditor(std::shared_ptr<const Samples> samples);
+    /// Of a volume that is read as it is felt: an edit waits for the samples that it changes. Edits
+    /// take at most a quarter of `memory` [bytes] and what undo() needs an eighth. `streamer`
+    /// outlives this and sends the versions; `samples` are those without any brick.
+    VolumeEditor(std::shared_ptr<const Samples> samples, Streamer& streamer, std::uint64_t memory);
     ~VolumeEditor();
     VolumeEditor(const VolumeEditor&) = delete;
     VolumeEditor& operator=(const VolumeEditor&) = delete;
@@ -50,8 +56,9 @@ class VolumeEditor {
     void use_tool(const Servo& servo, std::shared_ptr<const Tool> tool);
     /// The brush of every attached servo; nothing: the hand only feels. Throws as check().
     void set_brush(const std::optional<HandBrush>& brush);
-    /// Makes an edit, one step for undo(). Throws std::invalid_argument as check(Edit) does, and
-    /// std::runtime_error for a servo that takes no commands.
+    /// Makes an edit, one step for undo(). Throws std::invalid_argument as check(Edit) does and for
+    /// one that takes more memory than there is, std::runtime_error for a servo that takes no
+    /// commands, and io::InputError for samples that cannot be read.
     void apply(const Edit& edit);
     /// False if there is nothing to undo, or redo. A brush that touches then rests until it has
     /// been in the air, or was taken up again: else it would undo the undo.
@@ -81,9 +88,11 @@ class VolumeEditor {
     };
     struct Version {
         std::weak_ptr<const Samples> samples;  // expired once undo cannot come back to them
-        command::Samples recipe;               // without samples
+        command::Samples recipe;               // without samples, with the number
     };
 
+    VolumeEditor(std::shared_ptr<const Samples> samples, Streamer* streamer, std::uint64_t memory);
+    void read(const SampleBox& box, std::span<std::byte> out);
     void run(const std::stop_token& stop);
     void brush(Hand& hand);
     bool brush_from(const Touch& from, const Touch& to, Hand& hand, double isovalue);
@@ -99,6 +108,10 @@ class VolumeEditor {
     mutable std::mutex mutex_;        // for as long as an edit takes
     mutable std::mutex state_mutex_;  // of state_; a moment
     EditState state_;
+    Streamer* const streamer_;        // null: all samples are in memory
+    const std::uint64_t memory_;      // [bytes] of a volume that is read as it is felt
+    std::uint64_t edited_bytes_ = 0;  // of that, in the bricks that are edited now
+    std::stop_source reading_;
     Editor editor_;
     std::vector<Hand> hands_;
     std::optional<HandBrush> brush_;
@@ -106,7 +119,7 @@ class VolumeEditor {
     bool new_step_ = true;  // the next change by a brush begins a step for undo
     std::chrono::steady_clock::time_point last_change_;  // by a brush
     std::string problem_;
-    std::vector<Version> versions_;  // by number
+    std::vector<Version> versions_;  // in order; the first has number 0
     std::jthread thread_;            // last: it uses all of the above
 };
 

@@ -2,6 +2,7 @@
 // threads of its own. What is in memory is published as versions of samples (resident.hpp).
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <map>
@@ -10,7 +11,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "palpate/stream/store.hpp"
@@ -18,6 +18,7 @@
 namespace palpate::stream {
 
 class Blocks;
+class SmallThreads;
 
 /// A volume of few samples that shows all of a store: its coarsest level that is fine enough, or
 /// single samples of a store without levels. At most `samples` of them, one at least. Blocks.
@@ -35,6 +36,9 @@ struct BrickLoaderSettings {
     int threads = 16;                               ///< that read at a time
     /// Feel a coarser level until the bricks of `level` are there (ProxyUpdate::level says so).
     bool coarse_first = false;
+    /// `memory` bounds all that the process takes, the program itself included; but a hand always
+    /// has 64 bricks.
+    bool whole_process = false;
 };
 
 /// A hand and where it goes. Points in mm, physical.
@@ -62,7 +66,7 @@ struct BrickLoaderStatus {
     std::size_t wanted = 0;        ///< bricks that the hands may need soon
     std::size_t missing = 0;       ///< of those, not in memory
     std::size_t urgent = 0;        ///< of those, among the first that the hands need
-    std::uint64_t bytes = 0;       ///< that bricks and decoded pieces take
+    std::uint64_t bytes = 0;       ///< that bricks, decoded pieces and edits take
     std::uint64_t most_bytes = 0;  ///< that they have taken at a time
     std::uint64_t loaded = 0;      ///< bricks so far
     std::uint64_t dropped = 0;     ///< bricks so far, to make room
@@ -97,6 +101,13 @@ class BrickLoader {
     void wait_for(const Vec3& centre, double radius);
     BrickLoaderStatus status() const;
 
+    /// Samples of the level felt, x fastest: from memory where one brick has them all, else from
+    /// the store. The box lies inside the grid. Blocks; throws as Store::read().
+    void read(const SampleBox& box, std::span<std::byte> out, std::stop_token stop = {});
+    /// So many bytes of the memory are used otherwise, for edits: bricks get less, but at least
+    /// those that a hand cannot do without.
+    void leave_room(std::uint64_t bytes);
+
     /// One brick as it is loaded; of a coarser level interpolated. Throws as Store::read().
     ResidentBrick read(const Index3& brick, int coarser, std::stop_token stop = {});
 
@@ -119,14 +130,15 @@ class BrickLoader {
     void put(const Job& job, const ResidentBrick& brick);
     void make_room();
     int coarse_level() const;
-    void note_bytes();
+    std::uint64_t bytes() const;
+    void count_process();
 
     const std::shared_ptr<const Store> store_;
     const BrickLoaderSettings settings_;
     const Volume overview_;
     const std::shared_ptr<const Samples> empty_;
     const Geometry geometry_;
-    const std::size_t most_bricks_;
+    std::atomic<std::size_t> most_bricks_;
     const std::unique_ptr<Blocks> blocks_;
 
     mutable std::mutex mutex_;
@@ -138,9 +150,12 @@ class BrickLoader {
     std::vector<Index3> wanted_;                 // most urgent first
     std::vector<Index3> required_;               // by wait_for()
     std::vector<BrickEvent> events_;
+    std::uint64_t other_bytes_ = 0;    // leave_room()
+    std::uint64_t process_bytes_ = 0;  // of the process, beyond bricks, pieces and edits
+    Clock::time_point counted_{};      // when those were
     std::uint64_t most_bytes_ = 0, loaded_ = 0, dropped_ = 0;
     std::string problem_;
-    std::vector<std::jthread> threads_;  // last: they use all of the above
+    const std::unique_ptr<SmallThreads> threads_;  // last: they use all of the above
 };
 
 }  // namespace palpate::stream

@@ -1,0 +1,29 @@
+// Saves what was edited of a store as an OME-Zarr of the changed chunks, which opens as the edited
+// volume as long as the original is there.
+#pragma once
+
+#include <filesystem>
+
+#include "palpate/stream/store.hpp"
+
+namespace palpate::stream {
+
+/// How a store was opened.
+struct Opened {
+    std::string address;
+    StoreOptions options;
+};
+
+/// Throws std::invalid_argument unless the name ends with .zarr.
+void check_edits_name(const std::filesystem::path& out);
+
+/// Writes `edits`, samples of a level of the store `from`, to the folder `out`: the chunks of that
+/// level that they change, and those of the coarser levels as means of them. The folder names its
+/// original, the one that `from` itself names if it is of edits, and has what was edited there,
+/// too. It is OME-Zarr 0.5; other programs see 0 where nothing was edited. Made under another name
+/// first; replaces an older folder of edits, nothing else. Throws io::OutputError, as
+/// check_edits_name(), what `progress` throws and what the store throws.
+void save_edits(const Store& from, const Opened& opened, int level, const Samples& edits,
+                const std::filesystem::path& out, const io::Progress& progress);
+
+}  // namespace palpate::stream

@@ -1,0 +1,32 @@
+// The bytes of boxes of samples; see the header.
+#include "stream/box_bytes.hpp"
+
+#include <cstring>
+
+namespace palpate::stream {
+
+std::uint64_t bytes_of(const SampleBox& box, SampleType type) {
+    const Index3 size = box.high - box.low + Index3::Ones();
+    return static_cast<std::uint64_t>(size.cast<std::int64_t>().prod()) * size_of(type);
+}
+
+void copy_box(const SampleBox& from, const std::byte* source, const SampleBox& to,
+              std::byte* target, std::size_t sample) {
+    const Index3 low = from.low.cwiseMax(to.low), high = from.high.cwiseMin(to.high);
+    const auto place = [&](const SampleBox& box, int y, int z) {
+        const Index3 size = box.high - box.low + Index3::Ones();
+        return (static_cast<std::size_t>(z - box.low[2]) * static_cast<std::size_t>(size[1]) +
+                static_cast<std::size_t>(y - box.low[1])) *
+                   static_cast<std::size_t>(size[0]) +
+               static_cast<std::size_t>(low[0] - box.low[0]);
+    };
+    const auto row = static_cast<std::size_t>(high[0] - low[0] + 1) * sample;
+    for (int z = low[2]; z <= high[2]; ++z) {
+        for (int y = low[1]; y <= high[1]; ++y) {
+            std::memcpy(target + place(to, y, z) * sample, source + place(from, y, z) * sample,
+                        row);
+        }
+    }
+}
+
+}  // namespace palpate::stream

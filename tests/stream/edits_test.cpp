@@ -1,0 +1,212 @@
+// What was edited of a store, saved and opened again.
+#include "palpate/stream/edits.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+
+#include "palpate/io/error.hpp"
+#include "palpate/stream/convert.hpp"
+#include "palpate/stream/loader.hpp"
+#include "stream/pyramid.hpp"
+#include "stream/store_support.hpp"
+#include "support/constants.hpp"
+#include "support/edits.hpp"
+
+namespace palpate::stream::test {
+namespace {
+
+using namespace palpate::support;
+namespace fs = std::filesystem;
+
+ReadSamples reader_of(const Store& store, int level) {
+    return [&store, level](const SampleBox& box, std::span<std::byte> out) {
+        store.read(level, box, out, {});
+    };
+}
+
+/// A grid with cut chunks, and edits of it.
+struct Case {
+    ScratchFolder folder;
+    SampleType type;
+    Volume volume;
+    Random random;
+    fs::path zarr = folder.path() / "original.zarr", out = folder.path() / "edits.zarr";
+
+    Case(SampleType of, std::uint64_t seed)
+        : type(of),
+          volume(noise_of(of, grid({150, 90, 70}, {0.5, 0.5, 1}, {3, -4, 5}, oblique_direction()),
+                          seed)),
+          random(seed) {
+        convert_to_zarr(*store_of(volume, "noise"), 0, zarr, {});
+    }
+
+    std::shared_ptr<const Samples> some_edits(const Store& store, int level,
+                                              std::shared_ptr<const Samples>* plain = nullptr) {
+        const Geometry& geometry = store.info().levels[static_cast<std::size_t>(level)].geometry;
+        std::shared_ptr<const Samples> edits = empty_samples(store, volume, level);
+        for (int i = 0; i < 6; ++i) {
+            const Edit edit = random_edit(random, geometry, type);
+            edits = edited(edits, edit, reader_of(store, level)).samples;
+            if (plain) *plain = edited(*plain, edit).samples;
+        }
+        return edits;
+    }
+};
+
+TEST(Edits, what_was_edited_opens_again_as_the_edited_volume) {
+    for (const SampleType type : sample_types) {
+        Case c(type, 3 + static_cast<std::uint64_t>(type));
+        const auto original = open_store(c.zarr.string());
+        auto plain = samples_of(c.volume);
+        const auto edits = c.some_edits(*original, 0, &plain);
+        save_edits(*original, {c.zarr.string(), {}}, 0, *edits, c.out, {});
+        ASSERT_TRUE(is_store(c.out.string()));
+        const auto again = open_store(c.out.string());
+        EXPECT_TRUE(same_bits(volume_of(*again), flattened(*plain)));
+        EXPECT_EQ(again->info().levels.size(), original->info().levels.size());
+        ASSERT_TRUE(again->info().range);
+        EXPECT_LE(again->info().range->minimum, flattened(*plain).minimum());
+        // Boxes of any size.
+        std::mt19937 random(9);
+        for (int i = 0; i < 50; ++i) {
+            const SampleBox box = random_box(random, c.volume.geometry().size);
+            ASSERT_EQ(read_box(*again, 0, box), box_of(flattened(*plain), box));
+        }
+        // A whole copy.
+        const fs::path copy = c.folder.path() / "copy.zarr";
+        convert_to_zarr(*again, 0, copy, {});
+        fs::remove_all(c.zarr);
+        EXPECT_TRUE(same_bits(volume_of(*open_store(copy.string())), flattened(*plain)));
+        EXPECT_THROW(open_store(c.out.string()), io::InputError) << "the original is gone";
+    }
+}
+
+TEST(Edits, coarser_levels_are_means_of_what_changed_and_else_as_they_were) {
+    Case c(SampleType::int16, 5);
+    const auto original = open_store(c.zarr.string());
+    const auto edits = c.some_edits(*original, 0);
+    save_edits(*original, {c.zarr.string(), {}}, 0, *edits, c.out, {});
+    const auto again = open_store(c.out.string());
+    ASSERT_GE(again->info().levels.size(), 2U);
+    int changed = 0, same = 0;
+    // The original's levels were means, so those of the edited volume are, too.
+    const fs::path copy = c.folder.path() / "copy.zarr";
+    convert_to_zarr(*again, 0, copy, {});
+    const auto means = open_store(copy.string());
+    for (std::size_t level = 1; level < again->info().levels.size(); ++level) {
+        const int l = static_cast<int>(level);
+        const Volume now = volume_of(*again, l), before = volume_of(*original, l);
+        EXPECT_TRUE(same_bits(now, volume_of(*means, l)));
+        for_each_sample(now.geometry(), [&](const Index3& at) {
+            (now.sample(at) == before.sample(at) ? same : changed) += 1;
+        });
+    }
+    EXPECT_GT(changed, 10);
+    EXPECT_GT(same, 10);
+}
+
+TEST(Edits, edits_of_edits_name_the_first_original) {
+    Case c(SampleType::uint8, 8);
+    const auto original = open_store(c.zarr.string());
+    auto plain = samples_of(c.volume);
+    save_edits(*original, {c.zarr.string(), {}}, 0, *c.some_edits(*original, 0, &plain), c.out, {});
+    const auto once = open_store(c.out.string());
+    const fs::path second = c.folder.path() / "second.zarr";
+    const auto edits = c.some_edits(*once, 0, &plain);
+    EXPECT_THROW(save_edits(*once, {c.out.string(), {}}, 0, *edits, c.out, {}), io::OutputError)
+        << "it is felt";
+    save_edits(*once, {c.out.string(), {}}, 0, *edits, second, {});
+    fs::remove_all(c.out);
+    EXPECT_TRUE(same_bits(volume_of(*open_store(second.string())), flattened(*plain)));
+}
+
+TEST(Edits, of_a_level_are_a_volume_whose_finest_level_is_that_one) {
+    Case c(SampleType::float32, 9);
+    const auto original = open_store(c.zarr.string());
+    const Volume before = volume_of(*original, 1);
+    auto plain = samples_of(before);
+    const auto edits = c.some_edits(*original, 1, &plain);
+    save_edits(*original, {c.zarr.string(), {}}, 1, *edits, c.out, {});
+    const auto again = open_store(c.out.string());
+    EXPECT_TRUE(same_bits(volume_of(*again), flattened(*plain)));
+    EXPECT_EQ(again->info().levels.size() + 1, original->info().levels.size());
+}
+
+TEST(Edits, a_raw_file_is_opened_again_with_its_layout_also_where_both_were_moved) {
+    ScratchFolder folder;
+    const Volume volume = noise_of(SampleType::uint16, grid({70, 66, 5}), 4);
+    const fs::path here = folder.path() / "here", there = folder.path() / "there";
+    fs::create_directories(here);
+    io::write_volume(volume, here / "a.raw");
+    StoreOptions options;
+    options.raw = io::RawLayout{{70, 66, 5}, SampleType::uint16};
+    const std::string address = (here / "a.raw").string();
+    const auto original = open_store(address, options);
+    auto plain = samples_of(volume);
+    const edit::Fill fill{{{60, 60, 0}, {69, 65, 4}}, 77};
+    const auto edits = edited(empty_samples(*original, volume, 0), fill, reader_of(*original, 0));
+    save_edits(*original, {address, options}, 0, *edits.samples, here / "a-edits.zarr", {});
+    fs::rename(here, there);
+    const auto again = open_store((there / "a-edits.zarr").string());
+    EXPECT_TRUE(same_bits(volume_of(*again), flattened(*edited(plain, fill).samples)));
+}
+
+TEST(Edits, replace_older_ones_and_nothing_else) {
+    Case c(SampleType::uint8, 2);
+    const auto original = open_store(c.zarr.string());
+    const Opened opened{c.zarr.string(), {}};
+    auto plain = samples_of(c.volume);
+    const auto edits = c.some_edits(*original, 0);
+    save_edits(*original, opened, 0, *edits, c.out, {});
+    const auto later = c.some_edits(*original, 0, &plain);
+    save_edits(*original, opened, 0, *later, c.out, {});
+    EXPECT_TRUE(same_bits(volume_of(*open_store(c.out.string())), flattened(*plain)));
+    EXPECT_FALSE(fs::exists(c.out.string() + ".partial"));
+    EXPECT_THROW(save_edits(*original, opened, 0, *edits, c.folder.path() / "a.nrrd", {}),
+                 std::invalid_argument);
+    EXPECT_THROW(
+        save_edits(*original, opened, 0, *empty_samples(*original, c.volume, 0), c.out, {}),
+        std::invalid_argument)
+        << "nothing was edited";
+    const fs::path other = c.folder.path() / "other.zarr";
+    fs::copy(c.zarr, other, fs::copy_options::recursive);
+    EXPECT_THROW(save_edits(*original, opened, 0, *edits, other, {}), io::OutputError);
+    EXPECT_TRUE(same_bits(volume_of(*open_store(other.string())), c.volume));
+    // Cancelled: what was there stays.
+    const auto stop = [](double) { throw Cancelled{}; };
+    EXPECT_THROW(save_edits(*original, opened, 0, *edits, c.out, stop), Cancelled);
+    EXPECT_TRUE(same_bits(volume_of(*open_store(c.out.string())), flattened(*plain)));
+}
+
+TEST(Edits, damaged_notes_are_refused_in_one_line) {
+    Case c(SampleType::uint8, 6);
+    const auto original = open_store(c.zarr.string());
+    save_edits(*original, {c.zarr.string(), {}}, 0, *c.some_edits(*original, 0), c.out, {});
+    const fs::path note = c.out / "palpate-edits.json";
+    std::ifstream in(note, std::ios::binary);
+    const std::string whole((std::istreambuf_iterator<char>(in)), {});
+    int refused = 0;
+    for (int i = 0; i < 300; ++i) {
+        std::string bytes = whole;
+        if (i % 3 == 0) {
+            bytes.resize(static_cast<std::size_t>(c.random.below(int(bytes.size()))));
+        } else {
+            const auto at = static_cast<std::size_t>(c.random.below(int(bytes.size())));
+            bytes[at] = "0-9,[]{}\"x"[c.random.below(10)];
+        }
+        std::ofstream(note, std::ios::binary | std::ios::trunc) << bytes;
+        try {
+            const auto again = open_store(c.out.string());
+            read_box(*again, 0, whole_box(c.volume.geometry()));
+        } catch (const io::InputError& e) {
+            EXPECT_EQ(std::string(e.what()).find('\n'), std::string::npos);
+            ++refused;
+        }
+    }
+    EXPECT_GT(refused, 100);
+}
+
+}  // namespace
+}  // namespace palpate::stream::test
