@@ -36,7 +36,7 @@ viewer=("${io[@]}" libvtk9-qt-dev qtbase5-dev qttools5-dev qttools5-dev-tools qt
 dev=(git lintian pkg-config mono-mcs mono-runtime clang clang-format-14 clang-tidy libclang-rt-14-dev shellcheck)
 docs=(mkdocs doxygen python3-pygments libjs-jquery)
 windows=("${core[@]}" g++-mingw-w64-x86-64-posix wine64 libz-mingw-w64-dev nlohmann-json3-dev
-    libboost-dev libcli11-dev libfmt-dev zip)
+    libboost-dev libcli11-dev libfmt-dev)
 
 wanted=()
 for group in "${@:-all}"; do

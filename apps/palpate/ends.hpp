@@ -1,10 +1,11 @@
-// What a program asks of the system before it does anything: signals that end it, streams that are closed.
+// What a program asks of the system before it does anything: signals that end it, streams that are
+// closed.
 #pragma once
 
 namespace palpate::app {
 
-/// Calls `on_signal` where the user or the system ends the program, so that a session lets go of its
-/// forces on the way out. What cannot be written is an error of the write, no signal.
+/// Calls `on_signal` where the user or the system ends the program, so that a session lets go of
+/// its forces on the way out. What cannot be written is an error of the write, no signal.
 void handle_ends(void (*on_signal)(int));
 
 /// A standard stream that is closed would give its number, and then its text, to the next file that
