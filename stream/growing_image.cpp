@@ -6,16 +6,12 @@
 #include <mutex>
 #include <stdexcept>
 
+#include "stream/box_bytes.hpp"
 #include "stream/stores.hpp"
 #include "stream/zarr_writer.hpp"
 
 namespace palpate::stream {
 namespace {
-
-std::size_t bytes_of(const SampleBox& box, SampleType type) {
-    const Index3 size = box.high - box.low + Index3::Ones();
-    return static_cast<std::size_t>(size.cast<std::int64_t>().prod()) * size_of(type);
-}
 
 /// The part of a chunk that lies in the grid, out of the whole one or into it.
 template <class Copy>

@@ -16,7 +16,7 @@ void check_format(const ConvertOptions& options);
 class ZarrWriter {
   public:
     ZarrWriter(std::filesystem::path folder, SampleType type, std::vector<CoarserGrid> levels,
-               const ConvertOptions& options, std::string temporary);
+               const ConvertOptions& options, std::string temporary = ".part");
 
     const std::vector<CoarserGrid>& levels() const { return levels_; }
     /// Of all levels and of the image. Throws io::OutputError, as the next one does.
