@@ -48,9 +48,8 @@ TEST(Store, info_tells_format_levels_and_spacing_and_replay_feels_it) {
 
 /// As palpate(), with at most 3 GB of memory in its address space.
 Outcome palpate_in_3_gb(const ScratchFolder& folder, const std::string& line) {
-    return Running(
-               {"-c", "ulimit -v 3000000 && exec \"$0\" " + line, std::string(PALPATE_PROGRAM)},
-               folder.path(), Stdout::captured, "/bin/sh")
+    return Running({"-c", "ulimit -v 3000000 && exec \"$0\" " + line, std::string(PALPATE_PROGRAM)},
+                   folder.path(), Stdout::captured, "/bin/sh")
         .finish();
 }
 
@@ -97,10 +96,9 @@ TEST(Store, files_that_are_cut_off_or_something_else_are_refused_in_one_line) {
     put_bytes(folder / "letter.ims", "Dear reader,\nthis is a letter.\n");
     put_bytes(folder / "head.h5", std::string("\x89HDF\r\n\x1a\n\0\0\0\0", 12));
     // The tags of tiles and of coarser levels, and nothing that they point to.
-    put_bytes(folder / "tags.tif",
-              std::string("II*\0\x08\0\0\0\x02\0\x42\1\3\0\1\0\0\0\x10\0\0\0"
-                          "\x4a\1\4\0\1\0\0\0\xff\0\0\0\0\0\0\0",
-                          38));
+    put_bytes(folder / "tags.tif", std::string("II*\0\x08\0\0\0\x02\0\x42\1\3\0\1\0\0\0\x10\0\0\0"
+                                               "\x4a\1\4\0\1\0\0\0\xff\0\0\0\0\0\0\0",
+                                               38));
     put_ramp(folder / "cut.n5");
     put_bytes(folder / "cut.n5/0/0/0", std::string("\0\0\0\3", 4));
     fs::create_directories(folder / "empty.n5");
