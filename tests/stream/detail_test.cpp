@@ -215,18 +215,18 @@ TEST(DetailReader, what_is_no_longer_wanted_is_not_read_and_what_is_kept_is_not_
     hold = false;
     ASSERT_TRUE(comes_true([&] { return seen.complete(0); }));
     EXPECT_EQ(seen.of(0).back().of, second);
-    {
+    const auto count = [&] {
         const std::scoped_lock lock(mutex);
-        EXPECT_EQ(read.size(), 2 + 12U) << "two of the first box were under way";
-    }
+        return read.size();
+    };
+    EXPECT_TRUE(comes_true([&] { return count() == 2 + 12U; })) << "two were under way";
     // The same again, and a part of it for another viewer: all of it is kept.
     reader.want(0, {first});
     ASSERT_TRUE(comes_true([&] { return seen.of(0).back().of == first && seen.complete(0); }));
     reader.want(1, {{1, {{0, 0, 0}, {15, 15, 15}}}, {0, {{4, 4, 4}, {27, 27, 27}}}},
                 std::chrono::hours(1));
     ASSERT_TRUE(comes_true([&] { return seen.complete(1); }));
-    const std::scoped_lock lock(mutex);
-    EXPECT_EQ(read.size(), 8 + 12U);
+    EXPECT_EQ(count(), 8 + 12U);
     EXPECT_EQ(seen.of(1).size(), 1U) << "nothing coarse where all is kept";
 }
 

@@ -169,8 +169,8 @@ void DetailController::observe_slice(int axis) {
 }
 
 DetailController::SceneView DetailController::view_now() const {
-    const Scene& scene = views_.scene();
-    return {scene.camera(), scene.width(), scene.height(), views_.isovalue()};
+    const Scene& shown = views_.scene();
+    return {shown.camera(), shown.width(), shown.height(), views_.isovalue()};
 }
 
 /// Once the view rests and the picture of it is there, whose depths tell what is seen.

@@ -51,8 +51,8 @@ void look_up(std::function<void()> work, std::function<void()> then) {
             then();
         });
     };
-    *worker = std::make_unique<Worker>(
-        [work = std::move(work)](const io::Progress&) { work(); }, changed);
+    *worker = std::make_unique<Worker>([work = std::move(work)](const io::Progress&) { work(); },
+                                       changed);
 }
 
 }  // namespace

@@ -93,7 +93,8 @@ TEST(DetailChoice, boxes_lie_in_their_level_hold_what_is_seen_and_are_within_the
         moved.from[axis] = moved.to[axis] = seen.to[axis] + 3 * grid.spacing[axis];
         EXPECT_TRUE(has_slice(store, {*level, box}, moved, axis));
         moved.from[axis] = moved.to[axis] = seen.to[axis] + 40 * grid.spacing[axis];
-        const double last = physical_from_index(grid, (grid.size - Index3::Ones()).cast<double>())[axis];
+        const double last =
+            physical_from_index(grid, (grid.size - Index3::Ones()).cast<double>())[axis];
         if (moved.to[axis] < last) {
             EXPECT_FALSE(has_slice(store, {*level, box}, moved, axis));
         }
@@ -126,7 +127,8 @@ TEST(PatchChoice, has_what_is_seen_in_whole_cells_within_the_limits) {
     int chosen = 0, all_seen = 0;
     for (int i = 0; i < 500; ++i) {
         SeenPoints seen;
-        const Vec3 middle(random.uniform(0, 2060), random.uniform(0, 2060), random.uniform(0, 2060));
+        const Vec3 middle(random.uniform(0, 2060), random.uniform(0, 2060),
+                          random.uniform(0, 2060));
         seen.half_height = std::exp2(random.uniform(2, 11));
         seen.pixel_mm = seen.half_height / 300;
         for (int p = 0; p < 60; ++p) {

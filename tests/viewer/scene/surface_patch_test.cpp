@@ -55,7 +55,8 @@ Volume part_of(const Volume& volume, const SampleBox& box) {
 
 ExtractedSurface surface_of(const Field& field, double level, const Vec3& origin) {
     SurfaceBlocks blocks(field.geometry(), 1, field.interpolation(), origin);
-    (void)blocks.renew(field, level, [] { return true; }, 1U << 30);
+    (void)blocks.renew(
+        field, level, [] { return true; }, 1U << 30);
     ExtractedSurface surface;
     surface.isovalue = level;
     surface.blocks = blocks.meshes();
@@ -134,9 +135,8 @@ class Patch : public testing::TestWithParam<Interpolation> {
   protected:
     /// Whole, finer and both, of a patch between planes of the overview.
     void make(const Case& with) {
-        const Volume fine = scenes::make_volume(std::string(with.scene) + ":96x96x96",
-                                                SampleType::float32)
-                                .volume;
+        const Volume fine =
+            scenes::make_volume(std::string(with.scene) + ":96x96x96", SampleType::float32).volume;
         const Field overview(coarse_of(fine), Solid::above, {}, GetParam());
         const double begin = GetParam() == Interpolation::cubic ? -0.5 : 0;
         PatchChoice patch;
@@ -181,9 +181,9 @@ class Patch : public testing::TestWithParam<Interpolation> {
 };
 
 TEST_P(Patch, the_rim_of_what_is_left_of_the_coarse_surface_lies_on_the_finer_one) {
-    for (const Case& with : {Case{"sphere", 0.3, {4, 4, 4}, {15, 14, 13}},
-                             Case{"torus", 0.4, {3, 2, 7}, {12, 20, 16}},
-                             Case{"sphere", 0.3, {-HUGE_VAL, 3, 5}, {11, HUGE_VAL, HUGE_VAL}}}) {
+    for (const Case& with :
+         {Case{"sphere", 0.3, {4, 4, 4}, {15, 14, 13}}, Case{"torus", 0.4, {3, 2, 7}, {12, 20, 16}},
+          Case{"sphere", 0.3, {-HUGE_VAL, 3, 5}, {11, HUGE_VAL, HUGE_VAL}}}) {
         make(with);
         ASSERT_TRUE(rim_of(whole_.blocks).empty());
         const std::vector<Vec3> rim = rim_of(outside());

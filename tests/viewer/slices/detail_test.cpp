@@ -104,7 +104,9 @@ TEST_P(SliceDetail, a_part_is_finer_there_and_changes_nothing_elsewhere) {
     const QRect all = store.pane.rect();
     EXPECT_EQ(differing(both, coarse, {0, 0, all.width(), outer.top() - 2}), 0);
     EXPECT_EQ(differing(both, coarse, {0, 0, outer.left() - 2, all.height()}), 0);
-    EXPECT_EQ(differing(both, coarse, {outer.right() + 2, 0, all.width() - outer.right() - 2, all.height()}), 0);
+    EXPECT_EQ(differing(both, coarse,
+                        {outer.right() + 2, 0, all.width() - outer.right() - 2, all.height()}),
+              0);
     keep_picture(store.pane, "a-part-of-a-slice-is-finer");
 }
 

@@ -84,7 +84,8 @@ TEST_F(Streaming, a_store_looks_like_the_same_volume_in_memory) {
         EXPECT_EQ(shown->missing, 0U);
     }
     EXPECT_LT(differing(window_->views().slice(2).grab().toImage(), slice), 200);
-    // The ring fills a quarter of the picture; the surface of the overview differs nearly everywhere.
+    // The ring fills a quarter of the picture; the surface of the overview differs nearly
+    // everywhere.
     const int samples = scene.picture().width() * scene.picture().height() / 4;
     EXPECT_LT(differing(scene.picture(), whole), samples / 50);
 }
@@ -230,9 +231,9 @@ void put_image(const std::filesystem::path& folder) {
                 const double inside = radius - (at - Vec3::Constant(0.5 * (n - 1))).norm();
                 bytes += static_cast<char>(std::clamp(128 + 30 * inside, 0.0, 255.0));
             }
-            std::ofstream(array / (std::to_string(image / 2) + "." + std::to_string(image % 2) +
-                                   ".0.0.0"),
-                          std::ios::binary)
+            std::ofstream(
+                array / (std::to_string(image / 2) + "." + std::to_string(image % 2) + ".0.0.0"),
+                std::ios::binary)
                 << bytes;
         }
     }
@@ -268,8 +269,8 @@ TEST_F(Streaming, of_several_levels_channels_and_times_another_is_chosen_while_o
         pick(*channels, channel);
         times->setValue(time);
         int started = 0;
-        const auto counting = QObject::connect(&window_->content(), &Content::run_started,
-                                               [&started] { ++started; });
+        const auto counting =
+            QObject::connect(&window_->content(), &Content::run_started, [&started] { ++started; });
         QTest::mouseClick(open, Qt::LeftButton);
         EXPECT_TRUE(wait_until([&] { return started == 1 && window_->settled(); }));
         QObject::disconnect(counting);
