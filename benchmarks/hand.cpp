@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <numbers>
 
 #include "palpate/edit.hpp"
@@ -124,6 +125,46 @@ Touch all_in_bricks(Touch touch) {
                               edit::Fill{all, samples->minimum()});
     const Edited back = edited(blank.samples, edit::Replace{Index3::Zero(), samples->volume()});
     touch.field = Field(back.samples, touch.field.solid(), background);
+    return touch;
+}
+
+Touch all_resident(Touch touch) {
+    const Volume& volume = touch.field.volume();
+    const Geometry& geometry = volume.geometry();
+    ResidentBricks bricks(geometry.size);
+    std::vector<ResidentBricks::Change> all;
+    const std::size_t each = size_of(volume.type());
+    for (int k = 0; k < bricks.count()[2]; ++k) {
+        for (int j = 0; j < bricks.count()[1]; ++j) {
+            for (int i = 0; i < bricks.count()[0]; ++i) {
+                const Index3 brick(i, j, k);
+                const SampleBox box = bricks.box_of(brick);
+                std::shared_ptr<std::byte[]> samples(
+                    new std::byte[ResidentBricks::per_brick * each]());
+                const Index3 corner =
+                    brick * ResidentBricks::edge - Index3::Constant(ResidentBricks::margin);
+                for (int z = box.low[2]; z <= box.high[2]; ++z) {
+                    for (int y = box.low[1]; y <= box.high[1]; ++y) {
+                        const Index3 in = Index3(box.low[0], y, z) - corner;
+                        const auto to =
+                            in[0] + in[1] * ResidentBricks::row + in[2] * ResidentBricks::slice;
+                        const auto from =
+                            (std::ptrdiff_t{z} * geometry.size[1] + y) * geometry.size[0] +
+                            box.low[0];
+                        std::memcpy(samples.get() + static_cast<std::size_t>(to) * each,
+                                    static_cast<const std::byte*>(volume.data()) +
+                                        static_cast<std::size_t>(from) * each,
+                                    static_cast<std::size_t>(box.high[0] - box.low[0] + 1) * each);
+                    }
+                }
+                all.push_back({brick, {std::move(samples), 0}});
+            }
+        }
+    }
+    const double background = touch.field.background();
+    touch.field = Field(std::make_shared<const Samples>(volume, geometry, bricks.with(all),
+                                                        volume.minimum(), volume.maximum()),
+                        touch.field.solid(), background, touch.field.interpolation());
     return touch;
 }
 

@@ -47,6 +47,8 @@ Touch ramp_touch(int size);
 Touch smooth(Touch touch);
 /// The same body, level and hand with all samples in edited bricks.
 Touch all_in_bricks(Touch touch);
+/// The same with all samples as bricks of a large grid, all of them in memory.
+Touch all_resident(Touch touch);
 /// The same half way between two frames, both of them alike.
 Touch between_frames(Touch touch);
 

@@ -11,6 +11,7 @@
 #include "benchmarks/tool_hand.hpp"
 #include "palpate/baselines/methods.hpp"
 #include "palpate/layers.hpp"
+#include "palpate/reach.hpp"
 
 using namespace palpate;
 using namespace palpate::benchmarks;
@@ -23,6 +24,7 @@ struct Case {
     Touch (*touch)();
     int layers = 0;  ///< of which the middle one is touched
     bool by_label = false;
+    bool looks = false;  ///< whether all samples within reach are in memory, before each update
 };
 
 template <SampleType type, int tenths_voxel_per_mm, int depth>
@@ -46,6 +48,10 @@ constexpr Case cases[] = {
     {"free/float32/0.5", "exact", cylinder<SampleType::float32, 5, -3>},
     {"free/float32/3", "exact", cylinder<SampleType::float32, 30, -3>},
     {"edited/uint8/3", "exact", [] { return all_in_bricks(cylinder<SampleType::uint8, 30, 1>()); }},
+    {"resident/uint8/3", "exact", [] { return all_resident(cylinder<SampleType::uint8, 30, 1>()); },
+     0, false, true},
+    {"resident/smooth/contact/uint8/3", "exact",
+     [] { return all_resident(smooth(cylinder<SampleType::uint8, 30, 1>())); }, 0, false, true},
     {"between/uint8/3", "exact",
      [] { return between_frames(cylinder<SampleType::uint8, 30, 1>()); }},
     {"noise/float32/3", "exact", [] { return noise_touch(SampleType::float32, 3); }},
@@ -136,7 +142,11 @@ void run(const Case& chosen, long updates) {
     HandMotion hand(touch.path);
     std::uint64_t hash = 0xcbf29ce484222325U;
     for (long i = 0; i < updates; ++i) {
-        mix(hash, method(proxy, touch.field, hand.next(), {}, {}).scp);
+        const Vec3& hip = hand.next();
+        if (chosen.looks && part_within_reach(touch.field, {proxy.scp_physical, hip}) < 1) {
+            std::abort();
+        }
+        mix(hash, method(proxy, touch.field, hip, {}, {}).scp);
     }
     std::printf("%-28s %ld updates, hash of the SCPs %016llx\n", chosen.name, updates,
                 static_cast<unsigned long long>(hash));

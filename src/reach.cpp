@@ -17,13 +17,14 @@ constexpr int most_halvings = 6;
 SampleBox box_round(const Field& field, const Vec3& centre, double radius) {
     const Vec3 at = index_from_physical(field.geometry(), centre);
     const Vec3 reach = radius * field.voxels_per_mm() + Vec3::Constant(around);
-    const Vec3 last = (field.geometry().size - Index3::Ones()).cast<double>();
+    const Index3& size = field.geometry().size;
     SampleBox box;
     for (int a = 0; a < 3; ++a) {
-        const double low = std::floor(at[a] - reach[a]), high = std::ceil(at[a] + reach[a]);
-        if (!(low <= last[a] && high >= 0)) return {};
-        box.low[a] = static_cast<int>(std::clamp(low, 0.0, last[a]));
-        box.high[a] = static_cast<int>(std::clamp(high, 0.0, last[a]));
+        const double low = at[a] - reach[a], high = at[a] + reach[a], last = size[a] - 1;
+        if (!(low <= last && high >= 0)) return {};
+        // Not below 0, so that cutting the digits off is rounding down.
+        box.low[a] = static_cast<int>(std::max(low, 0.0));
+        box.high[a] = std::min(static_cast<int>(std::min(high, last)) + 1, size[a] - 1);
     }
     return box;
 }
@@ -34,13 +35,16 @@ bool is_resident(const Field& field, const Vec3& centre, double radius) noexcept
     const ResidentBricks* resident = field.samples().resident();
     if (!resident) return true;
     const SampleBox box = box_round(field, centre, radius);
-    return box.empty() || resident->has(box);
+    if (box.empty()) return true;
+    const Index3 brick = ResidentBricks::brick_of(box.low);
+    if (brick == ResidentBricks::brick_of(box.high)) return resident->at(brick) != nullptr;
+    return resident->has(box);
 }
 
 double part_within_reach(const Field& field, const Pull& pull) noexcept {
     if (!field.samples().resident()) return 1;
     const Vec3 way = pull.to - pull.from;
-    const double length = std::hypot(way.norm(), pull.turn);
+    const double length = pull.turn == 0 ? way.norm() : std::hypot(way.norm(), pull.turn);
     if (!std::isfinite(length)) return 1;  // the update refuses it
     double part = 1;
     for (int halvings = 0; halvings <= most_halvings; ++halvings, part /= 2) {

@@ -175,7 +175,8 @@ class Field {
     Solid solid_ = Solid::above;
     Interpolation interpolation_ = Interpolation::linear;
     bool shows_labels_ = false;
-    std::uint32_t labels_ = 0;  // that are 1
+    bool reads_bricks_ = false;  // of a large grid, as they lie there
+    std::uint32_t labels_ = 0;   // that are 1
 };
 
 template <class T>
@@ -211,7 +212,7 @@ inline auto Field::visit_around(const Index3& at, Visit&& visit) const {
             return visit(static_cast<const decltype(zero)*>(data_) + offset, row_, slice_);
         });
     }
-    if (resident_ && offset_ == 0 && is_inner(at) && !(bricks_ && is_edited_around(at))) {
+    if (reads_bricks_ && is_inner(at) && !(bricks_ && is_edited_around(at))) {
         if (const ResidentBrick* brick = resident_->of_sample(at)) {
             return with_type(type_, [&](auto zero) {
                 const auto* samples = reinterpret_cast<const decltype(zero)*>(brick->samples.get());
