@@ -240,8 +240,9 @@ static void check_with_tool(const RendererSettings& s) {
                         : s.force.texture.amplitude != 0 ? "a texture"
                                                          : nullptr;
     if (wrong) {
-        throw std::invalid_argument(std::string(wrong) +
-                                    " can be felt with a point only: switch it off, or take the tool point");
+        throw std::invalid_argument(
+            std::string(wrong) +
+            " can be felt with a point only: switch it off, or take the tool point");
     }
 }
 

@@ -185,7 +185,8 @@ std::vector<float> distances_from(std::span<const Facet> facets, std::span<const
     std::vector<float> distances(static_cast<std::size_t>(places.size.cast<double>().prod()),
                                  static_cast<float>(reach));
     const Vec3 all = Vec3::Constant(reach);
-    // Facets from all over the shape come first, so that most places soon know that others are beyond.
+    // Facets from all over the shape come first, so that most places soon know that others are
+    // beyond.
     std::size_t stride = facets.size() * 5 / 8 + 1;
     while (std::gcd(stride, facets.size()) > 1) ++stride;
     for (std::size_t n = 0; n < facets.size(); ++n) {

@@ -153,8 +153,8 @@ void check(const Command& command, const RendererSettings& settings, const Field
 /// out of range can enter between two ticks.
 class CheckedCommand {
   public:
-    /// Throws as check(), but for what rests beside a tool: whether there is one when the command is
-    /// carried out is not known here.
+    /// Throws as check(), but for what rests beside a tool: whether there is one when the command
+    /// is carried out is not known here.
     CheckedCommand(Command command, const RendererSettings& settings, const FieldKind& field);
     /// Switches the forces off, which every session can.
     CheckedCommand() = default;

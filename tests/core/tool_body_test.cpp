@@ -126,7 +126,8 @@ TEST(ToolBody, is_outside_all_around_whatever_its_places_are) {
             const Vec3 half = 0.5 * (body.high() - body.low()) + Vec3::Constant(0.99 * reach);
             for (int n = 0; n < 200; ++n) {
                 const Vec3 p = middle + half.cwiseProduct(random.point(-1, 1));
-                const double apart = distance_to_box(p - middle, half - Vec3::Constant(0.99 * reach));
+                const double apart =
+                    distance_to_box(p - middle, half - Vec3::Constant(0.99 * reach));
                 if (apart > 2 * step) {
                     ASSERT_GT(body.distance(p), 0) << size << ", " << step;
                 }

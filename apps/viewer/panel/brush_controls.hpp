@@ -66,8 +66,8 @@ class BrushControls : public QWidget {
     std::array<std::optional<double>, 4> values_;  // by kind
     double carve_fits_ = 0, add_fits_ = 0;
     double ball_ = 3, beyond_ = 1;  // [mm] the radius of a ball, and beyond the skin of a tool
-    double rate_ = 10;    // [1/s] while it is not at once
-    bool typed_ = false;  // a whole number that does not count yet
+    double rate_ = 10;              // [1/s] while it is not at once
+    bool typed_ = false;            // a whole number that does not count yet
     QWidget* body_;
     Note* reason_;
     QPushButton* on_;
