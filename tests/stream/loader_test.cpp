@@ -110,7 +110,7 @@ TEST(BrickLoader, where_memory_is_that_of_the_process_bricks_take_what_the_rest_
         BrickLoaderSettings settings;
         settings.memory = std::uint64_t{40} << 20;
         settings.whole_process = whole;
-        BrickLoader loader(store_of(volume), noise_of(SampleType::uint8, grid(cube(8)), 1),
+        BrickLoader loader(store_in_pieces(volume), noise_of(SampleType::uint8, grid(cube(8)), 1),
                            settings);
         std::size_t most = 0;
         for (const double at : {100.0, 150.0, 200.0, 250.0, 300.0}) {
