@@ -1,5 +1,5 @@
-// Pages, for stages 2 and 3: a table over a box of places most of which are empty. Versions of it
-// share the pages that did not change (copy on write).
+// Stage 2, pages: a table over a box of places most of which are empty, also for stage 3. Versions
+// of it share the pages that did not change (copy on write).
 #pragma once
 
 #include <array>
