@@ -13,7 +13,6 @@
 namespace palpate {
 namespace {
 
-constexpr std::int64_t second_ns = 1'000'000'000;
 /// Most commands carried out between two ticks; others wait, so that many cannot stall the loop.
 constexpr int commands_per_tick = 16;
 /// From the start of the thread to its first tick [ns].
@@ -235,7 +234,7 @@ void Servo::run() noexcept {
     } catch (...) {  // no memory for the sentences; the loop needs none
     }
     ready_.store(true, std::memory_order_release);
-    Clock clock{static_cast<std::int64_t>(static_cast<double>(second_ns) / settings_.rate), 0, 0};
+    Clock clock{static_cast<std::int64_t>(1e9 / settings_.rate), 0, 0};
     clock.zero = clock.due = monotonic_ns() + settle_ns;
     while (!stopping_.load(std::memory_order_acquire) &&
            device_->failure() == DeviceFailure::none) {

@@ -28,8 +28,8 @@ class Alarm {
     void* timer_ = nullptr;  // the system's, where it has one
 };
 
-/// How other threads ask about a thread.
-struct ThreadId {
+/// How other threads ask about a thread. Aligned so that clang, too, exchanges it without a lock.
+struct alignas(8) ThreadId {
     std::int32_t number = 0;  // as the kernel counts
     std::int32_t clock = 0;   // of its CPU time
 };
