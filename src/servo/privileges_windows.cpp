@@ -3,6 +3,7 @@
 
 #include <avrt.h>
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -49,12 +50,40 @@ std::vector<Region> private_memory() {
 }
 
 /// Pages can be locked only within the working set that the system promises the process.
-bool enlarge_working_set(SIZE_T more) {
+bool enlarge_working_set(SIZE_T locked) {
+    constexpr SIZE_T unlocked = 32 << 20;  // for all else: code, pages that come later
     SIZE_T least = 0, most = 0;
     const HANDLE process = ::GetCurrentProcess();
-    return ::GetProcessWorkingSetSize(process, &least, &most) &&
-           ::SetProcessWorkingSetSize(process, least + more, most + more);
+    if (!::GetProcessWorkingSetSize(process, &least, &most)) return false;
+    if (least >= locked + unlocked) return true;  // by an earlier servo
+    return ::SetProcessWorkingSetSize(process, locked + unlocked,
+                                      std::max(most, locked + 2 * unlocked)) != 0;
 }
+
+/// A thread's stay in the multimedia scheduler's care.
+class Task {
+  public:
+    Task() = default;
+    ~Task() {
+        if (handle_) ::AvRevertMmThreadCharacteristics(handle_);
+    }
+    Task(const Task&) = delete;
+    Task& operator=(const Task&) = delete;
+
+    /// 0, or the error number.
+    DWORD begin() noexcept {
+        DWORD number = 0;
+        if (!handle_) handle_ = ::AvSetMmThreadCharacteristicsW(L"Pro Audio", &number);
+        if (!handle_) return ::GetLastError();
+        ::AvSetMmThreadPriority(handle_, AVRT_PRIORITY_CRITICAL);
+        return 0;
+    }
+
+  private:
+    HANDLE handle_ = nullptr;
+};
+
+thread_local Task task;
 
 std::string ask_for_memory() {
     const std::vector<Region> regions = private_memory();
@@ -79,15 +108,9 @@ std::string ask_for_memory() {
 }  // namespace
 
 int take_priority(int) noexcept {
-    DWORD task = 0;
-    const HANDLE granted = ::AvSetMmThreadCharacteristicsW(L"Pro Audio", &task);
-    const int error = granted ? 0 : static_cast<int>(::GetLastError());
-    if (granted) {
-        ::AvSetMmThreadPriority(granted, AVRT_PRIORITY_CRITICAL);
-    } else {
-        ::SetThreadPriority(::GetCurrentThread(), THREAD_PRIORITY_TIME_CRITICAL);
-    }
-    return error;
+    const DWORD error = task.begin();
+    if (error != 0) ::SetThreadPriority(::GetCurrentThread(), THREAD_PRIORITY_TIME_CRITICAL);
+    return static_cast<int>(error);
 }
 
 std::vector<std::string> ask_for_real_time(int priority) {
