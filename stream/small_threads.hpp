@@ -28,7 +28,7 @@ class SmallThreads {
 
     /// Throws std::system_error if the system gives no thread.
     void start(std::function<void(const std::stop_token& stop)> work) {
-        auto given = std::make_unique<Given>(std::move(work), stop_.get_token());
+        auto given = std::make_unique<Given>(Given{std::move(work), stop_.get_token()});
         threads_.reserve(threads_.size() + 1);
         pthread_attr_t attributes;
         pthread_attr_init(&attributes);
