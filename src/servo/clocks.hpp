@@ -17,7 +17,7 @@ std::int64_t thread_cpu_ns() noexcept;
 class Alarm {
   public:
     Alarm() noexcept;
-    ~Alarm();
+    ~Alarm();  // NOLINT(performance-trivially-destructible): does something on Windows
     Alarm(const Alarm&) = delete;
     Alarm& operator=(const Alarm&) = delete;
 
