@@ -18,12 +18,6 @@ thread_local bool talks_to_a_device = false;
 
 }  // namespace
 
-std::int64_t monotonic_ns() noexcept {
-    return std::chrono::duration_cast<std::chrono::nanoseconds>(
-               std::chrono::steady_clock::now().time_since_epoch())
-        .count();
-}
-
 void sleep_until(std::int64_t ns) noexcept {
     const timespec until{ns / second_ns, ns % second_ns};
     while (::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == EINTR) {

@@ -44,12 +44,6 @@ thread_local Privileges privileges;
 
 }  // namespace
 
-std::int64_t monotonic_ns() noexcept {
-    return std::chrono::duration_cast<std::chrono::nanoseconds>(
-               std::chrono::steady_clock::now().time_since_epoch())
-        .count();
-}
-
 void sleep_until(std::int64_t ns) noexcept {
     const std::int64_t left = ns - monotonic_ns();
     if (left <= 0) return;

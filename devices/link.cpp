@@ -6,6 +6,12 @@
 
 namespace palpate::devices {
 
+std::int64_t monotonic_ns() noexcept {
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(
+               std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+}
+
 DeviceReading Link::read() const noexcept {
     const auto report = reading_.get();
     if (!report) return {};

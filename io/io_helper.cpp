@@ -51,4 +51,10 @@ void fail_without_answer(const fs::path& path) {
                      "palpate-io-helper belongs to this version of Palpate");
 }
 
+HelperResult result_of(const fs::path& path, const HelperJob& job) {
+    HelperResult result = run_helper(job);
+    if (!result.failure.empty()) throw InputError(path.string() + ": " + result.failure);
+    return result;
+}
+
 }  // namespace palpate::io

@@ -4,8 +4,13 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
+#include <system_error>
 
 #include "io/helper_process.hpp"
+#include "palpate/io/error.hpp"
 
 namespace palpate::io {
 
@@ -32,5 +37,25 @@ void check_readable(const std::filesystem::path& path);
 
 /// "ball.nrrd: the helper gave no sensible answer; ...", an InputError.
 [[noreturn]] void fail_without_answer(const std::filesystem::path& path);
+
+/// What a job that read this file says. Throws InputError with the helper's words where it failed.
+HelperResult result_of(const std::filesystem::path& path, const HelperJob& job);
+
+/// What ask() returns, which runs a job and makes something of its answer. What goes wrong there is
+/// an InputError that names the file.
+template <class Ask>
+auto asked_of_helper(const std::filesystem::path& path, Ask&& ask) {
+    try {
+        return ask();
+    } catch (const std::system_error& e) {
+        throw InputError(path.string() + ": " + e.what());
+    } catch (const std::invalid_argument& e) {
+        throw InputError(path.string() + ": " + e.what());
+    } catch (const std::bad_optional_access&) {
+        fail_without_answer(path);
+    } catch (const nlohmann::json::exception&) {
+        fail_without_answer(path);
+    }
+}
 
 }  // namespace palpate::io

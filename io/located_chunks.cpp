@@ -23,23 +23,14 @@ template <class Take>
 auto asked(const fs::path& path, const char* job_name, nlohmann::json request,
            const Descriptor* memory, Take&& take) {
     request["caller"] = getpid();
-    try {
+    return asked_of_helper(path, [&] {
         constexpr double seconds = 60;  // for metadata
         const HelperJob job{io_helper, {}, {job_name, path.string(), line_from(request)},
                             memory,    {}, seconds,
                             seconds};
-        const HelperResult result = run_helper(job);
-        if (!result.failure.empty()) throw InputError(path.string() + ": " + result.failure);
+        const HelperResult result = result_of(path, job);
         return take(result.done);
-    } catch (const std::system_error& e) {
-        throw InputError(path.string() + ": " + e.what());
-    } catch (const std::invalid_argument& e) {
-        throw InputError(path.string() + ": " + e.what());
-    } catch (const std::bad_optional_access&) {
-        fail_without_answer(path);
-    } catch (const nlohmann::json::exception&) {
-        fail_without_answer(path);
-    }
+    });
 }
 
 }  // namespace

@@ -43,22 +43,15 @@ SurfaceMesh read_mesh(const std::filesystem::path& path) {
         throw InputError(path.string() + ": is a folder; give a mesh file");
     }
     const nlohmann::json request = {{"caller", getpid()}, {"memory", machine_memory()}};
-    try {
+    return asked_of_helper(path, [&] {
         const Descriptor memory = shared_memory();
         const TimeLimits limits(0, bytes_in(path));
         const HelperJob job{io_helper,         {}, {"read-mesh", path.string(), line_from(request)},
                             &memory,           {}, limits.wall_s,
                             limits.processor_s};
-        const HelperResult result = run_helper(job);
-        if (!result.failure.empty()) throw InputError(path.string() + ": " + result.failure);
+        const HelperResult result = result_of(path, job);
         return mesh_from(result.done, memory);
-    } catch (const std::system_error& e) {
-        throw InputError(path.string() + ": " + e.what());
-    } catch (const std::invalid_argument& e) {
-        throw InputError(path.string() + ": " + e.what());
-    } catch (const nlohmann::json::exception&) {
-        fail_without_answer(path);
-    }
+    });
 }
 
 }  // namespace palpate::io

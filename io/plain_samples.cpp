@@ -94,24 +94,15 @@ PlainSamples locate_samples(const fs::path& path, const ReadOptions& options) {
     if (options.raw) return raw_samples(path, options);
     nlohmann::json request = {{"caller", getpid()}};
     if (options.spacing) request["spacing"] = json_from(*options.spacing);
-    try {
+    return asked_of_helper(path, [&] {
         constexpr double seconds = 60;  // for a header
         const double limit = options.time_limit_s > 0 ? options.time_limit_s : seconds;
         const HelperJob job{
             io_helper, options.helper, {"locate", path.string(), line_from(request)}, nullptr, {},
             limit,     limit};
-        const HelperResult result = run_helper(job);
-        if (!result.failure.empty()) throw InputError(path.string() + ": " + result.failure);
+        const HelperResult result = result_of(path, job);
         return plain_from(result.done);
-    } catch (const std::system_error& e) {
-        throw InputError(path.string() + ": " + e.what());
-    } catch (const std::invalid_argument& e) {
-        throw InputError(path.string() + ": " + e.what());
-    } catch (const std::bad_optional_access&) {
-        fail_without_answer(path);
-    } catch (const nlohmann::json::exception&) {
-        fail_without_answer(path);
-    }
+    });
 }
 
 }  // namespace palpate::io

@@ -112,27 +112,20 @@ VolumeFile read_volume(const fs::path& path, const ReadOptions& options) {
                               {"time_step", options.time_step},
                               {"memory", limited.memory_limit_bytes}};
     if (options.spacing) request["spacing"] = json_from(*options.spacing);
-    try {
+    return asked_of_helper(path, [&] {
         const Descriptor samples = shared_memory();
         const TimeLimits limits(options.time_limit_s, bytes_in(path));
         const HelperJob job{
             io_helper,         options.helper,   {"read", path.string(), line_from(request)},
             &samples,          options.progress, limits.wall_s,
             limits.processor_s};
-        const HelperResult result = run_helper(job);
-        if (!result.failure.empty()) throw InputError(path.string() + ": " + result.failure);
+        const HelperResult result = result_of(path, job);
         if (result.done.contains("choose")) {
             throw SeriesChoice(path.string() + ": " + result.done.at("why").get<std::string>(),
                                series_from(result.done["choose"]));
         }
         return volume_from(result.done, samples);
-    } catch (const std::system_error& e) {
-        throw InputError(path.string() + ": " + e.what());
-    } catch (const std::invalid_argument& e) {
-        throw InputError(path.string() + ": " + e.what());
-    } catch (const nlohmann::json::exception&) {
-        fail_without_answer(path);
-    }
+    });
 }
 
 namespace {

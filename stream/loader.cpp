@@ -97,6 +97,16 @@ void BrickLoader::look(std::span<const Interest> hands) {
                                                most_bricks_ - most_bricks_ / 8);
     const std::scoped_lock lock(mutex_);
     wanted_ = std::move(wanted);
+    const auto to_do = [&](const Index3& brick) {
+        const auto held = held_.find({array_of(brick)});
+        return held == held_.end() || held->second != 0;
+    };
+    if (std::ranges::any_of(wanted_, to_do)) wake();  // not 200 times a second for nothing
+}
+
+/// Needs the lock. Threads without a job look again.
+void BrickLoader::wake() {
+    ++changes_;
     changed_.notify_all();
 }
 
@@ -123,7 +133,7 @@ void BrickLoader::wait_for(const Vec3& centre, double radius) {
     required_ = needed;
     wanted_ = needed;
     failed_.clear();
-    changed_.notify_all();
+    wake();
     changed_.wait(lock, [&] {
         return std::ranges::all_of(needed, [&](const Index3& brick) {
             const Place place{array_of(brick)};
@@ -195,7 +205,9 @@ void BrickLoader::work(const std::stop_token& stop) {
     while (!stop.stop_requested()) {
         const std::optional<Job> job = next_job();
         if (!job) {
-            changed_.wait_for(lock, stop, std::chrono::milliseconds(500), [] { return false; });
+            // What failed is due again some time.
+            changed_.wait_for(lock, stop, std::chrono::milliseconds(500),
+                              [&, seen = changes_] { return changes_ != seen; });
             continue;
         }
         if (job->helps) {
@@ -223,7 +235,7 @@ void BrickLoader::work(const std::stop_token& stop) {
             failed_[place] = Clock::now() + pause_after_failure;
             problem_ = problem;
         }
-        changed_.notify_all();
+        wake();
     }
 }
 

@@ -1,6 +1,8 @@
 // Asks the operating system for real-time privileges and reports what it granted.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -12,5 +14,11 @@ std::vector<std::string> ask_for_real_time(int priority);
 
 /// Asks, for the calling thread, for SCHED_FIFO; 0 if it was granted, otherwise the error number.
 int take_priority(int priority) noexcept;
+
+/// Touches the stack as deep as a tick may reach, so that no page of it faults later.
+inline void touch_stack() {
+    std::array<volatile char, std::size_t{128} * 1024> deep;
+    for (std::size_t i = 0; i < deep.size(); i += 1024) deep[i] = 0;
+}
 
 }  // namespace palpate

@@ -4,19 +4,12 @@
 #include <avrt.h>
 
 #include <algorithm>
-#include <array>
 #include <vector>
 
 #include "servo/privileges.hpp"
 
 namespace palpate {
 namespace {
-
-/// Touches the stack as deep as a tick may reach, so that no page of it faults later.
-void touch_stack() {
-    std::array<volatile char, std::size_t{128} * 1024> deep;
-    for (std::size_t i = 0; i < deep.size(); i += 1024) deep[i] = 0;
-}
 
 std::string ask_for_priority(int priority) {
     const int error = take_priority(priority);

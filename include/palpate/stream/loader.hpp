@@ -127,6 +127,7 @@ class BrickLoader {
     void help(const Job& job, const std::stop_token& stop) const;
     SampleBox source_of(const Index3& brick, int coarser) const;
     std::optional<Job> next_job();
+    void wake();
     void put(const Job& job, const ResidentBrick& brick);
     void make_room();
     int coarse_level() const;
@@ -149,6 +150,7 @@ class BrickLoader {
     std::map<Place, Clock::time_point> failed_;  // not tried again before
     std::vector<Index3> wanted_;                 // most urgent first
     std::vector<Index3> required_;               // by wait_for()
+    std::uint64_t changes_ = 0;                  // that may have made a job
     std::vector<BrickEvent> events_;
     std::uint64_t other_bytes_ = 0;    // leave_room()
     std::uint64_t process_bytes_ = 0;  // of the process, beyond bricks, pieces and edits
