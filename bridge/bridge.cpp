@@ -192,6 +192,12 @@ void Bridge::try_to_connect() {
 
 void Bridge::accept_peers() {
     for (int socket = accept_from(listening_); socket >= 0; socket = accept_from(listening_)) {
+        if (peers_.size() == most_peers) {  // some may have left already
+            for (const auto& peer : peers_) {
+                if (!peer->gone) take_from(*peer);
+            }
+            drop_the_gone();
+        }
         if (peers_.size() < most_peers) {
             add_peer(socket, "client " + std::to_string(next_peer_));
         } else {

@@ -54,7 +54,7 @@ Listening listen_at(const std::string& host, int port) {
     if (socket >= 0) {
         setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
         if (::bind(socket, addresses->ai_addr, addresses->ai_addrlen) == 0 &&
-            ::listen(socket, 8) == 0) {
+            ::listen(socket, SOMAXCONN) == 0) {
             return {socket, port_of(socket)};
         }
     }
