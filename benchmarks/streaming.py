@@ -25,7 +25,7 @@ VOXEL, PERIOD, RADIUS = 0.001, 768, 256  # of the virtual volume: mm, voxels, vo
 LEVEL = 128                              # at the balls' radius, which rounding moves by a voxel
 MARGIN = 4                               # voxels that rounding and interpolation may take
 LONGEST_LINE = 32                        # voxels: cuts 0.5 voxels off a ball
-COARSE_MARGIN = 12                       # the same two levels coarser
+COARSE_MARGIN = 24                       # the same at levels of up to 128 voxels, which cut balls off
 
 
 def depth(point):

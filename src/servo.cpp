@@ -301,7 +301,11 @@ void Servo::obey() noexcept {
         const std::optional<CheckedCommand> checked = commands_.pop();
         if (!checked) return;
         apply(session_, *checked);
-        record(checked->command());
+        const auto* samples = std::get_if<command::Samples>(&checked->command());
+        // A recording names samples by their recipe; held until it is written, they would be in
+        // memory long after the servo uses others.
+        record(samples ? Command(command::Samples{nullptr, samples->version, samples->recipe})
+                       : checked->command());
         obeyed_.store(obeyed_.load(std::memory_order_relaxed) + 1, std::memory_order_release);
     }
 }

@@ -8,7 +8,9 @@
 #include <stdexcept>
 
 #include "stream/blocks.hpp"
+#include "stream/box_bytes.hpp"
 #include "stream/sample_bytes.hpp"
+#include "stream/upsample.hpp"
 
 namespace palpate::stream {
 namespace {
@@ -32,14 +34,6 @@ Index3 size_of(const SampleBox& box) {
 
 std::size_t count_of(const SampleBox& box) {
     return static_cast<std::size_t>(size_of(box).cast<std::int64_t>().prod());
-}
-
-/// The part of a level's grid as a grid of its own.
-Geometry geometry_of(const Geometry& level, const SampleBox& box) {
-    Geometry part = level;
-    part.origin = physical_from_index(level, box.low.cast<double>());
-    part.size = size_of(box);
-    return part;
 }
 
 void check(const Store& store, const DetailBox& of) {
@@ -75,88 +69,9 @@ std::vector<SampleBox> parts_of(const Level& level, const SampleBox& box) {
     return parts;
 }
 
-/// Copies samples of `part` into those of `box`.
-void copy_in(const std::byte* part_bytes, const SampleBox& part, const SampleBox& box,
-             std::size_t each, std::byte* to) {
-    const Index3 size = size_of(box);
-    const auto row = static_cast<std::size_t>(size_of(part)[0]) * each;
-    for (int k = part.low[2]; k <= part.high[2]; ++k) {
-        for (int j = part.low[1]; j <= part.high[1]; ++j, part_bytes += row) {
-            const std::size_t at =
-                (static_cast<std::size_t>(k - box.low[2]) * static_cast<std::size_t>(size[1]) +
-                 static_cast<std::size_t>(j - box.low[1])) *
-                    static_cast<std::size_t>(size[0]) +
-                static_cast<std::size_t>(part.low[0] - box.low[0]);
-            std::memcpy(to + at * each, part_bytes, row);
-        }
-    }
-}
-
 Volume volume_of(const Geometry& geometry, SampleType type, std::vector<std::byte> bytes) {
     const auto held = std::make_shared<const std::vector<std::byte>>(std::move(bytes));
     return {geometry, type, std::shared_ptr<const void>(held, held->data()), held->size()};
-}
-
-/// Where a fine sample lies between two coarse ones along an axis.
-struct Between {
-    std::ptrdiff_t low, high;  // offsets in the coarse samples
-    float part;                // of the higher
-};
-
-std::vector<Between> places_along(int axis, const Geometry& coarse, const Geometry& grid,
-                                  const SampleBox& box) {
-    const std::array<std::ptrdiff_t, 3> strides{
-        1, coarse.size[0], static_cast<std::ptrdiff_t>(coarse.size[0]) * coarse.size[1]};
-    const std::ptrdiff_t stride = strides[static_cast<std::size_t>(axis)];
-    const std::ptrdiff_t last = coarse.size[axis] - 1;
-    std::vector<Between> places;
-    for (int i = box.low[axis]; i <= box.high[axis]; ++i) {
-        Vec3 index = Vec3::Zero();
-        index[axis] = i;
-        const double at = std::clamp(
-            index_from_physical(coarse, physical_from_index(grid, index))[axis], 0.0, double(last));
-        const auto low = std::clamp<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(at), 0,
-                                                    std::max<std::ptrdiff_t>(0, last - 1));
-        places.push_back(
-            {low * stride, std::min(low + 1, last) * stride, static_cast<float>(at - double(low))});
-    }
-    return places;
-}
-
-float mix(float a, float b, float part) {
-    return a + part * (b - a);
-}
-
-template <class T>
-void interpolate(const Volume& coarse, const Geometry& grid, const SampleBox& box, T* out) {
-    const auto x = places_along(0, coarse.geometry(), grid, box);
-    const auto y = places_along(1, coarse.geometry(), grid, box);
-    const auto z = places_along(2, coarse.geometry(), grid, box);
-    const auto* const samples = static_cast<const T*>(coarse.data());
-    std::vector<float> row(static_cast<std::size_t>(coarse.geometry().size[0]));
-    for (std::size_t k = 0; k < z.size(); ++k) {
-        for (std::size_t j = 0; j < y.size(); ++j) {
-            for (std::ptrdiff_t i = x.front().low; i <= x.back().high; ++i) {
-                const auto at = [&](std::ptrdiff_t in_y, std::ptrdiff_t in_z) {
-                    return static_cast<float>(samples[i + in_y + in_z]);
-                };
-                row[static_cast<std::size_t>(i)] = mix(
-                    mix(at(y[j].low, z[k].low), at(y[j].high, z[k].low), y[j].part),
-                    mix(at(y[j].low, z[k].high), at(y[j].high, z[k].high), y[j].part), z[k].part);
-            }
-            T* to = out +
-                    ((box.low[2] + static_cast<std::ptrdiff_t>(k)) * grid.size[1] + box.low[1] +
-                     static_cast<std::ptrdiff_t>(j)) *
-                        grid.size[0] +
-                    box.low[0];
-            for (const Between& place : x) {
-                const float value = mix(row[static_cast<std::size_t>(place.low)],
-                                        row[static_cast<std::size_t>(place.high)], place.part);
-                *to++ = std::is_integral_v<T> ? static_cast<T>(std::nearbyint(value))
-                                              : static_cast<T>(value);
-            }
-        }
-    }
 }
 
 }  // namespace
@@ -207,11 +122,14 @@ struct DetailReader::Work {
     }
 };
 
+/// Interpolates a box of `grid`, all of whose samples are in `out`.
 void interpolate_into(const Volume& coarse, const Geometry& grid, const SampleBox& box,
                       std::byte* out) {
-    with_type(coarse.type(), [&](auto zero) {
-        interpolate(coarse, grid, box, reinterpret_cast<decltype(zero)*>(out));
-    });
+    const std::ptrdiff_t row = grid.size[0], slice = row * grid.size[1];
+    const std::ptrdiff_t first = box.low[0] + box.low[1] * row + box.low[2] * slice;
+    const auto each = static_cast<std::ptrdiff_t>(palpate::size_of(coarse.type()));
+    upsample(coarse.geometry(), static_cast<const std::byte*>(coarse.data()), coarse.type(), grid,
+             box, {out + first * each, row, slice});
 }
 
 DetailReader::DetailReader(std::shared_ptr<const Store> store, Volume overview,
@@ -357,7 +275,7 @@ void DetailReader::read(const Job& job, const std::stop_token& stop) {
         make_finite(type, bytes, overview_.minimum());
         const std::scoped_lock content(work.content);
         stage->samples.resize(count_of(stage->of.box) * each);
-        copy_in(bytes.data(), piece.box, stage->of.box, each, stage->samples.data());
+        copy_box(piece.box, bytes.data(), stage->of.box, stage->samples.data(), each);
         piece.copied = true;
         if (stage + 1 == work.stages.end()) work.changed = united(work.changed, piece.box);
     } catch (const Cancelled&) {

@@ -209,7 +209,9 @@ class HttpClient::Worker {
         curl_easy_setopt(easy, CURLOPT_MAXREDIRS, 5L);
         curl_easy_setopt(easy, CURLOPT_NOSIGNAL, 1L);
         curl_easy_setopt(easy, CURLOPT_HTTP_VERSION, static_cast<long>(CURL_HTTP_VERSION_2TLS));
-        curl_easy_setopt(easy, CURLOPT_PIPEWAIT, 1L);
+        // Only HTTP/2, which comes with TLS, takes several requests over one connection: waiting
+        // for the first answer to see whether it does would cost plain HTTP a round trip.
+        if (job.request.url.starts_with("https:")) curl_easy_setopt(easy, CURLOPT_PIPEWAIT, 1L);
         curl_easy_setopt(easy, CURLOPT_USERAGENT, "palpate");
         const double bytes =
             static_cast<double>(std::min<std::uint64_t>(most_of(job.request), 1 << 30));

@@ -12,9 +12,12 @@ constexpr double look_ahead = 0.5;
 constexpr double farthest = 16;
 /// Bricks ahead of a moving hand count as this much farther than those it is in.
 constexpr double ahead_factor = 0.5;
-/// A hand that goes farther than this meanwhile [bricks] has left what it is in before that can
-/// come: then what it reaches in that time comes first, and what it is in counts as this much
-/// farther [bricks].
+/// And those on a long way from proxy to hand by this: where the proxy waits, all round it is
+/// needed before it can go on.
+constexpr double pull_factor = 0.2;
+/// A hand that goes farther than this while a brick comes [bricks] has left what it is in before
+/// that can come: then what it reaches comes first, and what it is in counts as this much farther
+/// [bricks].
 constexpr double fast = 1, late_penalty = 1;
 /// Samples round a ball that an update may look at, more than reach.cpp's [voxel].
 constexpr double margin = 5;
@@ -38,7 +41,8 @@ double distance(const Segment& s, const Vec3& p) {
 }  // namespace
 
 std::vector<Index3> wanted_bricks(const Geometry& geometry, const Index3& count,
-                                  std::span<const Interest> hands, std::size_t most) {
+                                  std::span<const Interest> hands, std::size_t most,
+                                  double seconds) {
     struct Scored {
         double score;
         Index3 brick;
@@ -56,7 +60,7 @@ std::vector<Index3> wanted_bricks(const Geometry& geometry, const Index3& count,
         const Segment pull{proxy, proxy + shortened(in_bricks(hand.hand) - proxy)};
         const Vec3 velocity = hand.velocity.allFinite() ? hand.velocity : Vec3::Zero();
         const Vec3 soon = in_bricks(hand.proxy + look_ahead * velocity) - proxy;
-        const bool is_fast = soon.norm() > fast;
+        const bool is_fast = soon.norm() * seconds > fast * look_ahead;
         const Vec3 begin = is_fast ? Vec3(pull.to + 0.5 * shortened(soon)) : proxy;
         const Segment path{begin, begin + shortened(soon)};
         const Vec3 low = proxy.cwiseMin(pull.to).cwiseMin(path.to) - Vec3::Constant(radius);
@@ -68,13 +72,15 @@ std::vector<Index3> wanted_bricks(const Geometry& geometry, const Index3& count,
             for (int j = first[1]; j <= end[1]; ++j) {
                 for (int i = first[0]; i <= end[0]; ++i) {
                     const Vec3 centre = Vec3(i, j, k) + Vec3::Constant(0.5);
-                    const double near = distance(pull, centre) + (is_fast ? late_penalty : 0);
+                    const double to_proxy = (centre - proxy).norm();
+                    const double to_pull = distance(pull, centre);
                     const double to_path = distance(path, centre);
+                    if (std::min(to_pull, to_path) > radius + 1) continue;
+                    const double near =
+                        to_pull + pull_factor * to_proxy + (is_fast ? late_penalty : 0);
                     const double ahead =
-                        is_fast ? to_path
-                                : to_path + ahead_factor * std::min(1.0, (centre - proxy).norm());
-                    const double score = std::min(near, ahead);
-                    if (score <= radius + 1) scored.push_back({score, {i, j, k}});
+                        is_fast ? to_path : to_path + ahead_factor * std::min(1.0, to_proxy);
+                    scored.push_back({std::min(near, ahead), {i, j, k}});
                 }
             }
         }
@@ -110,6 +116,14 @@ std::vector<Index3> bricks_round(const Geometry& geometry, const Vec3& centre, d
         }
     }
     return bricks;
+}
+
+LevelChoice levels_for(double speed, double seconds, int coarsest) {
+    constexpr int coarser_first = 2;
+    const double passed = speed * seconds;
+    const int finest =
+        passed > 1 ? static_cast<int>(std::min(std::ceil(std::log2(passed)), 30.0)) : 0;
+    return {std::min(finest + coarser_first, coarsest), std::min(finest, coarsest)};
 }
 
 }  // namespace palpate::stream

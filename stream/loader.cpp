@@ -11,6 +11,7 @@
 
 #include "palpate/io/error.hpp"
 #include "stream/blocks.hpp"
+#include "stream/brick_memory.hpp"
 #include "stream/interest.hpp"
 #include "stream/small_threads.hpp"
 
@@ -18,14 +19,28 @@ namespace palpate::stream {
 namespace {
 
 constexpr std::size_t fewest_bricks = 64;
+/// Whose memory is kept for the next ones.
+constexpr std::size_t most_free_bricks = 16;
+/// Just made, or dropped and still in use.
+constexpr std::size_t most_left_bricks = 32;
+constexpr std::chrono::milliseconds pause_when_behind{2}, time_to_let_go{20};
 /// A brick that could not be had is tried again after this long.
 constexpr std::chrono::seconds pause_after_failure{2};
 /// Of the memory, the part of decoded pieces.
 constexpr std::uint64_t pieces_part = 4;
 /// Bricks that the hands need first: a cube of three round one.
 constexpr std::size_t most_urgent = 27;
+/// Of the mean time that a brick takes, the part of the last one.
+constexpr double newest_part = 0.2;
+/// With coarse_first: of the hands' speed [s].
+constexpr double speed_smoothing = 0.2;
+/// With coarse_first: bricks that come at both levels before all others.
+constexpr std::size_t most_soon = 125;
 /// Of the memory of the process.
-constexpr std::chrono::milliseconds between_counts{20};
+constexpr std::chrono::milliseconds between_counts{5};
+/// Of it, the part that is left for what is dropped but not given back yet, and for reads under
+/// way.
+constexpr std::uint64_t spare_part = 10;
 
 const Level& level_of(const Store& store, int level) {
     const auto count = static_cast<int>(store.info().levels.size());
@@ -83,6 +98,7 @@ BrickLoader::BrickLoader(std::shared_ptr<const Store> store, Volume overview,
       geometry_(empty_->geometry()),
       most_bricks_(most_bricks(*store_, settings.memory)),
       blocks_(std::make_unique<Blocks>(*store_, settings.memory / pieces_part)),
+      memory_(std::make_unique<BrickMemory>(bytes_of_brick(store_->info().type), most_free_bricks)),
       bricks_(geometry_.size),
       threads_(std::make_unique<SmallThreads>()) {
     for (int i = 0; i < std::max(1, settings.threads); ++i) {
@@ -93,14 +109,17 @@ BrickLoader::BrickLoader(std::shared_ptr<const Store> store, Volume overview,
 BrickLoader::~BrickLoader() = default;
 
 void BrickLoader::look(std::span<const Interest> hands) {
+    double seconds = 0;
+    {
+        const std::scoped_lock lock(mutex_);
+        choose_levels(hands);
+        seconds = std::ldexp(brick_s_, -finest_);
+    }
     std::vector<Index3> wanted = wanted_bricks(geometry_, empty_->resident()->count(), hands,
-                                               most_bricks_ - most_bricks_ / 8);
+                                               most_bricks_ - most_bricks_ / 8, seconds);
     const std::scoped_lock lock(mutex_);
-    wanted_ = std::move(wanted);
-    const auto to_do = [&](const Index3& brick) {
-        const auto held = held_.find({array_of(brick)});
-        return held == held_.end() || held->second != 0;
-    };
+    want(std::move(wanted));
+    const auto to_do = [&](const Index3& brick) { return !has(brick, finest_); };
     if (std::ranges::any_of(wanted_, to_do)) wake();  // not 200 times a second for nothing
 }
 
@@ -113,6 +132,12 @@ void BrickLoader::wake() {
 std::optional<BrickVersion> BrickLoader::take() {
     const std::scoped_lock lock(mutex_);
     if (events_.empty()) return std::nullopt;
+    std::vector<ResidentBricks::Change> changes;
+    for (const BrickEvent& event : events_) {
+        const auto held = held_.find({array_of(event.brick)});
+        changes.push_back({event.brick, held == held_.end() ? ResidentBrick{} : held->second});
+    }
+    bricks_ = bricks_.with(changes);
     BrickVersion version{std::make_shared<const Samples>(overview_, geometry_, bricks_,
                                                          empty_->minimum(), empty_->maximum()),
                          std::move(events_)};
@@ -131,14 +156,12 @@ void BrickLoader::wait_for(const Vec3& centre, double radius) {
     }
     std::unique_lock lock(mutex_);
     required_ = needed;
-    wanted_ = needed;
+    want(needed);
     failed_.clear();
     wake();
     changed_.wait(lock, [&] {
         return std::ranges::all_of(needed, [&](const Index3& brick) {
-            const Place place{array_of(brick)};
-            const auto held = held_.find(place);
-            return failed_.contains(place) || (held != held_.end() && held->second == 0);
+            return failed_.contains({array_of(brick)}) || has(brick, 0);
         });
     });
     required_.clear();
@@ -166,43 +189,94 @@ BrickLoaderStatus BrickLoader::status() const {
     return status;
 }
 
-/// The coarser level that comes first, as steps from the one that is felt; 0: none.
-int BrickLoader::coarse_level() const {
-    if (!settings_.coarse_first) return 0;
-    const int coarser = static_cast<int>(store_->info().levels.size()) - 1 - settings_.level;
-    return std::min(coarser, 2);
+/// Needs the lock.
+void BrickLoader::choose_levels(std::span<const Interest> hands) {
+    if (!settings_.coarse_first) return;
+    double speed = 0;
+    for (const Interest& hand : hands) {
+        const Vec3 bricks = (geometry_.direction.transpose() * hand.velocity)
+                                .cwiseQuotient(geometry_.spacing * ResidentBricks::edge);
+        if (bricks.allFinite()) speed = std::max(speed, bricks.norm());
+    }
+    const int coarsest = static_cast<int>(store_->info().levels.size()) - 1 - settings_.level;
+    // A hand that a force lets go of jumps for a moment.
+    const Clock::time_point now = Clock::now();
+    const double passed = std::chrono::duration<double>(now - looked_).count();
+    speed_ += std::min(1.0, passed / speed_smoothing) * (speed - speed_);
+    looked_ = now;
+    const LevelChoice choice = levels_for(speed_, brick_s_, coarsest);
+    first_ = choice.first;
+    finest_ = choice.finest;
 }
 
 /// Needs the lock. The most urgent brick of which something is to be read: all threads work for the
 /// first, so that it is there soon.
 std::optional<BrickLoader::Job> BrickLoader::next_job() {
-    const int coarse = required_.empty() ? coarse_level() : 0;
-    const Clock::time_point now = Clock::now();
-    const auto rests = [&](const Place& place) {
-        const auto failed = failed_.find(place);
-        return failed != failed_.end() && now < failed->second;
+    const bool exact = !required_.empty();
+    const int first = exact ? 0 : first_, finest = exact ? 0 : finest_;
+    // First something everywhere near, then the level that is felt; where the hands are soon, both
+    // come before anything elsewhere.
+    struct Round {
+        std::size_t begin, end;
+        int level;
     };
-    // First something everywhere near, then the level that is felt.
-    for (const int level : {coarse, 0}) {
-        for (const Index3& brick : wanted_) {
-            const Place place{array_of(brick)};
-            const auto held = held_.find(place);
-            if (held != held_.end() && held->second <= level) continue;
-            if (rests(place)) continue;
-            const auto read = in_flight_.find(place);
-            if (read == in_flight_.end()) return Job{brick, level, false};
-            const int coarser = read->second;
-            if (blocks_->has_unread(settings_.level + coarser, source_of(brick, coarser))) {
-                return Job{brick, coarser, true};
-            }
+    const std::size_t all = wanted_.size(), soon = std::min(all, most_soon);
+    const std::array<Round, 4> rounds{
+        {{0, soon, first}, {0, soon, finest}, {soon, all, first}, {soon, all, finest}}};
+    const Clock::time_point now = Clock::now();
+    for (std::size_t n = 0; n < rounds.size(); ++n) {
+        const Round& round = rounds[n];
+        std::size_t& begun = begun_[n];
+        begun = std::max(begun, round.begin);
+        while (begun < round.end && has(wanted_[begun], round.level)) ++begun;
+        for (std::size_t i = begun; i < round.end; ++i) {
+            if (auto job = job_for(wanted_[i], round.level, now)) return job;
         }
     }
     return std::nullopt;
 }
 
+/// Needs the lock. What is to be done for a brick, if anything.
+std::optional<BrickLoader::Job> BrickLoader::job_for(const Index3& brick, int level,
+                                                     Clock::time_point now) const {
+    if (has(brick, level)) return std::nullopt;
+    const Place place{array_of(brick)};
+    const auto failed = failed_.find(place);
+    if (failed != failed_.end() && now < failed->second) return std::nullopt;
+    const auto read = in_flight_.find(place);
+    if (read == in_flight_.end()) return Job{brick, level, false};
+    const int coarser = read->second;
+    if (!blocks_->has_unread(settings_.level + coarser, source_of(brick, coarser)))
+        return std::nullopt;
+    return Job{brick, coarser, true};
+}
+
+/// Needs the lock. Whether a brick is in memory at a level, or at a finer one.
+bool BrickLoader::has(const Index3& brick, int level) const {
+    const auto held = held_.find({array_of(brick)});
+    return held != held_.end() && held->second.level <= level;
+}
+
+/// Needs the lock.
+void BrickLoader::want(std::vector<Index3> bricks) {
+    wanted_ = std::move(bricks);
+    begun_ = {};
+}
+
+/// Needs the lock. Older versions are let go when the next one comes, so it never waits for long.
+/// Who waits for bricks gets them first.
+bool BrickLoader::is_behind() const {
+    return required_.empty() && memory_->used() > held_.size() + most_left_bricks &&
+           Clock::now() - newest_ < time_to_let_go;
+}
+
 void BrickLoader::work(const std::stop_token& stop) {
     std::unique_lock lock(mutex_);
     while (!stop.stop_requested()) {
+        if (is_behind()) {
+            changed_.wait_for(lock, stop, pause_when_behind, [] { return false; });
+            continue;
+        }
         const std::optional<Job> job = next_job();
         if (!job) {
             // What failed is due again some time.
@@ -219,6 +293,9 @@ void BrickLoader::work(const std::stop_token& stop) {
         const Place place{array_of(job->brick)};
         in_flight_[place] = job->coarser;
         lock.unlock();
+        const bool is_kept = !blocks_->has_unread(settings_.level + job->coarser,
+                                                  source_of(job->brick, job->coarser));
+        const Clock::time_point begin = Clock::now();
         std::optional<ResidentBrick> brick;
         std::string problem;
         try {
@@ -230,6 +307,10 @@ void BrickLoader::work(const std::stop_token& stop) {
         lock.lock();
         in_flight_.erase(place);
         if (brick) {
+            if (!is_kept) {
+                const double took = std::chrono::duration<double>(Clock::now() - begin).count();
+                brick_s_ += (brick_s_ > 0 ? newest_part : 1) * (took - brick_s_);
+            }
             put(*job, *brick);
         } else if (!problem.empty()) {
             failed_[place] = Clock::now() + pause_after_failure;
@@ -253,9 +334,8 @@ void BrickLoader::put(const Job& job, const ResidentBrick& brick) {
     const Place place{array_of(job.brick)};
     failed_.erase(place);
     if (failed_.empty()) problem_.clear();
-    const ResidentBricks::Change change{job.brick, brick};
-    bricks_ = bricks_.with({&change, 1});
-    held_[place] = job.coarser;
+    held_[place] = brick;
+    newest_ = Clock::now();
     events_.push_back({job.brick, job.coarser});
     ++loaded_;
     make_room();
@@ -270,7 +350,7 @@ void BrickLoader::make_room() {
     for (const Index3& brick : wanted_) wanted[{array_of(brick)}] = 1;
     const Index3 centre = wanted_.empty() ? Index3(Index3::Zero()) : wanted_.front();
     std::vector<std::pair<std::int64_t, Index3>> idle;
-    for (const auto& [place, level] : held_) {
+    for (const auto& [place, held] : held_) {
         const Index3 brick(place.at[0], place.at[1], place.at[2]);
         if (wanted.contains(place)) continue;
         idle.emplace_back((brick - centre).cast<std::int64_t>().squaredNorm(), brick);
@@ -279,15 +359,12 @@ void BrickLoader::make_room() {
     std::ranges::sort(idle, farther);
     // An eighth at a time, so that this is rare.
     const std::size_t enough = most_bricks_ - most_bricks_ / 8;
-    std::vector<ResidentBricks::Change> changes;
     for (const auto& [distance, brick] : idle) {
         if (held_.size() <= enough) break;
         held_.erase({array_of(brick)});
-        changes.push_back({brick, {}});
         events_.push_back({brick, -1});
         ++dropped_;
     }
-    bricks_ = bricks_.with(changes);
 }
 
 /// Needs the lock.
@@ -300,7 +377,9 @@ void BrickLoader::read(const SampleBox& box, std::span<std::byte> out, std::stop
     ResidentBrick held;
     {
         const std::scoped_lock lock(mutex_);
-        if (const ResidentBrick* brick = bricks_.at(at)) held = *brick;
+        if (const auto brick = held_.find({array_of(at)}); brick != held_.end()) {
+            held = brick->second;
+        }
     }
     const SampleBox has = bricks_.box_of(at);
     if (!held || held.level != 0 || (box.high.array() > has.high.array()).any()) {
@@ -331,10 +410,12 @@ void BrickLoader::count_process() {
     const Clock::time_point now = Clock::now();
     if (settings_.whole_process && now - counted_ > between_counts) {
         counted_ = now;
-        const std::uint64_t all = resident_bytes(), ours = bytes();
+        const std::uint64_t all = resident_bytes();
+        const std::uint64_t ours = blocks_->bytes() + other_bytes_ + memory_->bytes();
         process_bytes_ = all > ours ? all - ours : 0;
     }
-    const std::uint64_t others = other_bytes_ + process_bytes_;
+    const std::uint64_t spare = settings_.whole_process ? settings_.memory / spare_part : 0;
+    const std::uint64_t others = other_bytes_ + process_bytes_ + spare;
     const auto less = static_cast<std::size_t>(others / bytes_of_brick(overview_.type()));
     const std::size_t all = most_bricks(*store_, settings_.memory);
     most_bricks_ = all - std::min(less, all - fewest_bricks);

@@ -6,7 +6,9 @@
 
 #include "palpate/stream/loader.hpp"
 #include "stream/blocks.hpp"
+#include "stream/brick_memory.hpp"
 #include "stream/sample_bytes.hpp"
+#include "stream/upsample.hpp"
 
 namespace palpate::stream {
 namespace {
@@ -23,7 +25,7 @@ double least_finite(SampleType type, std::span<const std::byte> bytes) {
 }
 
 /// That read an overview at a time.
-constexpr int threads = 16;
+constexpr int threads = 32;
 /// Most reads for an overview of a level that is too large to be read whole: of rows, or of pieces.
 constexpr std::int64_t most_rows = 4096;
 constexpr std::int64_t most_pieces = 512;
@@ -83,40 +85,6 @@ Volume thinned_level(const Store& store, std::int64_t samples, std::stop_token s
     return volume_from(geometry, info.type, std::move(bytes));
 }
 
-/// Interpolates a coarse box at the samples of a brick.
-template <class T>
-void interpolate(const Geometry& fine, const SampleBox& brick, const Geometry& coarse,
-                 const SampleBox& box, const T* from, const Index3& origin, T* to) {
-    const Index3 size = box.high - box.low + Index3::Ones();
-    const auto at = [&](const Index3& i) {
-        const Index3 in = i.cwiseMax(box.low).cwiseMin(box.high) - box.low;
-        return double(
-            from[(static_cast<std::ptrdiff_t>(in[2]) * size[1] + in[1]) * size[0] + in[0]]);
-    };
-    for (int k = brick.low[2]; k <= brick.high[2]; ++k) {
-        for (int j = brick.low[1]; j <= brick.high[1]; ++j) {
-            for (int i = brick.low[0]; i <= brick.high[0]; ++i) {
-                const Vec3 p =
-                    index_from_physical(coarse, physical_from_index(fine, Vec3(i, j, k)));
-                const Vec3 floor = p.array().floor();
-                const Index3 low = floor.cast<int>();
-                const Vec3 t = p - floor;
-                double value = 0;
-                for (int corner = 0; corner < 8; ++corner) {
-                    const Index3 side(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
-                    double weight = 1;
-                    for (int a = 0; a < 3; ++a) weight *= side[a] ? t[a] : 1 - t[a];
-                    if (weight > 0) value += weight * at(low + side);
-                }
-                if constexpr (std::is_integral_v<T>) value = std::nearbyint(value);
-                const Index3 place = Index3(i, j, k) - origin;
-                to[place[0] + place[1] * ResidentBricks::row + place[2] * ResidentBricks::slice] =
-                    static_cast<T>(value);
-            }
-        }
-    }
-}
-
 }  // namespace
 
 Volume overview_of(const Store& store, std::int64_t samples, std::stop_token stop) {
@@ -150,7 +118,6 @@ ResidentBrick BrickLoader::read(const Index3& brick, int coarser, std::stop_toke
     const std::size_t each = size_of(type);
     const SampleBox box = empty_->resident()->box_of(brick);
     const Index3 origin = brick * ResidentBricks::edge - Index3::Constant(ResidentBricks::margin);
-    const std::shared_ptr<std::byte[]> samples(new std::byte[ResidentBricks::per_brick * each]());
     const SampleBox from = source_of(brick, coarser);
     const Geometry& grid =
         store_->info().levels[static_cast<std::size_t>(settings_.level + coarser)].geometry;
@@ -158,12 +125,14 @@ ResidentBrick BrickLoader::read(const Index3& brick, int coarser, std::stop_toke
     std::vector<std::byte> bytes(static_cast<std::size_t>(size.cast<std::int64_t>().prod()) * each);
     blocks_->read(settings_.level + coarser, from, bytes, stop);
     make_finite(type, bytes, empty_->minimum());
+    const std::shared_ptr<std::byte[]> samples = memory_->take();
     if (coarser > 0) {
-        with_type(type, [&](auto zero) {
-            using T = decltype(zero);
-            interpolate(geometry_, box, grid, from, reinterpret_cast<const T*>(bytes.data()),
-                        origin, reinterpret_cast<T*>(samples.get()));
-        });
+        const Index3 place = box.low - origin;
+        const std::ptrdiff_t first =
+            place[0] + place[1] * ResidentBricks::row + place[2] * ResidentBricks::slice;
+        upsample(geometry_of(grid, from), bytes.data(), type, geometry_, box,
+                 {samples.get() + static_cast<std::size_t>(first) * each, ResidentBricks::row,
+                  ResidentBricks::slice});
         return {samples, static_cast<std::uint8_t>(coarser)};
     }
     const auto row = static_cast<std::size_t>(size[0]) * each;

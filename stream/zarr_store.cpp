@@ -47,10 +47,8 @@ std::vector<Node> nodes_in(const Objects& objects, std::span<const std::string> 
     return nodes;
 }
 
-ChunkedArray array_from(const Node& node, const std::string& folder) {
-    if (node.array.is_null())
-        throw BadMetadata("its level '" + folder + "' is not there; copy it again");
-    return node.version == 3 ? zarr3_array(node.array, folder) : zarr2_array(node.array, folder);
+ChunkedArray array_from(const Json& array, int version, const std::string& folder) {
+    return version == 3 ? zarr3_array(array, folder) : zarr2_array(array, folder);
 }
 
 class Opening {
@@ -79,7 +77,7 @@ class Opening {
 
   private:
     ChunkedVolume of_array(const Node& root) {
-        const ChunkedArray array = array_from(root, folder_);
+        const ChunkedArray array = array_from(root.array, root.version, folder_);
         volume_.info.format = "Zarr " + std::to_string(root.version);
         volume_.info.notes.push_back("it is an array without a place in space: 1 mm was taken");
         Image image;
@@ -112,12 +110,21 @@ class Opening {
 
     void take_levels(const Image& image, int version) {
         volume_.info.format = version == 3 ? "OME-Zarr 0.5" : "OME-Zarr 0.4";
-        std::vector<std::string> folders;
-        for (const ImageLevel& level : image.levels)
-            folders.push_back(key_below(folder_, level.path));
-        const auto nodes = nodes_in(objects_, folders);
-        for (std::size_t i = 0; i < nodes.size(); ++i) {
-            volume_.arrays.push_back(array_from(nodes[i], folders[i]));
+        // Over a network each file that is asked for in vain costs as much as one that is there.
+        std::vector<Wanted> wanted;
+        for (const ImageLevel& level : image.levels) {
+            wanted.push_back(metadata_file(key_below(folder_, level.path),
+                                           version == 3 ? "zarr.json" : ".zarray"));
+        }
+        const auto all = objects_.get_all(wanted, {});
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            const Json array = parsed(all[i], objects_.name_of(wanted[i].key));
+            const std::string folder = key_below(folder_, image.levels[i].path);
+            const bool is_array =
+                array.is_object() && (version == 2 || array.value("node_type", Json()) == "array");
+            if (!is_array)
+                throw BadMetadata("its level '" + folder + "' is not there; copy it again");
+            volume_.arrays.push_back(array_from(array, version, folder));
         }
     }
 

@@ -8,6 +8,7 @@
 #include "palpate/stream/convert.hpp"
 #include "stream/store_support.hpp"
 #include "stream/volume_server.hpp"
+#include "support/eventually.hpp"
 
 namespace palpate::stream::test {
 namespace {
@@ -15,6 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 using io::test::random_volume;
 using support::bytes_of;
+using support::comes_true;
 using support::contains;
 using support::message_of;
 using support::put_bytes;
@@ -162,7 +164,8 @@ TEST(Convert, goes_on_where_it_was_interrupted_and_mends_damaged_chunks) {
             (void)convert_to_zarr(*store, 0, out, options);
             ::_exit(0);
         }
-        std::this_thread::sleep_for(std::chrono::milliseconds(3 + 2 * round));
+        EXPECT_TRUE(comes_true([&] { return fs::exists(partial) || fs::exists(out); }));
+        std::this_thread::sleep_for(std::chrono::milliseconds(1 + 2 * round));
         ::kill(process, SIGKILL);
         ::waitpid(process, nullptr, 0);
     }

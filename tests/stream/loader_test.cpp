@@ -9,6 +9,7 @@
 #include "palpate/io/error.hpp"
 #include "palpate/reach.hpp"
 #include "stream/interest.hpp"
+#include "stream/upsample.hpp"
 #include "stream/volumes_store.hpp"
 #include "support/constants.hpp"
 #include "support/edits.hpp"
@@ -70,6 +71,113 @@ TEST(BrickLoader, a_coarser_level_is_interpolated_where_it_lies_in_space) {
                 const auto at = ResidentBricks::place_of({i, j, k});
                 ASSERT_NEAR(a[at], b[at], 1e-3) << i << " " << j << " " << k;
             }
+        }
+    }
+}
+
+TEST(Levels, are_the_coarser_the_more_bricks_a_hand_passes_while_one_comes) {
+    EXPECT_EQ(levels_for(0, 0, 5), (LevelChoice{2, 0}));
+    EXPECT_EQ(levels_for(2, 0.4, 5), (LevelChoice{2, 0}));
+    EXPECT_EQ(levels_for(4, 0.4, 5), (LevelChoice{3, 1}));
+    EXPECT_EQ(levels_for(40, 0.4, 5), (LevelChoice{5, 4}));
+    EXPECT_EQ(levels_for(1e300, 1e300, 5), (LevelChoice{5, 5}));
+    EXPECT_EQ(levels_for(40, 0.4, 0), (LevelChoice{0, 0}));
+}
+
+TEST(BrickLoader, a_hand_that_is_too_fast_gets_coarser_bricks_and_finer_ones_when_it_rests) {
+    const Geometry fine = grid({512, 128, 128});
+    std::vector<Volume> levels;
+    for (int level = 0; level < 4; ++level) {
+        Geometry geometry = fine;
+        geometry.size = fine.size / (1 << level);
+        geometry.spacing *= 1 << level;
+        levels.push_back(noise_of(SampleType::uint8, geometry, 5));
+    }
+    const auto store = std::make_shared<VolumesStore>(levels, Index3(16, 16, 16));
+    std::atomic<int> fine_reads{0};
+    store->before_read = [&](int level, const SampleBox&, const std::stop_token&) {
+        fine_reads += level == 0;
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    };
+    BrickLoader loader(store, overview_of(*store, 1000),
+                       {.memory = 4 * least_memory, .threads = 4, .coarse_first = true});
+    Interest hand{Vec3(30, 60, 60), Vec3(30, 60, 60), Vec3::Zero()};
+    std::shared_ptr<const Samples> newest;
+    const auto level_at = [&](const Vec3& at) {
+        loader.look({&hand, 1});
+        if (auto version = loader.take()) newest = std::move(version->samples);
+        const ResidentBrick* brick =
+            newest ? newest->resident()->of_sample(at.cast<int>()) : nullptr;
+        return brick ? int(brick->level) : -1;
+    };
+    EXPECT_TRUE(comes_true([&] { return level_at(hand.hand) == 0; }));
+    EXPECT_TRUE(comes_true([&] { return loader.status().missing == 0; }));
+    // So fast that no brick of the finest level would come before it is gone, whatever the machine.
+    hand.velocity = Vec3(1e6, 0, 0);
+    for (int n = 0; n < 50; ++n) {  // what a hand does for a moment is smoothed
+        loader.look({&hand, 1});
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    hand.proxy = hand.hand = Vec3(450, 60, 60);
+    loader.look({&hand, 1});
+    EXPECT_TRUE(comes_true([&] { return loader.status().missing == 0; }));
+    EXPECT_TRUE(comes_true([&] {  // what was under way ends
+        const int before = fine_reads;
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        return fine_reads == before;
+    }));
+    EXPECT_GT(level_at(hand.hand), 0);
+    hand.velocity = Vec3::Zero();
+    EXPECT_TRUE(comes_true([&] { return level_at(hand.hand) == 0; }));
+}
+
+TEST(Upsample, is_trilinear_and_goes_on_at_the_border) {
+    Random random(8);
+    for (const SampleType type : sample_types) {
+        const Geometry fine = grid({40, 30, 20}, {1, 2, 0.5}, {3, -4, 5});
+        Geometry coarse = fine;
+        coarse.size = {11, 8, 3};
+        coarse.spacing = fine.spacing.cwiseProduct(Vec3(4, 3, 5));
+        coarse.origin += Vec3(1.5, 2, 0.7);
+        const Volume volume = noise_of(type, coarse, 9);
+        for (int n = 0; n < 20; ++n) {
+            SampleBox box;
+            for (int a = 0; a < 3; ++a) {
+                const int i = int(random.uniform(0, fine.size[a])),
+                          j = int(random.uniform(0, fine.size[a]));
+                box.low[a] = std::min(i, j);
+                box.high[a] = std::max(i, j);
+            }
+            const Index3 size = box.high - box.low + Index3::Ones();
+            std::vector<std::byte> out(size_of(type) * std::size_t(size.prod()));
+            upsample(coarse, static_cast<const std::byte*>(volume.data()), type, fine, box,
+                     {out.data(), size[0], std::ptrdiff_t(size[0]) * size[1]});
+            const Geometry part = geometry_of(fine, box);
+            const Volume got(part, type,
+                             std::shared_ptr<const void>(std::shared_ptr<void>(), out.data()),
+                             out.size());
+            const Vec3 last = (coarse.size - Index3::Ones()).cast<double>();
+            for_each_sample(part, [&](const Index3& at) {
+                const Vec3 p =
+                    index_from_physical(coarse, physical_from_index(part, at.cast<double>()))
+                        .cwiseMax(Vec3::Zero())
+                        .cwiseMin(last);
+                double expected = 0;
+                for (int corner = 0; corner < 8; ++corner) {
+                    double weight = 1;
+                    Index3 of;
+                    for (int a = 0; a < 3; ++a) {
+                        const int low = std::min(int(p[a]), coarse.size[a] - 2);
+                        const int side = corner >> a & 1;
+                        weight *= side ? p[a] - low : 1 - (p[a] - low);
+                        of[a] = low + side;
+                    }
+                    expected += weight * volume.sample(of);
+                }
+                const double tolerance =
+                    type == SampleType::float32 ? 1e-5 * volume.maximum() : 0.51;
+                ASSERT_NEAR(got.sample(at), expected, tolerance);
+            });
         }
     }
 }
@@ -242,7 +350,7 @@ class Wanted : public testing::Test {
 
     void look(double speed) {
         const Interest hand{Vec3(1000, 1000, 1000), Vec3(1100, 1000, 1000), Vec3(speed, 0, 0)};
-        wanted = wanted_bricks(geometry, count, {&hand, 1}, 400);
+        wanted = wanted_bricks(geometry, count, {&hand, 1}, 400, 0.5);
         EXPECT_LE(wanted.size(), 400U);
     }
     std::ptrdiff_t place(const Index3& brick) const {
@@ -269,7 +377,7 @@ TEST_F(Wanted, of_a_fast_hand_what_it_reaches_meanwhile_comes_before_what_it_lea
 
 TEST_F(Wanted, a_hand_that_is_nowhere_wants_nothing) {
     const Interest broken{Vec3::Constant(not_a_number), Vec3(0, 0, 0)};
-    EXPECT_TRUE(wanted_bricks(geometry, count, {&broken, 1}, 400).empty());
+    EXPECT_TRUE(wanted_bricks(geometry, count, {&broken, 1}, 400, 0.5).empty());
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // threads of its own. What is in memory is published as versions of samples (resident.hpp).
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
@@ -18,6 +19,7 @@
 namespace palpate::stream {
 
 class Blocks;
+class BrickMemory;
 class SmallThreads;
 
 /// A volume of few samples that shows all of a store: its coarsest level that is fine enough, or
@@ -33,8 +35,9 @@ std::shared_ptr<const Samples> empty_samples(const Store& store, const Volume& o
 struct BrickLoaderSettings {
     int level = 0;                                  ///< of the store that is felt
     std::uint64_t memory = std::uint64_t{1} << 29;  ///< [bytes] most that bricks and pieces take
-    int threads = 16;                               ///< that read at a time
-    /// Feel a coarser level until the bricks of `level` are there (ProxyUpdate::level says so).
+    int threads = 32;                               ///< that read at a time
+    /// Feel a coarser level until the bricks of `level` are there, and while a hand is too fast for
+    /// them (ProxyUpdate::level says so).
     bool coarse_first = false;
     /// `memory` bounds all that the process takes, the program itself included; but a hand always
     /// has 64 bricks.
@@ -93,7 +96,9 @@ class BrickLoader {
     const std::shared_ptr<const Samples>& empty() const { return empty_; }
     /// What the hands need from now on; never waits for a read.
     void look(std::span<const Interest> hands);
-    /// What is in memory now; nothing if that did not change since the last call.
+    /// What is in memory now; nothing if that did not change since the last call. Reading slows
+    /// down while more than a few bricks that were dropped are still in use, by who has older
+    /// versions.
     std::optional<BrickVersion> take();
     /// Waits until all samples within `radius` [mm] of a point are in memory at the level felt.
     /// Throws std::invalid_argument if they do not fit, io::InputError for the first that cannot be
@@ -127,10 +132,14 @@ class BrickLoader {
     void help(const Job& job, const std::stop_token& stop) const;
     SampleBox source_of(const Index3& brick, int coarser) const;
     std::optional<Job> next_job();
+    std::optional<Job> job_for(const Index3& brick, int level, Clock::time_point now) const;
+    bool has(const Index3& brick, int level) const;
+    bool is_behind() const;
+    void want(std::vector<Index3> bricks);
     void wake();
     void put(const Job& job, const ResidentBrick& brick);
     void make_room();
-    int coarse_level() const;
+    void choose_levels(std::span<const Interest> hands);
     std::uint64_t bytes() const;
     void count_process();
 
@@ -141,16 +150,23 @@ class BrickLoader {
     const Geometry geometry_;
     std::atomic<std::size_t> most_bricks_;
     const std::unique_ptr<Blocks> blocks_;
+    const std::unique_ptr<BrickMemory> memory_;
 
     mutable std::mutex mutex_;
     std::condition_variable_any changed_;
-    ResidentBricks bricks_;
-    std::map<Place, int> held_;                  // level of each brick in memory
+    ResidentBricks bricks_;                      // as taken last
+    std::map<Place, ResidentBrick> held_;        // in memory now
+    Clock::time_point newest_{};                 // when the last of those came
     std::map<Place, int> in_flight_;             // level that is being read
     std::map<Place, Clock::time_point> failed_;  // not tried again before
     std::vector<Index3> wanted_;                 // most urgent first
-    std::vector<Index3> required_;               // by wait_for()
-    std::uint64_t changes_ = 0;                  // that may have made a job
+    std::array<std::size_t, 4> begun_{};  // of each of next_job()'s rounds: all before is there
+    std::vector<Index3> required_;        // by wait_for()
+    int first_ = 0, finest_ = 0;          // steps coarser that are read, coarse_first
+    double brick_s_ = 0;                  // that a brick lately took to come, 0: none yet
+    double speed_ = 0;                    // of the fastest hand [bricks/s]
+    Clock::time_point looked_{};          // when that was
+    std::uint64_t changes_ = 0;           // that may have made a job
     std::vector<BrickEvent> events_;
     std::uint64_t other_bytes_ = 0;    // leave_room()
     std::uint64_t process_bytes_ = 0;  // of the process, beyond bricks, pieces and edits

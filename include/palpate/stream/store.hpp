@@ -57,7 +57,7 @@ struct StoreOptions {
     int time = 0;
     std::filesystem::path cache_folder = {};  ///< disk cache of remote stores; empty: none
     std::uint64_t cache_bytes = 0;            ///< most that the disk cache holds
-    int requests = 16;                        ///< most requests at a time to one host
+    int requests = 32;                        ///< most requests at a time to one host
     double timeout_s = 10;                    ///< of one request
     int attempts = 5;                         ///< of one request, with growing pauses
 };
