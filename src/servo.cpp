@@ -302,10 +302,10 @@ void Servo::obey() noexcept {
         if (!checked) return;
         apply(session_, *checked);
         const auto* samples = std::get_if<command::Samples>(&checked->command());
-        // A recording names samples by their recipe; held until it is written, they would be in
-        // memory long after the servo uses others.
-        record(samples ? Command(command::Samples{nullptr, samples->version, samples->recipe})
-                       : checked->command());
+        // Held until they are written, samples would be in memory long after the servo uses others.
+        record(samples && samples->recipe
+                   ? Command(command::Samples{nullptr, samples->version, samples->recipe})
+                   : checked->command());
         obeyed_.store(obeyed_.load(std::memory_order_relaxed) + 1, std::memory_order_release);
     }
 }

@@ -61,9 +61,9 @@ void upsample(const Geometry& coarse, const T* samples, const Geometry& fine, co
     std::vector<float> row(static_cast<std::size_t>(coarse.size[0]));
     for (std::size_t k = 0; k < z.size(); ++k) {
         for (std::size_t j = 0; j < y.size(); ++j) {
-            const std::array corners{
-                samples + y[j].low + z[k].low, samples + y[j].high + z[k].low,
-                samples + y[j].low + z[k].high, samples + y[j].high + z[k].high};
+            const std::array corners{samples + y[j].low + z[k].low, samples + y[j].high + z[k].low,
+                                     samples + y[j].low + z[k].high,
+                                     samples + y[j].high + z[k].high};
             for (std::ptrdiff_t i = x.front().low; i <= x.back().high; ++i) {
                 const auto at = [&](std::size_t corner) {
                     return static_cast<float>(corners[corner][i]);

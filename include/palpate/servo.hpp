@@ -26,7 +26,8 @@ struct ServoSettings {
     int priority = 80;                ///< of SCHED_FIFO, 1 to 99
     std::size_t command_room = 1024;  ///< commands that may wait
     /// Where ticks and commands are recorded; null: nowhere. Must outlive the servo. A queue that
-    /// is full loses events (ServoReport::unrecorded).
+    /// is full loses events (ServoReport::unrecorded). Samples with a recipe are recorded as that
+    /// alone.
     Queue<SessionEvent>* recorder = nullptr;
 };
 
