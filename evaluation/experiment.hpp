@@ -75,5 +75,6 @@ Result walk_through(const Options& options);
 Result penetration(const Options& options);
 Result layers(const Options& options);
 Result tools(const Options& options);
+Result streaming(const Options& options);
 
 }  // namespace palpate::evaluation

@@ -16,6 +16,8 @@ std::span<const Experiment> experiments() {
         {"penetration", "What is felt from the skin into the brain?", &penetration},
         {"layers", "What is felt of several surfaces in one stroke?", &layers},
         {"tools", "Does any point of a tool go through?", &tools},
+        {"streaming", "How long does a hand wait for a volume that is read as it is felt?",
+         &streaming},
     };
     return all;
 }
