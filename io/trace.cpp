@@ -125,7 +125,7 @@ std::vector<TraceRow> read_trace(const std::filesystem::path& path) {
     return parse_trace(read_text(path), path.string());
 }
 
-Way read_way(const std::filesystem::path& path, const Waiting& waiting) {
+ProxyPath read_proxy_path(const std::filesystem::path& path, const Waiting& waiting) {
     const std::string text = read_text(path, waiting);
     CsvReader rows(text, path.string());
     const auto columns = [&](const std::string& before) {
@@ -140,13 +140,13 @@ Way read_way(const std::filesystem::path& path, const Waiting& waiting) {
         return Vec3(rows.finite_number(at[0]), rows.finite_number(at[1]),
                     rows.finite_number(at[2]));
     };
-    Way way;
+    ProxyPath read;
     while (rows.next()) {
-        way.scp.push_back(point(scp));
-        way.constrained.push_back(!trace || rows.cell(mode) == "constrained");
-        if (trace) way.hip.push_back(point(hip));
+        read.scp.push_back(point(scp));
+        read.constrained.push_back(!trace || rows.cell(mode) == "constrained");
+        if (trace) read.hip.push_back(point(hip));
     }
-    return way;
+    return read;
 }
 
 }  // namespace palpate::io

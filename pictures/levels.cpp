@@ -62,8 +62,8 @@ int add_levels(PictureScene& scene, const Field& field, std::span<const double> 
     return every;
 }
 
-void add_way(PictureScene& scene, const std::vector<Vec3>& hip, const std::vector<Vec3>& scp,
-             const std::vector<bool>& constrained) {
+void add_path(PictureScene& scene, const std::vector<Vec3>& hip, const std::vector<Vec3>& scp,
+              const std::vector<bool>& constrained) {
     const double thin = line_radius(scene, 1.6), thick = line_radius(scene, 3.2);
     if (!hip.empty()) {
         scene.lines.push_back({thinned(hip, 0.5 * thin), thin, hip_colour, "path of the hand"});

@@ -23,7 +23,7 @@ int add_levels(
 
 /// Adds the paths of hand and proxy; that of the proxy in contact only, since else it is at the
 /// hand. `hip` may be empty; `constrained` is for each `scp`. The camera must be directed before.
-void add_way(PictureScene& scene, const std::vector<Vec3>& hip, const std::vector<Vec3>& scp,
-             const std::vector<bool>& constrained);
+void add_path(PictureScene& scene, const std::vector<Vec3>& hip, const std::vector<Vec3>& scp,
+              const std::vector<bool>& constrained);
 
 }  // namespace palpate::pictures

@@ -45,7 +45,7 @@ pictures::PictureScene picture_of(const Demo& demo, const DemoOptions& options) 
         scp.push_back(row.scp);
         constrained.push_back(row.constrained);
     }
-    pictures::add_way(scene, hip, scp, constrained);
+    pictures::add_path(scene, hip, scp, constrained);
     return scene;
 }
 

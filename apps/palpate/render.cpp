@@ -105,26 +105,26 @@ pictures::Contact contact_of(const RenderPictureOptions& options, const Field& f
 
 /// From where one sees what is touched: out of the surface, or at least away from the middle; zero
 /// where nothing is.
-Vec3 side_of(const pictures::Contact& contact, const io::Way& way, const Vec3& middle) {
+Vec3 side_of(const pictures::Contact& contact, const io::ProxyPath& path, const Vec3& middle) {
     if (contact.scp && contact.hip && *contact.scp != *contact.hip) {
         return *contact.scp - *contact.hip;
     }
     if (contact.scp) return *contact.scp - middle;
     Vec3 sum = Vec3::Zero();
-    for (std::size_t i = 0; i < way.scp.size(); ++i) {
-        if (way.constrained[i]) sum += way.scp[i] - middle;
+    for (std::size_t i = 0; i < path.scp.size(); ++i) {
+        if (path.constrained[i]) sum += path.scp[i] - middle;
     }
     return sum;
 }
 
 pictures::View view_of(const RenderPictureOptions& options, const Field& field,
-                       const pictures::Contact& contact, const io::Way& way) {
+                       const pictures::Contact& contact, const io::ProxyPath& path) {
     if (!options.view.empty()) return pictures::view_named(options.view);
     if (options.azimuth || options.elevation) {
         return pictures::view_from(options.azimuth.value_or(0), options.elevation.value_or(0));
     }
     const Geometry& geometry = field.geometry();
-    return pictures::natural_view(geometry, side_of(contact, way, physical_centre(geometry)));
+    return pictures::natural_view(geometry, side_of(contact, path, physical_centre(geometry)));
 }
 
 struct Drawing {
@@ -152,8 +152,9 @@ Drawing drawing_of(const RenderPictureOptions& options) {
     const Field field = run::make_field(loaded.volume, options.field);
     const std::vector<double> levels = levels_of(options, loaded, field);
     const pictures::Contact contact = contact_of(options, field, levels.front());
-    const io::Way way =
-        options.path.empty() ? io::Way{} : io::read_way(options.path, stop_if_interrupted);
+    const io::ProxyPath path = options.path.empty()
+                                   ? io::ProxyPath{}
+                                   : io::read_proxy_path(options.path, stop_if_interrupted);
     Drawing drawing;
     pictures::PictureScene& scene = drawing.scene;
     const auto [width, height] = size_from(options.size);
@@ -169,9 +170,9 @@ Drawing drawing_of(const RenderPictureOptions& options) {
                        loaded.name, every);
         }
     }
-    pictures::frame(scene, pictures::rolled(view_of(options, field, contact, way), options.roll),
+    pictures::frame(scene, pictures::rolled(view_of(options, field, contact, path), options.roll),
                     options.zoom, contact.scp ? contact.scp : contact.hip);
-    pictures::add_way(scene, way.hip, way.scp, way.constrained);
+    pictures::add_path(scene, path.hip, path.scp, path.constrained);
     pictures::add_contact(scene, contact);
     drawing.summary = summary_of(scene, contact);
     return drawing;

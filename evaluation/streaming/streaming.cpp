@@ -101,8 +101,8 @@ Table summary_of(const Table& table, const Plan& plan) {
             std::vector<NamedCell> row{{"levels", levels}, {"request [ms]", latency}};
             const Table shown = table.where("levels", levels).where("latency_ms", latency);
             for (const double speed : plan.speeds) {
-                const double waiting = shown.where("speed_voxel_s", speed * voxels_per_mm)
-                                           .number(0, "waiting_share");
+                const double waiting =
+                    shown.where("speed_voxel_s", speed * voxels_per_mm).number(0, "waiting_share");
                 row.emplace_back(fmt::format("waits at {:g} voxel/s [%]", speed * voxels_per_mm),
                                  std::round(1000 * waiting) / 10);
             }
@@ -137,9 +137,9 @@ std::string paragraph_of(const Table& table, const Plan& plan) {
     const double slowest = plan.speeds.front() * voxels_per_mm, latency = plan.latencies.back();
     const double fastest = plan.speeds.back() * voxels_per_mm;
     double contact = 0;
-    for (const double one :
-         table.where("latency_ms", latency).where("speed_voxel_s", fastest).numbers(
-             "first_contact_s")) {
+    for (const double one : table.where("latency_ms", latency)
+                                .where("speed_voxel_s", fastest)
+                                .numbers("first_contact_s")) {
         if (std::isfinite(one)) contact = std::max(contact, one);
     }
     return fmt::format(
@@ -163,9 +163,8 @@ Result streaming(const Options& options) {
     if (!options.subjects.empty()) {
         throw std::invalid_argument("streaming: has a volume of its own; leave --volume out");
     }
-    const Plan plan = options.quick
-                          ? Plan{{0, 50}, {0.3, 3}, 1.5, 1000}
-                          : Plan{{0, 20, 100, 200}, {0.1, 0.3, 1, 5, 20}, 10, 2500};
+    const Plan plan = options.quick ? Plan{{0, 50}, {0.3, 3}, 1.5, 1000}
+                                    : Plan{{0, 20, 100, 200}, {0.1, 0.3, 1, 5, 20}, 10, 2500};
     Result result;
     const double strokes = 2.0 * double(plan.latencies.size() * plan.speeds.size());
     double done = 0;

@@ -38,8 +38,8 @@ class Judge {
         result_.touching += touches;
         result_.coarse += !waiting && update.level > 0;
         // A proxy over which a surface comes, because finer samples did, goes out of it.
-        const bool lost = update.status == UpdateStatus::recovering ||
-                          update.status == UpdateStatus::refused;
+        const bool lost =
+            update.status == UpdateStatus::recovering || update.status == UpdateStatus::refused;
         if (lost) has_before_ = is_outside_ = false;
         if (lost || (waiting && update.scp == update.hip)) return;
         const int level = std::max(update.level, level_);
@@ -49,7 +49,8 @@ class Judge {
             result_.deepest = std::max(result_.deepest, depth);
             result_.beyond = std::max(result_.beyond, depth - allowance(level));
         };
-        // A hand may be in a ball when the first samples come; its proxy feels nothing and goes out.
+        // A hand may be in a ball when the first samples come; its proxy feels nothing and goes
+        // out.
         is_outside_ = is_outside_ || ball_depth(update.scp) <= allowance(level);
         if (!is_outside_) return;
         judge(update.scp);

@@ -12,8 +12,8 @@ struct Stroke {
     double speed = 0;           ///< of the hand [mm/s]
     bool coarse_first = false;  ///< coarser levels are allowed
     double seconds = 0;
-    double rate = 1000;         ///< [Hz]
-    std::uint64_t memory = 0;   ///< [bytes]
+    double rate = 1000;        ///< [Hz]
+    std::uint64_t memory = 0;  ///< [bytes]
     std::uint64_t seed = 1;
 };
 
@@ -23,8 +23,8 @@ struct StrokeResult {
     /// Of the SCPs and the ways between them in their ball, beyond what the samples' rounding and
     /// the interpolation at the level that is felt may take [voxel].
     double beyond = -1e9;
-    double deepest = -1e9;    ///< in the ball itself [voxel]
-    double first_contact_s = -1;  ///< since the store was opened; negative: none
+    double deepest = -1e9;         ///< in the ball itself [voxel]
+    double first_contact_s = -1;   ///< since the store was opened; negative: none
     std::uint64_t most_bytes = 0;  ///< of bricks and decoded pieces
     stream::Traffic traffic;
 };

@@ -132,7 +132,7 @@ TEST(PictureLevels, are_ordered_from_the_outside_in) {
 TEST(PicturePath, of_the_proxy_is_drawn_in_contact_only) {
     PictureScene scene;
     const std::vector<Vec3> hip{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {4, 0, 0}};
-    add_way(scene, hip, hip, {true, true, false, true, true});
+    add_path(scene, hip, hip, {true, true, false, true, true});
     ASSERT_EQ(scene.lines.size(), 3U);
     EXPECT_EQ(scene.lines[0].points.size(), 5U);
     EXPECT_EQ(scene.lines[1].points.back(), Vec3(1, 0, 0));

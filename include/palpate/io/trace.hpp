@@ -102,13 +102,13 @@ std::vector<TraceRow> read_trace(const std::filesystem::path& path);
 std::vector<TraceRow> parse_trace(std::string_view text, const std::string& name);
 
 /// Positions of hand and proxy, point by point.
-struct Way {
+struct ProxyPath {
     std::vector<Vec3> hip;  ///< [mm, physical] a tick each; empty if it came from a path file
     std::vector<Vec3> scp;  ///< [mm, physical] a tick each, or the corners of a path file
     std::vector<bool> constrained;  ///< of each `scp`; true throughout for a path file
 };
 /// From a trace, or from a path (columns x, y, z). Throws InputError, also for points that are not
 /// finite. `waiting`: as for read_text().
-Way read_way(const std::filesystem::path& path, const Waiting& waiting = {});
+ProxyPath read_proxy_path(const std::filesystem::path& path, const Waiting& waiting = {});
 
 }  // namespace palpate::io
