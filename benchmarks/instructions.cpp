@@ -132,7 +132,7 @@ void run_layers(const Case& chosen, const Touch& touch, Proxy proxy, long update
 }
 
 void run(const Case& chosen, long updates) {
-    const Touch touch = chosen.touch();
+    Touch touch = chosen.touch();
     const bool idle = std::strcmp(chosen.method, "nothing") == 0;
     const ProxyMethod method = idle ? no_update : baselines::method_named(chosen.method);
     Proxy proxy;

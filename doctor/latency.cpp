@@ -88,7 +88,7 @@ Latency measure_latency(const LatencySettings& settings) {
     setup.device = devices::parse_device("simulated:omega7,loop=yes");
     const Field field = run::make_field(scene.volume, setup.field);
     const auto device = devices::open_device(
-        setup.device, {field, scene.isovalue, setup.render.rate, [&](const DeviceInfo& info) {
+        setup.device, {field, scene.isovalue, run::usual_rate, [&](const DeviceInfo& info) {
                            return run::transform_for(field.geometry(), info, setup);
                        }});
     const Session session = run::make_session(field, scene.isovalue, device->info(), setup);
@@ -100,7 +100,7 @@ Latency measure_latency(const LatencySettings& settings) {
                        std::to_string(scene.isovalue) +
                        ", smooth field, exact proxy, explored by a simulated omega.7 at 1000 Hz";
     ServoSettings servo_settings;
-    servo_settings.rate = setup.render.rate;
+    servo_settings.rate = run::usual_rate;
     Servo servo(session, *device, servo_settings);
     {
         std::optional<Load> load;

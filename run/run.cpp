@@ -40,8 +40,9 @@ Field seen(const Field& field) {
                  field.interpolation());
 }
 
+/// Opens the device, which may have a say in the rate.
 std::unique_ptr<Device> open_for(const Field& field, double isovalue, const Setup& setup) {
-    const double rate = setup.render.rate;
+    const double rate = setup.render.rate.value_or(usual_rate);
     if (!(rate >= 250 && rate <= 8000)) {
         std::string text;
         io::append_number(text, rate);
@@ -82,7 +83,7 @@ io::RecordingHead recording_head(const Session& session, const DeviceInfo& devic
     head.background = field.background();
     head.isovalue = session.renderer.proxy.isovalue;
     head.device = device.name + " (" + device.model + ")";
-    head.rate = setup.rate;
+    head.rate = rate_of(setup, device);
     head.method = setup.method.name;
     head.settings = session.renderer.settings;
     head.session = session.settings;
@@ -135,7 +136,7 @@ void Run::take(const Session& session) {
 
 void Run::launch(Session session) {
     take(session);
-    const ServoSettings settings{.rate = setup_.render.rate,
+    const ServoSettings settings{.rate = rate_of(setup_.render, device_->info()),
                                  .real_time = setup_.real_time,
                                  .recorder = recording_ ? &recording_->queue() : nullptr};
     servo_ = data_->attach(std::move(session), [&](Session now, const auto& history) {

@@ -152,10 +152,15 @@ RendererSettings render_settings(const RenderSetup& setup, const Field& field, d
     settings.force.limit = setup.limit.value_or(settings.force.limit);
     settings.force.stiffness = setup.stiffness.value_or(settings.force.stiffness);
     settings.device = limits;
-    settings.device.rate = setup.rate;
+    settings.device.rate = setup.rate.value_or(usual_rate);
     settings.transform.scale = setup.scale.value_or(1);
     check(settings);
     return settings;
+}
+
+double rate_of(const RenderSetup& setup, const DeviceInfo& device) {
+    constexpr double without_force = 250;
+    return setup.rate.value_or(device.renders_force ? usual_rate : without_force);
 }
 
 RendererSettings offline_settings(const RenderSetup& setup, const Field& field, double isovalue) {
@@ -180,15 +185,16 @@ DeviceTransform transform_for(const Geometry& geometry, const DeviceInfo& info,
 Session make_session(const Field& field, double isovalue, const DeviceInfo& info,
                      const Setup& setup) {
     RenderSetup render = setup.render;
+    const double rate = rate_of(render, info);
     if (!render.limit) render.limit = info.limits.maximum_force;
     if (!render.stiffness) render.stiffness = std::min(render.force.stiffness, info.stiffness);
     if (!render.step_budget) {
         // Its worst case is half a tick at 1 kHz, whatever the rate.
         render.step_budget =
-            static_cast<int>(ProxySettings{}.step_budget * std::min(1.0, 1000 / render.rate));
+            static_cast<int>(ProxySettings{}.step_budget * std::min(1.0, 1000 / rate));
     }
     // The slower of device and loop is what renders the spring.
-    render.rate = std::min(render.rate, info.limits.rate);
+    render.rate = std::min(rate, info.limits.rate);
     RendererSettings settings = render_settings(render, field, isovalue, info.limits);
     settings.transform = transform_for(field.geometry(), info, setup);
     Session session{make_renderer(field, isovalue, settings), {}};

@@ -144,6 +144,7 @@ void Field::look() noexcept {
     moment_ = samples_->moment_at(time_);
     data_ = samples_->frames()[moment_.from].volume.data();
     resident_ = samples_->resident();
+    resident_ball_ = {};
     bricks_ = samples_->bricks();
     type_ = samples_->type();
     const double low = std::min(samples_->minimum(), background_);

@@ -10,6 +10,8 @@ namespace {
 /// Samples round a point on which the field there depends, and those across the wall that it is on
 /// [voxel].
 constexpr double around = 3;
+/// So much more than a ball is looked at, so that the next ones are in it [voxel].
+constexpr double spare = 16;
 /// How often a pull is halved.
 constexpr int most_halvings = 6;
 
@@ -41,14 +43,22 @@ bool is_resident(const Field& field, const Vec3& centre, double radius) noexcept
     return resident->has(box);
 }
 
-double part_within_reach(const Field& field, const Pull& pull) noexcept {
+double part_within_reach(Field& field, const Pull& pull) noexcept {
     if (!field.samples().resident()) return 1;
     const Vec3 way = pull.to - pull.from;
     const double length = pull.turn == 0 ? way.norm() : std::hypot(way.norm(), pull.turn);
     if (!std::isfinite(length)) return 1;  // the update refuses it
+    const Field::ResidentBall& known = field.resident_ball();
+    const double whole = length + pull.arm;
+    if ((pull.to - known.centre).norm() + whole <= known.radius) return 1;
     double part = 1;
     for (int halvings = 0; halvings <= most_halvings; ++halvings, part /= 2) {
-        if (is_resident(field, pull.from + part * way, part * length + pull.arm)) return part;
+        if (!is_resident(field, pull.from + part * way, part * length + pull.arm)) continue;
+        const double wide = whole + spare / field.voxels_per_mm().maxCoeff();
+        if (part == 1 && is_resident(field, pull.to, wide)) {
+            field.set_resident_ball({pull.to, wide});
+        }
+        return part;
     }
     return 0;
 }
@@ -57,10 +67,20 @@ int level_at(const Field& field, const Vec3& physical) noexcept {
     const ResidentBricks* resident = field.samples().resident();
     if (!resident || !physical.allFinite()) return 0;
     const Vec3 last = (field.geometry().size - Index3::Ones()).cast<double>();
-    const Vec3 at = index_from_physical(field.geometry(), physical).array().round();
-    const Index3 sample = at.cwiseMax(Vec3::Zero()).cwiseMin(last).cast<int>();
-    const ResidentBrick* brick = resident->of_sample(sample);
-    return brick ? brick->level : 0;
+    const Vec3 at = index_from_physical(field.geometry(), physical);
+    const Index3 low = at.cwiseMax(Vec3::Zero()).cwiseMin(last).cast<int>();
+    const Index3 high = (low + Index3::Ones()).cwiseMin(last.cast<int>());
+    const Index3 first = ResidentBricks::brick_of(low), end = ResidentBricks::brick_of(high);
+    int level = 0;
+    for (int k = first[2]; k <= end[2]; ++k) {
+        for (int j = first[1]; j <= end[1]; ++j) {
+            for (int i = first[0]; i <= end[0]; ++i) {
+                const ResidentBrick* brick = resident->at({i, j, k});
+                if (brick) level = std::max<int>(level, brick->level);
+            }
+        }
+    }
+    return level;
 }
 
 }  // namespace palpate

@@ -70,8 +70,12 @@ void RenderOptions::add_to(CLI::App& command) {
                     "Distance of the tool's points [mm] (default: half a voxel)")
         ->check(CLI::PositiveNumber);
     add_force_to(command);
-    command.add_option("--rate", given.rate, "Rate of the loop the forces are meant for [Hz]")
-        ->capture_default_str();
+    command
+        .add_option(
+            "--rate", given.rate,
+            "Rate of the loop the forces are meant for [Hz] (default: 1000; live 250 with a "
+            "device that renders no force)")
+        ->type_name("FLOAT");
     command.add_option("--scale", given.scale, "Physical mm per mm of hand")->default_str("1");
     command.add_option("--step-budget", given.step_budget, "Most tetrahedra an update may enter")
         ->default_str(std::to_string(ProxySettings{}.step_budget));

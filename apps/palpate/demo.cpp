@@ -84,7 +84,7 @@ void add_demo(CLI::App& app) {
         ->check(flaw_in_count);
     command->callback([options, command] {
         if (!command->get_subcommands().empty()) return;  // it has done its own
-        options->hand.rate_hz = options->render.given.rate;
+        options->hand.rate_hz = options->render.given.rate.value_or(run::usual_rate);
         if (options->source.name().empty()) {
             options->source.volume() = io::sample_volume_path().string();
             if (command->count("--seed") == 0) options->hand.seed = 2;  // over the face

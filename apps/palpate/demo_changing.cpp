@@ -201,7 +201,7 @@ CLI::App* add_changing(CLI::App& demo, const char* name, const char* what,
     command->add_option("--pictures", options->pictures, "How many pictures the animation has")
         ->check(CLI::Range(2, 240));
     command->callback([options, run] {
-        options->hand.rate_hz = options->render.given.rate;
+        options->hand.rate_hz = options->render.given.rate.value_or(run::usual_rate);
         run(*options);
     });
     return command;

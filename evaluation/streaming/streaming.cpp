@@ -28,6 +28,11 @@ double share(std::int64_t count, std::int64_t of) {
     return static_cast<double>(count) / static_cast<double>(std::max<std::int64_t>(1, of));
 }
 
+/// NaN for what did not happen.
+double known(double value, double least) {
+    return value < least ? std::nan("") : value;
+}
+
 void add(Table& table, const Stroke& stroke, const StrokeResult& felt) {
     table.add({{"levels", stroke.coarse_first ? coarse_first : finest},
                {"latency_ms", 1e3 * stroke.network.latency_s},
@@ -36,9 +41,9 @@ void add(Table& table, const Stroke& stroke, const StrokeResult& felt) {
                {"touching_share", share(felt.touching, felt.ticks)},
                {"waiting_share", share(felt.waiting, felt.ticks)},
                {"coarse_share", share(felt.coarse, felt.ticks)},
-               {"deepest_voxel", felt.deepest},
-               {"beyond_allowed_voxel", felt.beyond},
-               {"first_contact_s", felt.first_contact_s < 0 ? std::nan("") : felt.first_contact_s},
+               {"deepest_voxel", known(felt.deepest, -1e8)},
+               {"beyond_allowed_voxel", known(felt.beyond, -1e8)},
+               {"first_contact_s", known(felt.first_contact_s, 0)},
                {"most_mb", 1e-6 * double(felt.most_bytes)},
                {"requests", double(felt.traffic.requests)},
                {"retries", double(felt.traffic.retries)},
@@ -50,7 +55,10 @@ Panel panel_of(const Table& table, const Plan& plan, const char* levels, const c
                double factor) {
     Panel panel;
     panel.title = levels;
-    panel.x = {.title = "speed of the hand [voxel/s]", .is_logarithmic = true};
+    panel.x = {.title = "speed of the hand [voxel/s]",
+               .is_logarithmic = true,
+               .low = 0.7 * voxels_per_mm * plan.speeds.front(),
+               .high = 1.4 * voxels_per_mm * plan.speeds.back()};
     const Table shown = table.where("levels", levels);
     for (std::size_t i = 0; i < plan.latencies.size(); ++i) {
         Rows rows = shown.where("latency_ms", plan.latencies[i]).rows_of({"speed_voxel_s", column});

@@ -6,16 +6,18 @@
 #include <cmath>
 #include <thread>
 
+#include "palpate/reach.hpp"
 #include "palpate/renderer.hpp"
 #include "palpate/stream/loader.hpp"
 
 namespace palpate::evaluation {
 namespace {
 
-/// What rounding to levels of two voxels may take, and at a level of detail what straight lines
-/// between its samples cut off a ball of 256 voxels (and the smooth field once more) [voxel].
+/// What rounding to levels of two voxels may take, at a coarser level twice (it is interpolated),
+/// and there what straight lines between samples cut off a ball of 256 voxels (and the smooth field
+/// once more) [voxel].
 double allowance(int level) {
-    return 1.5 + std::ldexp(1.0, 2 * level) / 256;
+    return (level > 0 ? 2.5 : 1.5) + std::ldexp(1.0, 2 * level) / 256;
 }
 
 /// There and back through a row of balls.
@@ -30,7 +32,7 @@ class Judge {
   public:
     explicit Judge(StrokeResult& result) : result_(result) {}
 
-    void look(const ProxyUpdate& update) {
+    void look(const ProxyUpdate& update, const Field& field) {
         const bool waiting = update.status == UpdateStatus::waiting;
         ++result_.ticks;
         result_.waiting += waiting;
@@ -42,16 +44,21 @@ class Judge {
             update.status == UpdateStatus::recovering || update.status == UpdateStatus::refused;
         if (lost) has_before_ = is_outside_ = false;
         if (lost || (waiting && update.scp == update.hip)) return;
-        const int level = std::max(update.level, level_);
-        level_ = update.level;
+        // Where finer samples came over a proxy, the coarser ones count until it is out.
+        const double depth_now = ball_depth(update.scp);
+        level_ =
+            depth_now <= allowance(update.level) ? update.level : std::max(level_, update.level);
+        const int level = std::max(level_before_, level_);
+        level_before_ = level_;
         const auto judge = [&](const Vec3& point) {
             const double depth = ball_depth(point);
             result_.deepest = std::max(result_.deepest, depth);
-            result_.beyond = std::max(result_.beyond, depth - allowance(level));
+            const double allowed = allowance(std::max(level, level_at(field, point)));
+            result_.beyond = std::max(result_.beyond, depth - allowed);
         };
         // A hand may be in a ball when the first samples come; its proxy feels nothing and goes
         // out.
-        is_outside_ = is_outside_ || ball_depth(update.scp) <= allowance(level);
+        is_outside_ = is_outside_ || depth_now <= allowance(level);
         if (!is_outside_) return;
         judge(update.scp);
         // A proxy that catches up slides round a ball in one tick: a long line would cut it off.
@@ -71,7 +78,7 @@ class Judge {
     StrokeResult& result_;
     Vec3 before_ = Vec3::Zero();
     bool has_before_ = false, is_outside_ = false;
-    int level_ = 0;
+    int level_ = 0, level_before_ = 0;
 };
 
 }  // namespace
@@ -112,7 +119,7 @@ StrokeResult feel(const Stroke& stroke, const std::function<void()>& alive) {
             if (tick % (20 * looks) == 0) alive();
         }
         const Tick felt = render(renderer, {time, hand, true});
-        judge.look(felt.proxy);
+        judge.look(felt.proxy, renderer.field);
         if (result.first_contact_s < 0 && result.touching > 0) {
             result.first_contact_s = since_opened();
         }

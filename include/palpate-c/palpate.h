@@ -184,7 +184,7 @@ typedef struct palpate_render_options {
     double static_friction, dynamic_friction;
     double penetration;    /* [device mm] at which the surface gives way; 0: never */
     double scale;          /* physical mm per device mm; 0: fits the workspace; renderer: 1 */
-    double rate;           /* [Hz] 250 to 8000; 0: 1000 */
+    double rate;           /* [Hz] 250 to 8000; 0: 1000, without force 250 */
     const char *tool;      /* "sphere:5", "needle", a file, ...; null: a point */
     const char *layers;    /* a file or the name of a built-in set; null: none */
 } palpate_render_options;

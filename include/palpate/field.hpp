@@ -125,6 +125,15 @@ class Field {
         return beyond(0) || beyond(1) || beyond(2);
     }
 
+    /// A ball [mm, physical] whose samples are known to be in memory, with those that the field
+    /// needs round it; what reach.hpp found out last. None after the samples changed.
+    struct ResidentBall {
+        Vec3 centre = Vec3::Zero();
+        double radius = -1;  ///< below 0: none
+    };
+    const ResidentBall& resident_ball() const { return resident_ball_; }
+    void set_resident_ball(const ResidentBall& ball) { resident_ball_ = ball; }
+
   private:
     template <class T>
     CellSamples cell_of(const Index3& cell) const;
@@ -159,6 +168,7 @@ class Field {
     Moment moment_;
     const void* data_ = nullptr;  // of the frame before the moment
     const ResidentBricks* resident_ = nullptr;
+    ResidentBall resident_ball_;
     const Bricks* bricks_ = nullptr;
     std::ptrdiff_t row_ = 0;    // samples between neighbours in y
     std::ptrdiff_t slice_ = 0;  // samples between neighbours in z

@@ -17,14 +17,15 @@ struct Pull {
 /// The part of the pull, 1, 1/2, ... 1/64 or 0, that needs only samples that are in memory. An
 /// update never comes farther from its goal than it was (G4, T4), so all that it looks at lies in a
 /// ball round the goal. Where the proxy rests on a surface, a part of the pull finds the same
-/// place. 1 where all samples are in memory. Neither allocates nor throws.
-double part_within_reach(const Field& field, const Pull& pull) noexcept;
+/// place. 1 where all samples are in memory. Neither allocates nor throws. The field remembers what
+/// was found, so that a hand that stays near costs next to nothing.
+double part_within_reach(Field& field, const Pull& pull) noexcept;
 
 /// True if all samples within `radius` [mm] of a point [mm, physical], and those that the field
 /// needs between them, are in memory.
 bool is_resident(const Field& field, const Vec3& centre, double radius) noexcept;
 
-/// The level of detail of the samples at a point [mm, physical]: 0 is the grid's own.
+/// The coarsest level of detail of the samples round a point [mm, physical]: 0 is the grid's own.
 int level_at(const Field& field, const Vec3& physical) noexcept;
 
 }  // namespace palpate

@@ -55,8 +55,14 @@ struct RenderSetup {
     std::optional<double> stiffness;  ///< [N/mm] nothing: at most what the device is rated for
     std::optional<int> step_budget;   ///< nothing: ProxySettings', less above 1 kHz
     std::optional<double> scale;      ///< physical mm per device mm; nothing: fits the workspace
-    double rate = 1000;               ///< [Hz]
+    std::optional<double> rate;       ///< [Hz] nothing: rate_of()
 };
+
+/// Of a loop without a device that says otherwise [Hz].
+inline constexpr double usual_rate = 1000;
+/// Of the loop with this device [Hz]: what was asked for; else the usual rate, or 250 with a device
+/// that renders no force, where a quarter of the work shows the same (springs up to 1.2 N/mm).
+double rate_of(const RenderSetup& setup, const DeviceInfo& device);
 
 /// A button of the device, by its number from 1.
 struct Button {
