@@ -40,7 +40,6 @@ Field seen(const Field& field) {
                  field.interpolation());
 }
 
-/// Opens the device, which may have a say in the rate.
 std::unique_ptr<Device> open_for(const Field& field, double isovalue, const Setup& setup) {
     const double rate = setup.render.rate.value_or(usual_rate);
     if (!(rate >= 250 && rate <= 8000)) {

@@ -34,6 +34,8 @@ constexpr std::size_t most_urgent = 27;
 constexpr double newest_part = 0.2;
 /// With coarse_first: of the hands' speed [s].
 constexpr double speed_smoothing = 0.2;
+/// And the greatest that counts [bricks/s].
+constexpr double most_speed = 1e6;
 /// With coarse_first: bricks that come at both levels before all others.
 constexpr std::size_t most_soon = 125;
 /// Of the memory of the process.
@@ -196,7 +198,7 @@ void BrickLoader::choose_levels(std::span<const Interest> hands) {
     for (const Interest& hand : hands) {
         const Vec3 bricks = (geometry_.direction.transpose() * hand.velocity)
                                 .cwiseQuotient(geometry_.spacing * ResidentBricks::edge);
-        if (bricks.allFinite()) speed = std::max(speed, bricks.norm());
+        if (bricks.allFinite()) speed = std::max(speed, std::min(bricks.norm(), most_speed));
     }
     const int coarsest = static_cast<int>(store_->info().levels.size()) - 1 - settings_.level;
     // A hand that a force lets go of jumps for a moment.

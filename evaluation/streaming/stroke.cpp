@@ -20,6 +20,17 @@ double allowance(int level) {
     return (level > 0 ? 2.5 : 1.5) + std::ldexp(1.0, 2 * level) / 256;
 }
 
+/// The coarsest level of the samples that the field at a point may depend on.
+int level_near(const Field& field, const Vec3& point) {
+    constexpr double around = 2 * ball_voxel;
+    int level = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+        const Vec3 side(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
+        level = std::max(level, level_at(field, point + around * side));
+    }
+    return level;
+}
+
 /// There and back through a row of balls.
 Vec3 hand_at(double way) {
     const Vec3 begin(1.54, 5.0, 5.1), end(9.98, 5.1, 4.9);
@@ -53,7 +64,7 @@ class Judge {
         const auto judge = [&](const Vec3& point) {
             const double depth = ball_depth(point);
             result_.deepest = std::max(result_.deepest, depth);
-            const double allowed = allowance(std::max(level, level_at(field, point)));
+            const double allowed = allowance(std::max(level, level_near(field, point)));
             result_.beyond = std::max(result_.beyond, depth - allowed);
         };
         // A hand may be in a ball when the first samples come; its proxy feels nothing and goes

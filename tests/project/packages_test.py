@@ -105,6 +105,24 @@ def use(root, folder):
         sys.exit(f"the C program said: {said}")
 
 
+def check_what_is_linked(root, package):
+    """The static libraries need others: each comes with a package that theirs depends on."""
+    text = "".join(p.read_text() for p in root.rglob("palpate-*-targets.cmake"))
+    linked = set()
+    for listed in re.findall(r'INTERFACE_LINK_LIBRARIES "([^"]*)"', text):
+        linked |= set(re.sub(r"\\\$<LINK_ONLY:([^>]*)>", r"\1", listed).split(";"))
+    names = {"CURL::libcurl": "curl", "TBB::tbb": "tbb", "ZLIB::ZLIB": "z"}
+    of_system = {"", "dl", "Threads::Threads", "Eigen3::Eigen"}  # Eigen is headers alone
+    needed = {names.get(one, one) for one in linked - of_system if not one.startswith("palpate::")}
+    if not {"curl", "zstd"} <= needed:
+        sys.exit(f"what the libraries are linked with was not found: {sorted(linked)}")
+    depends = {re.split("[ (:]", one.strip())[0] for one in field(package, "Depends").split(",")}
+    for one in sorted(needed):
+        owner = run("dpkg", "-S", f"*/lib{one}.so").split(":")[0]
+        if owner not in depends:
+            sys.exit(f"{package.name} needs lib{one}, but does not depend on {owner}")
+
+
 def main():
     with tempfile.TemporaryDirectory(prefix="palpate-packages-") as name:
         scratch = pathlib.Path(name)
@@ -121,6 +139,7 @@ def main():
         missing = set(FILES) - set(root.files())
         if missing:
             sys.exit(f"not installed: {sorted(missing)}")
+        check_what_is_linked(root.path, next(p for p in made if p.name.startswith("libpalpate-dev_")))
         use(root.path, scratch)
         root.dpkg("-i", *(later(p, scratch) for p in made))
         if set(root.installed().values()) != {f"{VERSION}-2"}:
