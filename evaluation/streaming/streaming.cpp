@@ -125,12 +125,13 @@ std::vector<Claim> claims_of(const Table& table) {
     const double most = largest(table.numbers("most_mb"));
     double ticks = 0;
     for (const double one : table.numbers("ticks")) ticks += one;
-    return {{"no SCP, and no way between two, lies in a ball deeper than the samples' rounding and "
-             "the interpolation at the level felt may take",
-             beyond <= 0, fmt::format("at most {:.2f} voxel beyond, {:.0f} ticks", beyond, ticks)},
-            {"bricks and decoded pieces never take more memory than they may",
-             most <= 1e-6 * double(memory),
-             fmt::format("at most {:.1f} of {:.0f} MB", most, 1e-6 * double(memory))}};
+    return {
+        {"no point of the proxy's path lies in a ball deeper than the samples' rounding and the "
+         "interpolation at the level felt may take",
+         beyond <= 0, fmt::format("at most {:.2f} voxel beyond, {:.0f} ticks", beyond, ticks)},
+        {"bricks and decoded pieces never take more memory than they may",
+         most <= 1e-6 * double(memory),
+         fmt::format("at most {:.1f} of {:.0f} MB", most, 1e-6 * double(memory))}};
 }
 
 double of(const Table& table, const char* levels, double latency, double speed,

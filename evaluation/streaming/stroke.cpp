@@ -39,57 +39,57 @@ Vec3 hand_at(double way) {
     return begin + std::min(part, 2 - part) * (end - begin);
 }
 
+/// Follows the proxy's path step by step.
 class Judge {
   public:
-    explicit Judge(StrokeResult& result) : result_(result) {}
+    Judge(StrokeResult& result, const Renderer& renderer) : result_(result), renderer_(renderer) {}
 
-    void look(const ProxyUpdate& update, const Field& field) {
+    StepObserver observer() {
+        return {[](const Step& step, void* self) { static_cast<Judge*>(self)->take(step); }, this};
+    }
+    void end_tick(const ProxyUpdate& update) {
         const bool waiting = update.status == UpdateStatus::waiting;
         ++result_.ticks;
         result_.waiting += waiting;
-        const bool touches = update.mode == Mode::constrained && !waiting;
-        result_.touching += touches;
+        result_.touching += update.mode == Mode::constrained && !waiting;
         result_.coarse += !waiting && update.level > 0;
-        // A proxy over which a surface comes, because finer samples did, goes out of it.
-        const bool lost =
-            update.status == UpdateStatus::recovering || update.status == UpdateStatus::refused;
-        if (lost) has_before_ = is_outside_ = false;
-        if (lost || (waiting && update.scp == update.hip)) return;
+        const bool not_placed = waiting && update.scp == update.hip;
+        const double depth = ball_depth(update.scp);
+        const int level = level_near(renderer_.field, update.scp);
         // Where finer samples came over a proxy, the coarser ones count until it is out.
-        const double depth_now = ball_depth(update.scp);
-        level_ =
-            depth_now <= allowance(update.level) ? update.level : std::max(level_, update.level);
-        const int level = std::max(level_before_, level_);
-        level_before_ = level_;
-        const auto judge = [&](const Vec3& point) {
-            const double depth = ball_depth(point);
-            result_.deepest = std::max(result_.deepest, depth);
-            const double allowed = allowance(std::max(level, level_near(field, point)));
-            result_.beyond = std::max(result_.beyond, depth - allowed);
-        };
+        level_ = depth <= allowance(level) ? level : std::max(level_, level);
         // A hand may be in a ball when the first samples come; its proxy feels nothing and goes
-        // out.
-        is_outside_ = is_outside_ || depth_now <= allowance(level);
-        if (!is_outside_) return;
-        judge(update.scp);
-        // A proxy that catches up slides round a ball in one tick: a long line would cut it off.
-        constexpr double longest = 32;
-        if (has_before_) {
-            const double way = (update.scp - before_).norm() / ball_voxel;
-            const int steps = way <= longest ? static_cast<int>(std::ceil(way)) : 0;
-            for (int n = 1; n < steps; ++n) {
-                judge(before_ + n * (update.scp - before_) / steps);
-            }
-        }
-        before_ = update.scp;
-        has_before_ = true;
+        // out, as one does over which a surface came.
+        const bool lost = not_placed || update.status == UpdateStatus::recovering ||
+                          update.status == UpdateStatus::refused;
+        is_outside_ = !lost && (is_outside_ || depth <= allowance(level_));
+        if (is_outside_) judge(update.scp);
     }
 
   private:
+    void take(const Step& step) {
+        if (step.kind == StepKind::goal) return;
+        const bool moved = begun_ && step.kind != StepKind::recover && step.kind != StepKind::place;
+        if (moved && is_outside_) {
+            const double way = (step.point - last_).norm() / ball_voxel;
+            const int count = static_cast<int>(std::clamp(std::ceil(way), 1.0, 1e4));
+            for (int n = 1; n <= count; ++n) judge(last_ + n * (step.point - last_) / count);
+        }
+        last_ = step.point;
+        begun_ = true;
+    }
+    void judge(const Vec3& point) {
+        const double depth = ball_depth(point);
+        const int level = std::max(level_, level_near(renderer_.field, point));
+        result_.deepest = std::max(result_.deepest, depth);
+        result_.beyond = std::max(result_.beyond, depth - allowance(level));
+    }
+
     StrokeResult& result_;
-    Vec3 before_ = Vec3::Zero();
-    bool has_before_ = false, is_outside_ = false;
-    int level_ = 0, level_before_ = 0;
+    const Renderer& renderer_;
+    Vec3 last_ = Vec3::Zero();
+    bool begun_ = false, is_outside_ = false;
+    int level_ = 0;
 };
 
 }  // namespace
@@ -108,7 +108,7 @@ StrokeResult feel(const Stroke& stroke, const std::function<void()>& alive) {
     const Field field(loader.empty(), Solid::above, 0, Interpolation::cubic);
     Renderer renderer = make_renderer(field, ball_isovalue);
     StrokeResult result;
-    Judge judge(result);
+    Judge judge(result, renderer);
     const auto period = std::chrono::duration<double>(1 / stroke.rate);
     const auto looks = std::max<std::int64_t>(1, std::llround(stroke.rate / 200));
     const auto count = std::llround(stroke.seconds * stroke.rate);
@@ -129,8 +129,7 @@ StrokeResult feel(const Stroke& stroke, const std::function<void()>& alive) {
             }
             if (tick % (20 * looks) == 0) alive();
         }
-        const Tick felt = render(renderer, {time, hand, true});
-        judge.look(felt.proxy, renderer.field);
+        judge.end_tick(render(renderer, {time, hand, true}, judge.observer()).proxy);
         if (result.first_contact_s < 0 && result.touching > 0) {
             result.first_contact_s = since_opened();
         }

@@ -20,8 +20,8 @@ struct Stroke {
 struct StrokeResult {
     std::int64_t ticks = 0, touching = 0, waiting = 0;
     std::int64_t coarse = 0;  ///< ticks at a coarser level than the finest
-    /// Of the SCPs and the ways between them in their ball, beyond what the samples' rounding and
-    /// the interpolation at the level that is felt may take [voxel].
+    /// Of any point of the proxy's path in a ball, beyond what the samples' rounding and the
+    /// interpolation at the level that is felt there may take [voxel].
     double beyond = -1e9;
     double deepest = -1e9;         ///< in the ball itself [voxel]
     double first_contact_s = -1;   ///< since the store was opened; negative: none

@@ -32,6 +32,8 @@ def changed(kind):
             setattr(made, name, value + 1)
         elif isinstance(value, (int, float)) and numpy.isfinite(value):
             setattr(made, name, type(value)(value + 1))
+        elif value is None and name == "rate":
+            setattr(made, name, 500.0)
     return made
 
 
