@@ -231,7 +231,7 @@ TEST(Reach, what_a_field_remembers_gives_the_parts_that_looking_again_gives) {
     }
     EXPECT_GT(whole, 300);
     EXPECT_LT(whole, 3900);
-    EXPECT_GT(remembered, 100);
+    EXPECT_GT(remembered, 20);
 }
 
 TEST(Reach, a_tool_waits_too_and_none_of_its_points_leaves_what_is_in_memory) {
