@@ -132,23 +132,37 @@ Blocks::Bytes Blocks::block(int level, const Index3& at, const SampleBox& box,
             forget_old(key);
         }
     }
-    if (others.valid()) return others.get();
-    try {
+    const auto read = [&] {
         auto bytes = std::make_shared<std::vector<std::byte>>(bytes_of(box, store_.info().type));
         store_.read(level, box, *bytes, stop);
+        return bytes;
+    };
+    if (others.valid()) {
+        try {
+            return others.get();
+        } catch (...) {
+            // That read may have been another's to cancel, or begun before its cause was mended.
+            return read();
+        }
+    }
+    try {
+        const Bytes bytes = read();
         promise.set_value(bytes);
         return bytes;
     } catch (...) {
+        forget(key);
         promise.set_exception(std::current_exception());
-        const std::scoped_lock lock(mutex_);
-        const auto found = kept_.find(key);
-        if (found != kept_.end()) {
-            bytes_ -= found->second.size;
-            ages_.erase(found->second.age);
-            kept_.erase(found);
-        }
         throw;
     }
+}
+
+void Blocks::forget(const Key& key) {
+    const std::scoped_lock lock(mutex_);
+    const auto found = kept_.find(key);
+    if (found == kept_.end()) return;
+    bytes_ -= found->second.size;
+    ages_.erase(found->second.age);
+    kept_.erase(found);
 }
 
 /// Drops the pieces that were not used for longest. Who reads one has its own share of it.

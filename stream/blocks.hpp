@@ -42,6 +42,7 @@ class Blocks {
     bool has(int level, const Index3& at) const;
     bool keeps(int level) const;
     const Level& grid_of(int level) const;
+    void forget(const Key& key);
     void forget_old(const Key& but);
 
     const Store& store_;

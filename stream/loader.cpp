@@ -160,6 +160,7 @@ void BrickLoader::wait_for(const Vec3& centre, double radius) {
     required_ = needed;
     want(needed);
     failed_.clear();
+    ++waits_;
     wake();
     changed_.wait(lock, [&] {
         return std::ranges::all_of(needed, [&](const Index3& brick) {
@@ -294,6 +295,7 @@ void BrickLoader::work(const std::stop_token& stop) {
         }
         const Place place{array_of(job->brick)};
         in_flight_[place] = job->coarser;
+        const std::uint64_t waits = waits_;
         lock.unlock();
         const bool is_kept = !blocks_->has_unread(settings_.level + job->coarser,
                                                   source_of(job->brick, job->coarser));
@@ -314,7 +316,7 @@ void BrickLoader::work(const std::stop_token& stop) {
                 brick_s_ += (brick_s_ > 0 ? newest_part : 1) * (took - brick_s_);
             }
             put(*job, *brick);
-        } else if (!problem.empty()) {
+        } else if (!problem.empty() && waits == waits_) {  // else it is tried again for who waits
             failed_[place] = Clock::now() + pause_after_failure;
             problem_ = problem;
         }

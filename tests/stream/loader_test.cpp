@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <functional>
+#include <latch>
 
 #include "palpate/io/error.hpp"
 #include "palpate/reach.hpp"
@@ -281,6 +282,29 @@ TEST(BrickLoader, a_brick_that_cannot_be_had_is_told_and_tried_again) {
     loader.wait_for({50, 50, 50}, 10);
     EXPECT_EQ(loader.status().problem, "");
     EXPECT_GT(loader.take()->samples->resident()->size(), 0U);
+}
+
+TEST(BrickLoader, who_waits_is_not_told_of_a_read_that_began_and_failed_before) {
+    const auto store =
+        store_in_pieces(noise_of(SampleType::uint8, grid({64, 64, 64}), 7), {64, 64, 64});
+    Volume overview = overview_of(*store);
+    std::atomic<int> begun{0};
+    std::latch end(1);
+    store->before_read = [&](int, const SampleBox&, const std::stop_token&) {
+        if (begun++ > 0) return;
+        end.wait();
+        throw io::InputError("volumes: gone; plug it in again");
+    };
+    BrickLoader loader(store, std::move(overview), {.memory = least_memory, .threads = 4});
+    const Interest hand{Vec3(30, 30, 30), Vec3(30, 30, 30)};
+    loader.look({&hand, 1});
+    ASSERT_TRUE(comes_true([&] { return begun > 0; }));
+    // All threads make a brick of the one piece now: one reads it, the others wait for it.
+    std::jthread ends([&] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+        end.count_down();
+    });
+    EXPECT_NO_THROW(loader.wait_for({30, 30, 30}, 10));
 }
 
 TEST(BrickLoader, waits_for_all_that_an_update_may_look_at_and_refuses_what_does_not_fit) {

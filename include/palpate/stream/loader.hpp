@@ -162,6 +162,7 @@ class BrickLoader {
     std::vector<Index3> wanted_;                 // most urgent first
     std::array<std::size_t, 4> begun_{};  // of each of next_job()'s rounds: all before is there
     std::vector<Index3> required_;        // by wait_for()
+    std::uint64_t waits_ = 0;             // calls of wait_for() so far
     int first_ = 0, finest_ = 0;          // steps coarser that are read, coarse_first
     double brick_s_ = 0;                  // that a brick lately took to come, 0: none yet
     double speed_ = 0;                    // of the fastest hand [bricks/s]
