@@ -54,6 +54,8 @@ void add_names(Names& names, const StoreSource& store) {
     add_names(names, FileSource{{}, store.options.raw, store.options.spacing, {}});
     names["level"] = std::to_string(store.loader.level);
     if (store.options.channel > 0) names["channel"] = std::to_string(store.options.channel);
+    if (store.loader.whole_process) names["memory"] = std::to_string(store.loader.memory);
+    if (store.loader.coarse_first) names["coarse-first"] = "yes";
 }
 
 /// What only files have.
@@ -104,6 +106,11 @@ std::optional<StoreSource> store_of(const FileSource& file, const Names& names) 
     }
     StoreSource store{file.path, options, {}};
     store.loader.level = count_of(names, "level");
+    if (const auto memory = io::number_from<std::uint64_t>(value_of(names, "memory"))) {
+        store.loader.memory = *memory;
+        store.loader.whole_process = true;
+    }
+    store.loader.coarse_first = value_of(names, "coarse-first") == "yes";
     // Only a network has to be waited for; each thread has a stack in memory that is locked.
     if (!is_web_address(file.path)) store.loader.threads = 4;
     return store;

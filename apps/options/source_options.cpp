@@ -93,14 +93,10 @@ run::Source SourceOptions::source() const {
     if (given.contains("skip") && !io::number_from<std::uint64_t>(given["skip"])) {
         throw std::invalid_argument("--skip " + given["skip"] + ": no file is that long");
     }
-    if (memory) given["memory"] = "yes";
+    if (memory) given["memory"] = std::to_string(*memory);
+    if (coarse_first) given["coarse-first"] = "yes";
     run::Source source = run::source_from(given);
     if (auto* store = std::get_if<run::StoreSource>(&source.from)) {
-        if (memory) {
-            store->loader.memory = *memory;
-            store->loader.whole_process = true;
-        }
-        store->loader.coarse_first = coarse_first;
         store->options.cache_folder = cache_folder;
         store->options.cache_bytes = cache_folder.empty() ? 0 : cache_bytes;
     }

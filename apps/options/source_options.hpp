@@ -19,7 +19,7 @@ struct SourceOptions {
     int smooth = 0;
     bool prefilter = false;
     int dequantize = 0;                   ///< rounds
-    std::optional<std::uint64_t> memory;  ///< [bytes] of bricks; given: read as it is felt
+    std::optional<std::uint64_t> memory;  ///< [bytes] of the process; given: read as it is felt
     bool coarse_first = false;
     std::string cache_folder;
     std::uint64_t cache_bytes = std::uint64_t{4} << 30;

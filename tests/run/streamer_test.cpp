@@ -32,7 +32,7 @@ struct BallFile {
     std::map<std::string, std::string> names() const { return {{"volume", path}}; }
     Source streamed() const {
         auto given = names();
-        given["memory"] = "yes";
+        given["level"] = "0";
         Source source = source_from(given);
         std::get<StoreSource>(source.from).loader.memory = std::uint64_t{200} << 20;
         return source;
@@ -197,7 +197,7 @@ TEST(Streamed, edits_have_a_quarter_of_the_memory_and_say_so) {
     const std::string path = (folder.path() / "large.raw").string();
     std::filesystem::resize_file((std::ofstream(path), path), std::uintmax_t{512} << 20);
     Source source = source_from(
-        {{"volume", path}, {"dims", "1024x1024x512"}, {"type", "uint8"}, {"memory", "yes"}});
+        {{"volume", path}, {"dims", "1024x1024x512"}, {"type", "uint8"}, {"level", "0"}});
     std::get<StoreSource>(source.from).loader.memory = std::uint64_t{40} << 20;
     Data data(load(source));
     EXPECT_NO_THROW(data.editor().apply(edit::Fill{{{0, 0, 0}, {99, 99, 99}}, 9}));
@@ -234,7 +234,7 @@ TEST(Streamed, what_was_edited_is_saved_beside_the_original_and_opens_again) {
     EXPECT_EQ(std::memcmp(bytes.data(), whole.data(), bytes.size()), 0);
 }
 
-TEST(Streamed, sources_keep_level_and_channel_in_their_names) {
+TEST(Streamed, sources_keep_level_channel_and_memory_in_their_names) {
     const BallFile ball;
     auto names = ball.names();
     names["level"] = "0";
@@ -242,6 +242,14 @@ TEST(Streamed, sources_keep_level_and_channel_in_their_names) {
     ASSERT_TRUE(std::holds_alternative<StoreSource>(source.from));
     EXPECT_EQ(to_names(source), to_names(source_from(to_names(source))));
     EXPECT_EQ(to_names(source).at("level"), "0");
+    EXPECT_FALSE(to_names(source).contains("memory"));
+    names["memory"] = "200000000";
+    names["coarse-first"] = "yes";
+    const Source bounded = source_from(to_names(source_from(names)));
+    const stream::BrickLoaderSettings& loader = std::get<StoreSource>(bounded.from).loader;
+    EXPECT_EQ(loader.memory, 200'000'000U);
+    EXPECT_TRUE(loader.whole_process);
+    EXPECT_TRUE(loader.coarse_first);
     names["level"] = "3";
     EXPECT_THROW(load(source_from(names)), std::invalid_argument);
     EXPECT_TRUE(std::holds_alternative<StoreSource>(
