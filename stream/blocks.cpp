@@ -141,7 +141,7 @@ Blocks::Bytes Blocks::block(int level, const Index3& at, const SampleBox& box,
         try {
             return others.get();
         } catch (...) {
-            // That read may have been another's to cancel, or begun before its cause was mended.
+            // Another caller may have cancelled it, or it began before its cause was mended.
             return read();
         }
     }
