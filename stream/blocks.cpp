@@ -138,12 +138,10 @@ Blocks::Bytes Blocks::block(int level, const Index3& at, const SampleBox& box,
         return bytes;
     };
     if (others.valid()) {
-        try {
-            return others.get();
-        } catch (...) {
-            // Another caller may have cancelled it, or it began before its cause was mended.
-            return read();
-        }
+        if (Bytes bytes = others.get()) return bytes;
+        // It failed; but another caller may have cancelled it, or it began before its cause was
+        // mended.
+        return read();
     }
     try {
         const Bytes bytes = read();
@@ -151,7 +149,7 @@ Blocks::Bytes Blocks::block(int level, const Index3& at, const SampleBox& box,
         return bytes;
     } catch (...) {
         forget(key);
-        promise.set_exception(std::current_exception());
+        promise.set_value(nullptr);  // an error is the reader's own, never shared by threads
         throw;
     }
 }

@@ -33,7 +33,7 @@ class Blocks {
     using Key = std::array<int, 4>;  // level and place
     using Bytes = std::shared_ptr<const std::vector<std::byte>>;
     struct Kept {
-        std::shared_future<Bytes> bytes;
+        std::shared_future<Bytes> bytes;  // null if the read failed
         std::list<Key>::iterator age;
         std::uint64_t size;
     };
