@@ -141,8 +141,8 @@ std::function<void(Renderer&, std::int64_t)> wait_for_bricks(const LoadedVolume&
 OfflineSummary render_offline(Renderer& renderer, const io::Trajectory& trajectory,
                               const OfflineSinks& sinks) {
     const Vec3& first = trajectory.position.front();
-    const auto& layers = renderer.settings.layers;
-    const bool has_surfaces = layers && !layers->layers.empty();  // they place the proxy themselves
+    // They place the proxy themselves.
+    const bool has_surfaces = have_surfaces(renderer.settings.layers);
     const bool streamed = renderer.field.samples().resident() != nullptr;
     if (!has_surfaces && !streamed &&
         !place(renderer.proxy, renderer.field, first, renderer.proxy.isovalue)) {

@@ -63,11 +63,6 @@ void tell(io::RecordingWriter& recording, const std::vector<Command>& commands) 
     }
 }
 
-/// Layers have levels of their own: the isovalue that was asked for waits until they are gone.
-bool isovalue_waits(const RendererSettings& settings) {
-    return settings.layers && !settings.layers->layers.empty();
-}
-
 }  // namespace
 
 io::RecordingHead recording_head(const Session& session, const DeviceInfo& device,
@@ -160,12 +155,17 @@ Field Run::field_now() const {
 }
 
 /// A new session with everything that was asked for, at the level and place to which penetrability,
-/// clutch and scale had led by tick `last`.
+/// clutch and scale had led by tick `last`. A level of layers does not count.
 Session Run::session_from(double isovalue, const DeviceTransform& transform,
                           std::int64_t last) const {
     RendererSettings settings = settings_;
     settings.transform = transform;
-    const bool known = std::isfinite(isovalue) && !isovalue_waits(settings);
+    const auto open = [&](const Sent& sent) { return last < sent.after + sure; };
+    const bool by_layers =
+        have_surfaces(settings.layers) || std::ranges::any_of(sent_, [&](const Sent& sent) {
+            return open(sent) && std::holds_alternative<command::UseLayers>(sent.command);
+        });
+    const bool known = std::isfinite(isovalue) && !by_layers;
     Session session{make_renderer(field_, known ? isovalue : isovalue_, settings),
                     session_settings_};
     for (const Sent& sent : sent_) {
@@ -173,7 +173,7 @@ Session Run::session_from(double isovalue, const DeviceTransform& transform,
         const bool leads = std::holds_alternative<command::Isovalue>(sent.command) ||
                            std::holds_alternative<command::Scale>(sent.command) ||
                            std::holds_alternative<DeviceTransform>(sent.command);
-        if (leads && last < sent.after + sure) apply(session, sent.command);
+        if (leads && open(sent)) apply(session, sent.command);
     }
     if (!std::isfinite(session.renderer.proxy.isovalue)) {
         session.renderer.proxy.isovalue = isovalue_;
@@ -189,8 +189,8 @@ std::int64_t Run::last_tick() const {
 /// As the servo that has stopped left it.
 Session Run::session_stopped() const {
     const Renderer& last = servo_->session().renderer;
-    const double level = isovalue_waits(last.settings) ? isovalue_ : last.proxy.isovalue;
-    return session_from(level, last.settings.transform, last_tick());
+    return session_from(last.isovalue_without_layers.value_or(last.proxy.isovalue),
+                        last.settings.transform, last_tick());
 }
 
 /// As the running servo has it now, or as the first one will begin.
@@ -217,7 +217,6 @@ std::string Run::device_problem() const {
 
 void Run::send(const Command& command) {
     check(command, settings_, kind_of(field_));
-    const bool waited = isovalue_waits(settings_);
     const std::int64_t after = last_tick();
     if (!servo_->send(command)) {
         throw QueueFull("too many commands at once: one was left out");
@@ -234,8 +233,6 @@ void Run::send(const Command& command) {
     if (std::holds_alternative<command::UseTool>(command)) {
         data_->use_tool(*servo_, settings_.tool);
     }
-    // Without this the session would stay at the level of a layer.
-    if (waited && !isovalue_waits(settings_)) send(command::Isovalue{isovalue_});
 }
 
 void Run::use_device(const devices::DeviceChoice& device) {

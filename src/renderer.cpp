@@ -82,6 +82,19 @@ ForceInput force_input(const Renderer& renderer, const DeviceState& device, cons
     return input;
 }
 
+/// Layers set the proxy's level; the isovalue waits for their end.
+void keep_isovalue(Renderer& renderer) {
+    auto& waiting = renderer.isovalue_without_layers;
+    const bool by_layers = have_surfaces(renderer.settings.layers) && !renderer.settings.tool;
+    if (by_layers == waiting.has_value()) return;
+    if (by_layers) {
+        waiting = renderer.proxy.isovalue;
+    } else {
+        renderer.proxy.isovalue = *waiting;
+        waiting.reset();
+    }
+}
+
 /// An update that leaves the proxy where it is, because samples are missing.
 ProxyUpdate wait_for_samples(const Renderer& renderer, const Vec3& hip) {
     ProxyUpdate held = refuse_update(renderer.proxy, renderer.field, hip, UpdateStatus::waiting);
@@ -249,7 +262,7 @@ static void check_with_tool(const RendererSettings& s) {
 void check(const RendererSettings& s) {
     if (!s.method) throw std::invalid_argument("no proxy method is set");
     check(s.force, s.device);
-    if (s.layers && !s.layers->layers.empty() && !knows_layers(s.method)) {
+    if (have_surfaces(s.layers) && !knows_layers(s.method)) {
         throw std::invalid_argument("layers need the method exact");
     }
     if (s.tool) check_with_tool(s);
@@ -315,6 +328,11 @@ Renderer make_renderer(Field field, double isovalue, const RendererSettings& set
     return renderer;
 }
 
+void use_isovalue(Renderer& renderer, double isovalue) noexcept {
+    auto& waiting = renderer.isovalue_without_layers;
+    (waiting ? *waiting : renderer.proxy.isovalue) = isovalue;
+}
+
 void make_room_for_tools(Renderer& renderer) {
     std::optional<ToolProxy>& proxy = renderer.tool_proxy;
     if (!proxy) proxy.emplace(std::make_shared<const Tool>(point_tool()));
@@ -365,6 +383,7 @@ std::string isovalue_warning(const Field& field, double isovalue) {
 Tick render(Renderer& renderer, const DeviceState& device, StepObserver observer, Clock clock,
             PoseObserver pose_observer) {
     const RendererSettings& settings = renderer.settings;
+    keep_isovalue(renderer);
     if (settings.tool) return render_with_tool(renderer, device, clock, pose_observer);
     const Vec3 hip = physical_from_device(settings.transform, device.position);
     Tick tick;
@@ -378,7 +397,7 @@ Tick render(Renderer& renderer, const DeviceState& device, StepObserver observer
         moved = {refuse_update(before, renderer.field, hip, UpdateStatus::not_finite), {}};
     }
     tick.update_ns = clock ? clock() - begin : 0;
-    const bool has_surfaces = settings.layers && !settings.layers->layers.empty();
+    const bool has_surfaces = have_surfaces(settings.layers);
     if (!has_surfaces && moved.proxy.status != UpdateStatus::waiting) {
         apply_penetrability(settings.penetrability, renderer.field, 1 / settings.transform.scale,
                             renderer.proxy, moved.proxy, observer);

@@ -58,17 +58,10 @@ void scale_about_scp(Renderer& renderer, double scale) {
     transform.scale = scale;
 }
 
-/// Without surfaces of layers the one that was next is felt, or the first of them where none was.
 void use_layers(Renderer& renderer, const std::shared_ptr<const Layers>& layers) noexcept {
-    const std::shared_ptr<const Layers>& before = renderer.settings.layers;
     if (!layers) {
         renderer.layers = {};
         renderer.proxy.behind.reset();
-    }
-    const bool has_surfaces = layers && !layers->layers.empty();
-    if (!has_surfaces && before && !before->layers.empty() &&
-        !std::isfinite(renderer.proxy.isovalue)) {
-        renderer.proxy.isovalue = before->layers.front().level;
     }
     renderer.settings.layers = layers;
 }
@@ -172,7 +165,7 @@ void apply(Session& session,  // NOLINT(bugprone-exception-escape)
     RendererSettings& settings = renderer.settings;
     Field& field = renderer.field;
     const Overloaded apply_one{
-        [&](const command::Isovalue& to) { renderer.proxy.isovalue = to.isovalue; },
+        [&](const command::Isovalue& to) { use_isovalue(renderer, to.isovalue); },
         [&](const command::Freeze& to) {
             if (to.on && !session.frozen) {
                 session.frozen_hand = session.hand;

@@ -41,7 +41,7 @@ extern "C" PALPATE_API palpate_status palpate_renderer_set_isovalue(palpate_rend
     return guarded([&] {
         Renderer& r = given(renderer, "renderer").renderer;
         check_isovalue(isovalue, r.field.solid());
-        r.proxy.isovalue = isovalue;
+        use_isovalue(r, isovalue);
     });
 }
 

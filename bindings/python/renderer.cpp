@@ -104,7 +104,7 @@ void bind_changes(py::class_<Renderer>& renderer) {
             [](Renderer& r, const io::Level& level) {
                 const double isovalue = io::level_in(r.field.volume(), level);
                 check_isovalue(isovalue, r.field.solid());
-                r.proxy.isovalue = isovalue;
+                use_isovalue(r, isovalue);
             },
             "Level felt [data units]; may be changed between ticks.")
         .def_property(

@@ -168,6 +168,11 @@ struct LayerState {
     Vec3 hip = Vec3::Zero();  ///< of the last tick [mm, physical]
 };
 
+/// Whether layers, if any, have surfaces of their own.
+inline bool have_surfaces(const std::shared_ptr<const Layers>& layers) {
+    return layers && !layers->layers.empty();
+}
+
 /// Input to layers in one tick.
 struct LayerInput {
     ProxyMethod method = &update_exact;  ///< that knows levels behind

@@ -52,13 +52,15 @@ struct RendererSettings {
 };
 
 /// Everything between two ticks. Settings may be exchanged between ticks (through check() first);
-/// set `proxy.isovalue` to feel another level.
+/// use_isovalue() for another level.
 struct Renderer {
     Field field;
     RendererSettings settings;
     Proxy proxy;
     ForceState force;
     LayerState layers = {};
+    /// [data units] Felt again when there are no layers with surfaces; set while there are.
+    std::optional<double> isovalue_without_layers = {};
     /// Of the tool; `proxy.isovalue` counts. Has a value where there is a tool, or may be one.
     std::optional<ToolProxy> tool_proxy = {};
 };
@@ -105,6 +107,9 @@ void check_tool(const Tool* tool, ProxyMethod method, const FieldKind& field);
 /// A renderer ready for its first tick. Throws std::invalid_argument for an isovalue or settings
 /// that do not pass their check.
 Renderer make_renderer(Field field, double isovalue, const RendererSettings& settings = {});
+/// Another level from the next tick on; beside layers with surfaces, as soon as they are gone. It
+/// has to pass check_isovalue().
+void use_isovalue(Renderer& renderer, double isovalue) noexcept;
 /// Makes room for any tool, so that one can be taken up between two ticks (use_tool()). Throws
 /// std::bad_alloc.
 void make_room_for_tools(Renderer& renderer);

@@ -77,8 +77,7 @@ struct Moment {
 struct Speed {
     double speed;
 };
-/// Layers from the next tick on; null: none, and the level that was next is felt until an Isovalue
-/// comes (run::Run sends it).
+/// Layers from the next tick on; null: none, and the isovalue is felt again.
 struct UseLayers {
     std::shared_ptr<const Layers> layers;
 };

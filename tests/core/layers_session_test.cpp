@@ -67,30 +67,60 @@ TEST(LayersSession, layers_that_are_none_are_refused_and_change_nothing) {
     EXPECT_NO_THROW(live.use(sent_layers({})));
 }
 
-TEST(LayersSession, without_layers_an_isovalue_is_felt_again) {
+TEST(LayersSession, without_layers_the_isovalue_is_felt_again) {
     LayeredSession live;
     live.use(sent_layers({20, 40}, 0.5));
     for (double z = 15; z < 30; z += 0.1) live.at(z);
     EXPECT_EQ(live.at(30).layers.inside, 1);
     live.use(nullptr);
-    EXPECT_EQ(live.at(30).layers.inside, 0) << "of none";
-    EXPECT_NEAR(live.at(45).proxy.scp[2], 40, 1e-6) << "the surface that was next";
+    EXPECT_EQ(live.at(29).layers.inside, 0) << "of none";
+    EXPECT_NEAR(live.at(45).proxy.scp[2], 30, 1e-6);
     EXPECT_EQ(live.at(10).proxy.mode, Mode::free) << "nothing holds it from behind";
     apply(live.session, command::Isovalue{25});
     EXPECT_NEAR(live.at(28).proxy.scp[2], 25, 1e-6);
 }
 
-TEST(LayersSession, after_all_surfaces_gave_way_the_first_is_felt_without_them) {
+TEST(LayersSession, after_all_surfaces_gave_way_the_isovalue_is_felt_without_them) {
     for (const bool null : {true, false}) {
         LayeredSession live;
         live.use(sent_layers({20, 40}, 0.5));
         for (double z = 15; z < 60; z += 0.1) live.at(z);
         EXPECT_EQ(live.at(60).layers.inside, 2);
         live.use(null ? nullptr : sent_layers({}));
-        EXPECT_NEAR(live.at(60).proxy.scp[2], 20, 1e-6);
-        EXPECT_EQ(live.at(19).proxy.mode, Mode::free);
-        EXPECT_NEAR(live.at(22).proxy.scp[2], 20, 1e-6);
+        EXPECT_NEAR(live.at(60).proxy.scp[2], 30, 1e-6);
+        EXPECT_EQ(live.at(29).proxy.mode, Mode::free);
+        EXPECT_NEAR(live.at(32).proxy.scp[2], 30, 1e-6);
     }
+}
+
+TEST(LayersSession, an_isovalue_sent_beside_layers_waits_until_they_are_gone) {
+    for (const bool ticks_between : {true, false}) {
+        LayeredSession live;
+        const auto tick = [&](double z) {
+            if (ticks_between) live.at(z);
+        };
+        tick(15);
+        live.use(sent_layers({20, 40}));
+        tick(15);
+        apply(live.session, command::Isovalue{35});
+        EXPECT_NEAR(live.at(38).proxy.scp[2], 20, 1e-6) << "of the layers";
+        live.use(sent_layers({10, 25}));
+        tick(5);
+        live.use(nullptr);
+        apply(live.session, command::Isovalue{33});
+        live.at(5);
+        EXPECT_NEAR(live.at(38).proxy.scp[2], 33, 1e-6);
+    }
+}
+
+TEST(LayersSession, a_state_that_overflowed_keeps_the_isovalue) {
+    LayeredSession live;
+    live.use(sent_layers({20, 40}));
+    live.at(22);
+    live.session.renderer.proxy.scp_physical = Vec3::Constant(not_a_number);
+    live.at(22);
+    live.use(nullptr);
+    EXPECT_EQ(live.at(10).proxy.isovalue, 30);
 }
 
 TEST(LayersSession, a_clutch_and_a_scale_leave_the_contact_as_it_is) {

@@ -180,8 +180,9 @@ bool is_finite(const Session& s) {
     return is_finite(r.layers) && r.proxy.scp.folded.allFinite() &&
            r.proxy.scp_physical.allFinite() && r.proxy.ahead.allFinite() &&
            std::isfinite(r.proxy.recovery_reach) && !std::isnan(r.proxy.isovalue) &&
-           r.force.force.allFinite() && r.force.velocity.allFinite() && r.force.hand.allFinite() &&
-           r.force.torque.allFinite() && r.force.angular_velocity.allFinite() &&
+           !std::isnan(r.isovalue_without_layers.value_or(0)) && r.force.force.allFinite() &&
+           r.force.velocity.allFinite() && r.force.hand.allFinite() && r.force.torque.allFinite() &&
+           r.force.angular_velocity.allFinite() &&
            (!r.tool_proxy || (r.tool_proxy->pose.position.allFinite() &&
                               r.tool_proxy->pose.orientation.coeffs().allFinite())) &&
            t.rotation.allFinite() && t.translation.allFinite() && std::isfinite(t.scale) &&

@@ -69,6 +69,7 @@ TEST_F(RunWithLayers, recordings_that_begin_and_end_meanwhile_do_not_change_it) 
     EXPECT_EQ(live.isovalue(), 60);
     EXPECT_TRUE(felt(20));
     live.send(command::UseLayers{nullptr});
+    live.record(scratch.path() / "b.csv");
     EXPECT_TRUE(felt(60));
 }
 

@@ -15,10 +15,6 @@ namespace palpate::viewer {
 /// Null: no layers.
 using SharedLayers = std::shared_ptr<const Layers>;
 
-inline bool have_surfaces(const SharedLayers& layers) {
-    return layers && !layers->layers.empty();
-}
-
 /// Whether their surfaces are levels of the data, not labels.
 inline bool have_levels(const SharedLayers& layers) {
     return have_surfaces(layers) && !layers->by_label;
