@@ -1,8 +1,5 @@
-// Compares pictures of the 3-D view with committed references. After an intended change: run with
-// PALPATE_WRITE_REFERENCES=1, look at the pictures in references/, commit them.
+// Compares pictures of the 3-D view with committed references.
 #include <gtest/gtest.h>
-
-#include <cstdlib>
 
 #include "apps/viewer/scene/label_surfaces.hpp"
 #include "apps/viewer/scene/render_request.hpp"
@@ -13,27 +10,6 @@
 
 namespace palpate::viewer {
 namespace {
-
-/// Edges and letters differ with drivers and fonts, a little everywhere or much in few pixels.
-void expect_as_committed(const QImage& image, const std::string& name) {
-    if (image.size() != QSize(400, 320)) GTEST_SKIP() << "references are for a scale of 1";
-    const QString path = QString::fromStdString(PALPATE_REFERENCES + ("/" + name + ".png"));
-    if (std::getenv("PALPATE_WRITE_REFERENCES")) {
-        std::filesystem::create_directories(PALPATE_REFERENCES);
-        ASSERT_TRUE(image.save(path));
-    }
-    const QImage reference = QImage(path).convertToFormat(QImage::Format_RGB32);
-    ASSERT_EQ(reference.size(), image.size()) << path.toStdString();
-    EXPECT_LT(difference(image, reference), 2) << name;
-    int others = 0;
-    for (int y = 0; y < image.height(); ++y) {
-        for (int x = 0; x < image.width(); ++x) {
-            const QRgb p = image.pixel(x, y), q = reference.pixel(x, y);
-            others += std::abs(qGray(p) - qGray(q)) > 50;
-        }
-    }
-    EXPECT_LT(others, image.width() * image.height() / 100) << name;
-}
 
 run::LoadedVolume loaded_from(const Overlay& overlay) {
     run::LoadedVolume loaded = run::load(run::source_named("synthetic:sphere:8x8x8"));

@@ -15,6 +15,7 @@
 #include <string>
 
 #include "apps/viewer/scene/scene.hpp"
+#include "viewer/references.hpp"
 
 namespace palpate::viewer {
 
@@ -113,20 +114,6 @@ Blob blob(const QImage& image, Is is) {
         b.y /= b.count;
     }
     return b;
-}
-
-/// Mean absolute difference of all channels, 0 to 255; 255 for pictures of two sizes.
-inline double difference(const QImage& a, const QImage& b) {
-    if (a.size() != b.size()) return 255;
-    double sum = 0;
-    for (int y = 0; y < a.height(); ++y) {
-        for (int x = 0; x < a.width(); ++x) {
-            const QRgb p = a.pixel(x, y), q = b.pixel(x, y);
-            sum += std::abs(qRed(p) - qRed(q)) + std::abs(qGreen(p) - qGreen(q)) +
-                   std::abs(qBlue(p) - qBlue(q));
-        }
-    }
-    return sum / (3.0 * a.width() * a.height());
 }
 
 }  // namespace palpate::viewer

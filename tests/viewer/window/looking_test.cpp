@@ -12,7 +12,6 @@
 #include <QSettings>
 #include <QTabWidget>
 
-#include <fstream>
 #include <map>
 
 #include "apps/viewer/panel/number_box.hpp"
@@ -132,21 +131,6 @@ TEST_F(Looking, a_length_on_the_surface_in_the_scene_and_escape_gives_up) {
     ASSERT_TRUE(wait_until([&] { return part<QAction>("measure_remove_last").isEnabled(); }));
     QTest::keyClick(window_.get(), Qt::Key_Backspace, Qt::ShiftModifier);
     EXPECT_TRUE(window_->measuring().measurements().empty());
-}
-
-/// Two labels, half of a ball each, on a coarser grid than the ball's, as 3D Slicer writes them.
-void write_segmentation(const std::filesystem::path& path) {
-    std::ofstream out(path, std::ios::binary);
-    out << "NRRD0004\ntype: unsigned char\ndimension: 3\nspace: left-posterior-superior\n"
-           "sizes: 24 24 24\nspace directions: (2,0,0) (0,2,0) (0,0,2)\n"
-           "kinds: domain domain domain\nencoding: raw\nspace origin: (-23,-23,-23)\n"
-           "Segment0_ID:=Segment_1\nSegment0_LabelValue:=1\nSegment0_Name:=left half\n"
-           "Segment0_Color:=0.9 0.1 0.1\nSegment1_ID:=Segment_2\nSegment1_LabelValue:=7\n"
-           "Segment1_Name:=right half\nSegment1_Color:=0.1 0.2 0.9\n\n";
-    for (int i = 0; i < 24 * 24 * 24; ++i) {
-        const Vec3 at = Vec3(i % 24, i / 24 % 24, i / 576) - Vec3::Constant(11.5);
-        out.put(at.norm() > 8 ? '\0' : at[0] < 0 ? '\1' : '\7');
-    }
 }
 
 TEST_F(Looking, a_segmentation_lies_over_slices_and_scene_with_its_names_and_colours) {
