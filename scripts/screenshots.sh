@@ -43,20 +43,20 @@ done
 rm -r "$demos"
 
 # This head was stored upside down.
-screenshot cthead 2.5 '"volume": {"volume": "DATA/cthead_unc.nrrd"}, "isovalue": 1150,
+screenshot cthead 2.5 '"volume": {"volume": "DATA/cthead_unc.nrrd"}, "field": "cubic", "isovalue": 1150,
     "device": "simulated:hand=press", "look": {"box": false},
     "camera": {"focus": [127.5, 127.5, 112], "up": [0, 0, -1],
         "towards_viewer": [-0.75, -0.65, -0.2], "half_height": 130}'
-screenshot lobster 2 '"volume": {"volume": "DATA/lobster.nrrd"}, "isovalue": 35,
+screenshot lobster 2 '"volume": {"volume": "DATA/lobster.nrrd"}, "field": "cubic", "isovalue": 35,
     "device": "simulated:hand=slide,seed=4", "look": {"box": false},
     "camera": {"focus": [150, 175, 39], "up": [0, -1, 0],
         "towards_viewer": [0.25, 0.35, 0.9], "half_height": 170}'
-screenshot daisy 2 '"volume": {"volume": "DATA/daisy_pollen.nrrd"}, "isovalue": 60,
+screenshot daisy 2 '"volume": {"volume": "DATA/daisy_pollen.nrrd"}, "field": "cubic", "isovalue": 60,
     "device": "simulated:hand=slide", "look": {"surface": false, "volume": true}'
 echo "== viewer-layers.png"
 scripts/with_display.sh "$program" data/visible_human_head.nrrd --layers sample-head \
     --device simulated:hand=press --after 3 --window 1400x880 --screenshot docs/images/viewer-layers.png
-screenshot surfaces 2 '"volume": {"volume": "DATA/cthead_unc.nrrd"}, "isovalue": 500,
+screenshot surfaces 2 '"volume": {"volume": "DATA/cthead_unc.nrrd"}, "field": "cubic", "isovalue": 500,
     "device": "simulated:hand=press", "look": {"box": false, "surface_opacity": 0.35,
         "surfaces": [{"level": 1150, "colour": [0.84, 0.37, 0.25], "opacity": 1, "shown": true}],
         "cut": "plane", "cut_plane": {"point": [127.5, 127.5, 60], "normal": [0, 0, -1]}},
@@ -69,11 +69,11 @@ screenshot local 2 '"volume": {"volume": "synthetic:sphere:14x14x14"}, "isovalue
     "camera": {"focus": [-3.9, -0.4, -1.4], "up": [0, 0, 1],
         "towards_viewer": [-0.55, -0.75, 0.4], "half_height": 1.3}'
 "$palpate" convert "$data/visible_human_head.nrrd" "$sessions/head.zarr" --quiet
-screenshot store 2 '"volume": {"volume": "'"$sessions"'/head.zarr"}, "isovalue": 110,
+screenshot store 2 '"volume": {"volume": "'"$sessions"'/head.zarr"}, "field": "cubic", "isovalue": 110,
     "device": "simulated:hand=press", "look": {"box": false},
     "camera": {"focus": [255, 200, 110], "up": [0, 0, 1],
         "towards_viewer": [-0.3, -0.9, 0.1], "half_height": 60}'
-screenshot tool 3 '"volume": {"volume": "'"$(pwd)"'/data/visible_human_head.nrrd"}, "isovalue": 110,
+screenshot tool 3 '"volume": {"volume": "'"$(pwd)"'/data/visible_human_head.nrrd"}, "field": "cubic", "isovalue": 110,
     "device": "simulated:sigma7,hand=press,turn=25", "look": {"box": false},
     "camera": {"focus": [196, 222, 100], "up": [0, 0, 1],
         "towards_viewer": [-0.75, -0.6, 0.1], "half_height": 42}' --tool burr:6 --tool-spacing 1
@@ -83,7 +83,7 @@ echo "== drilling"
 "$palpate" touch data/visible_human_head.nrrd --isovalue 40 --tool burr:8 --tool-spacing 1 \
     --device simulated:sigma7,hand=press,turn=25 --brush 'carve tool' --seconds 12 --headless --quiet \
     --save "$sessions/drilled.nrrd"
-screenshot drilled 4 '"volume": {"volume": "'"$sessions"'/drilled.nrrd"}, "isovalue": 40,
+screenshot drilled 4 '"volume": {"volume": "'"$sessions"'/drilled.nrrd"}, "field": "cubic", "isovalue": 40,
     "look": {"box": false}, "slices_shown": false,
     "camera": {"focus": [175, 225, 104], "up": [0, 0, 1],
         "towards_viewer": [-0.8, -0.55, 0.25], "half_height": 60}'
