@@ -157,10 +157,9 @@ std::vector<double> places_of(const std::vector<NumberedFile>& files,
     return places;
 }
 
-/// [s]; from the caller's options, else the file, else the default.
-double interval_of(const SequenceOptions& options, const VolumeFile& file,
-                   std::vector<std::string>& notes) {
-    if (options.interval > 0) return options.interval;
+/// [s]; the one asked for, else the file's, else the default.
+double interval_of(double asked, const VolumeFile& file, std::vector<std::string>& notes) {
+    if (asked > 0) return asked;
     if (file.frame_interval >= 1e-6 && file.frame_interval <= 1e6) return file.frame_interval;
     notes.push_back("nothing says how much time lies between two frames: " +
                     text_of(assumed_frame_interval) + " s was taken");
@@ -168,15 +167,14 @@ double interval_of(const SequenceOptions& options, const VolumeFile& file,
 }
 
 SequenceFile opened(VolumeFile file, const std::vector<double>& places, double first_time,
-                    const SequenceOptions& options, std::vector<std::string> notes) {
+                    double interval, std::vector<std::string> notes) {
     SequenceFile result{
         {}, file.volume, std::move(file.format), std::move(file.notes), std::move(file.values)};
     std::erase_if(result.notes,
                   [](const std::string& note) { return note.starts_with("time step "); });
     std::move(notes.begin(), notes.end(), std::back_inserter(result.notes));
-    const double interval =
-        places.size() > 1 ? interval_of(options, file, result.notes)
-                          : (options.interval > 0 ? options.interval : assumed_frame_interval);
+    if (places.size() > 1) interval = interval_of(interval, file, result.notes);
+    if (interval == 0) interval = assumed_frame_interval;
     Sequence& sequence = result.sequence;
     for (const double place : places) sequence.times.push_back(first_time + place * interval);
     sequence.period = (places.back() + 1) * interval;
@@ -192,7 +190,7 @@ SequenceFile open_series(const fs::path& path, const Pattern& pattern,
     const std::vector<double> places = places_of(files, notes);
     VolumeFile first = read_volume(files.front().path, options.read);
     first.frame_interval = 0;  // of the volumes in that file, not of the series
-    SequenceFile result = opened(std::move(first), places, 0, options, std::move(notes));
+    SequenceFile result = opened(std::move(first), places, 0, options.interval, std::move(notes));
     result.sequence.reader = [files, read = options.read](int frame, const Progress& progress) {
         ReadOptions with = read;
         with.progress = progress;
@@ -207,22 +205,15 @@ SequenceFile open_series(const fs::path& path, const Pattern& pattern,
 SequenceFile open_file(const fs::path& path, const SequenceOptions& options) {
     ReadOptions read = options.read;
     read.time_step = 0;
-    VolumeFile first = read_volume(path, read);
-    std::vector<double> places;
-    for (int i = 0; i < first.time_steps; ++i) places.push_back(i);
-    const bool sensible = first.time_steps > 1 && std::abs(first.first_time) < 1e6;
-    const double first_time = sensible ? first.first_time : 0;
-    SequenceFile result = opened(std::move(first), places, first_time, options, {});
-    result.sequence.reader = [path, read](int frame, const Progress& progress) {
-        ReadOptions with = read;
-        with.progress = progress;
-        with.time_step = frame;
-        return read_volume(path, with).volume;
-    };
-    result.sequence.frame_name = [path](int frame) {
-        return path.string() + ": frame " + std::to_string(frame);
-    };
-    return result;
+    return sequence_of(
+        read_volume(path, read), options.interval,
+        [path, read](int frame, const Progress& progress) {
+            ReadOptions with = read;
+            with.progress = progress;
+            with.time_step = frame;
+            return read_volume(path, with).volume;
+        },
+        [path](int frame) { return path.string() + ": frame " + std::to_string(frame); });
 }
 
 std::string name_of_frame(const Sequence& sequence, int frame) {
@@ -267,6 +258,20 @@ SequenceFile open_sequence(const fs::path& path, const SequenceOptions& options)
     if (options.interval != 0) check_interval(options.interval);
     if (!names_a_series(path)) return open_file(path, options);
     return open_series(path, *pattern_of(path), options);
+}
+
+SequenceFile sequence_of(VolumeFile first, double interval,
+                         std::function<Volume(int frame, const Progress& progress)> reader,
+                         std::function<std::string(int frame)> frame_name) {
+    if (interval != 0) check_interval(interval);
+    std::vector<double> places;
+    for (int i = 0; i < first.time_steps; ++i) places.push_back(i);
+    const bool sensible = first.time_steps > 1 && std::abs(first.first_time) < 1e6;
+    const double first_time = sensible ? first.first_time : 0;
+    SequenceFile result = opened(std::move(first), places, first_time, interval, {});
+    result.sequence.reader = std::move(reader);
+    result.sequence.frame_name = std::move(frame_name);
+    return result;
 }
 
 Sequence made_sequence(int count, double interval,

@@ -120,8 +120,45 @@ LoadedVolume loaded_of(const FileSource& file, const Source& source, const io::P
     return loaded;
 }
 
+LoadedVolume all_times_of(const StoreSource& from, const Source& source,
+                          const io::Progress& progress) {
+    if (source.frame) {
+        throw std::invalid_argument(from.address + ": one time step or all times, not both");
+    }
+    if (from.loader.whole_process || from.loader.coarse_first) {
+        throw std::invalid_argument(from.address +
+                                    ": all times are read whole, so memory and coarse-first do "
+                                    "nothing; --sequence-memory bounds the frames");
+    }
+    const auto open = [from](int time) {
+        stream::StoreOptions options = from.options;
+        options.time = time;
+        return stream::open_store(from.address, options);
+    };
+    const auto first = open(0);
+    const stream::StoreInfo& info = first->info();
+    if (info.times < 2) {
+        throw std::invalid_argument(from.address + ": there is one time: it is no sequence");
+    }
+    io::VolumeFile file{stream::read_level(*first, from.loader.level, progress), info.format,
+                        info.times, info.notes, info.frame_interval};
+    io::SequenceFile got = io::sequence_of(
+        std::move(file), source.frame_interval.value_or(0),
+        [open, level = from.loader.level](int time, const io::Progress& each) {
+            return stream::read_level(*open(time), level, each);
+        },
+        [address = from.address](int time) { return address + ": time " + std::to_string(time); });
+    LoadedVolume loaded = loaded_from(std::move(got.first), source);
+    loaded.format = std::move(got.format);
+    loaded.notes = std::move(got.notes);
+    loaded.time_steps = got.sequence.count();
+    loaded.sequence = std::move(got.sequence);
+    return loaded;
+}
+
 LoadedVolume loaded_of(const StoreSource& from, const Source& source,
                        const io::Progress& progress) {
+    if (from.all_times) return all_times_of(from, source, progress);
     if (source.smooth > 0 || source.dequantize > 0 || source.prefilter) {
         throw std::invalid_argument(from.address +
                                     ": is felt while it is read, so it cannot be smoothed, "

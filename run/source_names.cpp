@@ -56,6 +56,7 @@ void add_names(Names& names, const StoreSource& store) {
     if (store.options.channel > 0) names["channel"] = std::to_string(store.options.channel);
     if (store.loader.whole_process) names["memory"] = std::to_string(store.loader.memory);
     if (store.loader.coarse_first) names["coarse-first"] = "yes";
+    if (store.all_times) names["all-times"] = "yes";
 }
 
 /// What only files have.
@@ -95,16 +96,19 @@ std::optional<StoreSource> store_of(const FileSource& file, const Names& names) 
     options.raw = file.raw;
     options.spacing = file.spacing;
     options.channel = count_of(names, "channel");
-    const bool asked = names.contains("level") || names.contains("memory");
+    const bool asked =
+        names.contains("level") || names.contains("memory") || names.contains("all-times");
     const bool chunked = !file.raw && stream::is_chunked(file.path);
     if (!asked && !chunked && !is_large(file.path)) return std::nullopt;
     if (!is_web_address(file.path) && !stream::is_store(file.path, options)) {
         if (!asked) return std::nullopt;
-        throw std::invalid_argument(file.path +
-                                    ": level and memory are for what can be read in parts "
-                                    "(docs/streaming.md); this is read as a whole");
+        throw std::invalid_argument(
+            file.path +
+            ": level, memory and all times are for what can be read in parts "
+            "(docs/streaming.md); this is read as a whole");
     }
     StoreSource store{file.path, options, {}};
+    store.all_times = value_of(names, "all-times") == "yes";
     store.loader.level = count_of(names, "level");
     if (const auto memory = io::number_from<std::uint64_t>(value_of(names, "memory"))) {
         store.loader.memory = *memory;

@@ -30,7 +30,8 @@ void for_each_piece(const Level& grid, const SampleBox& box, Work&& work) {
 }  // namespace
 
 void read_by_pieces(const Store& store, int level, const SampleBox& box, std::span<std::byte> out,
-                    int threads, const std::stop_token& stop) {
+                    int threads, const std::stop_token& stop,
+                    const std::function<void(double)>& made) {
     const StoreInfo& info = store.info();
     std::vector<SampleBox> pieces;
     for_each_piece(
@@ -48,6 +49,7 @@ void read_by_pieces(const Store& store, int level, const SampleBox& box, std::sp
                 bytes.resize(bytes_of(pieces[i], info.type));
                 store.read(level, pieces[i], bytes, stop);
                 copy_box(pieces[i], bytes.data(), box, out.data(), size_of(info.type));
+                if (made) made(static_cast<double>(i + 1) / static_cast<double>(pieces.size()));
             }
         } catch (...) {
             next = pieces.size();

@@ -2,6 +2,7 @@
 // Private to stream/.
 #pragma once
 
+#include <functional>
 #include <future>
 #include <list>
 #include <map>
@@ -11,9 +12,11 @@
 
 namespace palpate::stream {
 
-/// Store::read() of a large box by several threads, piece by piece.
+/// Store::read() of a large box by several threads, piece by piece, each of which says what part is
+/// made.
 void read_by_pieces(const Store& store, int level, const SampleBox& box, std::span<std::byte> out,
-                    int threads, const std::stop_token& stop);
+                    int threads, const std::stop_token& stop,
+                    const std::function<void(double)>& made = {});
 
 /// Any thread may call any function.
 class Blocks {

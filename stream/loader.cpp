@@ -44,16 +44,6 @@ constexpr std::chrono::milliseconds between_counts{5};
 /// way.
 constexpr std::uint64_t spare_part = 10;
 
-const Level& level_of(const Store& store, int level) {
-    const auto count = static_cast<int>(store.info().levels.size());
-    if (level < 0 || level >= count) {
-        throw std::invalid_argument(store.info().address + ": there is no level " +
-                                    std::to_string(level) + ": it has " + std::to_string(count) +
-                                    (count == 1 ? " level, 0" : " levels, from 0"));
-    }
-    return store.info().levels[static_cast<std::size_t>(level)];
-}
-
 std::uint64_t bytes_of_brick(SampleType type) {
     return ResidentBricks::per_brick * size_of(type);
 }

@@ -1,9 +1,15 @@
-// Overviews of stores, and single bricks as they are loaded.
+// Overviews and whole levels of stores, and single bricks as they are loaded.
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cmath>
 #include <cstring>
+#include <future>
 #include <limits>
+#include <stdexcept>
 
+#include "io/system.hpp"
+#include "palpate/io/error.hpp"
 #include "palpate/stream/loader.hpp"
 #include "stream/blocks.hpp"
 #include "stream/brick_memory.hpp"
@@ -26,6 +32,7 @@ double least_finite(SampleType type, std::span<const std::byte> bytes) {
 
 /// That read an overview at a time.
 constexpr int threads = 32;
+constexpr std::chrono::milliseconds between_reports{20};
 /// Most reads for an overview of a level that is too large to be read whole: of rows, or of pieces.
 constexpr std::int64_t most_rows = 4096;
 constexpr std::int64_t most_pieces = 512;
@@ -36,11 +43,12 @@ Volume volume_from(const Geometry& geometry, SampleType type, std::vector<std::b
     return {geometry, type, std::shared_ptr<const void>(held, held->data()), held->size()};
 }
 
-Volume whole_level(const Store& store, int level, std::stop_token stop) {
+Volume whole_level(const Store& store, int level, std::stop_token stop,
+                   const std::function<void(double)>& made = {}) {
     const Geometry& geometry = store.info().levels[static_cast<std::size_t>(level)].geometry;
     const SampleType type = store.info().type;
     std::vector<std::byte> bytes(static_cast<std::size_t>(sample_count(geometry)) * size_of(type));
-    read_by_pieces(store, level, whole_box(geometry), bytes, threads, stop);
+    read_by_pieces(store, level, whole_box(geometry), bytes, threads, stop, made);
     return volume_from(geometry, type, std::move(bytes));
 }
 
@@ -86,6 +94,41 @@ Volume thinned_level(const Store& store, std::int64_t samples, std::stop_token s
 }
 
 }  // namespace
+
+const Level& level_of(const Store& store, int level) {
+    const auto count = static_cast<int>(store.info().levels.size());
+    if (level < 0 || level >= count) {
+        throw std::invalid_argument(store.info().address + ": there is no level " +
+                                    std::to_string(level) + ": it has " + std::to_string(count) +
+                                    (count == 1 ? " level, 0" : " levels, from 0"));
+    }
+    return store.info().levels[static_cast<std::size_t>(level)];
+}
+
+Volume read_level(const Store& store, int level, const io::Progress& progress) {
+    const double samples = static_cast<double>(sample_count(level_of(store, level).geometry));
+    const auto memory = static_cast<double>(io::machine_memory());
+    if (samples * static_cast<double>(size_of(store.info().type)) > memory) {
+        throw io::InputError(store.info().address + ": level " + std::to_string(level) +
+                             " is larger than the memory there is; take a coarser one");
+    }
+    std::stop_source stop;
+    std::atomic<double> made{0};
+    auto reading = std::async(std::launch::async, [&] {
+        return whole_level(store, level, stop.get_token(), [&](double part) { made = part; });
+    });
+    // Also while a server lets everybody wait.
+    while (progress && reading.wait_for(between_reports) != std::future_status::ready) {
+        try {
+            progress(made);
+        } catch (...) {
+            stop.request_stop();
+            reading.wait();
+            throw;
+        }
+    }
+    return reading.get();
+}
 
 Volume overview_of(const Store& store, std::int64_t samples, std::stop_token stop) {
     const std::vector<Level>& levels = store.info().levels;

@@ -82,6 +82,8 @@ void SourceOptions::add_streaming_to(CLI::App& command) {
         ->transform(CLI::AsSizeValue(false));
     command.add_flag("--coarse-first", coarse_first,
                      "Feel a coarser level where the one that is felt has not come yet");
+    command.add_flag("--all-times", all_times,
+                     "A store's times as a sequence, each read whole (at --level)");
     command.add_option("--cache", cache_folder, "Folder that keeps what came over the network");
     command.add_option("--cache-size", cache_bytes, "Most that this folder keeps (4GB)")
         ->transform(CLI::AsSizeValue(false));
@@ -95,6 +97,7 @@ run::Source SourceOptions::source() const {
     }
     if (memory) given["memory"] = std::to_string(*memory);
     if (coarse_first) given["coarse-first"] = "yes";
+    if (all_times) given["all-times"] = "yes";
     run::Source source = run::source_from(given);
     if (auto* store = std::get_if<run::StoreSource>(&source.from)) {
         store->options.cache_folder = cache_folder;

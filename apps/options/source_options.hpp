@@ -21,6 +21,7 @@ struct SourceOptions {
     int dequantize = 0;                   ///< rounds
     std::optional<std::uint64_t> memory;  ///< [bytes] of the process; given: read as it is felt
     bool coarse_first = false;
+    bool all_times = false;
     std::string cache_folder;
     std::uint64_t cache_bytes = std::uint64_t{4} << 30;
     bool quiet = false;

@@ -34,7 +34,12 @@ struct Taken {
 /// The store that a source can be read as; nothing: it is loaded.
 std::optional<run::StoreSource> store_of(const run::Source& source) {
     if (source.smooth > 0 || source.dequantize > 0 || source.prefilter) return std::nullopt;
-    if (const auto* store = std::get_if<run::StoreSource>(&source.from)) return *store;
+    if (const auto* store = std::get_if<run::StoreSource>(&source.from)) {
+        if (store->all_times) {
+            throw std::invalid_argument("one time is converted: name it by --time-step");
+        }
+        return *store;
+    }
     const auto* file = std::get_if<run::FileSource>(&source.from);
     if (!file) return std::nullopt;
     run::StoreSource store{file->path, {}, {}};

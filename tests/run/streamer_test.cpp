@@ -13,6 +13,7 @@
 #include "palpate/scenes/volumes.hpp"
 #include "support/eventually.hpp"
 #include "support/scratch_folder.hpp"
+#include "support/zarr_image.hpp"
 
 namespace palpate::run {
 namespace {
@@ -232,6 +233,76 @@ TEST(Streamed, what_was_edited_is_saved_beside_the_original_and_opens_again) {
     again.streamed->store->read(0, whole_box(geometry), bytes, {});
     const Volume whole = flattened(*expected.samples);
     EXPECT_EQ(std::memcmp(bytes.data(), whole.data(), bytes.size()), 0);
+}
+
+/// Ticks of a recording that its replay does not repeat.
+int flaws_of_replay(const std::string& path) {
+    io::RecordingReader reader{std::filesystem::path(path)};
+    const LoadedVolume again = load(recorded_source(reader.head(), path));
+    Replay replay(reader, again, path);
+    int flaws = 0;
+    while (const auto tick = replay.next()) {
+        if (difference(tick->recorded, tick->again)) ++flaws;
+    }
+    return flaws;
+}
+
+TEST(Streamed, all_times_of_a_store_are_a_sequence) {
+    const ScratchFolder folder;
+    const std::string path = (folder.path() / "image.zarr").string();
+    support::put_image(path);
+    std::map<std::string, std::string> names{
+        {"volume", path}, {"channel", "1"}, {"level", "1"}, {"all-times", "yes"}};
+    const Source source = source_from(names);
+    EXPECT_EQ(to_names(source), names);
+    const LoadedVolume loaded = load(source);
+    EXPECT_FALSE(loaded.streamed);
+    EXPECT_EQ(loaded.sequence.times, (std::vector<double>{0, 1})) << "seconds, as the store says";
+    EXPECT_EQ(loaded.sequence.period, 2);
+    EXPECT_EQ(loaded.time_steps, 2);
+    for (const int time : {0, 1}) {
+        stream::StoreOptions options;
+        options.channel = 1;
+        options.time = time;
+        const auto store = stream::open_store(path, options);
+        const Volume expected = stream::read_level(*store, 1);
+        const Volume frame = io::read_frame(loaded.sequence, time);
+        ASSERT_EQ(frame.geometry(), expected.geometry());
+        EXPECT_EQ(frame.geometry().size, Index3(16, 16, 16));
+        EXPECT_EQ(std::memcmp(frame.data(), expected.data(), expected.bytes()), 0);
+    }
+    EXPECT_NE(
+        std::memcmp(loaded.volume.data(), io::read_frame(loaded.sequence, 1).data(), 16 * 16 * 16),
+        0);
+
+    run::Setup setup;
+    setup.device = devices::parse_device("simulated:hand=explore,seconds=60");
+    setup.real_time = false;
+    setup.playback.speed = 5;
+    run::Run live(std::make_shared<Data>(loaded, setup.playback), setup);
+    const std::string recording = (folder.path() / "touch.csv").string();
+    live.record(recording);
+    live.start();
+    EXPECT_TRUE(comes_true([&] {
+        const auto now = live.snapshot();
+        return now && now->number > 500 && now->session.moment > 1;
+    }));
+    live.stop();
+    live.stop_recording();
+    EXPECT_EQ(flaws_of_replay(recording), 0);
+
+    names["time-step"] = "1";
+    EXPECT_THROW(load(source_from(names)), std::invalid_argument);
+    names.erase("time-step");
+    names["memory"] = "200000000";
+    EXPECT_THROW(load(source_from(names)), std::invalid_argument);
+    names.erase("memory");
+    names["level"] = "2";
+    EXPECT_THROW(load(source_from(names)), std::invalid_argument);
+    const BallFile ball;
+    auto single = ball.names();
+    single["all-times"] = "yes";
+    EXPECT_THROW(load(source_from(single)), std::invalid_argument) << "one time";
 }
 
 TEST(Streamed, sources_keep_level_channel_and_memory_in_their_names) {

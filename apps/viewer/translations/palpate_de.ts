@@ -2804,6 +2804,14 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
         <source>Looking …</source>
         <translation>Wird nachgesehen …</translation>
     </message>
+    <message>
+        <source>All, as a sequence</source>
+        <translation>Alle, als Folge</translation>
+    </message>
+    <message>
+        <source>Plays them; each is read whole at this level</source>
+        <translation>Spielt sie ab; jede wird auf dieser Stufe ganz gelesen</translation>
+    </message>
 </context>
 <context>
     <name>palpate::viewer::StrokePlot</name>

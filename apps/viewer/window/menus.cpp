@@ -202,7 +202,10 @@ void make_data_menu(MainWindow& window, Actions& actions) {
     actions.add(
         menu, "choose_level", MainWindow::tr("&Level, channel and time…"), {},
         [&window] { window.files().ask_level(); },
-        [&window] { return window.live() && window.live()->data().is_streamed(); });
+        [&window] {
+            return window.live() &&
+                   std::holds_alternative<run::StoreSource>(window.content().source().from);
+        });
     menu->addSeparator();
     actions.add(
         menu, "play_sequence", MainWindow::tr("&Play the sequence, or pause it"), QKeySequence("K"),

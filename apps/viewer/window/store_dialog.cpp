@@ -2,6 +2,7 @@
 #include "apps/viewer/window/store_dialog.hpp"
 
 #include <QApplication>
+#include <QCheckBox>
 #include <QComboBox>
 #include <QDialogButtonBox>
 #include <QFormLayout>
@@ -79,6 +80,8 @@ StoreDialog::StoreDialog(const std::optional<run::StoreSource>& known, int time,
       level_(named(new QComboBox, "store_level")),
       channel_(named(new QComboBox, "store_channel")),
       time_(named(new QSpinBox, "store_time")),
+      all_times_(named(new QCheckBox(tr("All, as a sequence")), "store_all_times",
+                       tr("Plays them; each is read whole at this level"))),
       verdict_(named(new QLabel, "store_verdict")),
       first_time_(time) {
     setObjectName("store");
@@ -91,7 +94,8 @@ StoreDialog::StoreDialog(const std::optional<run::StoreSource>& known, int time,
     add_row(*form, tr("Level"), level_,
             tr("The level of detail that is felt, and the finest that is seen; 0 is the finest"));
     add_row(*form, tr("Channel"), channel_, tr("Of an image with several"));
-    add_row(*form, tr("Time"), time_, tr("The moment of an image with several, from 0"));
+    add_row(*form, tr("Time"), row_of({time_, all_times_}, 0),
+            tr("The moment of an image with several, from 0"));
     form->addRow(verdict_);
     verdict_->setWordWrap(true);
     verdict_->setTextFormat(Qt::PlainText);
@@ -102,6 +106,7 @@ StoreDialog::StoreDialog(const std::optional<run::StoreSource>& known, int time,
     auto* fields = new QWidget;
     fields->setLayout(form);
     column_in(this, {fields, buttons})->setContentsMargins(9, 9, 9, 9);
+    connect(all_times_, &QCheckBox::toggled, time_, &QWidget::setDisabled);
     connect(look_, &QPushButton::clicked, this, &StoreDialog::look);
     connect(address_, &QLineEdit::returnPressed, this, &StoreDialog::look);
     // Return in the line looks; it must not open what was found at another address.
@@ -115,6 +120,7 @@ StoreDialog::StoreDialog(const std::optional<run::StoreSource>& known, int time,
         known_ = *known;
         first_level_ = known->loader.level;
         first_channel_ = known->options.channel;
+        all_times_->setChecked(known->all_times);
         address_->setText(QString::fromStdString(known->address));
         address_->setReadOnly(true);
         look();
@@ -166,8 +172,7 @@ void StoreDialog::show_found() {
     level_->clear();
     channel_->clear();
     verdict_->clear();
-    for (QWidget* field : {static_cast<QWidget*>(level_), static_cast<QWidget*>(channel_),
-                           static_cast<QWidget*>(time_)}) {
+    for (QWidget* field : std::initializer_list<QWidget*>{level_, channel_, time_, all_times_}) {
         field->setEnabled(good);
     }
     accept_->setEnabled(good);
@@ -185,7 +190,8 @@ void StoreDialog::show_found() {
     channel_->setEnabled(channel_->count() > 1);
     time_->setRange(0, std::max(0, info.times - 1));
     time_->setValue(first_time_);
-    time_->setEnabled(info.times > 1);
+    all_times_->setEnabled(info.times > 1);
+    time_->setEnabled(info.times > 1 && !all_times_->isChecked());
     verdict_->setText(QString::fromStdString(info.format));
     accept_->setFocus();
 }
@@ -194,9 +200,12 @@ run::Source StoreDialog::source() const {
     run::StoreSource store = found_ ? found_->source : known_;
     store.loader.level = std::max(0, level_->currentIndex());
     store.options.channel = std::max(0, channel_->currentIndex());
+    store.all_times = time_->maximum() > 0 && all_times_->isChecked();
+    // They are for what is read as it is felt.
+    if (store.all_times) store.loader.whole_process = store.loader.coarse_first = false;
     run::Source source;
     source.from = std::move(store);
-    if (time_->maximum() > 0) source.frame = time_->value();
+    if (time_->maximum() > 0 && !store.all_times) source.frame = time_->value();
     return source;
 }
 

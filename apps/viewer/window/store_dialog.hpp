@@ -9,6 +9,7 @@
 
 #include "palpate/run/source.hpp"
 
+class QCheckBox;
 class QComboBox;
 class QLabel;
 class QLineEdit;
@@ -40,6 +41,7 @@ class StoreDialog : public QDialog {
     QPushButton* look_;
     QComboBox *level_, *channel_;
     QSpinBox* time_;
+    QCheckBox* all_times_;
     QLabel* verdict_;
     QPushButton* accept_;
     int first_level_ = 0, first_channel_ = 0, first_time_ = 0;  // as they are felt now

@@ -58,6 +58,13 @@ SequenceFile open_sequence(const std::filesystem::path& path, const SequenceOpti
 Sequence made_sequence(int count, double interval,
                        std::function<Volume(int frame, const Progress& progress)> make);
 
+/// Frames of which the first has been read: `first.time_steps` of them, `interval` [s] apart; 0: as
+/// `first` says, and if it does not, a note tells. Throws std::invalid_argument for an interval
+/// that is none.
+SequenceFile sequence_of(VolumeFile first, double interval,
+                         std::function<Volume(int frame, const Progress& progress)> reader,
+                         std::function<std::string(int frame)> frame_name);
+
 /// A frame, on the grid and of the type that the sequence promises. Throws what its reader throws,
 /// and InputError that names the frame and what differs.
 Volume read_frame(const Sequence& sequence, int frame, const Progress& progress = {});

@@ -38,6 +38,8 @@ struct StoreSource {
     std::string address;
     stream::StoreOptions options;  ///< its `time` is Source::frame
     stream::BrickLoaderSettings loader;
+    /// A sequence of all its times, each read whole at the loader's level when it is due.
+    bool all_times = false;
 };
 
 struct Source {
@@ -58,9 +60,9 @@ Source source_named(const std::string& name);
 
 /// The names and values under which recordings and session files keep a source: "volume" is its
 /// name, the others are "dims", "type", "spacing", "skip", "byte-order", "series", "time-step",
-/// "level", "channel", "memory" [bytes, of the process], "coarse-first", "frame-interval",
-/// "smooth", "dequantize" and "prefilter". What was not given is left out; so is a cache, which is
-/// of one machine.
+/// "level", "channel", "memory" [bytes, of the process], "coarse-first", "all-times",
+/// "frame-interval", "smooth", "dequantize" and "prefilter". What was not given is left out; so is
+/// a cache, which is of one machine.
 std::map<std::string, std::string> to_names(const Source& source);
 /// The inverse. Unknown names are ignored, numbers that cannot be read count as not given. Throws
 /// std::invalid_argument for a layout that cannot be, and for values that this kind of source does

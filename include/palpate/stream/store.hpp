@@ -78,6 +78,14 @@ class Store {
 /// What read() throws when it was asked to stop.
 struct Cancelled {};
 
+/// Throws std::invalid_argument for a level that the store does not have.
+const Level& level_of(const Store& store, int level);
+
+/// All samples of a level. Blocks; this thread calls `progress`, which may throw to stop, all the
+/// time. Throws as level_of() and Store::read(), and io::InputError for a level that is larger than
+/// this machine's memory.
+Volume read_level(const Store& store, int level, const io::Progress& progress = {});
+
 /// True if an address names something that open_store() reads by the box: a web address, a folder
 /// or file of a chunked format, or a plain file whose samples lie in it uncompressed. Looks at the
 /// name and at most at the first bytes of a file.

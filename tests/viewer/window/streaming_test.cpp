@@ -1,6 +1,7 @@
 // The whole window with volumes that are read as they are felt: levels of detail, what is missing,
 // addresses, levels, channels and times.
 #include <QAction>
+#include <QCheckBox>
 #include <QComboBox>
 #include <QDialogButtonBox>
 #include <QLabel>
@@ -9,11 +10,11 @@
 #include <QSpinBox>
 #include <QStatusBar>
 #include <filesystem>
-#include <fstream>
 
 #include "palpate/scenes/volumes.hpp"
 #include "palpate/stream/convert.hpp"
 #include "stream/volume_server.hpp"
+#include "support/zarr_image.hpp"
 #include "viewer/window/window_fixture.hpp"
 
 namespace palpate::viewer::test {
@@ -201,46 +202,8 @@ TEST_F(Streaming, a_hand_that_waits_is_told_why) {
     EXPECT_EQ(window_->messages().problem(), "");
 }
 
-/// An OME-Zarr 0.4 of 2 times, 2 channels and 2 levels, uncompressed: balls of another radius each.
-void put_image(const std::filesystem::path& folder) {
-    std::filesystem::create_directories(folder);
-    std::ofstream(folder / ".zgroup") << R"({"zarr_format": 2})";
-    std::ofstream(folder / ".zattrs") << R"({"multiscales": [{"version": "0.4", "axes": [
-        {"name": "t", "type": "time", "unit": "second"}, {"name": "c", "type": "channel"},
-        {"name": "z", "type": "space", "unit": "millimeter"},
-        {"name": "y", "type": "space", "unit": "millimeter"},
-        {"name": "x", "type": "space", "unit": "millimeter"}], "datasets": [
-        {"path": "0", "coordinateTransformations": [{"type": "scale", "scale": [1, 1, 1, 1, 1]}]},
-        {"path": "1", "coordinateTransformations": [{"type": "scale", "scale": [1, 1, 2, 2, 2]}]}]}]})";
-    for (int level = 0; level < 2; ++level) {
-        const int n = 32 >> level;
-        const std::string size = std::to_string(n);
-        const std::string grid = "[2, 2, " + size + ", " + size + ", " + size + "]";
-        const std::string chunk = "[1, 1, " + size + ", " + size + ", " + size + "]";
-        const auto array = folder / std::to_string(level);
-        std::filesystem::create_directories(array);
-        std::ofstream(array / ".zarray")
-            << R"({"zarr_format": 2, "shape": )" << grid << R"(, "chunks": )" << chunk
-            << R"(, "dtype": "|u1", "compressor": null, "fill_value": 0, "order": "C",)"
-            << R"( "filters": null, "dimension_separator": "."})";
-        for (int image = 0; image < 4; ++image) {
-            const double radius = (6 + 2 * image) / (level + 1.0);
-            std::string bytes;
-            for (int i = 0; i < n * n * n; ++i) {
-                const Vec3 at(i % n, i / n % n, i / (n * n));
-                const double inside = radius - (at - Vec3::Constant(0.5 * (n - 1))).norm();
-                bytes += static_cast<char>(std::clamp(128 + 30 * inside, 0.0, 255.0));
-            }
-            std::ofstream(
-                array / (std::to_string(image / 2) + "." + std::to_string(image % 2) + ".0.0.0"),
-                std::ios::binary)
-                << bytes;
-        }
-    }
-}
-
 TEST_F(Streaming, of_several_levels_channels_and_times_another_is_chosen_while_one_is_felt) {
-    put_image(scratch_.path() / "image.zarr");
+    support::put_image(scratch_.path() / "image.zarr");
     feel(scratch("image.zarr").toStdString());
     ASSERT_NE(window_->live(), nullptr);
     EXPECT_TRUE(window_->statusBar()->currentMessage().contains("2 channels, 2 times"));
@@ -287,6 +250,35 @@ TEST_F(Streaming, of_several_levels_channels_and_times_another_is_chosen_while_o
     EXPECT_EQ(felt().options.channel, 1);
     EXPECT_EQ(window_->content().source().frame, 0);
     EXPECT_EQ(window_->messages().problem(), "");
+}
+
+TEST_F(Streaming, all_times_play_and_one_of_them_is_felt_again) {
+    support::put_image(scratch_.path() / "image.zarr");
+    feel(scratch("image.zarr").toStdString());
+    const auto choose = [&](bool all) {
+        window_->findChild<QAction*>("choose_level")->trigger();
+        auto* dialog = window_->findChild<QDialog*>("store");
+        ASSERT_NE(dialog, nullptr);
+        auto* open = dialog->findChild<QDialogButtonBox*>()->button(QDialogButtonBox::Open);
+        ASSERT_TRUE(wait_until([&] { return open->isEnabled(); }));
+        auto* times = dialog->findChild<QCheckBox*>("store_all_times");
+        EXPECT_EQ(times->isChecked(), !all) << "as it is felt now";
+        QTest::mouseClick(times, Qt::LeftButton, {}, QPoint(8, times->height() / 2));
+        EXPECT_EQ(dialog->findChild<QSpinBox*>("store_time")->isEnabled(), !all);
+        if (all) dialog->grab().save(QString("%1/all-times-dialog.png").arg(PALPATE_PICTURES));
+        QTest::mouseClick(open, Qt::LeftButton);
+        ASSERT_TRUE(wait_until([&] {
+            return window_->live() && window_->live()->data().is_sequence() == all &&
+                   window_->live()->snapshot();
+        })) << window_->messages().problem().toStdString();
+    };
+    choose(true);
+    EXPECT_TRUE(part<QWidget>("timeline").isVisible());
+    EXPECT_TRUE(wait_until([&] { return now().session.moment > 0.5; })) << "it plays";
+    save("all-times");
+    choose(false);
+    EXPECT_TRUE(window_->live()->data().is_streamed());
+    EXPECT_EQ(window_->content().source().frame, 0);
 }
 
 }  // namespace
