@@ -32,7 +32,7 @@ std::string utc_now() {
     return text.data();
 }
 
-/// What simulated hands and pictures see: of a store, of which little may be in memory, the
+/// What simulated hands see: of a store, of which little may be in memory, the
 /// overview.
 Field seen(const Field& field) {
     if (!field.samples().resident()) return field;
@@ -198,10 +198,6 @@ Session Run::session_now() const {
     const auto now = servo_ ? servo_->snapshot() : std::nullopt;
     if (!now) return session_from(isovalue_, settings_.transform, -1);
     return session_from(now->session.tick.proxy.isovalue, now->session.transform, now->number);
-}
-
-Field Run::field_seen() const {
-    return seen(field_now());
 }
 
 DeviceFailure Run::device_failure() const {

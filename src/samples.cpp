@@ -55,45 +55,6 @@ void copy_brick(const std::byte* brick, const Index3& low, const Geometry& geome
     }
 }
 
-/// Gives the samples of an overview that lie in an edited brick its nearest samples.
-void show_brick(const Samples& samples, const Index3& low, const Geometry& overview,
-                std::byte* whole) {
-    const Geometry& geometry = samples.geometry();
-    const Index3 last =
-        (low + Index3::Constant(Bricks::cells - 1)).cwiseMin(geometry.size - Index3::Ones());
-    Vec3 lowest = Vec3::Constant(std::numeric_limits<double>::infinity()), highest = -lowest;
-    for (int corner = 0; corner < 8; ++corner) {
-        Vec3 at = low.cast<double>();
-        for (int a = 0; a < 3; ++a) at[a] = (corner >> a & 1) ? last[a] + 0.5 : low[a] - 0.5;
-        const Vec3 there = index_from_physical(overview, physical_from_index(geometry, at));
-        lowest = lowest.cwiseMin(there);
-        highest = highest.cwiseMax(there);
-    }
-    const Vec3 end = (overview.size - Index3::Ones()).cast<double>();
-    const Index3 first = lowest.array().ceil().max(0).min(end.array()).cast<int>();
-    const Index3 to = highest.array().floor().max(-1).min(end.array()).cast<int>();
-    with_type(samples.type(), [&](auto zero) {
-        auto* out = reinterpret_cast<decltype(zero)*>(whole);
-        for (int k = first[2]; k <= to[2]; ++k) {
-            for (int j = first[1]; j <= to[1]; ++j) {
-                for (int i = first[0]; i <= to[0]; ++i) {
-                    const Vec3 fine =
-                        index_from_physical(geometry, physical_from_index(overview, Vec3(i, j, k)));
-                    const Index3 at = fine.array().round().cast<int>();
-                    const bool here =
-                        (at.array() >= low.array()).all() && (at.array() <= last.array()).all();
-                    if (!here) continue;
-                    const auto place =
-                        (std::size_t(k) * std::size_t(overview.size[1]) + std::size_t(j)) *
-                            std::size_t(overview.size[0]) +
-                        std::size_t(i);
-                    out[place] = static_cast<decltype(zero)>(samples.sample(at));
-                }
-            }
-        }
-    });
-}
-
 template <class T>
 void blend(const Volume& from, const Volume& to, double weight, std::byte* whole) {
     const auto a = from.samples<T>();
@@ -272,6 +233,7 @@ Volume flattened(const Samples& samples, const Moment& moment) {
     const bool between = moment.weight > 0;
     const Bricks* bricks = samples.bricks();
     if (!between && !bricks) return from;
+    if (samples.resident()) return flattened(*ShownEdits(from).of(samples));
 
     const std::shared_ptr<std::byte[]> whole(new std::byte[from.bytes()]);
     if (between) {
@@ -282,12 +244,8 @@ Volume flattened(const Samples& samples, const Moment& moment) {
         std::memcpy(whole.get(), from.data(), from.bytes());
     }
     const auto put = [&](const Index3& brick, const Bricks::Brick& edited) {
-        const Index3 low = brick * Bricks::cells;
-        if (samples.resident()) {
-            show_brick(samples, low, from.geometry(), whole.get());
-        } else {
-            copy_brick(edited.get(), low, from.geometry(), size_of(samples.type()), whole.get());
-        }
+        copy_brick(edited.get(), brick * Bricks::cells, from.geometry(), size_of(samples.type()),
+                   whole.get());
     };
     if (bricks) bricks->for_each(put);
     return {from.geometry(), samples.type(), std::shared_ptr<const void>(whole, whole.get()),

@@ -155,8 +155,25 @@ class Samples {
 
 /// The samples at a moment as one volume of the same type (rounded to it between two frames), for
 /// files and for code that needs them in one piece. No copy is made where an existing volume is the
-/// same. Of a large grid: the overview, with the edits as far as its samples show them.
+/// same. Of a large grid: the overview with the edits (ShownEdits).
 Volume flattened(const Samples& samples, const Moment& moment = {});
+/// Edits of a large grid on a volume of the same part of space that has other samples (an overview,
+/// or a box of some level): each of those whose nearest sample lies in an edited brick takes its
+/// value. One thread at a time.
+class ShownEdits {
+  public:
+    explicit ShownEdits(Volume shown);
+    /// The volume with the edits of these samples, of the same type, all versions of one grid. What
+    /// did not change since the last call is shared; the same pointer where nothing did.
+    std::shared_ptr<const Samples> of(const Samples& edited);
+
+  private:
+    Bricks::Brick brick_of(const Index3& brick, const Samples& edited) const;
+
+    std::shared_ptr<const Samples> plain_, with_edits_;
+    Bricks bricks_;  // of with_edits_
+    std::optional<Bricks> from_;
+};
 /// Bytes of the bricks of `samples` that `other` does not share.
 std::size_t bytes_apart(const Samples& samples, const Samples& other);
 

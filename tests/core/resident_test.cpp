@@ -267,6 +267,73 @@ TEST(Resident, the_overview_shows_edits_that_its_samples_lie_in) {
     });
 }
 
+/// What a grid shows of edits, sample by sample.
+double shown_at(const Volume& plain, const Samples& edited, const Index3& at) {
+    const Vec3 there = index_from_physical(
+        edited.geometry(), physical_from_index(plain.geometry(), at.cast<double>()));
+    const Index3 nearest = (there.array() + 0.5).floor().matrix().cast<int>();
+    const bool inside =
+        (nearest.array() >= 0).all() && (nearest.array() < edited.geometry().size.array()).all();
+    if (!inside || !edited.bricks() || !edited.bricks()->of_cell(nearest)) return plain.sample(at);
+    return edited.sample(nearest);
+}
+
+TEST(Resident, shown_edits_follow_all_versions_and_share_what_did_not_change) {
+    Random random(8);
+    const Geometry geometry = grid({97, 70, 41}, {0.5, 1, 2}, {5, 5, 5}, oblique_direction());
+    const Volume volume = noise_of(SampleType::int16, geometry, 5);
+    Reader reader{volume};
+    const auto part = [&](const Index3& low, const Index3& size, double coarser) {
+        Geometry box = geometry;
+        box.size = size;
+        box.spacing *= coarser;
+        box.origin = physical_from_index(geometry, low.cast<double>().array() + (coarser - 1) / 2);
+        return noise_of(SampleType::int16, box, 9);
+    };
+    std::vector<Volume> grids{part({0, 0, 0}, {33, 24, 14}, 3), part({37, 21, 9}, {50, 33, 32}, 1),
+                              part({-5, 3, 2}, {17, 16, 1}, 2.5)};
+    std::vector<ShownEdits> shown(grids.begin(), grids.end());
+    std::vector<std::shared_ptr<const Samples>> versions{PartOf(volume).samples()};
+    int edits = 0, kept = 0;
+    for (int step = 0; step < 30; ++step) {
+        // Undo goes back to any version.
+        std::shared_ptr<const Samples> now = versions[random.bits() % versions.size()];
+        if (random.chance(0.7)) {
+            const Index3 low(random.below(90), random.below(60), random.below(38));
+            const Index3 high = (low + Index3(random.below(30), random.below(20), random.below(9)))
+                                    .cwiseMin(geometry.size - Index3::Ones());
+            now = edited(now, edit::Fill{{low, high}, random.uniform(-99, 99)}, std::ref(reader))
+                      .samples;
+            versions.push_back(now);
+        }
+        for (std::size_t g = 0; g < grids.size(); ++g) {
+            EXPECT_EQ(shown[g].of(*versions.front())->bricks(), nullptr);
+            const auto after = shown[g].of(*now);
+            EXPECT_EQ(shown[g].of(*now), after);
+            for_each_sample(grids[g].geometry(), [&](const Index3& at) {
+                const double expected = shown_at(grids[g], *now, at);
+                ASSERT_EQ(after->sample(at), expected) << g << ": " << at.transpose();
+                edits += expected != grids[g].sample(at);
+            });
+            ASSERT_EQ(
+                std::memcmp(flattened(*after).data(),
+                            flattened(*ShownEdits(grids[g]).of(*now)).data(), grids[g].bytes()),
+                0);
+        }
+    }
+    EXPECT_GT(edits, 1000);
+    // One more edit: bricks elsewhere stay the same ones.
+    const auto far =
+        edited(versions.back(), edit::Fill{{{96, 69, 40}, {96, 69, 40}}, 1}, std::ref(reader));
+    const auto first = shown[0].of(*versions.back()), second = shown[0].of(*far.samples);
+    ASSERT_TRUE(first->bricks() && second->bricks());
+    first->bricks()->for_each([&](const Index3& brick, const Bricks::Brick& samples) {
+        kept += second->bricks()->at(brick) == samples;
+    });
+    EXPECT_GE(kept, static_cast<int>(first->bricks()->size()) - 1);
+    EXPECT_GT(kept, 0);
+}
+
 TEST(Resident, samples_refuse_bricks_of_another_grid_and_bounds_that_are_none) {
     const Volume overview = noise_of(SampleType::uint8, grid({4, 4, 4}), 1);
     const Geometry large = grid({130, 66, 66});

@@ -121,8 +121,12 @@ bool same_but_for_edits(const Field& a, const Field& b) {
 
 SampleBox changed_between(const Field& a, const Field& b) {
     if (!same_but_for_edits(a, b)) return whole_box(b.geometry());
+    return edited_between(a.samples(), b.samples());
+}
+
+SampleBox edited_between(const Samples& a, const Samples& b) {
     const Bricks none(b.geometry().size);
-    const Bricks *old = a.samples().bricks(), *now = b.samples().bricks();
+    const Bricks *old = a.bricks(), *now = b.bricks();
     SampleBox changed;
     (now ? *now : none)
         .for_each_apart(old ? *old : none, [&](const Index3& brick, const auto&, const auto&) {

@@ -17,6 +17,8 @@ bool same_samples(const Field& a, const Field& b);
 /// The samples that differ between two versions on one grid, or a few more: whole bricks, or all
 /// where more than edits has changed.
 SampleBox changed_between(const Field& a, const Field& b);
+/// The same for samples of one grid of which only edits differ.
+SampleBox edited_between(const Samples& a, const Samples& b);
 /// False where more than edits differs: the moment, the volume under them, the side that is solid.
 bool same_but_for_edits(const Field& a, const Field& b);
 

@@ -4,10 +4,6 @@
 <context>
     <name>FileDialogs</name>
     <message>
-        <source>All that can be opened (*.nrrd *.nhdr *.mha *.mhd *.nii *.nii.gz *.dcm *.tif *.tiff *.vti *.raw *.raw.gz *.json *.csv);;All files (*)</source>
-        <translation>Alles, was sich öffnen lässt (*.nrrd *.nhdr *.mha *.mhd *.nii *.nii.gz *.dcm *.tif *.tiff *.vti *.raw *.raw.gz *.json *.csv);;Alle Dateien (*)</translation>
-    </message>
-    <message>
         <source>Open raw data</source>
         <translation>Rohdaten öffnen</translation>
     </message>
@@ -38,6 +34,10 @@
     <message>
         <source>Open a folder of slices, or a Zarr image</source>
         <translation>Ordner mit Schichten oder Zarr-Bild öffnen</translation>
+    </message>
+    <message>
+        <source>All that can be opened (*.nrrd *.nhdr *.mha *.mhd *.nii *.nii.gz *.dcm *.tif *.tiff *.vti *.ims *.h5 *.hdf5 *.raw *.raw.gz *.json *.csv);;All files (*)</source>
+        <translation>Alles, was sich öffnen lässt (*.nrrd *.nhdr *.mha *.mhd *.nii *.nii.gz *.dcm *.tif *.tiff *.vti *.ims *.h5 *.hdf5 *.raw *.raw.gz *.json *.csv);;Alle Dateien (*)</translation>
     </message>
 </context>
 <context>
@@ -737,6 +737,10 @@ Auf dem Histogramm: Doppelklick für einen weiteren Punkt, ihn ziehen, Rechtskli
     <message>
         <source>The volume is still being saved</source>
         <translation>Das Volumen wird noch gespeichert</translation>
+    </message>
+    <message>
+        <source>: it opens as the edited volume while the original stays where it is</source>
+        <translation>: wird als das bearbeitete Volumen geöffnet, solange das Original bleibt, wo es ist</translation>
     </message>
 </context>
 <context>

@@ -31,6 +31,7 @@ void Content::close() {
     data_.reset();
     playback_.reset();
     volume_.reset();
+    overview_.reset();
     saved_.reset();
     session_.clear();
     Q_EMIT closed();
@@ -58,8 +59,7 @@ void Content::use_field(Solid solid, Interpolation interpolation) {
 }
 
 run::VolumeEditor* Content::editor() const {
-    const bool whole = live_ && !live_->data().is_sequence() && !live_->data().is_streamed();
-    return whole ? &live_->data().editor() : nullptr;
+    return live_ && !live_->data().is_sequence() ? &live_->data().editor() : nullptr;
 }
 
 run::Player* Content::player() const {
@@ -76,10 +76,10 @@ std::shared_ptr<const Tool> Content::tool() const {
     return playback_ ? playback_->tool_at(time_) : nullptr;
 }
 
-Content::OuterSurface Content::outer_surface() const {
+Content::OuterSurface Content::outer_surface() {
     const SharedLayers now = layers();
-    if (have_levels(now)) return {live_->field_seen(), now->layers.front().level};
-    if (!have_surfaces(now)) return {live_->field_seen(), live_->isovalue()};
+    if (have_levels(now)) return {seen(felt()), now->layers.front().level};
+    if (!have_surfaces(now)) return {seen(felt()), live_->isovalue()};
     OuterSurface labels{*now->labels, 0.5};
     labels.field.show_labels(~1U);  // all but what is in no layer
     return labels;
@@ -91,15 +91,25 @@ std::optional<Snapshot> Content::snapshot() const {
     return std::nullopt;
 }
 
-Field Content::field_at(const Snapshot& snapshot) {
-    Field field = live_ ? live_->field_seen() : playback_->field_at(snapshot);
+Field Content::felt() const {
+    return live_ ? live_->field_now() : playback_->field();
+}
+
+Field Content::felt_at(const Snapshot& snapshot) {
+    Field field = live_ ? live_->field_now() : playback_->field_at(snapshot);
     field.set_time(snapshot.session.moment);
     return field;
 }
 
-std::optional<Field> Content::felt_at(const Snapshot& snapshot, const Vec3& point) {
-    if (!live_ || !live_->data().is_streamed()) return field_at(snapshot);
-    Field field = live_->field_now();
+Field Content::seen(Field felt) {
+    if (!felt.samples().resident()) return felt;
+    if (!overview_) overview_.emplace(felt.volume());
+    return Field(overview_->of(felt.samples()), felt.solid(), felt.background(),
+                 felt.interpolation());
+}
+
+std::optional<Field> Content::felt_round(const Snapshot& snapshot, const Vec3& point) {
+    Field field = felt_at(snapshot);
     const ResidentBricks* const resident = field.samples().resident();
     if (!resident) return field;
     constexpr double most = 1e9;

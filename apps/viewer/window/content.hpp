@@ -64,14 +64,17 @@ class Content : public QObject {
         Field field;
         double level;
     };
-    OuterSurface outer_surface() const;
+    OuterSurface outer_surface();
     /// What is felt now, or was at the time shown. Nothing before the first tick.
     std::optional<Snapshot> snapshot() const;
-    /// The data of such a snapshot; of a store the overview.
-    Field field_at(const Snapshot& snapshot);
-    /// The data that are felt, which have all samples that a field needs at this point [mm,
-    /// physical]; nothing while a store's have not come.
-    std::optional<Field> felt_at(const Snapshot& snapshot, const Vec3& point);
+    /// The data that are felt now, or as a recording began; those of such a snapshot.
+    Field felt() const;
+    Field felt_at(const Snapshot& snapshot);
+    /// Those of a snapshot with all samples that a field needs at this point [mm, physical];
+    /// nothing while a store's have not come.
+    std::optional<Field> felt_round(const Snapshot& snapshot, const Vec3& point);
+    /// The same for pictures: of a store the overview, on a grid of its own, with the edits.
+    Field seen(Field felt);
 
   Q_SIGNALS:
     void closing();
@@ -93,6 +96,7 @@ class Content : public QObject {
     std::unique_ptr<run::Run> live_;
     std::optional<Playback> playback_;
     double time_ = 0;
+    std::optional<ShownEdits> overview_;  // of a store
 };
 
 }  // namespace palpate::viewer

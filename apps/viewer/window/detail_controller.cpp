@@ -37,58 +37,47 @@ bool touches(const std::optional<Snapshot>& now) {
 
 }  // namespace
 
-/// The part of the scene that is wanted, for the reader's threads.
-struct DetailController::Joining {
-    std::mutex mutex;
-    std::optional<PatchChoice> patch;
-    Field overview;
-
-    /// The samples of a part that is still wanted.
-    std::optional<Volume> of(const stream::Detail& detail) {
-        std::optional<PatchChoice> now;
-        {
-            const std::scoped_lock lock(mutex);
-            now = patch;
-        }
-        if (!now || now->level != detail.of.level || !(now->box == detail.of.box)) return {};
-        return joined_samples(detail.volume, overview, *now);
-    }
-};
-
 DetailController::DetailController(Content& content, Views& views)
     : content_(content), views_(views) {
-    const auto begin_live = [this] { begin(content_.live()->field_seen()); };
     connect(&content, &Content::closing, this, &DetailController::end);
-    connect(&content, &Content::run_started, this, begin_live);
-    connect(&content, &Content::field_replaced, this, begin_live);
-    connect(&content, &Content::playback_started, this,
-            [this] { begin(content_.playback()->field()); });
+    connect(&content, &Content::run_started, this, &DetailController::begin);
+    connect(&content, &Content::field_replaced, this, &DetailController::begin);
+    connect(&content, &Content::playback_started, this, &DetailController::begin);
 }
 
 DetailController::~DetailController() = default;
 
 void DetailController::end() {
     reader_.reset();
+    maker_.reset();
     ++generation_;
     slices_ = {};
     patch_.reset();
     view_.reset();
     chosen_for_.reset();
     made_ = {};
-    joining_.reset();
     store_ = {};
     held_.reset();
 }
 
-void DetailController::begin(const Field& field) {
+void DetailController::begin() {
     end();
     const run::LoadedVolume& loaded = content_.volume()->loaded;
     if (!loaded.streamed) return;
     held_ = loaded.streamed->store;
     store_ = {&held_->info(), loaded.streamed->loader.level, loaded.volume.geometry()};
-    interpolation_ = field.interpolation();
     memory_ = memory_of(*loaded.streamed);
-    joining_ = std::shared_ptr<Joining>(new Joining{{}, {}, field});
+    const Field felt = content_.felt();
+    interpolation_ = felt.interpolation();
+    std::vector<Index3> sizes;
+    for (const stream::Level& level : store_.info->levels) sizes.push_back(level.geometry.size);
+    maker_ = std::make_shared<DetailMaker>(
+        Field(loaded.volume, felt.solid(), felt.background(), felt.interpolation()),
+        std::move(sizes),
+        [this, generation = generation_](int viewer, const auto& made) {
+            hand_over(this, [this, generation, viewer, made] { take(generation, viewer, made); });
+        },
+        lower_thread_priority);
     stream::DetailSettings settings;
     settings.memory = memory_;
     settings.threads = std::clamp(loaded.streamed->loader.threads / 2, 1, most_reads);
@@ -100,18 +89,8 @@ void DetailController::begin(const Field& field) {
         };
     }
     reader_ = std::make_unique<stream::DetailReader>(
-        held_, loaded.volume, settings,
-        [this, generation = generation_, field, info = store_.info, joining = joining_](
-            int viewer, stream::Detail detail) {
-            std::optional<Volume> volume = detail.volume;
-            if (viewer == scene) volume = joining->of(detail);
-            if (!volume) return;
-            const auto level = static_cast<std::size_t>(detail.of.level);
-            auto shown = std::make_shared<const DetailField>(DetailField{
-                Field(*std::move(volume), field.solid(), field.background(), field.interpolation()),
-                detail.of.box, info->levels[level].geometry.size, detail.of.level, detail.missing,
-                detail.changed});
-            hand_over(this, [this, generation, viewer, shown] { take(generation, viewer, shown); });
+        held_, loaded.volume, settings, [maker = maker_](int viewer, stream::Detail detail) {
+            maker->show(viewer, std::move(detail));
         });
 }
 
@@ -136,6 +115,7 @@ void DetailController::take(std::uint64_t generation, int viewer,
 
 void DetailController::observe(const std::optional<Snapshot>& now) {
     if (!reader_) return;
+    if (now) maker_->use_edits(content_.felt_at(*now).shared_samples());
     for (int axis = 0; axis < scene; ++axis) observe_slice(axis);
     observe_scene(now);
 }
@@ -207,10 +187,7 @@ void DetailController::choose_patch(const std::optional<Snapshot>& now) {
     const DetailLimits limits{most_patch_samples, memory_, most_pieces};
     if (patch_ && is_enough(*patch_, store_, *seen, interpolation_, limits)) return;
     patch_ = patch_for(store_, *seen, interpolation_, limits);
-    {
-        const std::scoped_lock lock(joining_->mutex);
-        joining_->patch = patch_;
-    }
+    maker_->want_patch(patch_);
     if (patch_) {
         return reader_->want(scene, coarse_to_fine(store_, patch_->level, patch_->box),
                              patch_interval);
@@ -233,7 +210,7 @@ bool DetailController::settled() const {
         all = all && has(axis, views_.slice(axis).seen()) &&
               shows(slices_[static_cast<std::size_t>(axis)], axis);
     }
-    return (all && shows(patch_, scene)) || status.failed > 0;
+    return (all && shows(patch_, scene) && maker_->idle()) || status.failed > 0;
 }
 
 DetailController::State DetailController::state() const {

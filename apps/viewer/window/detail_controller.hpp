@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "apps/viewer/model/detail_field.hpp"
+#include "apps/viewer/model/detail_maker.hpp"
 #include "apps/viewer/model/patch_choice.hpp"
 #include "apps/viewer/scene/navigation.hpp"
 #include "palpate/servo.hpp"
@@ -43,10 +44,9 @@ class DetailController : public QObject {
     State state() const;
 
   private:
-    static constexpr int scene = 3;  // after the slices, which need little
-    struct Joining;
+    static constexpr int scene = DetailMaker::scene;
 
-    void begin(const Field& field);
+    void begin();
     void end();
     std::optional<int> level_of_slice(const std::optional<SeenBox>& seen) const;
     bool has(int axis, const std::optional<SeenBox>& seen) const;
@@ -75,9 +75,9 @@ class DetailController : public QObject {
     std::optional<SceneView> view_, chosen_for_;
     QElapsedTimer rested_;  // since the view is this one
     std::array<std::shared_ptr<const DetailField>, 4> made_;
-    std::uint64_t memory_ = 0;  // [bytes] of decoded pieces
-    std::shared_ptr<Joining> joining_;
+    std::uint64_t memory_ = 0;                   // [bytes] of decoded pieces
     std::shared_ptr<const stream::Store> held_;  // store_ points into it
+    std::shared_ptr<DetailMaker> maker_;
     std::unique_ptr<stream::DetailReader> reader_;
 };
 

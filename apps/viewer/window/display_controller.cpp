@@ -39,13 +39,13 @@ DisplayController::DisplayController(Content& content, Views& views, Panel& pane
     connect(&content, &Content::closed, this, &DisplayController::clear);
     connect(&content, &Content::run_started, this, [this] {
         const run::Run& live = *content_.live();
-        show_volume(live.field_seen(), live.isovalue(), live.settings().transform);
+        show_volume(content_.seen(content_.felt()), live.isovalue(), live.settings().transform);
     });
     connect(&content, &Content::field_replaced, this,
-            [this] { show_field(content_.live()->field_seen(), content_.live()->isovalue()); });
+            [this] { show_field(content_.seen(content_.felt()), content_.live()->isovalue()); });
     connect(&content, &Content::playback_started, this, [this] {
         const io::RecordingHead& head = content_.playback()->head();
-        show_volume(content_.playback()->field(), head.isovalue, head.settings.transform);
+        show_volume(content_.seen(content_.felt()), head.isovalue, head.settings.transform);
     });
     connect(&panel.look_controls(), &LookControls::look_changed, this,
             &DisplayController::show_look);
@@ -138,12 +138,8 @@ void DisplayController::observe_level(const Snapshot& now) {
 }
 
 void DisplayController::observe_data(const Snapshot& now) {
-    const Field field = content_.field_at(now);
+    const Field field = content_.seen(content_.felt_at(now));
     if (shown_ && same_samples(*shown_, field)) return;
-    // The overview of a store is a version of its own each time, with the same samples.
-    if (shown_ && content_.volume()->loaded.streamed && changed_between(*shown_, field).empty()) {
-        return;
-    }
     shown_ = field;
     views_.update_field(field);
 }

@@ -22,16 +22,15 @@
 namespace palpate::viewer {
 namespace {
 
-/// What opens such a file again.
+/// What opens such a file or folder again.
 run::Source source_of(const QString& path, const Volume& volume) {
-    run::Source source;
-    run::FileSource file{QFileInfo(path).absoluteFilePath().toStdString(), {}, {}, {}};
-    if (path.endsWith(".raw")) {
+    run::Source source =
+        run::source_from({{"volume", QFileInfo(path).absoluteFilePath().toStdString()}});
+    if (auto* file = std::get_if<run::FileSource>(&source.from); file && path.endsWith(".raw")) {
         const Geometry& geometry = volume.geometry();
-        file.raw = io::RawLayout{geometry.size, volume.type(), geometry.spacing};
-        file.spacing = geometry.spacing;
+        file->raw = io::RawLayout{geometry.size, volume.type(), geometry.spacing};
+        file->spacing = geometry.spacing;
     }
-    source.from = file;
     return source;
 }
 
@@ -107,8 +106,12 @@ void EditController::ask_save(std::function<void()> then) {
     if (!content_.live()) return;
     const std::string volume = run::name_of(content_.source());
     const std::string kind(io::written_extension_of(volume));
-    const QString suffix = kind.empty() ? "nrrd" : QString::fromStdString(kind.substr(1));
-    QString base = QFileInfo(QString::fromStdString(volume)).fileName();
+    const bool streamed = content_.data()->is_streamed();
+    const QString suffix = streamed       ? "zarr"
+                           : kind.empty() ? "nrrd"
+                                          : QString::fromStdString(kind.substr(1));
+    const QFileInfo name(QDir::cleanPath(QString::fromStdString(volume)));
+    QString base = streamed ? name.completeBaseName() : name.fileName();
     if (base.startsWith("synthetic:")) base = base.section(':', 1, 1);
     if (base.endsWith("." + suffix, Qt::CaseInsensitive)) base.chop(suffix.size() + 1);
     if (!content_.saved_elsewhere()) base += "-edited";
@@ -119,35 +122,29 @@ void EditController::ask_save(std::function<void()> then) {
 void EditController::save(const QString& path, std::function<void()> then) {
     if (!content_.live() || saving()) return;
     const std::filesystem::path file(path.toStdString());
-    // The samples as they are now, whatever is done to them while they are written.
-    const Field field = content_.live()->field_now();
+    const std::shared_ptr<run::Data> data = content_.data();
     const auto check = [&] {
-        content_.live()->data().require_saving();
-        run::check_volume_name(file.string(), field.geometry());
+        data->require_saving();
+        data->check_save_name(file.string());
     };
-    if (!messages_.guarded(check)) {
-        return;
-    }
-    const auto samples = field.shared_samples();
-    const QString words = QString::fromStdString(io::opening_words(file, field.volume()));
-    const run::Source source = source_of(path, field.volume());
+    if (!messages_.guarded(check)) return;
+    const Volume& volume = data->loaded().volume;
+    const QString words =
+        data->is_streamed()
+            ? tr(": it opens as the edited volume while the original stays where it is")
+            : QString::fromStdString(io::opening_words(file, volume));
     messages_.show_done(tr("Saving %1").arg(path));
-    const auto write = [file, samples, moment = field.moment()](const io::Progress& progress) {
-        io::WriteOptions options;
-        options.progress = progress;
-        io::write_volume(flattened(*samples, moment), file, options);
-    };
-    saving_.start(tr("Saving %1").arg(path), write,
-                  [this, path, words, samples, source, then = std::move(then)] {
-                      // Of a sequence only one frame was saved.
-                      if (run::VolumeEditor* editor = content_.editor()) {
-                          editor->set_saved(samples);
-                          content_.set_saved(source);
-                          remember_file(path);
-                      }
-                      messages_.show_done(tr("Saved %1").arg(path) + words);
-                      if (then) then();
-                  });
+    saving_.start(
+        tr("Saving %1").arg(path),
+        [file, data](const io::Progress& progress) { data->save(file, progress); },
+        [this, path, words, source = source_of(path, volume), then = std::move(then)] {
+            if (content_.editor()) {  // of a sequence only one frame was saved
+                content_.set_saved(source);
+                remember_file(path);
+            }
+            messages_.show_done(tr("Saved %1").arg(path) + words);
+            if (then) then();
+        });
 }
 
 void EditController::ask_save_surface() {
@@ -163,7 +160,7 @@ void EditController::save_surface(const QString& path) {
     if (!content_.live() || saving()) return;
     const std::filesystem::path file(path.toStdString());
     if (!messages_.guarded([&] { (void)io::mesh_format_from(file); })) return;
-    const Field field = content_.live()->field_seen();
+    const Field field = content_.seen(content_.felt());
     const double isovalue =
         panel_.layers_controls().chosen_level().value_or(content_.live()->isovalue());
     auto triangles = std::make_shared<std::size_t>(0);
@@ -217,11 +214,12 @@ std::shared_ptr<const Samples> EditController::unsaved() const {
     return state.changed ? state.samples : nullptr;
 }
 
-void rescue_edits(const Samples& samples) {
-    const QString name = QDir::temp().filePath(
-        QString("palpate-edits-%1.nrrd").arg(QCoreApplication::applicationPid()));
+void rescue_edits(run::Data& data) {
+    const QString name = QDir::temp().filePath(QString("palpate-edits-%1.%2")
+                                                   .arg(QCoreApplication::applicationPid())
+                                                   .arg(data.is_streamed() ? "zarr" : "nrrd"));
     try {
-        io::write_volume(flattened(samples), name.toStdString());
+        data.save(name.toStdString(), {});
         std::fprintf(stderr, "palpate: the edits that were not saved are in %s\n",
                      name.toLocal8Bit().constData());
     } catch (const std::exception& e) {

@@ -70,7 +70,7 @@ class EditController : public QObject {
     QString problem_;
 };
 
-/// Writes edits to a file in the folder for temporary files; prints its name on standard error.
-void rescue_edits(const Samples& samples);
+/// Saves edits in the folder for temporary files; prints the name on standard error.
+void rescue_edits(run::Data& data);
 
 }  // namespace palpate::viewer

@@ -37,7 +37,7 @@ QString ask_open_name(QWidget* window) {
 
         FileDialogs::tr(
             "All that can be opened (*.nrrd *.nhdr *.mha *.mhd *.nii *.nii.gz *.dcm *.tif *.tiff "
-            "*.vti *.raw *.raw.gz *.json *.csv);;All files (*)"));
+            "*.vti *.ims *.h5 *.hdf5 *.raw *.raw.gz *.json *.csv);;All files (*)"));
 }
 
 QString ask_open_folder(QWidget* window) {

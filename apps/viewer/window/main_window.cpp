@@ -240,7 +240,7 @@ void MainWindow::show_readout(const Snapshot& now) {
     QString words = felt_text(now.session.tick.layers, content_.layers());
     if (!words.isEmpty()) words += "   ";
     words += tr("%1, %2, %3 mm").arg(number(at[0]), number(at[1]), number(at[2]));
-    if (const auto field = content_.felt_at(now, at)) {
+    if (const auto field = content_.felt_round(now, at)) {
         words += "   " + tr("%1 %2   slope %3 /mm")
                              .arg(QString::number(value_at(*field, at), 'g', 4), units,
                                   QString::number(gradient_at(*field, at).norm(), 'g', 3));
@@ -287,10 +287,11 @@ void MainWindow::save_picture(const QString& path, bool whole_window) {
 
 void MainWindow::end() {
     timer_.stop();
-    const auto edits = editing_.unsaved();
+    const bool edits = editing_.unsaved() != nullptr;
+    const std::shared_ptr<run::Data> data = content_.data();
     recordings_.stop();
     content_.end_run();  // forces first
-    if (edits) rescue_edits(*edits);
+    if (edits) rescue_edits(*data);
     QApplication::exit(0);
 }
 

@@ -49,8 +49,6 @@ class Run {
     /// As the run began; field_now() has the edits, or the moment of a sequence.
     const Field& field() const { return field_; }
     Field field_now() const;
-    /// The same for pictures: of a store the overview, on a grid of its own.
-    Field field_seen() const;
     /// Edits and playback. They go on when the session starts anew.
     Data& data() const { return *data_; }
     const Setup& setup() const { return setup_; }

@@ -91,6 +91,100 @@ TEST_F(Streaming, a_store_looks_like_the_same_volume_in_memory) {
     EXPECT_LT(differing(scene.picture(), whole), samples / 50);
 }
 
+TEST_F(Streaming, edits_of_a_store_look_like_those_in_memory_and_are_saved) {
+    const QString store = ring();
+    auto& scene = window_->views().scene();
+    pictures::Camera camera;
+    camera.towards_viewer = Vec3(-0.3, -0.8, 0.6);
+    camera.half_height = 80;
+    const auto look = [&] {
+        window_->run().send(command::Isovalue{60});
+        window_->views().set_window(0, 240);
+        scene.set_camera(camera);
+        QTest::qWait(500);
+        return wait_settled();
+    };
+    struct Seen {
+        QImage scene, slice;
+    };
+    const auto seen = [&] {
+        return Seen{scene.picture(), window_->views().slice(2).grab().toImage()};
+    };
+    const auto expect_same = [&](const Seen& a, const Seen& b, const char* what) {
+        EXPECT_LT(differing(a.slice, b.slice), 200) << what;
+        EXPECT_LT(differing(a.scene, b.scene), a.scene.width() * a.scene.height() / 200) << what;
+    };
+    // A piece of the ring, not along pieces or bricks.
+    const edit::Fill fill{{{85, 13, 41}, {150, 77, 133}}, 0};
+    const auto editor = [&]() -> run::VolumeEditor& { return window_->live()->data().editor(); };
+    feel(scratch("ring.nrrd").toStdString());
+    ASSERT_TRUE(look());
+    editor().apply(fill);
+    ASSERT_TRUE(look());
+    const Seen expected = seen();
+    save("in-memory");
+    editor().undo();  // or the window asks
+    feel(store.toStdString());
+    ASSERT_TRUE(look());
+    const Seen before = seen();
+    EXPECT_GT(differing(before.scene, expected.scene), 2000);
+    EXPECT_GT(differing(before.slice, expected.slice), 400);
+    editor().apply(fill);
+    ASSERT_TRUE(look());
+    save("edited");
+    expect_same(seen(), expected, "edited");
+    ASSERT_NE(window_->views().slice(2).shown_detail(), nullptr);
+    QTest::keyClick(window_.get(), Qt::Key_Z, Qt::ControlModifier);
+    ASSERT_TRUE(wait_until([&] { return editor().state().redo_steps == 1; }));
+    ASSERT_TRUE(look());
+    expect_same(seen(), before, "undone");
+    QTest::keyClick(window_.get(), Qt::Key_Z, Qt::ControlModifier | Qt::ShiftModifier);
+    ASSERT_TRUE(wait_until([&] { return window_->isWindowModified(); }));
+    type_in_dialog(Qt::Key_S, scratch("cut.zarr"), Qt::ShiftModifier);
+    ASSERT_TRUE(wait_until([&] { return !editor().state().changed; }))
+        << window_->messages().problem().toStdString();
+    ASSERT_TRUE(wait_until([&] { return window_->windowTitle().startsWith("cut.zarr"); }));
+    feel(scratch("cut.zarr").toStdString());
+    EXPECT_FALSE(editor().state().changed);
+    ASSERT_TRUE(look());
+    expect_same(seen(), expected, "saved and opened");
+    // And by hand, which is recorded.
+    window_->recordings().start(scratch("carving.csv"));
+    QTest::mouseClick(&scene, Qt::LeftButton, {}, QPoint(180, 400));
+    ASSERT_TRUE(wait_until([&] { return !window_->probe().travelling(); }));
+    press_until_force();
+    QTest::keyClick(window_.get(), Qt::Key_B);
+    EXPECT_TRUE(wait_until([&] { return editor().state().version > 0; }));
+    QTest::keyClick(window_.get(), Qt::Key_B);
+    editor().apply(edit::Fill{{{20, 70, 60}, {40, 100, 110}}, 0});
+    ASSERT_TRUE(look());
+    const Seen carved = seen();
+    save("carved");
+    EXPECT_GT(differing(carved.scene, expected.scene), 2000);
+    window_->recordings().stop();
+    while (editor().undo()) {
+    }
+    window_->files().open_path(scratch("carving.csv"));
+    ASSERT_TRUE(wait_until([&] { return window_->playback() != nullptr; }))
+        << window_->messages().problem().toStdString();
+    EXPECT_EQ(window_->playback()->different(), 0U);
+    window_->playing().show_time(window_->playback()->end());
+    scene.set_camera(camera);
+    ASSERT_TRUE(wait_until([&] { return window_->settled(); }, patience_ms));
+    QTest::qWait(500);
+    ASSERT_TRUE(wait_until([&] { return window_->settled(); }, patience_ms));
+    save("played");
+    const DetailField* const played = window_->views().slice(2).shown_detail();
+    ASSERT_NE(played, nullptr);
+    const Geometry& grid = window_->playback()->field().geometry();
+    const double layer = std::round(index_from_physical(grid, played->field.geometry().origin)[2]);
+    const auto value = [&](double x, double y) {
+        return value_at(played->field, physical_from_index(grid, Vec3(x, y, layer + 2)));
+    };
+    EXPECT_EQ(value(30, 85), 0) << "cut out by the last edit";
+    EXPECT_GT(value(30, 60), 20);
+}
+
 TEST_F(Streaming, zooming_and_stepping_bring_what_is_seen_then) {
     feel(ring().toStdString());
     ASSERT_TRUE(wait_settled());
