@@ -53,8 +53,8 @@ void DetailMaker::show(int viewer, stream::Detail detail) {
     const std::scoped_lock lock(mutex_);
     Place& place = places_[static_cast<std::size_t>(viewer)];
     const bool same_box = place.detail && place.detail->of == detail.of;
-    place.changed = same_box ? united(place.changed, detail.changed)
-                             : whole_box(detail.volume.geometry());
+    place.changed =
+        same_box ? united(place.changed, detail.changed) : whole_box(detail.volume.geometry());
     place.detail = std::move(detail);
     place.due = true;
     changed_.notify_all();
@@ -127,8 +127,7 @@ void DetailMaker::make(const Job& job) {
     if (job.edited) {
         const Vec3 reach = job.viewer == scene ? Vec3(overview_reach * cell) : Vec3(Vec3::Zero());
         const SampleBox edits = edited_since(place.edited.get(), *job.edited);
-        changed = united(changed,
-                         in_grid(read.geometry(), job.edited->geometry(), edits, reach));
+        changed = united(changed, in_grid(read.geometry(), job.edited->geometry(), edits, reach));
     }
     place.edited = job.edited;
     std::shared_ptr<const Samples> samples = place.samples;
@@ -139,11 +138,11 @@ void DetailMaker::make(const Job& job) {
             joined_samples(flattened(*samples), overview, *job.patch));
     }
     const auto level = static_cast<std::size_t>(job.detail.of.level);
-    made_(job.viewer, std::make_shared<const DetailField>(DetailField{
-                          Field(std::move(samples), overview_.solid(), overview_.background(),
-                                overview_.interpolation()),
-                          job.detail.of.box, level_sizes_[level], job.detail.of.level,
-                          job.detail.missing, changed}));
+    made_(job.viewer, std::make_shared<const DetailField>(
+                          DetailField{Field(std::move(samples), overview_.solid(),
+                                            overview_.background(), overview_.interpolation()),
+                                      job.detail.of.box, level_sizes_[level], job.detail.of.level,
+                                      job.detail.missing, changed}));
 }
 
 }  // namespace palpate::viewer

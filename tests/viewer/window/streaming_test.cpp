@@ -91,66 +91,87 @@ TEST_F(Streaming, a_store_looks_like_the_same_volume_in_memory) {
     EXPECT_LT(differing(scene.picture(), whole), samples / 50);
 }
 
-TEST_F(Streaming, edits_of_a_store_look_like_those_in_memory_and_are_saved) {
-    const QString store = ring();
-    auto& scene = window_->views().scene();
-    pictures::Camera camera;
-    camera.towards_viewer = Vec3(-0.3, -0.8, 0.6);
-    camera.half_height = 80;
-    const auto look = [&] {
-        window_->run().send(command::Isovalue{60});
-        window_->views().set_window(0, 240);
-        scene.set_camera(camera);
-        QTest::qWait(500);
-        return wait_settled();
-    };
+class StreamingEdits : public Streaming {
+  protected:
     struct Seen {
         QImage scene, slice;
     };
-    const auto seen = [&] {
-        return Seen{scene.picture(), window_->views().slice(2).grab().toImage()};
+    Scene& scene() { return window_->views().scene(); }
+    run::VolumeEditor& editor() { return window_->live()->data().editor(); }
+    void set_camera() {
+        pictures::Camera camera;
+        camera.towards_viewer = Vec3(-0.3, -0.8, 0.6);
+        camera.half_height = 80;
+        scene().set_camera(camera);
+    }
+    /// The same level, greys and view, whatever is open.
+    bool look() {
+        window_->run().send(command::Isovalue{60});
+        window_->views().set_window(0, 240);
+        set_camera();
+        QTest::qWait(500);
+        return wait_settled();
+    }
+    bool open(const char* name) {
+        feel(scratch(name).toStdString());
+        return look();
+    }
+    Seen seen() { return {scene().picture(), window_->views().slice(2).grab().toImage()}; }
+    void undo_all() {  // or the window asks
+        while (editor().undo()) {
+        }
+    }
+
+    /// A piece of the ring, not along pieces or bricks.
+    const edit::Fill fill_{{{85, 13, 41}, {150, 77, 133}}, 0};
+};
+
+void expect_same(const QImage& a, const QImage& b, int most, const char* what) {
+    EXPECT_LT(differing(a, b), most) << what;
+}
+
+TEST_F(StreamingEdits, look_like_those_in_memory_and_are_saved) {
+    ring();
+    const auto expect_like = [&](const Seen& other, const char* what) {
+        const Seen now = seen();
+        expect_same(now.slice, other.slice, 200, what);
+        expect_same(now.scene, other.scene, now.scene.width() * now.scene.height() / 200, what);
     };
-    const auto expect_same = [&](const Seen& a, const Seen& b, const char* what) {
-        EXPECT_LT(differing(a.slice, b.slice), 200) << what;
-        EXPECT_LT(differing(a.scene, b.scene), a.scene.width() * a.scene.height() / 200) << what;
-    };
-    // A piece of the ring, not along pieces or bricks.
-    const edit::Fill fill{{{85, 13, 41}, {150, 77, 133}}, 0};
-    const auto editor = [&]() -> run::VolumeEditor& { return window_->live()->data().editor(); };
-    feel(scratch("ring.nrrd").toStdString());
-    ASSERT_TRUE(look());
-    editor().apply(fill);
+    ASSERT_TRUE(open("ring.nrrd"));
+    editor().apply(fill_);
     ASSERT_TRUE(look());
     const Seen expected = seen();
     save("in-memory");
-    editor().undo();  // or the window asks
-    feel(store.toStdString());
-    ASSERT_TRUE(look());
+    undo_all();
+    ASSERT_TRUE(open("ring.zarr"));
     const Seen before = seen();
     EXPECT_GT(differing(before.scene, expected.scene), 2000);
     EXPECT_GT(differing(before.slice, expected.slice), 400);
-    editor().apply(fill);
+    editor().apply(fill_);
     ASSERT_TRUE(look());
     save("edited");
-    expect_same(seen(), expected, "edited");
+    expect_like(expected, "edited");
     ASSERT_NE(window_->views().slice(2).shown_detail(), nullptr);
     QTest::keyClick(window_.get(), Qt::Key_Z, Qt::ControlModifier);
     ASSERT_TRUE(wait_until([&] { return editor().state().redo_steps == 1; }));
     ASSERT_TRUE(look());
-    expect_same(seen(), before, "undone");
+    expect_like(before, "undone");
     QTest::keyClick(window_.get(), Qt::Key_Z, Qt::ControlModifier | Qt::ShiftModifier);
     ASSERT_TRUE(wait_until([&] { return window_->isWindowModified(); }));
     type_in_dialog(Qt::Key_S, scratch("cut.zarr"), Qt::ShiftModifier);
     ASSERT_TRUE(wait_until([&] { return !editor().state().changed; }))
         << window_->messages().problem().toStdString();
     ASSERT_TRUE(wait_until([&] { return window_->windowTitle().startsWith("cut.zarr"); }));
-    feel(scratch("cut.zarr").toStdString());
+    ASSERT_TRUE(open("cut.zarr"));
     EXPECT_FALSE(editor().state().changed);
-    ASSERT_TRUE(look());
-    expect_same(seen(), expected, "saved and opened");
-    // And by hand, which is recorded.
+    expect_like(expected, "saved and opened");
+}
+
+TEST_F(StreamingEdits, by_hand_are_recorded_and_played) {
+    ring();
+    ASSERT_TRUE(open("ring.zarr"));
     window_->recordings().start(scratch("carving.csv"));
-    QTest::mouseClick(&scene, Qt::LeftButton, {}, QPoint(180, 400));
+    QTest::mouseClick(&scene(), Qt::LeftButton, {}, QPoint(180, 400));
     ASSERT_TRUE(wait_until([&] { return !window_->probe().travelling(); }));
     press_until_force();
     QTest::keyClick(window_.get(), Qt::Key_B);
@@ -158,19 +179,15 @@ TEST_F(Streaming, edits_of_a_store_look_like_those_in_memory_and_are_saved) {
     QTest::keyClick(window_.get(), Qt::Key_B);
     editor().apply(edit::Fill{{{20, 70, 60}, {40, 100, 110}}, 0});
     ASSERT_TRUE(look());
-    const Seen carved = seen();
     save("carved");
-    EXPECT_GT(differing(carved.scene, expected.scene), 2000);
     window_->recordings().stop();
-    while (editor().undo()) {
-    }
+    undo_all();
     window_->files().open_path(scratch("carving.csv"));
     ASSERT_TRUE(wait_until([&] { return window_->playback() != nullptr; }))
         << window_->messages().problem().toStdString();
     EXPECT_EQ(window_->playback()->different(), 0U);
     window_->playing().show_time(window_->playback()->end());
-    scene.set_camera(camera);
-    ASSERT_TRUE(wait_until([&] { return window_->settled(); }, patience_ms));
+    set_camera();
     QTest::qWait(500);
     ASSERT_TRUE(wait_until([&] { return window_->settled(); }, patience_ms));
     save("played");
