@@ -57,6 +57,7 @@ Field::Field(std::shared_ptr<const Samples> samples, Solid solid, std::optional<
       voxels_per_mm_(geometry().spacing.cwiseInverse()),
       sign_(solid == Solid::above ? 1 : -1),
       size_(geometry().size),
+      cells_(size_ - Index3::Ones()),
       solid_(solid),
       interpolation_(interpolation) {
     // Like all samples: then no product of the proxy's overflows.
@@ -157,7 +158,7 @@ void Field::look() noexcept {
     // Edited, interpolated or shifted samples take the slow path, so that plain ones have no extra
     // cost.
     const bool changing = bricks_ || moment_.weight > 0 || offset_ != 0 || resident_;
-    plain_ = changing ? Index3(Index3::Zero()) : Index3(size_ - Index3::Ones());
+    plain_ = changing ? Index3(Index3::Zero()) : cells_;
     tolerance_ = std::max(1e-12 * range_, 8 * std::numeric_limits<double>::epsilon() * largest);
     lowest_ = (low - offset_) - range_;
     highest_ = (high - offset_) + range_;
@@ -171,19 +172,26 @@ void Field::look() noexcept {
     plain_.setZero();
 }
 
-CellSamples Field::other_cell(const Index3& cell) const {
-    if (reads_bricks_) {
-        // As stored_cell(), which costs two more calls.
-        const auto inside = [&](int a) {
-            return static_cast<unsigned>(cell[a]) < static_cast<unsigned>(size_[a] - 1);
-        };
-        if (inside(0) && inside(1) && inside(2) && !(bricks_ && bricks_->of_cell(cell))) {
-            if (const ResidentBrick* brick = resident_->of_sample(cell)) {
-                return corners(type_, brick->samples.get(), ResidentBricks::place_of(cell),
-                               ResidentBricks::row, ResidentBricks::slice);
-            }
+/// As stored_cell(), which costs more calls.
+template <class T>
+CellSamples Field::resident_cell(const Index3& cell) const {
+    const auto inside = [&](int a) {
+        return static_cast<unsigned>(cell[a]) < static_cast<unsigned>(cells_[a]);
+    };
+    if (inside(0) && inside(1) && inside(2) && !(bricks_ && bricks_->of_cell(cell))) {
+        if (const ResidentBrick* brick = resident_->of_sample(cell)) {
+            return corners<T>(brick->samples.get(), ResidentBricks::place_of(cell),
+                              ResidentBricks::row, ResidentBricks::slice);
         }
     }
+    return other_cell(cell);
+}
+template CellSamples Field::resident_cell<std::uint8_t>(const Index3&) const;
+template CellSamples Field::resident_cell<std::int16_t>(const Index3&) const;
+template CellSamples Field::resident_cell<std::uint16_t>(const Index3&) const;
+template CellSamples Field::resident_cell<float>(const Index3&) const;
+
+CellSamples Field::other_cell(const Index3& cell) const {
     if (shows_labels_) return shown_cell(cell);
     CellSamples samples = absolute_cell(cell);
     if (offset_ != 0) {
@@ -256,8 +264,7 @@ Neighbours Field::other_around(const Index3& at) const {
 }
 
 CellSamples Field::absolute_cell(const Index3& cell) const {
-    const bool inside =
-        (cell.array() >= 0).all() && (cell.array() < (size_ - Index3::Ones()).array()).all();
+    const bool inside = (cell.array() >= 0).all() && (cell.array() < cells_.array()).all();
     if (!inside) {
         CellSamples samples;
         for (int corner = 0; corner < 8; ++corner) {

@@ -47,10 +47,10 @@ double part_within_reach(Field& field, const Pull& pull) noexcept {
     if (!field.samples().resident()) return 1;
     const Vec3 way = pull.to - pull.from;
     const double length = pull.turn == 0 ? way.norm() : std::hypot(way.norm(), pull.turn);
-    if (!std::isfinite(length)) return 1;  // the update refuses it
     const Field::ResidentBall& known = field.resident_ball();
     const double whole = length + pull.arm;
     if ((pull.to - known.centre).norm() + whole <= known.radius) return 1;
+    if (!std::isfinite(length)) return 1;  // the update refuses it
     double part = 1;
     for (int halvings = 0; halvings <= most_halvings; ++halvings, part /= 2) {
         if (!is_resident(field, pull.from + part * way, part * length + pull.arm)) continue;

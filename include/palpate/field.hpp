@@ -137,6 +137,8 @@ class Field {
   private:
     template <class T>
     CellSamples cell_of(const Index3& cell) const;
+    template <class T>
+    CellSamples resident_cell(const Index3& cell) const;
     CellSamples other_cell(const Index3& cell) const;
     template <class T>
     Neighbours clipped(const Index3& at) const;
@@ -179,7 +181,7 @@ class Field {
     double lowest_ = 0, highest_ = 0;  // levels that a proxy uses
     Vec3 voxels_per_mm_;
     double sign_ = 1;
-    Index3 size_;
+    Index3 size_, cells_;  // samples, and cells between them
     Index3 plain_;  // cells along each axis that lie at data_ as they are felt; none if they change
     SampleType type_ = SampleType::uint8;
     Solid solid_ = Solid::above;
@@ -195,7 +197,7 @@ inline CellSamples Field::cell_of(const Index3& cell) const {
     const bool plain = static_cast<unsigned>(cell[0]) < static_cast<unsigned>(plain_[0]) &&
                        static_cast<unsigned>(cell[1]) < static_cast<unsigned>(plain_[1]) &&
                        static_cast<unsigned>(cell[2]) < static_cast<unsigned>(plain_[2]);
-    if (!plain) return other_cell(cell);
+    if (!plain) return reads_bricks_ ? resident_cell<T>(cell) : other_cell(cell);
     const T* p = static_cast<const T*>(data_) + (cell[0] + cell[1] * row_ + cell[2] * slice_);
     const T* q = p + slice_;
     return {double(p[0]), double(p[1]), double(p[row_]), double(p[row_ + 1]),
