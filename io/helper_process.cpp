@@ -138,7 +138,11 @@ pid_t spawn(const fs::path& program, const HelperJob& job, const Descriptor& rep
         posix_spawn_file_actions_addopen(files, samples_descriptor, "/dev/null", O_RDONLY, 0);
     }
     posix_spawn_file_actions_adddup2(files, report.number(), report_descriptor);
-    posix_spawn_file_actions_addclosefrom_np(files, report_descriptor + 1);
+    if (job.mirror) {
+        posix_spawn_file_actions_adddup2(files, job.mirror->number(), mirror_descriptor);
+    }
+    posix_spawn_file_actions_addclosefrom_np(
+        files, job.mirror ? mirror_descriptor + 1 : report_descriptor + 1);
     // The caller may block or ignore Ctrl-C; the helper must not.
     sigset_t signals;
     sigemptyset(&signals);

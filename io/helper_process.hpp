@@ -55,7 +55,8 @@ struct HelperJob {
     const Descriptor* memory = nullptr;
     std::function<void(double)> progress;
     double time_limit_s = 0;
-    double processor_limit_s = 0;  ///< [s] of its processor time, rounded up; 0: no limit
+    double processor_limit_s = 0;        ///< [s] of its processor time, rounded up; 0: no limit
+    const Descriptor* mirror = nullptr;  ///< its descriptor 5 (io/mirror.hpp); may be null
 };
 
 struct HelperResult {

@@ -38,15 +38,16 @@ class TiffBytes {
 
 }  // namespace
 
-std::optional<TiffPeek> peek_tiff(const std::filesystem::path& path) {
+bool is_tiff_name(const std::filesystem::path& path) {
     std::string extension = path.extension().string();
     std::ranges::transform(extension, extension.begin(),
                            [](unsigned char c) { return std::tolower(c); });
+    return extension == ".tif" || extension == ".tiff";
+}
+
+std::optional<TiffPeek> peek_tiff(const std::filesystem::path& path) {
     std::error_code error;
-    if ((extension != ".tif" && extension != ".tiff") ||
-        !std::filesystem::is_regular_file(path, error)) {
-        return std::nullopt;
-    }
+    if (!is_tiff_name(path) || !std::filesystem::is_regular_file(path, error)) return std::nullopt;
     std::ifstream in(path, std::ios::binary);
     return peek_tiff_in(in);
 }

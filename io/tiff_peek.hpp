@@ -12,6 +12,9 @@ struct TiffPeek {
     bool has_levels = false;  ///< coarser ones, in SubIFDs
 };
 
+/// .tif or .tiff.
+bool is_tiff_name(const std::filesystem::path& path);
+
 /// Nothing if the name does not end in .tif or .tiff or the file does not begin as such a file
 /// does.
 std::optional<TiffPeek> peek_tiff(const std::filesystem::path& path);

@@ -29,6 +29,29 @@ void for_each_piece(const Level& grid, const SampleBox& box, Work&& work) {
 
 }  // namespace
 
+void for_all_at_once(std::size_t count, int threads, const std::function<void(std::size_t)>& work) {
+    std::atomic<std::size_t> next{0};
+    std::mutex mutex;
+    std::exception_ptr problem;
+    const auto run = [&] {
+        try {
+            for (std::size_t i = next++; i < count; i = next++) work(i);
+        } catch (...) {
+            next = count;
+            const std::scoped_lock lock(mutex);
+            if (!problem) problem = std::current_exception();
+        }
+    };
+    {
+        SmallThreads others;
+        for (int i = 1; i < threads && std::size_t(i) < count; ++i) {
+            others.start([&](const std::stop_token&) { run(); });
+        }
+        run();
+    }
+    if (problem) std::rethrow_exception(problem);
+}
+
 void read_by_pieces(const Store& store, int level, const SampleBox& box, std::span<std::byte> out,
                     int threads, const std::stop_token& stop,
                     const std::function<void(double)>& made) {
@@ -39,32 +62,13 @@ void read_by_pieces(const Store& store, int level, const SampleBox& box, std::sp
         [&](const Index3&, const SampleBox& piece) {
             pieces.push_back({piece.low.cwiseMax(box.low), piece.high.cwiseMin(box.high)});
         });
-    std::atomic<std::size_t> next{0};
-    std::mutex mutex;
-    std::exception_ptr problem;
-    const auto work = [&] {
-        try {
-            std::vector<std::byte> bytes;
-            for (std::size_t i = next++; i < pieces.size(); i = next++) {
-                bytes.resize(bytes_of(pieces[i], info.type));
-                store.read(level, pieces[i], bytes, stop);
-                copy_box(pieces[i], bytes.data(), box, out.data(), size_of(info.type));
-                if (made) made(static_cast<double>(i + 1) / static_cast<double>(pieces.size()));
-            }
-        } catch (...) {
-            next = pieces.size();
-            const std::scoped_lock lock(mutex);
-            if (!problem) problem = std::current_exception();
-        }
-    };
-    {
-        SmallThreads others;
-        for (int i = 1; i < threads && std::size_t(i) < pieces.size(); ++i) {
-            others.start([&](const std::stop_token&) { work(); });
-        }
-        work();
-    }
-    if (problem) std::rethrow_exception(problem);
+    std::atomic<std::size_t> done{0};
+    for_all_at_once(pieces.size(), threads, [&](std::size_t i) {
+        std::vector<std::byte> bytes(bytes_of(pieces[i], info.type));
+        store.read(level, pieces[i], bytes, stop);
+        copy_box(pieces[i], bytes.data(), box, out.data(), size_of(info.type));
+        if (made) made(static_cast<double>(++done) / static_cast<double>(pieces.size()));
+    });
 }
 
 void Blocks::read(int level, const SampleBox& box, std::span<std::byte> out, std::stop_token stop) {

@@ -12,6 +12,10 @@
 
 namespace palpate::stream {
 
+/// Calls work(0) to work(count - 1) from so many threads; what one of them throws ends the others
+/// and is passed on.
+void for_all_at_once(std::size_t count, int threads, const std::function<void(std::size_t)>& work);
+
 /// Store::read() of a large box by several threads, piece by piece, each of which says what part is
 /// made.
 void read_by_pieces(const Store& store, int level, const SampleBox& box, std::span<std::byte> out,

@@ -15,6 +15,9 @@ class CachedObjects : public Objects {
         : objects_(std::move(objects)), cache_(folder, most_bytes) {}
 
     std::string name_of(const std::string& key) const override { return objects_->name_of(key); }
+    std::optional<std::uint64_t> size_of(const std::string& key) const override {
+        return objects_->size_of(key);
+    }
     Traffic traffic() const override {
         Traffic traffic = objects_->traffic();
         traffic.cached = found_.load();

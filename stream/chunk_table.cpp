@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "io/located_chunks.hpp"
 #include "palpate/stream/store.hpp"
 
 namespace palpate::stream {
@@ -29,7 +28,7 @@ std::optional<io::ChunkPlace> ChunkTable::find(std::span<const std::int64_t> chu
     auto found = pages_.find(page);
     if (found == pages_.end()) {
         if (stop.stop_requested()) throw Cancelled{};
-        found = pages_.emplace(page, io::locate_chunks(file_, id_, first, count)).first;
+        found = pages_.emplace(page, io::locate_chunks(file_, id_, first, count, stop)).first;
         order_.push_back(page);
         if (order_.size() > most_pages) {
             pages_.erase(order_.front());

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "io/chunked_image.hpp"
+#include "io/located_chunks.hpp"
 
 namespace palpate::stream {
 
@@ -21,7 +21,7 @@ namespace palpate::stream {
 class ChunkTable {
   public:
     /// `id`: of an array with three axes, the slowest first; `chunks`: so many along each.
-    ChunkTable(std::filesystem::path file, std::string id, std::array<std::int64_t, 3> chunks)
+    ChunkTable(io::ChunkFile file, std::string id, std::array<std::int64_t, 3> chunks)
         : file_(std::move(file)), id_(std::move(id)), chunks_(chunks) {}
 
     /// Nothing: the chunk is not stored. The place is what the file says and may be impossible.
@@ -33,7 +33,7 @@ class ChunkTable {
     using PageIndex = std::array<std::int64_t, 3>;
     using Page = std::vector<io::ChunkPlace>;
 
-    std::filesystem::path file_;
+    io::ChunkFile file_;
     std::string id_;
     std::array<std::int64_t, 3> chunks_;
     mutable std::mutex

@@ -21,6 +21,11 @@ class FolderObjects : public Objects {
         return (key.empty() ? folder_ : folder_ / key).string();
     }
     Traffic traffic() const override { return traffic_.now(); }
+    std::optional<std::uint64_t> size_of(const std::string& key) const override {
+        std::error_code error;
+        const std::uintmax_t size = std::filesystem::file_size(folder_ / key, error);
+        return error ? std::nullopt : std::optional<std::uint64_t>(size);
+    }
 
     std::optional<Bytes> get(const Wanted& wanted, std::stop_token stop) const override {
         if (stop.stop_requested()) throw Cancelled{};

@@ -12,6 +12,8 @@
 #include <random>
 #include <thread>
 
+#include "io/number.hpp"
+
 namespace palpate::stream {
 namespace {
 
@@ -37,6 +39,16 @@ long status_of(CURL* easy) {
     long status = 0;
     curl_easy_getinfo(easy, CURLINFO_RESPONSE_CODE, &status);
     return status;
+}
+
+/// Of the header "Content-Range: bytes 0-63/1000".
+std::optional<std::uint64_t> whole_size_of(CURL* easy) {
+    curl_header* header = nullptr;
+    if (curl_easy_header(easy, "Content-Range", 0, CURLH_HEADER, -1, &header) != CURLHE_OK) {
+        return std::nullopt;
+    }
+    const std::string text = header->value;
+    return io::number_from<std::uint64_t>(text.substr(text.rfind('/') + 1));
 }
 
 /// What libcurl hands over; fewer bytes returned than given end the transfer.
@@ -241,6 +253,7 @@ class HttpClient::Worker {
         curl_off_t wait_s = 0;
         curl_easy_getinfo(easy, CURLINFO_RETRY_AFTER, &wait_s);
         job->answer.status = status;
+        job->answer.whole_size = whole_size_of(easy);
         traffic_.request(job->answer.body.size());
         const bool complete = status >= 400 || !job->request.range ||
                               job->answer.body.size() == job->request.range->length;

@@ -20,8 +20,10 @@ struct HttpRequest {
 };
 
 struct HttpAnswer {
-    long status = 0;    ///< of HTTP; 0 if there was no answer
-    Bytes body;         ///< of 200 and 206
+    long status = 0;  ///< of HTTP; 0 if there was no answer
+    Bytes body;       ///< of 200 and 206
+    /// [bytes] Of the object that a range was asked of, where the server tells.
+    std::optional<std::uint64_t> whole_size = std::nullopt;
     std::string error;  ///< what went wrong after all attempts; empty: nothing
 };
 

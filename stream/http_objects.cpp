@@ -57,6 +57,14 @@ class HttpObjects : public Objects {
     }
     Traffic traffic() const override { return traffic_.now(); }
 
+    /// As the answer to a request for the first byte says.
+    std::optional<std::uint64_t> size_of(const std::string& key) const override {
+        const HttpRequest first{base_ + "/" + escaped(key) + query_, ByteRange{0, 1}};
+        HttpAnswer answer = std::move(client_.get({&first, 1}, {}).front());
+        const auto size = answer.whole_size;
+        return body_of({.key = key}, std::move(answer)) ? size : std::nullopt;
+    }
+
     std::optional<Bytes> get(const Wanted& wanted, std::stop_token stop) const override {
         return std::move(get_all(std::array{wanted}, std::move(stop)).front());
     }

@@ -1,7 +1,10 @@
 // Files of chunks that the helper process locates: HDF5 and tiled TIFF; see the header.
 #include "stream/located_file.hpp"
 
+#include <algorithm>
+
 #include "io/located_chunks.hpp"
+#include "palpate/io/error.hpp"
 #include "stream/chunk_table.hpp"
 #include "stream/metadata_files.hpp"
 #include "stream/stores.hpp"
@@ -9,9 +12,12 @@
 namespace palpate::stream {
 namespace {
 
-ChunkedArray located_array(const io::ImageArray& level, const std::filesystem::path& file) {
+/// Of HDF5 and TIFF: with these they say where everything else lies.
+constexpr std::uint64_t bytes_of_head = 64;
+
+ChunkedArray located_array(const io::ImageArray& level, const io::ChunkFile& file) {
     ChunkedArray array;
-    array.folder = file.filename().string();
+    array.folder = file.path.filename().string();
     array.bytes.stored = level.stored;
     array.bytes.swapped = level.swapped;
     array.bytes.fill = fitting_fill(level.fill, array.bytes);
@@ -36,10 +42,10 @@ ChunkedArray located_array(const io::ImageArray& level, const std::filesystem::p
 
 }  // namespace
 
-ChunkedVolume located_volume(const io::ChunkedImage& found, const std::filesystem::path& file,
+ChunkedVolume located_volume(const io::ChunkedImage& found, const io::ChunkFile& file,
                              const StoreOptions& options) {
     ChunkedVolume volume;
-    volume.info.address = file.string();
+    volume.info.address = file.path.string();
     volume.info.format = found.format;
     volume.info.channels = found.channels;
     volume.info.times = found.times;
@@ -63,12 +69,37 @@ ChunkedVolume located_volume(const io::ChunkedImage& found, const std::filesyste
 }
 
 std::shared_ptr<const Store> open_located(const std::string& path, const StoreOptions& options) {
-    const std::filesystem::path file(path);
+    const io::ChunkFile file{path};
     const io::ChunkedImage image = io::describe_image(file, options.channel, options.time);
     return about(path, [&] {
-        return chunked_store(folder_objects(file.parent_path()),
+        return chunked_store(folder_objects(file.path.parent_path()),
                              located_volume(image, file, options));
     });
+}
+
+std::shared_ptr<const Store> open_located(std::shared_ptr<const Objects> folder,
+                                          const std::string& name, const StoreOptions& options) {
+    const std::string address = folder->name_of(name);
+    const auto size = folder->size_of(name);
+    if (!size) {
+        throw io::InputError(address + ": is not there, or the server does not tell its size");
+    }
+    // The first bytes are read each time: a file that was written anew is another one (the cache).
+    const auto head =
+        folder->get({.key = name, .range = ByteRange{0, std::min(*size, bytes_of_head)}}, {});
+    const auto read = [folder, name](std::uint64_t offset, std::span<std::byte> to,
+                                     const std::stop_token& stop) {
+        const auto part = folder->get(
+            {.key = name, .range = ByteRange{offset, to.size()}, .lasting = true}, stop);
+        if (!part || part->size() != to.size()) {
+            throw io::InputError(folder->name_of(name) + ": is gone, or shorter than it was");
+        }
+        std::ranges::copy(*part, to.begin());
+    };
+    const io::ChunkFile file{address, std::make_shared<io::Mirror>(address, *size, read)};
+    const io::ChunkedImage image = io::describe_image(file, options.channel, options.time);
+    return about(address,
+                 [&] { return chunked_store(folder, located_volume(image, file, options)); });
 }
 
 }  // namespace palpate::stream

@@ -10,7 +10,7 @@
 namespace palpate::stream {
 
 /// Throws BadMetadata, io::InputError about a choice that there is not.
-ChunkedVolume located_volume(const io::ChunkedImage& found, const std::filesystem::path& file,
+ChunkedVolume located_volume(const io::ChunkedImage& found, const io::ChunkFile& file,
                              const StoreOptions& options);
 
 }  // namespace palpate::stream

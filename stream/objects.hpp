@@ -46,6 +46,9 @@ class Objects {
     /// Several at once, in the same order.
     virtual std::vector<std::optional<Bytes>> get_all(std::span<const Wanted> wanted,
                                                       std::stop_token stop) const;
+    /// [bytes] of an object; nothing if there is none, or its size cannot be known. Throws as
+    /// get().
+    virtual std::optional<std::uint64_t> size_of(const std::string& key) const = 0;
     virtual Traffic traffic() const = 0;
 };
 

@@ -72,24 +72,28 @@ Volume thinned_level(const Store& store, std::int64_t samples, std::stop_token s
     geometry.spacing *= step;
     const std::size_t each = size_of(info.type);
     std::vector<std::byte> bytes(static_cast<std::size_t>(sample_count(geometry)) * each);
-    std::vector<std::byte> row(static_cast<std::size_t>(grid.geometry.size[0]) * each);
-    std::byte* out = bytes.data();
-    for (int k = 0; k < geometry.size[2]; ++k) {
-        for (int j = 0; j < geometry.size[1]; ++j) {
-            const Index3 low(0, j * step, k * step);
+    const auto rows =
+        static_cast<std::size_t>(geometry.size[1]) * static_cast<std::size_t>(geometry.size[2]);
+    const auto along = static_cast<std::size_t>(geometry.size[0]);
+    for_all_at_once(rows, threads, [&](std::size_t r) {
+        const auto j = static_cast<int>(r % static_cast<std::size_t>(geometry.size[1]));
+        const auto k = static_cast<int>(r / static_cast<std::size_t>(geometry.size[1]));
+        const Index3 low(0, j * step, k * step);
+        std::byte* out = bytes.data() + r * along * each;
+        std::vector<std::byte> row;
+        if (by_row) {
+            row.resize(static_cast<std::size_t>(grid.geometry.size[0]) * each);
+            store.read(level, {low, low + Index3(grid.geometry.size[0] - 1, 0, 0)}, row, stop);
+        }
+        for (int i = 0; i < geometry.size[0]; ++i, out += each) {
+            const Index3 at = low + Index3(i * step, 0, 0);
             if (by_row) {
-                store.read(level, {low, low + Index3(grid.geometry.size[0] - 1, 0, 0)}, row, stop);
-            }
-            for (int i = 0; i < geometry.size[0]; ++i, out += each) {
-                const Index3 at = low + Index3(i * step, 0, 0);
-                if (by_row) {
-                    std::memcpy(out, row.data() + static_cast<std::size_t>(at[0]) * each, each);
-                } else {
-                    store.read(level, {at, at}, {out, each}, stop);
-                }
+                std::memcpy(out, row.data() + static_cast<std::size_t>(at[0]) * each, each);
+            } else {
+                store.read(level, {at, at}, {out, each}, stop);
             }
         }
-    }
+    });
     return volume_from(geometry, info.type, std::move(bytes));
 }
 

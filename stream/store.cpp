@@ -1,6 +1,9 @@
 // Chooses the kind of store that an address names.
 #include "palpate/stream/store.hpp"
 
+#include <algorithm>
+#include <charconv>
+
 #include "io/located_chunks.hpp"
 #include "io/plain_samples.hpp"
 #include "io/tiff_peek.hpp"
@@ -57,14 +60,39 @@ std::shared_ptr<const Store> open_chunked(const std::shared_ptr<const Objects>& 
                          "(attributes.json); check the name");
 }
 
-/// The libraries that find chunks in a file need it on this machine.
-void check_not_located(const std::string& address) {
-    if (!io::is_hdf5_name(address) && !address.ends_with(".tif") && !address.ends_with(".tiff")) {
-        return;
+/// A file of chunks elsewhere: the address of its folder, and its name there.
+struct RemoteFile {
+    std::string folder, name;
+};
+
+std::string without_escapes(const std::string& text) {
+    std::string plain;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        unsigned byte = 0;
+        const char* const digits = text.data() + i + 1;
+        const bool escaped = text[i] == '%' && i + 2 < text.size() &&
+                             std::from_chars(digits, digits + 2, byte, 16).ptr == digits + 2;
+        plain += escaped ? static_cast<char>(byte) : text[i];
+        i += escaped ? 2 : 0;
     }
-    throw io::InputError(address +
-                         ": HDF5 and TIFF are read from this machine's disks only; download it, or "
-                         "convert it to OME-Zarr where it lies");
+    return plain;
+}
+
+/// Nothing if the name is not that of HDF5 or TIFF.
+std::optional<RemoteFile> remote_file(const std::string& address) {
+    const std::size_t question = std::min(address.find('?'), address.size());
+    const std::string place = address.substr(0, question);
+    const std::size_t slash = place.rfind('/');
+    const std::string name = without_escapes(place.substr(slash + 1));
+    if (!io::is_hdf5_name(name) && !io::is_tiff_name(name)) return std::nullopt;
+    return RemoteFile{place.substr(0, slash) + address.substr(question), name};
+}
+
+std::shared_ptr<const Objects> remote_objects(const std::string& address,
+                                              const StoreOptions& options) {
+    auto objects = http_objects(address, options);
+    if (options.cache_folder.empty() || options.cache_bytes == 0) return objects;
+    return cached_objects(objects, options.cache_folder, options.cache_bytes);
 }
 
 void check_number(const std::string& address, const std::string& what, int wanted, int count) {
@@ -95,12 +123,10 @@ bool is_store(const std::string& address, const StoreOptions& options) {
 
 std::shared_ptr<const Store> open_store(const std::string& address, const StoreOptions& options) {
     if (is_remote(address)) {
-        check_not_located(address);
-        auto objects = http_objects(address, options);
-        if (!options.cache_folder.empty() && options.cache_bytes > 0) {
-            objects = cached_objects(objects, options.cache_folder, options.cache_bytes);
+        if (const auto file = remote_file(address)) {
+            return open_located(remote_objects(file->folder, options), file->name, options);
         }
-        return open_chunked(objects, address, options);
+        return open_chunked(remote_objects(address, options), address, options);
     }
     if (holds_edits(address)) return open_edits(address, options);
     if (is_chunked_folder(address)) {

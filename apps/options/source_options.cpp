@@ -83,7 +83,7 @@ void SourceOptions::add_streaming_to(CLI::App& command) {
     command.add_flag("--coarse-first", coarse_first,
                      "Feel a coarser level where the one that is felt has not come yet");
     command.add_flag("--all-times", all_times,
-                     "A store's times as a sequence, each read whole (at --level)");
+                     "A store's times as a sequence, each read whole at the level");
     command.add_option("--cache", cache_folder, "Folder that keeps what came over the network");
     command.add_option("--cache-size", cache_bytes, "Most that this folder keeps (4GB)")
         ->transform(CLI::AsSizeValue(false));

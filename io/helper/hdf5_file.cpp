@@ -4,8 +4,12 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
+#include <string_view>
 
 #include "io/helper/decode.hpp"
+#include "io/helper/hdf5_mirror.hpp"
+#include "io/helper/mirrored.hpp"
 #include "io/number.hpp"
 
 namespace palpate::io {
@@ -66,15 +70,27 @@ double fill_of(hid_t properties) {
     return fill;
 }
 
+bool is_hdf5(const std::filesystem::path& path) {
+    if (!uses_mirror()) return H5Fis_hdf5(path.c_str()) > 0;
+    constexpr std::string_view signature = "\x89HDF\r\n\x1a\n";
+    std::array<std::byte, signature.size()> begin{};
+    return read_mirror(0, begin) && std::memcmp(begin.data(), signature.data(), begin.size()) == 0;
+}
+
+hid_t opened(const std::filesystem::path& path) {
+    const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+    if (uses_mirror() && !read_from_mirror(access)) return -1;
+    return H5Fopen(path.c_str(), H5F_ACC_RDONLY, access);
+}
+
 }  // namespace
 
 Hdf5File::Hdf5File(const std::filesystem::path& path)
-    : file_((H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr), H5PLset_loading_state(0),
-             H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT)),
+    : file_((H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr), H5PLset_loading_state(0), opened(path)),
             H5Fclose) {
     if (!file_.is_open()) {
         throw Failure(
-            H5Fis_hdf5(path.c_str()) > 0
+            is_hdf5(path)
                 ? "is damaged, cut off, or still open in the program that writes it; copy "
                   "it again"
                 : "is no HDF5 file; check its name");

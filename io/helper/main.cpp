@@ -17,6 +17,7 @@
 #include "io/helper/child.hpp"
 #include "io/helper/images.hpp"
 #include "io/helper/library_words.hpp"
+#include "io/helper/mirrored.hpp"
 #include "io/helper/protocol.hpp"
 #include "io/helper/readers.hpp"
 #include "io/helper/report.hpp"
@@ -164,10 +165,31 @@ nlohmann::json run_locate(const fs::path& path, const nlohmann::json& asked) {
             {"notes", plain.about.notes}};
 }
 
+/// What `work` gives; of a mirror of which something is missing, what that is. Libraries may take a
+/// part that they cannot read for one that is not there, and go on.
+template <class Work>
+nlohmann::json with_mirror(const nlohmann::json& asked, Work&& work) {
+    if (!asked.contains("mirror")) return work();
+    use_mirror();
+    const auto missing = [] {
+        return nlohmann::json{{"missing", {missing_part()->offset, missing_part()->length}}};
+    };
+    try {
+        nlohmann::json result = work();
+        return missing_part() ? missing() : result;
+    } catch (const std::exception&) {
+        if (!missing_part()) throw;
+        return missing();
+    }
+}
+
 nlohmann::json run_describe(const fs::path& path, const nlohmann::json& asked) {
     limit_this_process(asked, 1 << 30);
     const auto image_of = looks_like_tiff(path) ? tiff_image : hdf5_image;
-    return json_from(image_of(path, asked.at("channel").get<int>(), asked.at("time").get<int>()));
+    return with_mirror(asked, [&] {
+        return json_from(
+            image_of(path, asked.at("channel").get<int>(), asked.at("time").get<int>()));
+    });
 }
 
 nlohmann::json run_chunks(const fs::path& path, const nlohmann::json& asked) {
@@ -179,8 +201,10 @@ nlohmann::json run_chunks(const fs::path& path, const nlohmann::json& asked) {
     const auto count = static_cast<std::size_t>(box.count[0] * box.count[1] * box.count[2]);
     const std::span<std::byte> memory = shared_samples(count * sizeof(ChunkPlace));
     const auto look_up = looks_like_tiff(path) ? tiff_places : hdf5_places;
-    look_up(path, box, {reinterpret_cast<ChunkPlace*>(memory.data()), count});
-    return nlohmann::json::object();
+    return with_mirror(asked, [&] {
+        look_up(path, box, {reinterpret_cast<ChunkPlace*>(memory.data()), count});
+        return nlohmann::json::object();
+    });
 }
 
 nlohmann::json run_read(const fs::path& path, const nlohmann::json& asked) {

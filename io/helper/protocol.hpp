@@ -6,6 +6,8 @@
 //   3 palpate-io-helper read-mesh PATH REQUEST  vertices and triangles come back in descriptor 3
 //   palpate-io-helper write PATH REQUEST FOLDER   samples are given in descriptor 3; FOLDER, beside
 //                                             PATH, is created for the unfinished file and removed
+// describe and chunks: with "mirror" in REQUEST the file is in descriptor 5 as far as it is here
+// (io/mirror.hpp); {"done":{"missing":[offset, length]}} asks for more.
 // REQUEST is JSON. Lines of JSON come back on descriptor 4: {"progress":0.5}, {"doing":"a file"},
 // and at the end {"error":"..."} or {"done":{...}}. Doubles in JSON survive to the bit.
 #pragma once
@@ -21,6 +23,7 @@ namespace palpate::io {
 
 constexpr int samples_descriptor = 3;
 constexpr int report_descriptor = 4;
+constexpr int mirror_descriptor = 5;
 
 inline nlohmann::json json_from(const Vec3& v) {
     return {v[0], v[1], v[2]};

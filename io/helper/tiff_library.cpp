@@ -1,8 +1,11 @@
 // Opens TIFF files and keeps libtiff's errors; see the header.
 #include "io/helper/tiff_library.hpp"
 
+#include <algorithm>
 #include <cstdarg>
 #include <cstdio>
+
+#include "io/helper/mirrored.hpp"
 
 namespace palpate::io {
 namespace {
@@ -16,11 +19,50 @@ extern "C" void keep_error(const char*, const char* format, va_list arguments) {
     first_error = text;
 }
 
+/// Where libtiff reads next.
+struct Reading {
+    std::uint64_t at = 0;
+};
+
+tmsize_t read_part(thandle_t of, void* to, tmsize_t size) {
+    auto& at = static_cast<Reading*>(of)->at;
+    const std::uint64_t rest = mirror_size() - std::min(at, mirror_size());
+    const std::uint64_t count = std::min(static_cast<std::uint64_t>(size), rest);
+    if (!read_mirror(at, {static_cast<std::byte*>(to), count})) return 0;
+    at += count;
+    return static_cast<tmsize_t>(count);
+}
+tmsize_t refuse_to_write(thandle_t, void*, tmsize_t) {
+    return 0;
+}
+toff_t go_to(thandle_t of, toff_t offset, int from) {
+    auto& at = static_cast<Reading*>(of)->at;
+    at = offset + (from == SEEK_SET ? 0 : from == SEEK_CUR ? at : mirror_size());
+    return at;
+}
+int end_reading(thandle_t of) {
+    delete static_cast<Reading*>(of);
+    return 0;
+}
+toff_t size_of_mirror(thandle_t) {
+    return mirror_size();
+}
+
+Tiff open_mirror(const std::filesystem::path& file, const char* mode) {
+    auto reading = std::make_unique<Reading>();
+    Tiff tiff(TIFFClientOpen(file.c_str(), mode, reading.get(), read_part, refuse_to_write, go_to,
+                             end_reading, size_of_mirror, nullptr, nullptr),
+              &TIFFClose);
+    if (tiff) (void)reading.release();
+    return tiff;
+}
+
 }  // namespace
 
 Tiff open_tiff(const std::filesystem::path& file, const char* mode) {
     TIFFSetErrorHandler(keep_error);
     TIFFSetWarningHandler(nullptr);
+    if (uses_mirror()) return open_mirror(file, mode);
     return {TIFFOpen(file.c_str(), mode), &TIFFClose};
 }
 

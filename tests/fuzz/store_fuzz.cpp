@@ -42,6 +42,9 @@ class JsonObjects : public Objects {
 
     std::string name_of(const std::string& key) const override { return "store/" + key; }
     Traffic traffic() const override { return {}; }
+    std::optional<std::uint64_t> size_of(const std::string& key) const override {
+        return all_.contains(key) ? std::optional(bytes_of(all_[key]).size()) : std::nullopt;
+    }
 
     std::optional<Bytes> get(const Wanted& wanted, std::stop_token) const override {
         // No name leads out of the folder.
@@ -123,7 +126,7 @@ void try_store(Open&& open) {
 void try_located(const Json& json) {
     try {
         const auto image = palpate::io::chunked_image_from(json);
-        check_info(located_volume(image, "file.ims", {}).info);
+        check_info(located_volume(image, {"file.ims"}, {}).info);
     } catch (const Json::exception&) {  // the caller says that the helper gave no sensible answer
     } catch (const std::bad_optional_access&) {
     } catch (const std::exception& error) {

@@ -7,6 +7,7 @@
 #include "stream/codecs.hpp"
 #include "stream/store_support.hpp"
 #include "stream/tiff_codecs.hpp"
+#include "stream/written_files.hpp"
 
 namespace palpate::stream::test {
 namespace {
@@ -17,16 +18,6 @@ using support::bytes_of;
 using support::contains;
 using support::message_of;
 using support::ScratchFolder;
-
-const fs::path& tiff_written() {
-    static const ScratchFolder folder;
-    static const bool done =
-        std::system((std::string(PALPATE_ZARR_PYTHON) + " -B " + PALPATE_STREAM_TESTS +
-                     "/tiff_reference.py " + folder.path().string())
-                        .c_str()) == 0;
-    if (!done) throw std::runtime_error("python3-tifffile does not work");
-    return folder.path();
-}
 
 void expect_tiff_level(const Store& store, int level, const std::string& raw, Stored stored) {
     const Geometry& grid = store.info().levels.at(static_cast<std::size_t>(level)).geometry;

@@ -147,7 +147,7 @@ def make_handler(options):
                 in_folder(options.folder, path) if options.folder else None)
             if body is None:
                 return self.give(404)
-            status, body = self.ranged(body)
+            status, body, headers = self.ranged(body)
             if draw < options.truncated and body:
                 counts["truncated"] += 1
                 self.send_response(status)
@@ -162,16 +162,16 @@ def make_handler(options):
                 counts["lied"] += 1
                 at = int(flip * len(body))
                 body = body[:at] + bytes([body[at] ^ 0x55]) + body[at + 1:]
-            return self.give(status, body)
+            return self.give(status, body, **headers)
 
         def ranged(self, body):
             wanted = self.headers.get("Range")
             if not wanted or options.no_ranges:
-                return 200, body
+                return 200, body, {}
             first, last = wanted.split("=")[1].split("-")
-            if first == "":
-                return 206, body[-int(last):]
-            return 206, body[int(first):int(last) + 1]
+            begin = max(0, len(body) - int(last)) if first == "" else int(first)
+            end = len(body) if first == "" else min(int(last) + 1, len(body))
+            return 206, body[begin:end], {"Content_Range": f"bytes {begin}-{end - 1}/{len(body)}"}
 
     return Handler
 

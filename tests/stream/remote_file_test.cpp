@@ -1,0 +1,144 @@
+// HDF5 and TIFF behind a server: read as those on the disk, through a mirror of their metadata.
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "io/mirror.hpp"
+#include "stream/store_support.hpp"
+#include "stream/volume_server.hpp"
+#include "stream/written_files.hpp"
+
+namespace palpate::stream::test {
+namespace {
+
+namespace fs = std::filesystem;
+using support::contains;
+using support::message_of;
+using support::ScratchFolder;
+
+void expect_same_store(const Store& here, const Store& there) {
+    std::mt19937 random(3);
+    EXPECT_EQ(here.info().format, there.info().format);
+    EXPECT_EQ(here.info().channels, there.info().channels);
+    EXPECT_EQ(here.info().times, there.info().times);
+    ASSERT_EQ(here.info().levels.size(), there.info().levels.size());
+    for (std::size_t l = 0; l < here.info().levels.size(); ++l) {
+        const Geometry& grid = here.info().levels[l].geometry;
+        EXPECT_EQ(grid, there.info().levels[l].geometry);
+        const auto level = static_cast<int>(l);
+        const SampleBox box = l == 0 ? whole_box(grid) : random_box(random, grid.size);
+        EXPECT_EQ(read_box(here, level, box), read_box(there, level, box));
+    }
+}
+
+StoreOptions patient() {
+    StoreOptions options;
+    options.attempts = 10;
+    return options;
+}
+
+TEST(RemoteFile, hdf5_and_tiff_read_as_on_the_disk_although_answers_fail) {
+    int files = 0;
+    for (const fs::path& folder : {hdf5_written(), tiff_written()}) {
+        const VolumeServer server({"--folder", folder.string(), "--failures", "0.02", "--truncated",
+                                   "0.02"});
+        for (const char* name : {"image.ims", "lonely.h5", "missing.ims", "ims-4-gzip-u2.ims",
+                                 "ims-16-lz4-u2.ims", "pages.tif", "pyramid.tif",
+                                 "pyramid-TCZYX.ome.tif", "kind-0-u1.tif"}) {
+            if (!fs::exists(folder / name)) continue;
+            SCOPED_TRACE(name);
+            const std::string address = server.address(name);
+            ASSERT_TRUE(is_store(address) && is_chunked(address));
+            const auto there = open_store(address, patient());
+            EXPECT_EQ(there->info().address, address);
+            expect_same_store(*open_store(folder / name), *there);
+            EXPECT_GT(there->traffic().bytes, 0U);
+            ++files;
+        }
+    }
+    EXPECT_EQ(files, 9);
+}
+
+TEST(RemoteFile, names_with_escapes_and_a_query_are_found) {
+    const ScratchFolder folder;
+    fs::create_directories(folder.path() / "a folder");
+    fs::copy_file(hdf5_written() / "image.ims", folder.path() / "a folder" / "an image 50%.ims");
+    const VolumeServer server({"--folder", folder.path().string()});
+    const auto store = open_store(server.address("a%20folder/an%20image%2050%25.ims?version=1"));
+    expect_same_store(*open_store(hdf5_written() / "image.ims"), *store);
+}
+
+TEST(RemoteFile, a_disk_cache_keeps_its_parts_until_the_file_is_another) {
+    const ScratchFolder folder;
+    fs::copy_file(hdf5_written() / "image.ims", folder.path() / "image.ims");
+    const VolumeServer server({"--folder", folder.path().string()});
+    StoreOptions options;
+    options.cache_folder = folder.path() / "cache";
+    options.cache_bytes = 1 << 24;
+    const auto read = [&] {
+        const auto store = open_store(server.address("image.ims"), options);
+        expect_same_store(*open_store(folder.path() / "image.ims"), *store);
+        return store->traffic();
+    };
+    const Traffic first = read(), second = read();
+    EXPECT_GT(first.bytes, 1000U);
+    EXPECT_GT(second.cached, first.cached);
+    EXPECT_LE(second.bytes, 100U) << "its size and first bytes";
+    fs::remove(folder.path() / "image.ims");
+    fs::copy_file(hdf5_written() / "missing.ims", folder.path() / "image.ims");
+    EXPECT_GT(read().bytes, 1000U);
+}
+
+TEST(RemoteFile, what_cannot_be_read_is_one_line) {
+    const ScratchFolder folder;
+    const fs::path good = hdf5_written() / "image.ims";
+    fs::copy_file(good, folder.path() / "cut.ims");
+    fs::resize_file(folder.path() / "cut.ims", fs::file_size(good) / 2);
+    support::put_bytes(folder.path() / "none.h5", "this is no HDF5");
+    support::put_bytes(folder.path() / "none.tif", "nor is this TIFF");
+    support::put_bytes(folder.path() / "empty.ims", "");
+    const VolumeServer server({"--folder", folder.path().string()});
+    const VolumeServer whole({"--folder", folder.path().string(), "--no-ranges"});
+    const std::pair<std::string, const char*> wrong[] = {
+        {server.address("cut.ims"), "damaged"},     {server.address("none.h5"), "HDF5"},
+        {server.address("none.tif"), "TIFF"},       {server.address("empty.ims"), ""},
+        {server.address("absent.ims"), "not there"}, {whole.address("cut.ims"), "whole files only"}};
+    for (const auto& [address, what] : wrong) {
+        const std::string message =
+            message_of<io::InputError>([&] { (void)open_store(address, {}); });
+        EXPECT_TRUE(message.starts_with(address)) << message;
+        EXPECT_TRUE(contains(message, what)) << message;
+        EXPECT_FALSE(contains(message, "\n")) << message;
+    }
+}
+
+TEST(RemoteFile, a_mirror_reads_each_page_once_and_nothing_outside_the_file) {
+    std::vector<std::byte> file(700'000);
+    for (std::size_t i = 0; i < file.size(); ++i) file[i] = static_cast<std::byte>(i * 7 >> 3);
+    std::vector<std::uint64_t> read;
+    io::Mirror mirror("a", file.size(),
+                      [&](std::uint64_t offset, std::span<std::byte> to, const std::stop_token&) {
+                          read.push_back(offset);
+                          ASSERT_LE(offset + to.size(), file.size());
+                          std::copy_n(file.begin() + static_cast<std::ptrdiff_t>(offset), to.size(),
+                                      to.begin());
+                      });
+    mirror.fetch(300'000, 10, {});
+    mirror.fetch(262'144, 262'144, {});
+    EXPECT_EQ(read, (std::vector<std::uint64_t>{262'144}));
+    mirror.fetch(699'999, 1, {});
+    mirror.fetch(0, 700'000, {});
+    EXPECT_EQ(read, (std::vector<std::uint64_t>{262'144, 524'288, 0}));
+    const auto held = io::map_shared(mirror.memory(), file.size());
+    EXPECT_EQ(std::memcmp(held.get(), file.data(), file.size()), 0);
+    mirror.tidy();
+    mirror.fetch(1, 1, {});
+    EXPECT_EQ(read.size(), 3U) << "few pages are kept";
+    for (const auto& [offset, length] : std::vector<std::pair<std::uint64_t, std::uint64_t>>{
+             {0, 0}, {0, 700'001}, {700'000, 1}, {UINT64_MAX, 2}, {5, UINT64_MAX}}) {
+        EXPECT_THROW(mirror.fetch(offset, length, {}), std::invalid_argument);
+    }
+}
+
+}  // namespace
+}  // namespace palpate::stream::test
