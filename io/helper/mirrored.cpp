@@ -33,15 +33,14 @@ bool read_mirror(std::uint64_t offset, std::span<std::byte> to) {
     if (offset > size || to.size() > size - offset) return false;
     if (to.empty()) return true;
     const auto begin = static_cast<off_t>(offset);
-    const bool here = lseek(mirror_descriptor, begin, SEEK_DATA) == begin &&
-                      lseek(mirror_descriptor, begin, SEEK_HOLE) >=
-                          static_cast<off_t>(offset + to.size());
+    const bool here =
+        lseek(mirror_descriptor, begin, SEEK_DATA) == begin &&
+        lseek(mirror_descriptor, begin, SEEK_HOLE) >= static_cast<off_t>(offset + to.size());
     if (!here) {
         missing = MissingPart{offset, to.size()};
         return false;
     }
-    return pread(mirror_descriptor, to.data(), to.size(), begin) ==
-           static_cast<ssize_t>(to.size());
+    return pread(mirror_descriptor, to.data(), to.size(), begin) == static_cast<ssize_t>(to.size());
 }
 
 std::optional<MissingPart> missing_part() {

@@ -59,11 +59,14 @@ ShownEdits::ShownEdits(Volume shown)
       bricks_(plain_->geometry().size) {}
 
 std::shared_ptr<const Samples> ShownEdits::of(const Samples& edited) {
+    if (!edited.bricks() && !from_) return with_edits_;  // a table of a large grid is large, too
     const Geometry &here = plain_->geometry(), &there = edited.geometry();
-    const Bricks none(there.size);
-    const Bricks& now = edited.bricks() ? *edited.bricks() : none;
+    const Bricks now = edited.bricks() ? *edited.bricks() : Bricks(there.size);
+    if (!from_) from_.emplace(there.size);
+    bool changed = false;
     std::set<std::array<int, 3>> touched;
-    now.for_each_apart(from_ ? *from_ : none, [&](const Index3& brick, const auto&, const auto&) {
+    now.for_each_apart(*from_, [&](const Index3& brick, const auto&, const auto&) {
+        changed = true;
         const SampleBox box = samples_near(here, there, brick);
         if ((box.low.array() > box.high.array()).any()) return;
         // The first samples of a brick are the last of the one before, too.
@@ -75,7 +78,7 @@ std::shared_ptr<const Samples> ShownEdits::of(const Samples& edited) {
             }
         }
     });
-    from_ = now;
+    if (changed) from_ = now;
     if (touched.empty()) return with_edits_;
     std::vector<Bricks::Change> changes;
     for (const auto& at : touched) {

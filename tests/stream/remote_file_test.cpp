@@ -40,11 +40,11 @@ StoreOptions patient() {
 TEST(RemoteFile, hdf5_and_tiff_read_as_on_the_disk_although_answers_fail) {
     int files = 0;
     for (const fs::path& folder : {hdf5_written(), tiff_written()}) {
-        const VolumeServer server({"--folder", folder.string(), "--failures", "0.02", "--truncated",
-                                   "0.02"});
-        for (const char* name : {"image.ims", "lonely.h5", "missing.ims", "ims-4-gzip-u2.ims",
-                                 "ims-16-lz4-u2.ims", "pages.tif", "pyramid.tif",
-                                 "pyramid-TCZYX.ome.tif", "kind-0-u1.tif"}) {
+        const VolumeServer server(
+            {"--folder", folder.string(), "--failures", "0.02", "--truncated", "0.02"});
+        for (const char* name :
+             {"image.ims", "lonely.h5", "missing.ims", "ims-4-gzip-u2.ims", "ims-16-lz4-u2.ims",
+              "pages.tif", "pyramid.tif", "pyramid-TCZYX.ome.tif", "kind-0-u1.tif"}) {
             if (!fs::exists(folder / name)) continue;
             SCOPED_TRACE(name);
             const std::string address = server.address(name);
@@ -100,9 +100,12 @@ TEST(RemoteFile, what_cannot_be_read_is_one_line) {
     const VolumeServer server({"--folder", folder.path().string()});
     const VolumeServer whole({"--folder", folder.path().string(), "--no-ranges"});
     const std::pair<std::string, const char*> wrong[] = {
-        {server.address("cut.ims"), "damaged"},     {server.address("none.h5"), "HDF5"},
-        {server.address("none.tif"), "TIFF"},       {server.address("empty.ims"), ""},
-        {server.address("absent.ims"), "not there"}, {whole.address("cut.ims"), "whole files only"}};
+        {server.address("cut.ims"), "damaged"},
+        {server.address("none.h5"), "HDF5"},
+        {server.address("none.tif"), "TIFF"},
+        {server.address("empty.ims"), ""},
+        {server.address("absent.ims"), "not there"},
+        {whole.address("cut.ims"), "whole files only"}};
     for (const auto& [address, what] : wrong) {
         const std::string message =
             message_of<io::InputError>([&] { (void)open_store(address, {}); });

@@ -16,8 +16,9 @@ constexpr double overview_reach = 2.5;
 
 /// The samples, of the grid that is felt, whose edits differ; null has none.
 SampleBox edited_since(const Samples* before, const Samples& now) {
-    return before ? edited_between(*before, now)
-                  : edited_between(Samples(now).with(Bricks(now.geometry().size), 0, 0), now);
+    if (before) return edited_between(*before, now);
+    if (!now.bricks()) return {};
+    return edited_between(now.with(Bricks(now.geometry().size), 0, 0), now);
 }
 
 /// Samples of one grid that lie in a box of samples of another, with so many more on each side. The
@@ -60,12 +61,11 @@ void DetailMaker::show(int viewer, stream::Detail detail) {
     changed_.notify_all();
 }
 
-void DetailMaker::use_edits(std::shared_ptr<const Samples> edited) {
+void DetailMaker::use_edits(const Samples& felt) {
     const std::scoped_lock lock(mutex_);
-    if (edited == edited_) return;
-    const bool same = edited_since(edited_.get(), *edited).empty();
-    edited_ = std::move(edited);
-    if (same) return;  // bricks came or went
+    if (edited_since(edited_.get(), felt).empty()) return;
+    // Held for as long as nothing is edited, so it must not hold bricks that go.
+    edited_ = std::make_shared<const Samples>(felt.with(ResidentBricks(felt.geometry().size)));
     for (Place& place : places_) place.due = place.detail.has_value();
     changed_.notify_all();
 }

@@ -32,9 +32,9 @@ class DetailMaker {
 
     /// What was read for a viewer is made next, instead of what was read before.
     void show(int viewer, stream::Detail detail);
-    /// Samples of the level that is felt, of which the edits count: whatever they change is made
-    /// again.
-    void use_edits(std::shared_ptr<const Samples> edited);
+    /// The edits of the level that is felt, as often as one likes: whatever they change is made
+    /// again. Keeps nothing else of the samples.
+    void use_edits(const Samples& felt);
     /// The part of the scene that is wanted; another one is not made.
     void want_patch(const std::optional<PatchChoice>& patch);
     /// Nothing is left to make.
@@ -70,7 +70,7 @@ class DetailMaker {
     mutable std::mutex mutex_;
     std::condition_variable_any changed_;
     std::array<Place, viewers> places_;
-    std::shared_ptr<const Samples> edited_;
+    std::shared_ptr<const Samples> edited_;  ///< without any brick in memory; null: no edits yet
     std::optional<PatchChoice> patch_;
     bool making_ = false;
     ShownEdits shown_overview_;  // of the thread

@@ -125,9 +125,10 @@ SampleBox changed_between(const Field& a, const Field& b) {
 }
 
 SampleBox edited_between(const Samples& a, const Samples& b) {
-    const Bricks none(b.geometry().size);
     const Bricks *old = a.bricks(), *now = b.bricks();
     SampleBox changed;
+    if (!old && !now) return changed;
+    const Bricks none(old && now ? Index3(Index3::Ones()) : b.geometry().size);
     (now ? *now : none)
         .for_each_apart(old ? *old : none, [&](const Index3& brick, const auto&, const auto&) {
             const Index3 low = Bricks::cells * brick;

@@ -115,7 +115,7 @@ void DetailController::take(std::uint64_t generation, int viewer,
 
 void DetailController::observe(const std::optional<Snapshot>& now) {
     if (!reader_) return;
-    if (now) maker_->use_edits(content_.felt_at(*now).shared_samples());
+    if (now) maker_->use_edits(content_.felt_at(*now).samples());
     for (int axis = 0; axis < scene; ++axis) observe_slice(axis);
     observe_scene(now);
 }

@@ -126,7 +126,7 @@ TEST(DetailMaker, shows_the_last_samples_with_the_last_edits_and_tells_what_chan
         }
         if (random.chance(0.7)) versions.add();
         const auto now = versions.all.back();
-        maker.use_edits(now);
+        maker.use_edits(*now);
         if (random.chance(0.5)) continue;  // the next one comes at once
         ASSERT_TRUE(comes_true([&] { return maker.idle(); }));
         const std::scoped_lock lock(shown.mutex);
@@ -158,7 +158,7 @@ TEST(DetailMaker, makes_no_part_of_the_scene_that_is_not_wanted_any_more) {
     // Bricks that come are no edits.
     PartOf part(store.level);
     part.add_all();
-    maker.use_edits(part.samples());
+    maker.use_edits(*part.samples());
     ASSERT_TRUE(comes_true([&] { return maker.idle(); }));
     EXPECT_EQ(made, 1);
 }
