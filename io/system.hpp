@@ -11,6 +11,8 @@ namespace palpate::io {
 
 /// [bytes]
 std::uint64_t machine_memory();
+/// [bytes] That this process has in memory; 0 where the system does not say.
+std::uint64_t resident_memory();
 
 /// Memory that is zero, returned to the system as soon as nobody holds it. Throws std::bad_alloc.
 std::shared_ptr<std::byte> fresh_memory(std::size_t bytes);

@@ -1,6 +1,8 @@
 // What io asks of the operating system; see system.hpp. Windows, where files are opened for bytes,
 // not for text.
 #include <windows.h>
+// After it:
+#include <psapi.h>
 
 #include <fcntl.h>
 #include <io.h>
@@ -44,6 +46,13 @@ bool done(BOOL result) {
 }
 
 }  // namespace
+
+std::uint64_t resident_memory() {
+    PROCESS_MEMORY_COUNTERS counters{};
+    counters.cb = sizeof counters;
+    if (!K32GetProcessMemoryInfo(GetCurrentProcess(), &counters, sizeof counters)) return 0;
+    return counters.WorkingSetSize;
+}
 
 std::uint64_t machine_memory() {
     MEMORYSTATUSEX status{};

@@ -1,14 +1,12 @@
 // The loader's threads: which brick comes next, which one goes, and what is published.
 #include "palpate/stream/loader.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <stdexcept>
 
+#include "io/system.hpp"
 #include "palpate/io/error.hpp"
 #include "stream/blocks.hpp"
 #include "stream/brick_memory.hpp"
@@ -57,14 +55,6 @@ std::size_t most_bricks(const Store& store, std::uint64_t memory) {
                                     " MB of memory are needed to feel " + store.info().address);
     }
     return count;
-}
-
-/// That the process has in memory; 0 where the system does not say.
-std::uint64_t resident_bytes() {
-    std::ifstream file("/proc/self/statm");
-    std::uint64_t pages = 0, resident = 0;
-    file >> pages >> resident;
-    return resident * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
 }
 
 std::array<int, 3> array_of(const Index3& at) {
@@ -404,7 +394,7 @@ void BrickLoader::count_process() {
     const Clock::time_point now = Clock::now();
     if (settings_.whole_process && now - counted_ > between_counts) {
         counted_ = now;
-        const std::uint64_t all = resident_bytes();
+        const std::uint64_t all = io::resident_memory();
         const std::uint64_t ours = blocks_->bytes() + other_bytes_ + memory_->bytes();
         process_bytes_ = all > ours ? all - ours : 0;
     }

@@ -2,12 +2,17 @@
 // fetches over HTTP are not built there.
 #include "io/plain_samples.hpp"
 #include "palpate/io/error.hpp"
+#include "palpate/stream/convert.hpp"
+#include "palpate/stream/edits.hpp"
 #include "palpate/stream/store.hpp"
 #include "stream/remote_objects.hpp"
 #include "stream/stores.hpp"
 
 namespace palpate::stream {
 namespace {
+
+const char* const no_chunks =
+    ": Palpate for Windows does not write chunked formats; use a file, or Linux";
 
 void check_number(const std::string& address, const std::string& what, int wanted) {
     if (wanted == 0) return;
@@ -20,6 +25,24 @@ void check_number(const std::string& address, const std::string& what, int wante
 void check_choice(const StoreInfo& info, const StoreOptions& options) {
     check_number(info.address, "time", options.time);
     check_number(info.address, "channel", options.channel);
+}
+
+bool is_chunked(const std::string& address) {
+    return std::filesystem::path(address).extension() == ".zarr";  // to be refused
+}
+
+void check_edits_name(const std::filesystem::path& out) {
+    throw std::invalid_argument(out.string() + no_chunks);
+}
+
+void save_edits(const Store&, const Opened&, int, const Samples&, const std::filesystem::path& out,
+                const io::Progress&) {
+    check_edits_name(out);
+}
+
+Converted convert_to_zarr(const Store&, int, const std::filesystem::path& out,
+                          const ConvertOptions&) {
+    throw io::OutputError(out.string() + no_chunks);
 }
 
 bool is_store(const std::string& address, const StoreOptions& options) {

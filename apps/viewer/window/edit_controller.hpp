@@ -8,8 +8,7 @@
 #include <memory>
 
 #include "apps/viewer/window/background_task.hpp"
-#include "palpate/run/volume_editor.hpp"
-#include "palpate/samples.hpp"
+#include "palpate/run/data.hpp"
 
 class QMessageBox;
 class QWidget;
