@@ -106,7 +106,9 @@ TEST(RemoteFile, what_cannot_be_read_is_one_line) {
         {server.address("empty.ims"), ""},
         {server.address("absent.ims"), "not there"},
         {whole.address("cut.ims"), "whole files only"}};
-    for (const auto& [address, what] : wrong) {
+    for (const auto& pair : wrong) {
+        const std::string& address = pair.first;
+        const char* const what = pair.second;
         const std::string message =
             message_of<io::InputError>([&] { (void)open_store(address, {}); });
         EXPECT_TRUE(message.starts_with(address)) << message;

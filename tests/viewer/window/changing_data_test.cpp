@@ -68,6 +68,21 @@ TEST_F(ChangingData, the_edited_volume_is_saved_by_a_dialog_and_can_be_opened) {
     EXPECT_EQ(work().version, 0U);
 }
 
+TEST_F(ChangingData, the_edited_volume_is_saved_as_zarr_and_then_read_as_it_is_felt) {
+    feel("synthetic:sphere:48x48x48");
+    carve();
+    const Volume felt = flattened(*work().samples);
+    type_in_dialog(Qt::Key_S, scratch("carved.zarr"), Qt::ShiftModifier);
+    ASSERT_TRUE(wait_until([&] { return !work().changed; }));
+    const auto store = stream::open_store((scratch_.path() / "carved.zarr").string());
+    const Volume saved = stream::read_level(*store, 0);
+    EXPECT_EQ(saved.geometry().origin, felt.geometry().origin);
+    ASSERT_EQ(saved.bytes(), felt.bytes());
+    EXPECT_EQ(std::memcmp(saved.data(), felt.data(), felt.bytes()), 0);
+    feel(scratch("carved.zarr").toStdString());
+    EXPECT_TRUE(window_->live()->data().is_streamed());
+}
+
 TEST_F(ChangingData, the_brush_is_outlined_in_scene_and_slices) {
     feel("synthetic:sphere:48x48x48");
     press_until_force();
