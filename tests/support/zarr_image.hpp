@@ -38,7 +38,8 @@ inline void put_image(const std::filesystem::path& folder) {
             for (int i = 0; i < n * n * n; ++i) {
                 const Vec3 at(i % n, i / n % n, i / (n * n));
                 const double inside = radius - (at - Vec3::Constant(0.5 * (n - 1))).norm();
-                bytes += static_cast<char>(std::clamp(128 + 30 * inside, 0.0, 255.0));
+                bytes += static_cast<char>(
+                    static_cast<unsigned char>(std::clamp(128 + 30 * inside, 0.0, 255.0)));
             }
             std::ofstream(
                 array / (std::to_string(image / 2) + "." + std::to_string(image % 2) + ".0.0.0"),
