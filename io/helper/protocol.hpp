@@ -2,12 +2,12 @@
 //   palpate-io-helper read PATH REQUEST       samples come back in descriptor 3
 //   palpate-io-helper locate PATH REQUEST     says where the samples lie in their file
 //   palpate-io-helper describe PATH REQUEST   says what image is in a file of chunks
-//   palpate-io-helper chunks PATH REQUEST     where some chunks of it lie comes back in descriptor
-//   3 palpate-io-helper read-mesh PATH REQUEST  vertices and triangles come back in descriptor 3
+//   palpate-io-helper chunks PATH REQUEST     places of some chunks come back in descriptor 3
+//   palpate-io-helper read-mesh PATH REQUEST  vertices and triangles come back in descriptor 3
 //   palpate-io-helper write PATH REQUEST FOLDER   samples are given in descriptor 3; FOLDER, beside
 //                                             PATH, is created for the unfinished file and removed
-// describe and chunks: with "mirror" in REQUEST the file is in descriptor 5 as far as it is here
-// (io/mirror.hpp); {"done":{"missing":[offset, length]}} asks for more.
+// With "mirror" in the REQUEST of describe and chunks, descriptor 5 has the parts of the file that
+// were fetched so far (io/mirror.hpp); {"done":{"missing":[offset, length]}} asks for another.
 // REQUEST is JSON. Lines of JSON come back on descriptor 4: {"progress":0.5}, {"doing":"a file"},
 // and at the end {"error":"..."} or {"done":{...}}. Doubles in JSON survive to the bit.
 #pragma once

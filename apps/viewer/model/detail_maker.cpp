@@ -1,4 +1,4 @@
-// Joins what was read, edits and the overview.
+// Lays edits over what was read, and joins it with the overview; see the header.
 #include "apps/viewer/model/detail_maker.hpp"
 
 #include <algorithm>
@@ -10,8 +10,8 @@
 namespace palpate::viewer {
 namespace {
 
-/// So many of its samples away a sample of the overview counts at the border (two in the smooth
-/// field), and shows an edit (a half).
+/// How far from an edit the border's samples may change [overview samples]: the smooth field
+/// reaches two, and a sample of the overview shows edits up to a half away.
 constexpr double overview_reach = 2.5;
 
 /// The samples, of the grid that is felt, whose edits differ; null has none.

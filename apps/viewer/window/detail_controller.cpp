@@ -75,7 +75,11 @@ void DetailController::begin() {
         Field(loaded.volume, felt.solid(), felt.background(), felt.interpolation()),
         std::move(sizes),
         [this, generation = generation_](int viewer, const auto& made) {
-            hand_over(this, [this, generation, viewer, made] { take(generation, viewer, made); });
+            ++handed_over_;
+            hand_over(this, [this, generation, viewer, made] {
+                --handed_over_;
+                take(generation, viewer, made);
+            });
         },
         lower_thread_priority);
     stream::DetailSettings settings;
@@ -210,7 +214,8 @@ bool DetailController::settled() const {
         all = all && has(axis, views_.slice(axis).seen()) &&
               shows(slices_[static_cast<std::size_t>(axis)], axis);
     }
-    return (all && shows(patch_, scene) && maker_->idle()) || status.failed > 0;
+    return (all && shows(patch_, scene) && maker_->idle() && handed_over_ == 0) ||
+           status.failed > 0;
 }
 
 DetailController::State DetailController::state() const {

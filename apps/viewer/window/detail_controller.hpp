@@ -6,6 +6,7 @@
 #include <QObject>
 
 #include <array>
+#include <atomic>
 #include <memory>
 #include <optional>
 
@@ -77,6 +78,7 @@ class DetailController : public QObject {
     std::array<std::shared_ptr<const DetailField>, 4> made_;
     std::uint64_t memory_ = 0;                   // [bytes] of decoded pieces
     std::shared_ptr<const stream::Store> held_;  // store_ points into it
+    std::atomic<int> handed_over_ = 0;           // by the maker, not taken yet
     std::shared_ptr<DetailMaker> maker_;
     std::unique_ptr<stream::DetailReader> reader_;
 };

@@ -128,18 +128,18 @@ void EditController::save(const QString& path, std::function<void()> then) {
         data->check_save_name(file.string());
     };
     if (!messages_.guarded(check)) return;
-    const Volume& volume = data->loaded().volume;
     const QString words =
         data->is_streamed()
             ? tr(": it opens as the edited volume while the original stays where it is")
-            : QString::fromStdString(io::opening_words(file, volume));
+            : QString::fromStdString(io::opening_words(file, data->loaded().volume));
     messages_.show_done(tr("Saving %1").arg(path));
     saving_.start(
         tr("Saving %1").arg(path),
         [file, data](const io::Progress& progress) { data->save(file, progress); },
-        [this, path, words, source = source_of(path, volume), then = std::move(then)] {
+        [this, path, words, data, then = std::move(then)] {
             if (content_.editor()) {  // of a sequence only one frame was saved
-                content_.set_saved(source);
+                // What it is can be seen only now.
+                content_.set_saved(source_of(path, data->loaded().volume));
                 remember_file(path);
             }
             messages_.show_done(tr("Saved %1").arg(path) + words);

@@ -162,9 +162,32 @@ TEST_F(StreamingEdits, look_like_those_in_memory_and_are_saved) {
     ASSERT_TRUE(wait_until([&] { return !editor().state().changed; }))
         << window_->messages().problem().toStdString();
     ASSERT_TRUE(wait_until([&] { return window_->windowTitle().startsWith("cut.zarr"); }));
+    EXPECT_TRUE(std::holds_alternative<run::StoreSource>(window_->content().source().from))
+        << "what was saved is what is opened";
     ASSERT_TRUE(open("cut.zarr"));
     EXPECT_FALSE(editor().state().changed);
     expect_like(expected, "saved and opened");
+}
+
+TEST_F(StreamingEdits, that_were_not_saved_are_rescued_when_a_signal_ends_the_window) {
+    ring();
+    ASSERT_TRUE(open("ring.zarr"));
+    const auto sample_in = [&](const std::string& name) {
+        std::vector<std::byte> sample(1);
+        const SampleBox cut_out{{100, 40, 80}, {100, 40, 80}};
+        stream::open_store(name)->read(0, cut_out, sample, {});
+        return static_cast<int>(sample[0]);
+    };
+    EXPECT_GT(sample_in(scratch("ring.zarr").toStdString()), 60);
+    editor().apply(fill_);
+    window_->end();
+    const std::string rescued =
+        QDir::temp()
+            .filePath(QString("palpate-edits-%1.zarr").arg(QCoreApplication::applicationPid()))
+            .toStdString();
+    EXPECT_EQ(sample_in(rescued), 0);
+    std::filesystem::remove_all(rescued);
+    window_.reset();
 }
 
 TEST_F(StreamingEdits, by_hand_are_recorded_and_played) {
