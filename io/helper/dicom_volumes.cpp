@@ -245,13 +245,6 @@ Result read_chosen(const std::vector<DicomSeries>& all, const Request& request) 
 
 }  // namespace
 
-bool looks_like_dicom(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    char start[132] = {};
-    in.read(start, sizeof start);
-    return in.gcount() == sizeof start && std::memcmp(start + 128, "DICM", 4) == 0;
-}
-
 Result read_dicom_file(const Request& request) {
     say_doing(request.path.filename().string());
     const auto all = series_of(slices_from(request.path));

@@ -1,4 +1,5 @@
-// The protocol between the library and its helper program.
+// The protocol between the library and its helper, a program that becomes another where it needs a
+// library (own_program.cpp).
 //   palpate-io-helper read PATH REQUEST       samples come back in descriptor 3
 //   palpate-io-helper locate PATH REQUEST     says where the samples lie in their file
 //   palpate-io-helper describe PATH REQUEST   says what image is in a file of chunks

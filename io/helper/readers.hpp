@@ -1,4 +1,4 @@
-// The readers and writers of the helper program, one source file for each family of formats.
+// The readers and writers of the helper programs, one source file for each family of formats.
 #pragma once
 
 #include <functional>
@@ -37,6 +37,12 @@ using MeshMemory = std::function<void*(const MeshSize&)>;
 MeshSize read_mesh(const std::filesystem::path& path, const std::string& extension,
                    const MeshMemory& memory_of);
 
+struct WrittenVolume {
+    Geometry geometry;
+    SampleType type = SampleType::uint8;
+    const void* samples = nullptr;
+    bool compress = false;
+};
 /// Writes the shared samples to `path`, in the format that its extension names.
 void write_with_itk(const std::filesystem::path& path, const std::string& extension,
                     const Geometry& geometry, SampleType type, const void* samples, bool compress);

@@ -85,7 +85,7 @@ std::vector<std::uint64_t> coarser_of(TIFF* tiff) {
     return {offsets, offsets + std::min<std::size_t>(count, most_levels)};
 }
 
-std::string description_of(TIFF* tiff) {
+std::string description_text(TIFF* tiff) {
     const char* text = nullptr;
     if (TIFFGetField(tiff, TIFFTAG_IMAGEDESCRIPTION, &text) == 0 || !text) return "";
     return text;
@@ -121,7 +121,7 @@ struct Layout {
 };
 
 Layout layout_of(TIFF* tiff, const fs::path& file, std::vector<std::string>& notes) {
-    const std::string description = description_of(tiff);
+    const std::string description = description_text(tiff);
     const auto spacing = image_j_spacing(tiff);
     const Pages pages = pages_of(tiff, file);
     TIFFSetDirectory(tiff, 0);

@@ -221,11 +221,6 @@ void note_gaps(const std::vector<fs::path>& files, std::vector<std::string>& not
 
 }  // namespace
 
-bool looks_like_tiff(const fs::path& file) {
-    const std::string extension = lower(file.extension().string());
-    return extension == ".tif" || extension == ".tiff";
-}
-
 Result read_tiff_file(const Request& request) {
     const std::vector<Slice> slices = pages_of(request.path);
     std::vector<std::string> notes;

@@ -1,0 +1,22 @@
+// palpate-io-dicom: reads DICOM, by GDCM and ITK.
+#include <cstdlib>
+
+#include "io/helper/jobs.hpp"
+
+namespace palpate::io {
+namespace {
+
+Result read_dicom(const Request& request) {
+    return std::filesystem::is_directory(request.path) ? read_dicom_folder(request)
+                                                       : read_dicom_file(request);
+}
+
+}  // namespace
+}  // namespace palpate::io
+
+int main(int argc, char** argv) {
+    using namespace palpate::io;
+    const int status = serve("palpate-io-dicom", {.read = &read_dicom}, argc, argv);
+    // No destructors of the libraries: some of them crash on what a damaged file left behind.
+    std::_Exit(status);
+}

@@ -1,0 +1,25 @@
+// palpate-io-itk: reads NIfTI, writes NRRD, MetaImage and NIfTI.
+#include <cstdlib>
+
+#include "io/helper/jobs.hpp"
+
+namespace palpate::io {
+namespace {
+
+void write(const std::filesystem::path& path, const std::string& extension,
+           const WrittenVolume& volume) {
+    write_with_itk(path, extension, volume.geometry, volume.type, volume.samples,
+                   volume.compress || extension == ".nii.gz");
+}
+
+}  // namespace
+}  // namespace palpate::io
+
+int main(int argc, char** argv) {
+    using namespace palpate::io;
+    const int status =
+        serve("palpate-io-itk", {.read = &read_nifti, .locate = &nifti_samples, .write = &write},
+              argc, argv);
+    // No destructors of the libraries: some of them crash on what a damaged file left behind.
+    std::_Exit(status);
+}

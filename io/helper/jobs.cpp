@@ -1,0 +1,305 @@
+// Requests and answers of all jobs; the formats come as functions.
+#include "io/helper/jobs.hpp"
+
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <new>
+
+#include "io/helper/child.hpp"
+#include "io/helper/library_words.hpp"
+#include "io/helper/mirrored.hpp"
+#include "io/helper/report.hpp"
+#include "io/leftovers.hpp"
+#include "palpate/io/written_formats.hpp"
+
+namespace palpate::io {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// What a writer leaves in its folder, for the signal handler, which may not allocate.
+char unfinished[3][4096];
+char unfinished_folder[4096];
+
+extern "C" void clean_up_and_go(int signal_number) {
+    for (const auto& file : unfinished) {
+        if (file[0] != '\0') unlink(file);
+    }
+    if (unfinished_folder[0] != '\0') rmdir(unfinished_folder);
+    signal(signal_number, SIG_DFL);
+    raise(signal_number);
+}
+
+bool ends_with(const std::string& text, const std::string& end) {
+    return text.size() >= end.size() &&
+           text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+nlohmann::json json_of(const ValueInfo& values) {
+    nlohmann::json json = {{"modality", values.modality}, {"units", values.units}};
+    if (values.window) json["window"] = {values.window->centre, values.window->width};
+    if (values.padding) json["padding"] = *values.padding;
+    for (const LabelName& label : values.labels) {
+        json["labels"].push_back(
+            {{"value", label.value}, {"name", label.name}, {"colour", label.colour}});
+    }
+    return json;
+}
+
+nlohmann::json json_of(const SeriesInfo& s) {
+    return {{"uid", s.uid},
+            {"patient", s.patient},
+            {"study", s.study},
+            {"description", s.description},
+            {"modality", s.modality},
+            {"stack", s.stack},
+            {"slices", s.slices},
+            {"size", s.size},
+            {"spacing", json_from(s.spacing)},
+            {"picture", {s.picture.width, s.picture.height}},
+            {"grey", s.picture.grey}};
+}
+
+void limit_this_process(const nlohmann::json& asked, std::uint64_t memory) {
+    go_with_caller(asked.at("caller").get<pid_t>());
+    limit_memory(memory);
+}
+
+nlohmann::json run_read(const fs::path& path, const nlohmann::json& asked, Read* read) {
+    Request request;
+    request.path = path;
+    request.series = asked.at("series").get<std::string>();
+    request.time_step = asked.at("time_step").get<int>();
+    request.memory_limit = asked.at("memory").get<std::uint64_t>();
+    if (asked.contains("spacing")) request.spacing = vec3_from(asked["spacing"]);
+    request.pictures = asked.value("pictures", false);
+    limit_this_process(asked, request.memory_limit);
+    Result result;
+    try {
+        result = read(request);
+    } catch (const ChooseSeries& choice) {
+        nlohmann::json list = nlohmann::json::array();
+        for (const SeriesInfo& series : choice.series) list.push_back(json_of(series));
+        return {{"choose", list}, {"why", choice.what()}};
+    }
+    return {{"geometry", json_from(result.geometry)},
+            {"type", name_of(result.type)},
+            {"format", result.format},
+            {"time_steps", result.time_steps},
+            {"frame_interval", result.times.interval},
+            {"first_time", result.times.first},
+            {"values", json_of(result.values)},
+            {"notes", result.notes}};
+}
+
+nlohmann::json run_locate(const fs::path& path, const nlohmann::json& asked, Locate* locate) {
+    Request request;
+    request.path = path;
+    if (asked.contains("spacing")) request.spacing = vec3_from(asked["spacing"]);
+    limit_this_process(asked, 1 << 30);
+    const PlainLayout plain = locate(request);
+    return {{"format", plain.about.format},
+            {"geometry", json_from(plain.about.geometry)},
+            {"stored", name_of(plain.stored)},
+            {"file", plain.place.file.string()},
+            {"offset", plain.place.offset},
+            {"swapped", plain.place.swapped},
+            {"slope", plain.slope},
+            {"intercept", plain.intercept},
+            {"times", plain.about.time_steps},
+            {"frame_interval", plain.about.times.interval},
+            {"notes", plain.about.notes}};
+}
+
+/// What `work` gives; of a mirror of which something is missing, what that is. Libraries may take a
+/// part that they cannot read for one that is not there, and go on.
+template <class Work>
+nlohmann::json with_mirror(const nlohmann::json& asked, Work&& work) {
+    if (!asked.contains("mirror")) return work();
+    use_mirror();
+    const auto missing = [] {
+        return nlohmann::json{{"missing", {missing_part()->offset, missing_part()->length}}};
+    };
+    try {
+        nlohmann::json result = work();
+        return missing_part() ? missing() : result;
+    } catch (const std::exception&) {
+        if (!missing_part()) throw;
+        return missing();
+    }
+}
+
+nlohmann::json run_describe(const fs::path& path, const nlohmann::json& asked, Describe* describe) {
+    limit_this_process(asked, 1 << 30);
+    return with_mirror(asked, [&] {
+        return json_from(
+            describe(path, asked.at("channel").get<int>(), asked.at("time").get<int>()));
+    });
+}
+
+nlohmann::json run_chunks(const fs::path& path, const nlohmann::json& asked, Places* places) {
+    limit_this_process(asked, 1 << 30);
+    ChunkBox box;
+    box.array = asked.at("array").get<std::string>();
+    box.first = asked.at("first").get<std::array<std::int64_t, 3>>();
+    box.count = asked.at("count").get<std::array<std::int64_t, 3>>();
+    const auto count = static_cast<std::size_t>(box.count[0] * box.count[1] * box.count[2]);
+    const std::span<std::byte> memory = shared_samples(count * sizeof(ChunkPlace));
+    return with_mirror(asked, [&] {
+        places(path, box, {reinterpret_cast<ChunkPlace*>(memory.data()), count});
+        return nlohmann::json::object();
+    });
+}
+
+/// The folder in which a file is written: under its own name, because headers name their data
+/// files, in a folder of its own, so that no unfinished file is visible.
+class Workshop {
+  public:
+    Workshop(const fs::path& folder, const fs::path& target)
+        : folder_(folder), target_(target), inside_(folder / target.filename()) {
+        remember(unfinished[0], inside_);
+        remember(unfinished[1], fs::path(inside_).replace_extension(".raw"));
+        remember(unfinished[2], fs::path(inside_).replace_extension(".zraw"));
+        remember(unfinished_folder, folder);
+        // SIGPIPE: a dying caller's pipes close before its death is announced (PR_SET_PDEATHSIG),
+        // and a report between the two would end this process with its file left behind.
+        for (const int s : {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGXCPU}) signal(s, clean_up_and_go);
+    }
+
+    void open() const {
+        std::error_code error;
+        fs::create_directory(folder_, error);
+        if (error) {
+            throw Failure("cannot be written there (" + error.message() +
+                          "); choose another folder");
+        }
+        (void)lock_temporary(folder_);  // until this process ends
+    }
+    const fs::path& inside() const { return inside_; }
+
+    /// Data files first: a header never points to data that are not there.
+    void move_out() const {
+        std::vector<fs::path> made;
+        for (const auto& entry : fs::directory_iterator(folder_)) {
+            if (entry.path() != inside_) made.push_back(entry.path());
+        }
+        made.push_back(inside_);
+        for (const fs::path& file : made) {
+            std::error_code error;
+            fs::rename(file, target_.parent_path() / file.filename(), error);
+            if (error) throw Failure("cannot be put in its place (" + error.message() + ")");
+        }
+        fs::remove(folder_);
+    }
+
+  private:
+    static void remember(char* to, const fs::path& path) {
+        std::snprintf(to, sizeof unfinished_folder, "%s", path.c_str());
+    }
+    fs::path folder_, target_, inside_;
+};
+
+nlohmann::json run_write(const fs::path& path, const nlohmann::json& asked, const fs::path& folder,
+                         Write* write) {
+    const Workshop workshop(folder, path);
+    WrittenVolume volume;
+    volume.geometry = geometry_from(asked.at("geometry"));
+    volume.type = sample_type_from(asked.at("type").get<std::string>());
+    volume.compress = asked.at("compress").get<bool>();
+    check_geometry(volume.geometry);
+    const auto bytes =
+        static_cast<std::size_t>(sample_count(volume.geometry)) * size_of(volume.type);
+    limit_this_process(asked, std::max<std::uint64_t>(4 * bytes, 1 << 30));
+    void* const samples = mmap(nullptr, bytes, PROT_READ, MAP_SHARED, samples_descriptor, 0);
+    if (samples == MAP_FAILED) throw std::bad_alloc();
+    volume.samples = samples;
+    workshop.open();
+    write(workshop.inside(), std::string(written_extension_of(path)), volume);
+    workshop.move_out();
+    return nlohmann::json::object();
+}
+
+nlohmann::json run_read_mesh(const fs::path& path, const nlohmann::json& asked,
+                             ReadMesh* read_mesh) {
+    limit_this_process(asked, asked.at("memory").get<std::uint64_t>());
+    const MeshSize size = read_mesh(path, extension_of(path), [](const MeshSize& wanted) {
+        const std::size_t bytes = mesh_bytes(wanted.vertices, wanted.triangles);
+        if (ftruncate(samples_descriptor, static_cast<off_t>(bytes)) != 0) throw std::bad_alloc();
+        void* const memory =
+            mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, samples_descriptor, 0);
+        if (memory == MAP_FAILED) throw std::bad_alloc();
+        return memory;
+    });
+    return {{"vertices", size.vertices}, {"triangles", size.triangles}};
+}
+
+nlohmann::json run(Job job, char** argv, const Formats& formats) {
+    const fs::path path = argv[2];
+    const auto asked = nlohmann::json::parse(argv[3]);
+    switch (job) {
+        case Job::read:
+            if (formats.read) return run_read(path, asked, formats.read);
+            break;
+        case Job::locate:
+            if (formats.locate) return run_locate(path, asked, formats.locate);
+            break;
+        case Job::describe:
+            if (formats.describe) return run_describe(path, asked, formats.describe);
+            break;
+        case Job::chunks:
+            if (formats.places) return run_chunks(path, asked, formats.places);
+            break;
+        case Job::read_mesh:
+            if (formats.read_mesh) return run_read_mesh(path, asked, formats.read_mesh);
+            break;
+        case Job::write:
+            if (formats.write) return run_write(path, asked, argv[4], formats.write);
+            break;
+        case Job::none:
+            break;
+    }
+    throw Failure("is not for this program; reinstall Palpate");
+}
+
+}  // namespace
+
+Job job_of(int argc, char** argv) {
+    static constexpr std::pair<std::string_view, Job> jobs[] = {
+        {"read", Job::read},     {"locate", Job::locate},       {"describe", Job::describe},
+        {"chunks", Job::chunks}, {"read-mesh", Job::read_mesh}, {"write", Job::write}};
+    for (const auto& [name, job] : jobs) {
+        if (argc > 1 && name == argv[1] && argc == (job == Job::write ? 5 : 4)) return job;
+    }
+    return Job::none;
+}
+
+std::string extension_of(const fs::path& path) {
+    const std::string name = lower(path.filename().string());
+    return ends_with(name, ".nii.gz") ? ".nii.gz" : lower(path.extension().string());
+}
+
+std::string words_of(const std::exception& e, Job job) {
+    if (dynamic_cast<const Failure*>(&e)) return e.what();
+    if (dynamic_cast<const std::bad_alloc*>(&e)) {
+        return job == Job::read_mesh ? "not enough memory; simplify the mesh"
+                                     : "not enough memory; crop or downsample the volume";
+    }
+    return "the format's library refused it (" + library_words(e.what(), 300) + "); " +
+           (job == Job::write ? "is the disk full?"
+                              : "it is damaged or of a kind that is not read");
+}
+
+int serve(const char* program, const Formats& formats, int argc, char** argv) {
+    const Job job = job_of(argc, argv);
+    return helper_status(
+        program, job != Job::none, [&] { return run(job, argv, formats); },
+        [&](const std::exception& e) { return words_of(e, job); });
+}
+
+}  // namespace palpate::io

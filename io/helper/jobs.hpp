@@ -1,0 +1,47 @@
+// The jobs of the helper programs: requests, answers and limits are the same in all of them; what
+// differs are the formats, and so the libraries that a program has to load.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "io/helper/headers.hpp"
+#include "io/helper/images.hpp"
+#include "io/helper/readers.hpp"
+
+namespace palpate::io {
+
+using Read = Result(const Request& request);
+using Locate = PlainLayout(const Request& request);
+using Describe = ChunkedImage(const std::filesystem::path& path, int channel, int time);
+using Places = void(const std::filesystem::path& path, const ChunkBox& box,
+                    std::span<ChunkPlace> places);
+using ReadMesh = MeshSize(const std::filesystem::path& path, const std::string& extension,
+                          const MeshMemory& memory_of);
+using Write = void(const std::filesystem::path& path, const std::string& extension,
+                   const WrittenVolume& volume);
+
+/// What a program does; null: another one does it.
+struct Formats {
+    Read* read = nullptr;
+    Locate* locate = nullptr;
+    Describe* describe = nullptr;
+    Places* places = nullptr;
+    ReadMesh* read_mesh = nullptr;
+    Write* write = nullptr;
+};
+
+/// The first word of the command line (protocol.hpp).
+enum class Job { none, read, locate, describe, chunks, read_mesh, write };
+Job job_of(int argc, char** argv);
+
+/// In lower case; of a.nii.gz both.
+std::string extension_of(const std::filesystem::path& path);
+
+/// What a person is told of an exception.
+std::string words_of(const std::exception& e, Job job);
+
+/// Does the job of the command line and reports; the exit status.
+int serve(const char* program, const Formats& formats, int argc, char** argv);
+
+}  // namespace palpate::io

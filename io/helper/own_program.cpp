@@ -1,0 +1,138 @@
+// palpate-io-helper: reads or writes one volume, or reads a mesh, and reports as described in
+// protocol.hpp. It exists so that a crash of a format's library does not crash the caller. NRRD and
+// MetaImage it reads itself; for all else it becomes the program that has the library, so that none
+// is loaded for nothing.
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <system_error>
+#include <vector>
+
+#include "io/helper/jobs.hpp"
+#include "io/helper/report.hpp"
+
+namespace palpate::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char *dicom = "palpate-io-dicom", *images = "palpate-io-images",
+                     *itk = "palpate-io-itk", *vtk = "palpate-io-vtk";
+
+/// Null for what needs a library.
+const Formats* own_formats(Job job, const fs::path& path) {
+    static constexpr Formats nrrd{.read = &read_nrrd, .locate = &nrrd_samples};
+    static constexpr Formats meta_image{.read = &read_meta_image, .locate = &meta_image_samples};
+    std::error_code error;
+    if ((job != Job::read && job != Job::locate) || fs::is_directory(path, error)) return nullptr;
+    const std::string extension = extension_of(path);
+    if (extension == ".nrrd" || extension == ".nhdr") return &nrrd;
+    if (extension == ".mha" || extension == ".mhd") return &meta_image;
+    return nullptr;
+}
+
+/// Whether a file of this name is a volume, whole.
+bool names_a_volume(const fs::path& path) {
+    const std::string extension = extension_of(path);
+    return std::ranges::any_of(
+        std::array{".nrrd", ".nhdr", ".mha", ".mhd", ".nii", ".nii.gz", ".vti"},
+        [&](const char* known) { return extension == known; });
+}
+
+/// "a.nrrd, b.nrrd and 3 more"
+std::string listed(std::vector<std::string> names) {
+    constexpr std::size_t most = 3;
+    std::ranges::sort(names);
+    std::string text;
+    for (std::size_t i = 0; i < std::min(most, names.size()); ++i) {
+        text += (i > 0 ? ", " : "") + names[i];
+    }
+    return names.size() > most ? text + " and " + std::to_string(names.size() - most) + " more"
+                               : text;
+}
+
+/// The program for a folder of slices.
+const char* program_for_folder(const fs::path& folder) {
+    int dicoms = 0, tiffs = 0;
+    bool folders = false;
+    std::vector<std::string> volumes;
+    for (const auto& entry : fs::directory_iterator(folder)) {
+        folders |= entry.is_directory();
+        if (!entry.is_regular_file()) continue;
+        if (names_a_volume(entry.path())) volumes.push_back(entry.path().filename().string());
+        // Not every one of ten thousand has to be looked into.
+        dicoms += dicoms < 2 && looks_like_dicom(entry.path());
+        tiffs += dicoms == 0 && tiffs < 2 && looks_like_tiff(entry.path());
+    }
+    if (!volumes.empty() && dicoms + tiffs <= 1) {
+        throw Failure(std::string("is a folder of volumes") +
+                      (dicoms + tiffs == 1 ? " with a single slice" : "") + ": give one of them (" +
+                      listed(volumes) + ")" + (dicoms + tiffs == 1 ? ", or the slice itself" : ""));
+    }
+    if (dicoms > 0) return dicom;
+    if (tiffs > 0) return images;
+    throw Failure(std::string("is a folder with no DICOM or TIFF slices in it; ") +
+                  (folders ? "give one of the folders in it, or a volume file"
+                           : "give a volume file or another folder"));
+}
+
+const char* program_for_file(const fs::path& path) {
+    if (fs::is_directory(path)) return program_for_folder(path);
+    const std::string extension = extension_of(path);
+    if (extension == ".nii" || extension == ".nii.gz") return itk;
+    if (extension == ".vti") return vtk;
+    if (extension == ".tif" || extension == ".tiff") return images;
+    if (extension == ".dcm" || extension == ".dicom" || extension == ".ima" ||
+        looks_like_dicom(path)) {
+        return dicom;
+    }
+    throw Failure(
+        "has no extension of a known format (nrrd, nhdr, mha, mhd, nii, nii.gz, dcm, tif, vti); if "
+        "it holds nothing but samples, give its dims and type");
+}
+
+const char* program_for(Job job, const fs::path& path) {
+    const std::string extension = extension_of(path);
+    switch (job) {
+        case Job::read:
+            return program_for_file(path);
+        case Job::describe:
+        case Job::chunks:
+            return images;
+        case Job::read_mesh:
+            return vtk;
+        case Job::write:
+            return extension == ".vti"                           ? vtk
+                   : extension == ".tif" || extension == ".tiff" ? images
+                                                                 : itk;
+        case Job::locate:
+        case Job::none:
+            break;
+    }
+    return itk;
+}
+
+/// Does not return if the program is there.
+nlohmann::json become(const char* program, char** argv) {
+    const fs::path path = fs::read_symlink("/proc/self/exe").parent_path() / program;
+    execv(path.c_str(), argv);
+    throw Failure("needs " + path.string() + ", which is not there; reinstall Palpate");
+}
+
+int run(int argc, char** argv) {
+    constexpr const char* name = "palpate-io-helper";
+    const Job job = job_of(argc, argv);
+    const Formats* own = job == Job::none ? nullptr : own_formats(job, argv[2]);
+    if (own) return serve(name, *own, argc, argv);
+    return helper_status(
+        name, job != Job::none, [&] { return become(program_for(job, argv[2]), argv); },
+        [&](const std::exception& e) { return words_of(e, job); });
+}
+
+}  // namespace
+}  // namespace palpate::io
+
+int main(int argc, char** argv) {
+    return palpate::io::run(argc, argv);
+}
