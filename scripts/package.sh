@@ -58,7 +58,9 @@ package_for_windows() {
     ls -l "$output/$name.zip"
 }
 
+tried=yes
 if [ -z "$build" ]; then
+    tried=no
     build=build/package
     [ "$system" = debian ] || build=build/windows-package
     cmake --preset "$(basename "$build")"
@@ -71,6 +73,8 @@ if [ "$system" = windows ]; then
     package_for_windows
     exit
 fi
-(cd "$build" && cpack -G DEB -B "$output")
+# xz takes minutes for what is made to be tried.
+compression=$([ "$tried" = yes ] && echo gzip || echo xz)
+(cd "$build" && cpack -G DEB -D CPACK_DEBIAN_COMPRESSION_TYPE="$compression" -B "$output")
 rm -rf "$output/_CPack_Packages"
 ls -l "$output"/*.deb

@@ -31,7 +31,7 @@ namespace palpate::viewer::test {
 
 /// Lets the window live until it is so; false if it never is within `ms`, which is meant to be far
 /// longer than it takes.
-inline bool wait_until(const std::function<bool()>& so, int ms = 30'000) {
+inline bool wait_until(const std::function<bool()>& so, int ms = 120'000) {
     QElapsedTimer clock;
     clock.start();
     while (!so()) {
