@@ -18,12 +18,15 @@ using namespace palpate::benchmarks;
 
 namespace {
 
+/// How layers are given: all by level, all by label, or the innermost by label.
+enum class By { level, label, both };
+
 struct Case {
     const char* name;
     const char* method;
     Touch (*touch)();
     int layers = 0;  ///< of which the middle one is touched
-    bool by_label = false;
+    By by = By::level;
     bool looks = false;  ///< whether all samples within reach are in memory, before each update
 };
 
@@ -49,9 +52,9 @@ constexpr Case cases[] = {
     {"free/float32/3", "exact", cylinder<SampleType::float32, 30, -3>},
     {"edited/uint8/3", "exact", [] { return all_in_bricks(cylinder<SampleType::uint8, 30, 1>()); }},
     {"resident/uint8/3", "exact", [] { return all_resident(cylinder<SampleType::uint8, 30, 1>()); },
-     0, false, true},
+     0, By::level, true},
     {"resident/smooth/contact/uint8/3", "exact",
-     [] { return all_resident(smooth(cylinder<SampleType::uint8, 30, 1>())); }, 0, false, true},
+     [] { return all_resident(smooth(cylinder<SampleType::uint8, 30, 1>())); }, 0, By::level, true},
     {"between/uint8/3", "exact",
      [] { return between_frames(cylinder<SampleType::uint8, 30, 1>()); }},
     {"noise/float32/3", "exact", [] { return noise_touch(SampleType::float32, 3); }},
@@ -68,10 +71,13 @@ constexpr Case cases[] = {
     {"layers/5/smooth/contact/uint8/3", "exact",
      [] { return smooth(cylinder<SampleType::uint8, 30, 1>()); }, 5},
     {"labels/5/smooth/contact/uint8/3", "exact",
-     [] { return smooth(cylinder<SampleType::uint8, 30, 1>()); }, 5, true},
+     [] { return smooth(cylinder<SampleType::uint8, 30, 1>()); }, 5, By::label},
+    {"both/5/smooth/contact/uint8/3", "exact",
+     [] { return smooth(cylinder<SampleType::uint8, 30, 1>()); }, 5, By::both},
     {"layers/1/contact/uint8/3", "exact", cylinder<SampleType::uint8, 30, 1>, 1},
     {"layers/5/contact/uint8/3", "exact", cylinder<SampleType::uint8, 30, 1>, 5},
-    {"labels/5/contact/uint8/3", "exact", cylinder<SampleType::uint8, 30, 1>, 5, true},
+    {"labels/5/contact/uint8/3", "exact", cylinder<SampleType::uint8, 30, 1>, 5, By::label},
+    {"both/5/contact/uint8/3", "exact", cylinder<SampleType::uint8, 30, 1>, 5, By::both},
     {"paper/uint8/0.5", "paper", cylinder<SampleType::uint8, 5, 1>},
     {"gradient/uint8/0.5", "gradient", cylinder<SampleType::uint8, 5, 1>},
     {"gradient-improved/uint8/0.5", "gradient-improved", cylinder<SampleType::uint8, 5, 1>},
@@ -85,16 +91,19 @@ void mix(std::uint64_t& hash, const Vec3& point) {
 }
 
 /// Levels a tenth of the range apart, or the bodies that they bound as labels.
-Layers layers_round(const Touch& touch, int count, bool by_label) {
+Layers layers_round(const Touch& touch, int count, By by) {
     Layers layers;
+    layers.by_label = by != By::level;
+    if (by == By::both) layers.level_count = static_cast<std::size_t>(count - 1);
     const auto level = [&](int i) {
         return touch.isovalue + (i - count / 2) * 0.1 * touch.field.range();
     };
     for (int i = 0; i < count; ++i) {
-        layers.layers.push_back({.name = std::to_string(i), .level = by_label ? i + 1 : level(i)});
-        if (by_label) layers.layers.back()[HapticProperty::puncture_force] = 1e9;
+        const bool label = is_label(layers, static_cast<std::size_t>(i));
+        layers.layers.push_back({.name = std::to_string(i), .level = label ? i + 1 : level(i)});
+        if (label) layers.layers.back()[HapticProperty::puncture_force] = 1e9;
     }
-    if (!by_label) return layers;
+    if (by == By::level) return layers;
     const Volume& volume = touch.field.volume();
     std::vector<std::uint8_t> labels(static_cast<std::size_t>(sample_count(volume.geometry())));
     with_type(volume.type(), [&](auto zero) {
@@ -103,20 +112,20 @@ Layers layers_round(const Touch& touch, int count, bool by_label) {
             while (labels[s] < count && samples[s] > level(labels[s])) ++labels[s];
         }
     });
-    layers.by_label = true;
-    layers.labels = numbered_labels(Volume(volume.geometry(), std::move(labels)), layers.layers);
+    layers.labels = numbered_labels(Volume(volume.geometry(), std::move(labels)), layers.layers,
+                                    layers.level_count);
     return layers;
 }
 
 /// The same updates through a tick of layers.
 void run_layers(const Case& chosen, const Touch& touch, Proxy proxy, long updates) {
-    const Layers layers = layers_round(touch, chosen.layers, chosen.by_label);
+    const Layers layers = layers_round(touch, chosen.layers, chosen.by);
     LayerState state;
     LayerInput input;
     input.method = baselines::method_named(chosen.method);
     // By labels a hand starts in the layer that it is in, which here has to be the one outside of
     // the middle one, and not where recovery finds the nearest way out of all of them.
-    if (chosen.by_label) {
+    if (chosen.by != By::level) {
         input.hip = proxy.scp_physical + normal_at(proxy, touch.field);
         update_layers(layers, state, proxy, touch.field, input);
     }

@@ -31,7 +31,7 @@ std::string text_member(Json& json, const char* name) {
 /// The side does not matter to a file: levels may rise or fall.
 void check_on_either_side(const Layers& layers) {
     const auto& list = layers.layers;
-    const bool falls = list.size() > 1 && list[1].level < list[0].level;
+    const bool falls = level_count(layers) > 1 && list[1].level < list[0].level;
     check(layers, falls ? Solid::below : Solid::above);
 }
 
@@ -89,9 +89,11 @@ void write_layers(const fs::path& path, const LayersFile& file) {
 
 Layers layers_for(const LayersFile& file, const Volume& volume) {
     Layers layers = file.layers;
-    if (file.units != "%" || layers.by_label) return layers;
+    if (file.units != "%") return layers;
     const double low = volume.minimum(), per_cent = 0.01 * (volume.maximum() - volume.minimum());
-    for (Layer& layer : layers.layers) layer.level = low + layer.level * per_cent;
+    for (std::size_t i = 0; i < level_count(layers); ++i) {
+        layers.layers[i].level = low + layers.layers[i].level * per_cent;
+    }
     for (PropertyCurves& curves : layers.curves) {
         for (Curve::Knot& knot : curves.density.knots) knot.at = low + knot.at * per_cent;
         for (Curve::Knot& knot : curves.gradient.knots) knot.at *= per_cent;

@@ -79,10 +79,10 @@ PropertyCurves curves_from(const Json& json, const std::string& name) {
     return curves;
 }
 
-Json json_of(const Layer& layer) {
+Json json_of(const Layer& layer, const char* level) {
     Json json;
     json["name"] = layer.name;
-    json["level"] = number_to_json(layer.level);
+    json[level] = number_to_json(layer.level);
     json["colour"] = layer.colour;
     json["opacity"] = layer.opacity;
     for (std::size_t p = 0; p < property_names.size(); ++p) {
@@ -91,11 +91,21 @@ Json json_of(const Layer& layer) {
     return json;
 }
 
-Layer layer_from(const Json& json, const std::string& where) {
+struct ReadLayer {
+    Layer layer;
+    bool label = false;  // its level is given as a label
+};
+
+ReadLayer layer_from(const Json& json, const std::string& where) {
     Members members(json, where);
     Layer layer;
     members.take("name", layer.name);
-    if (!members.take("level", layer.level)) wrong_member(members.full("level"), "given");
+    const bool label = members.take("label", layer.level);
+    const bool level = members.take("level", layer.level);
+    if (!label && !level) wrong_member(members.full("level"), "given");
+    if (label && level) {
+        throw std::invalid_argument("'" + where + "' has a level and a label: give one of them");
+    }
     Vec3 colour(layer.colour[0], layer.colour[1], layer.colour[2]);
     members.take("colour", colour);
     layer.colour = {colour[0], colour[1], colour[2]};
@@ -105,7 +115,24 @@ Layer layer_from(const Json& json, const std::string& where) {
         if (members.take(property_names[p], value)) layer.own[p] = value;
     }
     members.finish();
-    return layer;
+    return {layer, label};
+}
+
+/// Levels first, then labels.
+void take_layers(const Json& list, Layers& layers) {
+    if (!list.is_array()) wrong_member("layers", "a list");
+    for (const Json& one : list) {
+        const std::size_t number = layers.layers.size();
+        const ReadLayer read = layer_from(one, "layers[" + std::to_string(number) + "]");
+        layers.layers.push_back(read.layer);
+        if (read.label) {
+            if (!layers.by_label) layers.level_count = number;
+            layers.by_label = true;
+        } else if (layers.by_label) {
+            throw std::invalid_argument(
+                "layers: those with a level come before those with a label");
+        }
+    }
 }
 
 Needle needle_from(const Json& json) {
@@ -124,7 +151,10 @@ Json to_json(const Layers& layers) {
     Json json;
     json["name"] = layers.name;
     Json& list = json["layers"] = Json::array();
-    for (const Layer& layer : layers.layers) list.push_back(json_of(layer));
+    const bool both = layers.by_label && layers.level_count > 0;
+    for (std::size_t i = 0; i < layers.layers.size(); ++i) {
+        list.push_back(json_of(layers.layers[i], both && is_label(layers, i) ? "label" : "level"));
+    }
     Json curves = Json::object();
     for (std::size_t p = 0; p < property_names.size(); ++p) {
         const PropertyCurves& of = layers.curves[p];
@@ -135,7 +165,7 @@ Json to_json(const Layers& layers) {
     }
     if (!curves.empty()) json["curves"] = curves;
     json["closing"] = layers.closing;
-    if (layers.by_label) json["by_label"] = true;
+    if (layers.by_label && !both) json["by_label"] = true;
     if (!layers.label_volume.empty()) json["label_volume"] = layers.label_volume;
     if (layers.needle) {
         json["needle"] = {{"lateral_stiffness", layers.needle->lateral_stiffness},
@@ -149,13 +179,7 @@ Layers layers_from_json(const Json& json) {
     Members members(json, "");
     Layers layers;
     members.take("name", layers.name);
-    if (const auto list = members.take("layers")) {
-        if (!list->is_array()) wrong_member("layers", "a list");
-        for (const Json& one : *list) {
-            layers.layers.push_back(
-                layer_from(one, "layers[" + std::to_string(layers.layers.size()) + "]"));
-        }
-    }
+    if (const auto list = members.take("layers")) take_layers(*list, layers);
     if (const auto all = members.take("curves")) {
         Members curves(*all, "curves");
         for (std::size_t p = 0; p < property_names.size(); ++p) {
@@ -166,7 +190,12 @@ Layers layers_from_json(const Json& json) {
         curves.finish();
     }
     members.take("closing", layers.closing);
-    members.take("by_label", layers.by_label);
+    bool all_labels = false;
+    members.take("by_label", all_labels);
+    if (all_labels) {
+        layers.by_label = true;
+        layers.level_count = 0;
+    }
     members.take("label_volume", layers.label_volume);
     if (const auto needle = members.take("needle")) layers.needle = needle_from(*needle);
     members.finish();

@@ -32,13 +32,14 @@ std::string word_of(const std::string& name) {
     return word;
 }
 
-void append_layers(std::string& line, const LayersFelt& felt,
-                   const std::vector<std::string>& names) {
+void append_layers(std::string& line, const LayersFelt& felt, const TraceExtras& extras) {
+    const std::vector<std::string>& names = extras.layer_names;
     line += ',';
     if (felt.touched >= 0) line += word_of(names[static_cast<std::size_t>(felt.touched)]);
     std::string inside;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(felt.inside); ++i) {
-        inside += (i == 0 ? "" : "+") + word_of(names[i]);
+    const auto count = static_cast<std::size_t>(felt.inside);
+    for (std::size_t i = count > extras.nested_layers ? count - 1 : 0; i < count; ++i) {
+        inside += (inside.empty() ? "" : "+") + word_of(names[i]);
     }
     line += ',' + inside;
 }
@@ -76,7 +77,7 @@ TraceWriter::TraceWriter(const std::filesystem::path& path,
 void TraceWriter::add(const TraceRow& row) {
     line_.clear();
     append_row(line_, row);
-    if (!extras_.layer_names.empty()) append_layers(line_, row.layers, extras_.layer_names);
+    if (!extras_.layer_names.empty()) append_layers(line_, row.layers, extras_);
     if (extras_.tool) append_tool(line_, row);
     if (extras_.streamed) {
         append_cell(line_, std::int64_t{row.waiting});

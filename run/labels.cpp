@@ -80,7 +80,7 @@ void attach(Layers& layers, const LoadedVolume& labels) {
     }
     layers.by_label = true;
     layers.label_volume = labels.name;
-    layers.labels = numbered_labels(labels.volume, layers.layers);
+    layers.labels = numbered_labels(labels.volume, layers.layers, level_count(layers));
 }
 
 }  // namespace

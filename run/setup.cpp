@@ -118,9 +118,10 @@ std::string layers_warning(const io::LayersFile& file, const LoadedVolume& loade
         return "the layers are in " + file.units + "; " + loaded.name +
                (units.empty() ? " does not say what its densities are in" : " is in " + units);
     }
-    if (file.layers.by_label) return {};
     std::string empty;
-    for (const Layer& layer : io::layers_for(file, loaded.volume).layers) {
+    const Layers layers = io::layers_for(file, loaded.volume);
+    for (std::size_t i = 0; i < level_count(layers); ++i) {
+        const Layer& layer = layers.layers[i];
         if (layer.level > loaded.volume.minimum() && layer.level < loaded.volume.maximum())
             continue;
         empty += (empty.empty() ? "" : ", ") + layer.name;

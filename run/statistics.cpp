@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "palpate/density.hpp"
+
 namespace palpate::run {
 namespace {
 
@@ -93,6 +95,34 @@ Histogram histogram_of(const Volume& volume, int bins, std::optional<double> pad
     }
     h.counts.assign(static_cast<std::size_t>(bins), 0);
     with_type(volume.type(), [&](auto zero) { count<decltype(zero)>(volume, padding, h); });
+    return h;
+}
+
+Histogram gradients_of(const Volume& volume, int bins) {
+    constexpr double most_samples = 200'000;
+    const Field field(volume, Solid::above, std::nullopt, Interpolation::cubic);
+    const Index3& size = volume.geometry().size;
+    const auto all = static_cast<double>(sample_count(volume.geometry()));
+    const int step = std::max(1, static_cast<int>(std::ceil(std::cbrt(all / most_samples))));
+    std::vector<double> magnitudes;
+    for (int z = 0; z < size[2]; z += step) {
+        for (int y = 0; y < size[1]; y += step) {
+            for (int x = 0; x < size[0]; x += step) {
+                const Vec3 at = physical_from_index(volume.geometry(), Vec3(x, y, z));
+                magnitudes.push_back(gradient_at(field, at).norm());
+            }
+        }
+    }
+    Histogram h;
+    const double greatest = std::ranges::max(magnitudes);
+    h.high = greatest > 0 ? greatest : 1;
+    h.greatest = h.high;
+    h.counts.assign(static_cast<std::size_t>(bins), 0);
+    const double scale = bins / h.high;
+    for (const double magnitude : magnitudes) {
+        const int bin = std::min(bins - 1, static_cast<int>(magnitude * scale));
+        ++h.counts[static_cast<std::size_t>(bin)];
+    }
     return h;
 }
 

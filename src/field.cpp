@@ -140,6 +140,51 @@ std::array<std::uint8_t, 27> Field::shown_around(const Index3& at) const {
     return samples;
 }
 
+void Field::cover(const std::shared_ptr<const Field>& labels, std::uint32_t solid_labels,
+                  double open, double solid) noexcept {
+    if (cover_.labels != labels) {
+        if (!cover_.labels) cover_.background = background_;
+        cover_.labels = labels;
+        const Geometry &from = geometry(), &to = labels->geometry();
+        cover_.shift = index_from_physical(to, physical_from_index(from, Vec3::Zero()));
+        for (int a = 0; a < 3; ++a) {
+            const Vec3 next = physical_from_index(from, Vec3::Unit(a));
+            cover_.turn.col(a) = index_from_physical(to, next) - cover_.shift;
+        }
+        constexpr double rounding = 1e-6;  // [voxel]
+        cover_.same_grid = from.size == to.size &&
+                           (cover_.turn - Mat3::Identity()).cwiseAbs().maxCoeff() *
+                                   static_cast<double>(from.size.maxCoeff()) <
+                               rounding &&
+                           cover_.shift.cwiseAbs().maxCoeff() < rounding;
+        look();
+    }
+    cover_.solid_labels = solid_labels;
+    cover_.open = open - offset_;
+    cover_.solid = solid - offset_;
+    background_ = (solid_labels & 1U) != 0 ? solid : cover_.background;
+}
+
+int Field::covering_label(const Index3& at) const noexcept {
+    if (!has_sample(at)) return 0;
+    const Field& labels = *cover_.labels;
+    Index3 there = at;
+    if (!cover_.same_grid) {
+        const Vec3 index = cover_.turn * at.cast<double>() + cover_.shift;
+        there = (index.array() + 0.5).floor().matrix().cast<int>();
+    }
+    if (!labels.has_sample(there)) return 0;
+    return static_cast<const std::uint8_t*>(
+        labels.data_)[there[0] + there[1] * labels.row_ + there[2] * labels.slice_];
+}
+
+/// What a sample, less offset(), counts as under the labels.
+double Field::covered(const Index3& at, double sample) const noexcept {
+    const int label = covering_label(at);
+    if (cover_.solid_labels >> label & 1U) return cover_.solid;
+    return label > 0 ? cover_.open : sample;
+}
+
 /// Updates what is derived from samples and time.
 void Field::look() noexcept {
     moment_ = samples_->moment_at(time_);
@@ -148,8 +193,9 @@ void Field::look() noexcept {
     resident_ball_ = {};
     bricks_ = samples_->bricks();
     type_ = samples_->type();
-    const double low = std::min(samples_->minimum(), background_);
-    const double high = std::max(samples_->maximum(), background_);
+    const double outside = cover_.labels ? cover_.background : background_;
+    const double low = std::min(samples_->minimum(), outside);
+    const double high = std::max(samples_->maximum(), outside);
     range_ = high > low ? high - low : 1.0;
     // Samples far from zero (a float volume of 1e6 +- 1) lose digits in every sum of eight.
     double largest = std::max(std::abs(low), std::abs(high));
@@ -157,12 +203,13 @@ void Field::look() noexcept {
     if (offset_ != 0) largest = high - low;
     // Edited, interpolated or shifted samples take the slow path, so that plain ones have no extra
     // cost.
-    const bool changing = bricks_ || moment_.weight > 0 || offset_ != 0 || resident_;
+    const bool changing =
+        bricks_ || moment_.weight > 0 || offset_ != 0 || resident_ || cover_.labels;
     plain_ = changing ? Index3(Index3::Zero()) : cells_;
     tolerance_ = std::max(1e-12 * range_, 8 * std::numeric_limits<double>::epsilon() * largest);
     lowest_ = (low - offset_) - range_;
     highest_ = (high - offset_) + range_;
-    reads_bricks_ = resident_ && offset_ == 0 && !shows_labels_;
+    reads_bricks_ = resident_ && offset_ == 0 && !shows_labels_ && !cover_.labels;
     if (!shows_labels_) return;
     range_ = 1;
     lowest_ = -1;
@@ -193,6 +240,15 @@ template CellSamples Field::resident_cell<float>(const Index3&) const;
 
 CellSamples Field::other_cell(const Index3& cell) const {
     if (shows_labels_) return shown_cell(cell);
+    CellSamples samples = uncovered_cell(cell);
+    if (!cover_.labels) return samples;
+    for (int c = 0; c < 8; ++c) {
+        samples[c] = covered(cell + Index3(c & 1, c >> 1 & 1, c >> 2 & 1), samples[c]);
+    }
+    return samples;
+}
+
+CellSamples Field::uncovered_cell(const Index3& cell) const {
     CellSamples samples = absolute_cell(cell);
     if (offset_ != 0) {
         for (double& sample : samples) sample -= offset_;
@@ -234,12 +290,22 @@ Neighbours Field::clipped(const Index3& at) const {
 }
 
 Neighbours Field::other_around(const Index3& at) const {
+    Neighbours samples = uncovered_around(at);
+    if (!cover_.labels) return samples;
+    for (int i = 0; i < 27; ++i) {
+        const Index3 next = at + Index3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+        samples[std::size_t(i)] = covered(next, samples[std::size_t(i)]);
+    }
+    return samples;
+}
+
+Neighbours Field::uncovered_around(const Index3& at) const {
     Neighbours samples;
     if (resident_ && has_sample(at) && !resident_->of_sample(at)) {
         samples.fill(most_solid() - offset_);
         return samples;
     }
-    if ((resident_ || !is_inner(at)) && !shows_labels_) {
+    if (resident_ || !is_inner(at)) {
         if (!bricks_ && !(moment_.weight > 0) && !resident_) {
             return with_type(type_, [&](auto zero) { return clipped<decltype(zero)>(at); });
         }
@@ -252,7 +318,7 @@ Neighbours Field::other_around(const Index3& at) const {
     // By the eight cells that meet at the sample: they know bricks, moments and the background.
     for (unsigned octant = 0; octant < 8; ++octant) {
         const Index3 side(octant & 1, octant >> 1 & 1, octant >> 2 & 1);
-        const CellSamples cell = other_cell(at - Index3::Ones() + side);
+        const CellSamples cell = uncovered_cell(at - Index3::Ones() + side);
         for (unsigned corner = 0; corner < 8; ++corner) {
             const int x = side[0] + static_cast<int>(corner & 1);
             const int y = side[1] + static_cast<int>(corner >> 1 & 1);

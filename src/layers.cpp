@@ -44,11 +44,11 @@ void check_layer(const Layers& all, std::size_t number, double sign) {
     for (std::size_t i = 0; i < number; ++i) {
         if (all.layers[i].name == layer.name) refuse(where + " is there twice");
     }
-    if (all.by_label) {
+    if (is_label(all, number)) {
         if (!(layer.level >= 1 && layer.level <= 65535 && layer.level == std::floor(layer.level))) {
             refuse(where + ": its label must be a whole number from 1 to 65535");
         }
-        for (std::size_t i = 0; i < number; ++i) {
+        for (std::size_t i = level_count(all); i < number; ++i) {
             if (all.layers[i].level == layer.level) refuse(where + ": its label is another's, too");
         }
     } else if (number > 0 && !(sign * all.layers[number - 1].level < sign * layer.level)) {
@@ -85,6 +85,9 @@ void check(const Layers& layers, Solid solid) {
         check_curve("density", p, layers.curves[p].density);
         check_curve("gradient", p, layers.curves[p].gradient);
     }
+    if (layers.by_label && layers.level_count > layers.layers.size()) {
+        refuse("more levels than layers");
+    }
     const double sign = solid == Solid::above ? 1 : -1;
     for (std::size_t i = 0; i < layers.layers.size(); ++i) check_layer(layers, i, sign);
     if (!(layers.closing > 0) || !std::isfinite(layers.closing)) {
@@ -101,13 +104,14 @@ void check(const Layers& layers, Solid solid) {
     if (!(needle.stick_speed >= 0)) refuse("the needle's stick speed must be at least 0 mm/s");
 }
 
-std::shared_ptr<const Field> numbered_labels(const Volume& labels, std::span<const Layer> layers) {
+std::shared_ptr<const Field> numbered_labels(const Volume& labels, std::span<const Layer> layers,
+                                             std::size_t first) {
     if (layers.size() > Layers::most_layers) refuse("more than 16 layers");
     std::vector<std::uint8_t> numbers(static_cast<std::size_t>(sample_count(labels.geometry())));
     with_type(labels.type(), [&](auto zero) {
         const auto* samples = static_cast<const decltype(zero)*>(labels.data());
         for (std::size_t i = 0; i < numbers.size(); ++i) {
-            for (std::size_t k = 0; k < layers.size(); ++k) {
+            for (std::size_t k = first; k < layers.size(); ++k) {
                 if (double(samples[i]) == layers[k].level) {
                     numbers[i] = static_cast<std::uint8_t>(k + 1);
                 }

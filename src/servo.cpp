@@ -63,8 +63,9 @@ Snapshot snapshot_of(const Session& session, const SessionTick& tick, std::int64
     snapshot.scp = renderer.proxy.scp;
     snapshot.interpolation = renderer.proxy.interpolation;
     const LayerState& layers = renderer.layers;
-    snapshot.normal = layers.labels ? normal_at(layers.label_proxy, *layers.labels)
-                                    : normal_at(renderer.proxy, renderer.field);
+    snapshot.normal = layers.labels && !layers.labels->covering_labels()
+                          ? normal_at(layers.label_proxy, *layers.labels)
+                          : normal_at(renderer.proxy, renderer.field);
     if (renderer.settings.tool) {
         snapshot.contacts = renderer.tool_proxy->contacts;
         snapshot.contact_count = renderer.tool_proxy->contact_count;

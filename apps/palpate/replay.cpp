@@ -97,10 +97,15 @@ void refuse_other_options(const CLI::App& command) {
     }
 }
 
-std::vector<std::string> names_of(const std::shared_ptr<const Layers>& layers) {
-    std::vector<std::string> names;
-    if (layers) std::ranges::transform(layers->layers, std::back_inserter(names), &Layer::name);
-    return names;
+io::TraceExtras extras_of(const RendererSettings& settings, bool streamed) {
+    io::TraceExtras extras;
+    extras.tool = settings.tool != nullptr;
+    extras.streamed = streamed;
+    if (!settings.layers) return extras;
+    std::ranges::transform(settings.layers->layers, std::back_inserter(extras.layer_names),
+                           &Layer::name);
+    extras.nested_layers = level_count(*settings.layers);
+    return extras;
 }
 
 void replay(const ReplayOptions& options) {
@@ -132,9 +137,8 @@ void replay(const ReplayOptions& options) {
         make_renderer(field, isovalue, run::offline_settings(render, field, isovalue));
 
     const bool has_tool = renderer.settings.tool != nullptr;
-    io::TraceWriter trace(
-        options.output, {},
-        {names_of(renderer.settings.layers), has_tool, loaded.streamed.has_value()});
+    io::TraceWriter trace(options.output, {},
+                          extras_of(renderer.settings, loaded.streamed.has_value()));
     std::optional<io::PathWriter> path;
     if (!options.path.empty()) path.emplace(options.path);
     std::optional<io::PosesWriter> poses;

@@ -84,6 +84,9 @@ void bind_layers_class(py::module_& module) {
             .done_but_pickling();
     layers.def_property_readonly("by_label", get(&Layers::by_label),
                                  "Places come from a label volume.");
+    layers.def_property_readonly(
+        "level_count", [](const F& file) { return level_count(file.layers); },
+        "So many of the layers, the first ones, are levels of the density.");
     layers.def(py::pickle(
         [](const F& file) {
             if (file.layers.by_label) {

@@ -63,6 +63,16 @@ class Field {
     /// Where labels are shown: the 1 or 0 of the sample `at` and its neighbours, in the order of
     /// Neighbours. This is what visit_around() shows of labels.
     std::array<std::uint8_t, 27> shown_around(const Index3& at) const;
+    /// From now on samples with a label above 0 are `solid` [data units] where it is one of these
+    /// bits, else `open`; with bit 0 samples without a label, and all outside the grid, are solid,
+    /// too. `labels`: one uint8 volume of labels up to 31 that is not edited, on any grid; a sample
+    /// of this field has the label that is nearest to it, 0 outside of them. Does not allocate.
+    void cover(const std::shared_ptr<const Field>& labels, std::uint32_t solid_labels, double open,
+               double solid) noexcept;
+    /// Null without cover().
+    const Field* covering_labels() const noexcept { return cover_.labels.get(); }
+    /// Of the sample `at`, from the labels that cover it.
+    int covering_label(const Index3& at) const noexcept;
     /// Feels the same samples in another way from now on.
     void set_interpolation(Interpolation to) noexcept { interpolation_ = to; }
 
@@ -140,9 +150,12 @@ class Field {
     template <class T>
     CellSamples resident_cell(const Index3& cell) const;
     CellSamples other_cell(const Index3& cell) const;
+    CellSamples uncovered_cell(const Index3& cell) const;
     template <class T>
     Neighbours clipped(const Index3& at) const;
     Neighbours other_around(const Index3& at) const;
+    Neighbours uncovered_around(const Index3& at) const;
+    double covered(const Index3& at, double sample) const noexcept;
     CellSamples absolute_cell(const Index3& cell) const;
     bool has_sample(const Index3& at) const {
         return (at.array() >= 0).all() && (at.array() < size_.array()).all();
@@ -189,6 +202,18 @@ class Field {
     bool shows_labels_ = false;
     bool reads_bricks_ = false;  // of a large grid, as they lie there
     std::uint32_t labels_ = 0;   // that are 1
+
+    /// Labels over the samples.
+    struct Cover {
+        std::shared_ptr<const Field> labels;  // null: none
+        std::uint32_t solid_labels = 0;
+        double open = 0, solid = 0;  // [data units] less the field's offset
+        double background = 0;       // where samples without a label are not solid
+        bool same_grid = true;
+        Mat3 turn = Mat3::Identity();  // index of a label = turn * index of a sample + shift
+        Vec3 shift = Vec3::Zero();
+    };
+    Cover cover_;
 };
 
 template <class T>

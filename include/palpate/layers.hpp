@@ -49,7 +49,7 @@ struct PropertyCurves {
 /// A surface and what lies behind it.
 struct Layer {
     std::string name;
-    double level = 0;  ///< isovalue [data units]; with labels, the label's number
+    double level = 0;  ///< isovalue [data units]; by label, the label's number
     /// For looking: red, green and blue, 0 to 1.
     std::array<double, 3> colour{0.8, 0.8, 0.8};
     double opacity = 1;
@@ -87,6 +87,9 @@ struct Layers {
     /// Tissue by place: a layer is where the label volume has its number, in place of densities. A
     /// surface between two layers is that of the later one. Curves still take the densities there.
     bool by_label = false;
+    /// By label: so many of the layers, the first ones, are levels of the density all the same,
+    /// which count where the label volume has none of the labels.
+    std::size_t level_count = 0;
     std::shared_ptr<const Field> labels;  ///< from numbered_labels()
     std::string label_volume;             ///< where they come from, for recordings
 
@@ -94,9 +97,19 @@ struct Layers {
     PropertyCurves& operator[](HapticProperty p) { return curves[static_cast<int>(p)]; }
 };
 
-/// A label volume for layers: samples are k + 1 where this volume has the label levels[k], else 0.
-/// Throws std::invalid_argument for more than 16 levels.
-std::shared_ptr<const Field> numbered_labels(const Volume& labels, std::span<const Layer> layers);
+/// Whether a layer's level is a label.
+inline bool is_label(const Layers& layers, std::size_t layer) {
+    return layers.by_label && layer >= layers.level_count;
+}
+/// How many layers are levels of the density; they come first.
+inline std::size_t level_count(const Layers& layers) {
+    return layers.by_label ? layers.level_count : layers.layers.size();
+}
+
+/// A label volume for layers, from `first` on: samples are k + 1 where this volume has the label
+/// layers[k].level, else 0. Throws std::invalid_argument for more than 16 layers.
+std::shared_ptr<const Field> numbered_labels(const Volume& labels, std::span<const Layer> layers,
+                                             std::size_t first = 0);
 
 /// Throws std::invalid_argument, naming layer or curve, for more than 16 layers, levels out of
 /// order or not finite (labels: not whole, below 1 or given twice), names missing or given twice,
@@ -111,7 +124,8 @@ double property_of(const Layers& layers, int layer, HapticProperty property, dou
 /// What a tick felt of layers.
 struct LayersFelt {
     std::int8_t touched = -1;  ///< layer whose surface is touched; -1: none
-    /// The SCP is inside this many layers, 0 .. inside - 1; by labels, in layer inside - 1 alone.
+    /// The SCP is inside this many layers, 0 .. inside - 1; where layer inside - 1 is a label, in
+    /// that one alone.
     std::int8_t inside = 0;
     std::int8_t punctured = 0;  ///< surfaces that gave way in this tick
 };
@@ -151,13 +165,14 @@ struct NeedleState {
 struct LayerState {
     int layer_count = -1;  ///< of the layers in use
     /// By labels: which layers (bit k + 1; bit 0: none of them) the SCP may be in, the field of all
-    /// others, and the proxy on its lattice.
+    /// others, and the proxy on its lattice. With levels beside labels: the field of both, on the
+    /// data's lattice.
     std::uint32_t open = 1;
     std::optional<Field> labels;
     Proxy label_proxy;
+    Vec3 label_opening = Vec3::Zero();  ///< where a label gave way last [mm, physical]
     /// The SCP may be anywhere from inside `outer` layers to inside `inner` ones: the surfaces
-    /// between them gave way, at `opening` [mm, physical], and have not closed yet. By labels only
-    /// the first opening is used, the last that gave way.
+    /// between them gave way, at `opening` [mm, physical], and have not closed yet.
     int outer = 0, inner = 0;
     std::array<Vec3, Layers::most_layers> opening{};
     int touched = -1;  ///< the layer whose surface was touched last; -1: none

@@ -60,13 +60,14 @@ void withdraw(NeedleState& needle, const Vec3& tip, double closing) {
     needle.inserted = needle.crossing_count > 0;
 }
 
-void count_surfaces(NeedleState& needle, int inside, bool nested, const Vec3& tip) {
+void count_surfaces(NeedleState& needle, int inside, int nested, const Vec3& tip) {
     if (needle.crossing_count == 0) return;
     const Crossing& last = needle.crossings[needle.crossing_count - 1];
     if (!(along_line(needle, tip) > last.at)) return;
     int known = last.layer + 1;  // as the SCP's `inside`
     while (known != inside && has_room(needle)) {
-        const int next = !nested ? inside : known < inside ? known + 1 : known - 1;
+        const bool one_by_one = std::max(known, inside) <= nested;
+        const int next = !one_by_one ? inside : known < inside ? known + 1 : known - 1;
         cross(needle, std::max(known, next) - 1, next - 1, tip);
         known = next;
     }

@@ -23,9 +23,10 @@ void withdraw(NeedleState& needle, const Vec3& tip, double closing);
 /// length [s]: the force on the hand along the line [N].
 double shaft_friction(NeedleState& needle, const Layers& layers, const LayerInput& input,
                       const Vec3& tip, double period);
-/// The tip is inside this many layers (not nested: in layer inside - 1 alone), and all surfaces are
-/// closed: those that it went through while they were open, like both sides of a thin sheet, are
-/// crossed where the tip is. At most a closing distance and a tick's way too late.
-void count_surfaces(NeedleState& needle, int inside, bool nested, const Vec3& tip);
+/// The tip is inside this many layers (past the first `nested` ones: in layer inside - 1 alone),
+/// and all surfaces are closed: those that it went through while they were open, like both sides of
+/// a thin sheet, are crossed where the tip is. At most a closing distance and a tick's way too
+/// late.
+void count_surfaces(NeedleState& needle, int inside, int nested, const Vec3& tip);
 
 }  // namespace palpate

@@ -177,12 +177,12 @@ int LabelTissues::beyond(const ProxyUpdate&) const {
 
 void LabelTissues::open(const ProxyUpdate&, const Vec3& at) {
     state_.open |= std::uint32_t{1} << closed_label_;
-    state_.opening[0] = at;
+    state_.label_opening = at;
     state_.labels->show_labels(all() & ~state_.open);
 }
 
 void LabelTissues::close(const ProxyUpdate& update, double farthest) {
-    if (!is_open() || (update.scp - state_.opening[0]).norm() <= farthest) return;
+    if (!is_open() || (update.scp - state_.label_opening).norm() <= farthest) return;
     const std::uint32_t here = std::uint32_t{1} << inside(update);
     // Where three layers meet none may have half: there they stay open.
     if (share(update.scp, all() & ~here) > 0.5) return;

@@ -57,9 +57,13 @@ class LayersTick {
         const Vec3& at = proxy.placed ? proxy.scp_physical : input_.hip;
         int inside = at.allFinite() ? tissues_.inside_at(at) : 0;
         if (!proxy.placed) {
-            for (int layer = Tissues::nested ? 0 : inside - 1; layer < inside; ++layer) {
-                if (layer < 0 || std::isfinite(puncture_force_of(layer))) continue;
-                inside = Tissues::nested ? layer : 0;
+            const auto holds = [this](int layer) {
+                return !std::isfinite(puncture_force_of(layer));
+            };
+            const int nested = tissues_.nested();
+            if (inside > nested && holds(inside - 1)) inside = tissues_.without_labels_at(at);
+            for (int layer = 0; layer < std::min(inside, nested); ++layer) {
+                if (holds(layer)) inside = layer;
             }
         }
         tissues_.begin(inside);
@@ -225,7 +229,7 @@ class LayersTick {
         if (needle.inserted) withdraw(needle, update_.scp, layers_.closing);
         tissues_.close(update_, layers_.closing);
         if (needle.inserted && !tissues_.is_open()) {
-            count_surfaces(needle, tissues_.inside(update_), Tissues::nested, update_.scp);
+            count_surfaces(needle, tissues_.inside(update_), tissues_.nested(), update_.scp);
         }
     }
 
@@ -289,6 +293,11 @@ class LayersTick {
 
 LayersUpdate update_layers(const Layers& layers, LayerState& state, Proxy& proxy,
                            const Field& field, const LayerInput& input, StepObserver observer) {
+    if (layers.by_label && layers.labels && layers.level_count > 0) {
+        return LayersTick(layers, state, field, MixedTissues(layers, state, proxy, field), input,
+                          observer)
+            .run();
+    }
     if (layers.by_label && layers.labels) {
         return LayersTick(layers, state, field, LabelTissues(layers, state, proxy, field), input,
                           observer)

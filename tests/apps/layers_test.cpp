@@ -135,12 +135,42 @@ TEST(LabelsOption, feels_the_segments_of_a_segmentation_by_name) {
     EXPECT_TRUE(contains(other.err, "has no label 'bolt'; it has plate")) << other.err;
 }
 
+/// The levels of two.json and the label of s.seg.nrrd.
+void put_mixed(const ScratchFolder& folder) {
+    std::string text = two_layers;
+    const auto end = text.rfind(']');
+    text.insert(end, ", {\"name\": \"plate\", \"label\": 4, \"puncture_force\": 0.4}");
+    put_bytes(folder / "mixed.json", text);
+}
+
+TEST(LabelsOption, feels_levels_where_no_label_is_given) {
+    const ScratchFolder folder;
+    put_stroke(folder);
+    put_segmentation(folder);
+    put_mixed(folder);
+    const Outcome bare = palpate(folder, stroke + "--layers mixed.json");
+    EXPECT_EQ(bare.status, 2);
+    EXPECT_TRUE(contains(bare.err, "name a label volume")) << bare.err;
+    const Outcome done = palpate(folder, stroke + "--labels s.seg.nrrd --layers mixed.json");
+    ASSERT_EQ(done.status, 0) << done.err;
+    const std::vector<std::string> story = story_of(rows_of(folder / "a.csv"));
+    const auto has = [&](const char* what) { return std::ranges::count(story, what) > 0; };
+    EXPECT_TRUE(has("shell|"));
+    EXPECT_TRUE(has("|shell"));
+    EXPECT_TRUE(has("|plate")) << "alone: labels do not nest";
+    std::string all;
+    for (const std::string& part : story) all += part + "\n";
+    EXPECT_EQ(all.find("+plate"), std::string::npos) << all;
+}
+
 TEST(LayersOption, are_recorded_and_replayed_bit_for_bit) {
     const ScratchFolder folder;
     put_bytes(folder / "two.json", two_layers);
     put_segmentation(folder);
+    put_mixed(folder);
     put_bytes(folder / "c.txt", "0.3 layers off\n0.5 layers microscopy\n0.9 layers two.json\n");
-    for (const std::string from : {"--layers two.json", "--labels s.seg.nrrd"}) {
+    for (const std::string from :
+         {"--layers two.json", "--labels s.seg.nrrd", "--labels s.seg.nrrd --layers mixed.json"}) {
         const Outcome done =
             palpate(folder,
                     "touch synthetic:sphere:32x32x32 --device simulated:hand=press "

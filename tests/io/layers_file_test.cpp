@@ -103,6 +103,35 @@ TEST(LayersFile, says_what_is_wrong) {
     EXPECT_THROW(read_layers("there is no such file.json"), InputError);
 }
 
+TEST(LayersFile, may_have_levels_before_labels) {
+    const std::string levels_and_label =
+        "\"layers\": [{\"name\": \"skin\", \"level\": 10}, {\"name\": \"bone\", \"level\": 80}, "
+        "{\"name\": \"tumour\", \"label\": 3}]";
+    LayersFile file = layers_from_text(
+        "{\"palpate_layers\": 1, \"units\": \"%\", " + levels_and_label + "}", "f");
+    for (int i = 0; i < 2; ++i) {
+        EXPECT_TRUE(file.layers.by_label);
+        EXPECT_EQ(level_count(file.layers), 2U);
+        EXPECT_TRUE(is_label(file.layers, 2));
+        EXPECT_EQ(file.layers.layers[2].level, 3);
+        file = layers_from_text(text_of(file), "again");
+    }
+    const Volume volume = support::volume_of<std::int16_t>(
+        support::grid({4, 4, 4}), [](const Index3& i) { return 100 + i[0] * 100; });
+    const Layers layers = layers_for(file, volume);
+    EXPECT_EQ(layers.layers[0].level, 130);
+    EXPECT_EQ(layers.layers[2].level, 3) << "no percentage of a label";
+    EXPECT_EQ(refusal_of("\"layers\": [{\"name\": \"a\", \"label\": 1}, {\"name\": \"b\", "
+                         "\"level\": 1}]"),
+              "f.json: layers: those with a level come before those with a label");
+    EXPECT_EQ(refusal_of("\"layers\": [{\"name\": \"a\", \"label\": 1, \"level\": 1}]"),
+              "f.json: 'layers[0]' has a level and a label: give one of them");
+    const LayersFile all = layers_from_text(
+        "{\"palpate_layers\": 1, \"layers\": [{\"name\": \"a\", \"label\": 7}]}", "f");
+    EXPECT_TRUE(all.layers.by_label);
+    EXPECT_EQ(level_count(all.layers), 0U);
+}
+
 TEST(LayersFile, in_percent_takes_the_units_of_a_volume) {
     LayersFile file = everything();
     file.units = "%";

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numeric>
+
 #include "palpate/io/sample_volume.hpp"
 #include "palpate/io/volume_file.hpp"
 #include "support/fields.hpp"
@@ -24,6 +26,31 @@ Volume scan(double outside) {
         if (r > 12) return random.uniform(0, 80);
         return random.uniform(400, 1100);
     });
+}
+
+TEST(Gradients, are_those_of_the_samples_by_millimetre) {
+    Geometry geometry = grid({24, 20, 16});
+    geometry.spacing = {0.5, 0.5, 2};
+    const Volume ramp = volume_of<float>(geometry, [](const Index3& i) { return 3.0 * i[0]; });
+    const Histogram h = gradients_of(ramp, 64);
+    EXPECT_EQ(h.low, 0);
+    EXPECT_GT(h.greatest, 6) << "the border adds steeper ones";
+    const double bin = (h.high - h.low) / 64;
+    const auto at = static_cast<std::size_t>(6.0 / bin);
+    std::int64_t all = 0;
+    for (const std::int64_t count : h.counts) all += count;
+    EXPECT_EQ(all, 24 * 20 * 16);
+    std::int64_t near = h.counts[at] + (at > 0 ? h.counts[at - 1] : 0);
+    EXPECT_GE(near, 22 * 18 * 14) << "all inner samples: 3 in half a millimetre";
+}
+
+TEST(Gradients, of_a_large_grid_are_those_of_some_samples_and_constant_data_have_none) {
+    const Volume constant = volume_of<std::uint8_t>(grid({128, 128, 64}), [](auto) { return 7.0; });
+    const Histogram h = gradients_of(constant, 16);
+    EXPECT_GT(h.counts[0], 50'000);
+    EXPECT_LT(h.counts[0], 300'000);
+    EXPECT_EQ(h.counts[0], std::accumulate(h.counts.begin(), h.counts.end(), std::int64_t{0}));
+    EXPECT_GT(h.high, h.low);
 }
 
 TEST(SuggestedIsovalues, what_an_object_was_put_into_comes_last) {

@@ -40,7 +40,8 @@ std::optional<io::LayersFile> by_name(const io::LayersFile& file, const Overlay&
 
 std::string missing_labels(const Layers& layers, const Overlay& labels) {
     std::string missing;
-    for (const Layer& layer : layers.layers) {
+    for (std::size_t i = level_count(layers); i < layers.layers.size(); ++i) {
+        const Layer& layer = layers.layers[i];
         const bool there = std::ranges::any_of(
             labels.labels, [&](const Label& label) { return label.value == layer.level; });
         if (there) continue;
@@ -63,7 +64,8 @@ std::shared_ptr<const Overlay> in_colours_of(const std::shared_ptr<const Overlay
                                              const SharedLayers& layers) {
     if (!overlay || !layers || !layers->by_label) return overlay;
     std::shared_ptr<Overlay> coloured;
-    for (const Layer& layer : layers->layers) {
+    for (std::size_t at = level_count(*layers); at < layers->layers.size(); ++at) {
+        const Layer& layer = layers->layers[at];
         for (std::size_t i = 0; i < overlay->labels.size(); ++i) {
             const Colour colour{layer.colour[0], layer.colour[1], layer.colour[2]};
             const Label& label = overlay->labels[i];

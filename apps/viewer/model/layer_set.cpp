@@ -7,6 +7,7 @@
 #include <iterator>
 #include <limits>
 #include <set>
+#include <span>
 #include <utility>
 
 #include "palpate/io/layers_file.hpp"
@@ -29,7 +30,7 @@ SeenSurface seen(const Layer& layer, bool shown) {
 void put_first(std::vector<SeenSurface>& surfaces, const Layers& layers, std::size_t from,
                bool shown) {
     std::vector<SeenSurface> all;
-    for (std::size_t i = from; i < layers.layers.size(); ++i) {
+    for (std::size_t i = from; i < level_count(layers); ++i) {
         all.push_back(seen(layers.layers[i], shown));
     }
     surfaces.insert(surfaces.begin(), all.begin(), all.end());
@@ -61,8 +62,10 @@ double of_session(HapticProperty property, const RendererSettings& settings) {
 void renumber(Layers& layers, const Layers& before) {
     if (!layers.labels) return;
     std::array<std::uint8_t, 256> to{};
-    for (std::size_t i = 0; i < before.layers.size(); ++i) {
-        const auto now = std::ranges::find(layers.layers, before.layers[i].level, &Layer::level);
+    for (std::size_t i = level_count(before); i < before.layers.size(); ++i) {
+        const auto labels = std::span(layers.layers).subspan(level_count(layers));
+        const auto at = std::ranges::find(labels, before.layers[i].level, &Layer::level);
+        const auto now = layers.layers.end() - (labels.end() - at);
         if (now == layers.layers.end()) continue;
         to[i + 1] = static_cast<std::uint8_t>(now - layers.layers.begin() + 1);
     }
@@ -95,7 +98,7 @@ Layer another(const Layers& layers, double level) {
 
 Look scene_look(Look look, const SharedLayers& layers) {
     if (!have_surfaces(layers)) return look;
-    if (layers->by_label) {
+    if (levels_in(layers) == 0) {
         look.surface = false;
         return look;
     }
@@ -107,7 +110,7 @@ Look scene_look(Look look, const SharedLayers& layers) {
 }
 
 Look slice_look(Look look, const SharedLayers& layers) {
-    if (have_levels(layers)) put_first(look.surfaces, *layers, 0, true);
+    if (layers) put_first(look.surfaces, *layers, 0, true);
     return look;
 }
 
@@ -119,9 +122,10 @@ std::string felt_words(const LayersFelt& felt, const SharedLayers& layers, const
     };
     const bool on = felt.touched >= 0 && felt.touched < count;
     const int innermost = std::min(static_cast<int>(felt.inside), count) - 1;
-    const bool from_inside = layers->by_label && innermost >= 0 && felt.touched == innermost;
+    const bool in_label = innermost >= 0 && is_label(*layers, std::size_t(innermost));
+    const bool from_inside = in_label && felt.touched == innermost;
     // Labels do not nest.
-    const int outermost = layers->by_label ? std::max(innermost, 0) : 0;
+    const int outermost = in_label ? innermost : 0;
     std::string inside;
     for (int layer = innermost; !from_inside && layer >= outermost; --layer) {
         inside += (inside.empty() ? "" : ", ") + name(layer);
@@ -148,7 +152,8 @@ bool same(const SharedLayers& one, const SharedLayers& other) {
 LevelRoom room_of(const Layers& layers, std::size_t layer, double gap) {
     const double level = layers.layers[layer].level;
     LevelRoom room{-infinity, infinity};
-    for (const Layer& other : layers.layers) {
+    for (std::size_t i = 0; i < level_count(layers); ++i) {
+        const Layer& other = layers.layers[i];
         if (other.level < level) room.low = std::max(room.low, other.level + gap);
         if (other.level > level) room.high = std::min(room.high, other.level - gap);
     }
@@ -160,7 +165,7 @@ double property_at(const Layers& layers, std::size_t layer, HapticProperty prope
     const Layer& at = layers.layers[layer];
     if (at[property]) return *at[property];
     const Curve& curve = layers[property].density;
-    if (!curve.knots.empty() && layers.by_label) {
+    if (!curve.knots.empty() && is_label(layers, layer)) {
         return std::ranges::max(curve.knots, {}, &Curve::Knot::value).value;
     }
     if (!curve.knots.empty()) return curve(at.level);
@@ -227,6 +232,7 @@ Layers moved_layer(Layers layers, std::size_t from, std::size_t to) {
 Layers without_layer(Layers layers, std::size_t layer) {
     const SharedLayers before = std::make_shared<const Layers>(layers);
     layers.layers.erase(layers.layers.begin() + static_cast<std::ptrdiff_t>(layer));
+    if (layers.by_label && layer < layers.level_count) --layers.level_count;
     renumber(layers, *before);
     return layers;
 }

@@ -15,9 +15,9 @@ namespace palpate::viewer {
 /// Null: no layers.
 using SharedLayers = std::shared_ptr<const Layers>;
 
-/// Whether their surfaces are levels of the data, not labels.
-inline bool have_levels(const SharedLayers& layers) {
-    return have_surfaces(layers) && !layers->by_label;
+/// How many of their surfaces, the first ones, are levels of the data, not labels.
+inline std::size_t levels_in(const SharedLayers& layers) {
+    return layers ? level_count(*layers) : 0;
 }
 /// By label, but where the labels lie is still to be read.
 inline bool lack_labels(const SharedLayers& layers) {

@@ -110,11 +110,11 @@ void LayerEditor::show_layer(const Layers& layers, std::size_t number,
     if (name_->text() != name && !(name_->hasFocus() && name_->isModified())) name_->setText(name);
     level_->setSingleStep(step);
     level_->show_value(layer.level);
-    level_->setEnabled(!layers.by_label);
-    level_label_->setText(layers.by_label ? tr("Label") : tr("Level"));
-    level_->setToolTip(layers.by_label
-                           ? tr("Its label: the number that its samples have in the label map")
-                           : tr("Its level [data units]; also a line to drag on the histogram"));
+    const bool label = is_label(layers, number);
+    level_->setEnabled(!label);
+    level_label_->setText(label ? tr("Label") : tr("Level"));
+    level_->setToolTip(label ? tr("Its label: the number that its samples have in the label map")
+                             : tr("Its level [data units]; also a line to drag on the histogram"));
     colour_->set_colour({layer.colour[0], layer.colour[1], layer.colour[2]});
     opacity_->set_value(layer.opacity);
     Layers cleared = layers;

@@ -14,6 +14,7 @@
 #include "apps/viewer/panel/layout.hpp"
 #include "apps/viewer/panel/level_axis.hpp"
 #include "apps/viewer/panel/names.hpp"
+#include "apps/viewer/panel/needle_controls.hpp"
 #include "apps/viewer/panel/number_box.hpp"
 #include "apps/viewer/panel/section.hpp"
 #include "apps/viewer/panel/stroke_plot.hpp"
@@ -55,10 +56,9 @@ LayersControls::LayersControls()
       touched_(named(new QLabel, "touched_layers",
                      tr("The layer that is touched, and those that the proxy is in"))),
       list_(named(new QListWidget, "layer_list")),
-      needle_(named(new QCheckBox(tr("Needle")), "needle",
-                    tr("The hand holds a needle: after the first puncture it moves along a line"))),
       curve_(new CurveControls),
       editor_(new LayerEditor),
+      needle_(new NeedleControls),
       plot_(new StrokePlot),
       limiter_(this) {
     setObjectName("layers_controls");
@@ -100,7 +100,9 @@ QWidget* LayersControls::make_stroke() {
 QWidget* LayersControls::make_list() {
     list_->setAccessibleName(tr("Layers, from outside in"));
     list_->setUniformItemSizes(true);
-    return column_of({list_, row_of({remove_, earlier_, later_, needle_}, 3), editor_, curve_});
+    auto* buttons = row_of({remove_, earlier_, later_});
+    buttons->layout()->setAlignment(Qt::AlignLeft);
+    return column_of({list_, buttons, editor_, needle_, curve_});
 }
 
 void LayersControls::connect_inputs() {
@@ -127,11 +129,7 @@ void LayersControls::connect_list() {
     connect(earlier_, &QPushButton::clicked, this, [this] { shift_layer(-1); });
     connect(later_, &QPushButton::clicked, this, [this] { shift_layer(1); });
     connect(list_, &QListWidget::currentRowChanged, this, [this] { show(); });
-    connect(needle_, &QCheckBox::clicked, this, [this](bool on) {
-        change("needle", [on](Layers& layers) {
-            layers.needle = on ? std::optional<Needle>(Needle{}) : std::nullopt;
-        });
-    });
+    connect(needle_, &NeedleControls::changed, this, &LayersControls::change);
     connect(editor_, &LayerEditor::changed, this,
             [this](const QString& key, const LayerEditor::Change& how) {
                 const int row = chosen();
@@ -156,12 +154,15 @@ void LayersControls::connect_curve() {
             layers[property].density.knots.clear();
         });
     });
+    connect(curve_, &CurveControls::factors_wanted, this, &LayersControls::set_factors);
 }
 
-void LayersControls::set_data(double low, double high, Solid solid) {
-    low_ = low;
-    high_ = high;
+void LayersControls::set_data(const Volume& volume, Solid solid) {
+    constexpr int bins = 256;
+    low_ = volume.minimum();
+    high_ = low_ + volume.range();
     solid_ = solid;
+    curve_->set_data(run::gradients_of(volume, bins));
     history_.clear();
     note_->say({});
     plot_->clear();
@@ -227,8 +228,7 @@ LevelRoom LayersControls::room(int layer) const {
 }
 
 void LayersControls::move_level(int layer, double level) {
-    if (!have_levels(layers_)) return;
-    if (layer < 0 || layer >= static_cast<int>(layers_->layers.size())) return;
+    if (layer < 0 || layer >= static_cast<int>(levels_in(layers_))) return;
     const auto [low, high] = room(layer);
     const double within = std::isfinite(level) ? std::clamp(level, low, high) : level;
     change(QString("level %1").arg(layer), [layer, within](Layers& layers) {
@@ -243,6 +243,11 @@ HapticProperty LayersControls::curve_property() const {
 void LayersControls::set_curve(const std::vector<Curve::Knot>& knots) {
     change(QString("curve %1").arg(knots.size()),
            [&](Layers& layers) { layers[curve_property()].density.knots = knots; });
+}
+
+void LayersControls::set_factors(const std::vector<Curve::Knot>& knots) {
+    change(QString("factors %1").arg(knots.size()),
+           [&](Layers& layers) { layers[curve_property()].gradient.knots = knots; });
 }
 
 /// One point, at the chosen layer's level.
@@ -278,8 +283,8 @@ void LayersControls::remove_layer() {
 
 /// Of layers by label: those of levels are in the order of their levels.
 void LayersControls::shift_layer(int by) {
-    const int row = chosen(), to = row + by;
-    if (row < 0 || to < 0 || to >= static_cast<int>(layers_->layers.size())) return;
+    const int row = chosen(), to = row + by, levels = static_cast<int>(levels_in(layers_));
+    if (row < levels || to < levels || to >= static_cast<int>(layers_->layers.size())) return;
     change({}, [row, to](Layers& layers) {
         layers = moved_layer(std::move(layers), static_cast<std::size_t>(row),
                              static_cast<std::size_t>(to));
@@ -304,7 +309,7 @@ int LayersControls::chosen() const {
 }
 
 std::optional<double> LayersControls::chosen_level() const {
-    if (chosen() < 0 || layers_->by_label) return std::nullopt;
+    if (chosen() < 0 || chosen() >= static_cast<int>(levels_in(layers_))) return std::nullopt;
     return layers_->layers[static_cast<std::size_t>(chosen())].level;
 }
 
@@ -325,7 +330,7 @@ void LayersControls::show() {
     remove_->setEnabled(row >= 0);
     editor_->setVisible(row >= 0);
     if (!layers_) return;
-    needle_->setChecked(layers_->needle.has_value());
+    needle_->show_layers(*layers_);
     curve_->show_layers(*layers_);
     if (row < 0) return;
     editor_->show_layer(*layers_, static_cast<std::size_t>(row), settings_,
@@ -338,8 +343,9 @@ void LayersControls::show_order() {
     const int row = chosen(), count = layers_ ? static_cast<int>(layers_->layers.size()) : 0;
     earlier_->setVisible(by_label);
     later_->setVisible(by_label);
-    earlier_->setEnabled(row > 0);
-    later_->setEnabled(row >= 0 && row + 1 < count);
+    const auto levels = static_cast<int>(levels_in(layers_));
+    earlier_->setEnabled(row > levels);
+    later_->setEnabled(row >= levels && row + 1 < count);
     const bool full = count >= Layers::most_layers;
     add_->setEnabled(!by_label && !full);
     add_->setToolTip(
@@ -408,7 +414,7 @@ void LayersControls::show_item(int row) {
     QIcon icon(colour);
     icon.addPixmap(colour, QIcon::Selected);  // not tinted
     item.setIcon(icon);
-    QString text = (layers_->by_label ? tr("%1   label %2") : QString("%1   %2"))
+    QString text = (is_label(*layers_, at) ? tr("%1   label %2") : QString("%1   %2"))
                        .arg(QString::fromStdString(layer.name), number_text(layer.level));
     const auto lowered = lowered_stiffness(*layers_, at, settings_);
     if (lowered) text += "   ⚠ " + tr("rendered at %1 N/mm").arg(number_text(*lowered, 3));

@@ -2,7 +2,6 @@
 // and the force along the stroke.
 #pragma once
 
-#include <QCheckBox>
 #include <QComboBox>
 #include <QElapsedTimer>
 #include <QLabel>
@@ -22,6 +21,7 @@ namespace palpate::viewer {
 
 class CurveControls;
 class LayerEditor;
+class NeedleControls;
 class Note;
 class StrokePlot;
 
@@ -39,8 +39,8 @@ class LayersControls : public QWidget {
   public:
     LayersControls();
 
-    /// Of data from `low` to `high`. There is nothing to undo.
-    void set_data(double low, double high, Solid solid);
+    /// There is nothing to undo.
+    void set_data(const Volume& volume, Solid solid);
     void clear();
     void set_choices(std::vector<LayersChoice> choices);
     /// Shows the layers in effect; emits nothing. With none, one can be added at `isovalue`.
@@ -55,6 +55,8 @@ class LayersControls : public QWidget {
     void move_level(int layer, double level);
     /// Of the property that is chosen.
     void set_curve(const std::vector<Curve::Knot>& knots);
+    /// The same, over the gradient.
+    void set_factors(const std::vector<Curve::Knot>& knots);
     HapticProperty curve_property() const;
     void choose_layer(int layer);
     LevelRoom room(int layer) const;
@@ -108,9 +110,9 @@ class LayersControls : public QWidget {
     QLabel* touched_;
     QWidget* body_;
     QListWidget* list_;
-    QCheckBox* needle_;
     CurveControls* curve_;
     LayerEditor* editor_;
+    NeedleControls* needle_;
     StrokePlot* plot_;
     RateLimiter limiter_;
 };

@@ -149,11 +149,10 @@ void Panel::connect_layers() {
     connect(layers_, &LayersControls::curve_chosen, this, &Panel::show_marks);
     connect(overlay_, &OverlayControls::feel_wanted, this, [this] { raise_page(*layers_part_); });
     connect(&isovalue_->chart(), &LevelChart::mark_chosen, this, [this](int mark) {
-        if (have_levels(layers_->layers())) layers_->choose_layer(mark);
+        if (mark < static_cast<int>(levels_in(layers_->layers()))) layers_->choose_layer(mark);
     });
     connect(&isovalue_->chart(), &LevelChart::mark_moved, this, [this](int mark, double level) {
-        const auto& layers = now_.settings.layers;
-        const int count = have_levels(layers) ? static_cast<int>(layers->layers.size()) : 0;
+        const auto count = static_cast<int>(levels_in(now_.settings.layers));
         if (mark < count) return layers_->move_level(mark, level);
         look_->move_surface(mark - count, level);
     });
@@ -181,7 +180,7 @@ void Panel::connect_look() {
 void Panel::show_marks() {
     std::vector<LevelMark> marks;
     const SharedLayers& layers = layers_->layers();
-    const int levels = have_levels(layers) ? static_cast<int>(layers->layers.size()) : 0;
+    const auto levels = static_cast<int>(levels_in(layers));
     for (int i = 0; i < levels; ++i) {
         const Layer& layer = layers->layers[static_cast<std::size_t>(i)];
         const auto [low, high] = layers_->room(i);
@@ -242,8 +241,7 @@ void Panel::set_session(const Field& field, const run::Histogram& histogram, dou
     }
     isovalue_->set_data(field, histogram);
     isovalue_->show_felt(isovalue, false);
-    layers_->set_data(field.volume().minimum(), field.volume().minimum() + field.volume().range(),
-                      field.solid());
+    layers_->set_data(field.volume(), field.solid());
     penetrability_->set_session(settings.penetrability, solid_, isovalue, field.volume().minimum(),
                                 field.volume().minimum() + field.volume().range());
     look_->set_data(field.volume(), histogram);
@@ -309,7 +307,7 @@ void Panel::show_effect() {
     isovalue_->set_field(solid_, interpolation_);
     isovalue_->set_overruled(now_.settings.penetrability.on);
     const bool layered = have_surfaces(now_.settings.layers);
-    isovalue_->set_layered(layered, have_levels(now_.settings.layers));
+    isovalue_->set_layered(layered, levels_in(now_.settings.layers) > 0);
     penetrability_->set_layered(layered);
     look_->set_layered(layered);
     layers_->set_layers(now_.settings, now_.isovalue);

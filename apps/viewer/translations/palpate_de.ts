@@ -542,12 +542,6 @@
 <context>
     <name>palpate::viewer::CurveControls</name>
     <message>
-        <source>The property whose curve over density lies over the histogram; in brackets the number of its points.
-A layer that has no value of its own takes it from there.</source>
-        <translation>Die Eigenschaft, deren Kurve über der Dichte auf dem Histogramm liegt; in Klammern die Anzahl ihrer Punkte.
-Eine Schicht ohne eigenen Wert nimmt ihn von dort.</translation>
-    </message>
-    <message>
         <source>Start</source>
         <translation>Beginnen</translation>
     </message>
@@ -566,10 +560,6 @@ Auf dem Histogramm: Doppelklick für einen weiteren Punkt, ihn ziehen, Rechtskli
         <translation>Diese Kurve entfernen</translation>
     </message>
     <message>
-        <source>Curve over density</source>
-        <translation>Kurve über der Dichte</translation>
-    </message>
-    <message>
         <source>Start the curve</source>
         <translation>Kurve beginnen</translation>
     </message>
@@ -584,6 +574,52 @@ Auf dem Histogramm: Doppelklick für einen weiteren Punkt, ihn ziehen, Rechtskli
     <message>
         <source>Each layer has a value of its own: clear one (×) to let the curve count.</source>
         <translation>Jede Schicht hat einen eigenen Wert: Löschen Sie einen (×), damit die Kurve gilt.</translation>
+    </message>
+    <message>
+        <source>The property whose curve over density lies over the histogram; in brackets the number of points of its curves.
+A layer that has no value of its own takes it from there.</source>
+        <translation>Die Eigenschaft, deren Kurve über der Dichte auf dem Histogramm liegt; in Klammern die Zahl der Punkte ihrer Kurven.
+Eine Schicht ohne eigenen Wert nimmt ihn von dort.</translation>
+    </message>
+    <message>
+        <source>Begin a factor over the gradient&apos;s magnitude: the property, wherever it comes from, is multiplied by it.
+Steep places, where two tissues meet, then feel different from flat ones</source>
+        <translation>Einen Faktor über dem Betrag des Gradienten beginnen: Die Eigenschaft, woher sie auch kommt, wird mit ihm multipliziert.
+Steile Stellen, wo zwei Gewebe sich treffen, fühlen sich dann anders an als flache</translation>
+    </message>
+    <message>
+        <source>Remove the factor over the gradient</source>
+        <translation>Den Faktor über dem Gradienten entfernen</translation>
+    </message>
+    <message>
+        <source>Property of the curves</source>
+        <translation>Eigenschaft der Kurven</translation>
+    </message>
+    <message>
+        <source>Start the factor over the gradient</source>
+        <translation>Den Faktor über dem Gradienten beginnen</translation>
+    </message>
+    <message>
+        <source>Factor over the gradient</source>
+        <translation>Faktor über dem Gradienten</translation>
+    </message>
+    <message>
+        <source>Factor over the gradient&apos;s magnitude [data units / mm]; behind it, how often there is which (logarithm).
+Points: drag; double click adds one, right click or Del deletes. By keys:
+Page keys choose a point, arrows move it, Insert adds one.
+Ctrl-wheel zooms, shift-wheel moves, Ctrl+0 shows all again.</source>
+        <translation>Faktor über dem Betrag des Gradienten [Dateneinheiten / mm]; dahinter, wie oft es welchen gibt (Logarithmus).
+Punkte: ziehen; Doppelklick setzt einen dazu, Rechtsklick oder Entf löscht. Mit Tasten:
+Bild auf und ab wählen einen Punkt, Pfeile verschieben ihn, Einfg setzt einen dazu.
+Strg-Rad vergrößert, Umschalt-Rad verschiebt, Strg+0 zeigt wieder alles.</translation>
+    </message>
+    <message>
+        <source>over density</source>
+        <translation>über der Dichte</translation>
+    </message>
+    <message>
+        <source>over the gradient</source>
+        <translation>über dem Gradienten</translation>
     </message>
 </context>
 <context>
@@ -1285,14 +1321,6 @@ Jetzt aus dem Wert der Sitzung (Kraft)</translation>
     <message>
         <source>Layers from outside in; choose one to change it. Their levels are lines to drag on the histogram</source>
         <translation>Schichten von außen nach innen; wählen Sie eine, um sie zu ändern. Ihre Werte sind Linien zum Ziehen auf dem Histogramm</translation>
-    </message>
-    <message>
-        <source>Needle</source>
-        <translation>Nadel</translation>
-    </message>
-    <message>
-        <source>The hand holds a needle: after the first puncture it moves along a line</source>
-        <translation>Die Hand hält eine Nadel: Nach dem ersten Durchstoß bewegt sie sich entlang einer Linie</translation>
     </message>
     <message>
         <source>Undo, layers</source>
@@ -2002,6 +2030,53 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
     <message>
         <source>Click a point on one side, the corner, and a point on the other side (Esc: give up)</source>
         <translation>Klicken Sie einen Punkt auf einem Schenkel, den Scheitel und einen Punkt auf dem anderen Schenkel an (Esc: aufgeben)</translation>
+    </message>
+</context>
+<context>
+    <name>palpate::viewer::NeedleControls</name>
+    <message>
+        <source>Needle</source>
+        <translation>Nadel</translation>
+    </message>
+    <message>
+        <source>The hand holds a needle: after the first puncture it moves along a line</source>
+        <translation>Die Hand hält eine Nadel: Nach dem ersten Durchstoß bewegt sie sich entlang einer Linie</translation>
+    </message>
+    <message>
+        <source>Distance at which surfaces close</source>
+        <translation>Abstand, ab dem Flächen sich schließen</translation>
+    </message>
+    <message>
+        <source>Closes after</source>
+        <translation>Schließt nach</translation>
+    </message>
+    <message>
+        <source>A surface that gave way closes when the proxy is farther than this from where it did [mm of the data]</source>
+        <translation>Eine Fläche, die nachgab, schließt sich, wenn der Proxy weiter als so von der Stelle entfernt ist [mm der Daten]</translation>
+    </message>
+    <message>
+        <source>Lateral stiffness</source>
+        <translation>Seitliche Steifigkeit</translation>
+    </message>
+    <message>
+        <source>How stiffly the needle is drawn to its line [N/mm]</source>
+        <translation>Wie steif die Nadel zu ihrer Linie gezogen wird [N/mm]</translation>
+    </message>
+    <message>
+        <source>Static ratio</source>
+        <translation>Haftverhältnis</translation>
+    </message>
+    <message>
+        <source>Friction along the shaft at rest, of that in motion (no unit, 1 or more)</source>
+        <translation>Reibung entlang des Schafts in Ruhe, im Verhältnis zu der in Bewegung (ohne Einheit, 1 oder mehr)</translation>
+    </message>
+    <message>
+        <source>Stick speed</source>
+        <translation>Hafttempo</translation>
+    </message>
+    <message>
+        <source>Slower than this along its line, the shaft sticks [mm/s]</source>
+        <translation>Langsamer als so entlang seiner Linie haftet der Schaft [mm/s]</translation>
     </message>
 </context>
 <context>

@@ -78,7 +78,7 @@ std::shared_ptr<const Tool> Content::tool() const {
 
 Content::OuterSurface Content::outer_surface() {
     const SharedLayers now = layers();
-    if (have_levels(now)) return {seen(felt()), now->layers.front().level};
+    if (levels_in(now) > 0) return {seen(felt()), now->layers.front().level};
     if (!have_surfaces(now)) return {seen(felt()), live_->isovalue()};
     OuterSurface labels{*now->labels, 0.5};
     labels.field.show_labels(~1U);  // all but what is in no layer

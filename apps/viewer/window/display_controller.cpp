@@ -122,7 +122,7 @@ void DisplayController::observe_layer_level(const Snapshot& now) {
 
 /// While the hand presses through one surface to the next, the first one stays.
 void DisplayController::observe_level(const Snapshot& now) {
-    if (have_levels(layers_)) return observe_layer_level(now);
+    if (levels_in(layers_) > 0) return observe_layer_level(now);
     // The overlay shows labels; no level of the densities is felt.
     if (have_surfaces(layers_)) return views_.set_next_level(infinity);
     next_level_.reset();

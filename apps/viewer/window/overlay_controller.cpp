@@ -2,6 +2,7 @@
 #include "apps/viewer/window/overlay_controller.hpp"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 #include "apps/viewer/panel/look_controls.hpp"
@@ -21,8 +22,9 @@ namespace {
 /// Of the layer that a label is, if it is one.
 double opacity_of(int label, const SharedLayers& layers) {
     if (!layers || !layers->by_label) return 1;
-    const auto layer = std::ranges::find(layers->layers, label, &palpate::Layer::level);
-    return layer != layers->layers.end() ? layer->opacity : 1;
+    const auto labels = std::span(layers->layers).subspan(level_count(*layers));
+    const auto layer = std::ranges::find(labels, label, &palpate::Layer::level);
+    return layer != labels.end() ? layer->opacity : 1;
 }
 
 }  // namespace

@@ -40,6 +40,9 @@ struct TraceExtras {
     /// `layer` (the one touched) and `inside` (those that the SCP is in, outermost first, joined by
     /// +; _ in place of what would break a table). Empty: neither.
     std::vector<std::string> layer_names = {};
+    /// So many of the layers, the first ones, are levels, which nest; the others are labels, of
+    /// which the SCP is in one at a time.
+    std::size_t nested_layers = 0;
     /// `qw` to `qz` (hand), `proxy_qw` to `proxy_qz`, `torque_x` to `torque_z`, `contacts`.
     bool tool = false;
     /// `waiting` (1 where the proxy was held because samples were not in memory) and `level`.

@@ -25,6 +25,10 @@ struct Histogram {
 /// Of the samples that are not padding.
 Histogram histogram_of(const Volume& volume, int bins, std::optional<double> padding = {});
 
+/// Of the gradient's magnitude [data units / mm] at some of the samples, spread evenly: from 0 to
+/// the greatest (to 1 in constant data); without mean and deviation.
+Histogram gradients_of(const Volume& volume, int bins);
+
 /// Two levels between the three classes that explain most of the variance (Otsu 1979, three
 /// classes); fewer for data with fewer values. In CT of a head: skin and bone. The best is first:
 /// the lower one, unless it bounds what an object was put into (resin, gel).

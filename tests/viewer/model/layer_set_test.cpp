@@ -160,7 +160,7 @@ TEST(LayerSet, the_places_of_labels_follow_their_order) {
 TEST(LayerSet, labels_have_no_levels_to_see_and_do_not_nest) {
     const SharedLayers labels = shared(three_labels());
     EXPECT_TRUE(have_surfaces(labels));
-    EXPECT_FALSE(have_levels(labels));
+    EXPECT_EQ(levels_in(labels), 0U);
     Look look;
     EXPECT_FALSE(scene_look(look, labels).surface);
     EXPECT_TRUE(scene_look(look, labels).surfaces.empty());
@@ -169,6 +169,37 @@ TEST(LayerSet, labels_have_no_levels_to_see_and_do_not_nest) {
     EXPECT_EQ(felt_words({-1, 3, 0}, labels), "in 9");
     EXPECT_EQ(felt_words({2, 3, 0}, labels), "on 9, from inside");
     EXPECT_EQ(felt_words({-1, 0, 0}, labels), "");
+}
+
+TEST(LayerSet, levels_beside_labels_are_seen_and_nest_and_labels_do_not) {
+    Layers layers = three_labels();
+    const Layers only = layers;
+    layers.level_count = 2;
+    layers.labels.reset();
+    layers.layers = {only.layers[0], only.layers[1], only.layers[2]};
+    layers.layers[0].level = 9;  // a level, though there is a label 9, too
+    layers.layers[1].level = 50;
+    Geometry geometry;
+    geometry.size = {3, 1, 1};
+    layers.labels = numbered_labels(Volume(geometry, std::vector<std::uint8_t>{0, 9, 4}),
+                                    layers.layers, layers.level_count);
+    EXPECT_EQ(numbers(layers), (std::vector{0, 3, 0}));
+    const SharedLayers both = shared(layers);
+    EXPECT_EQ(levels_in(both), 2U);
+    Look look;
+    look.surface = true;
+    EXPECT_TRUE(scene_look(look, both).surface);
+    ASSERT_EQ(scene_look(look, both).surfaces.size(), 1U);
+    EXPECT_EQ(scene_look(look, both).surfaces[0].level, 50);
+    EXPECT_EQ(slice_look(look, both).surfaces.size(), 2U);
+    EXPECT_EQ(felt_words({2, 2, 0}, both), "on 9, in 4, 2") << "two levels nest";
+    EXPECT_EQ(felt_words({2, 3, 0}, both), "on 9, from inside");
+    EXPECT_EQ(felt_words({-1, 3, 0}, both), "in 9");
+    EXPECT_EQ(room_of(layers, 0, 1).high, 49) << "labels bound no level";
+    const Layers less = without_layer(layers, 0);
+    EXPECT_EQ(less.level_count, 1U);
+    EXPECT_EQ(numbers(less), (std::vector{0, 2, 0}));
+    EXPECT_NO_THROW(check(less, Solid::above));
 }
 
 TEST(LayerSet, a_label_may_have_the_viscosity_of_any_other_beside_it) {

@@ -12,53 +12,16 @@
 #include <set>
 
 #include "apps/viewer/panel/isovalue_controls.hpp"
-#include "apps/viewer/panel/layers_controls.hpp"
 #include "apps/viewer/panel/number_box.hpp"
 #include "apps/viewer/panel/stroke_plot.hpp"
-#include "palpate/io/layers_file.hpp"
-#include "tests/viewer/panel/panel_fixture.hpp"
+#include "tests/viewer/panel/layers_fixture.hpp"
 
 namespace palpate::viewer {
 namespace {
 
 using enum HapticProperty;
 
-class LayersPart : public PanelFixture {
-  protected:
-    LayersPart() {
-        set();
-        for (const char* name : {"ct-soft-tissue-and-bone", "ct-needle"}) {
-            const io::LayersFile file = io::layers_named(name);
-            choices.push_back({std::make_shared<const Layers>(file.layers),
-                               QString::fromStdString(file.about),
-                               {},
-                               true});
-        }
-        choices.back().note = "These are for CT";
-        panel.layers_controls().set_choices(choices);
-    }
-    /// As by the keys of someone who has tabbed there.
-    void choose(int row) {
-        auto* box = find<QComboBox>("layers");
-        box->setFocus();
-        while (box->currentIndex() < row) QTest::keyClick(box, Qt::Key_Down);
-        while (box->currentIndex() > row) QTest::keyClick(box, Qt::Key_Up);
-        settle();
-    }
-    /// Only a check box's own words take clicks, not all of its row.
-    void tick(const char* name) {
-        auto* box = find<QWidget>(name);
-        QTest::mouseClick(box, Qt::LeftButton, {}, QPoint(8, box->height() / 2));
-        settle();
-    }
-    SharedLayers asked() {
-        const auto all = of<command::UseLayers>();
-        return all.empty() ? nullptr : all.back().layers;
-    }
-    const Layer& layer(std::size_t number) { return asked()->layers.at(number); }
-
-    std::vector<LayersChoice> choices;
-};
+using LayersPart = LayersFixture;
 
 TEST_F(LayersPart, a_choice_is_one_command_and_none_goes_back_to_the_isovalue) {
     choose(1);
@@ -130,69 +93,6 @@ TEST_F(LayersPart, a_value_is_cleared_back_to_the_curve_or_the_session) {
     EXPECT_TRUE(clear->toolTip().contains("curve")) << clear->toolTip().toStdString();
     press("undo_layers");
     EXPECT_FALSE(layer(0)[stiffness]);
-}
-
-TEST_F(LayersPart, each_property_has_a_curve_that_begins_is_changed_and_ends) {
-    choose(1);
-    LevelChart& chart = panel.isovalue_controls().chart();
-    auto* properties = find<QComboBox>("curve_property");
-    ASSERT_EQ(properties->count(), haptic_property_count);
-    for (int i = 0; i < haptic_property_count; ++i) {
-        const auto property = static_cast<HapticProperty>(i);
-        properties->setFocus();
-        while (properties->currentIndex() < i) QTest::keyClick(properties, Qt::Key_Down);
-        settle();
-        EXPECT_TRUE(chart.curve().knots.empty()) << i;
-        EXPECT_FALSE(find<QWidget>("remove_curve")->isEnabled());
-        press("start_curve");
-        settle();
-        ASSERT_EQ((*asked())[property].density.knots.size(), 1U) << i;
-        ASSERT_EQ(chart.curve().knots.size(), 1U);
-        chart.setFocus();
-        for (const Qt::Key key : {Qt::Key_PageDown, Qt::Key_Insert, Qt::Key_Up, Qt::Key_Up}) {
-            QTest::keyClick(&chart, key);
-        }
-        settle();
-        const auto knots = (*asked())[property].density.knots;
-        ASSERT_EQ(knots.size(), 2U) << i;
-        EXPECT_GT(knots[1].value, knots[0].value) << i;
-        EXPECT_GT(knots[1].at, knots[0].at) << i;
-        EXPECT_NO_THROW(check(*asked(), Solid::above));
-        EXPECT_TRUE(properties->currentText().contains("(2)"));
-        if (property == puncture_force) {
-            QDir().mkpath(PALPATE_PICTURES);
-            panel.grab().save(QString(PALPATE_PICTURES) + "/layers_curve_puncture.png");
-        }
-        press("remove_curve");
-        settle();
-        EXPECT_TRUE((*asked())[property].density.knots.empty()) << i;
-        press("undo_layers");
-        EXPECT_EQ((*asked())[property].density.knots.size(), 2U) << i;
-        press("redo_layers");
-    }
-}
-
-TEST_F(LayersPart, a_curve_from_a_file_may_have_forces_that_are_infinite) {
-    Layers layers = *choices[0].layers;
-    const double never = std::numeric_limits<double>::infinity();
-    layers[puncture_force].density.knots = {{-500, 1}, {1000, never}};
-    choices[0].layers = std::make_shared<const Layers>(layers);
-    panel.layers_controls().set_choices(choices);
-    choose(1);
-    auto* properties = find<QComboBox>("curve_property");
-    properties->setFocus();
-    while (properties->currentIndex() < int(puncture_force)) {
-        QTest::keyClick(properties, Qt::Key_Down);
-    }
-    settle();
-    const LevelChart& chart = panel.isovalue_controls().chart();
-    ASSERT_EQ(chart.curve().knots.size(), 2U);
-    EXPECT_TRUE(std::isfinite(chart.curve().top));
-    EXPECT_EQ(chart.curve().knots[1].value, never);
-    EXPECT_TRUE(find<QLabel>("curve_note")->text().contains("own") ||
-                !std::ranges::all_of(layers.layers, [](const Layer& layer) {
-                    return layer[puncture_force].has_value();
-                }));
 }
 
 /// Two labels on the field's grid, with places.
@@ -310,6 +210,29 @@ TEST_F(LayersPart, a_puncture_force_may_be_never) {
     EXPECT_EQ(layer(0)[puncture_force], 1.2) << "as it was";
     tick("needle");
     EXPECT_TRUE(asked()->needle);
+}
+
+TEST_F(LayersPart, closing_and_the_numbers_of_a_needle_can_be_set) {
+    choose(2);  // with a needle
+    type("layers_closing_box", "2.5");
+    type("needle_lateral_box", "0.45");
+    type("needle_static_ratio_box", "1.5");
+    type("needle_stick_speed_box", "3");
+    ASSERT_TRUE(asked()->needle);
+    EXPECT_EQ(asked()->closing, 2.5);
+    EXPECT_EQ(asked()->needle->lateral_stiffness, 0.45);
+    EXPECT_EQ(asked()->needle->static_ratio, 1.5);
+    EXPECT_EQ(asked()->needle->stick_speed, 3);
+    type("needle_static_ratio_box", "0.5");
+    EXPECT_TRUE(message("layers_part").contains("static friction"));
+    EXPECT_EQ(panel.settings().layers->needle->static_ratio, 1.5);
+    EXPECT_EQ(find<NumberBox>("needle_static_ratio_box")->value(), 1.5);
+    tick("needle");
+    EXPECT_FALSE(asked()->needle);
+    EXPECT_FALSE(find<QWidget>("needle_lateral")->isVisible());
+    EXPECT_EQ(asked()->closing, 2.5);
+    press("undo_layers");
+    EXPECT_EQ(find<NumberBox>("needle_lateral_box")->value(), 0.45);
 }
 
 TEST_F(LayersPart, a_name_twice_is_refused_with_the_reason) {
