@@ -78,12 +78,18 @@ Program program_named(const std::string& name, const char* variable) {
     return program;
 }
 
-/// Reads the volume that comes with Palpate.
+/// Reads the volume that comes with Palpate, and has the programs that know other formats.
 Program reader() {
     Program program = program_named("palpate-io-helper", "PALPATE_IO_HELPER");
     if (!program.problem.empty()) return program;
     try {
         io::read_volume(io::sample_volume_path());
+        const fs::path folder = fs::canonical(program.path).parent_path();
+        for (const char* name :
+             {"palpate-io-itk", "palpate-io-images", "palpate-io-vtk", "palpate-io-dicom"}) {
+            if (access((folder / name).c_str(), X_OK) == 0) continue;
+            program.problem = std::string(name) + " is not beside it or cannot be run";
+        }
     } catch (const std::exception& e) {
         program.problem = e.what();
     }

@@ -59,6 +59,20 @@ TEST(Doctor, finds_a_helper_that_does_not_run) {
     }
 }
 
+TEST(Doctor, finds_a_reader_that_was_copied_without_those_of_other_formats) {
+    const ScratchFolder folder;
+    const auto build = std::filesystem::path(PALPATE_PROGRAM).parent_path() / "../..";
+    std::filesystem::copy_file(build / "libexec/palpate/palpate-io-helper",
+                               folder / "palpate-io-helper");
+    const Outcome outcome =
+        Running({"-c", "PALPATE_IO_HELPER=$PWD/palpate-io-helper exec " PALPATE_PROGRAM
+                       " doctor --seconds 0"},
+                folder.path(), Stdout::captured, "/bin/sh")
+            .finish();
+    EXPECT_EQ(outcome.status, 4);
+    EXPECT_TRUE(contains(outcome.out, "palpate-io-dicom is not beside it")) << outcome.out;
+}
+
 TEST(Doctor, leaves_no_report_when_it_is_interrupted) {
     const ScratchFolder folder;
     Running running({"doctor", "--report", "report.md", "--quiet"}, folder.path());
