@@ -87,6 +87,9 @@ if(TARGET palpate_python)
 This package has the Python module."
     palpate-python)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3, python3-numpy, palpate-io-helper (= ${version})")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${palpate_debian}/python/postinst
+                                                ${palpate_debian}/python/prerm)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_STRICT_PERMISSION TRUE)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS python3-distributed)  # palpate.distributed, palpate.study
 endif()
 

@@ -24,6 +24,7 @@ compgen -G "$packages/palpate_*.deb" >/dev/null || { echo "try_packages.sh: no p
 command -v debootstrap >/dev/null || DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends debootstrap >/dev/null
 
 root=$(mktemp -d)
+chmod 755 "$root"  # apt reads its lists as another user
 at_exit() {
     umount "$root/proc" "$root/dev" 2>/dev/null || true
     rm -rf --one-file-system "$root"

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The Debian packages, made from a build folder that exists: what lintian says, and installing,
-using, upgrading and removing them in a scratch root. The only script of a package is a call of
-ldconfig; the libraries of other packages are those of this system."""
+using, upgrading and removing them in a scratch root. Scripts of packages do nothing there; the
+libraries of other packages are those of this system."""
 
 import os
 import pathlib
