@@ -178,6 +178,29 @@ int Field::covering_label(const Index3& at) const noexcept {
         labels.data_)[there[0] + there[1] * labels.row_ + there[2] * labels.slice_];
 }
 
+/// In `count` samples along each axis from `low` on, all inside of both grids, which are the same.
+template <int count>
+bool Field::has_label(const Index3& low) const noexcept {
+    const auto* plane = static_cast<const std::uint8_t*>(cover_.labels->data_) +
+                        (low[0] + low[1] * row_ + low[2] * slice_);
+    unsigned labels = 0;
+    for (int z = 0; z < count; ++z, plane += slice_) {
+        for (int y = 0; y < count; ++y) {
+            for (int x = 0; x < count; ++x) labels |= plane[x + y * row_];
+        }
+    }
+    return labels != 0;
+}
+
+bool Field::is_covered_around(const Index3& at) const noexcept {
+    if (cover_.same_grid && is_inner(at)) return has_label<3>(at - Index3::Ones());
+    bool any = false;
+    for (int i = 0; i < 27 && !any; ++i) {
+        any = covering_label(at + Index3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1)) > 0;
+    }
+    return any;
+}
+
 /// What a sample, less offset(), counts as under the labels.
 double Field::covered(const Index3& at, double sample) const noexcept {
     const int label = covering_label(at);
@@ -203,9 +226,10 @@ void Field::look() noexcept {
     if (offset_ != 0) largest = high - low;
     // Edited, interpolated or shifted samples take the slow path, so that plain ones have no extra
     // cost.
-    const bool changing =
-        bricks_ || moment_.weight > 0 || offset_ != 0 || resident_ || cover_.labels;
-    plain_ = changing ? Index3(Index3::Zero()) : cells_;
+    const bool changing = bricks_ || moment_.weight > 0 || offset_ != 0 || resident_;
+    const Index3 none = Index3::Zero();
+    plain_ = changing || cover_.labels ? none : cells_;
+    cover_.plain = changing || !cover_.labels || !cover_.same_grid ? none : cells_;
     tolerance_ = std::max(1e-12 * range_, 8 * std::numeric_limits<double>::epsilon() * largest);
     lowest_ = (low - offset_) - range_;
     highest_ = (high - offset_) + range_;
@@ -240,6 +264,12 @@ template CellSamples Field::resident_cell<float>(const Index3&) const;
 
 CellSamples Field::other_cell(const Index3& cell) const {
     if (shows_labels_) return shown_cell(cell);
+    const auto is_plain = [&](int a) {
+        return static_cast<unsigned>(cell[a]) < static_cast<unsigned>(cover_.plain[a]);
+    };
+    if (is_plain(0) && is_plain(1) && is_plain(2) && !has_label<2>(cell)) {
+        return corners(type_, data_, cell[0] + cell[1] * row_ + cell[2] * slice_, row_, slice_);
+    }
     CellSamples samples = uncovered_cell(cell);
     if (!cover_.labels) return samples;
     for (int c = 0; c < 8; ++c) {

@@ -73,6 +73,8 @@ class Field {
     const Field* covering_labels() const noexcept { return cover_.labels.get(); }
     /// Of the sample `at`, from the labels that cover it.
     int covering_label(const Index3& at) const noexcept;
+    /// Whether the sample `at` or one of its neighbours has such a label.
+    bool is_covered_around(const Index3& at) const noexcept;
     /// Feels the same samples in another way from now on.
     void set_interpolation(Interpolation to) noexcept { interpolation_ = to; }
 
@@ -156,6 +158,8 @@ class Field {
     Neighbours other_around(const Index3& at) const;
     Neighbours uncovered_around(const Index3& at) const;
     double covered(const Index3& at, double sample) const noexcept;
+    template <int count>
+    bool has_label(const Index3& low) const noexcept;
     CellSamples absolute_cell(const Index3& cell) const;
     bool has_sample(const Index3& at) const {
         return (at.array() >= 0).all() && (at.array() < size_.array()).all();
@@ -210,7 +214,8 @@ class Field {
         double open = 0, solid = 0;  // [data units] less the field's offset
         double background = 0;       // where samples without a label are not solid
         bool same_grid = true;
-        Mat3 turn = Mat3::Identity();  // index of a label = turn * index of a sample + shift
+        Index3 plain = Index3::Zero();  // cells whose samples lie at data_ but for the labels
+        Mat3 turn = Mat3::Identity();   // index of a label = turn * index of a sample + shift
         Vec3 shift = Vec3::Zero();
     };
     Cover cover_;
@@ -234,6 +239,13 @@ auto Field::visit_gathered(const Index3& at, Visit& visit) const {
     if (shows_labels_) {
         const std::array<std::uint8_t, 27> samples = shown_around(at);
         return visit(samples.data() + 13, std::ptrdiff_t{3}, std::ptrdiff_t{9});
+    }
+    const auto is_plain = [&](int a) { return at[a] > 0 && at[a] < cover_.plain[a]; };
+    if (cover_.labels && is_plain(0) && is_plain(1) && is_plain(2) && !is_covered_around(at)) {
+        return with_type(type_, [&](auto zero) {
+            const auto* samples = static_cast<const decltype(zero)*>(data_);
+            return visit(samples + (at[0] + at[1] * row_ + at[2] * slice_), row_, slice_);
+        });
     }
     const Neighbours samples = other_around(at);
     return visit(samples.data() + 13, std::ptrdiff_t{3}, std::ptrdiff_t{9});

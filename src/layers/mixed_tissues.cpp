@@ -86,7 +86,8 @@ int MixedTissues::largest(const Shares& shares, std::uint32_t among) const {
 int MixedTissues::without_labels_at(const Vec3& physical) const {
     const double density = value_at(density_, physical);
     int inside = 0;
-    while (inside < levels_ && density_.sign() * (density - level(inside)) > 0) ++inside;
+    const double least = on_level * density_.range();
+    while (inside < levels_ && density_.sign() * (density - level(inside)) > least) ++inside;
     return inside;
 }
 
@@ -129,13 +130,21 @@ NextLayers MixedTissues::bound() {
 }
 
 void MixedTissues::look(const ProxyUpdate& update) {
+    const bool meets_ahead = update.mode == Mode::constrained && !update.behind;
+    const bool has_level = may_be_in(0) && state_.inner < levels_;
+    const Vec3 index = index_from_physical(density_.geometry(), update.scp);
+    const Index3 nearest = (index.array() + 0.5).floor().matrix().cast<int>();
+    here_ = 0;
+    ahead_ = none;
+    if (!state_.labels->is_covered_around(nearest)) {
+        if (meets_ahead) ahead_ = !may_be_in(0) ? 0 : has_level ? at_level : none;
+        return;
+    }
     const Shares shares = shares_at(update.scp);
     here_ = std::max(0, largest(shares, state_.open));
-    ahead_ = none;
-    if (update.mode != Mode::constrained || update.behind) return;
+    if (!meets_ahead) return;
     ahead_ = largest(shares, ~state_.open);
     const double share = ahead_ >= 0 ? shares.of[static_cast<std::size_t>(ahead_)] : 0;
-    const bool has_level = may_be_in(0) && state_.inner < levels_;
     if (has_level && (ahead_ < 0 || shares.beyond > share)) ahead_ = at_level;
 }
 

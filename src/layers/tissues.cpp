@@ -8,12 +8,6 @@
 #include "palpate/density.hpp"
 
 namespace palpate {
-namespace {
-
-/// Closer to a level than this [range], the SCP counts as outside of it.
-constexpr double at_level = 1e-9;
-
-}  // namespace
 
 LevelTissues::LevelTissues(const Layers& layers, LayerState& state, Proxy& proxy,
                            const Field& field)
@@ -26,7 +20,7 @@ LevelTissues::LevelTissues(const Layers& layers, LayerState& state, Proxy& proxy
 int LevelTissues::inside_at(double density) const {
     int inside = 0;
     while (inside < count_ &&
-           field_.sign() * (density - level(inside)) > at_level * field_.range()) {
+           field_.sign() * (density - level(inside)) > on_level * field_.range()) {
         ++inside;
     }
     return inside;

@@ -6,6 +6,9 @@
 
 namespace palpate {
 
+/// Closer to a level than this [range], the SCP counts as outside of it.
+inline constexpr double on_level = 1e-9;
+
 /// The layers before and behind the SCP, whose friction it may meet; -1: none.
 struct NextLayers {
     int ahead = -1, behind = -1;

@@ -151,7 +151,7 @@ TEST(MixedLayers, surfaces_of_the_density_are_exact_where_no_label_is_near) {
             const Vec3 at(6.5 + 0.5 * std::sin(depth), 4 + 2 * std::cos(3 * depth), depth);
             time += 0.001;
             const Tick a = mixed.to(at), b = render(levels, {.time = time, .position = at});
-            ASSERT_NEAR((a.proxy.scp - b.proxy.scp).norm(), 0, 1e-9) << depth;
+            ASSERT_EQ(a.proxy.scp, b.proxy.scp) << depth;
             ASSERT_EQ(a.layers.touched, b.layers.touched) << depth;
             ASSERT_EQ(a.layers.inside, b.layers.inside) << depth;
         }
