@@ -78,23 +78,9 @@ PYTHON
 
 echo "== C by pkg-config"
 inside sh -c 'apt-get install -y -q gcc libc6-dev pkgconf /tmp/packages/lib*.deb >/tmp/apt.log 2>&1 || { tail /tmp/apt.log; exit 1; }'
+cp tests/project/installed.c "$root/tmp"
 # shellcheck disable=SC2016  # it expands inside
-inside sh -c 'cd /tmp && cat >own.c && gcc own.c -o own $(pkg-config --cflags --libs palpate-c) && ./own /usr/share/palpate/visible_human_head.nrrd' <<'C'
-#include <palpate.h>
-#include <stdio.h>
-int main(int count, char **words) {
-    palpate_volume *volume = NULL;
-    PALPATE_STRUCT(palpate_volume_info, info);
-    if (count != 2 || palpate_volume_load(words[1], NULL, &volume) != PALPATE_OK ||
-        palpate_volume_describe(volume, &info) != PALPATE_OK) {
-        puts(palpate_last_error());
-        return 1;
-    }
-    printf("%d samples along x, feel %g\n", info.geometry.size[0], info.isovalue);
-    palpate_volume_destroy(volume);
-    return 0;
-}
-C
+inside sh -c 'cd /tmp && gcc installed.c -o installed $(pkg-config --cflags --libs palpate-c) && ./installed /usr/share/palpate/visible_human_head.nrrd'
 
 echo "== apt purge"
 inside sh -c 'apt-get purge -y -q "*palpate*" gcc libc6-dev pkgconf python3 >/tmp/apt.log 2>&1 && apt-get autoremove --purge -y -q >>/tmp/apt.log 2>&1 || { tail /tmp/apt.log; exit 1; }'

@@ -1,6 +1,4 @@
 // palpate-io-dicom: reads DICOM, by GDCM and ITK.
-#include <cstdlib>
-
 #include "io/helper/jobs.hpp"
 
 namespace palpate::io {
@@ -16,7 +14,5 @@ Result read_dicom(const Request& request) {
 
 int main(int argc, char** argv) {
     using namespace palpate::io;
-    const int status = serve("palpate-io-dicom", {.read = &read_dicom}, argc, argv);
-    // No destructors of the libraries: some of them crash on what a damaged file left behind.
-    std::_Exit(status);
+    serve("palpate-io-dicom", {.read = &read_dicom}, argc, argv);
 }

@@ -1,6 +1,4 @@
 // palpate-io-images: reads and writes TIFF, reads images in chunks of HDF5.
-#include <cstdlib>
-
 #include "io/helper/jobs.hpp"
 
 namespace palpate::io {
@@ -29,10 +27,7 @@ void write(const std::filesystem::path& path, const std::string&, const WrittenV
 
 int main(int argc, char** argv) {
     using namespace palpate::io;
-    const int status =
-        serve("palpate-io-images",
-              {.read = &read_tiff, .describe = &describe, .places = &places, .write = &write}, argc,
-              argv);
-    // No destructors of the libraries: some of them crash on what a damaged file left behind.
-    std::_Exit(status);
+    serve("palpate-io-images",
+          {.read = &read_tiff, .describe = &describe, .places = &places, .write = &write}, argc,
+          argv);
 }

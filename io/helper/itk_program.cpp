@@ -1,6 +1,4 @@
 // palpate-io-itk: reads NIfTI, writes NRRD, MetaImage and NIfTI.
-#include <cstdlib>
-
 #include "io/helper/jobs.hpp"
 
 namespace palpate::io {
@@ -17,9 +15,6 @@ void write(const std::filesystem::path& path, const std::string& extension,
 
 int main(int argc, char** argv) {
     using namespace palpate::io;
-    const int status =
-        serve("palpate-io-itk", {.read = &read_nifti, .locate = &nifti_samples, .write = &write},
-              argc, argv);
-    // No destructors of the libraries: some of them crash on what a damaged file left behind.
-    std::_Exit(status);
+    serve("palpate-io-itk", {.read = &read_nifti, .locate = &nifti_samples, .write = &write}, argc,
+          argv);
 }

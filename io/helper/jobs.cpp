@@ -36,11 +36,6 @@ extern "C" void clean_up_and_go(int signal_number) {
     raise(signal_number);
 }
 
-bool ends_with(const std::string& text, const std::string& end) {
-    return text.size() >= end.size() &&
-           text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
-
 nlohmann::json json_of(const ValueInfo& values) {
     nlohmann::json json = {{"modality", values.modality}, {"units", values.units}};
     if (values.window) json["window"] = {values.window->centre, values.window->width};
@@ -281,7 +276,7 @@ Job job_of(int argc, char** argv) {
 
 std::string extension_of(const fs::path& path) {
     const std::string name = lower(path.filename().string());
-    return ends_with(name, ".nii.gz") ? ".nii.gz" : lower(path.extension().string());
+    return name.ends_with(".nii.gz") ? ".nii.gz" : lower(path.extension().string());
 }
 
 std::string words_of(const std::exception& e, Job job) {
@@ -295,11 +290,11 @@ std::string words_of(const std::exception& e, Job job) {
                               : "it is damaged or of a kind that is not read");
 }
 
-int serve(const char* program, const Formats& formats, int argc, char** argv) {
+void serve(const char* program, const Formats& formats, int argc, char** argv) {
     const Job job = job_of(argc, argv);
-    return helper_status(
+    std::_Exit(helper_status(
         program, job != Job::none, [&] { return run(job, argv, formats); },
-        [&](const std::exception& e) { return words_of(e, job); });
+        [&](const std::exception& e) { return words_of(e, job); }));
 }
 
 }  // namespace palpate::io

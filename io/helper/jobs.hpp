@@ -41,7 +41,8 @@ std::string extension_of(const std::filesystem::path& path);
 /// What a person is told of an exception.
 std::string words_of(const std::exception& e, Job job);
 
-/// Does the job of the command line and reports; the exit status.
-int serve(const char* program, const Formats& formats, int argc, char** argv);
+/// Does the job of the command line, reports and ends the process, without destructors: some of the
+/// libraries' crash on what a damaged file left behind.
+[[noreturn]] void serve(const char* program, const Formats& formats, int argc, char** argv);
 
 }  // namespace palpate::io

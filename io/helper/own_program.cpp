@@ -124,7 +124,7 @@ int run(int argc, char** argv) {
     constexpr const char* name = "palpate-io-helper";
     const Job job = job_of(argc, argv);
     const Formats* own = job == Job::none ? nullptr : own_formats(job, argv[2]);
-    if (own) return serve(name, *own, argc, argv);
+    if (own) serve(name, *own, argc, argv);
     return helper_status(
         name, job != Job::none, [&] { return become(program_for(job, argv[2]), argv); },
         [&](const std::exception& e) { return words_of(e, job); });

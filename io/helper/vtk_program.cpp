@@ -1,6 +1,4 @@
 // palpate-io-vtk: reads and writes VTI, reads meshes.
-#include <cstdlib>
-
 #include "io/helper/jobs.hpp"
 
 namespace palpate::io {
@@ -15,9 +13,6 @@ void write(const std::filesystem::path& path, const std::string&, const WrittenV
 
 int main(int argc, char** argv) {
     using namespace palpate::io;
-    const int status =
-        serve("palpate-io-vtk", {.read = &read_vti, .read_mesh = &read_mesh, .write = &write}, argc,
-              argv);
-    // No destructors of the libraries: some of them crash on what a damaged file left behind.
-    std::_Exit(status);
+    serve("palpate-io-vtk", {.read = &read_vti, .read_mesh = &read_mesh, .write = &write}, argc,
+          argv);
 }

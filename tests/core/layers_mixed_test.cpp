@@ -6,9 +6,11 @@
 
 #include "palpate/density.hpp"
 #include "palpate/renderer.hpp"
+#include "support/constants.hpp"
 #include "support/cubic_guarantees.hpp"
 #include "support/fields.hpp"
 #include "support/hand.hpp"
+#include "support/layer.hpp"
 #include "support/press.hpp"
 
 using namespace palpate;
@@ -17,23 +19,12 @@ using enum HapticProperty;
 
 namespace {
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
-
-Layer layer_of(const char* name, double level, double k, double force) {
-    Layer made;
-    made.name = name;
-    made.level = level;
-    made[stiffness] = k;
-    made[puncture_force] = force;
-    return made;
-}
-
 /// Levels 30 and 70, and label 7.
 Layers skin_bone_and_label() {
     Layers layers;
     layers.by_label = true;
     layers.level_count = 2;
-    layers.layers = {layer_of("skin", 30, 0.4, 0.5), layer_of("bone", 70, 1, infinite),
+    layers.layers = {layer_of("skin", 30, 0.4, 0.5), layer_of("bone", 70, 1, infinity),
                      layer_of("organ", 7, 0.6, 0.8)};
     return layers;
 }
@@ -81,7 +72,7 @@ TEST(MixedLayers, give_the_force_of_the_closed_form_at_every_speed) {
     };
     // Out of the label through its own surface, half-way between two samples.
     const Surface surfaces[] = {
-        {30, 0.4, 0.5}, {into_label, 0.6, 0.8}, {55.5, 0.6, 0.8}, {70, 1, infinite}};
+        {30, 0.4, 0.5}, {into_label, 0.6, 0.8}, {55.5, 0.6, 0.8}, {70, 1, infinity}};
     for (const double speed : {20.0, 200.0, 1000.0}) {
         MixedHand hand(ramp_field(), skin_bone_and_label(), label_slab());
         int punctured = 0;
@@ -138,7 +129,7 @@ TEST(MixedLayers, are_named_and_felt_from_inside) {
 TEST(MixedLayers, surfaces_of_the_density_are_exact_where_no_label_is_near) {
     const Volume far = label_slab([](const Index3& i) { return i[0] < 2; });
     Layers alone;
-    alone.layers = {layer_of("skin", 30, 0.4, 0.5), layer_of("bone", 70, 1, infinite)};
+    alone.layers = {layer_of("skin", 30, 0.4, 0.5), layer_of("bone", 70, 1, infinity)};
     for (const Interpolation interpolation : {Interpolation::linear, Interpolation::cubic}) {
         Field data = ramp_field();
         data.set_interpolation(interpolation);
@@ -176,9 +167,9 @@ TEST(MixedLayers, are_never_passed_while_they_hold) {
             layers.by_label = true;
             layers.level_count = 2;
             layers.layers = {layer_of("outer", level(0.4), 0.5, 0.3),
-                             layer_of("inner", level(0.7), 1, infinite),
+                             layer_of("inner", level(0.7), 1, infinity),
                              layer_of("one", 1, 0.5, 0.3), layer_of("two", 2, 0.7, 0.2),
-                             layer_of("three", 3, 0.9, infinite)};
+                             layer_of("three", 3, 0.9, infinity)};
             MixedHand hand(data, layers, labels);
             Hand moves(data.geometry(), 9);
             int touched = 0, punctured = 0, in_label = 0, on_level = 0;
@@ -216,9 +207,14 @@ TEST(MixedLayers, are_never_passed_while_they_hold) {
     }
 }
 
+TEST(MixedLayers, begin_outside_of_a_level_that_the_hand_is_on) {
+    MixedHand hand(ramp_field(), skin_bone_and_label(), label_slab());
+    EXPECT_EQ(hand.to(at_depth(30 + 5e-8)).layers.inside, 0) << "as with levels alone";
+}
+
 TEST(MixedLayers, begin_in_the_tissue_round_a_label_that_never_gives_way) {
     Layers layers = skin_bone_and_label();
-    layers.layers[2][puncture_force] = infinite;
+    layers.layers[2][puncture_force] = infinity;
     MixedHand hand(ramp_field(), layers, label_slab());
     EXPECT_EQ(hand.to(at_depth(45)).layers.inside, 1) << "the density there is that of skin";
     for (int i = 0; i < 20; ++i) hand.to(at_depth(45));

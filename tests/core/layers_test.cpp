@@ -9,6 +9,7 @@
 #include "palpate/renderer.hpp"
 #include "support/constants.hpp"
 #include "support/fields.hpp"
+#include "support/layer.hpp"
 #include "support/press.hpp"
 
 using namespace palpate;
@@ -17,21 +18,12 @@ using enum HapticProperty;
 
 namespace {
 
-Layer layer(const std::string& name, double level, double k, double force) {
-    Layer made;
-    made.name = name;
-    made.level = level;
-    made[stiffness] = k;
-    made[puncture_force] = force;
-    return made;
-}
-
 /// Five surfaces on the ramp, whose density is the depth in mm.
 Layers five_layers() {
     Layers layers;
-    layers.layers = {layer("skin", 10, 0.4, 1.2), layer("fat", 16, 0.2, 0.7),
-                     layer("fascia", 30, 0.9, 2.0), layer("muscle", 33.5, 0.5, 1.0713),
-                     layer("bone", 60, 1.5, infinity)};
+    layers.layers = {layer_of("skin", 10, 0.4, 1.2), layer_of("fat", 16, 0.2, 0.7),
+                     layer_of("fascia", 30, 0.9, 2.0), layer_of("muscle", 33.5, 0.5, 1.0713),
+                     layer_of("bone", 60, 1.5, infinity)};
     return layers;
 }
 
@@ -146,7 +138,7 @@ TEST(Layers, give_the_force_of_the_closed_form_at_every_speed) {
 
 TEST(Layers, are_felt_from_inside_after_they_closed) {
     Layers layers;
-    layers.layers = {layer("vessel", 20, 0.5, 1), layer("core", 40, 0.5, infinity)};
+    layers.layers = {layer_of("vessel", 20, 0.5, 1), layer_of("core", 40, 0.5, infinity)};
     LayeredHand hand{renderer_of(ramp_field(), layers)};
     double depth = 15;
     for (; depth < 25; depth += 0.1) hand.to(at_depth(depth));
@@ -168,7 +160,7 @@ TEST(Layers, are_felt_from_inside_after_they_closed) {
 
 TEST(Layers, stay_open_near_where_they_gave_way) {
     Layers layers;
-    layers.layers = {layer("skin", 20, 1, 0.5)};
+    layers.layers = {layer_of("skin", 20, 1, 0.5)};
     layers.closing = 2;
     LayeredHand hand{renderer_of(ramp_field(), layers)};
     hand.to(at_depth(19));
@@ -188,7 +180,7 @@ TEST(Layers, stay_open_near_where_they_gave_way) {
 
 TEST(Layers, take_properties_from_curves_over_density_and_gradient) {
     Layers layers;
-    layers.layers = {layer("own", 20, 0.3, infinity)};
+    layers.layers = {layer_of("own", 20, 0.3, infinity)};
     layers[stiffness].density.knots = {{0, 0}, {40, 0.8}};
     layers[stiffness].gradient.knots = {{0, 0}, {2, 1}};  // the ramp's is 1
     {
@@ -213,7 +205,7 @@ TEST(Layers, without_surfaces_give_the_isovalue_its_properties) {
 
 TEST(Layers, slow_a_hand_by_the_viscosity_of_what_it_is_in) {
     Layers layers;
-    layers.layers = {layer("gel", 20, 0.5, 0.1), layer("core", 80, 0.5, infinity)};
+    layers.layers = {layer_of("gel", 20, 0.5, 0.1), layer_of("core", 80, 0.5, infinity)};
     layers.layers[0][viscosity] = 1e-3;
     LayeredHand hand{renderer_of(ramp_field(), layers)};
     Tick tick;
@@ -225,7 +217,7 @@ TEST(Layers, slow_a_hand_by_the_viscosity_of_what_it_is_in) {
 
 TEST(Layers, never_render_more_stiffness_than_the_device_takes) {
     Layers layers;
-    layers.layers = {layer("bone", 20, 50, infinity)};
+    layers.layers = {layer_of("bone", 20, 50, infinity)};
     Renderer renderer = renderer_of(ramp_field(), layers);
     renderer.settings.device.rate = 1000;
     renderer.settings.device.physical_damping = 1e-3;
@@ -238,7 +230,7 @@ TEST(Layers, begin_anew_where_the_proxy_is_when_others_take_their_place) {
     LayeredHand hand{renderer_of(ramp_field(), five_layers())};
     for (double depth = 5; depth < 29; depth += 0.1) hand.to(at_depth(depth));
     Layers two;
-    two.layers = {layer("a", 20, 0.5, infinity), layer("b", 40, 0.5, infinity)};
+    two.layers = {layer_of("a", 20, 0.5, infinity), layer_of("b", 40, 0.5, infinity)};
     hand.renderer.settings.layers = std::make_shared<Layers>(two);
     const Tick tick = hand.to(at_depth(29));
     EXPECT_EQ(tick.layers.inside, 1);
@@ -252,7 +244,7 @@ TEST(Layers, give_way_at_their_force_in_grooves_and_corners_too) {
         return i[2] + 2 * std::abs(i[0] - 4) + 3 * std::abs(i[1] - 4);
     };
     Layers layers;
-    layers.layers = {layer("skin", 30, 0.5, 1)};
+    layers.layers = {layer_of("skin", 30, 0.5, 1)};
     for (const bool is_corner : {false, true}) {
         const Volume volume = is_corner ? volume_of<float>(grid({9, 9, 101}), corner)
                                         : volume_of<float>(grid({9, 9, 101}), groove);

@@ -25,21 +25,6 @@ FILES = """usr/bin/palpate usr/bin/palpate-viewer usr/libexec/palpate/palpate-io
     usr/share/icons/hicolor/scalable/apps/palpate.svg usr/lib/udev/rules.d/70-palpate.rules
     etc/security/limits.d/palpate.conf usr/include/palpate.h usr/include/palpate/palpate.hpp
     usr/share/doc/palpate/copyright usr/share/doc/libpalpate-c0/changelog.Debian.gz""".split()
-PROGRAM = r"""#include <palpate.h>
-#include <stdio.h>
-int main(int count, char **words) {
-    palpate_volume *volume = NULL;
-    PALPATE_STRUCT(palpate_volume_info, info);
-    if (count != 2 || palpate_volume_load(words[1], NULL, &volume) != PALPATE_OK ||
-        palpate_volume_describe(volume, &info) != PALPATE_OK) {
-        puts(palpate_last_error());
-        return 1;
-    }
-    printf("%d samples along x, feel %g\n", info.geometry.size[0], info.isovalue);
-    palpate_volume_destroy(volume);
-    return 0;
-}
-"""
 
 
 def run(*words, **options):
@@ -98,9 +83,8 @@ def use(root, folder):
         sys.exit(f"the demo left no picture: {report}")
     libraries = next(root.glob("usr/lib/**/libpalpate-c.so.0")).parent
     clean["PKG_CONFIG_PATH"] = str(libraries / "pkgconfig")
-    (folder / "own.c").write_text(PROGRAM)
     flags = run("pkg-config", "--cflags", "--libs", "palpate-c", env=clean).split()
-    run(CC, folder / "own.c", "-o", folder / "own", *flags)
+    run(CC, SOURCE / "tests/project/installed.c", "-o", folder / "own", *flags)
     said = run(folder / "own", root / "usr/share/palpate/visible_human_head.nrrd",
                env=clean | {"LD_LIBRARY_PATH": str(libraries)})
     if not said.startswith("96 samples along x"):
