@@ -94,7 +94,7 @@ void mix(std::uint64_t& hash, const Vec3& point) {
 Layers layers_round(const Touch& touch, int count, By by) {
     Layers layers;
     layers.by_label = by != By::level;
-    if (by == By::both) layers.level_count = static_cast<std::size_t>(count - 1);
+    if (by == By::both) layers.levels_beside_labels = static_cast<std::size_t>(count - 1);
     const auto level = [&](int i) {
         return touch.isovalue + (i - count / 2) * 0.1 * touch.field.range();
     };
@@ -113,7 +113,7 @@ Layers layers_round(const Touch& touch, int count, By by) {
         }
     });
     layers.labels = numbered_labels(Volume(volume.geometry(), std::move(labels)), layers.layers,
-                                    layers.level_count);
+                                    layers.levels_beside_labels);
     return layers;
 }
 

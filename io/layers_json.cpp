@@ -126,7 +126,7 @@ void take_layers(const Json& list, Layers& layers) {
         const ReadLayer read = layer_from(one, "layers[" + std::to_string(number) + "]");
         layers.layers.push_back(read.layer);
         if (read.label) {
-            if (!layers.by_label) layers.level_count = number;
+            if (!layers.by_label) layers.levels_beside_labels = number;
             layers.by_label = true;
         } else if (layers.by_label) {
             throw std::invalid_argument(
@@ -151,7 +151,7 @@ Json to_json(const Layers& layers) {
     Json json;
     json["name"] = layers.name;
     Json& list = json["layers"] = Json::array();
-    const bool both = layers.by_label && layers.level_count > 0;
+    const bool both = layers.by_label && layers.levels_beside_labels > 0;
     for (std::size_t i = 0; i < layers.layers.size(); ++i) {
         list.push_back(json_of(layers.layers[i], both && is_label(layers, i) ? "label" : "level"));
     }
@@ -194,7 +194,7 @@ Layers layers_from_json(const Json& json) {
     members.take("by_label", all_labels);
     if (all_labels) {
         layers.by_label = true;
-        layers.level_count = 0;
+        layers.levels_beside_labels = 0;
     }
     members.take("label_volume", layers.label_volume);
     if (const auto needle = members.take("needle")) layers.needle = needle_from(*needle);

@@ -85,7 +85,7 @@ void check(const Layers& layers, Solid solid) {
         check_curve("density", p, layers.curves[p].density);
         check_curve("gradient", p, layers.curves[p].gradient);
     }
-    if (layers.by_label && layers.level_count > layers.layers.size()) {
+    if (layers.by_label && layers.levels_beside_labels > layers.layers.size()) {
         refuse("more levels than layers");
     }
     const double sign = solid == Solid::above ? 1 : -1;

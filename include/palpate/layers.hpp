@@ -89,7 +89,7 @@ struct Layers {
     bool by_label = false;
     /// By label: so many of the layers, the first ones, are levels of the density all the same,
     /// which count where the label volume has none of the labels.
-    std::size_t level_count = 0;
+    std::size_t levels_beside_labels = 0;
     std::shared_ptr<const Field> labels;  ///< from numbered_labels()
     std::string label_volume;             ///< where they come from, for recordings
 
@@ -99,11 +99,11 @@ struct Layers {
 
 /// Whether a layer's level is a label.
 inline bool is_label(const Layers& layers, std::size_t layer) {
-    return layers.by_label && layer >= layers.level_count;
+    return layers.by_label && layer >= layers.levels_beside_labels;
 }
 /// How many layers are levels of the density; they come first.
 inline std::size_t level_count(const Layers& layers) {
-    return layers.by_label ? layers.level_count : layers.layers.size();
+    return layers.by_label ? layers.levels_beside_labels : layers.layers.size();
 }
 
 /// A label volume for layers, from `first` on: samples are k + 1 where this volume has the label

@@ -11,7 +11,7 @@ namespace palpate {
 MixedTissues::MixedTissues(const Layers& layers, LayerState& state, Proxy& proxy,
                            const Field& density)
     : layers_(layers),
-      levels_(static_cast<int>(layers.level_count)),
+      levels_(static_cast<int>(layers.levels_beside_labels)),
       state_(state),
       proxy_(proxy),
       density_(density) {

@@ -293,7 +293,7 @@ class LayersTick {
 
 LayersUpdate update_layers(const Layers& layers, LayerState& state, Proxy& proxy,
                            const Field& field, const LayerInput& input, StepObserver observer) {
-    if (layers.by_label && layers.labels && layers.level_count > 0) {
+    if (layers.by_label && layers.labels && layers.levels_beside_labels > 0) {
         return LayersTick(layers, state, field, MixedTissues(layers, state, proxy, field), input,
                           observer)
             .run();

@@ -23,7 +23,7 @@ namespace {
 Layers skin_bone_and_label() {
     Layers layers;
     layers.by_label = true;
-    layers.level_count = 2;
+    layers.levels_beside_labels = 2;
     layers.layers = {layer_of("skin", 30, 0.4, 0.5), layer_of("bone", 70, 1, infinity),
                      layer_of("organ", 7, 0.6, 0.8)};
     return layers;
@@ -41,7 +41,7 @@ Volume label_slab() {
 }
 
 RendererSettings settings_with(Layers layers, const Volume& labels) {
-    layers.labels = numbered_labels(labels, layers.layers, layers.level_count);
+    layers.labels = numbered_labels(labels, layers.layers, layers.levels_beside_labels);
     RendererSettings settings = at_once();
     settings.layers = std::make_shared<Layers>(std::move(layers));
     settings.force.limit = settings.device.maximum_force = 100;
@@ -165,7 +165,7 @@ TEST(MixedLayers, are_never_passed_while_they_hold) {
             };
             Layers layers;
             layers.by_label = true;
-            layers.level_count = 2;
+            layers.levels_beside_labels = 2;
             layers.layers = {layer_of("outer", level(0.4), 0.5, 0.3),
                              layer_of("inner", level(0.7), 1, infinity),
                              layer_of("one", 1, 0.5, 0.3), layer_of("two", 2, 0.7, 0.2),
@@ -242,7 +242,7 @@ TEST(MixedLayers, need_levels_in_order_before_labels) {
     layers.layers[2].level = 2.5;
     EXPECT_THROW(check(layers, Solid::above), std::invalid_argument);
     layers = skin_bone_and_label();
-    layers.level_count = 4;
+    layers.levels_beside_labels = 4;
     EXPECT_THROW(check(layers, Solid::above), std::invalid_argument);
 }
 

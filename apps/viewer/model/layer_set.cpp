@@ -232,7 +232,7 @@ Layers moved_layer(Layers layers, std::size_t from, std::size_t to) {
 Layers without_layer(Layers layers, std::size_t layer) {
     const SharedLayers before = std::make_shared<const Layers>(layers);
     layers.layers.erase(layers.layers.begin() + static_cast<std::ptrdiff_t>(layer));
-    if (layers.by_label && layer < layers.level_count) --layers.level_count;
+    if (layers.by_label && layer < layers.levels_beside_labels) --layers.levels_beside_labels;
     renumber(layers, *before);
     return layers;
 }

@@ -174,7 +174,7 @@ TEST(LayerSet, labels_have_no_levels_to_see_and_do_not_nest) {
 TEST(LayerSet, levels_beside_labels_are_seen_and_nest_and_labels_do_not) {
     Layers layers = three_labels();
     const Layers only = layers;
-    layers.level_count = 2;
+    layers.levels_beside_labels = 2;
     layers.labels.reset();
     layers.layers = {only.layers[0], only.layers[1], only.layers[2]};
     layers.layers[0].level = 9;  // a level, though there is a label 9, too
@@ -182,7 +182,7 @@ TEST(LayerSet, levels_beside_labels_are_seen_and_nest_and_labels_do_not) {
     Geometry geometry;
     geometry.size = {3, 1, 1};
     layers.labels = numbered_labels(Volume(geometry, std::vector<std::uint8_t>{0, 9, 4}),
-                                    layers.layers, layers.level_count);
+                                    layers.layers, layers.levels_beside_labels);
     EXPECT_EQ(numbers(layers), (std::vector{0, 3, 0}));
     const SharedLayers both = shared(layers);
     EXPECT_EQ(levels_in(both), 2U);
@@ -197,7 +197,7 @@ TEST(LayerSet, levels_beside_labels_are_seen_and_nest_and_labels_do_not) {
     EXPECT_EQ(felt_words({-1, 3, 0}, both), "in 9");
     EXPECT_EQ(room_of(layers, 0, 1).high, 49) << "labels bound no level";
     const Layers less = without_layer(layers, 0);
-    EXPECT_EQ(less.level_count, 1U);
+    EXPECT_EQ(less.levels_beside_labels, 1U);
     EXPECT_EQ(numbers(less), (std::vector{0, 2, 0}));
     EXPECT_NO_THROW(check(less, Solid::above));
 }
