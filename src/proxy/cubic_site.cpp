@@ -257,7 +257,8 @@ WalkEnd walk(CubicSite& site, const Vec3& displacement, double level, Progress& 
     const auto is_outside = [&] {
         return site.field.is_background_around(site.point.tetrahedron.cell);
     };
-    bool outside = is_outside();
+    // Where something reaches the level there is more than background.
+    bool outside = !site.reaches(level) && is_outside();
     while (progress.budget-- > 0) {
         if (outside) {
             const Vec3 along = unfold(site.point.tetrahedron, direction);

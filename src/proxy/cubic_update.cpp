@@ -14,81 +14,87 @@ constexpr double resting_slope = 1e-4;
 constexpr double least_distance = 1e-7;
 /// Below this slope [range / voxel] the normal says nothing.
 constexpr double least_slope = 1e-5;
-/// Farther than any slide [mm].
-constexpr double far = 1e30;
+/// Bend across the way to the target, relative to the way, above which the target's foot lies in
+/// another direction.
+constexpr double least_twist = 0.1;
+/// Of the squared distance to the target, below which a round counts as a failure. Where the proxy
+/// does not rest, a slide can gain ten times that.
+constexpr double least_progress = 1e-9;
 /// Tries before the proxy looks round in all directions.
 constexpr int most_failures = 6;
 
-/// The surface at a point in contact, in folded millimetres, and where the target lies from there:
-/// at aside * along - depth * normal.
+/// The surface through a point, and the target seen from its tangent plane. Folded vectors in
+/// millimetres; heights are times the slope, so that none of this needs a root.
 struct Contact {
-    Vec3 normal;   ///< unit, out of the solid
-    Vec3 along;    ///< unit, in the tangent plane towards the target
-    double depth;  ///< of the target below the tangent plane, > 0 when pressing
-    double aside;  ///< the target's distance from the normal
+    Vec3 slope;          ///< gradient of the excess, into the solid [1/mm]
+    double per_squared;  ///< 1 / slope^2
+    double depth;        ///< of the target below the plane, over the slope; > 0 when pressing
+    Vec3 aside;          ///< from the point to the target, in the plane
+    double aside_squared;
+    Vec3 turn;    ///< of the slope along `aside`
+    double bend;  ///< turn . aside; > 0 where the surface rises towards the free side
 
-    Vec3 across() const {
-        const Vec3 &n = normal, &t = along;
-        return {n[1] * t[2] - n[2] * t[1], n[2] * t[0] - n[0] * t[2], n[0] * t[1] - n[1] * t[0]};
+    /// `h` leads to the target, `into` is slope . h.
+    Contact(const Vec3& slope, const Vec3& h, double into)
+        : slope(slope),
+          per_squared(1 / dot(slope, slope)),
+          depth(into * per_squared),
+          aside(h - depth * slope),
+          aside_squared(dot(aside, aside)) {}
+
+    void bend_by(const cubic::Symmetric& hessian, const Vec3& per_mm) {
+        turn = (hessian * aside.cwiseProduct(per_mm)).cwiseProduct(per_mm);
+        bend = dot(turn, aside);
+    }
+    /// The part of `aside` at whose end the target's foot lies, if the surface bends everywhere as
+    /// it does along it; where the target comes near the centre of curvature, 1 / `least` at most.
+    double to_foot(double least) const {
+        if (!(aside_squared > 0)) return 0;
+        return aside_squared / std::max(aside_squared + depth * bend, least * aside_squared);
+    }
+    bool is_twisted() const {
+        const double into = dot(turn, slope);
+        const double in_plane = dot(turn, turn) - into * into * per_squared;
+        return depth * depth * (in_plane * aside_squared - bend * bend) >
+               least_twist * least_twist * aside_squared * aside_squared;
+    }
+    Vec3 raised(const Vec3& in_plane, double height) const {
+        return in_plane - (height * per_squared) * slope;
     }
 };
 
-/// The surface's curvature in the tangent plane [1/mm], > 0 where it rises towards the free side:
-/// a matrix for displacements along the contact's `along` and `across`, and its eigenvalues.
-struct Curvature {
-    double tt, ta, aa;
-    double greatest, least;
-    double per_apart;  ///< 1 / (greatest - least); 0 if they are the same
+/// A step in the tangent plane to where the target's foot lies along the surface, but no longer
+/// than on a plane.
+struct Slide {
+    Vec3 step;
+    double rise;  ///< twice the height of the surface above its end, times the slope
 };
 
-/// `each` is 1 / slope of the field, in the unit of the Hessian; `t` and `a` are folded `along` and
-/// `across` in voxels.
-Curvature curvature_of(const cubic::Symmetric& hessian, const Vec3& t, const Vec3& a, double each) {
-    const Vec3 ht = hessian * t;
-    const double tt = each * dot(ht, t), ta = each * dot(ht, a), aa = each * dot(hessian * a, a);
+Slide slide_aside(const Contact& c) {
+    const double part = c.to_foot(1);
+    return {part * c.aside, part * part * c.bend};
+}
+
+/// By the curvatures in both principal directions.
+Slide slide_by_both(const Contact& c, const cubic::Symmetric& hessian, const Vec3& per_mm) {
+    const double length = std::sqrt(c.aside_squared);
+    const Vec3 n = c.slope * std::sqrt(c.per_squared), t = c.aside / length;
+    const Vec3 across(n[1] * t[2] - n[2] * t[1], n[2] * t[0] - n[0] * t[2],
+                      n[0] * t[1] - n[1] * t[0]);
+    const Vec3 a = across.cwiseProduct(per_mm);
+    // The bend as a matrix for steps along t and across, and its eigenvalues.
+    const double tt = c.bend / c.aside_squared, ta = dot(c.turn, across) / length,
+                 aa = dot(hessian * a, a);
     const double mean = 0.5 * (tt + aa), half = 0.5 * (tt - aa);
     const double radius = std::sqrt(half * half + ta * ta);
-    return {tt, ta, aa, mean + radius, mean - radius, radius > 1e-100 ? 0.5 / radius : 0};
-}
-
-/// Where the target's foot lies along the surface, by its curvature: in the tangent plane [mm].
-struct Foot {
-    double along, across;
-    double rise;  ///< twice the height of the surface above the tangent plane there [mm]
-
-    double squared() const { return along * along + across * across; }
-};
-
-/// From the displacements [mm] along the principal directions of the greatest and the least
-/// curvature.
-Foot foot_of(const Curvature& k, double at_greatest, double at_least, double longest) {
+    const double greatest = mean + radius, least = mean - radius;
+    const double at_greatest = length / std::max(1 + c.depth * greatest, 1.0);
+    const double at_least = length / std::max(1 + c.depth * least, 1.0);
     // Of a function of a symmetric matrix only its values at the two eigenvalues matter.
-    const double rate = (at_greatest - at_least) * k.per_apart;
-    Foot foot{at_greatest + rate * (k.tt - k.greatest), rate * k.ta, 0};
-    const double squared = foot.squared();
-    if (squared > longest * longest) {
-        const double share = longest / std::sqrt(squared);
-        foot.along *= share;
-        foot.across *= share;
-    }
-    foot.rise = (k.tt * foot.along + 2 * k.ta * foot.across) * foot.along +
-                k.aa * foot.across * foot.across;
-    return foot;
-}
-
-/// Where a slide goes, and where the fall after it is aimed. A curvature that brings the target's
-/// depth near its centre (or past it) is cut: along each principal direction a slide is as long as
-/// on a plane at most, an aim 2.5 times that.
-struct Feet {
-    Foot slide, aim;
-};
-
-Feet feet_of(const Contact& c, const Curvature& k, double longest_aim) {
-    const double greatest = 1 + c.depth * k.greatest, least = 1 + c.depth * k.least;
-    const double at_greatest = c.aside / std::max(greatest, 0.4);
-    const double at_least = c.aside / std::max(least, 0.4);
-    return {foot_of(k, greatest > 1 ? at_greatest : c.aside, least > 1 ? at_least : c.aside, far),
-            foot_of(k, at_greatest, at_least, longest_aim)};
+    const double rate = radius > 0 ? 0.5 * (at_greatest - at_least) / radius : 0;
+    const double forth = at_greatest + rate * (tt - greatest), sideways = rate * ta;
+    return {forth * t + sideways * across,
+            (tt * forth + 2 * ta * sideways) * forth + aa * sideways * sideways};
 }
 
 /// An update that is under way.
@@ -115,11 +121,7 @@ class CubicDescent {
             if (end == End::at_rest) return Rest::on_surface;
             h = h_mm();
             const double after = dot(h, h);
-            // Of the distance at least 1e-9 voxel, without its root.
-            const bool closer =
-                before - after >
-                2e-9 * shortest_ *
-                    std::max(std::abs(h[0]) + std::abs(h[1]) + std::abs(h[2]), 1e-9 * shortest_);
+            const bool closer = after < (1 - least_progress) * before;
             before = after;
             if (closer || end == End::target_changed) {
                 failures = 0;
@@ -164,40 +166,35 @@ class CubicDescent {
         const Frame& f = frame();
         return (f.target - site_.point.folded).cwiseProduct(f.mm);
     }
-    const Vec3& per_mm() { return frame().per_mm; }
+    /// Of the tetrahedron in which h_mm() was asked for last.
+    const Vec3& per_mm() const { return frame_.per_mm; }
 
     /// One round: a straight motion through free space, or a slide and a fall. `h` leads to the
     /// target.
     End move(const Vec3& h, int failures) {
         if (!site_.in_contact()) return fall_to_target();
-        const Vec3& per = per_mm();
-        const Vec3 g = site_.here().gradient.cwiseProduct(per);
-        const double along = dot(g, h);
-        if (along <= 0) return fall_to_target();
-        const double squared = dot(g, g);
-        const double flat = least_slope * range_ / shortest_;
-        const bool is_flat = !(squared > flat * flat);
-        // The target's distance along the tangent plane, times the slope, squared.
-        const double aside = dot(h, h) * squared - along * along;
+        const Vec3 slope = site_.here().gradient.cwiseProduct(per_mm());
+        const double into = dot(slope, h);
+        if (into <= 0) return fall_to_target();
+        Contact c(slope, h, into);
         const double least = least_distance * shortest_;
-        if (!(aside >
-              std::max(resting_slope * resting_slope * along * along, least * least * squared))) {
-            return is_flat && look_round() ? End::moved : End::at_rest;
+        if (!(c.aside_squared >
+              std::max(resting_slope * resting_slope * c.depth * into, least * least))) {
+            return is_flat(slope) && look_round() ? End::moved : End::at_rest;
         }
-        // At rest above less than this: here both roots have at least eight digits.
-        const double slope = std::sqrt(squared), aside_root = std::sqrt(aside);
-        const double each = 1 / slope;
-        Contact c;
-        c.normal = g * -each;
-        c.depth = along * each;
-        c.aside = aside_root * each;
-        c.along = (h + c.depth * c.normal) * (slope / aside_root);
         if (friction_pending_) {
             friction_pending_ = false;
             return apply_friction(c) ? End::target_changed : End::at_rest;
         }
-        slide(h, c, each, failures);
+        c.bend_by(site_.here().hessian, per_mm());
+        slide(h, c, failures);
         return End::moved;
+    }
+
+    /// Where the gradient says nothing.
+    bool is_flat(const Vec3& slope) const {
+        const double flat = least_slope * range_ / shortest_;
+        return !(dot(slope, slope) > flat * flat);
     }
 
     End fall_to_target() {
@@ -219,37 +216,47 @@ class CubicDescent {
         if (!(towards > 0)) return false;
         const double squared = dot(v_mm, v_mm);
         if (towards < squared) v_mm *= towards / squared;
-        walk(site_, v_mm.cwiseProduct(per_mm()), level, progress);
+        walk(site_, v_mm.cwiseProduct(frame().per_mm), level, progress);
         return true;
     }
 
-    /// Along the tangent plane, lifted where the surface rises, and from there down to where the
-    /// surface's curvature says that the target's foot is. After failures shorter and higher.
-    void slide(const Vec3& h, const Contact& c, double each, int failures) {
-        const Vec3 across = c.across();
-        const Vec3& per = per_mm();
-        const Curvature k = curvature_of(site_.here().hessian, c.along.cwiseProduct(per),
-                                         across.cwiseProduct(per), each);
-        const double shrink = 1.0 / (1 << (2 * failures));
-        const auto [step, aim] = feet_of(c, k, shortest_);
-        double lift = 0.55 * shrink * shrink * std::max(0.0, step.rise);
-        if (failures > 0) lift += 0.05 * failures * shrink * std::sqrt(step.squared());
-        const auto place = [&](const Foot& foot, double height) -> Vec3 {
-            return (shrink * foot.along) * c.along + (shrink * foot.across) * across +
-                   height * c.normal;
-        };
-        const Vec3 from_foot = h - place(aim, 0.5 * shrink * shrink * aim.rise);
-        const int number = site_.frame;
-        const Tetrahedron before = site_.point.tetrahedron;
-        if (!go(place(step, lift), h, site_.slide_level(), progress_)) return;
+    /// Along the tangent plane, lifted where the surface rises, and from there down to the target's
+    /// foot. After failures shorter and higher.
+    void slide(const Vec3& h, const Contact& c, int failures) {
+        const bool by_both = failures > 0 || c.is_twisted();
+        Slide s = by_both ? slide_by_both(c, site_.here().hessian, per_mm()) : slide_aside(c);
+        double lift = 0.55 * std::max(0.0, s.rise);
+        double shrink = 1;
+        if (failures > 0) {
+            shrink /= 1 << (2 * failures);
+            s.step *= shrink;
+            lift = shrink * shrink * lift +
+                   0.05 * failures * std::sqrt(dot(s.step, s.step) / c.per_squared);
+        }
+        if (!go(c.raised(s.step, lift), h, site_.slide_level(), progress_)) return;
         progress_.report(StepKind::slide, site_);
-        if (site_.in_contact()) return;
-        const Vec3 left = h_mm();
+        if (!site_.in_contact()) fall_to_foot(shrink);
+    }
+
+    /// From above the surface down to the target's foot on it, or to a part of the way there: where
+    /// a slide crosses walls, only the curvature at its end says where that is.
+    void fall_to_foot(double shrink) {
+        const Vec3 h = h_mm();
+        const cubic::Expansion& here = site_.here();
+        const Vec3 slope = here.gradient.cwiseProduct(per_mm());
+        const double into = dot(slope, h);
+        Vec3 to_foot = h;
+        if (into > 0 && !is_flat(slope)) {
+            Contact c(slope, h, into);
+            c.bend_by(here.hessian, per_mm());
+            double part = shrink * c.to_foot(0.4);
+            if (part * part * c.aside_squared > shortest_ * shortest_) {
+                part = shortest_ / std::sqrt(c.aside_squared);
+            }
+            to_foot = c.raised(part * c.aside, here.value + 0.5 * part * part * c.bend);
+        }
         // Aim past the foot, in case the surface lies lower.
-        const Vec3 to_foot = left - (site_.frame == number ? from_foot
-                                                           : fold(site_.point.tetrahedron,
-                                                                  unfold(before, from_foot)));
-        if (go(2 * to_foot, left, site_.level(), progress_)) {
+        if (go(2 * to_foot, h, site_.level(), progress_)) {
             progress_.report(StepKind::slide, site_);
         }
     }
@@ -260,11 +267,13 @@ class CubicDescent {
         const Friction& friction = site_.turned ? settings_.behind : settings_.friction;
         const double mu =
             proxy_.sliding ? friction.dynamic_coefficient : friction.static_coefficient;
-        proxy_.sliding = c.aside > mu * c.depth;
+        const double aside = std::sqrt(c.aside_squared);
+        const double depth = c.depth / std::sqrt(c.per_squared);
+        proxy_.sliding = aside > mu * depth;
         if (!proxy_.sliding) return false;
-        const double back = std::min(c.aside, friction.dynamic_coefficient * c.depth);
-        set_target(progress_.target -
-                   unfold(site_.point.tetrahedron, (back * c.along).cwiseProduct(per_mm())));
+        const double back = std::min(aside, friction.dynamic_coefficient * depth);
+        set_target(progress_.target - unfold(site_.point.tetrahedron,
+                                             ((back / aside) * c.aside).cwiseProduct(per_mm())));
         return true;
     }
 

@@ -210,7 +210,9 @@ TEST(BadOutput, on_a_disk_that_is_full_for_the_path_leaves_no_trace) {
     put_bytes(folder / "a.csv", "old");
     // One row a tick, but many corners: within the limit of 2 KiB a file the trace fits, the path
     // does not.
-    put_bytes(folder / "t.csv", "t,x,y,z\n0,-20,0.1,0.2\n0.001,-5,0.1,0.2\n0.002,5,9,0.2\n");
+    put_bytes(folder / "t.csv",
+              "t,x,y,z\n0,-20,0.1,0.2\n0.001,-5,0.1,0.2\n0.002,5,9,0.2\n0.003,5,-9,0.2\n"
+              "0.004,5,9,0.2\n0.005,5,-9,0.2\n");
     const Outcome outcome =
         Running({"-c",
                  "ulimit -f 2; exec \"$0\" replay synthetic:sphere:64x64x64 --trajectory t.csv -o "
