@@ -299,20 +299,22 @@ Neighbours Field::around(const Index3& at) const {
     });
 }
 
-/// At the border, of samples that lie as they were read.
-template <class T>
-Neighbours Field::clipped(const Index3& at) const {
-    Neighbours samples;
-    std::size_t i = 0;
-    for (int z = at[2] - 1; z <= at[2] + 1; ++z) {
-        for (int y = at[1] - 1; y <= at[1] + 1; ++y) {
-            const bool has_row = z >= 0 && z < size_[2] && y >= 0 && y < size_[1];
-            for (int x = at[0] - 1; x <= at[0] + 1; ++x, ++i) {
-                const bool in_grid = has_row && x >= 0 && x < size_[0];
-                const double sample =
-                    in_grid ? double(static_cast<const T*>(data_)[x + y * row_ + z * slice_])
-                            : background_;
-                samples[i] = sample - offset_;
+/// A block of samples that lie as they were read, at the border; not less offset().
+template <class T, int count>
+std::array<double, count * count * count> Field::clipped(const Index3& low) const {
+    const auto in_grid = [&](int axis, int place) { return place >= 0 && place < size_[axis]; };
+    std::array<bool, count> has_column{};
+    bool has_any = false;
+    for (int x = 0; x < count; ++x) has_any |= has_column[x] = in_grid(0, low[0] + x);
+    std::array<double, count * count * count> samples;
+    double* out = samples.data();
+    for (int z = low[2]; z < low[2] + count; ++z) {
+        for (int y = low[1]; y < low[1] + count; ++y) {
+            const bool has_row = has_any && in_grid(2, z) && in_grid(1, y);
+            const T* row = static_cast<const T*>(data_);
+            if (has_row) row += low[0] + y * row_ + z * slice_;
+            for (int x = 0; x < count; ++x) {
+                *out++ = has_row && has_column[x] ? double(row[x]) : background_;
             }
         }
     }
@@ -335,10 +337,15 @@ Neighbours Field::uncovered_around(const Index3& at) const {
         samples.fill(most_solid() - offset_);
         return samples;
     }
-    if (resident_ || !is_inner(at)) {
-        if (!bricks_ && !(moment_.weight > 0) && !resident_) {
-            return with_type(type_, [&](auto zero) { return clipped<decltype(zero)>(at); });
+    if (lies_as_read() && !is_inner(at)) {
+        samples = with_type(
+            type_, [&](auto zero) { return clipped<decltype(zero), 3>(at - Index3::Ones()); });
+        if (offset_ != 0) {
+            for (double& sample : samples) sample -= offset_;
         }
+        return samples;
+    }
+    if (resident_ || !is_inner(at)) {
         for (int i = 0; i < 27; ++i) {
             const Index3 next = at + Index3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
             samples[std::size_t(i)] = sample_at(next) - offset_;
@@ -361,6 +368,9 @@ Neighbours Field::uncovered_around(const Index3& at) const {
 
 CellSamples Field::absolute_cell(const Index3& cell) const {
     const bool inside = (cell.array() >= 0).all() && (cell.array() < cells_.array()).all();
+    if (!inside && lies_as_read()) {
+        return with_type(type_, [&](auto zero) { return clipped<decltype(zero), 2>(cell); });
+    }
     if (!inside) {
         CellSamples samples;
         for (int corner = 0; corner < 8; ++corner) {

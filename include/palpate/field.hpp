@@ -58,11 +58,6 @@ class Field {
     void show_labels(std::uint32_t labels) noexcept;
     /// Bits of the labels of the sample `at` and its neighbours, whether they are shown or not.
     std::uint32_t labels_around(const Index3& at) const noexcept;
-    /// True after show_labels().
-    bool shows_labels() const noexcept { return shows_labels_; }
-    /// Where labels are shown: the 1 or 0 of the sample `at` and its neighbours, in the order of
-    /// Neighbours. This is what visit_around() shows of labels.
-    std::array<std::uint8_t, 27> shown_around(const Index3& at) const;
     /// From now on samples with a label above 0 are `solid` [data units] where it is one of these
     /// bits, else `open`; with bit 0 samples without a label, and all outside the grid, are solid,
     /// too. `labels`: one uint8 volume of labels up to 31 that is not edited, on any grid; a sample
@@ -120,7 +115,18 @@ class Field {
     /// that lie otherwise (at the border, edited, between frames) are gathered first, as doubles;
     /// labels, as bytes.
     template <class Visit>
-    auto visit_around(const Index3& at, Visit&& visit) const;
+    auto visit_around(const Index3& at, Visit&& visit) const {
+        Gathered gathered;
+        return visit_around(at, visit, gathered);
+    }
+    /// The same for one who comes back: samples of the same place are gathered once.
+    struct Gathered {
+        bool done = false;  ///< false for another place
+        Neighbours samples;
+        std::array<std::uint8_t, 27> shown;  ///< of labels
+    };
+    template <class Visit>
+    auto visit_around(const Index3& at, Visit&& visit, Gathered& gathered) const;
     /// True where all eight samples of `cell` are background.
     bool is_background(const Index3& cell) const {
         // One unsigned comparison an axis covers both ends, here and in cell_of().
@@ -153,8 +159,10 @@ class Field {
     CellSamples resident_cell(const Index3& cell) const;
     CellSamples other_cell(const Index3& cell) const;
     CellSamples uncovered_cell(const Index3& cell) const;
-    template <class T>
-    Neighbours clipped(const Index3& at) const;
+    template <class T, int count>
+    std::array<double, count * count * count> clipped(const Index3& low) const;
+    /// True for one array of samples that do not change.
+    bool lies_as_read() const { return !bricks_ && !(moment_.weight > 0) && !resident_; }
     Neighbours other_around(const Index3& at) const;
     Neighbours uncovered_around(const Index3& at) const;
     double covered(const Index3& at, double sample) const noexcept;
@@ -179,7 +187,8 @@ class Field {
     void for_each_label(const Index3& low, Visit&& visit) const;
     CellSamples shown_cell(const Index3& cell) const;
     template <class Visit>
-    auto visit_gathered(const Index3& at, Visit& visit) const;
+    auto visit_gathered(const Index3& at, Visit& visit, Gathered& gathered) const;
+    std::array<std::uint8_t, 27> shown_around(const Index3& at) const;
     void look() noexcept;
 
     std::shared_ptr<const Samples> samples_;
@@ -235,10 +244,12 @@ inline CellSamples Field::cell_of(const Index3& cell) const {
 }
 
 template <class Visit>
-auto Field::visit_gathered(const Index3& at, Visit& visit) const {
+auto Field::visit_gathered(const Index3& at, Visit& visit, Gathered& gathered) const {
     if (shows_labels_) {
-        const std::array<std::uint8_t, 27> samples = shown_around(at);
-        return visit(samples.data() + 13, std::ptrdiff_t{3}, std::ptrdiff_t{9});
+        if (!gathered.done) gathered.shown = shown_around(at);
+        gathered.done = true;
+        const std::uint8_t* const centre = gathered.shown.data() + 13;
+        return visit(centre, std::ptrdiff_t{3}, std::ptrdiff_t{9});
     }
     const auto is_plain = [&](int a) { return at[a] > 0 && at[a] < cover_.plain[a]; };
     if (cover_.labels && is_plain(0) && is_plain(1) && is_plain(2) && !is_covered_around(at)) {
@@ -247,12 +258,14 @@ auto Field::visit_gathered(const Index3& at, Visit& visit) const {
             return visit(samples + (at[0] + at[1] * row_ + at[2] * slice_), row_, slice_);
         });
     }
-    const Neighbours samples = other_around(at);
-    return visit(samples.data() + 13, std::ptrdiff_t{3}, std::ptrdiff_t{9});
+    if (!gathered.done) gathered.samples = other_around(at);
+    gathered.done = true;
+    const double* const centre = gathered.samples.data() + 13;
+    return visit(centre, std::ptrdiff_t{3}, std::ptrdiff_t{9});
 }
 
 template <class Visit>
-inline auto Field::visit_around(const Index3& at, Visit&& visit) const {
+inline auto Field::visit_around(const Index3& at, Visit&& visit, Gathered& gathered) const {
     // The lowest and the highest of the eight cells that meet at the sample.
     const auto is_plain = [&](int a) { return at[a] > 0 && at[a] < plain_[a]; };
     if (is_plain(0) && is_plain(1) && is_plain(2)) {
@@ -270,7 +283,7 @@ inline auto Field::visit_around(const Index3& at, Visit&& visit) const {
             });
         }
     }
-    return visit_gathered(at, visit);
+    return visit_gathered(at, visit, gathered);
 }
 
 }  // namespace palpate

@@ -130,7 +130,7 @@ void CubicSite::keep(Proxy& proxy) {
 void CubicSite::move_to(const LatticePoint& at) {
     point = at;
     ++frame;
-    has_shown = false;
+    gathered.done = false;
     made = made && same_frame(kept.tetrahedron, at.tetrahedron);
     kept.most = std::numeric_limits<double>::infinity();
     if (is_layer()) room = -kept.most;
@@ -140,7 +140,7 @@ void CubicSite::move_to(const LatticePoint& at) {
 void CubicSite::return_to(const CubicSite& before) {
     point = before.point;
     ++frame;
-    has_shown = false;
+    gathered.done = false;
     if (turned != before.turned) exchange_levels();
     kept = before.kept;
     room = before.room;
@@ -155,7 +155,7 @@ void CubicSite::cross(unsigned wall) {
     made = false;
     expanded = false;
     if (wall != wall_face) return;
-    has_shown = false;
+    gathered.done = false;
     look_at_cube();
 }
 

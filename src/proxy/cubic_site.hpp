@@ -4,7 +4,6 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <limits>
 
 #include "palpate/kept_piece.hpp"
@@ -94,14 +93,9 @@ struct CubicSite {
     /// advance(), for the one caller that spends its time there.
     double advance_inlined(const Vec3& step, double level, unsigned walls);
     void exchange_levels();
-    /// Field::visit_around() at the cube, for which labels are gathered once.
     template <class Visit>
     auto visit_cube(Visit&& visit) {
-        const Index3& at = point.tetrahedron.cell;
-        if (!field.shows_labels()) return field.visit_around(at, visit);
-        if (!has_shown) shown = field.shown_around(at);
-        has_shown = true;
-        return visit(shown.data() + 13, std::ptrdiff_t{3}, std::ptrdiff_t{9});
+        return field.visit_around(point.tetrahedron.cell, visit, gathered);
     }
     /// Finds `most` and, in a layer, `room`.
     void look_at_cube();
@@ -112,8 +106,7 @@ struct CubicSite {
     cubic::Expansion at_point;
     // By how much the lowest sample of the point's cube lies above the level behind.
     double room = std::numeric_limits<double>::infinity();
-    std::array<std::uint8_t, 27> shown{};  // of labels: Field::shown_around() at the cube
-    bool has_shown = false;
+    Field::Gathered gathered;  // at the cube
     bool made = false;         // `kept.piece` is that of the point's tetrahedron
     bool expanded = false;     // `at_point` is that at the point
     bool kept_is_new = false;  // not what the proxy has
