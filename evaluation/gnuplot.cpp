@@ -55,7 +55,7 @@ Size size_of(const std::vector<AxisTick>& ticks) {
 
 /// Room that an axis at the side takes, and one at the bottom.
 double side_room(const Axis& axis) {
-    const double labels = axis.ticks.empty() ? 54 : size_of(axis.ticks).width + 22;
+    const double labels = axis.ticks.empty() ? 66 : size_of(axis.ticks).width + 22;
     return (axis.has_labels ? labels : 12) + (axis.title.empty() ? 0 : 32);
 }
 double bottom_room(const Axis& axis) {

@@ -53,6 +53,18 @@ TEST(Figure, every_way_to_draw_a_series_is_drawn_with_its_title_in_the_key) {
     EXPECT_EQ(count(svg, "a level"), count(svg_of(figure), "a level"));  // in the key once
 }
 
+TEST(Figure, the_title_of_an_axis_has_room_beside_long_numbers) {
+    Figure figure;
+    figure.panels.resize(1);
+    Panel& panel = figure.panels[0];
+    panel.y.title = "angle, mean";
+    panel.y.is_logarithmic = true;
+    panel.series = {{Draw::line, "", {}, {{1, 1e-4}, {2, 100}}}};
+    const std::string svg = svg_of(figure);
+    EXPECT_TRUE(contains(svg, "0.0001"));
+    EXPECT_TRUE(contains(svg, "angle, mean")) << "gnuplot leaves out what begins outside";
+}
+
 TEST(Figure, a_map_has_a_scale_of_colours_and_its_texts) {
     Figure figure;
     figure.panels.resize(1);
