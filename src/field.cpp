@@ -300,20 +300,21 @@ Neighbours Field::around(const Index3& at) const {
 }
 
 /// A block of samples that lie as they were read, at the border; not less offset().
-template <class T, int count>
+template <class T, std::size_t count>
 std::array<double, count * count * count> Field::clipped(const Index3& low) const {
+    constexpr int side = static_cast<int>(count);
     const auto in_grid = [&](int axis, int place) { return place >= 0 && place < size_[axis]; };
     std::array<bool, count> has_column{};
     bool has_any = false;
-    for (int x = 0; x < count; ++x) has_any |= has_column[x] = in_grid(0, low[0] + x);
+    for (int x = 0; x < side; ++x) has_any |= has_column[x] = in_grid(0, low[0] + x);
     std::array<double, count * count * count> samples;
     double* out = samples.data();
-    for (int z = low[2]; z < low[2] + count; ++z) {
-        for (int y = low[1]; y < low[1] + count; ++y) {
+    for (int z = low[2]; z < low[2] + side; ++z) {
+        for (int y = low[1]; y < low[1] + side; ++y) {
             const bool has_row = has_any && in_grid(2, z) && in_grid(1, y);
             const T* row = static_cast<const T*>(data_);
             if (has_row) row += low[0] + y * row_ + z * slice_;
-            for (int x = 0; x < count; ++x) {
+            for (int x = 0; x < side; ++x) {
                 *out++ = has_row && has_column[x] ? double(row[x]) : background_;
             }
         }

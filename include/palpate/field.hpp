@@ -159,7 +159,7 @@ class Field {
     CellSamples resident_cell(const Index3& cell) const;
     CellSamples other_cell(const Index3& cell) const;
     CellSamples uncovered_cell(const Index3& cell) const;
-    template <class T, int count>
+    template <class T, std::size_t count>
     std::array<double, count * count * count> clipped(const Index3& low) const;
     /// True for one array of samples that do not change.
     bool lies_as_read() const { return !bricks_ && !(moment_.weight > 0) && !resident_; }
