@@ -53,7 +53,8 @@ Size size_of(const std::vector<AxisTick>& ticks) {
     return {character * characters, line_height * lines};
 }
 
-/// Room that an axis at the side takes, and one at the bottom.
+/// Room that an axis at the side takes, and one at the bottom. Numbers that gnuplot chooses are as
+/// long as 0.0001.
 double side_room(const Axis& axis) {
     const double labels = axis.ticks.empty() ? 66 : size_of(axis.ticks).width + 22;
     return (axis.has_labels ? labels : 12) + (axis.title.empty() ? 0 : 32);

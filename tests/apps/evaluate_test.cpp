@@ -123,5 +123,18 @@ TEST(Evaluate, leaves_nothing_half_written_when_interrupted) {
     EXPECT_EQ(folder.names(), Names{});
 }
 
+TEST(Evaluate, says_that_it_was_interrupted_where_gnuplot_was_as_well) {
+    const ScratchFolder folder, programs;
+    // Ctrl-C reaches both.
+    support::put_bytes(programs / "gnuplot", "#!/bin/sh\nkill -INT $PPID\nexit 1\n");
+    std::filesystem::permissions(programs / "gnuplot", std::filesystem::perms::owner_all);
+    const std::string path = std::getenv("PATH");
+    ASSERT_EQ(setenv("PATH", (programs.path().string() + ":" + path).c_str(), 1), 0);
+    const Outcome outcome = palpate(folder, "evaluate walk-through --quick");
+    ASSERT_EQ(setenv("PATH", path.c_str(), 1), 0);
+    expect_failure(outcome, 130, "interrupted");
+    EXPECT_EQ(folder.names(), Names{});
+}
+
 }  // namespace
 }  // namespace palpate::app::test

@@ -124,7 +124,12 @@ void evaluate(EvaluateOptions& options) {
             fmt::print(stderr, "palpate: note: {} is left out: {}\n", experiment.name, e.what());
             continue;
         }
-        write_files(reports.back(), results.part());
+        try {
+            write_files(reports.back(), results.part());
+        } catch (const io::OutputError&) {
+            stop_if_interrupted();  // Ctrl-C reaches gnuplot as well, and its end may be seen first
+            throw;
+        }
         results.complete();
         if (!options.quiet && !options.json) print(reports.back());
         for (const auto& claim : reports.back().result.claims) broken += !claim.held;
