@@ -119,9 +119,9 @@ class Field {
         Gathered gathered;
         return visit_around(at, visit, gathered);
     }
-    /// The same for one who comes back: samples of the same place are gathered once.
+    /// The same for a caller that asks for one place several times: its samples are gathered once.
     struct Gathered {
-        bool done = false;  ///< false for another place
+        bool done = false;  ///< the caller sets it back for another place
         Neighbours samples;
         std::array<std::uint8_t, 27> shown;  ///< of labels
     };

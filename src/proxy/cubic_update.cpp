@@ -23,16 +23,14 @@ constexpr double least_progress = 1e-9;
 /// Tries before the proxy looks round in all directions.
 constexpr int most_failures = 6;
 
-/// The surface through a point, and the target seen from its tangent plane. Folded vectors in
-/// millimetres; heights are times the slope, so that none of this needs a root.
+/// The tangent plane of the surface through a point, and where the target lies from it. Folded
+/// vectors in millimetres; heights are times the slope, so that none of this needs a root.
 struct Contact {
     Vec3 slope;          ///< gradient of the excess, into the solid [1/mm]
     double per_squared;  ///< 1 / slope^2
     double depth;        ///< of the target below the plane, over the slope; > 0 when pressing
     Vec3 aside;          ///< from the point to the target, in the plane
     double aside_squared;
-    Vec3 turn;    ///< of the slope along `aside`
-    double bend;  ///< turn . aside; > 0 where the surface rises towards the free side
 
     /// `h` leads to the target, `into` is slope . h.
     Contact(const Vec3& slope, const Vec3& h, double into)
@@ -42,10 +40,22 @@ struct Contact {
           aside(h - depth * slope),
           aside_squared(dot(aside, aside)) {}
 
-    void bend_by(const cubic::Symmetric& hessian, const Vec3& per_mm) {
-        turn = (hessian * aside.cwiseProduct(per_mm)).cwiseProduct(per_mm);
-        bend = dot(turn, aside);
+    /// A step in the plane, and a height above it.
+    Vec3 raised(const Vec3& in_plane, double height) const {
+        return in_plane - (height * per_squared) * slope;
     }
+};
+
+/// The same, and how the surface bends on the way aside.
+struct BentContact : Contact {
+    Vec3 turn;    ///< of the slope along `aside`
+    double bend;  ///< turn . aside; > 0 where the surface rises towards the free side
+
+    BentContact(const Contact& contact, const cubic::Symmetric& hessian, const Vec3& per_mm)
+        : Contact(contact),
+          turn((hessian * aside.cwiseProduct(per_mm)).cwiseProduct(per_mm)),
+          bend(dot(turn, aside)) {}
+
     /// The part of `aside` at whose end the target's foot lies, if the surface bends everywhere as
     /// it does along it; where the target comes near the centre of curvature, 1 / `least` at most.
     double to_foot(double least) const {
@@ -58,9 +68,6 @@ struct Contact {
         return depth * depth * (in_plane * aside_squared - bend * bend) >
                least_twist * least_twist * aside_squared * aside_squared;
     }
-    Vec3 raised(const Vec3& in_plane, double height) const {
-        return in_plane - (height * per_squared) * slope;
-    }
 };
 
 /// A step in the tangent plane to where the target's foot lies along the surface, but no longer
@@ -70,13 +77,13 @@ struct Slide {
     double rise;  ///< twice the height of the surface above its end, times the slope
 };
 
-Slide slide_aside(const Contact& c) {
+Slide slide_aside(const BentContact& c) {
     const double part = c.to_foot(1);
     return {part * c.aside, part * part * c.bend};
 }
 
 /// By the curvatures in both principal directions.
-Slide slide_by_both(const Contact& c, const cubic::Symmetric& hessian, const Vec3& per_mm) {
+Slide slide_by_both(const BentContact& c, const cubic::Symmetric& hessian, const Vec3& per_mm) {
     const double length = std::sqrt(c.aside_squared);
     const Vec3 n = c.slope * std::sqrt(c.per_squared), t = c.aside / length;
     const Vec3 across(n[1] * t[2] - n[2] * t[1], n[2] * t[0] - n[0] * t[2],
@@ -176,7 +183,7 @@ class CubicDescent {
         const Vec3 slope = site_.here().gradient.cwiseProduct(per_mm());
         const double into = dot(slope, h);
         if (into <= 0) return fall_to_target();
-        Contact c(slope, h, into);
+        const Contact c(slope, h, into);
         const double least = least_distance * shortest_;
         if (!(c.aside_squared >
               std::max(resting_slope * resting_slope * c.depth * into, least * least))) {
@@ -186,8 +193,7 @@ class CubicDescent {
             friction_pending_ = false;
             return apply_friction(c) ? End::target_changed : End::at_rest;
         }
-        c.bend_by(site_.here().hessian, per_mm());
-        slide(h, c, failures);
+        slide(h, BentContact(c, site_.here().hessian, per_mm()), failures);
         return End::moved;
     }
 
@@ -222,7 +228,7 @@ class CubicDescent {
 
     /// Along the tangent plane, lifted where the surface rises, and from there down to the target's
     /// foot. After failures shorter and higher.
-    void slide(const Vec3& h, const Contact& c, int failures) {
+    void slide(const Vec3& h, const BentContact& c, int failures) {
         const bool by_both = failures > 0 || c.is_twisted();
         Slide s = by_both ? slide_by_both(c, site_.here().hessian, per_mm()) : slide_aside(c);
         double lift = 0.55 * std::max(0.0, s.rise);
@@ -247,8 +253,7 @@ class CubicDescent {
         const double into = dot(slope, h);
         Vec3 to_foot = h;
         if (into > 0 && !is_flat(slope)) {
-            Contact c(slope, h, into);
-            c.bend_by(here.hessian, per_mm());
+            const BentContact c(Contact(slope, h, into), here.hessian, per_mm());
             double part = shrink * c.to_foot(0.4);
             if (part * part * c.aside_squared > shortest_ * shortest_) {
                 part = shortest_ / std::sqrt(c.aside_squared);
