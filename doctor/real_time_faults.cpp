@@ -11,7 +11,7 @@ namespace {
 
 /// Above the servo's 80, for its watchdog and the devices' threads (docs/servo.md).
 constexpr std::uint64_t priority_needed = 81;
-constexpr std::uint64_t memory_needed = std::uint64_t{1} << 30;  // bytes
+constexpr std::uint64_t lockable_memory_needed = std::uint64_t{1} << 30;  // bytes
 constexpr const char* group = "audio";
 constexpr const char* file = "/etc/security/limits.d/palpate.conf";
 
@@ -78,7 +78,7 @@ Fault unlocked_memory(const Facts& facts) {
         "memory cannot be locked ({}): the servo stops for milliseconds when the system swaps",
         std::strerror(facts.limits.lock_error));
     return {"locked-memory", false, meaning,
-            way_to_limit(facts, "memlock", memory_needed / 1024, "unlimited")};
+            way_to_limit(facts, "memlock", lockable_memory_needed / 1024, "unlimited")};
 }
 
 }  // namespace

@@ -12,13 +12,13 @@
 namespace palpate::io {
 namespace {
 
-constexpr std::size_t chunk_bytes = 1 << 18;
+constexpr std::size_t inflated_at_once = 1 << 18;
 
 /// Takes compressed bytes and passes unpacked bytes on.
 class Inflater {
   public:
     Inflater(const ByteSink& sink, std::uint64_t at_most)
-        : sink_(sink), at_most_(at_most), out_(chunk_bytes) {
+        : sink_(sink), at_most_(at_most), out_(inflated_at_once) {
         // 32: gzip or zlib, told apart by the header; both carry a checksum, raw deflate does not.
         if (inflateInit2(&state_, 15 + 32) != Z_OK) throw std::bad_alloc();
     }
@@ -93,7 +93,7 @@ std::uint64_t inflate_checked(const std::filesystem::path& file, const StreamPla
     in.seekg(static_cast<std::streamoff>(place.offset));
     if (!in) throw DamagedStream("it cannot be opened or is too short");
     Inflater inflater(sink, place.at_most);
-    std::vector<std::byte> chunk(chunk_bytes);
+    std::vector<std::byte> chunk(inflated_at_once);
     std::uint64_t left = place.length;
     while (left > 0 && in) {
         in.read(reinterpret_cast<char*>(chunk.data()),
@@ -108,8 +108,8 @@ std::uint64_t inflate_checked(const std::filesystem::path& file, const StreamPla
 std::uint64_t inflate_checked(std::span<const std::byte> stream, std::uint64_t at_most) {
     const ByteSink nobody;
     Inflater inflater(nobody, at_most);
-    for (std::size_t at = 0; at < stream.size(); at += chunk_bytes) {
-        inflater.feed(stream.subspan(at, std::min(chunk_bytes, stream.size() - at)));
+    for (std::size_t at = 0; at < stream.size(); at += inflated_at_once) {
+        inflater.feed(stream.subspan(at, std::min(inflated_at_once, stream.size() - at)));
     }
     return inflater.finish();
 }

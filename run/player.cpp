@@ -11,7 +11,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto interval = 5ms;
+/// Between two looks at the servo.
+constexpr auto between_looks = 5ms;
 /// [s] A live source that gives no frame for so long is reported.
 constexpr double longest_silence = 2;
 
@@ -191,7 +192,7 @@ void Player::set_speed(double speed) {
 
 void Player::run(const std::stop_token& stop) {
     while (!stop.stop_requested()) {
-        std::this_thread::sleep_for(interval);
+        std::this_thread::sleep_for(between_looks);
         const std::scoped_lock lock(mutex_);
         try {
             update();

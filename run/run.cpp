@@ -14,9 +14,6 @@
 namespace palpate::run {
 namespace {
 
-/// A command that was sent after tick n shows in tick n + sure at the latest.
-constexpr std::int64_t sure = 2;
-
 std::string utc_now() {
     using namespace std::chrono;
     const auto now = floor<seconds>(system_clock::now());
@@ -160,7 +157,7 @@ Session Run::session_from(double isovalue, const DeviceTransform& transform,
                           std::int64_t last) const {
     RendererSettings settings = settings_;
     settings.transform = transform;
-    const auto open = [&](const Sent& sent) { return last < sent.after + sure; };
+    const auto open = [&](const Sent& sent) { return last < sent.after + Servo::sure_after; };
     const bool by_layers =
         have_surfaces(settings.layers) || std::ranges::any_of(sent_, [&](const Sent& sent) {
             return open(sent) && std::holds_alternative<command::UseLayers>(sent.command);
@@ -217,7 +214,7 @@ void Run::send(const Command& command) {
     if (!servo_->send(command)) {
         throw QueueFull("too many commands at once: one was left out");
     }
-    while (!sent_.empty() && sent_.front().after + sure <= after) sent_.pop_front();
+    while (!sent_.empty() && sent_.front().after + Servo::sure_after <= after) sent_.pop_front();
     sent_.push_back({after, command});
     Session changed{{field_, settings_, {}, {}}, session_settings_};
     changed.renderer.proxy.isovalue = isovalue_;

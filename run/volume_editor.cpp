@@ -21,8 +21,6 @@ constexpr auto rest = 500ms;
 constexpr double longest_step = 0.1;
 /// How often a full queue of commands is tried again, a millisecond apart.
 constexpr int attempts = 200;
-/// A command that was sent after tick n shows in tick n + sure at the latest.
-constexpr std::int64_t sure = 2;
 /// Of the memory of a volume that is read as it is felt: for edits, and for what undo needs.
 constexpr std::uint64_t edits_part = 4, history_part = 8;
 
@@ -92,7 +90,7 @@ void VolumeEditor::use_tool(const Servo& servo, std::shared_ptr<const Tool> tool
         hand.body.reset();
         hand.touch.reset();
         const auto now = servo.snapshot();
-        hand.from = now ? now->number + sure : 0;
+        hand.from = now ? now->number + Servo::sure_after : 0;
     }
 }
 

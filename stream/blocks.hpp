@@ -2,6 +2,7 @@
 // Private to stream/.
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <future>
 #include <list>
@@ -11,6 +12,9 @@
 #include "palpate/stream/loader.hpp"
 
 namespace palpate::stream {
+
+/// What could not be had is tried again after this long.
+constexpr std::chrono::seconds pause_after_failure{2};
 
 /// Calls work(0) to work(count - 1) from so many threads; what one of them throws ends the others
 /// and is passed on.

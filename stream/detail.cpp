@@ -17,8 +17,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// A piece that could not be had is tried again after this long.
-constexpr std::chrono::seconds pause_after_failure{2};
 /// How often threads look whether they may go on.
 constexpr std::chrono::milliseconds look_again{30}, idle{500};
 /// Of rows, which have no pieces worth keeping: samples along each axis that are read at a time.

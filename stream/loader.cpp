@@ -22,8 +22,6 @@ constexpr std::size_t most_free_bricks = 16;
 /// Just made, or dropped and still in use.
 constexpr std::size_t most_left_bricks = 32;
 constexpr std::chrono::milliseconds pause_when_behind{2}, time_to_let_go{20};
-/// A brick that could not be had is tried again after this long.
-constexpr std::chrono::seconds pause_after_failure{2};
 /// Of the memory, the part of decoded pieces.
 constexpr std::uint64_t pieces_part = 4;
 /// Bricks that the hands need first: a cube of three round one.

@@ -42,9 +42,11 @@ void bind_filters(py::module_& module) {
     module.def("sharpened", &sharpened, py::arg("volume"), Unlocked(),
                "Samples less an eighth of their discrete Laplacian, as float32: thin structures\n"
                "keep their height in the smooth field.");
-    module.def("level_of", &filters::level_of, py::arg("volume"), Unlocked(),
-               "The distance between the levels that samples lie on [data units]; None where they\n"
-               "lie on none.");
+    module.def(
+        "level_of", [](const Volume& volume) { return filters::level_of(volume); },
+        py::arg("volume"), Unlocked(),
+        "The distance between the levels that samples lie on [data units]; None where they\n"
+        "lie on none.");
     module.def("terraces_of", &filters::terraces_of, py::arg("volume"), Unlocked(),
                "What rounding does to the surfaces of a volume; None where data have no levels.");
     module.def(

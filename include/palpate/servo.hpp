@@ -122,6 +122,8 @@ class Servo {
     /// std::invalid_argument as check(Command) does. Any thread; never waits for the servo thread.
     /// Keeps samples alive until the servo uses others, so that its thread never frees them.
     bool send(const Command& command);
+    /// A command that was sent after tick n shows in tick n + sure_after at the latest.
+    static constexpr std::int64_t sure_after = 2;
     /// The newest tick; nothing before the first. Any thread, never waits.
     std::optional<Snapshot> snapshot() const noexcept { return snapshot_.get(); }
     ServoReport report() const noexcept;

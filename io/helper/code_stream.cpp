@@ -6,7 +6,7 @@
 namespace palpate::io {
 namespace {
 
-constexpr std::size_t padding_allowed = 16;
+constexpr std::size_t segment_padding = 16;
 
 /// Big-endian numbers of a stream; 0 beyond its end.
 class Numbers {
@@ -82,7 +82,7 @@ std::uint64_t unpacked_size(std::span<const std::byte> segment, std::uint64_t at
             at += n > 128 ? 2 : 1;
         }
     }
-    return segment.size() - at > padding_allowed ? at_most + 1 : size;
+    return segment.size() - at > segment_padding ? at_most + 1 : size;
 }
 
 }  // namespace
@@ -105,7 +105,7 @@ std::optional<CodeStreamSize> code_stream_size(std::span<const std::byte> stream
 
 bool ends_code_stream(std::span<const std::byte> stream) {
     std::size_t end = stream.size();
-    while (end > 2 && stream[end - 1] == std::byte{0} && stream.size() - end < padding_allowed) {
+    while (end > 2 && stream[end - 1] == std::byte{0} && stream.size() - end < segment_padding) {
         --end;
     }
     return end >= 4 && stream[end - 2] == std::byte{0xff} && stream[end - 1] == std::byte{0xd9};

@@ -18,7 +18,7 @@
 namespace palpate::io {
 namespace {
 
-constexpr int most_levels = 64;
+constexpr int most_resolutions = 64;
 
 std::string with_number(const char* format, int number) {
     char text[64];
@@ -135,7 +135,7 @@ ChunkedImage imaris_image(const Hdf5File& file, int channel, int time) {
             "it gives no unit of length: micrometres were taken, as Imaris does");
     }
     const int levels = file.count([&](int l) { return imaris_channel(l, time, channel); });
-    if (levels > most_levels) throw Failure("it has more than 64 levels");
+    if (levels > most_resolutions) throw Failure("it has more than 64 levels");
     std::array<double, 3> spacing = {1, 1, 1}, origin = {0, 0, 0}, factor = {1, 1, 1};
     for (int l = 0; l < levels; ++l) {
         ImageArray level = imaris_level(file, imaris_channel(l, time, channel));
@@ -189,7 +189,7 @@ std::vector<BdvSetup> setups_in(const std::filesystem::path& xml, int setups) {
 /// Rows of x, y, z for each level.
 std::vector<std::array<double, 3>> rows_of(const Hdf5File& file, const std::string& dataset) {
     const std::vector<double> numbers = file.numbers(dataset);
-    if (numbers.empty() || numbers.size() % 3 != 0 || numbers.size() > 3 * most_levels) {
+    if (numbers.empty() || numbers.size() % 3 != 0 || numbers.size() > 3 * most_resolutions) {
         throw Failure("its list of resolutions is damaged; copy it again");
     }
     std::vector<std::array<double, 3>> rows;

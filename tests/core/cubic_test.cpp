@@ -26,7 +26,7 @@ std::vector<TestField> every_kind() {
 }
 
 /// A random point of the folded tetrahedron on the walls of a mask.
-Vec3 random_folded(Random& random, unsigned walls = 0) {
+Vec3 random_on_walls(Random& random, unsigned walls = 0) {
     const double d = random.uniform(0, 0.5);
     const double s = random.uniform(0, d);
     return snap({d, s, random.uniform(-s, s)}, walls);
@@ -99,7 +99,7 @@ TEST(Cubic, value_and_gradient_are_continuous_across_every_kind_of_wall) {
         for (int i = 0; i < scaled(8000); ++i) {
             const unsigned wall = static_cast<unsigned>(i) % wall_count;
             LatticePoint point = cubic::locate(random_index(random, field));
-            point.folded = random_folded(random, 1U << wall);
+            point.folded = random_on_walls(random, 1U << wall);
             const Tetrahedron& t = point.tetrahedron;
             const Tetrahedron next = across(t, wall);
             const cubic::Piece piece = cubic::piece_of(t, field.around(t.cell));

@@ -18,7 +18,7 @@ Trajectory parse(const std::string& text) {
     return parse_trajectory(text, "hand.csv");
 }
 
-std::string why_refused(const std::string& text) {
+std::string why_not_parsed(const std::string& text) {
     const std::string message = message_of<InputError>([&] { parse(text); });
     EXPECT_EQ(message.rfind("hand.csv", 0), 0U) << message;
     for (const char c : message) EXPECT_TRUE(c >= ' ' && c <= '~') << message;
@@ -27,7 +27,7 @@ std::string why_refused(const std::string& text) {
 }
 
 void expect_refusal(const std::string& text, const std::string& part) {
-    const std::string message = why_refused(text);
+    const std::string message = why_not_parsed(text);
     EXPECT_TRUE(contains(message, part)) << message;
 }
 
@@ -94,10 +94,10 @@ TEST(Trajectory, whose_time_does_not_increase_is_refused) {
 
 TEST(Trajectory, of_garbage_is_refused_in_one_printable_line) {
     expect_refusal(std::string("\x1f\x8b\x08\0\0\0\0", 7), "is not a text file");
-    why_refused("\xff\xfe\xfa\n\x01\x02,\x7f\n");
-    why_refused(std::string(3'000'000, 'x'));
-    why_refused(std::string(300'000, ','));
-    why_refused("t,x,y,z\n0,0,0," + std::string(1'000'000, '9') + "\n");
+    why_not_parsed("\xff\xfe\xfa\n\x01\x02,\x7f\n");
+    why_not_parsed(std::string(3'000'000, 'x'));
+    why_not_parsed(std::string(300'000, ','));
+    why_not_parsed("t,x,y,z\n0,0,0," + std::string(1'000'000, '9') + "\n");
 }
 
 TEST(Trajectory, from_numbers_in_memory_is_checked_as_one_from_text) {

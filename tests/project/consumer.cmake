@@ -121,7 +121,7 @@ elseif(STEP STREQUAL embedded)
   file(REMOVE_RECURSE ${build})
   # Several sources at a time, which Release forbids the core: that takes half as long.
   run(${configure} -S ${consumers} -B ${build} -DPALPATE_SOURCE_DIR=${SOURCE_DIR}
-      -DCMAKE_BUILD_TYPE=None -DCMAKE_UNITY_BUILD=ON)
+      -DCMAKE_BUILD_TYPE=None -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=32)
   run(${CMAKE_COMMAND} --build ${build} --parallel 2 --target consumer)
   run(${build}/core/consumer)
 else()

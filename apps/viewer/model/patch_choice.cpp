@@ -13,16 +13,16 @@
 namespace palpate::viewer {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double endless = std::numeric_limits<double>::infinity();
 /// Of what is seen, beyond each side, so that a small move needs nothing new.
-constexpr double wider = 0.1;
+constexpr double room_around = 0.1;
 /// Fine samples beyond the planes: the cells and normals of a smooth surface need them.
 constexpr int beyond = 2;
 /// Over so many fine samples at most one field becomes the other.
 constexpr double widest_rim = 4;
 
 struct Bounds {
-    Vec3 low = Vec3::Constant(infinity), high = Vec3::Constant(-infinity);
+    Vec3 low = Vec3::Constant(endless), high = Vec3::Constant(-endless);
 };
 
 /// In the overview's index space, of the points within `radius` [mm] of the middle.
@@ -48,8 +48,8 @@ PatchChoice cells_round(const SeenStore& store, int level, const Bounds& bounds,
         const double low = std::floor(bounds.low[a] - begin) - 1 + begin;
         const double high = std::ceil(bounds.high[a] - begin) + 1 + begin;
         const double last = store.overview.size[a] - 1;
-        patch.low[a] = low <= 0 ? -infinity : low;
-        patch.high[a] = high >= last ? infinity : high;
+        patch.low[a] = low <= 0 ? -endless : low;
+        patch.high[a] = high >= last ? endless : high;
         // The levels' last samples lie in different places.
         from[a] = low <= 0 ? -2 : low;
         to[a] = high >= last ? last + 2 : high;
@@ -77,10 +77,10 @@ std::optional<Wanted> wanted_of(const SeenStore& store, const SeenPoints& seen,
     if (seen.points.empty()) return std::nullopt;
     const std::vector<int> levels = finer_levels(store, seen.pixel_mm);
     for (const int level : levels) {
-        for (const double radius : {infinity, 4 * seen.half_height, 2 * seen.half_height}) {
+        for (const double radius : {endless, 4 * seen.half_height, 2 * seen.half_height}) {
             Bounds bounds = bounds_of(store, seen, radius);
             if (!(bounds.low.array() <= bounds.high.array()).all()) continue;
-            const Vec3 more = wider * (bounds.high - bounds.low);
+            const Vec3 more = room_around * (bounds.high - bounds.low);
             const Bounds all{bounds.low - more, bounds.high + more};
             const PatchChoice patch = cells_round(store, level, all, interpolation);
             if (fits(store, level, patch.box, limits)) return Wanted{level, bounds};
@@ -95,7 +95,7 @@ std::optional<PatchChoice> patch_for(const SeenStore& store, const SeenPoints& s
                                      Interpolation interpolation, const DetailLimits& limits) {
     const auto wanted = wanted_of(store, seen, interpolation, limits);
     if (!wanted) return std::nullopt;
-    const Vec3 more = wider * (wanted->bounds.high - wanted->bounds.low);
+    const Vec3 more = room_around * (wanted->bounds.high - wanted->bounds.low);
     const Bounds all{wanted->bounds.low - more, wanted->bounds.high + more};
     return cells_round(store, wanted->level, all, interpolation);
 }

@@ -14,7 +14,7 @@
 namespace palpate::viewer {
 namespace {
 
-constexpr int column_width = 460, most_recent = 5;
+constexpr int column_width = 460, most_shown = 5;
 
 bool has_sample() {
     try {
@@ -72,7 +72,7 @@ Welcome::Welcome(QWidget* parent)
 
 void Welcome::refresh() {
     for (auto* old : recent_->findChildren<QWidget*>()) delete old;
-    const QStringList files = recent_files().mid(0, most_recent);
+    const QStringList files = recent_files().mid(0, most_shown);
     recent_->setVisible(!files.isEmpty());
     if (files.isEmpty()) return;
     recent_->layout()->addWidget(words(tr("Recent")));

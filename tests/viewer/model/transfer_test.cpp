@@ -14,9 +14,9 @@
 namespace palpate::viewer {
 namespace {
 
-using Random = std::mt19937_64;
+using Engine = std::mt19937_64;
 
-double uniform(Random& random, double low, double high) {
+double uniform(Engine& random, double low, double high) {
     return std::uniform_real_distribution(low, high)(random);
 }
 
@@ -29,7 +29,7 @@ Volume volume_of(const std::vector<T>& samples) {
 
 /// Samples of a few clusters; one cluster without width is a constant volume.
 template <class T>
-Volume random_volume(Random& random, double low, double high) {
+Volume random_volume(Engine& random, double low, double high) {
     const int clusters = std::uniform_int_distribution(1, 4)(random);
     std::vector<T> samples;
     for (int c = 0; c < clusters; ++c) {
@@ -44,7 +44,7 @@ Volume random_volume(Random& random, double low, double high) {
     return volume_of(samples);
 }
 
-Volume any_volume(Random& random) {
+Volume any_volume(Engine& random) {
     switch (random() % 4) {
         case 0:
             return random_volume<std::uint8_t>(random, 0, 255);
@@ -61,7 +61,7 @@ Volume any_volume(Random& random) {
 }
 
 TEST(Transfer, presets_of_any_data_are_valid_and_lie_within_the_data) {
-    Random random(5);
+    Engine random(5);
     for (int round = 0; round < 1500; ++round) {
         const Volume volume = any_volume(random);
         const int bins = std::uniform_int_distribution(1, 300)(random);

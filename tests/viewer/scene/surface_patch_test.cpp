@@ -65,7 +65,7 @@ ExtractedSurface surface_of(const Field& field, double level, const Vec3& origin
     return surface;
 }
 
-Point vertex(const RenderMesh& mesh, std::int32_t v) {
+Point corner_of(const RenderMesh& mesh, std::int32_t v) {
     const float* const p = mesh.positions.data() + 3 * static_cast<std::size_t>(v);
     return {p[0], p[1], p[2]};
 }
@@ -80,8 +80,8 @@ std::vector<Vec3> rim_of(const MeshBlocks& blocks) {
         if (!mesh) continue;
         for (std::size_t t = 0; t < mesh->triangles.size(); t += 3) {
             for (std::size_t c = 0; c < 3; ++c) {
-                Point a = vertex(*mesh, mesh->triangles[t + c]);
-                Point b = vertex(*mesh, mesh->triangles[t + (c + 1) % 3]);
+                Point a = corner_of(*mesh, mesh->triangles[t + c]);
+                Point b = corner_of(*mesh, mesh->triangles[t + (c + 1) % 3]);
                 if (b < a) std::swap(a, b);
                 if (a != b) ++edges[{a, b}];
             }
@@ -115,7 +115,7 @@ double distance_to(const MeshBlocks& blocks, const Vec3& p) {
         if (!mesh) continue;
         for (std::size_t t = 0; t < mesh->triangles.size(); t += 3) {
             const auto corner = [&](std::size_t i) {
-                return vector(vertex(*mesh, mesh->triangles[t + i]));
+                return vector(corner_of(*mesh, mesh->triangles[t + i]));
             };
             const Vec3 a = corner(0), b = corner(1), c = corner(2);
             if ((a - p).norm() > least + 2) continue;
@@ -206,7 +206,7 @@ TEST_P(Patch, nothing_coarse_is_inside_and_nothing_fine_is_farther_outside_than_
             for (std::size_t t = 0; t < mesh->triangles.size(); t += 3) {
                 std::array<Vec3, 3> corners;
                 for (std::size_t c = 0; c < 3; ++c) {
-                    corners[c] = index(vector(vertex(*mesh, mesh->triangles[t + c])));
+                    corners[c] = index(vector(corner_of(*mesh, mesh->triangles[t + c])));
                 }
                 work(corners);
             }
