@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Compiles every source alone with clang, without writing an object: each has to include what it uses
-and to compile without warnings. Presets that compile several sources together cannot see either.
-Tests are left out unless they are named: presets `dev` and `clang` compile each of them alone."""
+"""Compiles every source and every public header alone with clang, without writing an object: each has to
+include what it uses and to compile without warnings. Presets that compile several sources together cannot
+see either. Tests are left out unless they are named: presets `dev` and `clang` compile each of them alone."""
 
 import argparse
 import collections
@@ -23,9 +23,9 @@ from includes import includes_of, resolve  # noqa: E402
 # Large headers of other projects, precompiled for the sources that include them anyway, directly or
 # through our headers. So a source sees nothing that it would not see alone.
 LARGE = ("Eigen/Core", "Eigen/Geometry", "Eigen/LU", "gtest/gtest.h", "nlohmann/json.hpp",
-         "CLI/CLI.hpp")
+         "CLI/CLI.hpp", "pybind11/pybind11.h", "pybind11/numpy.h", "pybind11/eigen.h", "pybind11/stl.h")
 # The options that decide what those headers are and mean; other definitions do not reach them.
-DECISIVE = ("-std", "-f", "-DEIGEN", "-DGTEST", "-DJSON", "-DCLI", "-DNDEBUG")
+DECISIVE = ("-std", "-f", "-DEIGEN", "-DGTEST", "-DJSON", "-DCLI", "-DPYBIND", "-DNDEBUG")
 WORTHWHILE = 4  # sources that share a set of them
 
 Source = collections.namedtuple("Source", "file options shared key")
@@ -73,6 +73,16 @@ def sources_of(database, wanted):
         yield Source(file, options, shared, (large, tuple(shared)))
 
 
+def headers_of(sources):
+    """A list of Source from the public headers, read with the options of the core's sources."""
+    core = next(one for one in sources if one.file.is_relative_to(ROOT / "src"))
+    known = {}
+    for header in sorted((ROOT / "include").rglob("*.hpp")):
+        there = reached(header, known)
+        large = tuple(name for name in LARGE if name in there)
+        yield core._replace(file=header, key=(large, core.key[1]))
+
+
 def clang(*arguments):
     return subprocess.run(["clang++", *arguments], capture_output=True, text=True, check=False)
 
@@ -92,7 +102,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("-j", "--jobs", type=int, default=os.cpu_count(), help="default: all cores")
     parser.add_argument("files", nargs="*", metavar="FILE",
-                        help="sources to check, relative to the repository (default: all but tests)")
+                        help="sources to check, relative to the repository (default: all but tests, and the headers)")
     given = parser.parse_args()
 
     configured = subprocess.run(["cmake", "--preset", "clang"], cwd=ROOT, stdout=subprocess.PIPE,
@@ -103,6 +113,8 @@ def main():
     sources = list(sources_of(database, set(given.files)))
     if not sources:
         sys.exit("check_alone.py: no such source")
+    if not given.files:
+        sources += headers_of(sources)
 
     groups = collections.defaultdict(list)
     for source in sources:
@@ -118,13 +130,14 @@ def main():
         def compile_alone(source):
             header = headers.get(source.key)
             precompiled = ["-include-pch", header.result()] if header else []
-            return source, clang(*source.options, *precompiled, "-fsyntax-only", str(source.file))
+            return source, clang(*source.options, *precompiled, "-fsyntax-only", "-x", "c++",
+                                 "-Wno-pragma-once-outside-header", str(source.file))
 
         for source, result in pool.map(compile_alone, sources):
             if result.returncode != 0:
                 bad += 1
                 print(f"== {source.file.relative_to(ROOT)}\n{result.stderr}", flush=True)
-    print(f"check_alone: {len(sources)} sources, {len(headers)} sets of precompiled headers, "
+    print(f"check_alone: {len(sources)} sources and headers, {len(headers)} sets of precompiled headers, "
           f"{bad} failed")
     return 1 if bad else 0
 
