@@ -48,10 +48,12 @@ struct BallRun {
 bool ticks_go_on(const Run& live, std::int64_t count = 20) {
     const auto before = live.snapshot();
     const std::int64_t until = (before ? before->number : 0) + count;
-    return comes_true([&] {
+    const bool gone_on = comes_true([&] {
         const auto now = live.snapshot();
-        return now && now->number >= until;
+        return (now && now->number >= until) || live.device_failure() != DeviceFailure::none;
     });
+    EXPECT_EQ(live.device_problem(), "");
+    return gone_on && live.device_failure() == DeviceFailure::none;
 }
 
 TEST(Run, commands_show_in_settings_and_snapshots) {

@@ -64,21 +64,22 @@ TEST(Edits, what_was_edited_opens_again_as_the_edited_volume) {
         save_edits(*original, {c.zarr.string(), {}}, 0, *edits, c.out, {});
         ASSERT_TRUE(is_store(c.out.string()));
         const auto again = open_store(c.out.string());
-        EXPECT_TRUE(same_bits(volume_of(*again), flattened(*plain)));
+        const Volume whole = flattened(*plain);
+        EXPECT_TRUE(same_bits(volume_of(*again), whole));
         EXPECT_EQ(again->info().levels.size(), original->info().levels.size());
         ASSERT_TRUE(again->info().range);
-        EXPECT_LE(again->info().range->minimum, flattened(*plain).minimum());
+        EXPECT_LE(again->info().range->minimum, whole.minimum());
         // Boxes of any size.
         std::mt19937 random(9);
         for (int i = 0; i < 50; ++i) {
             const SampleBox box = random_box(random, c.volume.geometry().size);
-            ASSERT_EQ(read_box(*again, 0, box), box_of(flattened(*plain), box));
+            ASSERT_EQ(read_box(*again, 0, box), box_of(whole, box));
         }
         // A whole copy.
         const fs::path copy = c.folder.path() / "copy.zarr";
         convert_to_zarr(*again, 0, copy, {});
         fs::remove_all(c.zarr);
-        EXPECT_TRUE(same_bits(volume_of(*open_store(copy.string())), flattened(*plain)));
+        EXPECT_TRUE(same_bits(volume_of(*open_store(copy.string())), whole));
         EXPECT_THROW(open_store(c.out.string()), io::InputError) << "the original is gone";
     }
 }
