@@ -264,7 +264,8 @@ TEST(SessionExtremes, no_command_with_any_value_leaves_what_is_not_finite_or_las
                     ASSERT_TRUE(presser.press(28, 40));
                     ASSERT_TRUE(presser.feels_as_before(300));
                 }
-                EXPECT_TRUE(unchanged.feels_as_before(300)) << "unit " << unit << ", value " << value;
+                EXPECT_TRUE(unchanged.feels_as_before(300))
+                    << "unit " << unit << ", value " << value;
             }
         }
     }
