@@ -102,7 +102,8 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("-j", "--jobs", type=int, default=os.cpu_count(), help="default: all cores")
     parser.add_argument("files", nargs="*", metavar="FILE",
-                        help="sources to check, relative to the repository (default: all but tests, and the headers)")
+                        help="sources to check, relative to the repository (default: all sources but "
+                        "tests, and all public headers)")
     given = parser.parse_args()
 
     configured = subprocess.run(["cmake", "--preset", "clang"], cwd=ROOT, stdout=subprocess.PIPE,

@@ -213,7 +213,7 @@ struct Presser {
         }
         return true;
     }
-    /// Pressing goes on as if nothing had been.
+    /// True if pressing into the surface ends in contact, with a force.
     bool feels_as_before(int ticks) {
         return press(31, ticks) && last.tick.proxy.status == UpdateStatus::done &&
                last.tick.proxy.mode == Mode::constrained && last.tick.force.norm() > 0.1;
@@ -245,7 +245,7 @@ TEST(SessionExtremes, no_command_with_any_value_leaves_what_is_not_finite_or_las
             const Field field = ramp_of(unit, solid);
             const double isovalue = (solid == Solid::above ? 30 : -30) * unit;
             for (const double value : extremes) {
-                Presser unchanged(field, isovalue);  // takes all that is refused
+                Presser unchanged(field, isovalue);  // gets every command that is refused
                 ASSERT_TRUE(unchanged.press(31, 20));
                 for (const Command& command : commands_with(value, field, isovalue)) {
                     SCOPED_TRACE(testing::Message() << "unit " << unit << ", value " << value
@@ -283,7 +283,7 @@ TEST(SessionExtremes, with_a_tool_no_command_with_any_value_leaves_what_is_not_f
     settings.device.maximum_torque = 100;
     int tools = 0;
     for (const double value : extremes) {
-        Presser unchanged(field, 30, settings);  // takes all that is refused
+        Presser unchanged(field, 30, settings);  // gets every command that is refused
         ASSERT_TRUE(unchanged.press(31, 20));
         for (const Command& command : commands_with(value, field, 30)) {
             SCOPED_TRACE(testing::Message()

@@ -13,7 +13,7 @@
 namespace palpate::viewer {
 namespace {
 
-constexpr double endless = std::numeric_limits<double>::infinity();
+constexpr double unbounded = std::numeric_limits<double>::infinity();
 /// Of what is seen, beyond each side, so that a small move needs nothing new.
 constexpr double room_around = 0.1;
 /// Fine samples beyond the planes: the cells and normals of a smooth surface need them.
@@ -22,7 +22,7 @@ constexpr int beyond = 2;
 constexpr double widest_rim = 4;
 
 struct Bounds {
-    Vec3 low = Vec3::Constant(endless), high = Vec3::Constant(-endless);
+    Vec3 low = Vec3::Constant(unbounded), high = Vec3::Constant(-unbounded);
 };
 
 /// In the overview's index space, of the points within `radius` [mm] of the middle.
@@ -48,8 +48,8 @@ PatchChoice cells_round(const SeenStore& store, int level, const Bounds& bounds,
         const double low = std::floor(bounds.low[a] - begin) - 1 + begin;
         const double high = std::ceil(bounds.high[a] - begin) + 1 + begin;
         const double last = store.overview.size[a] - 1;
-        patch.low[a] = low <= 0 ? -endless : low;
-        patch.high[a] = high >= last ? endless : high;
+        patch.low[a] = low <= 0 ? -unbounded : low;
+        patch.high[a] = high >= last ? unbounded : high;
         // The levels' last samples lie in different places.
         from[a] = low <= 0 ? -2 : low;
         to[a] = high >= last ? last + 2 : high;
@@ -77,7 +77,7 @@ std::optional<Wanted> wanted_of(const SeenStore& store, const SeenPoints& seen,
     if (seen.points.empty()) return std::nullopt;
     const std::vector<int> levels = finer_levels(store, seen.pixel_mm);
     for (const int level : levels) {
-        for (const double radius : {endless, 4 * seen.half_height, 2 * seen.half_height}) {
+        for (const double radius : {unbounded, 4 * seen.half_height, 2 * seen.half_height}) {
             Bounds bounds = bounds_of(store, seen, radius);
             if (!(bounds.low.array() <= bounds.high.array()).all()) continue;
             const Vec3 more = room_around * (bounds.high - bounds.low);
