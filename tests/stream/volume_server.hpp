@@ -43,11 +43,16 @@ class VolumeServer {
         if (port_.empty()) throw std::runtime_error("volume_server.py does not start");
     }
     ~VolumeServer() {
+        answer_again();
         ::close(input_);  // it ends with its input
         ::waitpid(process_, nullptr, 0);
     }
     VolumeServer(const VolumeServer&) = delete;
     VolumeServer& operator=(const VolumeServer&) = delete;
+
+    /// Connections stay open but nothing more is answered.
+    void stop_answering() const { ::kill(process_, SIGSTOP); }
+    void answer_again() const { ::kill(process_, SIGCONT); }
 
     std::string address(const std::string& path = "") const {
         return "http://127.0.0.1:" + port_ + "/" + path;
