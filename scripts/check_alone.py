@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Compiles every source and every public header alone with clang, without writing an object: each has to
-include what it uses and to compile without warnings. Presets that compile several sources together cannot
-see either. Tests are left out unless they are named: presets `dev` and `clang` compile each of them alone."""
+"""Compiles every public header and every source of the libraries alone with clang, without writing an
+object: each has to include what it uses and to compile without warnings. Presets that compile several
+sources together cannot see either. Programs and tests are left out unless they are named: presets `dev`
+and `clang` compile each of their sources alone."""
 
 import argparse
 import collections
@@ -27,6 +28,7 @@ LARGE = ("Eigen/Core", "Eigen/Geometry", "Eigen/LU", "gtest/gtest.h", "nlohmann/
 # The options that decide what those headers are and mean; other definitions do not reach them.
 DECISIVE = ("-std", "-f", "-DEIGEN", "-DGTEST", "-DJSON", "-DCLI", "-DPYBIND", "-DNDEBUG")
 WORTHWHILE = 4  # sources that share a set of them
+PROGRAMS = ("tests", "apps", "bindings", "evaluation", "doctor", "benchmarks", "examples")
 
 Source = collections.namedtuple("Source", "file options shared key")
 
@@ -54,14 +56,15 @@ def options_of(command):
 
 
 def sources_of(database, wanted):
-    """A list of Source from compile_commands.json, a file of ours once."""
+    """A list of Source from compile_commands.json, a file of ours once. `wanted`: files and folders, or
+    nothing for the libraries."""
     known, seen = {}, set()
     for entry in database:
         file = pathlib.Path(entry["file"])
         if file.suffix != ".cpp" or file in seen or BUILD in file.parents:
             continue
-        name = str(file.relative_to(ROOT))
-        if name not in wanted if wanted else name.startswith("tests/"):
+        places = {str(place) for place in (file.relative_to(ROOT), *file.relative_to(ROOT).parents)}
+        if not places & wanted if wanted else places & set(PROGRAMS):
             continue
         seen.add(file)
         options = options_of(entry["command"])
@@ -102,8 +105,8 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("-j", "--jobs", type=int, default=os.cpu_count(), help="default: all cores")
     parser.add_argument("files", nargs="*", metavar="FILE",
-                        help="sources to check, relative to the repository (default: all sources but "
-                        "tests, and all public headers)")
+                        help="sources to check or folders of them, relative to the repository (default: "
+                        "the libraries and all public headers)")
     given = parser.parse_args()
 
     configured = subprocess.run(["cmake", "--preset", "clang"], cwd=ROOT, stdout=subprocess.PIPE,

@@ -8,9 +8,10 @@ usage: scripts/test.sh [--no-packages] [--target TARGET] [PRESET] [CTEST OPTION.
 
 Installs the packages that are missing, builds a preset in build/PRESET and runs its tests.
 
-presets (default: dev)
-  dev      optimised, assertions on, warnings are errors
-  unity    dev, with the sources of a folder compiled together: quickest from nothing
+presets (default: unity)
+  unity    optimised, assertions on, warnings are errors; the sources of a folder are compiled together,
+           which is quickest from nothing
+  dev      the same, each source alone: quickest after an edit
   release  what is installed
   clang    release with clang
   core     the core alone: standard library and Eigen, no ITK, no VTK
@@ -25,7 +26,7 @@ TEXT
 }
 
 packages=yes
-preset=dev
+preset=unity
 target=all
 while [ $# -gt 0 ]; do
     case "$1" in

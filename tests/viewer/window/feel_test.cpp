@@ -7,6 +7,7 @@
 #include <QLabel>
 #include <QMessageBox>
 #include <QPushButton>
+#include <QRegularExpression>
 #include <QSlider>
 #include <QTextBrowser>
 #include <QToolButton>
@@ -121,9 +122,11 @@ TEST_F(Window, the_wheel_does_not_carry_the_probe_out_at_the_far_side) {
     window_->probe().move_to(before);
     ASSERT_TRUE(wait_until([&] { return (now().session.tick.proxy.hip - before).norm() < 0.5; }));
     turn_wheel(scene, 60);
+    const auto depth = [&] { return now().session.tick.proxy.hip.dot(towards); };
+    const double back = extent_along(g, towards).back;
+    EXPECT_TRUE(wait_until([&] { return std::abs(depth() - back) < 0.5; })) << depth();
     QTest::qWait(300);
-    const double depth = now().session.tick.proxy.hip.dot(towards);
-    EXPECT_NEAR(depth, extent_along(g, towards).back, 0.5);
+    EXPECT_NEAR(depth(), back, 0.5);
 }
 
 TEST_F(Window, forces_that_wait_say_so_where_the_eye_is) {
@@ -182,8 +185,8 @@ TEST_F(Window, dragging_the_slider_changes_the_level_that_is_felt_and_seen) {
     const int x = slider.width() / 2, y = slider.height() / 2;
     drag(slider, {x, y}, {x + slider.width() / 4, y});
     ASSERT_TRUE(wait_until([&] { return now().session.tick.proxy.isovalue != before; }));
-    QTest::qWait(200);
-    EXPECT_EQ(now().session.tick.proxy.isovalue, window_->live()->isovalue());
+    EXPECT_TRUE(wait_until(
+        [&] { return now().session.tick.proxy.isovalue == window_->live()->isovalue(); }));
     ASSERT_TRUE(wait_until([&] { return window_->settled(); }));
 }
 
@@ -214,9 +217,11 @@ TEST_F(Window, a_session_is_recorded_and_played_back_with_the_timeline) {
     type_in_dialog(Qt::Key_R, scratch("session"));  // the dialog adds the extension
     ASSERT_NE(window_->live()->recording(), nullptr);
     press_until_force();
-    QTest::qWait(300);
-    EXPECT_TRUE(part<QLabel>("recording_clock").isVisible());
-    EXPECT_TRUE(part<QLabel>("recording_clock").text().contains("0:0"));
+    EXPECT_TRUE(wait_until([&] {
+        const auto& clock = part<QLabel>("recording_clock");
+        return clock.isVisible() &&
+               clock.text().contains(QRegularExpression("\\b[0-9]:[0-5][0-9]$"));
+    }));
     save("recording");
     QTest::keyClick(window_.get(), Qt::Key_R, Qt::ControlModifier);
     EXPECT_EQ(window_->live()->recording(), nullptr);

@@ -158,8 +158,7 @@ TEST_F(Looking, a_segmentation_lies_over_slices_and_scene_with_its_names_and_col
     EXPECT_GT(qBlue(colour_at({8, 6, 3})), qRed(colour_at({8, 6, 3})) + 40);
     save("overlay");
     list.item(1)->setCheckState(Qt::Unchecked);
-    QTest::qWait(60);
-    EXPECT_EQ(look().overlay.hidden, std::vector{7});
+    ASSERT_TRUE(wait_until([&] { return look().overlay.hidden == std::vector{7}; }));
     EXPECT_LT(qBlue(colour_at({8, 6, 3})), qRed(colour_at({8, 6, 3})) + 20);
     window_->files().save_session(scratch("s.json"));
     QTest::mouseClick(&part<QPushButton>("close_overlay"), Qt::LeftButton);
