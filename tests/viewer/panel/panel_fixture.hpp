@@ -63,7 +63,7 @@ class PanelFixture : public testing::Test {
         panel.resize(400, 1450);
         panel.show();
         QApplication::setActiveWindow(&panel);
-        (void)QTest::qWaitForWindowExposed(&panel);
+        (void)QTest::qWaitForWindowExposed(&panel, 60'000);
     }
 
     void set(const RendererSettings& settings = {}, double isovalue = 300,

@@ -41,7 +41,7 @@ class ATimeline : public testing::Test {
         bar.set_view(six());
         bar.show();
         QApplication::setActiveWindow(&bar);
-        (void)QTest::qWaitForWindowExposed(&bar);
+        (void)QTest::qWaitForWindowExposed(&bar, 60'000);
         QObject::connect(&bar, &Timeline::speed_asked, [this](double s) { speeds.push_back(s); });
         QObject::connect(&bar, &Timeline::moment_asked, [this](double t) { times.push_back(t); });
         QObject::connect(&bar, &Timeline::loop_asked, [this](bool l) { loops.push_back(l); });

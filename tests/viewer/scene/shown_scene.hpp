@@ -36,7 +36,7 @@ struct ShownScene {
     explicit ShownScene(int width = 400, int height = 320) {
         scene.resize(width, height);
         scene.show();
-        EXPECT_TRUE(QTest::qWaitForWindowExposed(&scene));
+        EXPECT_TRUE(QTest::qWaitForWindowExposed(&scene, 60'000));
     }
     /// What is shown once nothing is under way; left in the folder of pictures as well.
     QImage settled(const std::string& name = {}) {

@@ -30,7 +30,7 @@ struct ShownPane {
         pane.resize(400, 360);
         if (field) pane.set_field(*field, isovalue);
         pane.show();
-        (void)QTest::qWaitForWindowExposed(&pane);
+        (void)QTest::qWaitForWindowExposed(&pane, 60'000);
         QObject::connect(&pane, &SlicePane::crosshair_chosen, &pane,
                          [this](const Vec3& p) { chosen.push_back(p); });
         QObject::connect(&pane, &SlicePane::probe_aimed, &pane,

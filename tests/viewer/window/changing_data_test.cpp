@@ -153,7 +153,7 @@ TEST_F(ChangingData, a_session_of_a_volume_with_unsaved_edits_asks_first) {
     QTest::keyClick(window_.get(), Qt::Key_S, Qt::ControlModifier);
     EXPECT_TRUE(work().changed);
     window_->activateWindow();
-    ASSERT_TRUE(QTest::qWaitForWindowActive(window_.get()));
+    ASSERT_TRUE(QTest::qWaitForWindowActive(window_.get(), 60'000));
     answer(QMessageBox::Discard);
     type_in_dialog(Qt::Key_S, scratch("case.json"));
     EXPECT_TRUE(work().changed) << "the edits are not lost";

@@ -111,7 +111,7 @@ TEST_F(Files, of_several_series_one_is_chosen_by_its_picture) {
         window_->files().open_path(scratch("."));
         ASSERT_TRUE(wait_until([&] { return window_->findChild<QDialog*>("choose-series"); }));
         auto& table = part<QTableWidget>("series");
-        ASSERT_TRUE(QTest::qWaitForWindowExposed(&table));
+        ASSERT_TRUE(QTest::qWaitForWindowExposed(&table, 60'000));
         EXPECT_EQ(table.rowCount(), 2);
         EXPECT_EQ(table.item(1, 1)->text(), "CHEST");
         EXPECT_EQ(table.item(1, 3)->text(), "6");
@@ -249,8 +249,7 @@ TEST_F(Files, a_slice_puts_the_probe_where_it_is_clicked) {
     const QPoint at(axial.width() / 2, axial.height() / 8);
     const Vec3 wanted = axial.point_at(at);
     QTest::mouseClick(&axial, Qt::LeftButton, {}, at);
-    ASSERT_TRUE(
-        wait_until([&] { return (now().session.tick.proxy.hip - wanted).norm() < 0.1; }, 5000))
+    ASSERT_TRUE(wait_until([&] { return (now().session.tick.proxy.hip - wanted).norm() < 0.1; }))
         << "wanted " << wanted.transpose() << ", is " << now().session.tick.proxy.hip.transpose();
 }
 

@@ -222,7 +222,7 @@ TEST_F(Looking, preferences_are_used_at_once_and_kept) {
     auto& unit = part<QComboBox>("preferred_unit");
     auto& dialog = part<QDialog>("preferences");
     dialog.activateWindow();
-    ASSERT_TRUE(QTest::qWaitForWindowActive(&dialog));
+    ASSERT_TRUE(QTest::qWaitForWindowActive(&dialog, 60'000));
     unit.setFocus();
     QTest::keyClick(&unit, Qt::Key_C);
     ASSERT_EQ(unit.currentText(), "centimetres");

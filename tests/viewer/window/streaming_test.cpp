@@ -279,7 +279,7 @@ TEST_F(Streaming, an_address_is_typed_looked_up_and_felt_and_the_window_says_wha
     const QString address = QString::fromStdString(server.address("virtual.zarr"));
     QTest::keyClick(window_.get(), Qt::Key_L, Qt::ControlModifier);
     auto& line = part<QLineEdit>("store_address");
-    ASSERT_TRUE(QTest::qWaitForWindowExposed(line.window()));
+    ASSERT_TRUE(QTest::qWaitForWindowExposed(line.window(), 60'000));
     auto& levels = part<QComboBox>("store_level");
     auto* open = line.window()->findChild<QDialogButtonBox*>()->button(QDialogButtonBox::Open);
     EXPECT_FALSE(open->isEnabled());

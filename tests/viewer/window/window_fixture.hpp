@@ -81,9 +81,9 @@ class InWindow : public testing::Test {
         window_ = std::make_unique<MainWindow>(RunRequest{setup, {}, {}});
         window_->resize(1280, 860);
         window_->show();
-        ASSERT_TRUE(QTest::qWaitForWindowExposed(window_.get()));
+        ASSERT_TRUE(QTest::qWaitForWindowExposed(window_.get(), 60'000));
         window_->activateWindow();
-        ASSERT_TRUE(QTest::qWaitForWindowActive(window_.get()));
+        ASSERT_TRUE(QTest::qWaitForWindowActive(window_.get(), 60'000));
     }
 
     /// Opens a volume and waits until it is felt.
@@ -161,7 +161,7 @@ class InWindow : public testing::Test {
         typing(name, [&] { QTest::keyClick(window_.get(), key, Qt::ControlModifier | with); });
         // Without a window manager nothing makes the window active again after its dialog.
         window_->activateWindow();
-        ASSERT_TRUE(QTest::qWaitForWindowActive(window_.get()));
+        ASSERT_TRUE(QTest::qWaitForWindowActive(window_.get(), 60'000));
     }
 
     template <class Widget>
