@@ -10,7 +10,8 @@ import os
 import subprocess
 import sys
 
-from check_alone import BUILD, ROOT, options_of
+sys.dont_write_bytecode = True
+from check_alone import BUILD, ROOT, options_of  # noqa: E402
 
 # The analyser takes functions of included files for a header's, and leaves them out, unless the file
 # that includes them has this name (AnalysisManager::isInCodeFile).
