@@ -16,8 +16,8 @@ from check_alone import BUILD, ROOT, options_of  # noqa: E402
 # The analyser takes functions of included files for a header's, and leaves them out, unless the file
 # that includes them has this name (AnalysisManager::isInCodeFile).
 PIECE = "UnifiedSource"
-# Its functions do not throw but call what throws for commands that they have checked: with the bodies of
-# those in sight, that is reported.
+# Analysed by itself: its noexcept functions call what throws for commands that were not checked. Theirs
+# were, but where those bodies are in sight, that is reported.
 ALONE = ROOT / "src" / "servo.cpp"
 
 
@@ -34,15 +34,17 @@ def main():
             if entry["file"].startswith(f"{ROOT}/src/")}
     if not core:
         sys.exit("analyse.py: no sources")
+    options = core[str(ALONE)]
     sources = sorted(core.keys() - {str(ALONE)})
+    jobs = os.cpu_count()
     pieces = [ALONE]
-    for number in range(min(os.cpu_count(), len(sources))):
+    for number in range(min(jobs, len(sources))):
         pieces.append(BUILD / f"{PIECE}{number}.cpp")
-        pieces[-1].write_text("".join(f'#include "{file}"\n'
-                                      for file in sources[number::os.cpu_count()]), encoding="utf-8")
+        pieces[-1].write_text("".join(f'#include "{file}"\n' for file in sources[number::jobs]),
+                              encoding="utf-8")
     bad = 0
-    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        for result in pool.map(lambda piece: analyse(piece, core[sources[0]]), pieces):
+    with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
+        for result in pool.map(lambda piece: analyse(piece, options), pieces):
             if result.returncode != 0:
                 bad += 1
                 print(result.stdout, result.stderr, flush=True)

@@ -28,7 +28,7 @@ LARGE = ("Eigen/Core", "Eigen/Geometry", "Eigen/LU", "gtest/gtest.h", "nlohmann/
 # The options that decide what those headers are and mean; other definitions do not reach them.
 DECISIVE = ("-std", "-f", "-DEIGEN", "-DGTEST", "-DJSON", "-DCLI", "-DPYBIND", "-DNDEBUG")
 WORTHWHILE = 4  # sources that share a set of them
-PROGRAMS = ("tests", "apps", "bindings", "evaluation", "doctor", "benchmarks", "examples")
+LEFT_OUT = ("tests", "apps", "bindings", "evaluation", "doctor", "benchmarks", "examples")  # unless named
 
 Source = collections.namedtuple("Source", "file options shared key")
 
@@ -64,7 +64,7 @@ def sources_of(database, wanted):
         if file.suffix != ".cpp" or file in seen or BUILD in file.parents:
             continue
         places = {str(place) for place in (file.relative_to(ROOT), *file.relative_to(ROOT).parents)}
-        if not places & wanted if wanted else places & set(PROGRAMS):
+        if not places & wanted if wanted else places & set(LEFT_OUT):
             continue
         seen.add(file)
         options = options_of(entry["command"])
