@@ -20,6 +20,7 @@
 #include "apps/viewer/panel/look_controls.hpp"
 #include "apps/viewer/panel/panel.hpp"
 #include "apps/viewer/panel/section.hpp"
+#include "viewer/waiting.hpp"
 
 namespace palpate::viewer {
 
@@ -63,7 +64,7 @@ class PanelFixture : public testing::Test {
         panel.resize(400, 1450);
         panel.show();
         QApplication::setActiveWindow(&panel);
-        (void)QTest::qWaitForWindowExposed(&panel, 60'000);
+        (void)wait_until_exposed(panel);
     }
 
     void set(const RendererSettings& settings = {}, double isovalue = 300,

@@ -19,6 +19,7 @@
 
 #include "apps/viewer/panel/number_box.hpp"
 #include "apps/viewer/panel/timeline_track.hpp"
+#include "viewer/waiting.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -41,7 +42,7 @@ class ATimeline : public testing::Test {
         bar.set_view(six());
         bar.show();
         QApplication::setActiveWindow(&bar);
-        (void)QTest::qWaitForWindowExposed(&bar, 60'000);
+        (void)wait_until_exposed(bar);
         QObject::connect(&bar, &Timeline::speed_asked, [this](double s) { speeds.push_back(s); });
         QObject::connect(&bar, &Timeline::moment_asked, [this](double t) { times.push_back(t); });
         QObject::connect(&bar, &Timeline::loop_asked, [this](bool l) { loops.push_back(l); });

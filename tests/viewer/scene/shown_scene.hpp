@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <QCoreApplication>
-#include <QElapsedTimer>
 #include <QImage>
 #include <QTest>
 
@@ -16,19 +15,9 @@
 
 #include "apps/viewer/scene/scene.hpp"
 #include "viewer/references.hpp"
+#include "viewer/waiting.hpp"
 
 namespace palpate::viewer {
-
-/// Runs the event loop until `done`; false after a minute.
-inline bool wait_until(const std::function<bool()>& done) {
-    QElapsedTimer timer;
-    timer.start();
-    while (!done()) {
-        if (timer.elapsed() > 60'000) return false;
-        QTest::qWait(2);
-    }
-    return true;
-}
 
 struct ShownScene {
     Scene scene;
@@ -36,7 +25,7 @@ struct ShownScene {
     explicit ShownScene(int width = 400, int height = 320) {
         scene.resize(width, height);
         scene.show();
-        EXPECT_TRUE(QTest::qWaitForWindowExposed(&scene, 60'000));
+        EXPECT_TRUE(wait_until_exposed(scene));
     }
     /// What is shown once nothing is under way; left in the folder of pictures as well.
     QImage settled(const std::string& name = {}) {

@@ -14,6 +14,7 @@
 
 #include "apps/viewer/slices/slice_pane.hpp"
 #include "palpate/scenes/volumes.hpp"
+#include "viewer/waiting.hpp"
 
 namespace palpate::viewer {
 
@@ -30,7 +31,7 @@ struct ShownPane {
         pane.resize(400, 360);
         if (field) pane.set_field(*field, isovalue);
         pane.show();
-        (void)QTest::qWaitForWindowExposed(&pane, 60'000);
+        (void)wait_until_exposed(pane);
         QObject::connect(&pane, &SlicePane::crosshair_chosen, &pane,
                          [this](const Vec3& p) { chosen.push_back(p); });
         QObject::connect(&pane, &SlicePane::probe_aimed, &pane,

@@ -30,9 +30,9 @@ class ChangingData : public InWindow {
     /// Presses, and carves until something is gone.
     void carve() {
         press_until_force();
-        QTest::keyClick(window_.get(), Qt::Key_B);
+        press(Qt::Key_B);
         ASSERT_TRUE(wait_until([&] { return work().version > 0; }));
-        QTest::keyClick(window_.get(), Qt::Key_B);
+        press(Qt::Key_B);
     }
 };
 
@@ -44,10 +44,10 @@ TEST_F(ChangingData, the_brush_carves_what_is_felt_and_undo_and_redo_bring_it_ba
     EXPECT_TRUE(work().changed);
     ASSERT_TRUE(wait_until([&] { return window_->settled(); }));
     save("carved");
-    QTest::keyClick(window_.get(), Qt::Key_Z, Qt::ControlModifier);
+    press(Qt::Key_Z, Qt::ControlModifier);
     EXPECT_TRUE(wait_until([&] { return work().samples == start; }));
     EXPECT_TRUE(wait_until([&] { return now().session.version == 0; }));
-    QTest::keyClick(window_.get(), Qt::Key_Z, Qt::ControlModifier | Qt::ShiftModifier);
+    press(Qt::Key_Z, Qt::ControlModifier | Qt::ShiftModifier);
     EXPECT_TRUE(wait_until([&] { return work().samples != start; }));
     ASSERT_TRUE(wait_until([&] { return part<QPushButton>("undo").isEnabled(); }));
     QTest::mouseClick(&part<QPushButton>("undo"), Qt::LeftButton);
@@ -100,11 +100,11 @@ TEST_F(ChangingData, the_brush_is_outlined_in_scene_and_slices) {
     const auto scene = [&] { return orange(window_->views().scene().picture()); };
     const auto slice = [&] { return orange(window_->views().slice(2).grab().toImage()); };
     const int before_scene = scene(), before_slice = slice();
-    QTest::keyClick(window_.get(), Qt::Key_B);
+    press(Qt::Key_B);
     EXPECT_TRUE(wait_until([&] { return scene() > before_scene + 50; }));
     EXPECT_TRUE(wait_until([&] { return slice() > before_slice + 20; }));
     save("brush");
-    QTest::keyClick(window_.get(), Qt::Key_B);
+    press(Qt::Key_B);
     EXPECT_TRUE(wait_until([&] { return scene() <= before_scene + 5; }));
 }
 
@@ -132,7 +132,7 @@ TEST_F(ChangingData, what_was_saved_is_what_is_open) {
     EXPECT_EQ(std::memcmp(felt.data(), edited.data(), edited.bytes()), 0);
     // A session that has a name is saved under it without a question.
     QFile::remove(scratch("case.json"));
-    QTest::keyClick(window_.get(), Qt::Key_S, Qt::ControlModifier);
+    press(Qt::Key_S, Qt::ControlModifier);
     EXPECT_TRUE(QFile::exists(scratch("case.json")));
 }
 
@@ -150,10 +150,9 @@ TEST_F(ChangingData, a_session_of_a_volume_with_unsaved_edits_asks_first) {
     feel("synthetic:sphere:48x48x48");
     carve();
     answer(QMessageBox::Cancel);
-    QTest::keyClick(window_.get(), Qt::Key_S, Qt::ControlModifier);
+    press(Qt::Key_S, Qt::ControlModifier);
     EXPECT_TRUE(work().changed);
-    window_->activateWindow();
-    ASSERT_TRUE(QTest::qWaitForWindowActive(window_.get(), 60'000));
+    ASSERT_TRUE(wait_until_active(*window_));
     answer(QMessageBox::Discard);
     type_in_dialog(Qt::Key_S, scratch("case.json"));
     EXPECT_TRUE(work().changed) << "the edits are not lost";
@@ -222,10 +221,10 @@ TEST_F(ChangingData, a_sequence_plays_steps_and_is_sought_with_the_timeline) {
     ASSERT_TRUE(wait_until([&] { return window_->settled(); }));
     save("beating");
     // The brush is not for sequences, and says so.
-    QTest::keyClick(window_.get(), Qt::Key_B);
+    press(Qt::Key_B);
     EXPECT_TRUE(window_->statusBar()->currentMessage().contains("cannot be edited"));
     EXPECT_FALSE(window_->panel().brush().on);
-    QTest::keyClick(window_.get(), Qt::Key_K);
+    press(Qt::Key_K);
     EXPECT_TRUE(wait_until([&] { return now().speed == 1; }));
     feel("synthetic:sphere:32x32x32");
     EXPECT_FALSE(window_->timeline().isVisible());

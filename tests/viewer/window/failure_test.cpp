@@ -41,7 +41,7 @@ TEST_F(Failures, leaving_a_recording_keeps_level_and_view) {
     ASSERT_TRUE(wait_until([&] { return window_->playback() != nullptr; }));
     QTest::qWait(100);
     window_->views().scene().look_from(pictures::view_named("top"));
-    QTest::keyClick(window_.get(), Qt::Key_Escape);
+    press(Qt::Key_Escape);
     ASSERT_TRUE(wait_until([&] { return window_->live() != nullptr; }));
     EXPECT_EQ(window_->live()->isovalue(), 110);
     EXPECT_NE(window_->live()->mouse(), nullptr);
@@ -92,7 +92,7 @@ TEST_F(Failures, looking_for_devices_again_changes_neither_pointer_nor_device) {
     feel(sphere);
     auto* pointer = window_->findChild<QAction*>("pointer");
     ASSERT_TRUE(pointer->isChecked());
-    QTest::keyClick(window_.get(), Qt::Key_H);
+    press(Qt::Key_H);
     ASSERT_FALSE(pointer->isChecked());
     Q_EMIT window_->panel().device_controls().refresh_wanted();
     QTest::qWait(1500);

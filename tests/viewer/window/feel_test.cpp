@@ -138,9 +138,9 @@ TEST_F(Window, forces_that_wait_say_so_where_the_eye_is) {
     Q_EMIT window_->panel().asked(force);
     press_until_force();
     turn_wheel(window_->views().scene(), 5);
-    QTest::keyClick(window_.get(), Qt::Key_Space);
+    press(Qt::Key_Space);
     EXPECT_TRUE(wait_until([&] { return part<QLabel>("hint").text().contains("space bar"); }));
-    QTest::keyClick(window_.get(), Qt::Key_Space);
+    press(Qt::Key_Space);
     EXPECT_TRUE(wait_until([&] { return part<QLabel>("hint").text().contains("Withdraw"); }));
     EXPECT_TRUE(part<QLabel>("hint").isVisible());
     const auto button = [&] { return part<QPushButton>("forces").text(); };
@@ -194,17 +194,17 @@ TEST_F(Window, dragging_the_slider_changes_the_level_that_is_felt_and_seen) {
 TEST_F(Window, space_switches_the_forces_off_and_on) {
     feel(large_sphere);
     press_until_force();
-    QTest::keyClick(window_.get(), Qt::Key_Space);
+    press(Qt::Key_Space);
     ASSERT_TRUE(wait_until([&] { return !now().forces_on && force() == 0; }));
     save("off");
-    QTest::keyClick(window_.get(), Qt::Key_Space);
+    press(Qt::Key_Space);
     // The hand is deep enough for a force, which begins once a small one is wanted.
     ASSERT_TRUE(wait_until([&] { return now().forces_on; }));
 }
 
 TEST_F(Window, freeze_holds_hand_and_proxy) {
     feel(large_sphere);
-    QTest::keyClick(window_.get(), Qt::Key_F);
+    press(Qt::Key_F);
     ASSERT_TRUE(wait_until([&] { return now().session.frozen; }));
     const Vec3 before = now().session.tick.proxy.hip;
     turn_wheel(window_->views().scene(), 10);
@@ -229,7 +229,7 @@ TEST_F(Window, a_session_is_recorded_and_played_back_with_the_timeline) {
     ASSERT_TRUE(wait_until([&] { return clock_s() >= 1; }));
     EXPECT_LE(clock_s(), since_before.elapsed() / 1000);
     save("recording");
-    QTest::keyClick(window_.get(), Qt::Key_R, Qt::ControlModifier);
+    press(Qt::Key_R, Qt::ControlModifier);
     EXPECT_EQ(window_->live()->recording(), nullptr);
     EXPECT_TRUE(wait_until([&] { return !part<QLabel>("recording_clock").isVisible(); }));
     ASSERT_TRUE(QFile::exists(file));
@@ -251,7 +251,7 @@ TEST_F(Window, a_session_is_recorded_and_played_back_with_the_timeline) {
     ASSERT_TRUE(
         wait_until([&] { return window_->content().time() > window_->playback()->begin() + 0.1; }));
     // And back to feeling.
-    QTest::keyClick(window_.get(), Qt::Key_Escape);
+    press(Qt::Key_Escape);
     ASSERT_TRUE(wait_until([&] { return window_->live() != nullptr; }));
     EXPECT_FALSE(window_->timeline().isVisible());
 }
@@ -311,7 +311,7 @@ TEST_F(Window, another_device_takes_over_with_what_was_set) {
 
 TEST_F(Window, control_q_ends_the_window_and_the_session) {
     feel(large_sphere);
-    QTest::keyClick(window_.get(), Qt::Key_Q, Qt::ControlModifier);
+    press(Qt::Key_Q, Qt::ControlModifier);
     EXPECT_FALSE(window_->isVisible());
     window_.reset();
 }
@@ -328,15 +328,15 @@ TEST_F(Window, a_double_click_shows_a_pane_alone_and_again_all) {
     save("axial");
     QTest::mouseDClick(&axial, Qt::LeftButton);
     EXPECT_TRUE(scene.isVisible());
-    QTest::keyClick(window_.get(), Qt::Key_F7);
+    press(Qt::Key_F7);
     EXPECT_TRUE(scene.isVisible());
     EXPECT_FALSE(axial.isVisible());
-    QTest::keyClick(window_.get(), Qt::Key_F6);
+    press(Qt::Key_F6);
     ASSERT_TRUE(wait_until([&] { return window_->settled(); }));
     save("four");
     EXPECT_NEAR(scene.width(), axial.width(), 20);
     EXPECT_NEAR(scene.height(), window_->views().slice(0).height(), 20);
-    QTest::keyClick(window_.get(), Qt::Key_F5);
+    press(Qt::Key_F5);
     ASSERT_TRUE(wait_until([&] { return window_->settled(); }));
     EXPECT_GT(scene.width(), 2 * axial.width());
     // Order, from above: axial, coronal, sagittal.
@@ -367,7 +367,7 @@ TEST_F(Window, help_has_first_steps_and_versions) {
 }
 
 TEST_F(Window, question_mark_lists_every_shortcut) {
-    QTest::keyClick(window_.get(), Qt::Key_Question, Qt::ShiftModifier);
+    press(Qt::Key_Question, Qt::ShiftModifier);
     auto* dialog = window_->findChild<QDialog*>("shortcuts");
     ASSERT_NE(dialog, nullptr);
     ASSERT_TRUE(wait_until([&] { return dialog->isVisible(); }));

@@ -111,7 +111,7 @@ TEST_F(Files, of_several_series_one_is_chosen_by_its_picture) {
         window_->files().open_path(scratch("."));
         ASSERT_TRUE(wait_until([&] { return window_->findChild<QDialog*>("choose-series"); }));
         auto& table = part<QTableWidget>("series");
-        ASSERT_TRUE(QTest::qWaitForWindowExposed(&table, 60'000));
+        ASSERT_TRUE(wait_until_active(table));
         EXPECT_EQ(table.rowCount(), 2);
         EXPECT_EQ(table.item(1, 1)->text(), "CHEST");
         EXPECT_EQ(table.item(1, 3)->text(), "6");

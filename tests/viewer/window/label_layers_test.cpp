@@ -178,7 +178,7 @@ TEST_F(LabelsInWindow, a_recording_is_played_with_them) {
     window_->playing().show_time(window_->playback()->end());
     EXPECT_TRUE(wait_until([&] { return part<QLabel>("readout").text().contains("on shell"); }))
         << part<QLabel>("readout").text().toStdString();
-    QTest::keyClick(window_.get(), Qt::Key_Escape);
+    press(Qt::Key_Escape);
     ASSERT_TRUE(wait_until([&] { return window_->live() && layers(); }));
     EXPECT_TRUE(wait_until([&] { return window_->overlays().overlay() != nullptr; }))
         << "their label map is shown";

@@ -200,7 +200,7 @@ TEST_F(LayersInWindow, a_recording_names_the_layers_that_were_felt) {
     EXPECT_TRUE(wait_until([&] { return part<QLabel>("readout").text().contains("on skin"); }))
         << part<QLabel>("readout").text().toStdString();
     EXPECT_EQ(window_->display().isovalue(), -300);
-    QTest::keyClick(window_.get(), Qt::Key_Escape);
+    press(Qt::Key_Escape);
     ASSERT_TRUE(wait_until([&] { return window_->live() && layers(); })) << "felt again, with them";
     EXPECT_EQ(part<QComboBox>("layers").currentText(), ct_set);
 }

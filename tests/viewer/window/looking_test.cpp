@@ -59,7 +59,7 @@ TEST_F(Looking, skin_over_bone_is_two_clicks_and_either_is_felt) {
 
 TEST_F(Looking, a_cut_by_key_faces_the_viewer_and_a_session_brings_it_back) {
     feel("synthetic:sphere:48x48x48");
-    QTest::keyClick(window_.get(), Qt::Key_V);
+    press(Qt::Key_V);
     ASSERT_TRUE(settle());
     EXPECT_EQ(look().cut, Cut::plane);
     const Vec3 towards = window_->views().scene().camera().towards_viewer.normalized();
@@ -67,7 +67,7 @@ TEST_F(Looking, a_cut_by_key_faces_the_viewer_and_a_session_brings_it_back) {
     EXPECT_EQ(part<QComboBox>("cut").currentIndex(), 1);
     save("cut");
     window_->files().save_session(scratch("s.json"));
-    QTest::keyClick(window_.get(), Qt::Key_V, Qt::ShiftModifier);
+    press(Qt::Key_V, Qt::ShiftModifier);
     ASSERT_TRUE(settle());
     EXPECT_EQ(look().cut, Cut::box);
     window_->files().open_path(scratch("s.json"));
@@ -83,7 +83,7 @@ TEST_F(Looking, a_length_and_an_angle_are_measured_in_a_slice_and_kept) {
     };
     const double mm = 1.0 / (pane.pixel_of({1, 0, 0}) - pane.pixel_of({0, 0, 0})).x();
     const Vec3 before = window_->views().crosshair();
-    QTest::keyClick(window_.get(), Qt::Key_M);
+    press(Qt::Key_M);
     EXPECT_TRUE(window_->measuring().measuring());
     click({-10, 0, 0});
     click({10, 0, 0});
@@ -92,7 +92,7 @@ TEST_F(Looking, a_length_and_an_angle_are_measured_in_a_slice_and_kept) {
     const auto& length = window_->measuring().measurements()[0];
     EXPECT_NEAR((length.points[1] - length.points[0]).norm(), 20, 1.5 * mm);
     EXPECT_EQ(window_->views().crosshair(), before) << "a click while measuring moves nothing";
-    QTest::keyClick(window_.get(), Qt::Key_M, Qt::ShiftModifier);
+    press(Qt::Key_M, Qt::ShiftModifier);
     click({0, 10, 0});
     click({0, 0, 0});
     click({10, 0, 0});
@@ -111,7 +111,7 @@ TEST_F(Looking, a_length_on_the_surface_in_the_scene_and_escape_gives_up) {
     feel("synthetic:sphere:48x48x48");
     Scene& scene = window_->views().scene();
     const auto camera = scene.camera();
-    QTest::keyClick(window_.get(), Qt::Key_M);
+    press(Qt::Key_M);
     QTest::mouseClick(&scene, Qt::LeftButton, {}, middle(scene));
     QTest::mouseClick(&scene, Qt::LeftButton, {}, QPoint(5, 5));  // beside everything
     EXPECT_TRUE(window_->measuring().measuring());
@@ -122,14 +122,14 @@ TEST_F(Looking, a_length_on_the_surface_in_the_scene_and_escape_gives_up) {
         EXPECT_NEAR(value_at(field, p), window_->live()->isovalue(), 0.1 * field.range());
     }
     EXPECT_EQ(scene.camera().towards_viewer, camera.towards_viewer);
-    QTest::keyClick(window_.get(), Qt::Key_M);
-    QTest::keyClick(window_.get(), Qt::Key_Escape);
+    press(Qt::Key_M);
+    press(Qt::Key_Escape);
     EXPECT_FALSE(window_->measuring().measuring());
     EXPECT_EQ(window_->measuring().measurements().size(), 1U);
     ASSERT_TRUE(settle());
     save("measured");
     ASSERT_TRUE(wait_until([&] { return part<QAction>("measure_remove_last").isEnabled(); }));
-    QTest::keyClick(window_.get(), Qt::Key_Backspace, Qt::ShiftModifier);
+    press(Qt::Key_Backspace, Qt::ShiftModifier);
     EXPECT_TRUE(window_->measuring().measurements().empty());
 }
 
@@ -216,13 +216,12 @@ TEST_F(Looking, pressing_through_shows_what_is_felt_and_not_a_body_in_pieces) {
 
 TEST_F(Looking, preferences_are_used_at_once_and_kept) {
     feel("synthetic:sphere:48x48x48");
-    QTest::keyClick(window_.get(), Qt::Key_Comma, Qt::ControlModifier);
+    press(Qt::Key_Comma, Qt::ControlModifier);
     ASSERT_TRUE(wait_until([&] { return window_->findChild<QDialog*>("preferences"); }));
     save("preferences");
     auto& unit = part<QComboBox>("preferred_unit");
     auto& dialog = part<QDialog>("preferences");
-    dialog.activateWindow();
-    ASSERT_TRUE(QTest::qWaitForWindowActive(&dialog, 60'000));
+    ASSERT_TRUE(wait_until_active(dialog));
     unit.setFocus();
     QTest::keyClick(&unit, Qt::Key_C);
     ASSERT_EQ(unit.currentText(), "centimetres");
@@ -262,13 +261,13 @@ TEST_F(Looking, mnemonics_are_unique_in_each_menu) {
 TEST_F(Looking, a_slice_fills_the_window_and_then_the_next) {
     feel("synthetic:sphere:48x48x48");
     for (const int axis : {2, 1, 0, 2}) {
-        QTest::keyClick(window_.get(), Qt::Key_F8);
+        press(Qt::Key_F8);
         for (int other = 0; other < 3; ++other) {
             EXPECT_EQ(window_->views().slice(other).isVisible(), other == axis);
         }
         EXPECT_FALSE(window_->views().scene().isVisible());
     }
-    QTest::keyClick(window_.get(), Qt::Key_F5);
+    press(Qt::Key_F5);
     EXPECT_TRUE(window_->views().scene().isVisible());
 }
 

@@ -61,7 +61,7 @@ TEST_F(WindowReferences, overlay) {
 TEST_F(WindowReferences, an_edit_under_way) {
     feel("synthetic:sphere:48x48x48");
     press_until_force();
-    QTest::keyClick(window_.get(), Qt::Key_B);
+    press(Qt::Key_B);
     const auto version = [&] { return window_->live()->data().editor().state().version; };
     ASSERT_TRUE(wait_until([&] { return version() > 0 && force() < 0.01; })) << "it is carved away";
     expect_as("edit");

@@ -149,11 +149,11 @@ TEST_F(StreamingEdits, look_like_those_in_memory_and_are_saved) {
     save("edited");
     expect_like(expected, "edited");
     ASSERT_NE(window_->views().slice(2).shown_detail(), nullptr);
-    QTest::keyClick(window_.get(), Qt::Key_Z, Qt::ControlModifier);
+    press(Qt::Key_Z, Qt::ControlModifier);
     ASSERT_TRUE(wait_until([&] { return editor().state().redo_steps == 1; }));
     ASSERT_TRUE(look());
     expect_like(before, "undone");
-    QTest::keyClick(window_.get(), Qt::Key_Z, Qt::ControlModifier | Qt::ShiftModifier);
+    press(Qt::Key_Z, Qt::ControlModifier | Qt::ShiftModifier);
     ASSERT_TRUE(wait_until([&] { return window_->isWindowModified(); }));
     type_in_dialog(Qt::Key_S, scratch("cut.zarr"), Qt::ShiftModifier);
     ASSERT_TRUE(wait_until([&] { return !editor().state().changed; }))
@@ -194,9 +194,9 @@ TEST_F(StreamingEdits, by_hand_are_recorded_and_played) {
     QTest::mouseClick(&scene(), Qt::LeftButton, {}, QPoint(180, 400));
     ASSERT_TRUE(wait_until([&] { return !window_->probe().travelling(); }));
     press_until_force();
-    QTest::keyClick(window_.get(), Qt::Key_B);
+    press(Qt::Key_B);
     EXPECT_TRUE(wait_until([&] { return editor().state().version > 0; }));
-    QTest::keyClick(window_.get(), Qt::Key_B);
+    press(Qt::Key_B);
     editor().apply(edit::Fill{{{20, 70, 60}, {40, 100, 110}}, 0});
     ASSERT_TRUE(look());
     save("carved");
@@ -240,7 +240,7 @@ TEST_F(Streaming, zooming_and_stepping_bring_what_is_seen_then) {
     ASSERT_NE(pane.shown_detail(), nullptr) << "far from where it began";
     EXPECT_EQ(pane.shown_detail()->missing, 0U);
     // The view turns: another part is seen, and chosen.
-    QTest::keyClick(window_.get(), Qt::Key_H);
+    press(Qt::Key_H);
     auto& scene = window_->views().scene();
     turn_wheel(scene, 8);
     drag(scene, scene.rect().center(), scene.rect().center() + QPoint(60, 40));
@@ -248,7 +248,7 @@ TEST_F(Streaming, zooming_and_stepping_bring_what_is_seen_then) {
     EXPECT_EQ(details().finest, 0);
     save("zoomed");
     // An hidden pane needs nothing.
-    QTest::keyClick(window_.get(), Qt::Key_F7);
+    press(Qt::Key_F7);
     ASSERT_TRUE(wait_settled());
     EXPECT_FALSE(pane.seen());
 }
@@ -257,7 +257,7 @@ TEST_F(Streaming, another_isovalue_is_seen_as_finely) {
     feel(ring().toStdString());
     ASSERT_TRUE(wait_settled());
     const QImage before = window_->views().scene().picture();
-    for (int i = 0; i < 5; ++i) QTest::keyClick(window_.get(), Qt::Key_Plus);
+    for (int i = 0; i < 5; ++i) press(Qt::Key_Plus);
     QTest::qWait(300);
     ASSERT_TRUE(wait_settled());
     EXPECT_GT(differing(window_->views().scene().picture(), before), 300);
@@ -277,9 +277,9 @@ TEST_F(Streaming, the_sample_at_the_proxy_is_the_one_that_is_felt) {
 TEST_F(Streaming, an_address_is_typed_looked_up_and_felt_and_the_window_says_what_is_missing) {
     const stream::test::VolumeServer server({"--delay", "40"});
     const QString address = QString::fromStdString(server.address("virtual.zarr"));
-    QTest::keyClick(window_.get(), Qt::Key_L, Qt::ControlModifier);
+    press(Qt::Key_L, Qt::ControlModifier);
     auto& line = part<QLineEdit>("store_address");
-    ASSERT_TRUE(QTest::qWaitForWindowExposed(line.window(), 60'000));
+    ASSERT_TRUE(wait_until_active(line));
     auto& levels = part<QComboBox>("store_level");
     auto* open = line.window()->findChild<QDialogButtonBox*>()->button(QDialogButtonBox::Open);
     EXPECT_FALSE(open->isEnabled());
@@ -347,6 +347,7 @@ TEST_F(Streaming, of_several_levels_channels_and_times_another_is_chosen_while_o
         action->trigger();
         auto* dialog = window_->findChild<QDialog*>("store");
         ASSERT_NE(dialog, nullptr);
+        ASSERT_TRUE(wait_until_active(*dialog));
         auto* open = dialog->findChild<QDialogButtonBox*>()->button(QDialogButtonBox::Open);
         ASSERT_TRUE(wait_until([&] { return open->isEnabled(); }));
         EXPECT_FALSE(dialog->findChild<QLineEdit*>("store_address")->isEnabled() &&
@@ -392,6 +393,7 @@ TEST_F(Streaming, all_times_play_and_one_of_them_is_felt_again) {
         window_->findChild<QAction*>("choose_level")->trigger();
         auto* dialog = window_->findChild<QDialog*>("store");
         ASSERT_NE(dialog, nullptr);
+        ASSERT_TRUE(wait_until_active(*dialog));
         auto* open = dialog->findChild<QDialogButtonBox*>()->button(QDialogButtonBox::Open);
         ASSERT_TRUE(wait_until([&] { return open->isEnabled(); }));
         auto* times = dialog->findChild<QCheckBox*>("store_all_times");

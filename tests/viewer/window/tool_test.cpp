@@ -108,7 +108,7 @@ TEST_F(ToolInWindow, drills_with_its_own_shape) {
     press_until_force();
     ASSERT_TRUE(shape.isEnabled());
     shape.click();
-    QTest::keyClick(window_.get(), Qt::Key_B);
+    press(Qt::Key_B);
     const auto edits = [&] { return window_->live()->data().editor().state(); };
     ASSERT_TRUE(wait_until([&] { return edits().version > 0; }));
     for (int i = 0; i < 10; ++i) {
@@ -116,7 +116,7 @@ TEST_F(ToolInWindow, drills_with_its_own_shape) {
         QTest::qWait(50);
     }
     // The room that the tool has made for itself: nothing is solid where it is.
-    QTest::keyClick(window_.get(), Qt::Key_B);
+    press(Qt::Key_B);
     ASSERT_TRUE(wait_until([&] { return window_->settled(); }));
     const Tick tick = now().session.tick;
     const Field field(edits().samples, Solid::above);

@@ -6,7 +6,6 @@
 #include <QApplication>
 #include <QDialog>
 #include <QDir>
-#include <QElapsedTimer>
 #include <QLineEdit>
 #include <QSettings>
 #include <QTimer>
@@ -26,20 +25,9 @@
 #include "apps/viewer/window/main_window.hpp"
 #include "apps/viewer/window/views.hpp"
 #include "support/scratch_folder.hpp"
+#include "viewer/waiting.hpp"
 
 namespace palpate::viewer::test {
-
-/// Lets the window live until it is so; false if it never is within `ms`, which is meant to be far
-/// longer than it takes.
-inline bool wait_until(const std::function<bool()>& so, int ms = 120'000) {
-    QElapsedTimer clock;
-    clock.start();
-    while (!so()) {
-        if (clock.elapsed() > ms) return false;
-        QTest::qWait(10);
-    }
-    return true;
-}
 
 /// Two labels, half of a ball each, on a coarser grid than the ball's, as 3D Slicer writes them.
 inline void write_segmentation(const std::filesystem::path& path) {
@@ -81,9 +69,7 @@ class InWindow : public testing::Test {
         window_ = std::make_unique<MainWindow>(RunRequest{setup, {}, {}});
         window_->resize(1280, 860);
         window_->show();
-        ASSERT_TRUE(QTest::qWaitForWindowExposed(window_.get(), 60'000));
-        window_->activateWindow();
-        ASSERT_TRUE(QTest::qWaitForWindowActive(window_.get(), 60'000));
+        ASSERT_TRUE(wait_until_active(*window_));
     }
 
     /// Opens a volume and waits until it is felt.
@@ -100,6 +86,12 @@ class InWindow : public testing::Test {
         return window_->live()->snapshot().value();
     }
     double force() const { return now().session.tick.force.norm(); }
+
+    /// A key that goes to whatever of the window has it as a shortcut.
+    void press(Qt::Key key, Qt::KeyboardModifiers with = {}) {
+        ASSERT_TRUE(wait_until_active(*window_));
+        QTest::keyClick(window_.get(), key, with);
+    }
 
     /// In the middle of a widget, a notch forward for each step.
     /// `notch`: of each step; 120 is that of a common wheel.
@@ -158,10 +150,8 @@ class InWindow : public testing::Test {
     }
     /// The same, of a dialog that a key opens, with Ctrl.
     void type_in_dialog(Qt::Key key, const QString& name, Qt::KeyboardModifiers with = {}) {
-        typing(name, [&] { QTest::keyClick(window_.get(), key, Qt::ControlModifier | with); });
-        // Without a window manager nothing makes the window active again after its dialog.
-        window_->activateWindow();
-        ASSERT_TRUE(QTest::qWaitForWindowActive(window_.get(), 60'000));
+        typing(name, [&] { press(key, Qt::ControlModifier | with); });
+        ASSERT_TRUE(wait_until_active(*window_));
     }
 
     template <class Widget>
