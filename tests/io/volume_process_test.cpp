@@ -236,6 +236,7 @@ TEST_F(HelperProcess, ctrl_c_at_any_moment_of_writing_leaves_the_whole_file_or_n
         const pid_t caller = fork();
         if (caller == 0) {
             setsid();  // a terminal's Ctrl-C goes to the whole group, so to the helper too
+            signal(SIGINT, SIG_DFL);  // which a program that a script started behind itself ignores
             WriteOptions options;
             options.compress = true;
             write_volume(volume, folder_ / "big.nrrd", options);
