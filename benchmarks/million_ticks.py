@@ -11,6 +11,7 @@ a table; status 1 if ticks were lost or a recording does not give the same again
 
 import argparse
 import concurrent.futures
+import csv
 import json
 import math
 import pathlib
@@ -53,6 +54,14 @@ def editing(seconds, chance):
             yield at + 1 + 0.5 * chance.random(), chance.choice(("undo", "undo", "redo"))
 
 
+def work_of(recording):
+    """How many tetrahedra the updates entered, sorted, and those of the update that took longest."""
+    with open(recording, encoding="ascii") as file:
+        ticks = csv.DictReader(line for line in file if not line.startswith("#"))
+        work = [(int(tick["update_ns"]), int(tick["tetrahedra"])) for tick in ticks]
+    return sorted(tetrahedra for _, tetrahedra in work), max(work)[1]
+
+
 def session(palpate, volume, own_commands, seconds, folder):
     """A row of the table: what the program said of the session, and whether its recording gives the same."""
     chance = random.Random(1)
@@ -69,7 +78,9 @@ def session(palpate, volume, own_commands, seconds, folder):
                            capture_output=True, text=True)
     if again.returncode != 0:
         print(f"{volume}: {again.stderr.strip()}", file=sys.stderr)
-    return {"volume": volume, "commands": len(lines), "same": again.returncode == 0, **json.loads(ran.stdout)}
+    tetrahedra, in_longest = work_of(recording)
+    return {"volume": volume, "commands": len(lines), "same": again.returncode == 0, "tetrahedra": tetrahedra,
+            "in_longest": in_longest, **json.loads(ran.stdout)}
 
 
 def main():
@@ -93,6 +104,9 @@ def main():
     for kind in ("compute", "lateness"):
         line(f"{kind} {' / '.join(PARTS)} [us]",
              lambda row: " / ".join(f"{row[kind + '_ns'][part] / 1e3:,.1f}" for part in PARTS))
+    line("tetrahedra an update, p50 / p99 / p99.9 / max, and of the longest update",
+         lambda row: " / ".join(f"{row['tetrahedra'][int(part * (len(row['tetrahedra']) - 1))]:,}"
+                                for part in (0.5, 0.99, 0.999, 1)) + f", {row['in_longest']:,}")
     line("forces taken back (overruns)", lambda row: f"{row['overruns']}")
     line("missed deadlines", lambda row: f"{row['missed']:,}")
     return 0 if all(row["same"] and row["unrecorded"] == 0 for row in rows) else 1

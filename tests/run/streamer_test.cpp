@@ -83,6 +83,16 @@ TEST(Streamed, a_replay_that_waits_gives_the_ticks_of_the_whole_volume_bit_for_b
     EXPECT_GT(constrained, 500);
 }
 
+/// Waits until a run has rendered so many ticks from now on, however slow the machine is.
+bool renders(const run::Run& live, int ticks) {
+    const auto number = [&] {
+        const auto now = live.snapshot();
+        return now ? now->number : 0;
+    };
+    const auto before = number();
+    return comes_true([&] { return number() > before + ticks; });
+}
+
 TEST(Streamed, a_live_run_touches_and_its_recording_repeats_bit_for_bit) {
     const BallFile ball;
     const auto data = std::make_shared<Data>(load(ball.streamed()));
@@ -100,15 +110,13 @@ TEST(Streamed, a_live_run_touches_and_its_recording_repeats_bit_for_bit) {
                     now->session.tick.proxy.status == UpdateStatus::done;
         return contacts > 20;
     }));
+    EXPECT_TRUE(renders(live, 150));
     EXPECT_THROW(data->player(), std::invalid_argument);
     EXPECT_GT(data->streaming().loaded, 0U);
     // A second recording begins with bricks in memory.
     const std::string later = (ball.folder.path() / "later.csv").string();
     live.record(later);
-    EXPECT_TRUE(comes_true([&] {
-        const auto now = live.snapshot();
-        return now && now->number > 200;
-    }));
+    EXPECT_TRUE(renders(live, 150));
     live.stop();
     live.stop_recording();
     for (const std::string& path : {recording, later}) {
@@ -169,6 +177,7 @@ TEST(Streamed, what_is_edited_is_felt_undone_recorded_and_repeats_bit_for_bit) {
     EXPECT_TRUE(comes_true([&] { return data->editor().state().undo_steps > 1; }))
         << "the hand carves: " << data->editor().state().problem;
     data->editor().set_brush(std::nullopt);
+    EXPECT_TRUE(renders(live, 150));
     const std::string later = (ball.folder.path() / "later.csv").string();
     live.record(later);  // begins with the edits and what is in memory
     data->editor().apply(edit::Fill{{{5, 5, 5}, {30, 30, 30}}, 0});
@@ -178,10 +187,7 @@ TEST(Streamed, what_is_edited_is_felt_undone_recorded_and_repeats_bit_for_bit) {
     const std::string last = (ball.folder.path() / "last.csv").string();
     live.record(last);  // with steps that were undone
     const std::uint64_t version = data->editor().state().version;
-    EXPECT_TRUE(comes_true([&] {
-        const auto now = live.snapshot();
-        return now && now->number > 300;
-    }));
+    EXPECT_TRUE(renders(live, 150));
     EXPECT_GT(version, 0U);
     const std::shared_ptr<const Samples> felt = live.field_now().shared_samples();
     EXPECT_TRUE(felt->bricks());
