@@ -54,12 +54,13 @@ def editing(seconds, chance):
             yield at + 1 + 0.5 * chance.random(), chance.choice(("undo", "undo", "redo"))
 
 
-def work_of(recording):
-    """How many tetrahedra the updates entered, sorted, and those of the update that took longest."""
+def ticks_of(recording):
+    """Tetrahedra that the updates entered, sorted; those of the update that took longest; the share in contact."""
     with open(recording, encoding="ascii") as file:
         ticks = csv.DictReader(line for line in file if not line.startswith("#"))
-        work = [(int(tick["update_ns"]), int(tick["tetrahedra"])) for tick in ticks]
-    return sorted(tetrahedra for _, tetrahedra in work), max(work)[1]
+        work = [(int(tick["update_ns"]), int(tick["tetrahedra"]), tick["mode"]) for tick in ticks]
+    return {"tetrahedra": sorted(tetrahedra for _, tetrahedra, _ in work), "in_longest": max(work)[1],
+            "contact": sum(mode == "constrained" for *_, mode in work) / len(work)}
 
 
 def session(palpate, volume, own_commands, seconds, folder):
@@ -78,9 +79,8 @@ def session(palpate, volume, own_commands, seconds, folder):
                            capture_output=True, text=True)
     if again.returncode != 0:
         print(f"{volume}: {again.stderr.strip()}", file=sys.stderr)
-    tetrahedra, in_longest = work_of(recording)
-    return {"volume": volume, "commands": len(lines), "same": again.returncode == 0, "tetrahedra": tetrahedra,
-            "in_longest": in_longest, **json.loads(ran.stdout)}
+    return {"volume": volume, "commands": len(lines), "same": again.returncode == 0, **ticks_of(recording),
+            **json.loads(ran.stdout)}
 
 
 def main():
@@ -93,12 +93,14 @@ def main():
         rows = list(both.map(
             lambda of: session(chosen.palpate, *of, chosen.seconds, pathlib.Path(scratch)),
             (("synthetic:beating", playing), (chosen.volume, editing))))
+
     def line(title, cell):
         print("| " + " | ".join([title, *(cell(row) for row in rows)]) + " |")
 
     line("", lambda row: pathlib.Path(row["volume"]).name)
     print("|---" * (len(rows) + 1) + "|")
     line("ticks, commands", lambda row: f"{row['ticks']:,}, {row['commands']:,}")
+    line("in contact", lambda row: f"{row['contact']:.0%}")
     line("ticks that the recording lost", lambda row: f"{row['unrecorded']}")
     line("rendered again", lambda row: "the same bit for bit" if row["same"] else "DIFFERS")
     for kind in ("compute", "lateness"):

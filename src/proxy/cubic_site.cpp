@@ -270,7 +270,7 @@ WalkEnd walk(CubicSite& site, const Vec3& displacement, double level, Progress& 
                 direction = fold(site.point.tetrahedron, along);
                 left -= t;
                 ++progress.tetrahedra;
-                if (left <= 0) return WalkEnd::target;
+                if (left <= 0 || left < progress.least_left) return WalkEnd::target;
                 continue;
             }
         }
@@ -292,6 +292,7 @@ WalkEnd walk(CubicSite& site, const Vec3& displacement, double level, Progress& 
         if (exit.wall == wall_face) outside = is_outside();
         direction = reflect(direction, exit.wall);
         left -= exit.t;
+        if (left < progress.least_left) return WalkEnd::target;
     }
     return WalkEnd::out_of_budget;
 }

@@ -89,6 +89,8 @@ bool descend_out(CubicSite& site, Progress& progress) {
 constexpr double thickest_shell = 16;    // [voxel] searched along each direction at a time
 constexpr double thinnest_shell = 0.25;  // needs a budget of some 100 pieces
 
+constexpr double rounding_of_part = 1e-6;  // far more than it is, of a shell's thickness
+
 /// How thick a shell the budget can search along all 26 directions (fewer than 8 walls a voxel, and
 /// two pieces a probe). Without this, every later update would start the same shell and abandon it.
 double shell_within(int budget) {
@@ -117,6 +119,9 @@ bool search_out(AnySite& site, Progress& progress, double& reach) {
             // The solid is the free side of the field with its sign turned.
             AnySite probe = site.turned_at(start);
             Progress silent{progress.geometry, {}, start, progress.budget};
+            // Not past the nearest that another direction has found.
+            silent.least_left =
+                1 - (std::sqrt(least) / unit - reach) / shell_thickness - rounding_of_part;
             const bool free_already = probe.excess() >= -site.level();
             const WalkEnd end = free_already ? WalkEnd::surface
                                              : walk_out(probe, per_unit * shell_thickness, silent);

@@ -29,7 +29,7 @@ WalkEnd walk(Site& site, const Vec3& displacement, Progress& progress) {
                 direction = fold(site.point.tetrahedron, along);
                 left -= t;
                 ++progress.tetrahedra;
-                if (left <= 0) return WalkEnd::target;
+                if (left <= 0 || left < progress.least_left) return WalkEnd::target;
                 continue;
             }
         }
@@ -59,6 +59,7 @@ WalkEnd walk(Site& site, const Vec3& displacement, Progress& progress) {
         site.cross(exit.wall);
         direction = reflect(direction, exit.wall);
         left -= exit.t;
+        if (left < progress.least_left) return WalkEnd::target;
     }
     return WalkEnd::out_of_budget;
 }

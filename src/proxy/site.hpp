@@ -111,6 +111,9 @@ struct Progress {
     Vec3 target;         ///< index space
     int budget;          ///< straight pieces left
     int tetrahedra = 0;  ///< pieces of non-zero length so far
+    /// A walk may end at the first wall after which less than this part of it is left. What it does
+    /// before is the same to the bit.
+    double least_left = -1;
 
     /// The vector from the site to the target, index axes [voxel].
     Vec3 to_target(const Site& site) const {

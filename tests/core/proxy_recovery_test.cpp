@@ -194,6 +194,24 @@ TEST(Recovery, ends_under_small_budgets_too) {
     }
 }
 
+TEST(Recovery, looks_no_farther_than_the_nearest_way_out_and_moves_on_with_the_rest_of_the_budget) {
+    for (const Interpolation interpolation : {Interpolation::linear, Interpolation::cubic}) {
+        Field field = block_field(40, 4, 35);
+        field.set_interpolation(interpolation);
+        ProxySettings settings;
+        settings.step_budget = 512;
+        Proxy proxy;
+        proxy.isovalue = 300;  // nothing is solid
+        const Vec3 start(26.3, 20.1, 34.2), end(16.3, 20.1, 34.2);
+        ASSERT_EQ(update_exact(proxy, field, start).mode, Mode::free);
+        proxy.isovalue = 127.5;
+        const ProxyUpdate r = update_exact(proxy, field, end, settings);
+        EXPECT_EQ(r.status, UpdateStatus::done);
+        EXPECT_EQ(r.mode, Mode::constrained);
+        EXPECT_NEAR((r.scp - end).norm(), 1.3, 0.01) << "under the hand, on the face";
+    }
+}
+
 TEST(Recovery, leaves_a_local_minimum) {
     // A pit in a hill that is still solid: descent ends in it, the path out leads over its rim.
     const Field field(volume_of<float>(grid(cube(24)), [](const Index3& i) {
