@@ -199,16 +199,16 @@ TEST(Recovery, looks_no_farther_than_the_nearest_way_out_and_moves_on_with_the_r
         Field field = block_field(40, 4, 35);
         field.set_interpolation(interpolation);
         ProxySettings settings;
-        settings.step_budget = 512;
+        settings.step_budget = 360;  // looking as far in all directions leaves too little of it
         Proxy proxy;
         proxy.isovalue = 300;  // nothing is solid
-        const Vec3 start(26.3, 20.1, 34.2), end(16.3, 20.1, 34.2);
+        const Vec3 start(26.3, 20.1, 5.0), end(8.3, 20.1, 5.0);
         ASSERT_EQ(update_exact(proxy, field, start).mode, Mode::free);
         proxy.isovalue = 127.5;
         const ProxyUpdate r = update_exact(proxy, field, end, settings);
         EXPECT_EQ(r.status, UpdateStatus::done);
         EXPECT_EQ(r.mode, Mode::constrained);
-        EXPECT_NEAR((r.scp - end).norm(), 1.3, 0.01) << "under the hand, on the face";
+        EXPECT_NEAR((r.scp - end).norm(), 1.5, 0.01) << "under the hand, on the face";
     }
 }
 
