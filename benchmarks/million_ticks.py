@@ -89,6 +89,12 @@ def main():
     options.add_argument("volume")
     options.add_argument("--seconds", type=float, default=1002)
     chosen = options.parse_args()
+    try:  # before the other session has run for a quarter of an hour
+        subprocess.run([chosen.palpate, "info", chosen.volume, "--quiet"], check=True, stdout=subprocess.DEVNULL)
+    except OSError as e:
+        sys.exit(f"million_ticks.py: {chosen.palpate}: {e.strerror}")
+    except subprocess.CalledProcessError as e:
+        sys.exit(e.returncode)
     with tempfile.TemporaryDirectory() as scratch, concurrent.futures.ThreadPoolExecutor() as both:
         rows = list(both.map(
             lambda of: session(chosen.palpate, *of, chosen.seconds, pathlib.Path(scratch)),
@@ -115,4 +121,7 @@ def main():
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    try:
+        sys.exit(main())
+    except KeyboardInterrupt:
+        sys.exit(130)

@@ -86,10 +86,9 @@ bool descend_out(CubicSite& site, Progress& progress) {
     return false;
 }
 
-constexpr double thickest_shell = 16;    // [voxel] searched along each direction at a time
-constexpr double thinnest_shell = 0.25;  // needs a budget of some 100 pieces
-
-constexpr double rounding_of_part = 1e-6;  // far more than it is, of a shell's thickness
+constexpr double thickest_shell = 16;      // [voxel] searched along each direction at a time
+constexpr double thinnest_shell = 0.25;    // needs a budget of some 100 pieces
+constexpr double rounding_of_part = 1e-6;  // of a shell's thickness; far more than rounding is
 
 /// How thick a shell the budget can search along all 26 directions (fewer than 8 walls a voxel, and
 /// two pieces a probe). Without this, every later update would start the same shell and abandon it.

@@ -111,8 +111,8 @@ struct Progress {
     Vec3 target;         ///< index space
     int budget;          ///< straight pieces left
     int tetrahedra = 0;  ///< pieces of non-zero length so far
-    /// A walk may end at the first wall after which less than this part of it is left. What it does
-    /// before is the same to the bit.
+    /// A walk may end at the first wall at which less than this part of its displacement is left
+    /// (none if below 0). Up to there it is the same to the bit.
     double least_left = -1;
 
     /// The vector from the site to the target, index axes [voxel].
