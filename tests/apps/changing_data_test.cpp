@@ -1,6 +1,7 @@
 // Data that change, from the command line: edits, sequences and live sources in live sessions, and
 // the demos of them.
 #include <numeric>
+#include <regex>
 
 #include "apps/program.hpp"
 #include "palpate/io/live_file.hpp"
@@ -32,13 +33,26 @@ TEST(Touch, recordings_of_edits_and_sequences_replay_bit_for_bit) {
     EXPECT_EQ(saved.geometry().size, Index3(32, 32, 32));
     EXPECT_EQ(saved.sample({16, 16, 16}), 0);
     EXPECT_NEAR(saved.sample({2, 2, 2}), 0.9 * 240, 12);
-    // The recording ends on the version that was saved.
-    std::uint64_t version = 0;
+    // The recording has every edit in order: strokes of the brush, as many as the machine had time
+    // for, undo and redo, the stroke and the box of the commands. It ends on the last version.
+    std::string edits;
+    std::uint64_t made = 0, felt = 0;
     io::RecordingReader reader(folder / "r.csv");
     while (const auto event = reader.next()) {
-        if (const auto* tick = std::get_if<SessionTick>(&*event)) version = tick->version;
+        if (const auto* tick = std::get_if<SessionTick>(&*event)) felt = tick->version;
+        const auto* command = std::get_if<Command>(&*event);
+        const auto* samples = command ? std::get_if<command::Samples>(command) : nullptr;
+        if (!samples) continue;
+        if (!samples->recipe) {
+            edits += '-';  // a version that there was before
+            continue;
+        }
+        const Edit& edit = std::get<EditOf>(*samples->recipe).edit;
+        edits += std::holds_alternative<edit::Fill>(edit) ? 'f' : 's';
+        made = samples->version;
     }
-    EXPECT_GE(version, 4U);
+    EXPECT_TRUE(std::regex_match(edits, std::regex("s+--sf"))) << edits;
+    EXPECT_EQ(felt, made);
 
     const Outcome beats =
         palpate(folder,

@@ -21,6 +21,18 @@ inline LoadedVolume loaded(const std::string& name) {
     return load(source_named(name));
 }
 
+/// Waits until a run or a servo has rendered so many ticks from now on, however slow the machine
+/// is.
+template <class Live>
+bool renders(const Live& live, int ticks) {
+    const auto number = [&] {
+        const auto now = live.snapshot();
+        return now ? now->number : 0;
+    };
+    const auto before = number();
+    return comes_true([&] { return number() > before + ticks; });
+}
+
 /// Starts a servo on `device`; `told` gets the history, if it is not null.
 inline StartServo servo_on(Device& device, std::vector<Command>* told = nullptr) {
     return [&device, told](Session session, const std::vector<Command>& history) {

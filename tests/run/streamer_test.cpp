@@ -11,15 +11,16 @@
 #include "palpate/run/replay.hpp"
 #include "palpate/run/run.hpp"
 #include "palpate/scenes/volumes.hpp"
-#include "support/eventually.hpp"
+#include "run/run_support.hpp"
 #include "support/scratch_folder.hpp"
 #include "support/zarr_image.hpp"
 
 namespace palpate::run {
 namespace {
 
-using support::comes_true;
 using support::ScratchFolder;
+using test::comes_true;
+using test::renders;
 
 /// A ball in a volume of two bricks along each axis, as a file. Its overview is the whole volume,
 /// so its range is known.
@@ -81,16 +82,6 @@ TEST(Streamed, a_replay_that_waits_gives_the_ticks_of_the_whole_volume_bit_for_b
         constrained += rows[i].constrained;
     }
     EXPECT_GT(constrained, 500);
-}
-
-/// Waits until a run has rendered so many ticks from now on, however slow the machine is.
-bool renders(const run::Run& live, int ticks) {
-    const auto number = [&] {
-        const auto now = live.snapshot();
-        return now ? now->number : 0;
-    };
-    const auto before = number();
-    return comes_true([&] { return number() > before + ticks; });
 }
 
 TEST(Streamed, a_live_run_touches_and_its_recording_repeats_bit_for_bit) {
