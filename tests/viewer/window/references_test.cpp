@@ -12,6 +12,12 @@ namespace {
 
 class WindowReferences : public InWindow {
   protected:
+    /// As large as in the committed pictures.
+    void SetUp() override {
+        InWindow::SetUp();
+        window_->resize(1280, 860);
+    }
+
     /// Half as large: letters count less.
     void expect_as(const std::string& name) {
         const auto is_settled = [&] { return window_->settled(); };

@@ -67,7 +67,7 @@ class InWindow : public testing::Test {
         setup.device = devices::parse_device(device);
         setup.real_time = false;
         window_ = std::make_unique<MainWindow>(RunRequest{setup, {}, {}});
-        window_->resize(1280, 860);
+        window_->resize(1060, 720);  // small: frames are drawn in software
         window_->show();
         ASSERT_TRUE(wait_until_active(*window_));
     }
