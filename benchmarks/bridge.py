@@ -1,24 +1,33 @@
 #!/usr/bin/env python3
-"""Measures what a bridge costs the servo: runs with `--igtl`, without it, and beside another program, in turn.
+"""Measures what a bridge costs the servo, in one session, so that what drifts on the machine falls on all.
 
-    benchmarks/bridge.py PALPATE VOLUME [--rounds N] [--seconds S] [--commands N] [TOUCH OPTION...]
+    benchmarks/bridge.py PALPATE VOLUME [--minutes M] [--block S] [--commands N] [RECORD OPTION...]
 
-With the bridge a client takes everything that is sent and sends --commands a second. "beside" has no
-bridge, but the same client takes as much from a server of its own: what any second program costs on this
-machine. Prints lateness of each run, and the medians over the rounds with their ratio to those without.
+A session with `--igtl` is recorded. A client takes turns of --block seconds, three at a time in random order:
+  with     it is connected, takes everything that is sent and sends --commands a second
+  without  it is not
+  beside   it takes as much from a server of its own: what any second program costs on this machine
+How late each tick was woken follows from the recording's times. Prints lateness of each kind, and its ratio
+to "without" with the interval that holds 95 % of the ratios of blocks drawn again (bootstrap).
 """
 
 import argparse
-import json
+import csv
+import pathlib
+import random
 import socket
 import statistics
 import struct
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 
-PARTS = ("p50", "p99", "p99.9", "max")
+ARMS = ("without", "with", "beside")
+PARTS = {"p50": 0.5, "p99": 0.99, "p99.9": 0.999}
+MARGIN = 0.1  # of a block at its ends [s]
+POSES = 92  # a second, as the bridge sends
 POLYNOMIAL = 0x42F0E1EBA9EA3693  # ECMA-182, as OpenIGTLink has it
 
 
@@ -36,49 +45,32 @@ def string(text):
     return struct.pack(">H12s20sQQQ", 1, b"STRING", b"Command", 0, len(body), checksum(body)) + body
 
 
-class Client(threading.Thread):
-    """Reads to the end; counts the poses."""
+class Client:
+    """Reads what comes and sends commands; counts poses and replies."""
 
-    def __init__(self, port, commands):
-        super().__init__(daemon=True)
+    def __init__(self, commands):
         self.every = 1 / commands if commands else float("inf")
-        self.port, self.poses, self.replies, self.seconds = port, 0, 0, 0.0
+        self.commands = [string(f"stiffness {value}") for value in (0.4, 0.5)]
+        self.poses, self.replies, self.first_command = 0, 0, None
 
-    def connected(self):
-        for _ in range(200):
-            try:
-                return socket.create_connection(("127.0.0.1", self.port))
-            except ConnectionRefusedError:
-                time.sleep(0.05)
-        sys.exit("bridge.py: nothing listens")
-
-    def run(self):
-        with self.connected() as peer:
-            begun = last = time.monotonic()
-            peer.settimeout(0.1)
-            waiting, stiffness = b"", 0
-            while True:
+    def take_part(self, port, until):
+        with socket.create_connection(("127.0.0.1", port)) as peer:
+            last, waiting = time.monotonic(), b""
+            while (now := time.monotonic()) < until:
+                peer.settimeout(min(0.1, until - now))
                 try:
-                    came = peer.recv(1 << 16)
-                    if not came:
-                        break
-                    waiting += came
+                    waiting = self.counted(waiting + peer.recv(1 << 16))
                 except TimeoutError:
                     pass
-                except OSError:
-                    break
-                waiting = self.take(waiting)
                 now = time.monotonic()
                 if now - last < self.every:
                     continue
-                last, stiffness = now, 1 - stiffness
-                try:
-                    peer.sendall(string(f"stiffness {0.4 + 0.1 * stiffness:g}"))
-                except OSError:
-                    break
-            self.seconds = time.monotonic() - begun
+                last = now
+                self.first_command = self.first_command or now
+                self.commands.reverse()
+                peer.sendall(self.commands[0])
 
-    def take(self, waiting):
+    def counted(self, waiting):
         while len(waiting) >= 58:
             _, kind, name, _, size, _ = struct.unpack(">H12s20sQQQ", waiting[:58])
             if len(waiting) < 58 + size:
@@ -89,83 +81,134 @@ class Client(threading.Thread):
         return waiting
 
 
-class Server(threading.Thread):
-    """Sends as much as the bridge does, as often."""
-
-    def __init__(self, port):
-        super().__init__(daemon=True)
-        self.listener = socket.create_server(("127.0.0.1", port))
-        self.over = threading.Event()
-
-    def run(self):
-        peer, _ = self.listener.accept()
-        names = (b"PalpateHand", b"PalpateProxy", b"PalpateTool", b"PalpateForce", b"Palpate")
-        state = b"".join(struct.pack(">H12s20sQQQ", 1, b"STRING", name, 0, 48, 0) + bytes(48) for name in names)
-        while not self.over.wait(1 / 92):
-            peer.sendall(state)
-        peer.close()
-        self.listener.close()
+def serve(listener):
+    """Sends as much as the bridge does, as often, to one client after the other."""
+    names = (b"Beside", b"PalpateProxy", b"PalpateTool", b"PalpateForce", b"Palpate")
+    state = b"".join(struct.pack(">H12s20sQQQ", 1, b"TRANSFORM", name, 0, 48, 0) + bytes(48) for name in names)
+    while True:
+        peer, _ = listener.accept()
+        try:
+            while True:
+                peer.sendall(state)
+                time.sleep(1 / POSES)
+        except OSError:
+            peer.close()
 
 
-def run(options, rest, port, arm):
-    words = [options.palpate, "touch", options.volume, "--headless", "--quiet", "--json",
-             "--seconds", str(options.seconds), *rest]
-    client = Client(port, options.commands) if arm != "without" else None
-    server = Server(port) if arm == "beside" else None
-    if arm == "with":
-        words += ["--igtl", str(port)]
-    if server:
-        server.start()
-    started = subprocess.Popen(words, stdout=subprocess.PIPE, stdin=subprocess.DEVNULL, text=True)
-    if client:
-        client.start()
-    report = json.loads(started.communicate()[0])
-    if server:
-        server.over.set()
-    if started.returncode != 0:
-        sys.exit(f"bridge.py: status {started.returncode}: {' '.join(words)}")
-    if client:
-        client.join()
-        rate = client.poses / client.seconds
-        if rate < 60 or (options.commands and client.replies == 0):
-            sys.exit(f"bridge.py: {rate:.0f} poses a second, {client.replies} replies")
-        report["poses"] = rate
-    return report
+def wait_for(port):
+    for _ in range(200):
+        try:
+            return socket.create_connection(("127.0.0.1", port)).close()
+        except ConnectionRefusedError:
+            time.sleep(0.05)
+    sys.exit("bridge.py: nothing listens")
 
 
-def row(label, values):
-    print(f"{label:<28}" + "".join(f"{v:>10.3g}" for v in values))
+def session(options, rest, recording):
+    """The blocks [(arm, begin, end)] of a session that is recorded, and when a first command was sent."""
+    listener = socket.create_server(("127.0.0.1", 0))
+    threading.Thread(target=serve, args=(listener,), daemon=True).start()
+    port = 18970
+    first, client, blocks = Client(5), Client(options.commands), []
+    seconds = 60 * options.minutes
+    words = [options.palpate, "record", options.volume, "--quiet", "--seconds", str(seconds + 5), "-d", options.device,
+             "--igtl", str(port), "-o", str(recording), *rest]
+    with subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL) as program:
+        wait_for(port)
+        time.sleep(1)
+        first.take_part(port, time.monotonic() + 0.3)  # one command: a time that both clocks have
+        draw = random.Random(7)
+        end = time.monotonic() + seconds
+        while time.monotonic() + 3 * options.block < end:
+            for arm in draw.sample(ARMS, 3):
+                begin = time.monotonic()
+                until = begin + options.block
+                if arm == "without":
+                    time.sleep(options.block)
+                else:
+                    try:
+                        client.take_part(port if arm == "with" else listener.getsockname()[1], until)
+                    except OSError as e:
+                        sys.exit(f"bridge.py: the session has ended before its time ({e})")
+                blocks.append((arm, begin, until))
+        program.wait()
+    if program.returncode != 0:
+        sys.exit(f"bridge.py: status {program.returncode}: {' '.join(words)}")
+    rate = client.poses / sum(end - begin for arm, begin, end in blocks if arm == "with")
+    if rate < 60 or (options.commands and not client.replies):
+        sys.exit(f"bridge.py: {rate:.0f} poses a second, {client.replies} replies")
+    print(f"{len(blocks)} blocks of {options.block:g} s; {rate:.0f} poses a second, {client.replies} commands answered")
+    return blocks, first.first_command
+
+
+def lateness(recording):
+    """[(time, lateness)] of the ticks, and the time of the first command [s]."""
+    ticks, first_command, due, period = [], None, 0.0, 1e-3
+    with open(recording, encoding="utf-8") as file:
+        rows = csv.reader(file)
+        for row in rows:
+            if row[0].startswith("# command"):
+                first_command = first_command or "next"
+            elif row[0][0].isdigit():
+                t = float(row[0])
+                ticks.append((t, t - due))
+                if first_command == "next":
+                    first_command = t
+                due += period * max(1, int((t - due) / period))  # as the servo does
+    return ticks, first_command
+
+
+def quantiles(blocks):
+    values = sorted(value for block in blocks for value in block)
+    return [values[int(part * (len(values) - 1))] for part in PARTS.values()]
+
+
+def ratios(several, alone):
+    """Of quantiles, each with its interval."""
+    draw = random.Random(11)
+    drawn = [[a / b for a, b in zip(quantiles(draw.choices(several, k=len(several))),
+                                    quantiles(draw.choices(alone, k=len(alone))))] for _ in range(400)]
+    whole = [a / b for a, b in zip(quantiles(several), quantiles(alone))]
+    for number, ratio in enumerate(whole):
+        values = sorted(one[number] for one in drawn)
+        yield ratio, values[10], values[-11]
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("palpate")
     parser.add_argument("volume")
-    parser.add_argument("--rounds", type=int, default=10)
-    parser.add_argument("--seconds", type=float, default=10)
-    parser.add_argument("--commands", type=int, default=10)
+    parser.add_argument("--device", default="simulated:loop=yes", help="one that does not finish")
+    parser.add_argument("--minutes", type=float, default=10)
+    parser.add_argument("--block", type=float, default=2, help="[s]")
+    parser.add_argument("--commands", type=float, default=10)
     options, rest = parser.parse_known_args()
-    arms = ("without", "with", "beside")
-    reports = {arm: [] for arm in arms}
-    print(f"{'[us]':<28}" + "".join(f"{p:>10}" for p in PARTS))
-    for number in range(3 * options.rounds):
-        # A B C, C B A, ...: what drifts falls on all.
-        at = number % 3 if number // 3 % 2 == 0 else 2 - number % 3
-        arm = arms[at]
-        report = run(options, rest, 18970 + number, arm)
-        reports[arm].append(report)
-        row(f"lateness {arm}", [report["lateness_ns"][p] / 1e3 for p in PARTS])
-    for what in ("lateness_ns", "compute_ns"):
-        medians = {arm: [statistics.median(r[what][p] for r in all_of) / 1e3 for p in PARTS]
-                   for arm, all_of in reports.items()}
-        for arm, values in medians.items():
-            row(f"median {what[:-3]} {arm}", values)
-        for arm in arms[1:]:
-            row(f"ratio {what[:-3]} {arm}", [b / a for a, b in zip(medians["without"], medians[arm])])
-    missed = {arm: sum(r["missed"] for r in all_of) for arm, all_of in reports.items()}
-    print("ticks missed:", ", ".join(f"{arm} {n}" for arm, n in missed.items()),
-          f"of {sum(r['ticks'] for r in reports['with'])} each; poses a second:",
-          f"{statistics.median(r['poses'] for r in reports['with']):.0f}")
+    with tempfile.TemporaryDirectory() as folder:
+        recording = pathlib.Path(folder) / "session.csv"
+        blocks, sent = session(options, rest, recording)
+        ticks, taken = lateness(recording)
+    shift = sent - taken  # the command took a few milliseconds, less than MARGIN
+    late = {arm: [] for arm in ARMS}
+    times = iter(ticks)
+    tick = next(times)
+    for arm, begin, end in blocks:
+        block = []
+        while tick is not None and tick[0] + shift < end - MARGIN:
+            if tick[0] + shift >= begin + MARGIN:
+                block.append(1e6 * tick[1])
+            tick = next(times, None)
+        late[arm].append(sorted(block))  # what is sorted in parts is sorted fast again and again
+    print(f"{'lateness [us]':<28}" + "".join(f"{part:>10}" for part in PARTS) + f"{'max':>10}{'over 1 ms':>10}{'ticks':>10}")
+    for arm in ARMS:
+        values = [value for block in late[arm] for value in block]
+        print(f"{arm:<28}" + "".join(f"{value:>10.4g}" for value in quantiles(late[arm])) +
+              f"{max(values):>10.4g}{sum(value > 1000 for value in values):>10}{len(values):>10}")
+    for arm in ARMS[1:]:
+        print(f"{arm} / without: " + "; ".join(
+            f"{part} {ratio:.2f} ({low:.2f} to {high:.2f})"
+            for part, (ratio, low, high) in zip(PARTS, ratios(late[arm], late["without"]))))
+    each = [statistics.median(statistics.median(block) for block in late[arm]) for arm in ARMS]
+    print("median of the blocks' medians: " + ", ".join(f"{arm} {one:.4g} us" for arm, one in zip(ARMS, each)))
 
 
 main()
