@@ -10,6 +10,13 @@ if(PROJECT_IS_TOP_LEVEL)
     set(CMAKE_C_COMPILER_LAUNCHER ${PALPATE_CCACHE})
     set(CMAKE_CXX_COMPILER_LAUNCHER ${PALPATE_CCACHE})
   endif()
+  # lld takes a third of the time of ld, for a window's program an eighth. What is installed is linked by what
+  # the system links with.
+  find_program(PALPATE_LLD ld.lld)
+  mark_as_advanced(PALPATE_LLD)
+  if(PALPATE_LLD AND CMAKE_BUILD_TYPE STREQUAL "RelWithDebInfo" AND NOT CMAKE_CROSSCOMPILING)
+    add_link_options(-fuse-ld=lld)
+  endif()
 endif()
 if(PALPATE_FUZZ AND NOT CMAKE_CXX_COMPILER_ID MATCHES Clang)
   message(FATAL_ERROR "PALPATE_FUZZ needs clang for its libFuzzer: use the preset `asan`, or "

@@ -56,6 +56,18 @@ function(palpate_helper target component)
   endif()
 endfunction()
 
+# palpate_built_helper(TARGET PROGRAM): the helper that another build has, in the folder PALPATE_HELPERS. It is
+# not installed.
+function(palpate_built_helper target program)
+  if(NOT EXISTS ${PALPATE_HELPERS}/${program})
+    message(FATAL_ERROR "PALPATE_HELPERS: no ${program} in ${PALPATE_HELPERS}; build it there first")
+  endif()
+  add_executable(${target} IMPORTED GLOBAL)
+  set_target_properties(${target} PROPERTIES IMPORTED_LOCATION ${PALPATE_HELPERS}/${program})
+  file(MAKE_DIRECTORY ${palpate_helper_dir})
+  file(CREATE_LINK ${PALPATE_HELPERS}/${program} ${palpate_helper_dir}/${program} SYMBOLIC)
+endfunction()
+
 if(PALPATE_INSTALL)
   configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/palpateConfig.cmake.in
                                 ${PROJECT_BINARY_DIR}/palpateConfig.cmake

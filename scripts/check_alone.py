@@ -77,13 +77,18 @@ def sources_of(database, wanted):
 
 
 def headers_of(sources):
-    """A list of Source from the public headers, read with the options of the core's sources."""
+    """A list of Source from the public headers, read with the options of the core's sources. Without those
+    that a source includes first, after the same large headers: they are compiled with it."""
     core = next(one for one in sources if one.file.is_relative_to(ROOT / "src"))
-    known = {}
+    known, compiled = {}, set()
+    for source in sources:
+        first = next((name for _, name in includes_of(source.file)), "")
+        compiled.add((resolve(ROOT, source.file, first), source.key[0]))
     for header in sorted((ROOT / "include").rglob("*.hpp")):
         there = reached(header, known)
         large = tuple(name for name in LARGE if name in there)
-        yield core._replace(file=header, key=(large, core.key[1]))
+        if (header.relative_to(ROOT), large) not in compiled:
+            yield core._replace(file=header, key=(large, core.key[1]))
 
 
 def clang(*arguments):

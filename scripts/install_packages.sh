@@ -16,7 +16,7 @@ groups (default: all)
            chunks, libcurl, OpenIGTLink for tests;
            for the Python module pybind11, NumPy, Dask, pip, nibabel; zarr, h5py, tifffile for tests
   viewer   io, and VTK's and Qt's windows and translations, Xvfb to test them
-  dev      clang, its sanitizers and fuzzer, clang-format, clang-tidy, shellcheck,
+  dev      clang, lld, its sanitizers and fuzzer, clang-format, clang-tidy, shellcheck,
            Mono, lintian
   docs     MkDocs and Doxygen, for the documentation as a site
   windows  core, MinGW and Wine, and the headers that the libraries for Windows are built with; not in all
@@ -33,7 +33,7 @@ io=("${core[@]}" libinsighttoolkit5-dev libvtk9-dev libcli11-dev libfmt-dev nloh
     libgl1-mesa-dri libembree-dev libtbb-dev libblosc-dev libzstd-dev liblz4-dev libxxhash-dev libcurl4-openssl-dev
     libopenigtlink-dev "${python[@]}")
 viewer=("${io[@]}" libvtk9-qt-dev qtbase5-dev qttools5-dev qttools5-dev-tools qttranslations5-l10n xvfb)
-dev=(git lintian pkg-config mono-mcs mono-runtime clang clang-format-14 clang-tidy libclang-rt-14-dev shellcheck)
+dev=(git lintian pkg-config mono-mcs mono-runtime clang lld clang-format-14 clang-tidy libclang-rt-14-dev shellcheck)
 docs=(mkdocs doxygen python3-pygments libjs-jquery)
 windows=("${core[@]}" g++-mingw-w64-x86-64-posix wine64 libz-mingw-w64-dev nlohmann-json3-dev
     libboost-dev libcli11-dev libfmt-dev)

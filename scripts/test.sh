@@ -21,7 +21,10 @@ presets (default: unity)
   --no-packages     do not install packages
   --target TARGET   build that only; threaded_tests are those with the label `threads`
 
-example: scripts/test.sh asan -R Surface
+With a sanitizer a test program is one test or two (NAME_1, NAME_2); GTEST_FILTER chooses in it.
+
+examples: scripts/test.sh dev -R Surface
+          GTEST_FILTER='*Surface*' scripts/test.sh --target memory_tests asan -R core_tests
 TEXT
 }
 

@@ -9,6 +9,7 @@
 #include <csignal>
 #include <thread>
 
+#include "support/random.hpp"
 #include "volume_support.hpp"
 
 namespace palpate::io::test {
@@ -282,9 +283,7 @@ double resident() {
 }
 
 TEST_F(HelperProcess, a_loaded_volume_takes_the_memory_of_its_samples_once) {
-#ifdef __SANITIZE_THREAD__
-    GTEST_SKIP() << "the thread sanitizer keeps four bytes of its own for each of ours";
-#endif
+    if (support::is_slow_build) GTEST_SKIP() << "sanitizers keep bytes of their own for ours";
     Geometry g;
     g.size = Index3(256, 256, 512);
     const double bytes = 2.0 * 256 * 256 * 512;
