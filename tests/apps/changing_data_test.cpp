@@ -24,7 +24,7 @@ TEST(Touch, recordings_of_edits_and_sequences_replay_bit_for_bit) {
               "0.2 brush carve 4 50\n0.8 brush off\n0.9 undo\n1.0 redo\n"
               "1.1 carve 0,0,0:3,3,3 5\n1.2 fill 1,1,1:4,4,4 90%\n");
     const Outcome done = palpate(folder, "touch " + ball +
-                                             " --device simulated:hand=press --seconds 1.5 "
+                                             " --device simulated:hand=press --seconds 2.5 "
                                              "--commands c.txt --record r.csv --save out.nrrd");
     ASSERT_EQ(done.status, 0) << done.err;
     const Outcome valid = palpate(folder, "replay r.csv --validate");
@@ -98,8 +98,8 @@ TEST(Touch, plays_a_numbered_series_and_opens_one_frame_of_it) {
     }
     const Outcome done =
         palpate(folder, Words{"touch", "f_%03d.nrrd", "--isovalue", "200", "--frame-interval",
-                              "0.1", "--device", "simulated:hand=hold", "--seconds", "0.8",
-                              "--once", "--record", "r.csv"});
+                              "0.1", "--device", "simulated:hand=hold", "--seconds", "2", "--once",
+                              "--record", "r.csv"});
     ASSERT_EQ(done.status, 0) << done.err;
     double last = 0;
     io::RecordingReader reader(folder / "r.csv");
@@ -172,8 +172,9 @@ TEST(Touch, feels_frames_that_another_program_pushes) {
     Running session(words_of("touch live:feed.live --isovalue 250 --device simulated:hand=hold "
                              "--seconds 1.5 --record r.csv"),
                     folder.path());
-    for (int i = 0; i < 60; ++i) {
-        push(i + 2);
+    // From before it looks until it ends, however long it takes to start.
+    for (int i = 0; !session.has_ended(); ++i) {
+        push(2 + i % 200);
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
     const Outcome done = session.finish();

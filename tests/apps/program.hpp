@@ -103,6 +103,13 @@ class Running {
                 text_of(err_)};
     }
 
+    /// Whether it has ended by itself; finish() says how.
+    bool has_ended() const {
+        siginfo_t info{};
+        return ::waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+               info.si_pid == pid_;
+    }
+
     /// After the end: whether a process that it started lives on.
     bool left_a_process() const { return ::kill(-pid_, 0) == 0; }
 

@@ -123,14 +123,13 @@ def make_handler(options):
                 waits = options.delay + options.jitter * chance.random()
                 draw = chance.random()
                 flip = chance.random()
+            time.sleep(waits / 1000)
+            with lock:
+                counts["at_once"] -= 1  # before the client can have the answer, and ask for more
             try:
-                time.sleep(waits / 1000)
                 self.answer(draw, flip)
             except (BrokenPipeError, ConnectionResetError):
                 self.close_connection = True
-            finally:
-                with lock:
-                    counts["at_once"] -= 1
 
         def answer(self, draw, flip):
             if draw < options.failures:

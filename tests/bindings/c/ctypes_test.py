@@ -121,7 +121,7 @@ def main():
     options.render, options.own, options.no_real_time = ctypes.pointer(render), ctypes.pointer(own), 1
     check(library.palpate_run_create(data, byref(options), byref(run)))
     check(library.palpate_run_start(run))
-    snapshot, end = sized(SnapshotBegin), time.monotonic() + 20
+    snapshot, end = sized(SnapshotBegin), time.monotonic() + 120
     while time.monotonic() < end and not (forces and abs(forces[-1]) > 0.5):
         time.sleep(1 / 60)
         if library.palpate_run_snapshot(run, byref(snapshot)) not in (0, 7):

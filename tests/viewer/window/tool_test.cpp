@@ -40,7 +40,7 @@ class ToolInWindow : public InWindow {
             QTest::qWait(15);
         }
         QTest::mouseRelease(&scene, Qt::LeftButton, Qt::ControlModifier, to);
-        QTest::qWait(300);
+        ASSERT_TRUE(hand_arrives());
     }
 };
 

@@ -87,6 +87,16 @@ class InWindow : public testing::Test {
     }
     double force() const { return now().session.tick.force.norm(); }
 
+    /// Waits until the hand is where the mouse aims, and turned as it is to be.
+    bool hand_arrives() {
+        return wait_until([&] {
+            const devices::Mouse& mouse = *window_->live()->mouse();
+            const DeviceReading hand = now().session.device;
+            return (hand.position - mouse.aimed()).norm() < 1e-3 &&
+                   Quaternion(hand.orientation).angularDistance(mouse.turned_to()) < 1e-3;
+        });
+    }
+
     /// A key that goes to whatever of the window has it as a shortcut.
     void press(Qt::Key key, Qt::KeyboardModifiers with = {}) {
         ASSERT_TRUE(wait_until_active(*window_));
