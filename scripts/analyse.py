@@ -37,11 +37,12 @@ def main():
     options = core[str(ALONE)]
     sources = sorted(core.keys() - {str(ALONE)})
     jobs = os.cpu_count()
-    pieces = [ALONE]
+    pieces = []
     for number in range(min(jobs, len(sources))):
         pieces.append(BUILD / f"{PIECE}{number}.cpp")
         pieces[-1].write_text("".join(f'#include "{file}"\n' for file in sources[number::jobs]),
                               encoding="utf-8")
+    pieces.append(ALONE)  # the shortest last
     bad = 0
     with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
         for result in pool.map(lambda piece: analyse(piece, options), pieces):

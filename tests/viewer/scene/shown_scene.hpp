@@ -14,6 +14,7 @@
 #include <string>
 
 #include "apps/viewer/scene/scene.hpp"
+#include "viewer/kept_picture.hpp"
 #include "viewer/references.hpp"
 #include "viewer/waiting.hpp"
 
@@ -34,7 +35,7 @@ struct ShownScene {
         if (!name.empty()) {
             std::filesystem::create_directories(PALPATE_PICTURES);
             EXPECT_TRUE(
-                image.save(QString::fromStdString(PALPATE_PICTURES + ("/" + name + ".png"))));
+                keep(image, QString::fromStdString(PALPATE_PICTURES + ("/" + name + ".png"))));
         }
         return image;
     }

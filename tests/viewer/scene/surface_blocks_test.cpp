@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 
 #include "apps/viewer/model/coarse_samples.hpp"
 #include "apps/viewer/model/sample_block.hpp"
@@ -14,14 +13,13 @@
 #include "palpate/scenes/volumes.hpp"
 #include "pictures/surface.hpp"
 #include "support/fields.hpp"
+#include "viewer/scene/mesh_points.hpp"
 
 namespace palpate::viewer {
 namespace {
 
 constexpr std::size_t all = 1u << 30;
 const auto always = [] { return true; };
-
-using Point = std::array<float, 3>;
 
 Point point(const std::vector<float>& values, std::int32_t i) {
     const auto at = 3 * static_cast<std::size_t>(i);
@@ -43,7 +41,7 @@ SurfaceBlocks blocks_of(const Field& field, double isovalue, int every = 1) {
 
 /// Edges, by where their ends lie, that do not have as many triangles along them as against them.
 int open_edges(const RenderMesh& mesh) {
-    std::map<std::pair<Point, Point>, int> turns;
+    ByPlace<Edge, int> turns;
     for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
         for (std::size_t c = 0; c < 3; ++c) {
             const Point a = point(mesh.positions, mesh.triangles[t + c]);
@@ -60,7 +58,7 @@ int open_edges(const RenderMesh& mesh) {
 /// Edges, by where their ends lie, along which there is one triangle alone: the rim of a crack. (Of
 /// a simplified mesh some triangles lie on each other, and equal ones are drawn once.)
 int rims(const RenderMesh& mesh) {
-    std::map<std::pair<Point, Point>, int> triangles;
+    ByPlace<Edge, int> triangles;
     for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
         for (std::size_t c = 0; c < 3; ++c) {
             const Point a = point(mesh.positions, mesh.triangles[t + c]);
@@ -104,7 +102,7 @@ TEST(SurfaceBlocks, are_the_surface_with_its_normals_on_every_grid) {
             const Vec3 middle = physical_centre(g);
             const auto mesh = joined(blocks_of(field, 350.5).meshes());
             ASSERT_EQ(mesh->triangle_count(), whole.mesh.triangles.size());
-            std::map<Point, Eigen::Vector3f> normals;
+            ByPlace<Point, Eigen::Vector3f> normals;
             for (std::size_t v = 0; v < whole.normals.size(); ++v) {
                 const Eigen::Vector3f p = (whole.mesh.vertices[v] - middle).cast<float>();
                 normals[{p[0], p[1], p[2]}] = whole.normals[v];

@@ -6,16 +6,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 
 #include "apps/viewer/model/patch_choice.hpp"
 #include "apps/viewer/scene/surface_blocks.hpp"
 #include "palpate/scenes/volumes.hpp"
+#include "viewer/scene/mesh_points.hpp"
 
 namespace palpate::viewer {
 namespace {
-
-using Point = std::array<float, 3>;
 
 /// The mean of 4 x 4 x 4 samples, as a store's level is.
 Volume coarse_of(const Volume& fine) {
@@ -75,7 +73,7 @@ Vec3 vector(const Point& p) {
 
 /// Ends of edges that have one triangle.
 std::vector<Vec3> rim_of(const MeshBlocks& blocks) {
-    std::map<std::pair<Point, Point>, int> edges;
+    ByPlace<Edge, int> edges;
     for (const auto& mesh : blocks) {
         if (!mesh) continue;
         for (std::size_t t = 0; t < mesh->triangles.size(); t += 3) {
@@ -109,18 +107,27 @@ double distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
     return least;
 }
 
-double distance_to(const MeshBlocks& blocks, const Vec3& p) {
-    double least = HUGE_VAL;
+using Triangle = std::array<Vec3, 3>;
+
+std::vector<Triangle> triangles_of(const MeshBlocks& blocks) {
+    std::vector<Triangle> triangles;
     for (const auto& mesh : blocks) {
         if (!mesh) continue;
         for (std::size_t t = 0; t < mesh->triangles.size(); t += 3) {
             const auto corner = [&](std::size_t i) {
                 return vector(corner_of(*mesh, mesh->triangles[t + i]));
             };
-            const Vec3 a = corner(0), b = corner(1), c = corner(2);
-            if ((a - p).norm() > least + 2) continue;
-            least = std::min(least, distance(p, a, b, c));
+            triangles.push_back({corner(0), corner(1), corner(2)});
         }
+    }
+    return triangles;
+}
+
+double distance_to(const std::vector<Triangle>& triangles, const Vec3& p) {
+    double least = HUGE_VAL;
+    for (const auto& [a, b, c] : triangles) {
+        if ((a - p).squaredNorm() > (least + 2) * (least + 2)) continue;
+        least = std::min(least, distance(p, a, b, c));
     }
     return least;
 }
@@ -188,9 +195,10 @@ TEST_P(Patch, the_rim_of_what_is_left_of_the_coarse_surface_lies_on_the_finer_on
         ASSERT_TRUE(rim_of(whole_.blocks).empty());
         const std::vector<Vec3> rim = rim_of(outside());
         ASSERT_GT(rim.size(), 20U) << with.scene;
+        const std::vector<Triangle> finer = triangles_of(inside());
         double farthest = 0;
         for (const Vec3& point : rim) {
-            farthest = std::max(farthest, distance_to(inside(), point) / fine_spacing_);
+            farthest = std::max(farthest, distance_to(finer, point) / fine_spacing_);
         }
         EXPECT_LT(farthest, 0.5) << with.scene << ": of a fine voxel";
         std::printf("%s: %zu places, at most %.3f fine voxels apart\n", with.scene, rim.size(),

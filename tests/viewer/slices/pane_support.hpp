@@ -14,6 +14,7 @@
 
 #include "apps/viewer/slices/slice_pane.hpp"
 #include "palpate/scenes/volumes.hpp"
+#include "viewer/kept_picture.hpp"
 #include "viewer/waiting.hpp"
 
 namespace palpate::viewer {
@@ -63,7 +64,8 @@ struct ShownPane {
 inline void keep_picture(QWidget& widget, const QString& name) {
     QDir().mkpath(PALPATE_PICTURES);
     const QString scale = widget.devicePixelRatioF() > 1 ? "_fine" : "";
-    EXPECT_TRUE(widget.grab().save(QString(PALPATE_PICTURES) + "/" + name + scale + ".png"));
+    EXPECT_TRUE(
+        keep(widget.grab().toImage(), QString(PALPATE_PICTURES) + "/" + name + scale + ".png"));
 }
 
 inline Snapshot contact_at(const Vec3& hip, const Vec3& scp, const Vec3& force) {

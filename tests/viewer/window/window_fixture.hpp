@@ -25,6 +25,7 @@
 #include "apps/viewer/window/main_window.hpp"
 #include "apps/viewer/window/views.hpp"
 #include "support/scratch_folder.hpp"
+#include "viewer/kept_picture.hpp"
 #include "viewer/waiting.hpp"
 
 namespace palpate::viewer::test {
@@ -177,9 +178,9 @@ class InWindow : public testing::Test {
     void save(const std::string& name) {
         QDir().mkpath(PALPATE_PICTURES);
         const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-        window_->grab().save(
-            QString("%1/%2-%3.png")
-                .arg(PALPATE_PICTURES, test->name(), QString::fromStdString(name)));
+        EXPECT_TRUE(keep(window_->grab().toImage(),
+                         QString("%1/%2-%3.png")
+                             .arg(PALPATE_PICTURES, test->name(), QString::fromStdString(name))));
     }
 
     support::ScratchFolder scratch_;
