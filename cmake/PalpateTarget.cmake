@@ -41,8 +41,8 @@ function(palpate_target name)
   endif()
 endfunction()
 
-# palpate_unhurried(NAME): code that the address sanitizer's compiler takes long for and that runs for
-# seconds: compiled for it with -O0, in half the time or less.
+# palpate_unhurried(NAME): for code that tests run for seconds only. With the address sanitizer it is compiled
+# with -O0, in half the time.
 function(palpate_unhurried name)
   if(PALPATE_SANITIZE MATCHES address)
     target_compile_options(${name} PRIVATE -O0)

@@ -15,7 +15,7 @@ large for it), and Wine runs the tests.
 TEXT
 }
 
-# What takes longest first.
+# The longest first.
 tasks=('golden g++ O0' 'golden clang++ O3' 'golden clang++ O0' golden_of_core)
 gtest=(-lgtest_main -lgtest -pthread)
 run=()

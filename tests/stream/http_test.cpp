@@ -63,12 +63,17 @@ TEST(Http, a_volume_of_a_terabyte_opens_and_gives_the_samples_of_its_formula) {
 }
 
 TEST(Http, metadata_of_all_levels_are_asked_for_together) {
-    const VolumeServer server({"--delay", "500"});
-    const auto begin = Clock::now();
+    const VolumeServer server({"--delay", "200"});
     StoreOptions options = quick();
     options.requests = 32;
-    (void)open_store(server.address("virtual.zarr"), options);
-    EXPECT_LT(seconds_since(begin), 9);  // 36 requests of 0.5 s one after the other: 18 s
+    // A machine that stalls is told apart from a store that asks for one after the other.
+    bool soon = false;
+    for (int attempt = 0; attempt < 10 && !soon; ++attempt) {
+        const auto begin = Clock::now();
+        (void)open_store(server.address("virtual.zarr"), options);
+        soon = seconds_since(begin) < 1.5;  // 36 requests of 0.2 s one after the other: 7.2 s
+    }
+    EXPECT_TRUE(soon);
 }
 
 TEST(Http, failures_cut_bodies_and_wrong_bytes_are_asked_for_again) {
