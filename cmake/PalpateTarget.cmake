@@ -49,6 +49,12 @@ function(palpate_unhurried name)
   endif()
 endfunction()
 
+# palpate_command_line(NAME): for code that reads options and starts what works. With -O1 gcc takes a quarter
+# less time for it than with Release's -O3.
+function(palpate_command_line name)
+  target_compile_options(${name} PRIVATE $<$<AND:$<CONFIG:Release>,$<CXX_COMPILER_ID:GNU>>:-O1>)
+endfunction()
+
 # palpate_fuzzed(NAME): the code that fuzz targets search through. Its comparisons and branches report
 # to libFuzzer, which makes them slow; so this is for what reads foreign bytes only.
 function(palpate_fuzzed name)

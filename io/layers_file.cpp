@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <system_error>
 
-#include "io/helper_folders.hpp"
+#include "io/bundled.hpp"
 #include "io/layers_json.hpp"
 #include "palpate/io/csv.hpp"
 #include "palpate/io/output.hpp"
@@ -36,11 +36,7 @@ void check_on_either_side(const Layers& layers) {
 }
 
 fs::path preset_folder() {
-    std::error_code error;
-    for (const auto& folder : helper_folders()) {
-        const auto found = (folder / PALPATE_DATA_FROM_LIBEXEC / "layers").lexically_normal();
-        if (fs::is_directory(found, error)) return found;
-    }
+    if (const auto found = bundled("layers")) return *found;
     throw InputError("the built-in layers were not found; reinstall Palpate, or name a file");
 }
 

@@ -28,24 +28,49 @@ done
 
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
-# build GROUP TARGET OPTION...: packages of the group, then one target of build/release. In a
-# subshell, so that the demo leaves its folder where the person is.
+# build OPTIONS TARGET...: targets of build/release. In a subshell, so that the demo leaves its folder where
+# the person is.
 build() (
-    group=$1 target=$2
-    shift 2
     cd "$top"
-    if [ "$packages" = yes ]; then scripts/install_packages.sh "$group"; fi
+    read -ra options <<<"$1"
+    shift
     echo "== configure (release)"
-    cmake --preset release -DPALPATE_TESTS=OFF "$@"
-    echo "== build (release, $target)"
-    cmake --build --preset release --target "$target" --parallel "$(nproc)"
+    cmake --preset release -DPALPATE_TESTS=OFF "${options[@]}"
+    echo "== build (release, $*)"
+    cmake --build --preset release --target "$@" --parallel "$(nproc)"
 )
 
+install() { if [ "$packages" = yes ]; then "$top/scripts/install_packages.sh" "$@"; fi; }
+
+# On a bare system the core, which needs a compiler and Eigen alone, is built while apt installs the rest.
+core_meanwhile() {
+    if [ "$packages" = no ] || install --check program >/dev/null; then return; fi
+    install core
+    if [ "$(id -u)" -ne 0 ]; then sudo true; fi  # asks for the password now, not amid the compiler's lines
+    log=$top/build/packages.log
+    mkdir -p "$top/build"
+    echo "packages: the rest of group program in the background ($log)"
+    install program >"$log" 2>&1 &
+    apt=$!
+    trap 'if kill -0 "$apt" 2>/dev/null; then echo "demo.sh: waiting for apt"; wait "$apt"; fi' EXIT
+    (renice -n 10 "$BASHPID" >/dev/null; build -DPALPATE_IO=OFF all)
+    wait "$apt" || { cat "$log"; exit 1; }
+    trap - EXIT
+}
+
+# Everything: with the viewer (`ON`) or without.
+build_all() { build "-DPALPATE_IO=ON -DPALPATE_PYTHON=ON -DPALPATE_VIEWER=$1" all; }
+
 if [ "$viewer" = yes ] && [ -x "$top/build/release/apps/viewer/palpate-viewer" ]; then
-    build viewer all -DPALPATE_VIEWER=ON
+    install viewer
+    build_all ON
     viewer=built
 else
-    build io palpate_program -DPALPATE_VIEWER=OFF
+    core_meanwhile
+    install program
+    targets=(palpate_program)
+    if [ $# -gt 0 ]; then targets+=(palpate_io_helpers); fi  # a volume of any format, perhaps
+    build "-DPALPATE_IO=ON -DPALPATE_PYTHON=OFF -DPALPATE_VIEWER=OFF" "${targets[@]}"
 fi
 echo "== palpate demo $*"
 "$top/build/release/apps/palpate/palpate" demo "$@"
@@ -53,7 +78,11 @@ echo "== palpate demo $*"
 case "$viewer" in
     yes)
         echo "== the demo is done; the viewer is built now, for \`palpate view\` and for installing"
-        build viewer all -DPALPATE_VIEWER=ON
+        install viewer
+        build_all ON
         ;;
-    no) build io all -DPALPATE_VIEWER=OFF ;;
+    no)
+        install io
+        build_all OFF
+        ;;
 esac

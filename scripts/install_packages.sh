@@ -4,17 +4,20 @@ set -euo pipefail
 
 usage() {
     cat <<'TEXT'
-usage: scripts/install_packages.sh [GROUP...]
+usage: scripts/install_packages.sh [--check] [GROUP...]
 
 Installs the Debian 12 packages that Palpate is built with, as root or with sudo. Installed packages
 are left as they are; when nothing is missing, apt is not run.
 
+  --check  install nothing; exit with 1 when one is missing
+
 groups (default: all)
   core     compiler, CMake, Eigen, GoogleTest, Google Benchmark, Python for the rule checks
-  io       core, and what reads and writes files and reaches devices: ITK, VTK, CLI11, fmt, JSON,
+  program  core, and what reads and writes files and reaches devices: ITK, VTK, CLI11, fmt, JSON,
            EGL and Mesa for pictures without a display, PNG, zlib, gnuplot, Boost, oneTBB, codecs of
-           chunks, libcurl, OpenIGTLink for tests;
-           for the Python module pybind11, NumPy, Dask, pip, nibabel; zarr, h5py, tifffile for tests
+           chunks, libcurl
+  io       program; for the Python module pybind11, NumPy, Dask, pip, nibabel; for tests zarr, h5py, tifffile
+           and OpenIGTLink
   viewer   io, and VTK's and Qt's windows and translations, Xvfb to test them
   dev      clang, lld, its sanitizers and fuzzer, clang-format, clang-tidy, shellcheck,
            Mono, lintian
@@ -28,20 +31,26 @@ core=(g++ cmake ninja-build ccache libeigen3-dev libgtest-dev libgmock-dev libbe
 python=(python3-dev pybind11-dev python3-numpy python3-pytest python3-nibabel python3-zarr
         python3-h5py python3-tifffile python3-setuptools python3-wheel python3-pip python3-dask
         python3-distributed)
-io=("${core[@]}" libinsighttoolkit5-dev libvtk9-dev libcli11-dev libfmt-dev nlohmann-json3-dev
+program=("${core[@]}" libinsighttoolkit5-dev libvtk9-dev libcli11-dev libfmt-dev nlohmann-json3-dev
     libgdcm-dev libhdf5-dev libtiff-dev libpng-dev zlib1g-dev gnuplot-nox libboost-dev libegl-dev libegl1
-    libgl1-mesa-dri libembree-dev libtbb-dev libblosc-dev libzstd-dev liblz4-dev libxxhash-dev libcurl4-openssl-dev
-    libopenigtlink-dev "${python[@]}")
+    libgl1-mesa-dri libembree-dev libtbb-dev libblosc-dev libzstd-dev liblz4-dev libxxhash-dev libcurl4-openssl-dev)
+io=("${program[@]}" libopenigtlink-dev "${python[@]}")
 viewer=("${io[@]}" libvtk9-qt-dev qtbase5-dev qttools5-dev qttools5-dev-tools qttranslations5-l10n xvfb)
 dev=(git lintian pkg-config mono-mcs mono-runtime clang lld clang-format-14 clang-tidy libclang-rt-14-dev shellcheck)
 docs=(mkdocs doxygen python3-pygments libjs-jquery)
 windows=("${core[@]}" g++-mingw-w64-x86-64-posix wine64 libz-mingw-w64-dev nlohmann-json3-dev
     libboost-dev libcli11-dev libfmt-dev)
 
+check=no
+if [ "${1:-}" = --check ]; then
+    check=yes
+    shift
+fi
 wanted=()
 for group in "${@:-all}"; do
     case "$group" in
         core) wanted+=("${core[@]}") ;;
+        program) wanted+=("${program[@]}") ;;
         io) wanted+=("${io[@]}") ;;
         viewer) wanted+=("${viewer[@]}") ;;
         dev) wanted+=("${dev[@]}") ;;
@@ -69,6 +78,10 @@ done < <(printf '%s\n' "${wanted[@]}" | sort -u)
 if [ ${#missing[@]} -eq 0 ]; then
     echo "packages: all installed (${*:-all})"
     exit 0
+fi
+if [ "$check" = yes ]; then
+    echo "packages: missing ${missing[*]}"
+    exit 1
 fi
 
 as_root=()
