@@ -46,7 +46,8 @@ install() { if [ "$packages" = yes ]; then "$top/scripts/install_packages.sh" "$
 core_meanwhile() {
     if [ "$packages" = no ] || install --check program >/dev/null; then return; fi
     install core
-    if [ "$(id -u)" -ne 0 ]; then sudo true; fi  # asks for the password now, not amid the compiler's lines
+    # Asks for the password now, not amid the compiler's lines.
+    if [ "$(id -u)" -ne 0 ] && ! sudo true; then return; fi
     log=$top/build/packages.log
     mkdir -p "$top/build"
     echo "packages: the rest of group program in the background ($log)"
