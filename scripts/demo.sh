@@ -51,8 +51,10 @@ core_meanwhile() {
     log=$top/build/packages.log
     mkdir -p "$top/build"
     echo "packages: the rest of group program in the background ($log)"
-    install program >"$log" 2>&1 &
+    set -m  # a process group of its own: Ctrl-C must not cut dpkg off
+    install program >"$log" 2>&1 </dev/null &
     apt=$!
+    set +m
     trap 'if kill -0 "$apt" 2>/dev/null; then echo "demo.sh: waiting for apt"; wait "$apt"; fi' EXIT
     (renice -n 10 "$BASHPID" >/dev/null; build -DPALPATE_IO=OFF all)
     wait "$apt" || { cat "$log"; exit 1; }

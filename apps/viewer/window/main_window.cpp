@@ -111,6 +111,10 @@ void MainWindow::build() {
     statusBar()->addPermanentWidget(readout_);
     frame_time_->setObjectName("frames");
     statusBar()->addPermanentWidget(frame_time_);
+    connect(statusBar(), &QStatusBar::messageChanged, this, [this](const QString& what) {
+        // A narrow window cuts a long message off.
+        statusBar()->setToolTip(what.isEmpty() ? "" : "<p>" + what.toHtmlEscaped() + "</p>");
+    });
     statusBar()->showMessage(tr("Open a volume, or drop one here (Ctrl+O); ? lists the shortcuts"));
 }
 

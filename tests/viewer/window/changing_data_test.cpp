@@ -223,6 +223,7 @@ TEST_F(ChangingData, a_sequence_plays_steps_and_is_sought_with_the_timeline) {
     // The brush is not for sequences, and says so.
     press(Qt::Key_B);
     EXPECT_TRUE(window_->statusBar()->currentMessage().contains("cannot be edited"));
+    EXPECT_TRUE(window_->statusBar()->toolTip().contains("cannot be edited"));
     EXPECT_FALSE(window_->panel().brush().on);
     press(Qt::Key_K);
     EXPECT_TRUE(wait_until([&] { return now().speed == 1; }));
