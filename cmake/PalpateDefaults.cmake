@@ -8,7 +8,7 @@ if(PROJECT_IS_TOP_LEVEL)
   mark_as_advanced(PALPATE_CCACHE)
   if(PALPATE_CCACHE AND NOT DEFINED CMAKE_CXX_COMPILER_LAUNCHER)
     set(CMAKE_C_COMPILER_LAUNCHER ${PALPATE_CCACHE})
-    # With precompiled headers, too.
+    # Without these it does not cache what is compiled with precompiled headers.
     set(CMAKE_CXX_COMPILER_LAUNCHER env CCACHE_SLOPPINESS=pch_defines,time_macros ${PALPATE_CCACHE})
   endif()
   # lld takes a third of the time of ld, for a window's program an eighth. What is installed is linked by what

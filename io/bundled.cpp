@@ -1,4 +1,4 @@
-// The data lie at the same place relative to the helper programs' folder, wherever that is.
+// Finds the data that come with Palpate by their place relative to the helper programs.
 #include "io/bundled.hpp"
 
 #include <system_error>

@@ -51,8 +51,7 @@ std::vector<Known> known_tools() {
 TEST(ToolBody, gives_the_distance_from_the_skin_up_to_its_reach) {
     Random random(3);
     for (const Known& known : known_tools()) {
-        const double step = is_slow_build ? 0.5 : 0.25;
-        const ToolBody body(std::make_shared<const Tool>(known.tool), step, 3);
+        const ToolBody body(std::make_shared<const Tool>(known.tool), 0.25, 3);
         EXPECT_EQ(body.is_closed(), !known.tool.shape().triangles.empty());
         double most = 0;
         int near = 0;
@@ -73,7 +72,7 @@ TEST(ToolBody, gives_the_distance_from_the_skin_up_to_its_reach) {
                     most);
         // Where distances bend (the middle, edges) linear interpolation is off by at most half of
         // a place's diagonal.
-        EXPECT_LT(most, known.error + 0.5 * step * std::sqrt(3.0));
+        EXPECT_LT(most, known.error + 0.5 * 0.25 * std::sqrt(3.0));
     }
 }
 

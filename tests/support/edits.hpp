@@ -90,21 +90,10 @@ inline edit::Sweep random_sweep(Random& random, const Geometry& geometry, Sample
     const double voxel = geometry.spacing.minCoeff(), spacing = voxel;
     like.brush.radius = std::min(like.brush.radius, (is_slow_build ? 1 : 2) * voxel);
     const double size = random.uniform(0.5, 2) * voxel;
-    const auto tool_of = [&](int kind) {
-        switch (kind) {
-            case 0:
-                return point_tool();
-            case 1:
-                return rod_tool(size, spacing);
-            case 2:
-                return sphere_tool(size, spacing);
-            case 3:
-                return box_tool({size, 2 * size, 0.7 * size}, spacing);
-            default:
-                return burr_tool(size, spacing);
-        }
-    };
-    const auto tool = std::make_shared<const Tool>(tool_of(random.below(5)));
+    const Tool tools[] = {point_tool(), rod_tool(size, spacing), sphere_tool(size, spacing),
+                          box_tool({size, 2 * size, 0.7 * size}, spacing),
+                          burr_tool(size, spacing)};
+    const auto tool = std::make_shared<const Tool>(tools[random.below(5)]);
     edit::Sweep sweep{
         like.brush, nullptr, {like.from}, {like.from + 3 * voxel * random.point(-1, 1)}};
     sweep.body = std::make_shared<const ToolBody>(body_for(like.brush, geometry, tool));
