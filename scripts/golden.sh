@@ -6,11 +6,11 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 usage() {
     cat <<'TEXT'
-usage: scripts/golden.sh [windows]
+usage: scripts/golden.sh [extremes | windows]
 
 Runs the tests that compare with a golden hash, compiled by gcc and clang at -O0 and at -O3. For gcc at
 -O3 it builds what is missing of the preset core; for the others it compiles the core, the scenes and the
-tests in one go, in build/golden. With `windows` MinGW compiles, at -O1 and -O3 (an object of -O0 is too
+tests in one go, in build/golden. With `extremes` only gcc at -O3 and clang at -O0 run. With `windows` MinGW compiles, at -O1 and -O3 (an object of -O0 is too
 large for it), and Wine runs the tests.
 TEXT
 }
@@ -24,6 +24,7 @@ alone=()
 other='_windows[.]cpp$'
 case "${1:-}" in
     '') ;;
+    extremes) tasks=('golden clang++ O0' golden_of_core) ;;
     windows)
         tasks=('golden x86_64-w64-mingw32-g++-posix O3' 'golden x86_64-w64-mingw32-g++-posix O1')
         here=/usr/src/googletest/googletest

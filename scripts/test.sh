@@ -19,9 +19,11 @@ presets (default: unity)
   tsan     thread sanitizer
 
   --no-packages     do not install packages
-  --target TARGET   build that only; threaded_tests are those with the label `threads`
+  --target TARGET   build that only; threaded_tests, memory_tests and bytes_tests are those with
+                    the labels `threaded`, `memory` and `bytes`
 
-With a sanitizer a test program is one test or two (NAME_1, NAME_2); GTEST_FILTER chooses in it.
+With a sanitizer a test program is one test or two (NAME_1, NAME_2), and one for the tests that keep real
+time (NAME_paced); GTEST_FILTER chooses among the cases of the former.
 
 examples: scripts/test.sh dev -R Surface
           GTEST_FILTER='*Surface*' scripts/test.sh --target memory_tests asan -R core_tests
