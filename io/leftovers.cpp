@@ -15,6 +15,7 @@
 #include <system_error>
 
 #include "io/number.hpp"
+#include "io/removal.hpp"
 
 namespace palpate::io {
 namespace {
@@ -54,10 +55,7 @@ void remove_one(const fs::path& path) {
     struct stat about {};
     if (::fstat(descriptor, &about) == 0 && about.st_uid == ::geteuid() &&
         ::flock(descriptor, LOCK_EX | LOCK_NB) == 0) {
-        std::error_code ignored;
-        if (S_ISREG(about.st_mode)) ::unlink(path.c_str());
-        if (S_ISDIR(about.st_mode))
-            fs::remove_all(path, ignored);  // links in it go, not their ends
+        if (S_ISREG(about.st_mode) || S_ISDIR(about.st_mode)) remove_tree(path);
     }
     ::close(descriptor);
 }
@@ -82,6 +80,20 @@ fs::path temporary_in(const fs::path& folder) {
         struct stat about {};
         if (::lstat(path.c_str(), &about) != 0) return path;
     }
+}
+
+fs::path make_temporary_folder(const fs::path& folder, std::error_code& error) {
+    while (true) {
+        fs::path path = temporary_in(folder);
+        // Not there: a folder that another process has made in this moment is not ours.
+        if (fs::create_directory(path, error) || error) return path;
+    }
+}
+
+int lock_temporary(const std::filesystem::path& path) {
+    const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
+    if (descriptor >= 0) (void)::flock(descriptor, LOCK_EX | LOCK_NB);
+    return descriptor;
 }
 
 void remove_leftovers(const fs::path& folder) {

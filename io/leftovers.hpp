@@ -3,12 +3,18 @@
 #pragma once
 
 #include <filesystem>
+#include <system_error>
 
 namespace palpate::io {
 
 /// A path in `folder` for a temporary file or folder of this process, `.palpate-PID-N.part`, at
 /// which there is nothing.
 std::filesystem::path temporary_in(const std::filesystem::path& folder);
+
+/// Makes a folder with such a name, readable as `folder` is by default; an error is left in
+/// `error`.
+std::filesystem::path make_temporary_folder(const std::filesystem::path& folder,
+                                            std::error_code& error);
 
 /// Locks what this process has created as long as the descriptor returned is open: then a process
 /// in another container or on another machine does not take it for a leftover. Below 0 where there

@@ -7,6 +7,7 @@
 
 #include "io/leftovers.hpp"
 #include "io/number.hpp"
+#include "io/removal.hpp"
 
 namespace palpate::io {
 namespace {
@@ -46,13 +47,25 @@ fs::path temporary_in(const fs::path& folder) {
     }
 }
 
+fs::path make_temporary_folder(const fs::path& folder, std::error_code& error) {
+    while (true) {
+        fs::path path = temporary_in(folder);
+        // Not there: a folder that another process has made in this moment is not ours.
+        if (fs::create_directory(path, error) || error) return path;
+    }
+}
+
+/// Not needed: a file that is open cannot be removed.
+int lock_temporary(const std::filesystem::path&) {
+    return -1;
+}
+
 void remove_leftovers(const fs::path& folder) {
     std::error_code error;
     for (fs::directory_iterator entry(folder, error), end; entry != end && !error;
          entry.increment(error)) {
         const DWORD process = process_of(entry->path().filename().string());
-        std::error_code ignored;
-        if (process > 0 && is_dead(process)) fs::remove_all(entry->path(), ignored);
+        if (process > 0 && is_dead(process)) remove_tree(entry->path());
     }
 }
 

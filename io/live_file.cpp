@@ -22,6 +22,8 @@
 #include <memory>
 #include <stdexcept>
 
+#include "io/leftovers.hpp"
+
 namespace palpate::io {
 namespace {
 
@@ -164,15 +166,18 @@ namespace {
 /// Makes the file with all its blocks, because a page for which the disk has no room would end the
 /// writer with SIGBUS; maps it; then renames it.
 std::byte* make_file(const std::filesystem::path& path, const LiveHeader& header) {
-    const std::filesystem::path unfinished = path.string() + "." + std::to_string(getpid()) + "~";
+    const std::filesystem::path unfinished =
+        temporary_in(path.has_parent_path() ? path.parent_path() : std::filesystem::path("."));
+    bool is_made = false;
     const auto fail = [&](int error) {
-        unlink(unfinished.c_str());
+        if (is_made) unlink(unfinished.c_str());
         throw OutputError(path.string() + ": cannot be made (" + std::strerror(error) +
                           "); choose another place, /dev/shm is one in memory");
     };
     const int descriptor =
-        open(unfinished.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0644);
+        open(unfinished.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0644);
     if (descriptor < 0) fail(errno);
+    is_made = true;
     const auto bytes = header.file_bytes();
     int error = posix_fallocate(descriptor, 0, static_cast<off_t>(bytes));
     void* mapped = MAP_FAILED;

@@ -9,6 +9,8 @@
 #include <cstdlib>
 #include <memory>
 
+#include "io/leftovers.hpp"
+
 namespace palpate::io {
 namespace {
 
@@ -48,7 +50,8 @@ bool can_plot() {
 }
 
 std::string plot(const std::string& script, const fs::path& figure, const PlotSize& size) {
-    const fs::path part = figure.string() + ".part";
+    const fs::path part =
+        temporary_in(figure.has_parent_path() ? figure.parent_path() : fs::path("."));
     const auto close = [](std::FILE* file) { std::fclose(file); };
     const std::unique_ptr<std::FILE, decltype(close)> in(std::tmpfile(), close);
     if (!in) return "no temporary file could be made";

@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <sys/mman.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -66,12 +67,29 @@ bool synchronise(int descriptor) {
     return ::fsync(descriptor) == 0 || errno == EINVAL || errno == ENOTSUP || errno == ENOSYS;
 }
 
+bool synchronise_all(int folder) {
+    return ::syncfs(folder) == 0 || errno == ENOSYS;
+}
+
 bool truncate(int descriptor, std::int64_t bytes) {
     return ::ftruncate(descriptor, bytes) == 0;
 }
 
 bool replace(const std::filesystem::path& from, const std::filesystem::path& to) {
     return ::rename(from.c_str(), to.c_str()) == 0;
+}
+
+bool rename_new(const std::filesystem::path& from, const std::filesystem::path& to) {
+    if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) {
+        return true;
+    }
+    if (errno != EINVAL && errno != ENOSYS) return false;
+    struct stat about {};
+    if (::lstat(to.c_str(), &about) == 0) {
+        errno = EEXIST;
+        return false;
+    }
+    return ::rename(from.c_str(), to.c_str()) == 0;  // fails for a folder that is not empty
 }
 
 bool exchange(const std::filesystem::path& one, const std::filesystem::path& other) {

@@ -39,10 +39,14 @@ int create_to_write(const std::filesystem::path& path);
 std::ptrdiff_t read_at(int descriptor, void* to, std::size_t bytes, std::uint64_t at);
 /// The file's content to the disk. File systems without this say so; that is no loss of data.
 bool synchronise(int descriptor);
+/// The same for an open folder and all below it (or more: the whole file system).
+bool synchronise_all(int folder);
 bool truncate(int descriptor, std::int64_t bytes);
 
 /// Renames `from` to `to`, in place of what was there.
 bool replace(const std::filesystem::path& from, const std::filesystem::path& to);
+/// Renames `from` to `to` if nothing is there; else errno is EEXIST.
+bool rename_new(const std::filesystem::path& from, const std::filesystem::path& to);
 /// What had one name gets the other; false also where that cannot be done.
 bool exchange(const std::filesystem::path& one, const std::filesystem::path& other);
 /// So that the names in a folder survive a power cut.

@@ -32,6 +32,9 @@ int number_of(DWORD error) {
         case ERROR_SHARING_VIOLATION:
         case ERROR_WRITE_PROTECT:
             return EACCES;
+        case ERROR_ALREADY_EXISTS:
+        case ERROR_FILE_EXISTS:
+            return EEXIST;
         case ERROR_DISK_FULL:
         case ERROR_HANDLE_DISK_FULL:
             return ENOSPC;
@@ -120,12 +123,21 @@ bool synchronise(int descriptor) {
     return ::_commit(descriptor) == 0 || errno == EINVAL || errno == EBADF;
 }
 
+/// NTFS writes its journal by itself; what a file holds is on the disk by synchronise().
+bool synchronise_all(int) {
+    return true;
+}
+
 bool truncate(int descriptor, std::int64_t bytes) {
     return ::_chsize_s(descriptor, bytes) == 0;
 }
 
 bool replace(const std::filesystem::path& from, const std::filesystem::path& to) {
     return done(::MoveFileExW(from.c_str(), to.c_str(), MOVEFILE_REPLACE_EXISTING));
+}
+
+bool rename_new(const std::filesystem::path& from, const std::filesystem::path& to) {
+    return done(::MoveFileExW(from.c_str(), to.c_str(), 0));
 }
 
 /// By a third name; where the second step fails, the first is taken back.

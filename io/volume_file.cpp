@@ -15,6 +15,7 @@
 #include "io/io_helper.hpp"
 #include "io/leftovers.hpp"
 #include "io/raw_file.hpp"
+#include "io/removal.hpp"
 #include "io/system.hpp"
 #include "palpate/io/written_formats.hpp"
 
@@ -130,8 +131,8 @@ VolumeFile read_volume(const fs::path& path, const ReadOptions& options) {
 
 namespace {
 
-/// The folder beside the output in which the helper writes. The helper creates, empties and removes
-/// it, on signals too; this removes it after a helper that crashed.
+/// The folder beside the output in which the helper writes. The helper removes it, on signals too;
+/// this does so after a helper that crashed.
 class Workshop {
   public:
     explicit Workshop(const fs::path& output) {
@@ -144,11 +145,16 @@ class Workshop {
             throw OutputError(output.string() + ": is a folder; give a file name");
         }
         remove_leftovers(parent);
-        folder_ = temporary_in(parent);
+        folder_ = make_temporary_folder(parent, error);
+        if (error) {
+            throw OutputError(output.string() + ": cannot be written there (" + error.message() +
+                              "); choose another folder");
+        }
+        lock_ = lock_temporary(folder_);
     }
     ~Workshop() {
-        std::error_code error;
-        fs::remove_all(folder_, error);
+        remove_tree(folder_);
+        if (lock_ >= 0) ::close(lock_);
     }
     Workshop(const Workshop&) = delete;
     Workshop& operator=(const Workshop&) = delete;
@@ -157,15 +163,16 @@ class Workshop {
 
   private:
     fs::path folder_;
+    int lock_ = -1;
 };
 
 }  // namespace
 
 void write_volume(const Volume& volume, const fs::path& path, const WriteOptions& options) {
-    const Workshop workshop(path);
     const std::string problem = why_not_written(path, volume.geometry());
     if (!problem.empty()) throw OutputError(problem);
     if (written_extension_of(path) == ".raw") return write_raw(volume, path, options.progress);
+    const Workshop workshop(path);
     const nlohmann::json request = {{"caller", getpid()},
                                     {"geometry", json_from(volume.geometry())},
                                     {"type", name_of(volume.type())},

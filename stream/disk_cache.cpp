@@ -19,6 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t name_digits = 32, folder_digits = 2;  // of FOLDER/NAME
+
 /// What an entry begins with; its name and bytes follow.
 struct EntryHead {
     std::array<char, 8> magic = {'p', 'a', 'l', 'p', 'c', 'a', 'c', '1'};
@@ -90,18 +92,44 @@ struct Entry {
     std::uint64_t bytes;
 };
 
+bool is_hexadecimal(const std::string& name, std::size_t digits) {
+    return name.size() == digits && name.find_first_not_of("0123456789abcdef") == std::string::npos;
+}
+
+/// Files that lie and are called as entries are: other files in the folder are not ours.
 std::vector<Entry> entries_in(const fs::path& folder) {
     std::vector<Entry> entries;
     std::error_code error;
-    for (fs::recursive_directory_iterator file(folder, error), end; file != end && !error;
-         file.increment(error)) {
-        std::error_code of_entry;
-        if (!file->is_regular_file(of_entry) || of_entry) continue;
-        const auto used = file->last_write_time(of_entry);
-        const auto bytes = file->file_size(of_entry);
-        if (!of_entry) entries.push_back({file->path(), used, bytes});
+    for (fs::directory_iterator inner(folder, error), end; inner != end && !error;
+         inner.increment(error)) {
+        std::error_code of_inner;
+        if (!is_hexadecimal(inner->path().filename().string(), folder_digits) ||
+            !fs::is_directory(inner->symlink_status(of_inner))) {
+            continue;
+        }
+        for (fs::directory_iterator file(inner->path(), of_inner), last; file != last && !of_inner;
+             file.increment(of_inner)) {
+            std::error_code of_entry;
+            if (!is_hexadecimal(file->path().filename().string(), name_digits - folder_digits) ||
+                !fs::is_regular_file(file->symlink_status(of_entry))) {
+                continue;
+            }
+            const auto used = file->last_write_time(of_entry);
+            const auto bytes = file->file_size(of_entry);
+            if (!of_entry) entries.push_back({file->path(), used, bytes});
+        }
     }
     return entries;
+}
+
+/// Removes an entry, unless it does not begin as one does.
+void remove_entry(const fs::path& path) {
+    const io::Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
+    EntryHead head;
+    if (read_all(file.number(), &head.magic, sizeof head.magic) &&
+        head.magic == EntryHead{}.magic) {
+        ::unlink(path.c_str());
+    }
 }
 
 }  // namespace
@@ -116,7 +144,7 @@ DiskCache::DiskCache(fs::path folder, std::uint64_t most_bytes)
 fs::path DiskCache::path_of(const std::string& name) const {
     const std::string text =
         hex(hash_of(name, 0xcbf29ce484222325U)) + hex(hash_of(name, 0x9e3779b97f4a7c15U));
-    return folder_ / text.substr(0, 2) / text.substr(2);
+    return folder_ / text.substr(0, folder_digits) / text.substr(folder_digits);
 }
 
 std::optional<Bytes> DiskCache::find(const std::string& name) const noexcept {
@@ -128,7 +156,7 @@ std::optional<Bytes> DiskCache::find(const std::string& name) const noexcept {
         if (bytes) {
             futimens(file.number(), nullptr);  // used now
         } else {
-            ::unlink(path.c_str());
+            remove_entry(path);
         }
         return bytes;
     } catch (const std::exception&) {
@@ -177,7 +205,7 @@ void DiskCache::make_room(std::uint64_t bytes) const {
             std::ranges::sort(entries, {}, &Entry::used);
             for (const Entry& entry : entries) {
                 if (counted_ + bytes <= after) break;
-                ::unlink(entry.path.c_str());
+                remove_entry(entry.path);
                 counted_ -= entry.bytes;
             }
         }

@@ -13,7 +13,7 @@ namespace palpate::stream {
 
 /// An entry is a file with its name, its bytes and their checksum, written under another name and
 /// then renamed. A damaged one is removed when it is met. When the folder is nearly full, those
-/// that were not used for the longest time go.
+/// that were not used for the longest time go. Other files in the folder are left alone.
 class DiskCache {
   public:
     DiskCache(std::filesystem::path folder, std::uint64_t most_bytes);

@@ -3,7 +3,11 @@
 
 #include <unistd.h>
 
+#include <cerrno>
+
 #include "io/leftovers.hpp"
+#include "io/removal.hpp"
+#include "io/system.hpp"
 #include "palpate/io/output.hpp"
 
 namespace palpate::app {
@@ -18,8 +22,8 @@ ResultFolder::ResultFolder(const fs::path& folder) : folder_(folder) {
                               "': this folder could not be made: choose another with --output");
     }
     io::remove_leftovers(folder_);
-    part_ = io::temporary_in(folder_);
-    if (!fs::create_directory(part_, error) && error) {
+    part_ = io::make_temporary_folder(folder_, error);
+    if (error) {
         if (is_new_) fs::remove(folder_, error);
         throw io::OutputError(folder.string() + ": nothing can be written in this folder (" +
                               error.message() + "): choose another with --output");
@@ -29,12 +33,15 @@ ResultFolder::ResultFolder(const fs::path& folder) : folder_(folder) {
 
 ResultFolder::~ResultFolder() {
     std::error_code ignored;
-    fs::remove_all(part_, ignored);
+    io::remove_tree(part_);
     if (is_new_ && !complete_) fs::remove(folder_, ignored);
     if (lock_ >= 0) ::close(lock_);
 }
 
 void ResultFolder::complete() {
+    if (lock_ >= 0 && !io::synchronise_all(lock_)) {
+        throw io::OutputError(folder_.string() + ": " + io::reason(errno) + ": check the disk");
+    }
     for (const auto& entry : fs::directory_iterator(part_)) {
         std::error_code error;
         const fs::path target = folder_ / entry.path().filename();
@@ -44,6 +51,7 @@ void ResultFolder::complete() {
                                   error.message() + ": remove it, or choose another --output");
         }
     }
+    io::synchronise_folder(folder_);
     complete_ = true;
 }
 

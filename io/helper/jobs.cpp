@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -14,7 +15,8 @@
 #include "io/helper/library_words.hpp"
 #include "io/helper/mirrored.hpp"
 #include "io/helper/report.hpp"
-#include "io/leftovers.hpp"
+#include "io/system.hpp"
+#include "palpate/io/error.hpp"
 #include "palpate/io/written_formats.hpp"
 
 namespace palpate::io {
@@ -152,8 +154,8 @@ nlohmann::json run_chunks(const fs::path& path, const nlohmann::json& asked, Pla
     });
 }
 
-/// The folder in which a file is written: under its own name, because headers name their data
-/// files, in a folder of its own, so that no unfinished file is visible.
+/// The caller's folder in which a file is written: under its own name, because headers name their
+/// data files, in a folder of its own, so that no unfinished file is visible.
 class Workshop {
   public:
     Workshop(const fs::path& folder, const fs::path& target)
@@ -167,15 +169,6 @@ class Workshop {
         for (const int s : {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGXCPU}) signal(s, clean_up_and_go);
     }
 
-    void open() const {
-        std::error_code error;
-        fs::create_directory(folder_, error);
-        if (error) {
-            throw Failure("cannot be written there (" + error.message() +
-                          "); choose another folder");
-        }
-        (void)lock_temporary(folder_);  // until this process ends
-    }
     const fs::path& inside() const { return inside_; }
 
     /// Data files first: a header never points to data that are not there.
@@ -185,11 +178,15 @@ class Workshop {
             if (entry.path() != inside_) made.push_back(entry.path());
         }
         made.push_back(inside_);
+        const fs::path parent = target_.has_parent_path() ? target_.parent_path() : ".";
         for (const fs::path& file : made) {
-            std::error_code error;
-            fs::rename(file, target_.parent_path() / file.filename(), error);
-            if (error) throw Failure("cannot be put in its place (" + error.message() + ")");
+            const int whole = open_to_read(file);
+            const bool moved = synchronise(whole) && replace(file, parent / file.filename());
+            const int error = errno;
+            if (whole >= 0) ::close(whole);
+            if (!moved) throw Failure("cannot be put in its place (" + reason(error) + ")");
         }
+        synchronise_folder(parent);
         fs::remove(folder_);
     }
 
@@ -214,7 +211,6 @@ nlohmann::json run_write(const fs::path& path, const nlohmann::json& asked, cons
     void* const samples = mmap(nullptr, bytes, PROT_READ, MAP_SHARED, samples_descriptor, 0);
     if (samples == MAP_FAILED) throw std::bad_alloc();
     volume.samples = samples;
-    workshop.open();
     write(workshop.inside(), std::string(written_extension_of(path)), volume);
     workshop.move_out();
     return nlohmann::json::object();
