@@ -1,25 +1,22 @@
 // Writes a level of a store as multiscale OME-Zarr; see the header.
 #include "palpate/stream/convert.hpp"
 
-#include <fcntl.h>
-#include <sys/file.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <atomic>
 #include <condition_variable>
 #include <cstring>
 #include <exception>
-#include <fstream>
 #include <limits>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "io/helper_process.hpp"
+#include "io/growing_folder.hpp"
+#include "io/path_json.hpp"
 #include "palpate/io/error.hpp"
 #include "palpate/stream/growing_image.hpp"
-#include "stream/stores.hpp"
+#include "stream/content.hpp"
+#include "stream/edited_store.hpp"
 #include "stream/zarr_writer.hpp"
 
 namespace palpate::stream {
@@ -75,85 +72,22 @@ void in_parallel(std::int64_t count, int threads, Work&& work, Tell&& tell) {
     if (failure) std::rethrow_exception(failure);
 }
 
-/// The folder in which the image grows. Its note says of what and how, so that only the same work
-/// is continued.
-class Partial {
-  public:
-    Partial(const fs::path& out, const nlohmann::json& job)
-        : out_(out), folder_(out.string() + ".partial"), note_(folder_ / "palpate-convert.json") {
-        std::error_code error;
-        if (fs::exists(fs::symlink_status(out, error))) {
-            throw io::OutputError(out.string() +
-                                  ": is there already; remove it or give another name");
-        }
-        fs::create_directory(folder_, error);
-        if (error) {
-            throw io::OutputError(folder_.string() + ": " + error.message() +
-                                  "; choose another folder");
-        }
-        lock_ = ::open(folder_.c_str(), O_RDONLY | O_CLOEXEC | O_DIRECTORY);
-        if (lock_ >= 0 && ::flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
-            ::close(lock_);
-            throw io::OutputError(folder_.string() +
-                                  ": another process is writing it; wait for that");
-        }
-        std::ifstream in(note_);
-        const std::string before((std::istreambuf_iterator<char>(in)), {});
-        const std::string text = job.dump(1);
-        if (before == text) return;
-        for (const auto& entry : fs::directory_iterator(folder_))
-            fs::remove_all(entry.path(), error);
-        put_file(note_, std::as_bytes(std::span(text)));
-    }
-    ~Partial() {
-        if (lock_ >= 0) ::close(lock_);
-    }
-    Partial(const Partial&) = delete;
-    Partial& operator=(const Partial&) = delete;
-
-    const fs::path& folder() const { return folder_; }
-
-    void finish() const {
-        std::error_code error;
-        fs::remove(note_, error);
-        if (lock_ >= 0) ::syncfs(lock_);
-        fs::rename(folder_, out_, error);
-        if (error) throw io::OutputError(out_.string() + ": " + error.message());
-    }
-
-  private:
-    fs::path out_, folder_, note_;
-    int lock_ = -1;
-};
-
-/// Size, spacing, origin and direction, one after the other.
-std::vector<double> grid_numbers(const Geometry& grid) {
-    std::vector<double> numbers;
-    for (const int size : grid.size) numbers.push_back(size);
-    for (const double spacing : grid.spacing) numbers.push_back(spacing);
-    for (const double origin : grid.origin) numbers.push_back(origin);
-    for (const double part : grid.direction.reshaped()) numbers.push_back(part);
-    return numbers;
-}
-
-/// What a run has to have in common with the one that it continues.
+/// All that decides what is written: a run is continued by one of the same job only. The content
+/// covers the source and everything that says how it is read (raw layout, spacing, series,
+/// filters).
 nlohmann::json job_of(const Store& from, int level, const ConvertOptions& options) {
-    const StoreInfo& info = from.info();
-    nlohmann::json job = {
-        {"source", info.address},
-        {"format", info.format},
-        {"level", level},
-        {"channel", info.channel},
-        {"time", info.time},
-        {"grid", grid_numbers(info.levels.at(static_cast<std::size_t>(level)).geometry)},
-        {"type", name_of(info.type)},
-        {"zarr", options.zarr_version},
-        {"chunk", options.chunk},
-        {"compression", static_cast<int>(options.compression)}};
-    std::error_code error;
-    if (fs::is_regular_file(info.address, error)) {
-        job["bytes"] = fs::file_size(info.address, error);
-        job["changed"] = fs::last_write_time(info.address, error).time_since_epoch().count();
+    nlohmann::json job = {{"version", 1},  // of what is computed and how it is written
+                          {"source", io::json_of_path(from.info().address)},
+                          {"content", content_of(from, level)},
+                          {"level", level},
+                          {"zarr", options.zarr_version},
+                          {"chunk", options.chunk},
+                          {"compression", static_cast<int>(options.compression)}};
+    // Of what is not read whole, files that were written anew show what its samples may not.
+    if (from.info().format == "memory") return job;
+    job["files"] = files_at(from.info().address);
+    if (const auto* edits = dynamic_cast<const EditedStore*>(&from)) {
+        job["original"] = files_at(edits->note().of.address);
     }
     return job;
 }
@@ -185,11 +119,13 @@ class SeenRange {
 
 class Conversion {
   public:
-    Conversion(const Store& from, int level, const ConvertOptions& options, const Partial& partial)
+    Conversion(const Store& from, int level, const ConvertOptions& options,
+               const io::GrowingFolder& partial)
         : from_(from),
           level_(level),
           options_(options),
-          image_(partial.folder(), from.info().type,
+          partial_(partial.result()),
+          image_(partial.result(), from.info().type,
                  from.info().levels.at(static_cast<std::size_t>(level)).geometry, options) {
         for (int l = 0; l < image_.levels(); ++l) total_ += chunks(l);
     }
@@ -205,6 +141,10 @@ class Conversion {
             before += chunks(l);
         }
         tell(total_);
+        if (image_.stored_chunks() + empty_ != static_cast<std::uint64_t>(total_)) {
+            throw io::OutputError(partial_.string() +
+                                  ": chunks were removed while it was written; run it again");
+        }
         image_.write_metadata(seen_.range());
         return {image_.levels(), static_cast<std::uint64_t>(total_), kept_, empty_, seen_.range()};
     }
@@ -246,6 +186,7 @@ class Conversion {
     const Store& from_;
     int level_;
     const ConvertOptions& options_;
+    fs::path partial_;
     GrowingImage image_;
     SeenRange seen_;
     std::int64_t total_ = 0;
@@ -254,15 +195,23 @@ class Conversion {
 
 }  // namespace
 
+void check_zarr_place(const fs::path& out) {
+    io::check_new_folder(out);
+}
+
 Converted convert_to_zarr(const Store& from, int level, const fs::path& out,
                           const ConvertOptions& options) {
     check_format(options);
     if (options.threads < 1 || options.threads > 256) {
         throw std::invalid_argument("there are 1 to 256 threads");
     }
-    const Partial partial(out, job_of(from, level, options));
-    const Converted converted = Conversion(from, level, options, partial).run();
-    partial.finish();
+    check_zarr_place(out);
+    io::GrowingFolder folder =
+        options.resumable ? io::GrowingFolder::resumable(out, job_of(from, level, options).dump(1))
+                          : io::GrowingFolder::alone(out);
+    Converted converted = Conversion(from, level, options, folder).run();
+    folder.put_in_place();
+    converted.note = folder.note();
     return converted;
 }
 

@@ -4,8 +4,10 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "io/path_json.hpp"
 #include "palpate/io/error.hpp"
 #include "stream/box_bytes.hpp"
+#include "stream/content.hpp"
 #include "stream/remote_objects.hpp"
 #include "stream/stores.hpp"
 #include "stream/zarr_writer.hpp"
@@ -33,15 +35,16 @@ Vector three_of(const Json& list) {
 
 Json json_of(const EditsNote& note, const fs::path& out) {
     const StoreOptions& options = note.of.options;
-    Json json = {{"of", note.of.address},
+    Json json = {{"of", io::json_of_path(note.of.address)},
+                 {"content", note.content},
                  {"level", note.level},
                  {"channel", options.channel},
                  {"time", options.time},
                  {"bounds", {note.bounds.minimum, note.bounds.maximum}}};
     if (!is_remote(note.of.address)) {
         const fs::path of = fs::absolute(note.of.address);
-        json["of"] = of.string();
-        json["beside"] = of.lexically_relative(fs::absolute(out).parent_path()).string();
+        json["of"] = io::json_of_path(of);
+        json["beside"] = io::json_of_path(of.lexically_relative(fs::absolute(out).parent_path()));
     }
     if (options.raw) {
         json["raw"] = {{"size", list_of(options.raw->size)},
@@ -64,9 +67,10 @@ Json json_of(const EditsNote& note, const fs::path& out) {
 /// `folder`: where the note lies. What does not come from the note is as `options` say.
 EditsNote note_from(const Json& json, const fs::path& folder, const StoreOptions& options) {
     EditsNote note;
-    note.of = {json.at("of").get<std::string>(), options};
+    note.of = {io::path_from_json(json.at("of")).string(), options};
+    note.content = json.value("content", std::string());
     const fs::path beside =
-        fs::absolute(folder).parent_path() / json.value("beside", std::string());
+        fs::absolute(folder).parent_path() / io::path_from_json(json.value("beside", Json("")));
     std::error_code error;
     if (json.contains("beside") && fs::exists(beside, error)) note.of.address = beside.string();
     StoreOptions& of = note.of.options;
@@ -134,6 +138,14 @@ void check_chunks(const EditsNote& note, const StoreInfo& original) {
     }
 }
 
+/// Another volume of the same size may have taken the original's place.
+void check_content(const Store& original, const EditsNote& note) {
+    const auto levels = static_cast<int>(original.info().levels.size());
+    if (note.content.empty() || note.level < 0 || note.level >= levels) return;
+    if (content_of(original, note.level) == note.content) return;
+    throw std::invalid_argument("holds other data than when they were saved");
+}
+
 }  // namespace
 
 SampleBox chunk_box(const std::array<int, 3>& chunk, const Geometry& grid) {
@@ -160,6 +172,10 @@ EditedStore::EditedStore(std::shared_ptr<const Store> original, std::shared_ptr<
     }
     if (!fits) throw std::invalid_argument("has another size or type now");
     info_.notes.push_back("it is " + info_.address + " with edits");
+    if (note_.content.empty()) {
+        info_.notes.push_back(
+            "the edits are of an earlier version, which did not note what the original held");
+    }
     info_.address = ours.address;
     info_.channels.clear();
     info_.times = 1;
@@ -194,6 +210,10 @@ bool holds_edits(const fs::path& folder) {
     return fs::is_regular_file(folder / note_name, error);
 }
 
+bool is_edits_note(const std::string& name) {
+    return name == note_name;
+}
+
 std::shared_ptr<const Store> open_edits(const std::string& folder, const StoreOptions& options) {
     EditsNote note = read_note(folder, options);
     if (!is_remote(note.of.address) && holds_edits(note.of.address)) {
@@ -202,6 +222,8 @@ std::shared_ptr<const Store> open_edits(const std::string& folder, const StoreOp
     auto original = open_store(note.of.address, note.of.options);
     auto chunks = open_zarr(folder_objects(folder), folder, {});
     try {
+        check_content(*original, note);
+        if (!chunks) throw std::invalid_argument("is there, but the edited chunks are not");
         return std::make_shared<EditedStore>(std::move(original), std::move(chunks),
                                              std::move(note));
     } catch (const std::invalid_argument& e) {

@@ -19,6 +19,7 @@ struct EditsNote {
     int level = 0;                 ///< of the original that was edited
     Range bounds;                  ///< of the edited samples
     std::vector<ChunkSet> chunks;  ///< for that level and the coarser ones
+    std::string content = {};      ///< of the original from that level on: content_of()
 };
 
 /// The samples of a chunk that lie in the grid.
@@ -47,6 +48,7 @@ class EditedStore : public Store {
                 EditsNote note);
 
     const EditsNote& note() const { return note_; }
+    const Store& original() const { return *original_; }
     const StoreInfo& info() const override { return info_; }
     void read(int level, const SampleBox& box, std::span<std::byte> out,
               std::stop_token stop) const override;
@@ -60,6 +62,8 @@ class EditedStore : public Store {
 
 /// True for a folder that save_edits() wrote.
 bool holds_edits(const std::filesystem::path& folder);
+/// The name of its note.
+bool is_edits_note(const std::string& name);
 /// Opens one with its original. Throws io::InputError.
 std::shared_ptr<const Store> open_edits(const std::string& folder, const StoreOptions& options);
 /// Of a folder that is being made and will be `out`. Throws io::OutputError.

@@ -40,8 +40,10 @@ struct GrowingImage::Parts {
 
     /// The image as it is read, opened when it is needed first.
     const Store& read() const {
-        std::call_once(opening,
-                       [&] { store = open_zarr(folder_objects(folder), folder.string(), {}); });
+        std::call_once(opening, [&] {
+            store = open_zarr(folder_objects(folder), folder.string(), {});
+            if (!store) fail_without(folder);
+        });
         return *store;
     }
     const CoarserGrid& grid(int level) const {
@@ -78,6 +80,10 @@ SampleBox GrowingImage::box(int level, const Index3& chunk) const {
 
 void GrowingImage::write_metadata(const std::optional<Range>& range) const {
     parts_->writer.write_metadata(range);
+}
+
+std::uint64_t GrowingImage::stored_chunks() const {
+    return parts_->writer.stored_chunks();
 }
 
 bool GrowingImage::write(int level, const Index3& chunk, std::span<const std::byte> samples) const {

@@ -1,15 +1,14 @@
 // Saves what was edited of a store; see palpate/stream/edits.hpp.
 #include "palpate/stream/edits.hpp"
 
-#include <fcntl.h>
-#include <stdio.h>
-
 #include <cmath>
 #include <cstring>
 #include <map>
 
+#include "io/growing_folder.hpp"
 #include "palpate/io/error.hpp"
 #include "stream/box_bytes.hpp"
+#include "stream/content.hpp"
 #include "stream/edited_store.hpp"
 #include "stream/stores.hpp"
 #include "stream/zarr_writer.hpp"
@@ -47,35 +46,6 @@ SampleBox coarser_box(const SampleBox& box, const CoarserGrid& coarser) {
         box.low.cwiseQuotient(coarser.factor),
         box.high.cwiseQuotient(coarser.factor).cwiseMin(coarser.geometry.size - Index3::Ones())};
 }
-
-/// The folder in which the edits grow.
-class Growing {
-  public:
-    explicit Growing(const fs::path& out) : folder_(out.string() + ".partial") { remove(); }
-    ~Growing() { remove(); }
-    Growing(const Growing&) = delete;
-    Growing& operator=(const Growing&) = delete;
-
-    const fs::path& folder() const { return folder_; }
-    /// Takes the place of what may be at `out`, at once.
-    void move_to(const fs::path& out) {
-        std::error_code error;
-        if (fs::exists(fs::symlink_status(out, error))) {
-            if (::renameat2(AT_FDCWD, folder_.c_str(), AT_FDCWD, out.c_str(), RENAME_EXCHANGE) == 0)
-                return;
-            fs::remove_all(out, error);
-        }
-        fs::rename(folder_, out, error);
-        if (error) throw io::OutputError(out.string() + ": " + error.message());
-    }
-
-  private:
-    void remove() const {
-        std::error_code ignored;
-        fs::remove_all(folder_, ignored);
-    }
-    fs::path folder_;
-};
 
 class Saving {
   public:
@@ -194,18 +164,38 @@ class Saving {
 /// What the note says before anything is written: with what the store has of edits itself.
 EditsNote note_for(const Store& from, const Opened& opened, int level, const Samples& edits) {
     const auto* edited = dynamic_cast<const EditedStore*>(&from);
-    EditsNote note{opened, level, {edits.minimum(), edits.maximum()}, {}};
+    EditsNote note{opened, level, {edits.minimum(), edits.maximum()}, {}, {}};
     note.chunks.resize(from.info().levels.size() - static_cast<std::size_t>(level));
-    if (!edited) return note;
+    if (!edited) {
+        note.content = content_of(from, level);
+        return note;
+    }
     const EditsNote& before = edited->note();
     note.of = before.of;
     note.level += before.level;
     note.bounds.minimum = std::min(note.bounds.minimum, before.bounds.minimum);
     note.bounds.maximum = std::max(note.bounds.maximum, before.bounds.maximum);
+    note.content = content_of(edited->original(), note.level);
     for (std::size_t l = 0; l < note.chunks.size(); ++l) {
         note.chunks[l] = before.chunks[l + static_cast<std::size_t>(level)];
     }
     return note;
+}
+
+/// Edits that save_edits() wrote, and nothing else, may be replaced.
+void check_replaceable(const fs::path& out) {
+    const auto refuse = [&](const std::string& why) {
+        throw io::OutputError(out.string() + ": " + why + "; give another name");
+    };
+    std::error_code error;
+    if (!fs::is_directory(fs::symlink_status(out, error)) || !holds_edits(out)) {
+        refuse("is there already and is no folder of edits");
+    }
+    const std::string unknown = io::unknown_name_in(out, [](const std::string& name) {
+        const bool is_level = name.find_first_not_of("0123456789") == std::string::npos;
+        return is_level || is_edits_note(name) || name == "zarr.json";
+    });
+    if (!unknown.empty()) refuse("holds " + unknown + ", which Palpate did not write");
 }
 
 }  // namespace
@@ -217,25 +207,26 @@ void check_edits_name(const fs::path& out) {
                                 "folder: give a name that ends with .zarr");
 }
 
-void save_edits(const Store& from, const Opened& opened, int level, const Samples& edits,
-                const fs::path& out, const io::Progress& progress) {
+void check_edits_place(const fs::path& out, const Opened& opened) {
     check_edits_name(out);
-    if (!edits.bricks() || edits.bricks()->size() == 0) {
-        throw std::invalid_argument("nothing was edited, so there is nothing to save");
-    }
     std::error_code error;
     if (fs::equivalent(out, opened.address, error)) {
         throw io::OutputError(out.string() + ": is felt; save under another name");
     }
-    if (fs::exists(fs::symlink_status(out, error)) && !holds_edits(out)) {
-        throw io::OutputError(out.string() +
-                              ": is there already and does not hold edits; give another name");
+    fs::exists(fs::symlink_status(out, error)) ? check_replaceable(out) : io::check_new_folder(out);
+}
+
+void save_edits(const Store& from, const Opened& opened, int level, const Samples& edits,
+                const fs::path& out, const io::Progress& progress) {
+    if (!edits.bricks() || edits.bricks()->size() == 0) {
+        throw std::invalid_argument("nothing was edited, so there is nothing to save");
     }
-    Growing growing(out);
-    Saving saving(from, level, edits, growing.folder(), note_for(from, opened, level, edits),
+    check_edits_place(out, opened);
+    io::GrowingFolder folder = io::GrowingFolder::alone(out);
+    Saving saving(from, level, edits, folder.result(), note_for(from, opened, level, edits),
                   progress);
-    write_note(growing.folder(), out, saving.run());
-    growing.move_to(out);
+    write_note(folder.result(), out, saving.run());
+    folder.put_in_place(check_replaceable);
 }
 
 }  // namespace palpate::stream

@@ -35,6 +35,14 @@ void check_edits_name(const std::filesystem::path& out) {
     throw std::invalid_argument(out.string() + no_chunks);
 }
 
+void check_edits_place(const std::filesystem::path& out, const Opened&) {
+    check_edits_name(out);
+}
+
+void check_zarr_place(const std::filesystem::path& out) {
+    throw io::OutputError(out.string() + no_chunks);
+}
+
 void save_edits(const Store&, const Opened&, int, const Samples&, const std::filesystem::path& out,
                 const io::Progress&) {
     check_edits_name(out);

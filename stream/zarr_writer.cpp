@@ -107,11 +107,6 @@ Json image_of(const std::vector<CoarserGrid>& levels) {
     return {{"axes", axes}, {"datasets", datasets}, {"type", "mean"}, {"name", "image"}};
 }
 
-void put_json(const fs::path& path, const Json& json, const std::string& temporary) {
-    const std::string text = json.dump(1);
-    put_file(path, std::as_bytes(std::span(text)), temporary);
-}
-
 }  // namespace
 
 void check_format(const ConvertOptions& options) {
@@ -122,6 +117,11 @@ void check_format(const ConvertOptions& options) {
     if (options.chunk < 8 || options.chunk > 512) {
         throw std::invalid_argument("chunks have 8 to 512 samples along each axis");
     }
+}
+
+void fail_without(const fs::path& folder) {
+    throw io::OutputError(folder.string() +
+                          ": was removed or renamed while it was written; run it again");
 }
 
 void put_file(const fs::path& path, std::span<const std::byte> bytes,
@@ -167,25 +167,50 @@ void ZarrWriter::write_metadata(const std::optional<Range>& range) const {
         }
     }
     if (range) ours["range"] = {range->minimum, range->maximum};
+    std::error_code error;
+    if (!range) fs::create_directories(folder_, error);  // if it fails, so does what comes next
     const bool two = options_.zarr_version == 2;
     for (std::size_t i = 0; i < levels_.size(); ++i) {
         const Geometry& grid = levels_[i].geometry;
         const fs::path level = folder_ / std::to_string(i);
         put_json(level / (two ? ".zarray" : "zarr.json"),
-                 two ? array2(grid, type_, options_) : array3(grid, type_, options_), temporary_);
+                 two ? array2(grid, type_, options_) : array3(grid, type_, options_));
     }
     if (two) {
         image["version"] = "0.4";
-        put_json(folder_ / ".zgroup", {{"zarr_format", 2}}, temporary_);
-        put_json(folder_ / ".zattrs", {{"multiscales", {image}}, {"palpate", ours}}, temporary_);
+        put_json(folder_ / ".zgroup", {{"zarr_format", 2}});
+        put_json(folder_ / ".zattrs", {{"multiscales", {image}}, {"palpate", ours}});
     } else {
         put_json(folder_ / "zarr.json",
                  {{"zarr_format", 3},
                   {"node_type", "group"},
                   {"attributes",
-                   {{"ome", {{"version", "0.5"}, {"multiscales", {image}}}}, {"palpate", ours}}}},
-                 temporary_);
+                   {{"ome", {{"version", "0.5"}, {"multiscales", {image}}}}, {"palpate", ours}}}});
     }
+}
+
+void ZarrWriter::put(const fs::path& path, std::span<const std::byte> bytes) const {
+    // Not made again where it has gone: half an image would grow there.
+    std::error_code error;
+    if (!fs::is_directory(folder_, error)) fail_without(folder_);
+    put_file(path, bytes, temporary_);
+}
+
+void ZarrWriter::put_json(const fs::path& path, const Json& json) const {
+    const std::string text = json.dump(1);
+    put(path, std::as_bytes(std::span(text)));
+}
+
+std::uint64_t ZarrWriter::stored_chunks() const {
+    std::uint64_t count = 0;
+    std::error_code error;
+    for (fs::recursive_directory_iterator entry(folder_, error), end; entry != end && !error;
+         entry.increment(error)) {
+        const std::string name = entry->path().filename().string();
+        const bool is_chunk = name.find_first_not_of("0123456789") == std::string::npos;
+        count += is_chunk && entry->is_regular_file(error) ? 1 : 0;
+    }
+    return count;
 }
 
 Index3 ZarrWriter::chunks_of(int level) const {
@@ -214,7 +239,7 @@ Bytes ZarrWriter::packed(const Bytes& samples) const {
 
 bool ZarrWriter::write_chunk(int level, const Index3& chunk, const Bytes& samples) const {
     if (std::ranges::all_of(samples, [](std::byte b) { return b == std::byte{0}; })) return false;
-    put_file(path_of(level, chunk), packed(samples), temporary_);
+    put(path_of(level, chunk), packed(samples));
     const auto back = written_chunk(level, chunk);
     if (!back || *back != samples) {
         throw io::OutputError(path_of(level, chunk).string() +

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 
 #include "palpate/stream/convert.hpp"
@@ -26,10 +27,14 @@ class ZarrWriter {
     bool write_chunk(int level, const Index3& chunk, const Bytes& samples) const;
     /// The samples of a chunk that was written before; nothing if it is not there or not whole.
     std::optional<Bytes> written_chunk(int level, const Index3& chunk) const;
+    /// Chunks of all levels that are there.
+    std::uint64_t stored_chunks() const;
     /// Chunks along each axis.
     Index3 chunks_of(int level) const;
 
   private:
+    void put(const std::filesystem::path& path, std::span<const std::byte> bytes) const;
+    void put_json(const std::filesystem::path& path, const nlohmann::json& json) const;
     std::filesystem::path path_of(int level, const Index3& chunk) const;
     Bytes packed(const Bytes& samples) const;
 
@@ -41,8 +46,11 @@ class ZarrWriter {
     std::vector<ChunkedArray> arrays_;
 };
 
-/// All of a small file in a folder that is being made; while it is written its name ends in
-/// `temporary`. Throws io::OutputError.
+/// What io::OutputError says where the folder that is written has gone.
+[[noreturn]] void fail_without(const std::filesystem::path& folder);
+
+/// All of a small file in a folder that is being made, and perhaps in folders below it, which this
+/// makes; while it is written its name ends in `temporary`. Throws io::OutputError.
 void put_file(const std::filesystem::path& path, std::span<const std::byte> bytes,
               const std::string& temporary = ".part");
 

@@ -17,11 +17,15 @@ struct Opened {
 /// Throws std::invalid_argument unless the name ends with .zarr.
 void check_edits_name(const std::filesystem::path& out);
 
+/// Throws as save_edits() would because of its name or of what is there, before there are edits.
+void check_edits_place(const std::filesystem::path& out, const Opened& opened);
+
 /// Writes `edits`, samples of a level of the store `from`, to the folder `out`: the chunks of that
 /// level that they change, and those of the coarser levels as means of them. The folder names its
 /// original, the one that `from` itself names if it is of edits, and has what was edited there,
-/// too. It is OME-Zarr 0.5; other programs see 0 where nothing was edited. Made under another name
-/// first; replaces an older folder of edits, nothing else. Throws io::OutputError, as
+/// too. It is OME-Zarr 0.5; other programs see 0 where nothing was edited. Made in a folder of its
+/// own first, which takes the place of an older folder of edits, and of nothing else, at once. If
+/// that fails, they are kept beside it and the error says where. Throws io::OutputError, as
 /// check_edits_name(), what `progress` throws and what the store throws.
 void save_edits(const Store& from, const Opened& opened, int level, const Samples& edits,
                 const std::filesystem::path& out, const io::Progress& progress);

@@ -41,6 +41,8 @@ class GrowingImage {
     bool write(int level, const Index3& chunk, std::span<const std::byte> samples) const;
     /// What was written before; nothing if it is not there or not whole.
     std::optional<std::vector<std::byte>> written(int level, const Index3& chunk) const;
+    /// Chunks of all levels that are stored.
+    std::uint64_t stored_chunks() const;
     /// The samples of a chunk of a coarser level: means of the level before, which has to be
     /// whole there. Throws what reading throws.
     std::vector<std::byte> means(int level, const Index3& chunk, const std::stop_token& stop) const;

@@ -1,0 +1,369 @@
+// Palpate deletes and continues what it made itself, and nothing else: OUT.partial of others, links,
+// other sources and settings, originals of edits, caches in folders with other files.
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <map>
+
+#include "io/growing_folder.hpp"
+#include "palpate/stream/convert.hpp"
+#include "palpate/stream/edits.hpp"
+#include "palpate/stream/loader.hpp"
+#include "stream/content.hpp"
+#include "stream/disk_cache.hpp"
+#include "stream/store_support.hpp"
+#include "support/edits.hpp"
+
+namespace palpate::stream::test {
+namespace {
+
+namespace fs = std::filesystem;
+using support::bytes_of;
+using support::contains;
+using support::message_of;
+using support::put_bytes;
+using support::ScratchFolder;
+
+Volume noise(std::uint64_t seed, SampleType type = SampleType::uint8) {
+    return support::noise_of(type, support::grid({40, 30, 20}, {0.5, 0.6, 1}), seed);
+}
+
+ConvertOptions small_chunks() {
+    ConvertOptions options;
+    options.chunk = 8;
+    options.threads = 1;
+    return options;
+}
+
+struct Left {};
+
+/// Begins a conversion and leaves it when all chunks are written.
+void leave_behind(const Store& store, const fs::path& out, ConvertOptions options = small_chunks()) {
+    options.progress = [](double) { throw Left{}; };
+    EXPECT_THROW((void)convert_to_zarr(store, 0, out, options), Left);
+    EXPECT_TRUE(fs::exists(out.string() + ".partial"));
+}
+
+std::string refusal(const Store& store, const fs::path& out) {
+    return message_of<io::OutputError>(
+        [&] { (void)convert_to_zarr(store, 0, out, small_chunks()); });
+}
+
+/// Every name below a folder, with the bytes of files.
+std::map<std::string, std::string> all_in(const fs::path& folder) {
+    std::map<std::string, std::string> all;
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+        all[entry.path().string()] =
+            entry.is_regular_file() && !entry.is_symlink() ? bytes_of(entry.path()) : "";
+    }
+    return all;
+}
+
+using Makers = std::map<std::string, std::function<void(const fs::path&)>>;
+
+/// What may lie at OUT.partial. `ours`: one that was left behind.
+Makers other_partials(const fs::path& precious, const fs::path& ours) {
+    Makers all;
+    all["folder"] = [](const fs::path& at) {
+        fs::create_directory(at);
+        put_bytes(at / "thesis.txt", "years");
+    };
+    all["empty"] = [](const fs::path& at) { fs::create_directory(at); };
+    all["link"] = [=](const fs::path& at) { fs::create_directory_symlink(precious, at); };
+    all["link to one of ours"] = [=](const fs::path& at) { fs::create_directory_symlink(ours, at); };
+    all["broken link"] = [](const fs::path& at) { fs::create_symlink("/nowhere", at); };
+    all["file"] = [](const fs::path& at) { put_bytes(at, "text"); };
+    all["pipe"] = [](const fs::path& at) { ASSERT_EQ(::mkfifo(at.c_str(), 0600), 0); };
+    const std::string marker = "palpate-partial.json";
+    all["marker that is a link"] = [=](const fs::path& at) {
+        fs::create_directory(at);
+        fs::create_symlink(ours / marker, at / marker);
+    };
+    all["marker that is a pipe"] = [=](const fs::path& at) {
+        fs::create_directory(at);
+        ASSERT_EQ(::mkfifo((at / marker).c_str(), 0600), 0);
+    };
+    all["marker without a nonce"] = [=](const fs::path& at) {
+        fs::create_directory(at);
+        put_bytes(at / marker, R"({"palpate":"yes","job":""})");
+    };
+    all["note of earlier versions"] = [](const fs::path& at) {
+        fs::create_directory(at);
+        put_bytes(at / "palpate-convert.json", "{}");
+    };
+    return all;
+}
+
+TEST(OwnFiles, a_partial_that_palpate_did_not_make_is_refused_and_stays_as_it_is) {
+    const ScratchFolder folder, precious;
+    put_bytes(precious / "thesis.txt", "years");
+    const auto store = store_of(noise(1), "v");
+    leave_behind(*store, folder / "ours.zarr");
+    const Makers others = other_partials(precious.path(), folder / "ours.zarr.partial");
+    for (const auto& [name, make] : others) {
+        SCOPED_TRACE(name);
+        const fs::path out = folder / (name + ".zarr"), partial = out.string() + ".partial";
+        make(partial);
+        const auto before = all_in(folder.path()), there = all_in(precious.path());
+        const std::string message = refusal(*store, out);
+        EXPECT_TRUE(contains(message, partial.string())) << message;
+        EXPECT_TRUE(contains(message, "give another name")) << message;
+        EXPECT_EQ(all_in(folder.path()), before);
+        EXPECT_EQ(all_in(precious.path()), there);
+    }
+}
+
+TEST(OwnFiles, a_partial_of_other_work_with_a_foreign_file_in_it_is_refused_by_its_name) {
+    const ScratchFolder folder;
+    const fs::path out = folder / "v.zarr", partial = folder / "v.zarr.partial";
+    leave_behind(*store_of(noise(1), "v"), out);
+    put_bytes(partial / "notes.txt", "mine");
+    const std::string message = refusal(*store_of(noise(2), "v"), out);
+    EXPECT_TRUE(contains(message, "notes.txt")) << message;
+    EXPECT_EQ(bytes_of(partial / "notes.txt"), "mine");
+    EXPECT_TRUE(fs::exists(partial / "result/0/c/0/0/0"));
+}
+
+TEST(OwnFiles, a_link_inside_a_partial_of_ours_is_removed_and_never_followed) {
+    const ScratchFolder folder, precious;
+    put_bytes(precious / "thesis.txt", "years");
+    const fs::path out = folder / "v.zarr", partial = folder / "v.zarr.partial";
+    leave_behind(*store_of(noise(1), "v"), out);
+    fs::create_directory_symlink(precious.path(), partial / "result/0/c/link");
+    const Volume other = noise(2);
+    const Converted converted = convert_to_zarr(*store_of(other, "v"), 0, out, small_chunks());
+    EXPECT_EQ(converted.kept, 0U);
+    EXPECT_TRUE(contains(converted.note, "begun anew")) << converted.note;
+    EXPECT_EQ(bytes_of(precious / "thesis.txt"), "years");
+    expect_same_boxes(*open_store(out), other, 3);
+    EXPECT_EQ(folder.names(), std::vector<std::string>{"v.zarr"});
+}
+
+TEST(OwnFiles, saving_edits_touches_no_partial_whoever_made_it) {
+    const ScratchFolder folder, precious;
+    put_bytes(precious / "thesis.txt", "years");
+    const Volume volume = noise(1);
+    const auto store = store_of(volume, "v");
+    (void)convert_to_zarr(*store, 0, folder / "v.zarr", small_chunks());
+    const auto original = open_store(folder / "v.zarr");
+    const auto read = [&](const SampleBox& box, std::span<std::byte> to) {
+        original->read(0, box, to, {});
+    };
+    const auto edits =
+        edited(empty_samples(*original, volume, 0), edit::Fill{{{3, 3, 3}, {9, 9, 9}}, 7}, read);
+    for (const bool is_link : {false, true}) {
+        const fs::path out = folder / (is_link ? "link.zarr" : "edits.zarr");
+        const fs::path partial = out.string() + ".partial";
+        if (is_link) {
+            fs::create_directory_symlink(precious.path(), partial);
+        } else {
+            leave_behind(*store, out);  // an interrupted conversion to the same name
+        }
+        const auto before = all_in(partial);
+        save_edits(*original, {folder / "v.zarr", {}}, 0, *edits.samples, out, {});
+        EXPECT_EQ(read_box(*open_store(out), 0, {{5, 5, 5}, {5, 5, 5}})[0], std::byte{7});
+        EXPECT_EQ(all_in(partial), before);
+    }
+    EXPECT_EQ(bytes_of(precious / "thesis.txt"), "years");
+    // What somebody else has put into a folder of edits stays there.
+    put_bytes(folder / "edits.zarr/notes.txt", "mine");
+    const std::string message = message_of<io::OutputError>([&] {
+        save_edits(*original, {folder / "v.zarr", {}}, 0, *edits.samples, folder / "edits.zarr", {});
+    });
+    EXPECT_TRUE(contains(message, "notes.txt")) << message;
+    EXPECT_EQ(bytes_of(folder / "edits.zarr/notes.txt"), "mine");
+}
+
+TEST(OwnFiles, an_interrupted_run_is_continued_for_the_same_content_only) {
+    const ScratchFolder folder;
+    const fs::path out = folder / "v.zarr";
+    // In memory: the name is the same, the samples are not (another filter, series or time).
+    leave_behind(*store_of(noise(1), "v"), out);
+    EXPECT_GT(convert_to_zarr(*store_of(noise(1), "v"), 0, out, small_chunks()).kept, 0U);
+    fs::remove_all(out);
+    const Volume one = noise(1);
+    const auto* const first = static_cast<const std::uint8_t*>(one.data());
+    std::vector<std::uint8_t> samples(first, first + one.bytes());
+    samples[samples.size() / 2] ^= 1;
+    const Volume changed(one.geometry(), std::move(samples));
+    leave_behind(*store_of(noise(1), "v"), out);
+    EXPECT_EQ(convert_to_zarr(*store_of(changed, "v"), 0, out, small_chunks()).kept, 0U);
+    expect_same_boxes(*open_store(out), changed, 4);
+    fs::remove_all(out);
+    // A file of the same size and of the same time.
+    io::write_volume(noise(1), folder / "v.raw");
+    StoreOptions options;
+    options.raw = io::RawLayout{{40, 30, 20}, SampleType::uint8};
+    leave_behind(*open_store(folder / "v.raw", options), out);
+    const auto time = fs::last_write_time(folder / "v.raw");
+    io::write_volume(noise(2), folder / "v.raw");
+    fs::last_write_time(folder / "v.raw", time);
+    const auto anew = open_store(folder / "v.raw", options);
+    EXPECT_EQ(convert_to_zarr(*anew, 0, out, small_chunks()).kept, 0U);
+    expect_same_boxes(*open_store(out), noise(2), 5);
+}
+
+TEST(OwnFiles, an_interrupted_run_is_continued_for_the_same_settings_only) {
+    const ScratchFolder folder;
+    const fs::path out = folder / "v.zarr";
+    std::string bytes(std::size_t{2} * 40 * 30 * 20, '\0');
+    for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<char>(i * i / 7);
+    put_bytes(folder / "v.raw", bytes);
+    using Change = std::function<void(StoreOptions&, ConvertOptions&)>;
+    const std::map<std::string, Change> changes = {
+        {"byte order", [](StoreOptions& s, ConvertOptions&) { s.raw->big_endian = true; }},
+        {"type", [](StoreOptions& s, ConvertOptions&) { s.raw->type = SampleType::int16; }},
+        {"spacing", [](StoreOptions& s, ConvertOptions&) { s.spacing = Vec3(1, 1, 2); }},
+        {"size", [](StoreOptions& s, ConvertOptions&) { s.raw->size = {30, 40, 20}; }},
+        {"version", [](StoreOptions&, ConvertOptions& c) { c.zarr_version = 2; }},
+        {"chunk", [](StoreOptions&, ConvertOptions& c) { c.chunk = 16; }},
+        {"compression", [](StoreOptions&, ConvertOptions& c) {
+             c.compression = Compression::none;
+         }}};
+    for (const auto& [name, change] : changes) {
+        SCOPED_TRACE(name);
+        StoreOptions store;
+        store.raw = io::RawLayout{{40, 30, 20}, SampleType::uint16};
+        leave_behind(*open_store(folder / "v.raw", store), out);
+        ConvertOptions convert = small_chunks();
+        change(store, convert);
+        const auto source = open_store(folder / "v.raw", store);
+        EXPECT_EQ(convert_to_zarr(*source, 0, out, convert).kept, 0U);
+        expect_same_boxes(*open_store(out), volume_of(*source), 6);
+        fs::remove_all(out);
+    }
+}
+
+TEST(OwnFiles, edits_do_not_open_over_another_volume_in_the_originals_place) {
+    const ScratchFolder folder;
+    const auto put_original = [&](std::uint64_t seed) {
+        fs::remove_all(folder / "v.zarr");
+        (void)convert_to_zarr(*store_of(noise(seed), "v"), 0, folder / "v.zarr", small_chunks());
+    };
+    put_original(1);
+    const auto original = open_store(folder / "v.zarr");
+    const auto edits = edited(empty_samples(*original, noise(1), 0),
+                              edit::Fill{{{3, 3, 3}, {9, 9, 9}}, 7},
+                              [&](const SampleBox& box, std::span<std::byte> to) {
+                                  original->read(0, box, to, {});
+                              });
+    save_edits(*original, {folder / "v.zarr", {}}, 0, *edits.samples, folder / "e.zarr", {});
+    put_original(2);
+    const std::string message =
+        message_of<io::InputError>([&] { (void)open_store(folder / "e.zarr"); });
+    EXPECT_TRUE(contains(message, "holds other data")) << message;
+    put_original(1);  // made anew, the same: a copy on another disk must do
+    EXPECT_EQ(read_box(*open_store(folder / "e.zarr"), 0, {{5, 5, 5}, {5, 5, 5}})[0], std::byte{7});
+}
+
+/// A volume whose folder of results goes while it is read.
+class Disturbing : public Store {
+  public:
+    Disturbing(std::shared_ptr<const Store> of, int at, std::function<void()> disturb)
+        : of_(std::move(of)), at_(at), disturb_(std::move(disturb)) {}
+    const StoreInfo& info() const override { return of_->info(); }
+    Traffic traffic() const override { return {}; }
+    void read(int level, const SampleBox& box, std::span<std::byte> out,
+              std::stop_token stop) const override {
+        if (box.high[0] < 8 && reads_++ == at_) disturb_();  // not when its content is looked at
+        of_->read(level, box, out, std::move(stop));
+    }
+
+  private:
+    std::shared_ptr<const Store> of_;
+    int at_;
+    std::function<void()> disturb_;
+    mutable int reads_ = 0;
+};
+
+TEST(OwnFiles, a_conversion_whose_folder_goes_meanwhile_ends_with_a_line) {
+    const std::map<std::string, std::function<void(const fs::path&)>> disturbances = {
+        {"removed", [](const fs::path& partial) { fs::remove_all(partial); }},
+        {"renamed", [](const fs::path& partial) { fs::rename(partial, partial.string() + "2"); }},
+        {"emptied", [](const fs::path& partial) { fs::remove_all(partial / "result"); }},
+        {"chunks removed", [](const fs::path& partial) {
+             for (const auto& chunk : fs::directory_iterator(partial / "result/0/c"))
+                 fs::remove_all(chunk);
+         }},
+        {"replaced", [](const fs::path& partial) {
+             fs::rename(partial, partial.string() + "2");
+             fs::copy(partial.string() + "2", partial, fs::copy_options::recursive);
+         }}};
+    for (const auto& [name, disturb] : disturbances) {
+        SCOPED_TRACE(name);
+        const ScratchFolder folder;
+        const fs::path out = folder / "v.zarr";
+        const Disturbing store(store_of(noise(1), "v"), 7,
+                               [&] { disturb(out.string() + ".partial"); });
+        const std::string message = refusal(store, out);
+        EXPECT_TRUE(contains(message, "run it again")) << message;
+        EXPECT_FALSE(fs::exists(out));
+    }
+}
+
+TEST(OwnFiles, paths_that_are_not_utf8_are_written_and_read_again) {
+    const ScratchFolder folder;
+    const fs::path here = folder / "caf\xe9", there = folder / "th\xe9";
+    fs::create_directory(here);
+    const Volume volume = noise(1);
+    io::write_volume(volume, here / "v\xff.raw");
+    StoreOptions options;
+    options.raw = io::RawLayout{{40, 30, 20}, SampleType::uint8};
+    const std::string address = (here / "v\xff.raw").string();
+    const auto original = open_store(address, options);
+    const auto edits = edited(empty_samples(*original, volume, 0),
+                              edit::Fill{{{3, 3, 3}, {9, 9, 9}}, 7},
+                              [&](const SampleBox& box, std::span<std::byte> to) {
+                                  original->read(0, box, to, {});
+                              });
+    save_edits(*original, {address, options}, 0, *edits.samples, here / "e\xfe.zarr", {});
+    leave_behind(*original, here / "c\xfd.zarr");
+    EXPECT_GT(convert_to_zarr(*original, 0, here / "c\xfd.zarr", small_chunks()).kept, 0U);
+    fs::rename(here, there);
+    const auto again = open_store(there / "e\xfe.zarr");
+    EXPECT_EQ(read_box(*again, 0, {{5, 5, 5}, {5, 5, 5}})[0], std::byte{7});
+    expect_same_boxes(*open_store(there / "c\xfd.zarr"), volume, 8);
+}
+
+TEST(OwnFiles, a_disk_cache_removes_no_file_that_it_did_not_write) {
+    const ScratchFolder folder, precious;
+    const std::string name(30, 'a');
+    const std::vector<fs::path> foreign = {folder / "thesis.txt", folder / "ab/notes.txt",
+                                           folder / "ab" / name, precious / name};
+    fs::create_directory(folder / "ab");
+    fs::create_directory_symlink(precious.path(), folder / "cd");
+    for (const fs::path& file : foreign) {
+        put_bytes(file, std::string(200'000, 'x'));
+        fs::last_write_time(file, fs::file_time_type::clock::now() - std::chrono::hours(1000));
+    }
+    const DiskCache cache(folder.path(), 400'000);
+    const Bytes bytes(40'000);
+    for (int i = 0; i < 40; ++i) cache.put("piece " + std::to_string(i), bytes);
+    for (const fs::path& file : foreign) EXPECT_EQ(fs::file_size(file), 200'000U) << file;
+    EXPECT_FALSE(cache.find("piece 0")) << "the oldest entries went";
+    EXPECT_TRUE(cache.find("piece 39"));
+}
+
+TEST(OwnFiles, a_content_is_known_by_any_sample_and_by_the_grid) {
+    // Published values of XXH64.
+    const auto hash_of = [](const std::string& text) {
+        ContentHash hash;
+        for (const char& c : text) hash.take(std::as_bytes(std::span(&c, 1)));
+        return hash.value();
+    };
+    EXPECT_EQ(hash_of(""), 0xEF46DB3751D8E999U);
+    EXPECT_EQ(hash_of("abc"), 0x44BC2CF5AD770999U);
+    EXPECT_EQ(hash_of("Nobody inspects the spammish repetition"), 0xFBCEA83C8A378BF1U);
+    const Volume volume = noise(1);
+    const std::string content = content_of(*store_of(volume, "a"), 0);
+    EXPECT_EQ(content, content_of(*store_of(volume, "b"), 0));
+    EXPECT_NE(content, content_of(*store_of(noise(2), "a"), 0));
+    Geometry grid = volume.geometry();
+    grid.spacing[2] *= 2;
+    const auto* const first = static_cast<const std::uint8_t*>(volume.data());
+    const Volume longer(grid, std::vector<std::uint8_t>(first, first + volume.bytes()));
+    EXPECT_NE(content, content_of(*store_of(longer, "a"), 0));
+}
+
+}  // namespace
+}  // namespace palpate::stream::test
