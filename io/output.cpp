@@ -55,33 +55,24 @@ void remove_if_there(const std::filesystem::path& file) noexcept {
 
 }  // namespace
 
-PendingFile::PendingFile(const std::filesystem::path& target) : target_(followed(target)) {
-    buffer_.reserve(buffer_bytes);
-    if (target_ == "-") {
-        target_ = "standard output";
-        descriptor_ = open_standard_output();
-        if (descriptor_ < 0) fail("cannot be written: " + because(errno));
-        return;
-    }
-    if (target_.empty()) throw OutputError("the output has no name: give one");
+void check_output(const std::filesystem::path& path) {
+    const std::filesystem::path target = followed(path);
+    const auto fail = [&](const std::string& problem) {
+        throw OutputError(target.string() + ": " + problem);
+    };
+    if (target == "-") return;
+    if (target.empty()) throw OutputError("the output has no name: give one");
     std::error_code error;
-    const auto status = std::filesystem::status(target_, error);
-    if (std::filesystem::is_directory(status) || !target_.has_filename()) {
+    const auto status = std::filesystem::status(target, error);
+    if (std::filesystem::is_directory(status) || !target.has_filename()) {
         fail("is a folder: name a file in it");
     }
-    if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-        descriptor_ = open_to_write(target_);
-        if (descriptor_ < 0) fail("cannot be opened for writing: " + because(errno));
-        return;
+    if (std::filesystem::exists(status)) {
+        const int problem = why_unwritable(target);
+        if (problem != 0) fail("exists and cannot be overwritten: " + because(problem));
+        if (!std::filesystem::is_regular_file(status)) return;
     }
-    const int problem = std::filesystem::exists(status) ? why_unwritable(target_) : 0;
-    if (problem != 0) fail("exists and cannot be overwritten: " + because(problem));
-    open_temporary();
-}
-
-void PendingFile::open_temporary() {
-    const auto folder = folder_of(target_);
-    std::error_code error;
+    const auto folder = folder_of(target);
     if (!std::filesystem::is_directory(folder, error)) {
         if (error && error != std::errc::no_such_file_or_directory) {
             fail("cannot be written: " + because(error.value()));
@@ -91,6 +82,31 @@ void PendingFile::open_temporary() {
                  : "cannot be written: the folder " + folder.string() +
                        " does not exist: create it first");
     }
+    if (const int problem = why_unwritable(folder)) fail("cannot be written: " + because(problem));
+}
+
+PendingFile::PendingFile(const std::filesystem::path& target) : target_(followed(target)) {
+    check_output(target);
+    buffer_.reserve(buffer_bytes);
+    if (target_ == "-") {
+        target_ = "standard output";
+        descriptor_ = open_standard_output();
+        if (descriptor_ < 0) fail("cannot be written: " + because(errno));
+        return;
+    }
+    std::error_code error;
+    const auto status = std::filesystem::status(target_, error);
+    if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+        descriptor_ = open_to_write(target_);
+        if (descriptor_ < 0) fail("cannot be opened for writing: " + because(errno));
+        return;
+    }
+    open_temporary();
+}
+
+void PendingFile::open_temporary() {
+    const auto folder = folder_of(target_);
+    std::error_code error;
     remove_leftovers(folder);
     // The mode that a plain open would give, or that of the file it replaces.
     const auto old = std::filesystem::status(target_, error);

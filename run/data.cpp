@@ -1,8 +1,11 @@
 // Data with an editor, a player or a streamer.
 #include "palpate/run/data.hpp"
 
+#include <cstdlib>
+#include <random>
 #include <stdexcept>
 
+#include "palpate/io/output.hpp"
 #include "palpate/io/raw_options.hpp"
 #include "palpate/io/written_formats.hpp"
 #include "palpate/stream/convert.hpp"
@@ -13,6 +16,27 @@ namespace {
 
 bool is_zarr(const std::filesystem::path& path) {
     return path.extension() == ".zarr" && !path.stem().empty();
+}
+
+std::vector<std::filesystem::path> places_of_rescue() {
+    std::vector<std::filesystem::path> places;
+    std::error_code error;
+    const auto temporary = std::filesystem::temp_directory_path(error);
+    if (!error) places.push_back(temporary);
+    if (const char* home = std::getenv("HOME")) places.emplace_back(home);
+    places.emplace_back(".");
+    return places;
+}
+
+/// For nobody else: in a folder of temporary files, others could put links in our way.
+std::filesystem::path new_folder_in(const std::filesystem::path& place) {
+    std::random_device random;
+    std::filesystem::path folder;
+    do {
+        folder = place / ("palpate-edits-" + std::to_string(random()));
+    } while (!std::filesystem::create_directory(folder));
+    std::filesystem::permissions(folder, std::filesystem::perms::owner_all);
+    return folder;
 }
 
 }  // namespace
@@ -81,7 +105,9 @@ std::string Data::problem() const {
 }
 
 void Data::check_save_name(const std::string& path) const {
-    streamer_ ? stream::check_edits_name(path) : check_volume_name(path, start_->geometry());
+    if (streamer_) return stream::check_edits_place(path, opened());
+    check_volume_name(path, start_->geometry());
+    is_zarr(path) ? stream::check_zarr_place(path) : io::check_output(path);
 }
 
 void Data::require_saving() const {
@@ -100,6 +126,7 @@ std::string Data::save(const std::filesystem::path& path, const io::Progress& pr
     if (is_zarr(path)) {
         stream::ConvertOptions options;
         options.progress = progress;
+        options.resumable = false;
         stream::convert_to_zarr(*stream::store_of(volume, loaded_.name), 0, path, options);
     } else {
         io::WriteOptions options;
@@ -110,13 +137,34 @@ std::string Data::save(const std::filesystem::path& path, const io::Progress& pr
     return "saved " + path.string() + io::opening_words(path, volume);
 }
 
-/// What was edited of a store, beside it.
-std::string Data::save_edits(const std::filesystem::path& path, const io::Progress& progress) {
+std::filesystem::path Data::rescue() {
+    std::exception_ptr problem;
+    for (const std::filesystem::path& place : places_of_rescue()) {
+        try {
+            std::filesystem::path kept = new_folder_in(place);
+            kept /= streamer_ ? "edits.zarr" : "edits.nrrd";
+            save(kept, {});
+            return kept;
+        } catch (const std::exception&) {
+            problem = std::current_exception();
+        }
+    }
+    std::rethrow_exception(problem);
+}
+
+stream::Opened Data::opened() const {
     const auto& from = std::get<StoreSource>(loaded_.source.from);
     stream::Opened opened{from.address, from.options};
     opened.options.time = loaded_.source.frame.value_or(0);
+    return opened;
+}
+
+/// What was edited of a store, beside it.
+std::string Data::save_edits(const std::filesystem::path& path, const io::Progress& progress) {
+    const auto& from = std::get<StoreSource>(loaded_.source.from);
     const std::shared_ptr<const Samples> edits = editor_->state().samples;
-    stream::save_edits(*loaded_.streamed->store, opened, from.loader.level, *edits, path, progress);
+    stream::save_edits(*loaded_.streamed->store, opened(), from.loader.level, *edits, path,
+                       progress);
     editor_->set_saved(edits);
     return "saved the edits of " + from.address + " as " + path.string() +
            ": it opens as the edited volume while the original stays where it is";

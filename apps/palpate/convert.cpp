@@ -75,6 +75,9 @@ void to_zarr(const ConvertWords& words, const Taken& taken) {
         options.progress = [&](double fraction) { bar.at(fraction); };
         converted = stream::convert_to_zarr(*taken.store, taken.level, words.output, options);
     }
+    if (!converted.note.empty() && !words.source.quiet) {
+        fmt::print(stderr, "palpate: note: {}\n", converted.note);
+    }
     if (words.json) {
         print_json({{"format", "OME-Zarr " + words.ome_version},
                     {"levels", converted.levels},
@@ -107,13 +110,14 @@ void to_file(const ConvertWords& words, const Taken& taken) {
 
 void convert(const ConvertWords& words) {
     check_outputs({words.source.name()}, {words.output});
+    const bool zarr = std::filesystem::path(words.output).extension() == ".zarr";
+    if (zarr) stream::check_zarr_place(words.output);
     const Taken taken = opened(words);
     const auto levels = static_cast<int>(taken.store->info().levels.size());
     if (taken.level >= levels) {
         throw std::invalid_argument(fmt::format("--level {}: {} has {} levels, numbered from 0",
                                                 taken.level, words.source.name(), levels));
     }
-    const bool zarr = std::filesystem::path(words.output).extension() == ".zarr";
     zarr ? to_zarr(words, taken) : to_file(words, taken);
     stop_if_interrupted();
 }

@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "palpate/io/output.hpp"
+
 namespace palpate::app {
 namespace {
 
@@ -24,6 +26,11 @@ bool same_file(const std::string& a, const std::string& b) {
     // Made absolute first: a relative name that does not exist would stay relative.
     return fs::weakly_canonical(fs::absolute(a), error) ==
            fs::weakly_canonical(fs::absolute(b), error);
+}
+
+/// A folder, whose own check comes from what makes it.
+bool is_zarr(const fs::path& name) {
+    return name.extension() == ".zarr";
 }
 
 }  // namespace
@@ -46,6 +53,7 @@ void check_outputs(const std::vector<std::string>& inputs,
                    const std::vector<std::string>& outputs) {
     for (std::size_t i = 0; i < outputs.size(); ++i) {
         if (outputs[i].empty()) continue;
+        if (!is_zarr(outputs[i])) io::check_output(outputs[i]);
         for (const std::string& input : inputs) {
             if (input.empty() || !same_file(outputs[i], input)) continue;
             throw std::invalid_argument(

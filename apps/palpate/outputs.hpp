@@ -17,7 +17,8 @@ bool is_stream(const std::string& name);
 void print_json(const nlohmann::ordered_json& json);
 
 /// Throws std::invalid_argument if an output is one of the inputs, which it would replace, or two
-/// outputs are the same. Empty names are skipped; devices such as /dev/null may be shared.
+/// outputs are the same; io::OutputError if one cannot be written (a folder *.zarr is not looked at
+/// here). Empty names are skipped; devices such as /dev/null may be shared.
 void check_outputs(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs);
 
 }  // namespace palpate::app

@@ -237,7 +237,7 @@ void print_report(const ServoReport& report, double seconds, const DeviceInfo& d
 }
 
 /// Saves the volume for --save; without it, warns of edits that are lost.
-void save_at_end(run::Data& data, const RunOptions& options) {
+void save_as_asked(run::Data& data, const RunOptions& options) {
     const bool quiet = options.source.quiet;
     if (!options.save.empty() && data.is_streamed() && !data.editor().state().changed) {
         if (!quiet) fmt::print(stderr, "nothing was edited, so nothing was saved\n");
@@ -253,6 +253,24 @@ void save_at_end(run::Data& data, const RunOptions& options) {
         if (!quiet) fmt::print(options.json ? stderr : stdout, "{}\n", saved);
     } else if (!data.is_sequence() && data.editor().state().changed && !quiet) {
         fmt::print(stderr, "the edits were not saved (--save FILE, or the command save FILE)\n");
+    }
+}
+
+/// `unsaved`: why a command could not save; empty: none failed. Edits that could not be saved where
+/// they should be go to another place. Returns what went wrong and where they are.
+std::string save_at_end(run::Data& data, const RunOptions& options, std::string unsaved) {
+    try {
+        save_as_asked(data, options);
+    } catch (const Interrupted&) {
+        throw;
+    } catch (const std::exception& e) {
+        unsaved += (unsaved.empty() ? "" : "; ") + std::string(e.what());
+    }
+    if (unsaved.empty() || data.is_sequence() || !data.editor().state().changed) return unsaved;
+    try {
+        return unsaved + "; the edits are kept in " + data.rescue().string();
+    } catch (const std::exception& e) {
+        return unsaved + "; they could not be kept elsewhere: " + e.what();
     }
 }
 
@@ -332,7 +350,7 @@ void touch(const TouchOptions& options) {
     if (data->is_streamed() && !options.json && !options.source.quiet) {
         fmt::print("{}\n", streaming_text(data->streaming()));
     }
-    save_at_end(*data, options);
+    unsaved = save_at_end(*data, options, unsaved);
     finish_recording(*run, options);
     if (!unsaved.empty()) throw io::OutputError(unsaved);
     if (run->device_failure() != DeviceFailure::none) {

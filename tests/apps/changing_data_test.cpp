@@ -148,6 +148,18 @@ TEST(Touch, says_which_commands_the_data_do_not_allow) {
                    "no origin and no directions");
 }
 
+/// The first sample that was filled, in the file that the message names, which is removed.
+double rescued_sample(const Outcome& done) {
+    const std::string words = "the edits are kept in ";
+    const auto at = done.err.find(words);
+    if (at == std::string::npos) return -1;
+    const auto begin = at + words.size();
+    const std::filesystem::path kept = done.err.substr(begin, done.err.find('\n', begin) - begin);
+    const double sample = io::read_volume(kept).volume.sample({2, 2, 2});
+    std::filesystem::remove_all(kept.parent_path());
+    return sample;
+}
+
 TEST(Touch, a_volume_that_cannot_be_saved_gives_status_5_and_the_session_goes_on) {
     const ScratchFolder folder;
     put_bytes(folder / "c.txt", "0.1 fill 1,1,1:4,4,4 9\n0.2 save no/such/folder.nrrd\n0.4 quit\n");
@@ -155,7 +167,42 @@ TEST(Touch, a_volume_that_cannot_be_saved_gives_status_5_and_the_session_goes_on
         folder, "touch " + ball + " --device simulated:hand=hold --commands c.txt --record r.csv");
     EXPECT_EQ(done.status, 5);
     EXPECT_TRUE(contains(done.err, "folder does not exist")) << done.err;
+    EXPECT_EQ(rescued_sample(done), 9);
     EXPECT_EQ(palpate(folder, "replay r.csv --validate").status, 0);
+}
+
+TEST(Touch, edits_that_cannot_be_saved_at_the_end_are_kept_elsewhere_and_the_recording_too) {
+    const ScratchFolder folder;
+    // The name is free when the session begins, and not when it ends.
+    put_bytes(folder / "c.txt",
+              "0.1 fill 1,1,1:4,4,4 9\n0.2 save o.zarr\n0.3 fill 1,1,1:4,4,4 8\n0.4 quit\n");
+    const Outcome done = palpate(folder, "touch " + ball +
+                                             " --device simulated:hand=hold --commands c.txt "
+                                             "--record r.csv --save o.zarr");
+    EXPECT_EQ(done.status, 5);
+    EXPECT_TRUE(contains(done.err, "o.zarr: is there already")) << done.err;
+    EXPECT_EQ(rescued_sample(done), 8);
+    EXPECT_EQ(palpate(folder, "replay r.csv --validate").status, 0);
+}
+
+TEST(Touch, an_output_that_cannot_be_is_refused_before_the_session) {
+    const ScratchFolder folder;
+    std::filesystem::create_directory(folder / "folder");
+    put_bytes(folder / "file", "x");
+    for (const std::string option : {"--save", "--record"}) {
+        SCOPED_TRACE(option);
+        for (const auto& [name, reason] :
+             {std::pair{"none/o.nrrd", "does not exist"}, {"file/o.nrrd", "is not a folder"}}) {
+            expect_failure(palpate(folder, Words{"touch", ball, option, name}), 5, reason);
+        }
+    }
+    std::filesystem::create_directory(folder / "folder.nrrd");
+    expect_failure(palpate(folder, Words{"touch", ball, "--save", "folder.nrrd"}), 5,
+                   "is a folder");
+    for (const std::string name : {"folder.zarr", "none/o.zarr"}) {
+        if (name == "folder.zarr") std::filesystem::create_directory(folder / name);
+        expect_failure(palpate(folder, Words{"touch", ball, "--save", name}), 5, name);
+    }
 }
 
 TEST(Touch, feels_frames_that_another_program_pushes) {

@@ -119,6 +119,33 @@ TEST(Convert, an_interruption_exits_with_130_and_other_options_begin_anew) {
     EXPECT_EQ(json::parse(other.out).at("chunks"), 125 + 27 + 8 + 1);
 }
 
+TEST(Convert, other_work_begins_anew_and_says_so) {
+    const ScratchFolder folder;
+    EXPECT_EQ(ended_by(SIGINT, folder).status, 130);
+    // The name of the source is the same; its samples are not.
+    const Outcome other =
+        palpate(folder, std::string("convert --json --chunk 8 --smooth 1 ") + large + " a.zarr");
+    expect_done(other);
+    EXPECT_TRUE(contains(other.err, "begun anew")) << other.err;
+    EXPECT_EQ(json::parse(other.out).at("kept"), 0);
+    expect_done(palpate(folder, std::string("convert -q --smooth 1 ") + large + " b.nrrd"));
+    expect_done(palpate(folder, "convert -q a.zarr a.nrrd"));
+    expect_same(volume_at(folder / "a.nrrd"), volume_at(folder / "b.nrrd"));
+}
+
+TEST(Convert, a_folder_of_somebody_else_where_it_would_grow_is_refused_and_stays) {
+    const ScratchFolder folder, precious;
+    put_bytes(precious / "thesis.txt", "years");
+    fs::create_directory_symlink(precious.path(), folder / "a.zarr.partial");
+    fs::create_directory(folder / "b.zarr.partial");
+    put_bytes(folder / "b.zarr.partial/thesis.txt", "years");
+    for (const std::string out : {"a.zarr", "b.zarr"}) {
+        expect_failure(palpate(folder, std::string("convert ") + small + " " + out), 5,
+                       out + ".partial: is a");
+        EXPECT_EQ(bytes_of(folder / (out + ".partial/thesis.txt")), "years");
+    }
+}
+
 TEST(Convert, wrong_use_bad_input_and_outputs_that_cannot_be_leave_nothing_behind) {
     const ScratchFolder folder;
     expect_done(palpate(folder, std::string("convert -q ") + small + " a.zarr"));

@@ -215,13 +215,9 @@ std::shared_ptr<const Samples> EditController::unsaved() const {
 }
 
 void rescue_edits(run::Data& data) {
-    const QString name = QDir::temp().filePath(QString("palpate-edits-%1.%2")
-                                                   .arg(QCoreApplication::applicationPid())
-                                                   .arg(data.is_streamed() ? "zarr" : "nrrd"));
     try {
-        data.save(name.toStdString(), {});
         std::fprintf(stderr, "palpate: the edits that were not saved are in %s\n",
-                     name.toLocal8Bit().constData());
+                     data.rescue().c_str());
     } catch (const std::exception& e) {
         std::fprintf(stderr, "palpate: the edits could not be kept: %s\n", e.what());
     }

@@ -69,7 +69,7 @@ class EditController : public QObject {
     QString problem_;
 };
 
-/// Saves edits in the folder for temporary files; prints the name on standard error.
+/// Saves edits where run::Data::rescue() finds a place; prints the name on standard error.
 void rescue_edits(run::Data& data);
 
 }  // namespace palpate::viewer

@@ -12,6 +12,10 @@
 
 namespace palpate::io {
 
+/// Throws OutputError if a file cannot be written here: no such folder, no permission, a folder has
+/// its name. Makes and opens nothing, so a long run can begin with it; a PendingFile does so, too.
+void check_output(const std::filesystem::path& path);
+
 /// A file being written: `.palpate-PID-N.part` beside the target. Files and folders of this kind
 /// that killed processes have left in the folder are removed when a process opens its first file
 /// there. Without commit() the target stays unchanged and nothing is left behind. A target that

@@ -9,6 +9,7 @@
 #include "palpate/run/setup.hpp"
 #include "palpate/run/streamer.hpp"
 #include "palpate/run/volume_editor.hpp"
+#include "palpate/stream/edits.hpp"
 
 namespace palpate::run {
 
@@ -43,7 +44,8 @@ class Data {
     void use_tool(const Servo& servo, std::shared_ptr<const Tool> tool);
     /// Why edits or frames do not come; usually empty.
     std::string problem() const;
-    /// Throws std::invalid_argument for a name that save() cannot write to.
+    /// Throws std::invalid_argument for a name that save() cannot write to, io::OutputError for a
+    /// place: no such folder, no permission, something else that has this name.
     void check_save_name(const std::string& path) const;
     /// Throws std::invalid_argument, saying why, where save() has nothing to write.
     void require_saving() const;
@@ -53,7 +55,13 @@ class Data {
     /// as require_saving().
     std::string save(const std::filesystem::path& path, const io::Progress& progress);
 
+    /// Saves where there is no choice left: in a new folder that only this user can enter, in that
+    /// of temporary files or, if that fails, in the home folder or the current one. Returns the
+    /// name. Throws as save() of the last one.
+    std::filesystem::path rescue();
+
   private:
+    stream::Opened opened() const;
     std::string save_edits(const std::filesystem::path& path, const io::Progress& progress);
 
     LoadedVolume loaded_;

@@ -174,13 +174,15 @@ TEST_F(ChangingData, a_signal_ends_it_without_a_question_and_rescues_the_edits) 
     feel("synthetic:sphere:48x48x48");
     carve();
     const auto carved = work().samples;
+    const QStringList before = QDir::temp().entryList({"palpate-edits-*"}, QDir::Dirs);
     window_->end();  // what main() does on a signal
     EXPECT_EQ(window_->live(), nullptr) << "forces are gone";
-    const QString kept = QDir::temp().filePath(
-        QString("palpate-edits-%1.nrrd").arg(QCoreApplication::applicationPid()));
-    ASSERT_TRUE(QFile::exists(kept));
-    const Volume rescued = io::read_volume(kept.toStdString()).volume;
-    QFile::remove(kept);
+    QStringList kept = QDir::temp().entryList({"palpate-edits-*"}, QDir::Dirs);
+    for (const QString& name : before) kept.removeAll(name);
+    ASSERT_EQ(kept.size(), 1);
+    QDir folder(QDir::temp().filePath(kept[0]));
+    const Volume rescued = io::read_volume(folder.filePath("edits.nrrd").toStdString()).volume;
+    folder.removeRecursively();
     const Volume felt = flattened(*carved);
     EXPECT_EQ(std::memcmp(rescued.data(), felt.data(), felt.bytes()), 0);
 }

@@ -177,13 +177,14 @@ TEST_F(StreamingEdits, that_were_not_saved_are_rescued_when_a_signal_ends_the_wi
     };
     EXPECT_GT(sample_in(scratch("ring.zarr").toStdString()), 60);
     editor().apply(fill_);
+    const QStringList before = QDir::temp().entryList({"palpate-edits-*"}, QDir::Dirs);
     window_->end();
-    const std::string rescued =
-        QDir::temp()
-            .filePath(QString("palpate-edits-%1.zarr").arg(QCoreApplication::applicationPid()))
-            .toStdString();
-    EXPECT_EQ(sample_in(rescued), 0);
-    std::filesystem::remove_all(rescued);
+    QStringList kept = QDir::temp().entryList({"palpate-edits-*"}, QDir::Dirs);
+    for (const QString& name : before) kept.removeAll(name);
+    ASSERT_EQ(kept.size(), 1);
+    QDir rescued(QDir::temp().filePath(kept[0]));
+    EXPECT_EQ(sample_in(rescued.filePath("edits.zarr").toStdString()), 0);
+    rescued.removeRecursively();
     window_.reset();
 }
 
