@@ -1,8 +1,9 @@
-// Images that grow chunk by chunk, for palpate.distributed. Reading and writing runs without the
-// GIL.
+// Images that grow chunk by chunk and the folders that they grow in, for palpate.distributed.
+// Reading and writing runs without the GIL.
 #include "palpate/stream/growing_image.hpp"
 
 #include "bindings/python/bindings.hpp"
+#include "io/growing_folder.hpp"
 
 namespace palpate::python {
 namespace {
@@ -90,6 +91,21 @@ void make_coarser(const stream::GrowingImage& image, int level, const Index3& lo
     });
 }
 
+/// Python does not say when an object goes, so a folder is let go explicitly.
+struct Folder {
+    std::unique_ptr<io::GrowingFolder> grown;
+
+    io::GrowingFolder& open() const {
+        if (!grown) throw std::invalid_argument("this folder is closed");
+        return *grown;
+    }
+};
+
+Folder resumable(const fs::path& out, const std::string& job) {
+    return {std::unique_ptr<io::GrowingFolder>(
+        new io::GrowingFolder(io::GrowingFolder::resumable(out, job)))};
+}
+
 }  // namespace
 
 void bind_growing_images(py::module_& module) {
@@ -115,6 +131,12 @@ void bind_growing_images(py::module_& module) {
         .def("write", &write_block, py::arg("low"), py::arg("block"), Unlocked())
         .def("make_coarser", &make_coarser, py::arg("level"), py::arg("low"), py::arg("high"),
              Unlocked());
+    py::class_<Folder>(module, "_GrowingFolder")
+        .def(py::init(&resumable), py::arg("out"), py::arg("job"))
+        .def_property_readonly("note", [](const Folder& folder) { return folder.open().note(); })
+        .def(
+            "put_in_place", [](const Folder& folder) { folder.open().put_in_place(); }, Unlocked())
+        .def("close", [](Folder& folder) { folder.grown.reset(); });
 }
 
 }  // namespace palpate::python

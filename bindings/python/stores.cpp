@@ -2,6 +2,7 @@
 // reading runs without the GIL.
 #include "bindings/python/bindings.hpp"
 #include "palpate/stream/store.hpp"
+#include "stream/content.hpp"
 
 namespace palpate::python {
 namespace {
@@ -102,6 +103,12 @@ void bind_open_store(py::module_& module) {
         "(docs/streaming.md). cache: a folder that keeps what came over the network. Reads "
         "headers\n"
         "only. Raises InputError.");
+    // For palpate.distributed.
+    module.def(
+        "_content_of",
+        [](const OpenStore& s, int level) { return stream::content_of(*s.store, level); },
+        Unlocked());
+    module.def("_files_at", &stream::files_at, Unlocked());
 }
 
 }  // namespace

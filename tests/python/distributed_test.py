@@ -109,7 +109,7 @@ def test_a_run_that_was_stopped_is_continued_with_what_is_whole(client, tmp_path
         convert(client, source, out, chunk=16, block=32, dequantize=8, progress=stop_at(stage, 1 if stage == "level-1" else 4))
     assert not os.path.exists(out)
     if stage == "level-1":  # a chunk that is damaged is made again
-        chunk = pathlib.Path(f"{out}.partial") / "0/c/1/1/1"
+        chunk = pathlib.Path(f"{out}.partial") / "result/0/c/1/1/1"
         data = bytearray(chunk.read_bytes())
         data[len(data) // 2] ^= 1
         chunk.write_bytes(data)
@@ -125,6 +125,32 @@ def test_other_work_is_not_continued(client, tmp_path):
     with pytest.raises(KeyboardInterrupt):
         convert(client, source, out, chunk=16, block=32, progress=stop_at("level-0", 5))
     palpate.write(palpate.Volume(palpate.load(source).volume.array + numpy.uint8(1)), source)
+    assert convert(client, source, out, chunk=16, block=32).kept == 0
+    assert palpate.open_store(out).range[0] == 1
+
+
+def test_a_folder_of_somebody_else_is_refused_and_stays(client, tmp_path):
+    source, precious = ball(tmp_path), tmp_path / "precious"
+    precious.mkdir()
+    (precious / "thesis.txt").write_text("years")
+    (tmp_path / "linked.zarr.partial").symlink_to(precious)
+    (tmp_path / "folder.zarr.partial").mkdir()
+    (tmp_path / "folder.zarr.partial" / "thesis.txt").write_text("years")
+    for name in ("linked.zarr", "folder.zarr"):
+        with pytest.raises(palpate.OutputError, match=f"{name}.partial: is a"):
+            convert(client, source, str(tmp_path / name), chunk=16, block=32)
+        assert (tmp_path / f"{name}.partial" / "thesis.txt").read_text() == "years"
+
+
+def test_other_work_that_looks_the_same_is_not_continued(client, tmp_path):
+    source, out = ball(tmp_path), str(tmp_path / "many.zarr")
+    with pytest.raises(KeyboardInterrupt):
+        convert(client, source, out, chunk=16, block=32, progress=stop_at("level-0", 5))
+    before = os.stat(source)
+    palpate.write(palpate.Volume(palpate.load(source).volume.array + numpy.uint8(1), spacing=(0.5, 0.5, 0.7),
+                                 origin=(1, 2, 3)), source)
+    os.utime(source, ns=(before.st_atime_ns, before.st_mtime_ns))
+    assert os.stat(source).st_size == before.st_size
     assert convert(client, source, out, chunk=16, block=32).kept == 0
     assert palpate.open_store(out).range[0] == 1
 
@@ -176,7 +202,7 @@ def test_the_program_says_in_a_line_what_is_wrong_and_goes_on_after_a_stop(tmp_p
     command = [sys.executable, "-m", "palpate.distributed", source, out, "--chunk", "16", "--block", "16",
                "--dequantize", "40", "--workers", "1"]
     running = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
-    records = pathlib.Path(f"{out}.work/records/state-0")
+    records = pathlib.Path(f"{out}.partial/work/records/state-0")
     while running.poll() is None and not (records.exists() and any(records.iterdir())):
         time.sleep(0.05)
     running.send_signal(signal.SIGINT)

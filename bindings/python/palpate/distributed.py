@@ -10,7 +10,6 @@ bits of one machine. What an earlier run has finished, and is found whole, is ke
 import argparse
 import contextlib
 import dataclasses
-import fcntl
 import functools
 import json
 import os
@@ -26,7 +25,7 @@ from typing import Any, Callable, Optional
 import numpy
 from distributed import Client, LocalCluster, as_completed
 
-from . import InputError, OutputError, Volume, __version__, _palpate, open_store, sharpened, smoothed
+from . import InputError, Volume, __version__, _palpate, open_store, sharpened, smoothed
 
 # What a block reads round itself while it is dequantized: more means fewer stages, each with more to
 # do twice [samples].
@@ -60,10 +59,10 @@ class _Job:
     """All that a worker has to know."""
     source: str
     options: bytes  # of open_store(), pickled
-    seen: str  # of the source's files
+    seen: str  # of the source's files and content
     level: int
     folder: str  # of the image, while it grows
-    work: str  # of what is thrown away at the end
+    work: str  # of what is thrown away at the end, in the same folder
     type: str
     smooth: int
     prefilter: bool
@@ -339,43 +338,30 @@ def _finest_of(state, job, block):
 
 def seen(address):
     """What tells whether a source is the one of the run before: names, sizes and times of its files."""
-    path = Path(address)
-    if not path.exists():
-        return None
-    files = [path] if path.is_file() else sorted(p for p in path.iterdir() if p.is_file())
-    return [[p.name, p.stat().st_size, p.stat().st_mtime_ns] for p in files]
+    return _palpate._files_at(address)
 
 
 @contextlib.contextmanager
-def _folders(out, note):
-    """The folder of the image and that of the work, locked; both new unless `note` says the same."""
-    image, work = Path(f"{out}.partial"), Path(f"{out}.work")
-    if os.path.lexists(out):
-        raise OutputError(f"{out}: is there already; remove it or give another name")
+def _growing(out, job):
+    """OUT.partial, locked; afterwards its result is OUT. New, unless an earlier run had the same job."""
+    folder = _palpate._GrowingFolder(out, job)
     try:
-        work.mkdir(exist_ok=True)
-    except OSError as error:
-        raise OutputError(f"{work}: {error.strerror}; choose another folder") from None
-    lock = os.open(work, os.O_RDONLY)
-    try:
-        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        os.close(lock)
-        raise OutputError(f"{work}: another process is working there; wait for that") from None
-    try:
-        if _get(work / "job.json") != note:
-            shutil.rmtree(image, ignore_errors=True)
-            for path in work.iterdir():
-                shutil.rmtree(path) if path.is_dir() else path.unlink()
-            _put(work / "job.json", note)
-        image.mkdir(exist_ok=True)
-        yield image, work
-        for left in image.rglob("*.part-*"):  # of workers that were killed
+        if folder.note:
+            print(f"palpate.distributed: note: {folder.note}", file=sys.stderr)
+        yield
+        for left in Path(_result(out)).rglob("*.part-*"):  # of workers that were killed
             left.unlink()
-        image.rename(out)
-        shutil.rmtree(work)
+        folder.put_in_place()
     finally:
-        os.close(lock)
+        folder.close()
+
+
+def _result(out):
+    return f"{out}.partial/result"
+
+
+def _work(out):
+    return f"{out}.partial/work"
 
 
 def convert(client: Client, source: str, out: str, *, level: int = 0, dequantize: int = 0,
@@ -402,12 +388,12 @@ def convert(client: Client, source: str, out: str, *, level: int = 0, dequantize
     if not 0 <= level < len(store.levels):
         raise ValueError(f"{source}: has {len(store.levels)} levels, numbered from 0")
     kind = "float32" if dequantize or smooth or prefilter else store.type
-    job = _Job(source, pickle.dumps(options or {}), json.dumps(seen(source)), level, f"{out}.partial", f"{out}.work", kind, smooth, prefilter,
-               chunk, compression, ome_version)
+    content = _palpate._content_of(store, level)
+    job = _Job(source, pickle.dumps(options or {}), f"{seen(source)} {content}", level, _result(out), _work(out), kind,
+               smooth, prefilter, chunk, compression, ome_version)
     job.image("level-0")  # refuses a wrong format before anything is made
     check_workers(client)
-    note = json.dumps([__version__, repr(job), dequantize, block], indent=1)
-    with _folders(out, note):
+    with _growing(out, json.dumps([__version__, repr(job), dequantize, block])):
         return _Conversion(client, job, block, progress).run(dequantize)
 
 
