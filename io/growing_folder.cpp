@@ -8,6 +8,7 @@
 
 #include <cerrno>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <random>
 
 #include "io/helper_process.hpp"
@@ -58,7 +59,8 @@ bool is_same(const struct stat& one, const struct stat& other) {
 
 /// Whether a name in an open folder is still that of what is open as `held`.
 bool is_still(int folder, const char* name, int held) {
-    struct stat now {}, then {};
+    struct stat now {
+    }, then{};
     return ::fstatat(folder, name, &now, AT_SYMLINK_NOFOLLOW) == 0 && ::fstat(held, &then) == 0 &&
            is_same(now, then);
 }
@@ -88,8 +90,10 @@ std::string text_of_marker(int folder) {
 /// The job in the marker of an open folder; nothing if there is no marker of ours.
 std::optional<std::string> job_in(int folder) {
     const nlohmann::json marker = nlohmann::json::parse(text_of_marker(folder), nullptr, false);
-    if (!marker.is_object() || marker.value("palpate", nlohmann::json()) != maker) return std::nullopt;
-    const nlohmann::json nonce = marker.value("nonce", nlohmann::json()), job = marker.value("job", nlohmann::json());
+    if (!marker.is_object() || marker.value("palpate", nlohmann::json()) != maker)
+        return std::nullopt;
+    const nlohmann::json nonce = marker.value("nonce", nlohmann::json()),
+                         job = marker.value("job", nlohmann::json());
     if (!nonce.is_string() || nonce.get<std::string>().size() != nonce_digits || !job.is_string()) {
         return std::nullopt;
     }
@@ -156,7 +160,8 @@ void GrowingFolder::make(const std::string* job) {
     folder_ = make_temporary_folder(parent_of(out_), error);
     if (error) refuse(out_, "cannot be written (" + error.message() + "); choose another folder");
     try {
-        const nlohmann::json marker = {{"palpate", maker}, {"nonce", new_nonce()}, {"job", job ? *job : ""}};
+        const nlohmann::json marker = {
+            {"palpate", maker}, {"nonce", new_nonce()}, {"job", job ? *job : ""}};
         if (job) write_file(folder_ / marker_name, marker.dump(1));
         hold(::open(folder_.c_str(), as_folder));
     } catch (...) {
@@ -179,7 +184,8 @@ bool GrowingFolder::take(const std::string& job) {
     if (folder < 0) {
         if (errno == ENOENT) return false;
         if (errno != ENOTDIR && errno != ELOOP) refuse(folder_, reason(errno) + what_to_do);
-        refuse(folder_, std::string("is a link or a file, which Palpate did not make") + what_to_do);
+        refuse(folder_,
+               std::string("is a link or a file, which Palpate did not make") + what_to_do);
     }
     lock_ = folder;
     const auto refused = [&](const std::string& why) {
@@ -216,8 +222,9 @@ void GrowingFolder::begin_anew() {
     const int problem = errno;
     let_go();
     if (!unknown.empty()) {
-        refuse(folder_ / unknown, "was not written by Palpate, so that this folder of an "
-                                  "interrupted run is not removed; move it elsewhere");
+        refuse(folder_ / unknown,
+               "was not written by Palpate, so that this folder of an "
+               "interrupted run is not removed; move it elsewhere");
     }
     if (!removed) refuse(folder_, reason(problem) + what_to_do);
     note_ = folder_.string() +

@@ -178,17 +178,25 @@ void PendingFile::complete() {
     if (::close(closing) != 0 && errno != EINTR) fail("could not be written: " + because(errno));
 }
 
-/// Not for good: what the target held before is kept under the temporary name.
+/// Not for good: what the target held before is kept under the temporary name. Where names cannot
+/// be exchanged, a copy of it, so that the target is there all the time.
 void PendingFile::put_in_place(bool for_good) {
     if (temporary_.empty()) return;
     in_place_ = true;
     if (!for_good && exchange(temporary_, target_)) return;
-    if (!replace(temporary_, target_)) {
-        const int problem = errno;
+    std::filesystem::path before;
+    std::error_code error;
+    if (!for_good && std::filesystem::exists(target_, error)) {
+        before = temporary_in(folder_of(target_));
+        std::filesystem::copy_file(target_, before, error);
+    }
+    if (error || !replace(temporary_, target_)) {
+        const int problem = error ? error.value() : errno;
+        remove_if_there(before);
         in_place_ = false;
         fail("could not be put in place: " + because(problem));
     }
-    temporary_.clear();
+    temporary_ = before;
 }
 
 void PendingFile::take_back() noexcept {

@@ -7,7 +7,6 @@
 namespace palpate::io {
 namespace {
 
-
 bool is_utf8(const std::string& text) {
     try {
         (void)nlohmann::json(text).dump();
@@ -33,7 +32,8 @@ nlohmann::json json_of_path(const std::filesystem::path& path) {
 
 std::filesystem::path path_from_json(const nlohmann::json& json) {
     if (json.is_string()) return json.get<std::string>();
-    const nlohmann::json digits = json.is_object() ? json.value("bytes", nlohmann::json()) : nlohmann::json();
+    const nlohmann::json digits =
+        json.is_object() ? json.value("bytes", nlohmann::json()) : nlohmann::json();
     const std::string text = digits.is_string() ? digits.get<std::string>() : "odd";
     std::string bytes;
     for (std::size_t i = 0; i + 1 < text.size(); i += 2) {

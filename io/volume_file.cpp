@@ -131,8 +131,8 @@ VolumeFile read_volume(const fs::path& path, const ReadOptions& options) {
 
 namespace {
 
-/// The folder beside the output in which the helper writes. The helper removes it, on signals too;
-/// this does so after a helper that crashed.
+/// The folder beside the output in which the helper writes. The helper makes and removes it, on
+/// signals too; this removes it after a helper that crashed.
 class Workshop {
   public:
     explicit Workshop(const fs::path& output) {
@@ -145,17 +145,9 @@ class Workshop {
             throw OutputError(output.string() + ": is a folder; give a file name");
         }
         remove_leftovers(parent);
-        folder_ = make_temporary_folder(parent, error);
-        if (error) {
-            throw OutputError(output.string() + ": cannot be written there (" + error.message() +
-                              "); choose another folder");
-        }
-        lock_ = lock_temporary(folder_);
+        folder_ = temporary_in(parent);
     }
-    ~Workshop() {
-        remove_tree(folder_);
-        if (lock_ >= 0) ::close(lock_);
-    }
+    ~Workshop() { remove_tree(folder_); }
     Workshop(const Workshop&) = delete;
     Workshop& operator=(const Workshop&) = delete;
 
@@ -163,7 +155,6 @@ class Workshop {
 
   private:
     fs::path folder_;
-    int lock_ = -1;
 };
 
 }  // namespace

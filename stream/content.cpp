@@ -48,7 +48,7 @@ struct Effort {
 
 Effort effort_for(const StoreInfo& info) {
     if (info.format == "memory") return {UINT64_MAX, 0};
-    if (is_remote(info.address)) return {std::uint64_t{4} << 20, 16};
+    if (is_remote(info.address)) return {std::uint64_t{1} << 20, 8};  // each costs a round trip
     return {std::uint64_t{64} << 20, 64};
 }
 
@@ -62,8 +62,7 @@ void take_box(ContentHash& hash, const Store& store, int level, const SampleBox&
 void take_whole(ContentHash& hash, const Store& store, int level) {
     const Level& grid = store.info().levels[static_cast<std::size_t>(level)];
     const Index3 last = grid.geometry.size - Index3::Ones();
-    const std::uint64_t plane =
-        bytes_of({{0, 0, 0}, {last[0], last[1], 0}}, store.info().type);
+    const std::uint64_t plane = bytes_of({{0, 0, 0}, {last[0], last[1], 0}}, store.info().type);
     constexpr std::uint64_t at_a_time = std::uint64_t{16} << 20;
     const int most = static_cast<int>(std::clamp<std::uint64_t>(at_a_time / plane, 1, 1 << 20));
     const int planes = std::clamp(grid.chunk[2], 1, most);
@@ -80,8 +79,7 @@ void take_pieces(ContentHash& hash, const Store& store, int level, std::uint64_t
     const Index3& size = grid.geometry.size;
     const Index3 piece = grid.chunk.cwiseMin(longest).cwiseMax(1);
     using Counts = Eigen::Matrix<std::uint64_t, 3, 1>;
-    const Counts along =
-        ((size.array() + piece.array() - 1) / piece.array()).cast<std::uint64_t>();
+    const Counts along = ((size.array() + piece.array() - 1) / piece.array()).cast<std::uint64_t>();
     const std::uint64_t all = along.prod();
     for (std::uint64_t i = 0; i < count; ++i) {
         const std::uint64_t begin = all / count * i, run = std::max<std::uint64_t>(all / count, 1);
@@ -150,6 +148,7 @@ std::string content_of(const Store& store, int level) {
     for (const int number : {static_cast<int>(info.type), info.channel, info.time}) {
         take_value(hash, number);
     }
+    constexpr std::uint64_t fewer = 8;  // of the coarser levels, which the chosen one decides
     for (int l = level; l < static_cast<int>(info.levels.size()); ++l) {
         const Geometry& grid = info.levels[static_cast<std::size_t>(l)].geometry;
         for (const int size : grid.size) take_value(hash, size);
@@ -158,8 +157,11 @@ std::string content_of(const Store& store, int level) {
         for (const double part : grid.direction.reshaped()) take_value(hash, part);
         const std::uint64_t bytes =
             bytes_of({Index3::Zero(), grid.size - Index3::Ones()}, info.type);
-        bytes <= effort.whole ? take_whole(hash, store, l)
-                              : take_pieces(hash, store, l, effort.pieces);
+        if (bytes <= effort.whole) {
+            take_whole(hash, store, l);
+        } else {
+            take_pieces(hash, store, l, l == level ? effort.pieces : effort.pieces / fewer);
+        }
     }
     std::array<char, 17> text{};
     std::snprintf(text.data(), text.size(), "%016llx",

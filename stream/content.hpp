@@ -26,10 +26,11 @@ class ContentHash {
     std::uint64_t bytes_ = 0;
 };
 
-/// What `store` holds from a level on: type, channel, time, every level's grid, and samples: of
-/// each level all, if they are at most 64 MiB (4 MiB of a store behind HTTP); else those of 64 (16)
-/// pieces that are spread evenly over the grid, at most 64 samples long along each axis. All
-/// samples of a volume in memory. Hexadecimal. Throws what the store throws.
+/// What `store` holds from a level on: type, channel, time, every level's grid, and samples. Of
+/// each level all, if they are at most 64 MiB (1 MiB of a store behind HTTP). Else those of 64 (8)
+/// pieces that are spread evenly over the grid, at most 64 samples long along each axis; of coarser
+/// levels an eighth as many. All samples of a volume in memory. Hexadecimal. Throws what the store
+/// throws.
 std::string content_of(const Store& store, int level);
 
 /// Names, sizes and times of change of a file, or of all files of a folder and below, as one

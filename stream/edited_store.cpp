@@ -228,7 +228,7 @@ std::shared_ptr<const Store> open_edits(const std::string& folder, const StoreOp
                                              std::move(note));
     } catch (const std::invalid_argument& e) {
         throw io::InputError(folder + ": its original, " + note.of.address + ", " + e.what() +
-                             ": the edits do not fit it");
+                             ": the edits do not fit it; put the original back");
     }
 }
 

@@ -1,6 +1,8 @@
 // Requests and answers of all jobs; the formats come as functions.
 #include "io/helper/jobs.hpp"
 
+#include <fcntl.h>
+#include <sys/file.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -154,7 +156,7 @@ nlohmann::json run_chunks(const fs::path& path, const nlohmann::json& asked, Pla
     });
 }
 
-/// The caller's folder in which a file is written: under its own name, because headers name their
+/// The folder in which a file is written: under its own name, because headers name their
 /// data files, in a folder of its own, so that no unfinished file is visible.
 class Workshop {
   public:
@@ -169,6 +171,17 @@ class Workshop {
         for (const int s : {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGXCPU}) signal(s, clean_up_and_go);
     }
 
+    void open() const {
+        std::error_code error;
+        const bool is_new = fs::create_directory(folder_, error);
+        if (!is_new) {
+            throw Failure("cannot be written there (" + (error ? error.message() : reason(EEXIST)) +
+                          "); choose another folder");
+        }
+        // Locked until this process ends: others see that it is in use.
+        const int folder = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+        if (folder >= 0) (void)::flock(folder, LOCK_EX | LOCK_NB);
+    }
     const fs::path& inside() const { return inside_; }
 
     /// Data files first: a header never points to data that are not there.
@@ -211,6 +224,7 @@ nlohmann::json run_write(const fs::path& path, const nlohmann::json& asked, cons
     void* const samples = mmap(nullptr, bytes, PROT_READ, MAP_SHARED, samples_descriptor, 0);
     if (samples == MAP_FAILED) throw std::bad_alloc();
     volume.samples = samples;
+    workshop.open();
     write(workshop.inside(), std::string(written_extension_of(path)), volume);
     workshop.move_out();
     return nlohmann::json::object();

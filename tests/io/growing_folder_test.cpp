@@ -82,9 +82,8 @@ TEST(GrowingFolder, replaces_what_it_may_and_keeps_its_result_where_it_may_not) 
     {
         GrowingFolder alone = GrowingFolder::alone(out);
         put_bytes(alone.result() / "new", "new");
-        const std::string message = message_of<OutputError>([&] {
-            alone.put_in_place([](const fs::path&) { throw OutputError("precious"); });
-        });
+        const std::string message = message_of<OutputError>(
+            [&] { alone.put_in_place([](const fs::path&) { throw OutputError("precious"); }); });
         EXPECT_TRUE(contains(message, "precious; the result is kept as ")) << message;
     }
     EXPECT_EQ(bytes_of(out / "old"), "old");
@@ -103,9 +102,11 @@ TEST(PathJson, has_every_path_and_refuses_what_is_none) {
     for (const std::string path : {"", "/a b/caf\xc3\xa9", "\xff", "a/\xe9\xc3/\"b"}) {
         const nlohmann::json json = nlohmann::json::parse(json_of_path(path).dump());
         EXPECT_EQ(path_from_json(json).string(), path);
-        EXPECT_EQ(json.is_string(), path.find('\xff') == path.npos && path.find('\xe9') == path.npos);
+        EXPECT_EQ(json.is_string(),
+                  path.find('\xff') == path.npos && path.find('\xe9') == path.npos);
     }
-    for (const char* json : {"1", "{}", R"({"bytes":1})", R"({"bytes":"abc"})", R"({"bytes":"gg"})"})
+    for (const char* json :
+         {"1", "{}", R"({"bytes":1})", R"({"bytes":"abc"})", R"({"bytes":"gg"})"})
         EXPECT_THROW((void)path_from_json(nlohmann::json::parse(json)), std::invalid_argument);
 }
 

@@ -16,6 +16,7 @@
 #include "io/leftovers.hpp"
 #include "support/eventually.hpp"
 #include "support/scratch_folder.hpp"
+#include "support/traced_process.hpp"
 
 using namespace palpate::io;
 using namespace palpate::support;
@@ -159,7 +160,7 @@ class SmallDisk {
     void (*old_action_)(int);
 };
 
-TEST(Output, of_several_files_appears_together_or_not_at_all) {
+void expect_together_or_not_at_all() {
     const ScratchFolder folder;
     put_bytes(folder / "a.csv", "old");
     const auto commit_with = [&](std::size_t bytes_of_the_second, bool blocked) {
@@ -187,6 +188,19 @@ TEST(Output, of_several_files_appears_together_or_not_at_all) {
     commit_with(1, false);
     EXPECT_EQ(bytes_of(folder / "a.csv"), "new");
     EXPECT_EQ(folder.names(), (Names{"a.csv", "b.csv", "c.csv"}));
+}
+
+TEST(Output, of_several_files_appears_together_or_not_at_all) {
+    expect_together_or_not_at_all();
+}
+
+TEST(Output, of_several_files_appears_together_also_where_names_cannot_be_exchanged) {
+    EXPECT_EQ(end_of(start_process([] {
+                  deny_exchange();
+                  expect_together_or_not_at_all();
+                  if (testing::Test::HasFailure()) throw std::runtime_error("see above");
+              })),
+              0);
 }
 
 /// What another run does that writes in the folder: a process of its own, which looks for leftovers

@@ -1,5 +1,5 @@
-// Conversions and saved edits at every kind of end: killed before a system call, on a full disk, with
-// failing renames, two at once, where names cannot be exchanged. What is at OUT is the data of
+// Conversions and saved edits at every kind of end: killed before a system call, on a full disk,
+// with failing renames, two at once, where names cannot be exchanged. What is at OUT is the data of
 // before or the new data, whole.
 #include <cstdlib>
 
@@ -180,9 +180,9 @@ TEST_F(Killed, a_full_disk_is_an_error_and_the_old_edits_stay) {
     const int calls = calls_of([&] { edits.save(1); }, takes_room);
     for (int at = 0; at < calls; ++at) {
         SCOPED_TRACE(at);
-        ASSERT_EQ(run_traced([&] { edits.save(2); },
-                             from_call(at, Fate::fails_without_room, takes_room)),
-                  1);
+        ASSERT_EQ(
+            run_traced([&] { edits.save(2); }, from_call(at, Fate::fails_without_room, takes_room)),
+            1);
         EXPECT_EQ(Edits::value_in(edits.out), 1);
         EXPECT_EQ(edits.folder.names(), (std::vector<std::string>{"e.zarr", "v.zarr"}));
     }
@@ -198,9 +198,9 @@ TEST_F(Killed, a_conversion_to_a_full_disk_is_an_error_and_completed_when_there_
         SCOPED_TRACE(at);
         const ScratchFolder folder;
         const fs::path out = folder / "v.zarr";
-        ASSERT_EQ(run_traced([&] { convert(out); },
-                             from_call(at, Fate::fails_without_room, takes_room)),
-                  1);
+        ASSERT_EQ(
+            run_traced([&] { convert(out); }, from_call(at, Fate::fails_without_room, takes_room)),
+            1);
         EXPECT_FALSE(fs::exists(out));
         convert(out);
         expect_same_boxes(*open_store(out), some_volume(), 1);

@@ -1,5 +1,5 @@
-// Palpate deletes and continues what it made itself, and nothing else: OUT.partial of others, links,
-// other sources and settings, originals of edits, caches in folders with other files.
+// Palpate deletes and continues what it made itself, and nothing else: OUT.partial of others,
+// links, other sources and settings, originals of edits, caches in folders with other files.
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -38,7 +38,8 @@ ConvertOptions small_chunks() {
 struct Left {};
 
 /// Begins a conversion and leaves it when all chunks are written.
-void leave_behind(const Store& store, const fs::path& out, ConvertOptions options = small_chunks()) {
+void leave_behind(const Store& store, const fs::path& out,
+                  ConvertOptions options = small_chunks()) {
     options.progress = [](double) { throw Left{}; };
     EXPECT_THROW((void)convert_to_zarr(store, 0, out, options), Left);
     EXPECT_TRUE(fs::exists(out.string() + ".partial"));
@@ -70,7 +71,9 @@ Makers other_partials(const fs::path& precious, const fs::path& ours) {
     };
     all["empty"] = [](const fs::path& at) { fs::create_directory(at); };
     all["link"] = [=](const fs::path& at) { fs::create_directory_symlink(precious, at); };
-    all["link to one of ours"] = [=](const fs::path& at) { fs::create_directory_symlink(ours, at); };
+    all["link to one of ours"] = [=](const fs::path& at) {
+        fs::create_directory_symlink(ours, at);
+    };
     all["broken link"] = [](const fs::path& at) { fs::create_symlink("/nowhere", at); };
     all["file"] = [](const fs::path& at) { put_bytes(at, "text"); };
     all["pipe"] = [](const fs::path& at) { ASSERT_EQ(::mkfifo(at.c_str(), 0600), 0); };
@@ -168,7 +171,8 @@ TEST(OwnFiles, saving_edits_touches_no_partial_whoever_made_it) {
     // What somebody else has put into a folder of edits stays there.
     put_bytes(folder / "edits.zarr/notes.txt", "mine");
     const std::string message = message_of<io::OutputError>([&] {
-        save_edits(*original, {folder / "v.zarr", {}}, 0, *edits.samples, folder / "edits.zarr", {});
+        save_edits(*original, {folder / "v.zarr", {}}, 0, *edits.samples, folder / "edits.zarr",
+                   {});
     });
     EXPECT_TRUE(contains(message, "notes.txt")) << message;
     EXPECT_EQ(bytes_of(folder / "edits.zarr/notes.txt"), "mine");
@@ -214,12 +218,14 @@ TEST(OwnFiles, an_interrupted_run_is_continued_for_the_same_settings_only) {
         {"byte order", [](StoreOptions& s, ConvertOptions&) { s.raw->big_endian = true; }},
         {"type", [](StoreOptions& s, ConvertOptions&) { s.raw->type = SampleType::int16; }},
         {"spacing", [](StoreOptions& s, ConvertOptions&) { s.spacing = Vec3(1, 1, 2); }},
-        {"size", [](StoreOptions& s, ConvertOptions&) { s.raw->size = {30, 40, 20}; }},
+        {"size",
+         [](StoreOptions& s, ConvertOptions&) {
+             s.raw->size = {30, 40, 20};
+         }},
         {"version", [](StoreOptions&, ConvertOptions& c) { c.zarr_version = 2; }},
         {"chunk", [](StoreOptions&, ConvertOptions& c) { c.chunk = 16; }},
-        {"compression", [](StoreOptions&, ConvertOptions& c) {
-             c.compression = Compression::none;
-         }}};
+        {"compression",
+         [](StoreOptions&, ConvertOptions& c) { c.compression = Compression::none; }}};
     for (const auto& [name, change] : changes) {
         SCOPED_TRACE(name);
         StoreOptions store;
@@ -242,11 +248,9 @@ TEST(OwnFiles, edits_do_not_open_over_another_volume_in_the_originals_place) {
     };
     put_original(1);
     const auto original = open_store(folder / "v.zarr");
-    const auto edits = edited(empty_samples(*original, noise(1), 0),
-                              edit::Fill{{{3, 3, 3}, {9, 9, 9}}, 7},
-                              [&](const SampleBox& box, std::span<std::byte> to) {
-                                  original->read(0, box, to, {});
-                              });
+    const auto edits = edited(
+        empty_samples(*original, noise(1), 0), edit::Fill{{{3, 3, 3}, {9, 9, 9}}, 7},
+        [&](const SampleBox& box, std::span<std::byte> to) { original->read(0, box, to, {}); });
     save_edits(*original, {folder / "v.zarr", {}}, 0, *edits.samples, folder / "e.zarr", {});
     put_original(2);
     const std::string message =
@@ -281,7 +285,8 @@ TEST(OwnFiles, a_conversion_whose_folder_goes_meanwhile_ends_with_a_line) {
         {"removed", [](const fs::path& partial) { fs::remove_all(partial); }},
         {"renamed", [](const fs::path& partial) { fs::rename(partial, partial.string() + "2"); }},
         {"emptied", [](const fs::path& partial) { fs::remove_all(partial / "result"); }},
-        {"chunks removed", [](const fs::path& partial) {
+        {"chunks removed",
+         [](const fs::path& partial) {
              for (const auto& chunk : fs::directory_iterator(partial / "result/0/c"))
                  fs::remove_all(chunk);
          }},
@@ -311,11 +316,9 @@ TEST(OwnFiles, paths_that_are_not_utf8_are_written_and_read_again) {
     options.raw = io::RawLayout{{40, 30, 20}, SampleType::uint8};
     const std::string address = (here / "v\xff.raw").string();
     const auto original = open_store(address, options);
-    const auto edits = edited(empty_samples(*original, volume, 0),
-                              edit::Fill{{{3, 3, 3}, {9, 9, 9}}, 7},
-                              [&](const SampleBox& box, std::span<std::byte> to) {
-                                  original->read(0, box, to, {});
-                              });
+    const auto edits = edited(
+        empty_samples(*original, volume, 0), edit::Fill{{{3, 3, 3}, {9, 9, 9}}, 7},
+        [&](const SampleBox& box, std::span<std::byte> to) { original->read(0, box, to, {}); });
     save_edits(*original, {address, options}, 0, *edits.samples, here / "e\xfe.zarr", {});
     leave_behind(*original, here / "c\xfd.zarr");
     EXPECT_GT(convert_to_zarr(*original, 0, here / "c\xfd.zarr", small_chunks()).kept, 0U);

@@ -28,12 +28,11 @@ namespace palpate::support {
 namespace {
 
 constexpr std::array renaming{SYS_rename, SYS_renameat, SYS_renameat2};
-constexpr std::array others{SYS_open,     SYS_openat, SYS_mkdir,    SYS_mkdirat, SYS_unlink,
-                            SYS_unlinkat, SYS_rmdir,  SYS_write,    SYS_fsync,   SYS_syncfs};
+constexpr std::array others{SYS_open,     SYS_openat, SYS_mkdir, SYS_mkdirat, SYS_unlink,
+                            SYS_unlinkat, SYS_rmdir,  SYS_write, SYS_fsync,   SYS_syncfs};
 
 void filter(std::vector<sock_filter> program) {
-    program.insert(program.begin(),
-                   BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)));
+    program.insert(program.begin(), BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)));
     program.push_back(BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW));
     const sock_fprog all{static_cast<unsigned short>(program.size()), program.data()};
     if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0 ||
@@ -91,8 +90,8 @@ void obey(pid_t thread, pid_t process, const std::function<Fate(const FileCall&)
         return;
     }
     registers.orig_rax = ~0ULL;
-    registers.rax = static_cast<unsigned long long>(
-        wanted == Fate::fails_without_room ? -ENOSPC : -EIO);
+    registers.rax =
+        static_cast<unsigned long long>(wanted == Fate::fails_without_room ? -ENOSPC : -EIO);
     ::ptrace(PTRACE_SETREGS, thread, nullptr, &registers);
 }
 #endif

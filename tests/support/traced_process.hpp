@@ -9,9 +9,9 @@ namespace palpate::support {
 
 /// One of the calls that change files, before it is made.
 struct FileCall {
-    long number;         ///< SYS_renameat2, SYS_openat, ...
-    bool renames;        ///< one of the family of rename()
-    bool takes_room;     ///< writes, or makes a file or folder
+    long number;      ///< SYS_renameat2, SYS_openat, ...
+    bool renames;     ///< one of the family of rename()
+    bool takes_room;  ///< writes, or makes a file or folder
 };
 
 /// What happens to a call.

@@ -35,8 +35,7 @@ class PendingFile {
     /// Flushes to the disk and puts the file in its target's place. Nothing can be written after.
     void commit();
     /// The same for several outputs of one run: all appear, or none. On an error, what a target
-    /// held before is there again, except what went to a stream (and on file systems that cannot
-    /// exchange two names). Every file is closed then.
+    /// held before is there again, except what went to a stream. Every file is closed then.
     static void commit_together(const std::vector<PendingFile*>& files);
 
   private:
