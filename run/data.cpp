@@ -140,13 +140,16 @@ std::string Data::save(const std::filesystem::path& path, const io::Progress& pr
 std::filesystem::path Data::rescue() {
     std::exception_ptr problem;
     for (const std::filesystem::path& place : places_of_rescue()) {
+        std::filesystem::path folder;
         try {
-            std::filesystem::path kept = new_folder_in(place);
-            kept /= streamer_ ? "edits.zarr" : "edits.nrrd";
+            folder = new_folder_in(place);
+            std::filesystem::path kept = folder / (streamer_ ? "edits.zarr" : "edits.nrrd");
             save(kept, {});
             return kept;
         } catch (const std::exception&) {
             problem = std::current_exception();
+            std::error_code ignored;
+            if (!folder.empty()) std::filesystem::remove(folder, ignored);  // if it is empty
         }
     }
     std::rethrow_exception(problem);
