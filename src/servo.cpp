@@ -79,16 +79,6 @@ Snapshot snapshot_of(const Session& session, const SessionTick& tick, std::int64
     return snapshot;
 }
 
-/// Used by the servo thread only: when ticks are due, and the worst one. Times in ns.
-struct Servo::Clock {
-    std::int64_t period;
-    std::int64_t zero;  // session time 0
-    std::int64_t due;   // the next tick
-    Alarm alarm = {};
-    std::int64_t last_start = 0;
-    WorstTick worst = {};
-};
-
 /// Of one tick: when it began, and how long its parts took [ns].
 struct Servo::Stamps {
     std::int64_t start;
@@ -114,6 +104,8 @@ Servo::Servo(Session session, Device& device, const ServoSettings& settings)
       session_(std::move(session)),
       device_(std::make_unique<WatchedDevice>(device)),
       settings_(settings),
+      now_(settings.clock ? settings.clock : &monotonic_ns),
+      cpu_now_(settings.clock ? settings.clock : &thread_cpu_ns),
       field_(kind_of(session_.renderer.field)),
       held_{session_.renderer.field.shared_samples(), session_.renderer.settings.layers,
             session_.renderer.settings.tool} {
@@ -165,8 +157,9 @@ void Servo::stop() noexcept {
     stops_.fetch_add(1, std::memory_order_relaxed);
     stopping_.store(true, std::memory_order_release);
     const bool is_servo_thread = std::this_thread::get_id() == thread_id_.load();
-    while (!is_servo_thread && state_.load(std::memory_order_acquire) == State::running &&
-           device_->failure() != DeviceFailure::hung) {
+    const auto runs = [&] { return state_.load(std::memory_order_acquire) == State::running; };
+    if (is_servo_thread && !in_step_ && runs()) end();
+    while (!is_servo_thread && runs() && !device_->has_lost_force()) {
         std::this_thread::sleep_for(poll);
     }
     stops_.fetch_sub(1, std::memory_order_release);  // the last that touches the servo
@@ -226,74 +219,100 @@ const Session& Servo::session() const {
     return session_;
 }
 
+void Servo::watch(std::int64_t cpu, bool could_run) noexcept {
+    device_->look({cpu, could_run});
+}
+
 void Servo::run() noexcept {
-    thread_id_.store(std::this_thread::get_id());
-    device_->watch_this_thread();
     try {
         privileges_ = settings_.real_time ? ask_for_real_time(settings_.priority)
                                           : std::vector<std::string>{"real time: not asked for"};
     } catch (...) {  // no memory for the sentences; the loop needs none
     }
+    begin(now_() + settle_ns);
     ready_.store(true, std::memory_order_release);
-    Clock clock{static_cast<std::int64_t>(1e9 / settings_.rate), 0, 0};
-    clock.zero = clock.due = monotonic_ns() + settle_ns;
-    while (!stopping_.load(std::memory_order_acquire) &&
-           device_->failure() == DeviceFailure::none) {
-        clock.alarm.sleep_until(clock.due);
-        tick(clock);
-    }
-    device_->write({}, 1e-9 * static_cast<double>(monotonic_ns() - clock.zero));
+    Alarm alarm;
+    do {
+        alarm.sleep_until(due());
+    } while (step());
+}
+
+bool Servo::step() noexcept {
+    State idle = State::idle;
+    if (state_.compare_exchange_strong(idle, State::running)) begin(now_());
+    if (state_.load(std::memory_order_relaxed) == State::ended) return false;
+    const auto is_over = [&] {
+        return stopping_.load(std::memory_order_acquire) ||
+               device_->failure() != DeviceFailure::none;
+    };
+    in_step_ = true;
+    if (!is_over()) tick();
+    const bool over = is_over();
+    in_step_ = false;
+    if (over) end();
+    return !over;
+}
+
+/// Of the thread that steps.
+void Servo::begin(std::int64_t first_tick) noexcept {
+    thread_id_.store(std::this_thread::get_id());
+    device_->watch_this_thread();
+    schedule_.period = static_cast<std::int64_t>(1e9 / settings_.rate);
+    schedule_.zero = schedule_.due = first_tick;
+}
+
+void Servo::end() noexcept {
+    device_->write({}, 1e-9 * static_cast<double>(now_() - schedule_.zero));
     state_.store(State::ended, std::memory_order_release);
 }
 
-void Servo::tick(Clock& clock) noexcept {
-    const std::int64_t start = monotonic_ns();
-    const std::int64_t compute_start = thread_cpu_ns();
+void Servo::tick() noexcept {
+    const std::int64_t start = now_();
+    const std::int64_t compute_start = cpu_now_();
     const std::int64_t number = ticks_.load(std::memory_order_relaxed);
-    const double time = 1e-9 * static_cast<double>(start - clock.zero);
+    const double time = 1e-9 * static_cast<double>(start - schedule_.zero);
 
     obey();
-    const std::int64_t before_read = monotonic_ns();
+    const std::int64_t before_read = now_();
     const DeviceReading reading = device_->read(time);
-    const std::int64_t after_read = monotonic_ns();
+    const std::int64_t after_read = now_();
     if (device_->failure() != DeviceFailure::none) return show_failure();
     if (reading.limits) keep_device_limits(*reading.limits);
-    SessionTick result = advance(session_, time, reading, &monotonic_ns);
-    const std::int64_t before_write = monotonic_ns();
+    SessionTick result = advance(session_, time, reading, now_);
+    const std::int64_t before_write = now_();
     if (1e-9 * static_cast<double>(before_write - start) > session_.settings.overrun) {
         let_go(session_, result);
         add(overruns_, 1);
     }
     device_->write({result.tick.force, result.tick.torque}, time);
-    const std::int64_t after_write = monotonic_ns();
+    const std::int64_t after_write = now_();
     if (device_->failure() != DeviceFailure::none) return show_failure();
     publish(number, result);
     record(result);
 
-    count(clock, number,
-          {.start = start,
-           .compute = thread_cpu_ns() - compute_start,
-           .device = (after_read - before_read) + (after_write - before_write),
-           .proxy = result.tick.update_ns});
+    count(number, {.start = start,
+                   .compute = cpu_now_() - compute_start,
+                   .device = (after_read - before_read) + (after_write - before_write),
+                   .proxy = result.tick.update_ns});
 }
 
-void Servo::count(Clock& clock, std::int64_t number, const Stamps& stamps) noexcept {
-    const std::int64_t end = monotonic_ns();
-    const WorstTick tick{number, stamps.start - clock.due, end - stamps.start, stamps.compute,
-                         stamps.cause(stamps.start - clock.due, end - stamps.start)};
+void Servo::count(std::int64_t number, const Stamps& stamps) noexcept {
+    const std::int64_t end = now_();
+    const WorstTick tick{number, stamps.start - schedule_.due, end - stamps.start, stamps.compute,
+                         stamps.cause(stamps.start - schedule_.due, end - stamps.start)};
     lateness_.add(tick.lateness_ns);
     work_.add(tick.work_ns);
     compute_.add(tick.compute_ns);
-    if (number > 0) period_.add(stamps.start - clock.last_start);
-    clock.last_start = stamps.start;
-    if (tick.lateness_ns + tick.work_ns > clock.worst.lateness_ns + clock.worst.work_ns) {
-        clock.worst = tick;
+    if (number > 0) period_.add(stamps.start - schedule_.last_start);
+    schedule_.last_start = stamps.start;
+    if (tick.lateness_ns + tick.work_ns > schedule_.worst.lateness_ns + schedule_.worst.work_ns) {
+        schedule_.worst = tick;
         worst_.put(tick);
     }
     // A tick that ends after the next one was due has missed it; missed ticks are not made up.
-    const std::int64_t late = (end - clock.due) / clock.period;
+    const std::int64_t late = (end - schedule_.due) / schedule_.period;
     add(missed_, late);
-    clock.due += clock.period * std::max<std::int64_t>(1, late);
+    schedule_.due += schedule_.period * std::max<std::int64_t>(1, late);
     add(ticks_, 1);
 }
 

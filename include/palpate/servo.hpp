@@ -29,6 +29,9 @@ struct ServoSettings {
     /// is full loses events (ServoReport::unrecorded). Samples with a recipe are recorded as that
     /// alone.
     Queue<SessionEvent>* recorder = nullptr;
+    /// Times the ticks [ns, never back]; null: the machine's monotonic clock. With a clock of the
+    /// caller's, CPU time is counted by it as well.
+    Clock clock = nullptr;
 };
 
 /// What most of the worst tick's time was spent on.
@@ -93,6 +96,8 @@ Snapshot snapshot_of(const Session& session, const SessionTick& tick, std::int64
 class WatchedDevice;
 
 /// A session that runs on a thread of its own. Not copied or moved, because threads refer to it.
+/// The threads of start() do nothing but wait and call step() and watch(). Without start(), a
+/// caller with a loop of its own calls them: then time may be whatever that caller's clock says.
 ///
 /// A device that throws or hangs ends the session (DeviceFailure): a second thread, the watchdog,
 /// calls Device::stop() within 20 ms of the beginning of a call that hangs. The tick in which that
@@ -110,12 +115,23 @@ class Servo {
     Servo(const Servo&) = delete;
     Servo& operator=(const Servo&) = delete;
 
-    /// Starts the thread, once. Throws std::system_error if the system gives none.
+    /// Starts the thread, once, and not after step(). Throws std::system_error if the system gives
+    /// none.
     void start();
+    /// One tick, now, on one thread; the first one is at time 0 of the session. False once the
+    /// session has ended: stop() was called or the device has failed, and zero force was written.
+    bool step() noexcept;
+    /// When the next tick is due [ns, of the settings' clock]. The thread of step().
+    std::int64_t due() const noexcept { return schedule_.due; }
+    /// One look of the watchdog, every 5 ms, by any one thread: gives up a call to the device that
+    /// the third look in a row sees under way. `cpu`: all CPU time of the thread of step() [ns];
+    /// `could_run`: it waits for nothing but a processor. Then only its CPU time counts.
+    void watch(std::int64_t cpu, bool could_run) noexcept;
     /// Writes zero force and ends the thread; returns when it has ended. With a device call that
     /// hangs it returns when the force was taken away; the thread ends when that call returns, and
     /// touches nothing but the servo then. Any thread, any number of times; from the servo thread
-    /// (a device's read() or write()) it only asks for the end.
+    /// (a device's read() or write()) it only asks for the end. Without start(): on the thread of
+    /// step(), or on others while that thread goes on calling step().
     void stop() noexcept;
 
     /// Checks a command and puts it in the queue; false if the queue is full. Throws
@@ -143,15 +159,22 @@ class Servo {
     const RendererSettings& settings() const { return start_; }
 
   private:
-    struct Clock;
+    /// When ticks are due [ns].
+    struct Schedule {
+        std::int64_t period = 0, zero = 0, due = 0;  // zero: of the session's time
+        std::int64_t last_start = 0;
+        WorstTick worst = {};
+    };
     struct Stamps;
     enum class State : std::uint8_t { idle, running, ended };
 
     void run() noexcept;
-    void tick(Clock& clock) noexcept;
+    void begin(std::int64_t first_tick) noexcept;
+    void end() noexcept;
+    void tick() noexcept;
     void obey() noexcept;
     void keep_device_limits(const DeviceLimits& limits) noexcept;
-    void count(Clock& clock, std::int64_t number, const Stamps& stamps) noexcept;
+    void count(std::int64_t number, const Stamps& stamps) noexcept;
     void record(const SessionEvent& event) noexcept;
     void show_failure() noexcept;
     void publish(std::int64_t number, const SessionTick& tick) noexcept;
@@ -164,6 +187,9 @@ class Servo {
     Session session_;
     const std::unique_ptr<WatchedDevice> device_;
     const ServoSettings settings_;
+    const Clock now_, cpu_now_;
+    Schedule schedule_;     // the servo thread's
+    bool in_step_ = false;  // the servo thread's
     RendererSettings start_;
     const FieldKind field_;
     std::vector<std::string> privileges_;

@@ -27,7 +27,7 @@ WatchedDevice::~WatchedDevice() {
 void WatchedDevice::watch(int priority) {
     watchdog_ = std::thread([this, priority] {
         if (priority > 0) take_priority(priority);
-        look_after();
+        look_on();
     });
 }
 
@@ -73,25 +73,33 @@ DeviceFailure WatchedDevice::failure() const noexcept {
     }
 }
 
-void WatchedDevice::look_after() noexcept {
-    std::uint64_t seen = 0;
-    std::int64_t cpu = 0, spent = 0;  // [ns] by the thread: in all, and in the call
+bool WatchedDevice::is_calling() const noexcept {
+    const std::uint64_t count = calls_.load(std::memory_order_acquire);
+    return count < has_thrown && count % 2 != 0;
+}
+
+void WatchedDevice::look_on() noexcept {
     Alarm alarm;
-    while (!done_.load()) {
+    while (!done_.load() && failure() == DeviceFailure::none) {
         alarm.sleep_until(monotonic_ns() + between_looks_ns);
-        std::uint64_t count = calls_.load(std::memory_order_acquire);
-        if (count >= has_thrown) return;
-        if (count % 2 == 0) continue;
-        const std::int64_t cpu_before = std::exchange(cpu, cpu_ns(thread_.load()));
-        if (std::exchange(seen, count) != count) {
-            spent = 0;
-            continue;
-        }
-        // A thread that could run but gets no processor does not hang: the machine is to blame.
-        spent += is_runnable(thread_.load()) ? cpu - cpu_before : between_looks_ns;
-        if (spent < longest_call_ns) continue;
-        if (calls_.compare_exchange_strong(count, has_hung)) device_.stop();
+        const ThreadId servo = thread_.load();
+        if (is_calling()) look({cpu_ns(servo), is_runnable(servo)});
     }
+}
+
+void WatchedDevice::look(const ThreadUse& servo) noexcept {
+    if (!is_calling()) return;
+    std::uint64_t count = calls_.load(std::memory_order_acquire);
+    const std::int64_t cpu_before = std::exchange(cpu_, servo.cpu);
+    if (std::exchange(seen_, count) != count) {
+        spent_ = 0;
+        return;
+    }
+    // A thread that could run but gets no processor does not hang: the machine is to blame.
+    spent_ += servo.could_run ? servo.cpu - cpu_before : between_looks_ns;
+    if (spent_ < longest_call_ns || !calls_.compare_exchange_strong(count, has_hung)) return;
+    device_.stop();
+    lost_force_.store(true, std::memory_order_release);
 }
 
 }  // namespace palpate

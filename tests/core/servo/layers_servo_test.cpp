@@ -1,14 +1,14 @@
-// Servo: layers that are sent while it runs are felt, refused if they are none, and freed by other
-// threads than its own.
+// Servo: layers that are sent while it runs are felt, refused if they are none, and never freed by
+// its ticks.
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <thread>
+#include <cmath>
+#include <memory>
 
 #include "palpate/servo.hpp"
-#include "support/eventually.hpp"
 #include "support/press.hpp"
 #include "support/scripted_device.hpp"
+#include "support/stepped_servo.hpp"
 
 using namespace palpate;
 using namespace palpate::support;
@@ -26,20 +26,22 @@ Layers level_that_holds(double level) {
 
 /// A servo with a hand at rest at a depth of 36 in the ramp, whose density is the depth.
 struct LayeredServo {
-    std::atomic<std::thread::id> servo_thread;
-    ScriptedDevice device{[this](double) {
-        servo_thread = std::this_thread::get_id();
-        return ready_at(at_depth(36));
-    }};
+    bool in_tick = false;
+    ScriptedDevice device{[](double) { return ready_at(at_depth(36)); }};
     Queue<SessionEvent> recorder{16};  // soon full: events that are lost must free nothing
-    Servo servo{Session{make_renderer(ramp_field(), 30), {}}, device, {.recorder = &recorder}};
+    Servo servo{Session{make_renderer(ramp_field(), 30), {}}, device,
+                stepped({.recorder = &recorder})};
 
-    LayeredServo() { servo.start(); }
     bool feels(double level) {
-        return comes_true([&] {
+        const auto at_level = [&] {
             const auto now = servo.snapshot();
             return now && std::abs(now->session.tick.proxy.scp[2] - level) < 1e-6;
-        });
+        };
+        in_tick = true;
+        run(servo, 1);
+        const bool felt = ticks_until(servo, at_level, 1000);
+        in_tick = false;
+        return felt;
     }
 };
 
@@ -70,12 +72,12 @@ TEST(LayersServo, layers_that_are_none_are_refused_before_they_are_sent) {
 }
 
 TEST(LayersServo, layers_are_freed_by_those_who_send_others) {
-    std::atomic<int> freed{0}, freed_by_servo{0};
+    int freed = 0, freed_by_servo = 0;
     {
         LayeredServo live;
         const auto freeing = [&](const Layers* layers) {
             ++freed;
-            freed_by_servo += std::this_thread::get_id() == live.servo_thread.load();
+            freed_by_servo += live.in_tick;
             delete layers;
         };
         for (int i = 0; i < 30; ++i) {

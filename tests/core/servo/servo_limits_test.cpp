@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "palpate/servo.hpp"
-#include "support/eventually.hpp"
 #include "support/press.hpp"
 #include "support/scripted_device.hpp"
+#include "support/stepped_servo.hpp"
 
 using namespace palpate;
 using namespace palpate::support;
@@ -76,16 +76,14 @@ struct Recorded {
 TEST(ServoLimits, a_device_for_1_newton_gets_no_more_whatever_is_asked) {
     ScriptedDevice device(&press_deep, {.maximum_force = 1});
     Queue<SessionEvent> queue(1 << 14);
-    Servo servo(session_of(careless()), device, {.recorder = &queue});
+    Servo servo(session_of(careless()), device, stepped({.recorder = &queue}));
     EXPECT_EQ(servo.settings().device.maximum_force, 1);
-    servo.start();
-    ASSERT_TRUE(comes_true([&] { return device.force().norm() > 0.99; }));
+    ASSERT_TRUE(ticks_until(servo, [&] { return device.force().norm() > 0.99; }));
     ForceSettings more = careless().force;
     more.limit = 1000;
     EXPECT_TRUE(servo.send(more));
     EXPECT_TRUE(servo.send(DeviceLimits{.maximum_force = 20}));  // never wider
-    const std::int64_t then = servo.report().ticks;
-    ASSERT_TRUE(comes_true([&] { return servo.report().ticks > then + 200; }));
+    run(servo, 200);
     servo.stop();
     EXPECT_LE(device.largest_force(), limit_rounding);
     // The recording has the limits, so that it replays from the session as the application gave it.
@@ -106,14 +104,13 @@ TEST(ServoLimits, a_session_that_the_device_can_take_is_left_as_it_is) {
 
 TEST(ServoLimits, a_stiffness_that_the_device_cannot_render_is_lowered_and_as_a_command_refused) {
     ScriptedDevice device(&press_deep, {.maximum_force = 20, .rate = 250});
-    Servo servo(session_of(careless()), device);
+    Servo servo(session_of(careless()), device, stepped());
     const RendererSettings& settings = servo.settings();
     EXPECT_EQ(settings.device.rate, 250);
     EXPECT_NEAR(settings.force.stiffness, 1.25, 1e-6);
     EXPECT_NO_THROW(check(settings.force, device.info().limits));
     EXPECT_THROW(servo.send(careless().force), std::invalid_argument);
-    servo.start();
-    ASSERT_TRUE(comes_true([&] { return device.force().norm() > 6; }));  // 5 mm of it
+    ASSERT_TRUE(ticks_until(servo, [&] { return device.force().norm() > 6; }));  // 5 mm of it
     servo.stop();
     EXPECT_LT(device.largest_force(), 6.26);
 }
@@ -138,19 +135,20 @@ TEST(ServoLimits, limits_that_a_device_learns_when_it_connects_hold_from_that_ti
         },
         {.maximum_force = 20});
     Queue<SessionEvent> queue(1 << 14);
-    Servo servo(session_of(careless()), device, {.recorder = &queue});
-    servo.start();
-    ASSERT_TRUE(comes_true([&] { return servo.snapshot() && servo.snapshot()->stiffness < 2; }));
+    Servo servo(session_of(careless()), device, stepped({.recorder = &queue}));
+    run(servo, 101);
+    EXPECT_GT(servo.snapshot()->stiffness, 2);
+    tick(servo);  // the first after 0.1 s
+    EXPECT_LT(servo.snapshot()->stiffness, 2);
     // The command passes the check, which knows the first limits only, and is lowered when applied.
     EXPECT_TRUE(servo.send(careless().force));
-    const std::int64_t then = servo.report().ticks;
-    ASSERT_TRUE(comes_true([&] { return servo.report().ticks > then + 100; }));
+    run(servo, 100);
     servo.stop();
     EXPECT_NEAR(servo.session().renderer.settings.force.stiffness, 1.25, 1e-6);
     const Recorded recorded(queue, session_of(careless()));
     ASSERT_EQ(recorded.limits.size(), 1U);  // once, not with every reading
     EXPECT_EQ(recorded.limits[0], learned);
-    EXPECT_GT(recorded.ticks_before_limits, 10U);
+    EXPECT_EQ(recorded.ticks_before_limits, 101U);
     EXPECT_LE(recorded.largest_force(recorded.ticks_before_limits), limit_rounding);
 }
 
@@ -161,9 +159,8 @@ TEST(ServoLimits, limits_in_a_reading_that_are_no_numbers_mean_no_force) {
         return reading;
     });
     Queue<SessionEvent> queue(1 << 14);
-    Servo servo(session_of({}), device, {.recorder = &queue});
-    servo.start();
-    ASSERT_TRUE(comes_true([&] { return servo.report().ticks > 300; }));
+    Servo servo(session_of({}), device, stepped({.recorder = &queue}));
+    run(servo, 300);
     servo.stop();
     const Recorded recorded(queue, session_of({}));
     ASSERT_EQ(recorded.limits.size(), 1U);

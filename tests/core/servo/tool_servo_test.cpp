@@ -1,15 +1,15 @@
-// Servo: tools that are sent while it runs are felt, and freed by other threads than its own; a
+// Servo: tools that are sent while it runs are felt, and never freed by its ticks; a
 // device that renders torque gets one, within its limits.
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <thread>
+#include <cmath>
+#include <memory>
 
 #include "palpate/servo.hpp"
-#include "support/eventually.hpp"
 #include "support/fields.hpp"
 #include "support/press.hpp"
 #include "support/scripted_device.hpp"
+#include "support/stepped_servo.hpp"
 
 using namespace palpate;
 using namespace palpate::support;
@@ -18,23 +18,26 @@ namespace {
 
 /// A hand at rest at a depth of 33 in the smooth ramp, whose density is the depth; level 30.
 struct ToolServo {
-    std::atomic<std::thread::id> servo_thread;
-    ScriptedDevice device{[this](double) {
-                              servo_thread = std::this_thread::get_id();
-                              return ready_at(at_depth(33));
-                          },
-                          {.maximum_torque = 2}};
-    Servo servo{Session{make_renderer(smooth(ramp_field()), 30, with_torque()), {}}, device};
+    bool in_tick = false;
+    ScriptedDevice device{[](double) { return ready_at(at_depth(33)); }, {.maximum_torque = 2}};
+    Servo servo{Session{make_renderer(smooth(ramp_field()), 30, with_torque()), {}}, device,
+                stepped()};
 
     static RendererSettings with_torque() {
         RendererSettings settings;
         settings.device.maximum_torque = 1000;
         return settings;
     }
-    ToolServo() { servo.start(); }
+    bool becomes(const auto& condition) {
+        in_tick = true;
+        run(servo, 1);
+        const bool is_so = ticks_until(servo, condition);
+        in_tick = false;
+        return is_so;
+    }
     /// At rest with the reference point at this depth, held by a tool's contacts or a point's.
     bool is_at(double depth, double tolerance, bool with_tool) {
-        return comes_true([&] {
+        return becomes([&] {
             const auto now = servo.snapshot();
             if (!now || with_tool != (now->contact_count > 0)) return false;
             return std::abs(now->session.tick.proxy.scp[2] - depth) < tolerance;
@@ -45,18 +48,18 @@ struct ToolServo {
 }  // namespace
 
 TEST(ToolServo, tools_that_are_sent_are_felt_and_freed_by_others) {
-    std::atomic<int> freed{0}, freed_by_servo{0};
+    int freed = 0, freed_by_servo = 0;
     {
         ToolServo live;
         EXPECT_TRUE(live.is_at(30, 1e-6, false));
         for (int i = 0; i < 20; ++i) {
             const double radius = 1 + i % 3;
-            const std::shared_ptr<const Tool> tool(
-                new Tool(sphere_tool(radius, 0.3)), [&](const Tool* used) {
-                    ++freed;
-                    freed_by_servo += std::this_thread::get_id() == live.servo_thread.load();
-                    delete used;
-                });
+            const std::shared_ptr<const Tool> tool(new Tool(sphere_tool(radius, 0.3)),
+                                                   [&](const Tool* used) {
+                                                       ++freed;
+                                                       freed_by_servo += live.in_tick;
+                                                       delete used;
+                                                   });
             ASSERT_TRUE(live.servo.send(command::UseTool{tool}));
             ASSERT_TRUE(live.is_at(30 - radius, 0.1, true)) << radius;
         }
@@ -73,7 +76,7 @@ TEST(ToolServo, torque_reaches_the_device_within_its_limits) {
     ToolServo live;
     const auto arm = std::make_shared<const Tool>(std::vector<Vec3>{{3, 0, 0}}, 20.0);
     ASSERT_TRUE(live.servo.send(command::UseTool{arm}));
-    EXPECT_TRUE(comes_true([&] { return live.device.largest_torque() > 1.9; }));
+    EXPECT_TRUE(live.becomes([&] { return live.device.largest_torque() > 1.9; }));
     live.servo.stop();
     EXPECT_LE(live.device.largest_torque(), 2 * (1 + 1e-12));
 }
