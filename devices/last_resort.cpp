@@ -31,6 +31,13 @@ std::array<std::atomic<Device*>, LastResort::most> told{};
 constexpr int least_wait = 100;
 constexpr int most_wait = 1000;
 
+void sleep_in_handler(int milliseconds) noexcept {
+    timespec left{0, milliseconds * 1'000'000};
+    while (::nanosleep(&left, &left) != 0 && errno == EINTR) {
+    }
+}
+std::atomic<LastResort::Pause> pause_in_handler{&sleep_in_handler};
+
 bool is_stopping(const std::atomic<Device*>& place) {
     const Device* const device = place.load();
     return device && device->is_stopping();
@@ -40,9 +47,7 @@ void wait_for_zeros() {
     constexpr int step = 5;
     for (int waited = 0; waited < most_wait; waited += step) {
         if (waited >= least_wait && std::ranges::none_of(told, is_stopping)) return;
-        timespec left{0, step * 1'000'000};
-        while (::nanosleep(&left, &left) != 0 && errno == EINTR) {
-        }
+        pause_in_handler.load()(step);
     }
 }
 
@@ -105,7 +110,7 @@ void forget_signals() {
 
 }  // namespace
 
-LastResort::LastResort(Device& device) {
+LastResort::LastResort(Device& device, Pause pause) {
     if (std::ranges::any_of(guarded, [&](const auto& place) { return place.load() == &device; })) {
         throw std::logic_error("this device has a last resort already");
     }
@@ -117,6 +122,7 @@ LastResort::LastResort(Device& device) {
         throw std::logic_error("too many devices are guarded against crashes at once");
     }
     place_ = static_cast<std::size_t>(free_place - guarded.begin());
+    pause_in_handler.store(pause ? pause : &sleep_in_handler);
     stack_t stack{};
     stack.ss_sp = handler_stack.data();
     stack.ss_size = handler_stack.size();

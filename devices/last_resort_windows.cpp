@@ -25,6 +25,11 @@ constexpr int most_wait = 1000;
 /// Stack that is kept for the filter when that of a thread runs out [bytes].
 constexpr ULONG filter_stack = 64 * 1024;
 
+void sleep_in_handler(int milliseconds) noexcept {
+    ::Sleep(static_cast<DWORD>(milliseconds));
+}
+std::atomic<LastResort::Pause> pause_in_handler{&sleep_in_handler};
+
 bool is_stopping(const std::atomic<Device*>& place) {
     const Device* const device = place.load();
     return device && device->is_stopping();
@@ -40,7 +45,7 @@ void let_go() {
     constexpr int step = 5;
     for (int waited = 0; wait && waited < most_wait; waited += step) {
         if (waited >= least_wait && std::ranges::none_of(told, is_stopping)) return;
-        ::Sleep(step);
+        pause_in_handler.load()(step);
     }
 }
 
@@ -93,7 +98,7 @@ bool none_guarded() {
 
 }  // namespace
 
-LastResort::LastResort(Device& device) {
+LastResort::LastResort(Device& device, Pause pause) {
     const std::lock_guard lock(changes);
     if (std::ranges::any_of(guarded, [&](const auto& place) { return place.load() == &device; })) {
         throw std::logic_error("this device has a last resort already");
@@ -104,6 +109,7 @@ LastResort::LastResort(Device& device) {
     if (free_place == guarded.end()) {
         throw std::logic_error("too many devices are guarded against crashes at once");
     }
+    pause_in_handler.store(pause ? pause : &sleep_in_handler);
     free_place->store(&device);
     place_ = static_cast<std::size_t>(free_place - guarded.begin());
     ULONG stack = filter_stack;

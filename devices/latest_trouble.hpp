@@ -11,7 +11,8 @@ template <class Trouble>
 class LatestTrouble {
   public:
     /// The device's thread: sends the reading to the servo, or the trouble's status in its place.
-    void report(Link& link, const Trouble& trouble, const DeviceReading& reading) noexcept {
+    void report(Link& link, const Trouble& trouble, const DeviceReading& reading,
+                std::int64_t now) noexcept {
         if (trouble != last_) {
             last_ = trouble;
             shared_.put(trouble);
@@ -19,9 +20,9 @@ class LatestTrouble {
         if (trouble.kind == Trouble::Kind::none) {
             DeviceReading ready = reading;
             ready.status = DeviceStatus::ready;
-            link.report(ready);
+            link.report(ready, now);
         } else {
-            link.report(status_of(trouble.kind));
+            link.report(status_of(trouble.kind), now);
         }
     }
     /// Any thread.

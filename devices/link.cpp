@@ -2,6 +2,7 @@
 #include "devices/link.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <limits>
 
 namespace palpate::devices {
@@ -12,44 +13,43 @@ std::int64_t monotonic_ns() noexcept {
         .count();
 }
 
-DeviceReading Link::read() const noexcept {
+DeviceReading Link::read(std::int64_t now) const noexcept {
     const auto report = reading_.get();
     if (!report) return {};
     DeviceReading reading = report->reading;
-    reading.age +=
-        1e-9 * static_cast<double>(std::max<std::int64_t>(0, monotonic_ns() - report->at));
+    reading.age += 1e-9 * static_cast<double>(std::max<std::int64_t>(0, now - report->at));
     if (reading.status == DeviceStatus::ready && !(reading.age <= Device::longest_force)) {
         reading.status = DeviceStatus::stale;
     }
     return reading;
 }
 
-void Link::write(const Wrench& wrench) noexcept {
+void Link::write(const Wrench& wrench, std::int64_t now) noexcept {
     const auto& [f, t] = wrench;
-    wrench_.put({{f[0], f[1], f[2]}, {t[0], t[1], t[2]}, monotonic_ns()});
+    wrench_.put({{f[0], f[1], f[2]}, {t[0], t[1], t[2]}, now});
 }
 
-void Link::report(const DeviceReading& reading) noexcept {
+void Link::report(const DeviceReading& reading, std::int64_t now) noexcept {
     last_ = reading;
     // An age below 0 would come to look fresh when time is added to it.
     if (!(last_.age >= 0)) last_.age = std::numeric_limits<double>::quiet_NaN();
-    reading_.put({last_, monotonic_ns()});
+    reading_.put({last_, now});
 }
 
-void Link::report(DeviceStatus status) noexcept {
+void Link::report(DeviceStatus status, std::int64_t now) noexcept {
     last_.status = status;
     last_.age = 0;
-    reading_.put({last_, monotonic_ns()});
+    reading_.put({last_, now});
 }
 
-Wrench Link::wrench() const noexcept {
+Wrench Link::wrench(std::int64_t now) const noexcept {
     if (stopped()) {
         if (zeros_.load(std::memory_order_relaxed) < 2) zeros_.fetch_add(1);
         return {};
     }
     const auto newest = wrench_.get();
     if (!newest) return {};
-    const double age = 1e-9 * static_cast<double>(monotonic_ns() - newest->at);
+    const double age = 1e-9 * static_cast<double>(now - newest->at);
     const Wrench wrench{Vec3(newest->force), Vec3(newest->torque)};
     const bool good =
         age <= Device::longest_force && wrench.force.allFinite() && wrench.torque.allFinite();

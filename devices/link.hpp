@@ -1,10 +1,9 @@
 // Exchanges the newest reading and the newest force between a backend's thread and the servo
 // thread. Neither side waits for the other. Every backend that does I/O consists of a thread and a
-// Link.
+// Link. Time is an argument, `now` [ns, monotonic], so that tests need not wait for it to pass.
 #pragma once
 
 #include <atomic>
-#include <chrono>
 #include <cstdint>
 
 #include "palpate/device.hpp"
@@ -18,22 +17,22 @@ class Link {
 
     /// The newest reading with its age. A reading older than `Device::longest_force` is stale,
     /// whatever its status.
-    DeviceReading read() const noexcept;
+    DeviceReading read(std::int64_t now) const noexcept;
     /// Sets force and torque (device axes).
-    void write(const Wrench& wrench) noexcept;
+    void write(const Wrench& wrench, std::int64_t now) noexcept;
 
     // The backend's side, one thread.
 
     /// Reports a reading, measured `reading.age` ago.
-    void report(const DeviceReading& reading) noexcept;
+    void report(const DeviceReading& reading, std::int64_t now) noexcept;
     /// Reports that the device is not ready and has no position: starting, lost, ... The last
     /// position stays.
-    void report(DeviceStatus status) noexcept;
+    void report(DeviceStatus status, std::int64_t now) noexcept;
     /// The force and torque to send now: zero if none was set, if the last one is older than
     /// `Device::longest_force` (the servo has stalled or stopped), if a number is not finite, or
     /// after stop(). A backend sends it at least every 5 ms, changed or not, and takes no locks and
     /// allocates nothing in doing so.
-    Wrench wrench() const noexcept;
+    Wrench wrench(std::int64_t now) const noexcept;
 
     // Either side.
 
@@ -47,7 +46,7 @@ class Link {
   private:
     struct Sent {
         double force[3], torque[3];
-        std::int64_t at;  // [ns] monotonic
+        std::int64_t at;  // [ns]
     };
     struct Report {
         DeviceReading reading;
@@ -72,5 +71,12 @@ bool is_device_thread() noexcept;
 std::int64_t monotonic_ns() noexcept;
 /// Sleeps until a time of it, as exactly as the system can once the thread is prepared.
 void sleep_until(std::int64_t ns) noexcept;
+
+/// Where a backend takes the time from [ns] and how it waits: the machine, or a test that lets time
+/// pass itself. A backend's thread only calls the backend's step() in a loop; tests call it, too.
+struct Timing {
+    Clock now = &monotonic_ns;
+    void (*sleep_until)(std::int64_t ns) noexcept = &devices::sleep_until;
+};
 
 }  // namespace palpate::devices

@@ -95,12 +95,12 @@ void OwnDevice::exchange() noexcept {
         auto reading = sized<palpate_reading>();
         bool lost = callbacks_.read(&reading, callbacks_.context) != 0;
         auto wrench = sized<palpate_wrench>();
-        const Wrench newest = link_.wrench();
+        const Wrench newest = link_.wrench(devices::monotonic_ns());
         put(newest.force, wrench.force);
         put(newest.torque, wrench.torque);
         lost |= callbacks_.write(&wrench, callbacks_.context) != 0;
         lost_ = lost;
-        if (lost) return link_.report(DeviceStatus::lost);
+        if (lost) return link_.report(DeviceStatus::lost, devices::monotonic_ns());
         const bool known = reading.status >= 0 && reading.status <= PALPATE_DEVICE_FINISHED;
         DeviceReading measured;
         measured.position = vec3(reading.position);
@@ -108,10 +108,10 @@ void OwnDevice::exchange() noexcept {
         measured.buttons = reading.buttons;
         measured.age = reading.age;
         measured.status = known ? static_cast<DeviceStatus>(reading.status) : DeviceStatus::fault;
-        link_.report(measured);
+        link_.report(measured, devices::monotonic_ns());
     } catch (...) {
         lost_ = true;
-        link_.report(DeviceStatus::fault);
+        link_.report(DeviceStatus::fault, devices::monotonic_ns());
     }
 }
 

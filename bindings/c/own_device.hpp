@@ -21,8 +21,10 @@ class OwnDevice final : public Device {
 
     DeviceInfo info() const override { return info_; }
     std::string problem() const override;
-    DeviceReading read(double) noexcept override { return link_.read(); }
-    void write(const Wrench& wrench, double) noexcept override { link_.write(wrench); }
+    DeviceReading read(double) noexcept override { return link_.read(devices::monotonic_ns()); }
+    void write(const Wrench& wrench, double) noexcept override {
+        link_.write(wrench, devices::monotonic_ns());
+    }
     void stop() noexcept override { link_.stop(); }
     bool is_stopping() const noexcept override { return link_.stopping(); }
 

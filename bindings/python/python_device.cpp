@@ -55,14 +55,15 @@ void PythonDevice::run() {
 bool PythonDevice::step() {
     const py::gil_scoped_acquire gil;
     try {
-        link_.report(self_.attr("read")().cast<DeviceReading>());
+        const auto reading = self_.attr("read")().cast<DeviceReading>();
+        link_.report(reading, devices::monotonic_ns());
         // Taken after the GIL was waited for, so that an old force is not sent.
-        const Wrench wrench = link_.wrench();
+        const Wrench wrench = link_.wrench(devices::monotonic_ns());
         if (py::hasattr(self_, "write")) self_.attr("write")(wrench.force, wrench.torque);
         return true;
     } catch (const std::exception& error) {
         link_.stop();
-        link_.report(DeviceStatus::fault);
+        link_.report(DeviceStatus::fault, devices::monotonic_ns());
         set_problem(std::string("the device's function raised ") + error.what());
         return false;
     }
@@ -73,7 +74,7 @@ void PythonDevice::end() {
     try {
         const Vec3 none = Vec3::Zero();
         if (py::hasattr(self_, "write")) self_.attr("write")(none, none);
-        link_.wrench(), link_.wrench();  // the zero is out
+        for (int i = 0; i < 2; ++i) link_.wrench(devices::monotonic_ns());  // the zero is out
         if (py::hasattr(self_, "close")) self_.attr("close")();
     } catch (const std::exception& error) {
         set_problem(std::string("the device's function raised ") + error.what());

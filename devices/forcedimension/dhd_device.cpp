@@ -1,5 +1,5 @@
-// The thread of a Force Dimension device: maintains it, reads it and sends forces; messages about
-// what is wrong.
+// Each step maintains a Force Dimension device, reads it and sends a force; messages about what is
+// wrong.
 #include "devices/forcedimension/dhd_device.hpp"
 
 #include <algorithm>
@@ -20,7 +20,7 @@ Mat3 axes() {
     return m;
 }
 
-std::array<char, 128> clipped(std::string_view text) {
+std::array<char, 128> clipped(std::string_view text) noexcept {
     std::array<char, 128> characters{};
     std::ranges::copy(text.substr(0, characters.size() - 1), characters.begin());
     return characters;
@@ -84,13 +84,16 @@ Opened::~Opened() {
     dhd_.close(id_);
 }
 
-DhdDevice::DhdDevice(const std::string& library, const Settings& settings)
-    : dhd_(library),
+DhdDevice::DhdDevice(const std::string& library, const Settings& settings, const Timing& timing)
+    : timing_(timing),
+      dhd_(library),
       opened_(dhd_, settings.index),
       id_(opened_.id()),
       model_(model_of(dhd_.get_system_type(id_))),
       renders_torque_(renders_torque()),
-      info_(ask(settings)) {
+      info_(ask(settings)),
+      is_to_initialise_(settings.initialise),
+      is_to_centre_(settings.centre) {
     if (settings.initialise && !dhd_.has_drd()) {
         throw DeviceError("autoinit=yes: " + dhd_.library.path() +
                           " cannot initialise devices: install libdrd beside it, or "
@@ -103,13 +106,18 @@ DhdDevice::DhdDevice(const std::string& library, const Settings& settings)
                                     "library=PATH of that one"
                               : "centre=yes: " + info_.model + " has no motors at its wrist");
     }
-    thread_ = std::thread([this, settings] { run(settings); });
 }
 
 DhdDevice::~DhdDevice() {
     link_.stop();
     quit_.store(true);
-    thread_.join();
+    if (thread_.joinable()) thread_.join();
+    send({});
+    if (old_watchdog_) dhd_.set_watchdog(*old_watchdog_, id_);
+}
+
+void DhdDevice::start() {
+    thread_ = std::thread([this] { run(); });
 }
 
 bool DhdDevice::renders_torque() const {
@@ -138,21 +146,18 @@ DeviceInfo DhdDevice::ask(const Settings& settings) const {
     return info;
 }
 
-void DhdDevice::run(const Settings& settings) {
+void DhdDevice::run() noexcept {
     prepare_device_thread();
-    if (settings.initialise) initialise();
-    is_to_centre_ = settings.centre;
-    std::int64_t next = monotonic_ns();
+    std::int64_t next = timing_.now();
     while (!quit_) {
-        tick();
-        next = std::max(next + period, monotonic_ns());
-        sleep_until(next);
+        step();
+        next = std::max(next + period, timing_.now());
+        timing_.sleep_until(next);
     }
-    send({});
-    if (old_watchdog_) dhd_.set_watchdog(*old_watchdog_, id_);
 }
 
-void DhdDevice::initialise() {
+void DhdDevice::initialise() noexcept {
+    is_to_initialise_ = false;
     std::array<int, status::count> told{};
     const bool wrist = !renders_torque_ || (dhd_.get_status(told.data(), id_) >= 0 &&
                                             told[status::wrist_initialised] != 0);
@@ -161,15 +166,15 @@ void DhdDevice::initialise() {
     if (dhd_.drd_initialise(id_) < 0) init_words_ = clipped(dhd_.error_words());
 }
 
-void DhdDevice::moves_by_itself() {
+void DhdDevice::moves_by_itself() noexcept {
     Trouble trouble;
     trouble.kind = Trouble::Kind::initialising;
-    trouble_.report(link_, trouble, {});
+    trouble_.report(link_, trouble, {}, timing_.now());
 }
 
 /// The library regulates the wrist alone until it is straight, and lets go of it again: torques
 /// are felt at axes that are not regulated only.
-void DhdDevice::centre_wrist() {
+void DhdDevice::centre_wrist() noexcept {
     is_to_centre_ = false;
     moves_by_itself();
     dhd_.drd_regulate_position(false, id_);
@@ -192,8 +197,9 @@ int DhdDevice::send(const Wrench& wrench) noexcept {
     return result;
 }
 
-void DhdDevice::tick() noexcept {
-    const std::int64_t begun = monotonic_ns();
+void DhdDevice::step() noexcept {
+    if (is_to_initialise_) initialise();
+    const std::int64_t begun = timing_.now();
     if (begun >= next_look_) {
         look_after_device();
         next_look_ = begun + between_looks;
@@ -202,17 +208,18 @@ void DhdDevice::tick() noexcept {
     Trouble trouble = read_device(reading);
     if (trouble.kind == Trouble::Kind::none) trouble = state_;
 
-    const std::int64_t now = monotonic_ns();
+    const std::int64_t now = timing_.now();
     gate_.note(trouble.kind == Trouble::Kind::none, now);
-    const Wrench wanted = link_.wrench();
+    const Wrench wanted = link_.wrench(now);
     const Wrench passed{gate_.pass(wanted.force, model_.force, now),
                         gate_.pass(wanted.torque, info_.limits.maximum_torque, now)};
     if (send(passed) < 0 && trouble.kind == Trouble::Kind::none) {
         trouble = failure();
         gate_.note(false, now);
     }
-    reading.age = 1e-9 * static_cast<double>(monotonic_ns() - begun);
-    trouble_.report(link_, trouble, reading);
+    const std::int64_t end = timing_.now();
+    reading.age = 1e-9 * static_cast<double>(end - begun);
+    trouble_.report(link_, trouble, reading, end);
 }
 
 void DhdDevice::look_after_device() noexcept {
@@ -341,7 +348,7 @@ std::string DhdDevice::problem() const {
         case Trouble::Kind::none:
             break;
     }
-    switch (link_.read().status) {
+    switch (link_.read(timing_.now()).status) {
         case DeviceStatus::starting:
             return "the device has not told a position yet";
         case DeviceStatus::stale:

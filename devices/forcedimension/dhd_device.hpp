@@ -1,4 +1,4 @@
-// An open Force Dimension device, and the thread that talks to it.
+// An open Force Dimension device: what its thread does in each step.
 #pragma once
 
 #include <array>
@@ -58,13 +58,22 @@ class Opened {
 
 class DhdDevice final : public Device {
   public:
-    DhdDevice(const std::string& library, const Settings& settings);
+    DhdDevice(const std::string& library, const Settings& settings, const Timing& timing = {});
+    /// Ends the thread. The last force is zero.
     ~DhdDevice() override;
+
+    /// Starts a thread that steps up to 4000 times a second.
+    void start();
+    /// One exchange with the device: a reading in, a force out. The first one initialises it where
+    /// the settings ask for it.
+    void step() noexcept;
 
     DeviceInfo info() const override { return info_; }
     std::string problem() const override;
-    DeviceReading read(double) noexcept override { return link_.read(); }
-    void write(const Wrench& wrench, double) noexcept override { link_.write(wrench); }
+    DeviceReading read(double) noexcept override { return link_.read(timing_.now()); }
+    void write(const Wrench& wrench, double) noexcept override {
+        link_.write(wrench, timing_.now());
+    }
     void stop() noexcept override { link_.stop(); }
     bool is_stopping() const noexcept override { return link_.stopping(); }
 
@@ -73,17 +82,17 @@ class DhdDevice final : public Device {
     bool renders_torque() const;
 
     // Called by the thread only.
-    void run(const Settings& settings);
-    void initialise();
-    void centre_wrist();
-    void moves_by_itself();
-    void tick() noexcept;
+    void run() noexcept;
+    void initialise() noexcept;
+    void centre_wrist() noexcept;
+    void moves_by_itself() noexcept;
     void look_after_device() noexcept;
     bool switch_on() noexcept;
     int send(const Wrench& wrench) noexcept;
     Trouble read_device(DeviceReading& reading) noexcept;
     Trouble failure() const noexcept;
 
+    const Timing timing_;
     const Dhd dhd_;
     const Opened opened_;
     const char id_;
@@ -99,7 +108,8 @@ class DhdDevice final : public Device {
     Trouble state_;  // found by look_after_device()
     std::array<char, 128> init_words_{};
     bool is_on_ = false;          // brakes off, force on
-    bool is_to_centre_ = false;   // once it is on
+    bool is_to_initialise_;       // in the next step
+    bool is_to_centre_;           // once it is on
     std::int64_t next_look_ = 0;  // [ns]
     std::optional<unsigned char> old_watchdog_;
 

@@ -45,13 +45,21 @@ DeviceFinding find_forcedimension() {
 }
 
 std::unique_ptr<Device> open_forcedimension(const DeviceChoice& choice, const DeviceScene& scene) {
+    auto device = forcedimension::open(choice, scene);
+    device->start();
+    return device;
+}
+
+std::unique_ptr<forcedimension::DhdDevice> forcedimension::open(const DeviceChoice& choice,
+                                                                const DeviceScene& scene,
+                                                                const Timing& timing) {
     DeviceOptions options(choice, "index");
     const double index = options.number("index", 0, 0, 100);
     if (index != std::floor(index)) {
         throw std::invalid_argument("device " + choice.name + ": index=" + std::to_string(index) +
                                     ": a whole number is needed");
     }
-    forcedimension::Settings settings;
+    Settings settings;
     settings.index = static_cast<int>(index);
     settings.initialise = options.flag("autoinit", false);
     settings.centre = options.flag("centre", false);
@@ -59,7 +67,7 @@ std::unique_ptr<Device> open_forcedimension(const DeviceChoice& choice, const De
     const std::string library = options.text("library", "");
     options.finish();
     try {
-        return std::make_unique<forcedimension::DhdDevice>(library, settings);
+        return std::make_unique<DhdDevice>(library, settings, timing);
     } catch (const DeviceError& error) {
         throw DeviceError("device " + choice.name + ": " + error.what());
     }

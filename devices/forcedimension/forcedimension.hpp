@@ -2,6 +2,10 @@
 // See docs/devices/forcedimension.md.
 #pragma once
 
+#include <memory>
+#include <string>
+
+#include "devices/forcedimension/dhd_device.hpp"
 #include "palpate/devices/backend.hpp"
 
 namespace palpate::devices {
@@ -16,6 +20,9 @@ std::unique_ptr<Device> open_forcedimension(const DeviceChoice& choice, const De
 namespace forcedimension {
 /// As find_forcedimension(), in this library ("": where it usually is).
 DeviceFinding find(const std::string& library);
+/// As open_forcedimension(), without the thread.
+std::unique_ptr<DhdDevice> open(const DeviceChoice& choice, const DeviceScene& scene,
+                                const Timing& timing = {});
 }  // namespace forcedimension
 
 }  // namespace palpate::devices

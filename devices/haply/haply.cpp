@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <cstdlib>
-#include <thread>
 #include <utility>
 
 #include "devices/haply/inverse3.hpp"
@@ -39,6 +38,10 @@ haply::Address address_from(const std::string& host, double port) {
 }  // namespace
 
 DeviceFinding find_haply() {
+    return haply::find({});
+}
+
+DeviceFinding haply::find(Talk talk, const Timing& timing) {
     DeviceFinding finding;
     finding.name = "haply";
     finding.options =
@@ -46,9 +49,8 @@ DeviceFinding find_haply() {
         "(values|vector),axes=xz-y,"
         "calibrated=ask (ask|assume),timeout=2";
     try {
-        const haply::Address address = address_from(usual_host(), usual_port());
-        haply::Talk talk;
-        finding.missing = start_talk(talk, address, "", haply::Clock::now() + 250ms);
+        const Address address = address_from(usual_host(), usual_port());
+        finding.missing = start_talk(talk, address, "", time_of(timing) + 250ms);
         if (!finding.missing.empty()) return finding;
         finding.found = !talk.state.device_id.empty();
         const std::string place = address.host + ":" + std::to_string(address.port);
@@ -57,7 +59,7 @@ DeviceFinding find_haply() {
         } else {
             finding.missing = no_device(talk, address);
         }
-        talk.socket.close(haply::Clock::now() + 50ms);
+        talk.channel->close(time_of(timing) + 50ms);
     } catch (const std::exception& error) {
         finding.missing = error.what();
     }
@@ -65,38 +67,44 @@ DeviceFinding find_haply() {
 }
 
 std::unique_ptr<Device> open_haply(const DeviceChoice& choice, const DeviceScene& scene) {
+    auto inverse3 = haply::open(choice, scene);
+    inverse3->start();
+    return inverse3;
+}
+
+std::unique_ptr<haply::Inverse3> haply::open(const DeviceChoice& choice, const DeviceScene& scene,
+                                             Talk talk, const Timing& timing) {
     DeviceOptions options(choice, "host");
     const std::string host = options.text("host", usual_host());
     const double port = options.number("port", usual_port(), 1, 65535);
-    haply::Settings settings;
+    Settings settings;
     settings.device = options.text("device", "");
     settings.force_key = options.one_of("force_key", "values", {"values", "vector"}) == "values"
-                             ? haply::ForceKey::values
-                             : haply::ForceKey::vector;
-    settings.axes = haply::axes_from(options.text("axes", "xz-y"));
+                             ? ForceKey::values
+                             : ForceKey::vector;
+    settings.axes = axes_from(options.text("axes", "xz-y"));
     settings.assume_calibrated = options.one_of("calibrated", "ask", {"ask", "assume"}) == "assume";
     settings.timeout = options.number("timeout", settings.timeout, 0.1, 5);
     settings.rate = scene.rate;
     options.finish();
 
-    haply::Address address = address_from(host, port);
+    Address address = address_from(host, port);
     if (address.numeric.empty()) {
         throw DeviceError("device haply: no host '" + host +
                           "': host=NAME is where Haply's Inverse Service runs, usually 127.0.0.1");
     }
-    // A service that is just starting gets a second.
-    const auto deadline = haply::Clock::now() + 1s;
-    haply::Talk talk;
+    const Clock::time_point deadline = time_of(timing) + 1s;  // for one that is just starting
     std::string wrong;
     for (;;) {
         wrong = start_talk(talk, address, settings.device, deadline);
-        if (wrong.empty() || haply::Clock::now() + 100ms > deadline) break;
-        std::this_thread::sleep_for(100ms);
+        const Clock::time_point next = time_of(timing) + 100ms;
+        if (wrong.empty() || next > deadline) break;
+        timing.sleep_until(ns_of(next));
     }
     if (wrong.empty() && talk.state.device_id.empty()) wrong = no_device(talk, address);
     if (!wrong.empty()) throw DeviceError("device haply: " + wrong);
-    return std::make_unique<haply::Inverse3>(std::move(settings), std::move(address),
-                                             std::move(talk));
+    return std::make_unique<Inverse3>(std::move(settings), std::move(address), std::move(talk),
+                                      timing);
 }
 
 }  // namespace palpate::devices

@@ -1,6 +1,9 @@
 // Haply Inverse3, through Haply's Inverse Service (WebSocket and JSON on the loopback).
 #pragma once
 
+#include <memory>
+
+#include "devices/haply/inverse3.hpp"
 #include "palpate/devices/backend.hpp"
 
 namespace palpate::devices {
@@ -13,5 +16,13 @@ DeviceFinding find_haply();
 /// connection is lost later. Throws std::invalid_argument for wrong options, DeviceError where
 /// nothing listens or the service has no such device.
 std::unique_ptr<Device> open_haply(const DeviceChoice& choice, const DeviceScene& scene);
+
+namespace haply {
+/// As find_haply(). The channel keeps the time of `timing`.
+DeviceFinding find(Talk talk, const Timing& timing = {});
+/// As open_haply(), without the thread.
+std::unique_ptr<Inverse3> open(const DeviceChoice& choice, const DeviceScene& scene, Talk talk = {},
+                               const Timing& timing = {});
+}  // namespace haply
 
 }  // namespace palpate::devices

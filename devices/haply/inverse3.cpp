@@ -1,5 +1,5 @@
-// The thread of an Inverse3: asks the service, hands the answer to the servo, and connects again
-// when the connection breaks.
+// A step of an Inverse3: asks the service, hands the answer to the servo, and connects again when
+// the connection breaks.
 #include "devices/haply/inverse3.hpp"
 
 #include <algorithm>
@@ -11,13 +11,15 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto shortest_pause = 250us;  // between two questions: 4 kHz at most
-constexpr auto longest_pause = 5ms;     // the force goes out at least this often
-constexpr auto idle_pause = 100ms;      // while no device is attached
+constexpr auto shortest_pause = 250us;                    // between two questions: 4 kHz at most
+constexpr std::chrono::microseconds longest_pause = 5ms;  // the force goes out at least this often
+constexpr std::chrono::microseconds idle_pause = 100ms;   // while no device is attached
 constexpr auto send_limit = 50ms;
+constexpr auto close_limit = 100ms;
 constexpr auto connect_limit = 250ms;
 constexpr auto first_wait = 100ms;
 constexpr auto longest_wait = 2s;
+constexpr auto longest_sleep = 10ms;
 constexpr auto longest_age = std::chrono::duration_cast<Clock::duration>(
     std::chrono::duration<double>(Device::longest_force));
 
@@ -48,15 +50,15 @@ std::string start_talk(Talk& talk, const Address& address, const std::string& de
     talk.state = {};
     talk.state.wanted = device;
     const std::string service = service_at(address);
-    if (!talk.socket.connect(address, deadline)) {
-        return "nothing to talk to at " + place_of(address) + " (" + talk.socket.error() +
+    if (!talk.channel->connect(address, deadline)) {
+        return "nothing to talk to at " + place_of(address) + " (" + talk.channel->error() +
                "): install Haply's Inverse Service (haply-inverse-service) and start it: systemctl "
                "start haply-inverse-service";
     }
     for (;;) {
-        const Received received = talk.socket.receive(deadline);
+        const Received received = talk.channel->receive(deadline);
         if (received.what == Received::What::closed) {
-            return service + " closed the connection (" + talk.socket.error() + ")";
+            return service + " closed the connection (" + talk.channel->error() + ")";
         }
         if (received.what == Received::What::nothing) {
             return service + " does not say what is attached: is it of version 3.1 or newer?";
@@ -89,19 +91,28 @@ Clock::duration Questions::behind(Clock::time_point now) const {
     return missing() < times_.size() ? now - behind_since_ : Clock::duration::max();
 }
 
-Inverse3::Inverse3(Settings settings, Address address, Talk talk)
-    : settings_(std::move(settings)),
+Inverse3::Inverse3(Settings settings, Address address, Talk talk, const Timing& timing)
+    : timing_(timing),
+      settings_(std::move(settings)),
       address_(std::move(address)),
       service_(service_at(address_)),
+      talk_(std::move(talk)),
       wait_(first_wait) {
-    tell_identity(talk.state);
-    thread_ = std::thread([this, first = std::move(talk)]() mutable { run(std::move(first)); });
+    tell_identity(talk_.state);
 }
 
 Inverse3::~Inverse3() {
     link_.stop();
     quit_.store(true);
-    thread_.join();
+    if (thread_.joinable()) thread_.join();
+    try {
+        say_goodbye();
+    } catch (const std::exception&) {  // no memory: the service ends the force by itself
+    }
+}
+
+void Inverse3::start() {
+    thread_ = std::thread([this] { run(); });
 }
 
 DeviceInfo Inverse3::info() const {
@@ -137,97 +148,93 @@ void Inverse3::tell_identity(const ServiceState& state) {
     identity_.put({clipped<sizeof(Identity::model)>(state.model), told_grip_});
 }
 
-void Inverse3::run(Talk talk) {
+void Inverse3::run() {
     prepare_device_thread();
-    for (;;) {
-        std::string why;
-        try {
-            why = converse(talk);
-            if (quit_) say_goodbye(talk);
-        } catch (const std::exception& error) {
-            why = error.what();
-        }
-        gate_.note(false, monotonic_ns());
-        link_.report(DeviceStatus::lost);
-        if (quit_) return;
-        tell("lost " + service_ + " (" + why + "); trying to connect again");
-        talk = {};
-        auto next = reconnect();
-        if (!next) return;
-        talk = std::move(*next);
-    }
+    while (!quit_) step();
 }
 
-std::optional<Talk> Inverse3::reconnect() {
-    for (;;) {
-        const auto until = Clock::now() + wait_;
-        while (!quit_ && Clock::now() < until) std::this_thread::sleep_for(10ms);
-        if (quit_) return std::nullopt;
-        wait_ = std::min<Clock::duration>(2 * wait_, longest_wait);
-        Talk talk;
-        try {
-            if (start_talk(talk, address_, settings_.device, Clock::now() + connect_limit)
-                    .empty()) {
-                return talk;
-            }
-        } catch (const std::exception&) {  // no memory, no file descriptors: perhaps later
-        }
+void Inverse3::step() {
+    if (!connected_) return reconnect();
+    std::optional<std::string> why;
+    try {
+        why = converse();
+    } catch (const std::exception& error) {
+        why = error.what();
     }
+    if (why) lose(*why);
 }
 
-/// Until the connection ends: then it says why.
-std::string Inverse3::converse(Talk& talk) {
-    Questions questions;
-    if (!talk.state.device_id.empty()) tell_identity(talk.state);
-    while (!quit_) {
-        const bool idle = talk.state.device_id.empty();
-        auto now = Clock::now();
-        const auto due = [&] {
-            if (idle) return questions.last() + idle_pause;
-            return questions.last() + (questions.missing() > 0 ? longest_pause : shortest_pause);
-        };
-        if (now >= due()) {
-            if (!ask(talk, questions)) return talk.socket.error();
-            continue;
-        }
-        // Waiting for the socket is no finer than a millisecond.
-        if (questions.missing() == 0 && due() - now < 1ms) {
-            std::this_thread::sleep_until(due());
-            continue;
-        }
-        const Received received =
-            talk.socket.receive(std::min<Clock::time_point>(due(), now + longest_pause));
-        now = Clock::now();
-        if (received.what == Received::What::closed) return talk.socket.error();
-        if (received.what == Received::What::message) take(talk, received, questions.answered());
-        if (questions.behind(now) > std::chrono::duration<double>(settings_.timeout)) {
-            return "it does not keep up with answering";
-        }
-        if (received.what == Received::What::nothing && questions.behind(now) > longest_age) {
-            tell(service_ + " does not answer");
-        }
+void Inverse3::lose(const std::string& why) {
+    gate_.note(false, timing_.now());
+    link_.report(DeviceStatus::lost, timing_.now());
+    tell("lost " + service_ + " (" + why + "); trying to connect again");
+    talk_.channel->drop();
+    connected_ = false;
+    next_attempt_ = now() + wait_;
+}
+
+void Inverse3::reconnect() {
+    if (now() < next_attempt_) {
+        return timing_.sleep_until(ns_of(std::min(next_attempt_, now() + longest_sleep)));
     }
-    return {};
+    wait_ = std::min<Clock::duration>(2 * wait_, longest_wait);
+    try {
+        connected_ = start_talk(talk_, address_, settings_.device, now() + connect_limit).empty();
+    } catch (const std::exception&) {  // no memory, no file descriptors: perhaps later
+        talk_.channel->drop();
+    }
+    next_attempt_ = now() + wait_;
+    questions_ = {};
+    if (connected_ && !talk_.state.device_id.empty()) tell_identity(talk_.state);
+}
+
+/// A question where one is due, otherwise a wait for the answer. Says why when the connection ends.
+std::optional<std::string> Inverse3::converse() {
+    const bool idle = talk_.state.device_id.empty();
+    auto pause = questions_.missing() > 0 ? longest_pause : shortest_pause;
+    if (idle) pause = idle_pause;
+    const Clock::time_point begun = now(), due = questions_.last() + pause;
+    if (begun >= due) {
+        if (!ask(begun)) return talk_.channel->error();
+        return std::nullopt;
+    }
+    // Waiting for the socket is no finer than a millisecond.
+    if (questions_.missing() == 0 && due - begun < 1ms) {
+        timing_.sleep_until(ns_of(due));
+        return std::nullopt;
+    }
+    const Received received =
+        talk_.channel->receive(std::min<Clock::time_point>(due, begun + longest_pause));
+    const Clock::time_point after = now();
+    if (received.what == Received::What::closed) return talk_.channel->error();
+    if (received.what == Received::What::message) take(received, questions_.answered(), after);
+    if (questions_.behind(after) > std::chrono::duration<double>(settings_.timeout)) {
+        return "it does not keep up with answering";
+    }
+    if (received.what == Received::What::nothing && questions_.behind(after) > longest_age) {
+        tell(service_ + " does not answer");
+    }
+    return std::nullopt;
 }
 
 /// Sends the force; the answer is the next state.
-bool Inverse3::ask(Talk& talk, Questions& questions) {
-    const auto now = Clock::now();
-    questions.asked(now);
-    if (talk.state.device_id.empty()) return talk.socket.send(snapshot_command(), now + send_limit);
-    ForceCommand command(talk.state.device_id, settings_.force_key);
+bool Inverse3::ask(Clock::time_point now) {
+    questions_.asked(now);
+    const std::string& id = talk_.state.device_id;
+    if (id.empty()) return talk_.channel->send(snapshot_command(), now + send_limit);
+    ForceCommand command(id, settings_.force_key);
     const Vec3 newtons = settings_.axes.transpose() * force(now);
-    return talk.socket.send(command.with(newtons), now + send_limit);
+    return talk_.channel->send(command.with(newtons), now + send_limit);
 }
 
 /// The link's, if the gate lets it through and the newest position is not stale.
 Vec3 Inverse3::force(Clock::time_point now) {
-    if (now - measured_at_ > longest_age) gate_.note(false, monotonic_ns());
-    return gate_.pass(link_.wrench().force, maximum_force, monotonic_ns());
+    if (now - measured_at_ > longest_age) gate_.note(false, ns_of(now));
+    return gate_.pass(link_.wrench(ns_of(now)).force, maximum_force, ns_of(now));
 }
 
-void Inverse3::take(Talk& talk, const Received& received, Clock::time_point asked) {
-    ServiceState& state = talk.state;
+void Inverse3::take(const Received& received, Clock::time_point asked, Clock::time_point now) {
+    ServiceState& state = talk_.state;
     News news = News::refused;
     if (received.binary) {
         state.error = "a binary message";
@@ -236,53 +243,53 @@ void Inverse3::take(Talk& talk, const Received& received, Clock::time_point aske
     }
     switch (news) {
         case News::refused:
-            gate_.note(false, monotonic_ns());
-            link_.report(DeviceStatus::fault);
+            gate_.note(false, ns_of(now));
+            link_.report(DeviceStatus::fault, ns_of(now));
             tell(service_ + " sent " + state.error);
             break;
         case News::none:
             if (!state.error.empty()) {
                 tell(problem_of(state));
-            } else if (Clock::now() - measured_at_ > longest_age) {
-                tell(state.device_id.empty() ? no_device(talk, address_)
+            } else if (now - measured_at_ > longest_age) {
+                tell(state.device_id.empty() ? no_device(talk_, address_)
                                              : service_ + " says nothing of " + state.device_id);
             }
             break;
         case News::gone:
-            gate_.note(false, monotonic_ns());
-            link_.report(DeviceStatus::lost);
-            tell(no_device(talk, address_));
+            gate_.note(false, ns_of(now));
+            link_.report(DeviceStatus::lost, ns_of(now));
+            tell(no_device(talk_, address_));
             break;
         case News::state:
             wait_ = first_wait;
-            report_state(state, asked);
-            tell(Clock::now() - asked > longest_age ? service_ + " answers too late"
-                                                    : problem_of(state));
+            report_state(asked, now);
+            tell(now - asked > longest_age ? service_ + " answers too late" : problem_of(state));
             break;
     }
 }
 
-void Inverse3::report_state(ServiceState& state, Clock::time_point asked) {
+void Inverse3::report_state(Clock::time_point asked, Clock::time_point now) {
+    ServiceState& state = talk_.state;
     if (settings_.assume_calibrated) state.calibrated = true;
     DeviceReading reading;
     if (state.position) reading.position = 1000 * (settings_.axes * *state.position);
     reading.orientation = settings_.axes * state.grip.orientation * settings_.axes.transpose();
     reading.buttons = state.grip.buttons;
-    const auto age = Clock::now() - asked;
+    const auto age = now - asked;
     reading.age = std::chrono::duration<double>(age).count();
     reading.status = status_of(state);
-    link_.report(reading);
+    link_.report(reading, ns_of(now));
 
     measured_at_ = asked;
-    gate_.note(reading.status == DeviceStatus::ready && age <= longest_age, monotonic_ns());
+    gate_.note(reading.status == DeviceStatus::ready && age <= longest_age, ns_of(now));
     if (told_grip_ != !state.grip.list.empty()) tell_identity(state);
 }
 
-void Inverse3::say_goodbye(Talk& talk) {
-    if (talk.state.device_id.empty()) return;
-    ForceCommand command(talk.state.device_id, settings_.force_key);
-    if (talk.socket.send(command.with(Vec3::Zero()), Clock::now() + send_limit)) {
-        talk.socket.close(Clock::now() + 100ms);
+void Inverse3::say_goodbye() {
+    if (!connected_ || talk_.state.device_id.empty()) return;
+    ForceCommand command(talk_.state.device_id, settings_.force_key);
+    if (talk_.channel->send(command.with(Vec3::Zero()), now() + send_limit)) {
+        talk_.channel->close(now() + close_limit);
     }
 }
 

@@ -1,7 +1,10 @@
-// An Inverse3: a thread that talks to the Inverse Service, and a link to the servo.
+// An Inverse3: what its thread says to the Inverse Service in each step, and a link to the servo.
 #pragma once
 
+#include <array>
 #include <atomic>
+#include <chrono>
+#include <memory>
 #include <optional>
 #include <string>
 #include <thread>
@@ -22,9 +25,17 @@ struct Settings {
     double rate = 1000;  ///< [Hz] of the servo
 };
 
+/// Times of a socket as those of a link.
+inline Clock::time_point time_of(const Timing& timing) {
+    return Clock::time_point(std::chrono::nanoseconds(timing.now()));
+}
+inline std::int64_t ns_of(Clock::time_point time) {
+    return std::chrono::nanoseconds(time.time_since_epoch()).count();
+}
+
 /// A connection, and what the service has said on it.
 struct Talk {
-    Socket socket{longest_message};
+    std::unique_ptr<Channel> channel = std::make_unique<Socket>(longest_message);
     ServiceState state;
 };
 /// Connects and reads the first message, which lists the devices. Returns what is wrong, or empty.
@@ -43,7 +54,7 @@ class Questions {
     Clock::time_point answered();
     std::uint64_t missing() const { return asked_ - answered_; }
     Clock::time_point last() const { return last_; }
-    /// For how long at least one answer has been missing.
+    /// For how long at least one answer has been missing; the longest time there is for too many.
     Clock::duration behind(Clock::time_point now) const;
 
   private:
@@ -54,27 +65,38 @@ class Questions {
 
 class Inverse3 final : public Device {
   public:
-    /// `talk` has found the device.
-    Inverse3(Settings settings, Address address, Talk talk);
+    /// `talk` has found the device. Its channel keeps the time of `timing`.
+    Inverse3(Settings settings, Address address, Talk talk, const Timing& timing = {});
+    /// Ends the thread, sends zero force and says goodbye: at most about 0.2 s.
     ~Inverse3() override;
+
+    /// Starts a thread that steps.
+    void start();
+    /// One question, or one wait of at most 10 ms; without a connection sometimes an attempt to
+    /// connect, of at most 250 ms.
+    void step();
 
     DeviceInfo info() const override;
     std::string problem() const override;
-    DeviceReading read(double) noexcept override { return link_.read(); }
-    void write(const Wrench& wrench, double) noexcept override { link_.write(wrench); }
+    DeviceReading read(double) noexcept override { return link_.read(timing_.now()); }
+    void write(const Wrench& wrench, double) noexcept override {
+        link_.write(wrench, timing_.now());
+    }
     void stop() noexcept override { link_.stop(); }
     bool is_stopping() const noexcept override { return link_.stopping(); }
 
   private:
     // Called by the thread only.
-    void run(Talk talk);
-    std::string converse(Talk& talk);
-    bool ask(Talk& talk, Questions& questions);
-    void take(Talk& talk, const Received& received, Clock::time_point asked);
-    void report_state(ServiceState& state, Clock::time_point asked);
-    void say_goodbye(Talk& talk);
-    std::optional<Talk> reconnect();
+    void run();
+    void reconnect();
+    std::optional<std::string> converse();
+    bool ask(Clock::time_point now);
+    void take(const Received& received, Clock::time_point asked, Clock::time_point now);
+    void report_state(Clock::time_point asked, Clock::time_point now);
+    void lose(const std::string& why);
+    void say_goodbye();
     Vec3 force(Clock::time_point now);
+    Clock::time_point now() const { return time_of(timing_); }
     void tell(std::string_view problem);
     void tell_identity(const ServiceState& state);
 
@@ -86,6 +108,7 @@ class Inverse3 final : public Device {
         bool has_grip;
     };
 
+    const Timing timing_;
     const Settings settings_;
     const Address address_;
     const std::string service_;  // in words
@@ -95,11 +118,15 @@ class Inverse3 final : public Device {
     std::atomic<bool> quit_{false};
 
     // Used by the thread only.
+    Talk talk_;
+    bool connected_ = true;
+    Questions questions_;
     std::string told_;
     bool told_grip_ = false;
     Clock::time_point measured_at_;  // the newest position, at the earliest
     ForceGate gate_;
-    Clock::duration wait_;  // before the next attempt to connect
+    Clock::duration wait_;            // before the next attempt to connect
+    Clock::time_point next_attempt_;  // not before
 
     std::thread thread_;
 };

@@ -144,8 +144,10 @@ Address look_up(const std::string& host, std::uint16_t port) {
 
 Socket::Socket(std::size_t longest_message) : longest_message_(longest_message) {}
 Socket::~Socket() = default;
-Socket::Socket(Socket&&) noexcept = default;
-Socket& Socket::operator=(Socket&&) noexcept = default;
+
+void Socket::drop() noexcept {
+    connection_.reset();
+}
 
 void Socket::fail(const std::string& what) {
     error_ = what;

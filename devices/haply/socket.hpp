@@ -1,5 +1,5 @@
-// A WebSocket client with time limits: every call comes back by its deadline, whatever the other
-// side does. No JSON here, and no Boost in this header.
+// A connection that carries messages, and the one over a WebSocket: every call comes back by its
+// deadline, whatever the other side does. No JSON here, and no Boost in this header.
 #pragma once
 
 #include <chrono>
@@ -35,25 +35,37 @@ struct Received {
 };
 
 /// Used by one thread at a time. Throws nothing but std::bad_alloc.
-class Socket {
+class Channel {
+  public:
+    virtual ~Channel() = default;
+
+    /// Connects and shakes hands. False if that did not work; error() says why.
+    virtual bool connect(const Address& address, Clock::time_point deadline) = 0;
+    /// Sends a text message; allocates nothing (from the second message on). False if it could not
+    /// be handed to the system by the deadline: then the connection is closed.
+    virtual bool send(std::string_view message, Clock::time_point deadline) = 0;
+    virtual Received receive(Clock::time_point deadline) = 0;
+    /// Says goodbye, waiting for the answer until the deadline, and closes.
+    virtual void close(Clock::time_point deadline) = 0;
+    /// Closes without a word.
+    virtual void drop() noexcept = 0;
+    /// In words; empty if nothing went wrong.
+    virtual const std::string& error() const = 0;
+};
+
+/// The real one. Its deadlines are times of the machine's clock.
+class Socket final : public Channel {
   public:
     /// A message of more than `longest_message` bytes closes the connection.
     explicit Socket(std::size_t longest_message);
-    ~Socket();
-    Socket(Socket&&) noexcept;
-    Socket& operator=(Socket&&) noexcept;
+    ~Socket() override;
 
-    /// Connects and shakes hands. False if that did not work; error() says why.
-    bool connect(const Address& address, Clock::time_point deadline);
-    /// Sends a text message; allocates nothing (from the second message on). False if it could not
-    /// be handed to the system by the deadline: then the connection is closed.
-    bool send(std::string_view message, Clock::time_point deadline);
-    Received receive(Clock::time_point deadline);
-    /// Says goodbye, waiting for the answer until the deadline, and closes.
-    void close(Clock::time_point deadline);
-
-    /// In words; empty if nothing went wrong.
-    const std::string& error() const { return error_; }
+    bool connect(const Address& address, Clock::time_point deadline) override;
+    bool send(std::string_view message, Clock::time_point deadline) override;
+    Received receive(Clock::time_point deadline) override;
+    void close(Clock::time_point deadline) override;
+    void drop() noexcept override;
+    const std::string& error() const override { return error_; }
 
   private:
     struct Connection;

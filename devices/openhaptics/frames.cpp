@@ -56,19 +56,19 @@ Trouble Frames::trouble() const {
 
 unsigned int Frames::frame() noexcept {
     const bool last = end_.load() || for_good();
-    const std::int64_t begun = monotonic_ns();
+    const std::int64_t begun = setup_.now();
     hd_.begin_frame(setup_.device);
     DeviceReading reading;
     Trouble trouble = read_device(reading);
 
-    std::int64_t now = monotonic_ns();
+    std::int64_t now = setup_.now();
     if (error_.kind == Trouble::Kind::passing && now >= error_until_) {
         error_ = {};
         force_output(true);
     }
     if (error_.kind != Trouble::Kind::none) trouble = error_;
     gate_.note(trouble.kind == Trouble::Kind::none && !last, now);
-    const Wrench wanted = link_.wrench();
+    const Wrench wanted = link_.wrench(now);
     const Vec3 force = gate_.pass(wanted.force, setup_.most_force, now);
     hd_.set_double(parameter::force, force.data());
     if (setup_.most_torque > 0) {
@@ -79,9 +79,9 @@ unsigned int Frames::frame() noexcept {
 
     take_errors();
     if (error_.kind != Trouble::Kind::none) trouble = error_;
-    now = monotonic_ns();
+    now = setup_.now();
     reading.age = 1e-9 * static_cast<double>(now - begun);
-    trouble_.report(link_, trouble, reading);
+    trouble_.report(link_, trouble, reading, now);
     if (trouble.kind == Trouble::Kind::needs_update && now >= next_update_) {
         next_update_ = now + between_updates;
         hd_.update_calibration(setup_.styles & automatic ? automatic : inkwell);
@@ -128,7 +128,7 @@ void Frames::take_errors() noexcept {
         const unsigned int code = hd_.get_error().code;
         if (code == 0) return;
         const Trouble found = trouble_of(code);
-        error_until_ = monotonic_ns() + error_lasts;
+        error_until_ = setup_.now() + error_lasts;
         if (!for_good()) error_ = found;
         force_output(false);
     }

@@ -38,6 +38,7 @@ class Frames {
         double most_torque = 0;  ///< [N mm] 0: it has none, and is never sent one
         bool has_orientation = false;
         unsigned int styles = 0;  ///< of calibration, bits
+        Clock now = &monotonic_ns;
     };
     Frames(std::shared_ptr<const Hd> hd, const Setup& setup)
         : library_(std::move(hd)), hd_(*library_), setup_(setup) {}

@@ -29,16 +29,21 @@ DeviceFinding find_openhaptics() {
 }
 
 std::unique_ptr<Device> open_openhaptics(const DeviceChoice& choice, const DeviceScene& scene) {
+    return openhaptics::open(choice, scene, {});
+}
+
+std::unique_ptr<Device> openhaptics::open(const DeviceChoice& choice, const DeviceScene& scene,
+                                          const Timing& timing) {
     DeviceOptions options(choice, "name");
-    openhaptics::Settings settings;
+    Settings settings;
     settings.name = options.text("name", "");
     settings.reset = options.flag("reset", false);
     settings.rate = scene.rate;
     const std::string library = options.text("library", "");
     options.finish();
     try {
-        auto attachment = std::make_unique<openhaptics::Attachment>(library, settings.name);
-        return std::make_unique<openhaptics::Phantom>(std::move(attachment), settings);
+        auto attachment = std::make_unique<Attachment>(library, settings.name);
+        return std::make_unique<Phantom>(std::move(attachment), settings, timing);
     } catch (const DeviceError& error) {
         throw DeviceError("device " + choice.name + ": " + error.what());
     }

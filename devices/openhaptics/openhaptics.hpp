@@ -2,6 +2,10 @@
 // docs/devices/openhaptics.md.
 #pragma once
 
+#include <memory>
+#include <string>
+
+#include "devices/link.hpp"
 #include "palpate/devices/backend.hpp"
 
 namespace palpate::devices {
@@ -17,6 +21,9 @@ std::unique_ptr<Device> open_openhaptics(const DeviceChoice& choice, const Devic
 namespace openhaptics {
 /// As find_openhaptics(), in this library ("": where it usually is).
 DeviceFinding find(const std::string& library);
+/// As open_openhaptics(), with a time of the caller's.
+std::unique_ptr<Device> open(const DeviceChoice& choice, const DeviceScene& scene,
+                             const Timing& timing);
 }  // namespace openhaptics
 
 }  // namespace palpate::devices

@@ -3,11 +3,9 @@
 #include "devices/openhaptics/phantom.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <thread>
 #include <vector>
 
 #include "devices/openhaptics/words.hpp"
@@ -15,12 +13,11 @@
 namespace palpate::devices::openhaptics {
 namespace {
 
-using namespace std::chrono_literals;
-
 std::atomic<bool> attached{false};  // the driver has one loop per process, so there is one of these
 
 constexpr double weakest_torque = 48;  // [N mm] where the driver tells none
-constexpr auto longest_wait = 500ms;   // for the last frame
+// [ns] For the last frame; between looks for it.
+constexpr std::int64_t longest_wait = 500'000'000, between_looks = 1'000'000;
 
 /// The driver's figures where they make sense, otherwise those of an Omni or Touch.
 double number(const Hd& hd, unsigned int parameter, double low, double high, double otherwise) {
@@ -127,8 +124,9 @@ Attachment::~Attachment() {
     attached.store(false);
 }
 
-Phantom::Phantom(std::unique_ptr<Attachment> attachment, const Settings& settings)
-    : attachment_(std::move(attachment)) {
+Phantom::Phantom(std::unique_ptr<Attachment> attachment, const Settings& settings,
+                 const Timing& timing)
+    : timing_(timing), attachment_(std::move(attachment)) {
     const Hd& hd = attachment_->hd();
     hd.make_current(attachment_->device());
     check("hdMakeCurrentDevice");
@@ -144,7 +142,7 @@ Phantom::Phantom(std::unique_ptr<Attachment> attachment, const Settings& setting
     frames_ = std::make_shared<Frames>(
         attachment_->shared_hd(),
         Frames::Setup{attachment_->device(), info_.limits.maximum_force,
-                      info_.limits.maximum_torque, info_.has_orientation, styles_});
+                      info_.limits.maximum_torque, info_.has_orientation, styles_, timing_.now});
     try {
         start();
     } catch (...) {
@@ -173,9 +171,9 @@ void Phantom::halt() noexcept {
     const Hd& hd = attachment_->hd();
     frames_->link().stop();
     frames_->end();
-    const auto until = std::chrono::steady_clock::now() + longest_wait;
-    while (!frames_->ended() && std::chrono::steady_clock::now() < until) {
-        std::this_thread::sleep_for(1ms);
+    const std::int64_t until = timing_.now() + longest_wait;
+    while (!frames_->ended() && timing_.now() < until) {
+        timing_.sleep_until(timing_.now() + between_looks);
     }
     hd.stop_scheduler();
     hd.unschedule(scheduled_);
@@ -233,7 +231,7 @@ std::string Phantom::problem() const {
         case Trouble::Kind::none:
             break;
     }
-    switch (frames_->link().read().status) {
+    switch (frames_->link().read(timing_.now()).status) {
         case DeviceStatus::starting:
             return "the driver's servo loop has not told a position yet";
         case DeviceStatus::stale:

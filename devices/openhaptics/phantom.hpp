@@ -36,13 +36,16 @@ class Attachment {
 class Phantom final : public Device {
   public:
     /// Starts the driver's servo loop. Throws DeviceError.
-    Phantom(std::unique_ptr<Attachment> attachment, const Settings& settings);
+    Phantom(std::unique_ptr<Attachment> attachment, const Settings& settings,
+            const Timing& timing = {});
     ~Phantom() override;
 
     DeviceInfo info() const override { return info_; }
     std::string problem() const override;
-    DeviceReading read(double) noexcept override { return frames_->link().read(); }
-    void write(const Wrench& wrench, double) noexcept override { frames_->link().write(wrench); }
+    DeviceReading read(double) noexcept override { return frames_->link().read(timing_.now()); }
+    void write(const Wrench& wrench, double) noexcept override {
+        frames_->link().write(wrench, timing_.now());
+    }
     void stop() noexcept override { frames_->link().stop(); }
     bool is_stopping() const noexcept override { return frames_->link().stopping(); }
 
@@ -52,6 +55,7 @@ class Phantom final : public Device {
     void check(const char* step) const;
     std::string calibration_words(Trouble::Kind kind) const;
 
+    const Timing timing_;
     std::unique_ptr<Attachment> attachment_;
     DeviceInfo info_;
     unsigned int styles_ = 0;  // of calibration

@@ -1,5 +1,5 @@
-// The thread of the device `spacenav`, 1000 times a second: read events, move the hand, report its
-// pose. A puck at rest sends nothing, so only a closed socket is a sign of trouble.
+// A step of the device `spacenav`: read events, move the hand, report its pose. A puck at rest
+// sends nothing, so only a closed socket is a sign of trouble.
 #include "devices/spacenav/mouse.hpp"
 
 #include <algorithm>
@@ -32,8 +32,12 @@ std::string connect_to_any(Socket& socket, const std::vector<std::string>& paths
 }
 
 Mouse::Mouse(Socket socket, const std::string& path, std::vector<std::string> paths,
-             const Feel& feel, double rate)
-    : paths_(std::move(paths)), feel_(feel) {
+             const Feel& feel, double rate, const Timing& timing)
+    : timing_(timing),
+      paths_(std::move(paths)),
+      feel_(feel),
+      socket_(std::move(socket)),
+      stepped_(timing.now()) {
     info_.name = "spacenav";
     info_.model = "3D mouse, spacenavd at " + path;
     info_.limits.rate = rate;
@@ -42,13 +46,16 @@ Mouse::Mouse(Socket socket, const std::string& path, std::vector<std::string> pa
     info_.renders_force = false;
     info_.has_orientation = true;
     info_.buttons = 32;  // the protocol does not say how many there are
-    report();
-    thread_ = std::thread([this, first = std::move(socket)]() mutable { run(std::move(first)); });
+    report(stepped_);
 }
 
 Mouse::~Mouse() {
     quit_.store(true);
-    thread_.join();
+    if (thread_.joinable()) thread_.join();
+}
+
+void Mouse::start() {
+    thread_ = std::thread([this] { run(); });
 }
 
 std::string Mouse::problem() const {
@@ -57,53 +64,54 @@ std::string Mouse::problem() const {
            "status spacenavd)?";
 }
 
-void Mouse::run(Socket socket) {
-    EventReader events;
-    std::int64_t last = monotonic_ns(), next_attempt = 0;
+void Mouse::run() {
     while (!quit_) {
-        if (socket.wait_until(monotonic_ns() + period)) take_events(socket, events);
-        const std::int64_t now = monotonic_ns();
-        const std::int64_t passed = std::min(now - last, longest_step);
-        last = now;
-        if (socket.is_open()) {
-            advance(hand_, 1e-9 * static_cast<double>(passed), feel_);
-            report();
-            continue;
-        }
-        if (connected_) {
-            let_go(hand_);
-            events = {};
-            connected_.store(false);
-        }
-        link_.report(DeviceStatus::lost);
-        if (now < next_attempt) continue;
-        next_attempt = now + between_attempts;
-        connected_.store(reconnect(socket));
+        socket_.wait_until(timing_.now() + period);
+        step();
     }
 }
 
-void Mouse::take_events(Socket& socket, EventReader& events) {
-    std::array<unsigned char, most_at_once> bytes;
-    const auto got = socket.read(bytes);
-    if (!got) return;
-    events.take(std::span(bytes).first(*got));
-    while (const auto event = events.next()) apply(hand_, *event, feel_);
+void Mouse::step() {
+    take_events();
+    const std::int64_t now = timing_.now();
+    const std::int64_t passed = std::min(now - std::exchange(stepped_, now), longest_step);
+    if (socket_.is_open()) {
+        advance(hand_, 1e-9 * static_cast<double>(passed), feel_);
+        return report(now);
+    }
+    if (connected_) {
+        let_go(hand_);
+        events_ = {};
+        connected_.store(false);
+    }
+    link_.report(DeviceStatus::lost, now);
+    if (now < next_attempt_) return;
+    next_attempt_ = now + between_attempts;
+    connected_.store(reconnect());
 }
 
-bool Mouse::reconnect(Socket& socket) const {
+void Mouse::take_events() {
+    std::array<unsigned char, most_at_once> bytes;
+    const auto got = socket_.read(bytes);
+    if (!got) return;
+    events_.take(std::span(bytes).first(*got));
+    while (const auto event = events_.next()) apply(hand_, *event, feel_);
+}
+
+bool Mouse::reconnect() {
     for (const std::string& path : paths_) {
-        if (socket.connect(path).empty()) return true;
+        if (socket_.connect(path).empty()) return true;
     }
     return false;
 }
 
-void Mouse::report() noexcept {
+void Mouse::report(std::int64_t now) noexcept {
     DeviceReading reading;
     reading.position = hand_.position;
     reading.orientation = hand_.orientation;
     reading.buttons = hand_.buttons;
     reading.status = DeviceStatus::ready;
-    link_.report(reading);
+    link_.report(reading, now);
 }
 
 }  // namespace palpate::devices::spacenav

@@ -18,28 +18,42 @@ class Mouse final : public Device {
   public:
     /// `socket` is connected to `path`. All `paths` are tried when the connection breaks.
     Mouse(Socket socket, const std::string& path, std::vector<std::string> paths, const Feel& feel,
-          double rate);
+          double rate, const Timing& timing = {});
     ~Mouse() override;
+
+    /// Starts a thread that steps 1000 times a second, and when there are events.
+    void start();
+    /// Takes the events that have come, moves the hand and reports its pose. Connects again, every
+    /// 250 ms at most. Never waits.
+    void step();
 
     DeviceInfo info() const override { return info_; }
     std::string problem() const override;
-    DeviceReading read(double) noexcept override { return link_.read(); }
+    DeviceReading read(double) noexcept override { return link_.read(timing_.now()); }
     void write(const Wrench&, double) noexcept override {}
     void stop() noexcept override { link_.stop(); }
 
   private:
     // Called by the thread only.
-    void run(Socket socket);
-    void take_events(Socket& socket, EventReader& events);
-    bool reconnect(Socket& socket) const;
-    void report() noexcept;
+    void run();
+    void take_events();
+    bool reconnect();
+    void report(std::int64_t now) noexcept;
 
+    const Timing timing_;
     const std::vector<std::string> paths_;
     const Feel feel_;
     DeviceInfo info_;
     Link link_;
     std::atomic<bool> connected_{true}, quit_{false};
-    Hand hand_;  // used by the thread only
+
+    // Used by the thread only.
+    Socket socket_;
+    EventReader events_;
+    Hand hand_;
+    std::int64_t stepped_;           // [ns] the last time
+    std::int64_t next_attempt_ = 0;  // [ns] to connect again
+
     std::thread thread_;
 };
 

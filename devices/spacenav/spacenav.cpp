@@ -37,19 +37,26 @@ DeviceFinding find_spacenav() {
 }
 
 std::unique_ptr<Device> open_spacenav(const DeviceChoice& choice, const DeviceScene& scene) {
+    auto mouse = spacenav::open(choice, scene);
+    mouse->start();
+    return mouse;
+}
+
+std::unique_ptr<spacenav::Mouse> spacenav::open(const DeviceChoice& choice,
+                                                const DeviceScene& scene, const Timing& timing) {
     DeviceOptions options(choice, "socket");
     const std::string asked = options.text("socket", "");
-    spacenav::Feel feel;
+    Feel feel;
     feel.speed = options.number("speed", feel.speed, 1, 1000);
     feel.turn = options.number("turn", feel.turn, 0, 360);
     feel.deflection = options.number("full", feel.deflection, 1, 10000);
     options.finish();
     try {
         std::vector<std::string> paths = paths_from(asked);
-        spacenav::Socket socket;
+        Socket socket;
         const std::string path = connect_to_any(socket, paths);
-        return std::make_unique<spacenav::Mouse>(std::move(socket), path, std::move(paths), feel,
-                                                 scene.rate);
+        return std::make_unique<Mouse>(std::move(socket), path, std::move(paths), feel, scene.rate,
+                                       timing);
     } catch (const DeviceError& error) {
         throw DeviceError("device " + choice.name + ": " + error.what());
     }

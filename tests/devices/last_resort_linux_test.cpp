@@ -27,71 +27,113 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// A device with a thread of its own, as every backend has; the last force it sent is in memory
-/// that outlives the process.
+/// A device whose last sent force is in memory that outlives the process.
 class Motor : public Device {
   public:
-    explicit Motor(std::atomic<double>& sent, std::chrono::milliseconds period = 1ms)
-        : sent_(sent), thread_([this, period](std::stop_token stop) {
-              prepare_device_thread();
-              while (!stop.stop_requested()) {
-                  sent_ = link_.wrench().force.norm();
-                  std::this_thread::sleep_for(period);
-              }
-          }) {}
+    /// Sends every `period` milliseconds of its own time.
+    explicit Motor(std::atomic<double>& sent, int period = 1) : sent_(sent), period_(period) {}
     DeviceInfo info() const override { return {}; }
-    DeviceReading read(double) noexcept override { return link_.read(); }
-    void write(const Wrench& wrench, double) noexcept override { link_.write(wrench); }
+    DeviceReading read(double) noexcept override { return link_.read(now()); }
+    void write(const Wrench& wrench, double) noexcept override { link_.write(wrench, now()); }
     void stop() noexcept override { link_.stop(); }
     bool is_stopping() const noexcept override { return link_.stopping(); }
 
+    void step() noexcept {
+        if (++time_ % period_ == 0) sent_ = link_.wrench(now()).force.norm();
+    }
+
   private:
+    std::int64_t now() const noexcept { return time_ * 1'000'000; }
+
     std::atomic<double>& sent_;
+    const int period_;
+    std::atomic<std::int64_t> time_{0};  // [ms]
     Link link_;
-    std::jthread thread_;
 };
 
 struct Shared {
     std::atomic<double> sent{-1}, other{-1}, before{-1};  // by one motor and by a second one
+    std::atomic<int> waited{0};                           // [ms] by the handler
 };
 
-/// Presses with 2 N from a thread that goes on and on, as a servo would, until `crash` happens in
-/// another. Returns the child's status and the larger force that its two motors sent last.
+/// Of the child process.
+struct Child {
+    Shared* shared;
+    Motor first, second;
+
+    Child(Shared* outside, int period)
+        : shared(outside), first(outside->sent), second(outside->other, period) {}
+    /// A servo that goes on pressing with 2 N whatever happens, and the motors.
+    void step() noexcept {
+        for (Motor* motor : {&first, &second}) {
+            motor->write({Vec3(0, 0, 2), Vec3::Zero()}, 0);
+            motor->step();
+        }
+    }
+};
+Child* child = nullptr;
+
+/// Time passes for the child only while its handler waits.
+void let_time_pass(int milliseconds) noexcept {
+    child->shared->waited += milliseconds;
+    for (int i = 0; i < milliseconds; ++i) child->step();
+}
+
+/// The same on a thread of its own at the real pace, as in every backend.
+struct MotorThread {
+    std::jthread thread{[](std::stop_token stop) {
+        prepare_device_thread();
+        while (!stop.stop_requested()) {
+            child->step();
+            std::this_thread::sleep_for(1ms);
+        }
+    }};
+};
+
+enum class Motors : std::uint8_t { stepped, threaded };
+
+/// Presses until `crash` happens. Returns the child's status, the larger force that its two motors
+/// sent last, and how long the handler waited in virtual time [ms].
+struct Crashed {
+    int status = 0;
+    double sent = -1;
+    int waited = 0;
+};
 template <class F>
-std::pair<int, double> crashed(bool guarded, F&& crash, std::chrono::milliseconds period = 1ms) {
+Crashed crashed(bool guarded, F&& crash, int period = 1, Motors motors = Motors::stepped) {
     void* memory =
         ::mmap(nullptr, sizeof(Shared), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     auto* shared = new (memory) Shared;
-    const pid_t child = ::fork();
-    if (child == 0) {
+    const pid_t process = ::fork();
+    if (process == 0) {
         std::fclose(stderr);  // what terminate() has to say
         // Sanitizers have handlers of their own.
         for (const int s : {SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT}) std::signal(s, SIG_DFL);
-        Motor motor(shared->sent), second(shared->other, period);
+        Child here(shared, period);
+        child = &here;
+        std::optional<MotorThread> thread;
+        if (motors == Motors::threaded) thread.emplace();
         std::optional<LastResort> last_resort, of_second;
         if (guarded) {
-            last_resort.emplace(motor);
-            of_second.emplace(second);
+            const auto pause = thread ? nullptr : &let_time_pass;
+            last_resort.emplace(here.first, pause);
+            of_second.emplace(here.second, pause);
         }
-        std::jthread servo([&](std::stop_token stop) {
-            while (!stop.stop_requested()) {
-                motor.write({Vec3(0, 0, 2), Vec3::Zero()}, 0);
-                second.write({Vec3(0, 0, 2), Vec3::Zero()}, 0);
-                std::this_thread::sleep_for(1ms);
-            }
-        });
-        for (int i = 0; i < 10'000 && (shared->sent != 2 || shared->other != 2); ++i)
-            std::this_thread::sleep_for(1ms);
+        while (shared->sent != 2 || shared->other != 2) {
+            if (thread) std::this_thread::sleep_for(1ms);
+            if (!thread) here.step();
+        }
         shared->before = shared->sent.load();
         crash();
         ::_exit(0);
     }
-    int status = 0;
-    ::waitpid(child, &status, 0);
+    Crashed result;
+    ::waitpid(process, &result.status, 0);
     EXPECT_EQ(shared->before, 2);
-    const double sent = std::max<double>(shared->sent, shared->other);
+    result.sent = std::max<double>(shared->sent, shared->other);
+    result.waited = shared->waited;
     ::munmap(memory, sizeof(Shared));
-    return {status, sent};
+    return result;
 }
 
 /// A loop without effects would be undefined, and clang leaves it out. The thread sanitizer hands
@@ -101,16 +143,18 @@ std::pair<int, double> crashed(bool guarded, F&& crash, std::chrono::millisecond
 }
 
 void expect_let_go(int signal, void (*crash)()) {
-    const auto [status, sent] = crashed(true, crash);
+    const auto [status, sent, waited] = crashed(true, crash);
     EXPECT_TRUE(WIFSIGNALED(status)) << status;
     EXPECT_EQ(WTERMSIG(status), signal);
     EXPECT_EQ(sent, 0);
+    EXPECT_EQ(waited, 100);  // for devices that cannot tell
 }
 
 TEST(LastResort, without_it_a_crash_leaves_the_force_on) {
-    const auto [status, sent] = crashed(false, [] { std::raise(SIGSEGV); });
+    const auto [status, sent, waited] = crashed(false, [] { std::raise(SIGSEGV); });
     EXPECT_TRUE(WIFSIGNALED(status));
     EXPECT_EQ(sent, 2);
+    EXPECT_EQ(waited, 0);
 }
 
 TEST(LastResort, lets_go_before_a_wild_pointer_ends_the_program) {
@@ -121,16 +165,25 @@ TEST(LastResort, lets_go_before_a_wild_pointer_ends_the_program) {
 }
 
 TEST(LastResort, waits_for_a_thread_that_seldom_gets_the_processor) {
-    const auto [status, sent] = crashed(
-        true, [] { std::raise(SIGSEGV); }, 400ms);
-    EXPECT_TRUE(WIFSIGNALED(status)) << status;
+    // It is back from sending the zero when it asks for a force again: after two periods.
+    for (const int period : {10, 60, 400, 499}) {
+        const auto [status, sent, waited] = crashed(
+            true, [] { std::raise(SIGSEGV); }, period);
+        EXPECT_TRUE(WIFSIGNALED(status)) << status;
+        EXPECT_EQ(WTERMSIG(status), SIGSEGV);
+        EXPECT_EQ(sent, 0);
+        EXPECT_EQ(waited, std::max(100, (2 * period + 4) / 5 * 5)) << period;
+    }
+    const auto [status, sent, waited] = crashed(
+        true, [] { std::raise(SIGSEGV); }, 5000);
     EXPECT_EQ(WTERMSIG(status), SIGSEGV);
-    EXPECT_EQ(sent, 0);
+    EXPECT_EQ(sent, 2);  // for no longer than a second
+    EXPECT_EQ(waited, 1000);
 }
 
 TEST(LastResort, a_signal_that_comes_again_waits_for_the_zero) {
     for (const int signal : {SIGSYS, SIGUSR1, SIGALRM}) {
-        const auto [status, sent] = crashed(
+        const auto [status, sent, waited] = crashed(
             true,
             [signal] {
                 for (int i = 0; i < 5; ++i) {
@@ -139,7 +192,7 @@ TEST(LastResort, a_signal_that_comes_again_waits_for_the_zero) {
                 }
                 std::this_thread::sleep_for(5s);
             },
-            250ms);
+            120, Motors::threaded);
         EXPECT_TRUE(WIFSIGNALED(status)) << status;
         EXPECT_EQ(WTERMSIG(status), signal);
         EXPECT_EQ(sent, 0) << signal;
@@ -148,15 +201,18 @@ TEST(LastResort, a_signal_that_comes_again_waits_for_the_zero) {
 
 TEST(LastResort,
      a_crash_signal_sent_to_the_device_s_thread_does_not_keep_it_from_sending_the_zero) {
-    const auto [status, sent] = crashed(true, [] {
-        sigset_t all, before;
-        ::sigfillset(&all);
-        ::pthread_sigmask(SIG_SETMASK, &all, &before);  // so that the devices' threads get it
-        ::kill(::getpid(), SIGSYS);
-        std::this_thread::sleep_for(50ms);
-        ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
-        std::this_thread::sleep_for(5s);
-    });
+    const auto [status, sent, waited] = crashed(
+        true,
+        [] {
+            sigset_t all, before;
+            ::sigfillset(&all);
+            ::pthread_sigmask(SIG_SETMASK, &all, &before);  // so that the devices' threads get it
+            ::kill(::getpid(), SIGSYS);
+            std::this_thread::sleep_for(50ms);
+            ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
+            std::this_thread::sleep_for(5s);
+        },
+        1, Motors::threaded);
     EXPECT_TRUE(WIFSIGNALED(status)) << status;
     EXPECT_EQ(WTERMSIG(status), SIGSYS);
     EXPECT_EQ(sent, 0);
@@ -215,7 +271,7 @@ TEST(LastResort, lets_go_when_the_processor_time_is_used_up) {
 }
 
 TEST(LastResort, lets_go_when_a_real_time_thread_takes_too_long) {
-    const auto [status, sent] = crashed(true, [] {
+    const auto [status, sent, waited] = crashed(true, [] {
         const rlimit tenth{100'000, 10'000'000};
         sched_param parameter{};
         parameter.sched_priority = 1;
@@ -251,13 +307,16 @@ TEST(LastResort, the_thread_that_sends_the_zero_takes_no_signals) {
 
 TEST(LastResort, two_signals_at_once_wait_for_the_zero_as_one_does) {
     for (int round = 0; round < 10; ++round) {
-        const auto [status, sent] = crashed(true, [] {
-            std::array<std::jthread, 4> threads;
-            const std::array numbers{SIGUSR1, SIGALRM, SIGTERM, SIGIO};
-            for (std::size_t i = 0; i < threads.size(); ++i) {
-                threads[i] = std::jthread([number = numbers[i]] { std::raise(number); });
-            }
-        });
+        const auto [status, sent, waited] = crashed(
+            true,
+            [] {
+                std::array<std::jthread, 4> threads;
+                const std::array numbers{SIGUSR1, SIGALRM, SIGTERM, SIGIO};
+                for (std::size_t i = 0; i < threads.size(); ++i) {
+                    threads[i] = std::jthread([number = numbers[i]] { std::raise(number); });
+                }
+            },
+            1, Motors::threaded);
         EXPECT_TRUE(WIFSIGNALED(status)) << status;
         EXPECT_EQ(sent, 0);
     }

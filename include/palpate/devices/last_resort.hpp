@@ -25,7 +25,11 @@ class LastResort {
   public:
     static constexpr std::size_t most = 8;
 
-    explicit LastResort(Device& device);
+    /// How a handler lets some milliseconds pass before it looks again whether the zero was sent;
+    /// neither allocates nor locks. Null: it sleeps. The newest one holds for all.
+    using Pause = void (*)(int milliseconds) noexcept;
+
+    explicit LastResort(Device& device, Pause pause = nullptr);
     ~LastResort();
     LastResort(const LastResort&) = delete;
     LastResort& operator=(const LastResort&) = delete;

@@ -3,6 +3,8 @@
 
 #include <limits>
 
+#include "support/eventually.hpp"
+
 namespace palpate::devices {
 namespace {
 
@@ -115,7 +117,8 @@ TEST_F(ForceDimension, a_force_arrives_in_newtons_in_the_axes_it_was_written_in)
     const auto device = open();
     EXPECT_TRUE(presses(*device, Vec3(0.5, -1, 2)));
     // To the right, up, and towards the person: the library's y, z and x.
-    EXPECT_TRUE(eventually(
+    EXPECT_TRUE(within(
+        felt,
         [&] {
             const auto raw = with([](auto& dhd) { return dhd.force; });
             return raw == std::array<double, 3>{3, 1, 2};
@@ -127,8 +130,9 @@ TEST_F(ForceDimension, a_force_arrives_in_newtons_in_the_axes_it_was_written_in)
 TEST_F(ForceDimension, a_force_beyond_the_devices_own_is_cut_to_it) {
     const auto device = open();
     const Vec3 cut = Vec3(0.6, 0, 0.8) * 12;
-    EXPECT_TRUE(eventually([&] { return (force() - cut).norm() < 1e-12; },
-                           [&] { device->write({Vec3(30, 0, 40)}, 0); }));
+    EXPECT_TRUE(within(
+        felt, [&] { return (force() - cut).norm() < 1e-12; },
+        [&] { device->write({Vec3(30, 0, 40)}, 0); }));
     EXPECT_LE(with([](auto& dhd) { return dhd.largest_force; }), 12 + 1e-12);
     EXPECT_EQ(with([](auto& dhd) { return dhd.max_force; }), 12);
 }
@@ -146,7 +150,7 @@ TEST_F(ForceDimension, the_time_guard_and_a_saturated_motor_are_no_errors) {
 TEST_F(ForceDimension, the_force_goes_to_zero_when_the_servo_falls_silent) {
     const auto device = open();
     ASSERT_TRUE(presses(*device));
-    EXPECT_TRUE(eventually([&] { return force().isZero(0); }));
+    EXPECT_TRUE(goes_to_zero_in_silence());
     EXPECT_TRUE(becomes(*device, DeviceStatus::ready));
     EXPECT_TRUE(presses(*device));
 }
@@ -155,7 +159,9 @@ TEST_F(ForceDimension, the_force_goes_to_zero_for_good_when_it_is_stopped) {
     const auto device = open();
     ASSERT_TRUE(presses(*device));
     device->stop();
-    EXPECT_TRUE(goes_to_zero(*device));
+    EXPECT_TRUE(device->is_stopping());
+    EXPECT_TRUE(stays_at_zero(*device));
+    EXPECT_FALSE(device->is_stopping());
     EXPECT_TRUE(becomes(*device, DeviceStatus::ready));
 }
 
@@ -215,16 +221,21 @@ TEST_F(ForceDimension, a_device_that_was_off_for_a_while_is_switched_on_again) {
 }
 
 TEST_F(ForceDimension, it_moves_by_itself_only_when_asked_to_and_says_so_meanwhile) {
-    with([](auto& dhd) {
-        dhd.initialised = false;
-        dhd.initialise_ms = 200;
-    });
     const auto device = open(",autoinit=yes");
-    ASSERT_TRUE(becomes(*device, DeviceStatus::uncalibrated));
-    EXPECT_TRUE(says(*device, "keep your hands off"));
+    int told = 0;
+    with([&](auto& dhd) {
+        dhd.initialised = false;
+        dhd.while_initialising = [&] {
+            pass(5s);
+            told += device->read(0).status == DeviceStatus::uncalibrated &&
+                    contains(device->problem(), "keep your hands off");
+        };
+    });
+    step();
     EXPECT_TRUE(presses(*device));
     EXPECT_TRUE(has_no_problem(*device));
     EXPECT_EQ(called("initialise"), 1);
+    EXPECT_EQ(told, 1);
 }
 
 TEST_F(ForceDimension, one_that_is_initialised_does_not_move_even_when_asked_to) {
@@ -257,7 +268,7 @@ TEST_F(ForceDimension, a_broken_connection_in_contact_is_lost_and_without_force_
     with([](auto& dhd) { dhd.position_error = 2; });
     ASSERT_TRUE(becomes(*device, DeviceStatus::lost));
     EXPECT_TRUE(says(*device, "no connection to the device (communication error)"));
-    EXPECT_TRUE(goes_to_zero(*device));
+    EXPECT_TRUE(stays_at_zero(*device));
     with([](auto& dhd) { dhd.position_error = 0; });
     EXPECT_TRUE(presses(*device));
     EXPECT_TRUE(has_no_problem(*device));
@@ -269,7 +280,7 @@ TEST_F(ForceDimension, an_error_of_reading_or_of_force_is_a_fault_in_the_library
     with([](auto& dhd) { dhd.position_error = 8; });
     EXPECT_TRUE(becomes(*device, DeviceStatus::fault));
     EXPECT_TRUE(says(*device, "the library reports: geometry error"));
-    EXPECT_TRUE(goes_to_zero(*device));
+    EXPECT_TRUE(stays_at_zero(*device));
     with([](auto& dhd) { dhd.position_error = 0; });
     ASSERT_TRUE(presses(*device));
     with([](auto& dhd) { dhd.force_error = 8; });
@@ -278,7 +289,7 @@ TEST_F(ForceDimension, an_error_of_reading_or_of_force_is_a_fault_in_the_library
     EXPECT_TRUE(presses(*device));
     with([](auto& dhd) { dhd.status_error = 2; });
     EXPECT_TRUE(becomes(*device, DeviceStatus::lost));
-    EXPECT_TRUE(goes_to_zero(*device));
+    EXPECT_TRUE(stays_at_zero(*device));
 }
 
 TEST_F(ForceDimension, a_device_that_has_switched_its_force_off_is_a_fault_until_it_is_on_again) {
@@ -298,7 +309,7 @@ TEST_F(ForceDimension, the_devices_watchdog_is_answered_by_switching_the_force_o
     const auto device = open();
     ASSERT_TRUE(presses(*device));
     with([](auto& dhd) { dhd.force_off_cause = 3; });
-    EXPECT_TRUE(eventually([&] { return called("enable force") == 2; }));
+    EXPECT_TRUE(within(soon, [&] { return called("enable force") == 2; }));
     EXPECT_TRUE(presses(*device));
 }
 
@@ -320,30 +331,41 @@ TEST_F(ForceDimension, a_position_that_cannot_be_is_a_fault_and_never_told) {
         ASSERT_TRUE(becomes(*device, DeviceStatus::fault));
         EXPECT_EQ(device->read(0).position, Vec3(0, 0, 0));
         EXPECT_TRUE(says(*device, "cannot be"));
-        EXPECT_TRUE(goes_to_zero(*device));
+        EXPECT_TRUE(stays_at_zero(*device));
     }
 }
 
 TEST_F(ForceDimension, readings_of_a_slow_library_are_never_ready_and_get_no_force) {
-    with([](auto& dhd) { dhd.slow_ms = 50; });
+    with([](auto& dhd) { dhd.while_reading = [] { pass(50ms); }; });
     const auto device = open();
     ASSERT_TRUE(becomes(*device, DeviceStatus::stale));
     EXPECT_TRUE(says(*device, "takes too long"));
     EXPECT_TRUE(throughout(
         300ms, [&] { return device->read(0).status != DeviceStatus::ready && force().isZero(0); },
         [&] { device->write({Vec3(1, 1, 1)}, 0); }));
-    with([](auto& dhd) { dhd.slow_ms = 0; });
+    with([](auto& dhd) { dhd.while_reading = nullptr; });
     EXPECT_TRUE(presses(*device));
 }
 
-TEST_F(ForceDimension, its_loop_is_no_faster_than_4_khz) {
+/// The device's thread, at its real pace.
+class PacedForceDimension : public ForceDimension {};
+
+TEST_F(PacedForceDimension, its_thread_presses_at_4_khz_at_most_until_it_is_closed) {
     const auto begun = std::chrono::steady_clock::now();
-    const auto device = open();
-    std::this_thread::sleep_for(200ms);
+    auto device =
+        open_forcedimension(parse_device("forcedimension:library=" + library_), any_scene());
+    const Vec3 newtons(1, 2, 0);
+    EXPECT_TRUE(support::comes_true([&] {
+        device->write({newtons, Vec3::Zero()}, 0);
+        return (force() - newtons).norm() < 1e-12;
+    }));
+    EXPECT_TRUE(support::comes_true([&] { return force().isZero(0); }));  // the servo is silent
+    EXPECT_TRUE(support::comes_true([&] { return device->read(0).status == DeviceStatus::ready; }));
     const long loops = with([](auto& dhd) { return dhd.loops; });
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begun;
-    EXPECT_GE(loops, 2);
     EXPECT_LE(static_cast<double>(loops), 4000 * took.count() + 2);
+    device.reset();
+    EXPECT_FALSE(with([](auto& dhd) { return dhd.is_open; }));
 }
 
 }  // namespace

@@ -3,11 +3,9 @@
 #include "mock_dhd.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <thread>
 
 #define MOCK_EXPORT extern "C" __attribute__((visibility("default")))
 
@@ -52,6 +50,16 @@ class Call {
   private:
     std::lock_guard<std::mutex> lock_;
 };
+
+/// What the test wants to happen during a call, without the lock.
+void meanwhile(std::function<void()> MockDhdState::*what) {
+    std::function<void()> happens;
+    {
+        const std::lock_guard lock(mock.mutex);
+        happens = mock.state.*what;
+    }
+    if (happens) happens();
+}
 
 int open_device(char index, const char* name) {
     const std::lock_guard lock(mock.mutex);
@@ -154,12 +162,7 @@ MOCK_EXPORT int dhdGetStatus(int* status, char id) {
 #endif
 
 MOCK_EXPORT int dhdGetPosition(double* x, double* y, double* z, char id) {
-    int slow = 0;
-    {
-        const Call call(id);
-        slow = call->slow_ms;
-    }
-    if (slow) std::this_thread::sleep_for(std::chrono::milliseconds(slow));
+    meanwhile(&MockDhdState::while_reading);
     const Call call(id);
     if (call->position_error) return fail(call->position_error);
     *x = call->position[0];
@@ -269,13 +272,8 @@ MOCK_EXPORT bool drdIsInitialized(char id) {
 }
 
 MOCK_EXPORT int drdAutoInit(char id) {
-    int takes = 0;
-    {
-        const Call call(id, "initialise");
-        takes = call->initialise_ms;
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(takes));
-    const Call call(id);
+    meanwhile(&MockDhdState::while_initialising);
+    const Call call(id, "initialise");
     if (!call->initialises) return fail(8);
     call->initialised = true;
     return 0;
@@ -312,13 +310,8 @@ MOCK_EXPORT int drdStop(bool stays_on, char id) {
 }
 
 MOCK_EXPORT int drdMoveToRot(double a, double b, double c, bool wait, char id) {
-    int takes = 0;
-    {
-        const Call call(id, "turn");
-        takes = call->centre_ms;
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(takes));
-    const Call call(id);
+    meanwhile(&MockDhdState::while_centring);
+    const Call call(id, "turn");
     const bool straight = a == 0 && b == 0 && c == 0 && wait;
     const bool wrist_alone = call->regulates_rotation && !call->regulates_position;
     if (straight && wrist_alone && call->is_regulating) ++call->turned_to_centre;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <mutex>
 #include <string>
 #include <vector>
@@ -24,18 +25,18 @@ struct MockDhdState {
     bool refuses_open = false;
     bool refuses_force = false;  // dhdEnableForce fails
     bool initialises = true;     // drdAutoInit
-    int initialise_ms = 0;       // how long that takes
     int position_error = 0;      // dhdGetPosition fails with this
     int force_error = 0;         // dhdSetForce fails with this
     int status_error = 0;        // dhdGetStatus fails with this
     int position_result = 0;     // where it does not fail: 1 time guard
     int force_result = 0;        // 1 time guard, 2 motor saturated
-    int slow_ms = 0;             // dhdGetPosition takes this long
     int orientation_error = 0;   // dhdGetOrientationFrame fails with this
     int torque_error = 0;        // dhdSetForceAndTorque(AndGripperForce) fails with this
-    int centre_ms = 0;           // how long drdMoveToRot takes
     int force_off_cause = 0;     // the device has switched its force off
     bool tells_of_force = true;  // false: its status never says that force is on
+
+    // Called without the lock by drdAutoInit, dhdGetPosition and drdMoveToRot: time may pass there.
+    std::function<void()> while_initialising, while_reading, while_centring;
 
     // What it saw.
     std::array<double, 3> force{};   // [N] as applied: zero with brakes on or force off

@@ -48,30 +48,32 @@ TEST_F(ForceDimensionWrist, a_torque_arrives_in_newton_metres_in_the_axes_it_was
 TEST_F(ForceDimensionWrist, a_torque_beyond_the_devices_own_is_cut_to_it) {
     const auto device = open();
     const Vec3 cut = Vec3(0.6, 0, 0.8) * 0.4;
-    EXPECT_TRUE(eventually([&] { return (torque() - cut).norm() < 1e-12; },
-                           [&] {
-                               device->write({Vec3::Zero(), Vec3(6000, 0, 8000)}, 0);
-                           }));
+    EXPECT_TRUE(within(
+        felt, [&] { return (torque() - cut).norm() < 1e-12; },
+        [&] {
+            device->write({Vec3::Zero(), Vec3(6000, 0, 8000)}, 0);
+        }));
     EXPECT_LE(with([](auto& dhd) { return dhd.largest_torque; }), 0.4 + 1e-12);
 }
 
 TEST_F(ForceDimensionWrist, a_passive_wrist_is_never_sent_a_torque) {
     with([](auto& dhd) { dhd.type = 35; });  // though its library has an active one
     const auto device = open();
-    EXPECT_TRUE(eventually([&] { return (force() - Vec3(1, 2, 0)).norm() < 1e-12; },
-                           [&] {
-                               device->write({Vec3(1, 2, 0), Vec3(50, 0, 0)}, 0);
-                           }));
+    EXPECT_TRUE(within(
+        felt, [&] { return (force() - Vec3(1, 2, 0)).norm() < 1e-12; },
+        [&] {
+            device->write({Vec3(1, 2, 0), Vec3(50, 0, 0)}, 0);
+        }));
     EXPECT_EQ(with([](auto& dhd) { return dhd.largest_torque; }), 0);
 }
 
 TEST_F(ForceDimensionWrist, force_and_torque_go_to_zero_when_stopped_silent_or_closed) {
     auto device = open();
     ASSERT_TRUE(turns(*device));
-    EXPECT_TRUE(eventually([&] { return force().isZero(0) && torque().isZero(0); }));
+    EXPECT_TRUE(goes_to_zero_in_silence());
     ASSERT_TRUE(turns(*device));
     device->stop();
-    EXPECT_TRUE(goes_to_zero(*device));
+    EXPECT_TRUE(stays_at_zero(*device));
     auto other = open();
     ASSERT_TRUE(turns(*other));
     other.reset();
@@ -85,7 +87,7 @@ TEST_F(ForceDimensionWrist, a_failing_torque_call_is_a_fault_that_leaves_no_forc
     with([](auto& dhd) { dhd.torque_error = 8; });
     ASSERT_TRUE(becomes(*device, DeviceStatus::fault));
     EXPECT_TRUE(says(*device, "geometry error"));
-    EXPECT_TRUE(goes_to_zero(*device));
+    EXPECT_TRUE(stays_at_zero(*device));
     with([](auto& dhd) { dhd.torque_error = 2; });
     EXPECT_TRUE(becomes(*device, DeviceStatus::lost));
     with([](auto& dhd) { dhd.torque_error = 0; });
@@ -110,13 +112,13 @@ TEST_F(ForceDimensionWrist, an_orientation_that_is_no_rotation_is_a_fault_and_ne
         ASSERT_TRUE(becomes(*device, DeviceStatus::fault));
         EXPECT_TRUE(says(*device, "an orientation that cannot be"));
         EXPECT_EQ(device->read(0).orientation, Mat3(Mat3::Identity()));
-        EXPECT_TRUE(goes_to_zero(*device));
+        EXPECT_TRUE(stays_at_zero(*device));
     }
     set(1, 1, 1);
     ASSERT_TRUE(turns(*device));
     with([](auto& dhd) { dhd.orientation_error = 7; });
     EXPECT_TRUE(becomes(*device, DeviceStatus::lost));
-    EXPECT_TRUE(goes_to_zero(*device));
+    EXPECT_TRUE(stays_at_zero(*device));
 }
 
 TEST_F(ForceDimensionWrist, a_wrist_that_is_not_initialised_has_no_force_until_it_is) {
@@ -129,27 +131,35 @@ TEST_F(ForceDimensionWrist, a_wrist_that_is_not_initialised_has_no_force_until_i
     EXPECT_TRUE(turns(*device));
     with([](auto& dhd) { dhd.wrist_initialised = false; });
     ASSERT_TRUE(becomes(*device, DeviceStatus::uncalibrated));
-    EXPECT_TRUE(goes_to_zero(*device));
+    EXPECT_TRUE(stays_at_zero(*device));
 }
 
 TEST_F(ForceDimensionWrist, autoinit_initialises_a_wrist_too) {
     with([](auto& dhd) { dhd.wrist_initialised = false; });
     const auto device = open(",autoinit=yes");
-    EXPECT_TRUE(eventually([&] { return called("initialise") == 1; }));
+    EXPECT_TRUE(within(soon, [&] { return called("initialise") == 1; }));
     with([](auto& dhd) { dhd.wrist_initialised = true; });
     EXPECT_TRUE(turns(*device));
 }
 
 TEST_F(ForceDimensionWrist, is_centred_only_when_asked_for_alone_and_is_let_go_of_again) {
-    with([](auto& dhd) { dhd.centre_ms = 100; });
     {
         const auto device = open();
         ASSERT_TRUE(turns(*device));
         EXPECT_EQ(called("turn"), 0);
     }
     const auto device = open(",centre=yes");
-    EXPECT_TRUE(says(*device, "keep your hands off"));
+    int told = 0;
+    with([&](auto& dhd) {
+        dhd.while_centring = [&] {
+            pass(1s);
+            told += device->read(0).status == DeviceStatus::uncalibrated &&
+                    contains(device->problem(), "keep your hands off");
+        };
+    });
+    step();
     EXPECT_TRUE(turns(*device));
+    EXPECT_EQ(told, 1);
     EXPECT_EQ(with([](auto& dhd) { return dhd.turned_to_centre; }), 1);
     EXPECT_FALSE(with([](auto& dhd) { return dhd.is_regulating || dhd.regulates_rotation; }));
     EXPECT_TRUE(has_no_problem(*device));

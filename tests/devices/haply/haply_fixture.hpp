@@ -1,4 +1,4 @@
-// A device that talks to the stand-in service, and patience.
+// A device that talks to a stand-in for the service, stepped in virtual time.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -7,44 +7,40 @@
 #include <chrono>
 #include <memory>
 #include <string>
-#include <thread>
 #include <vector>
 
+#include "devices/haply/fake_service.hpp"
 #include "devices/haply/haply.hpp"
 #include "devices/haply/messages.hpp"
-#include "devices/haply/mock_service.hpp"
+#include "devices/stepped_device.hpp"
 
 namespace palpate::devices {
 
 using namespace palpate::support;
 using namespace std::chrono_literals;
 
-/// True as soon as the condition holds; gives up after 10 s.
-inline bool until(const auto& condition) {
-    const auto give_up = std::chrono::steady_clock::now() + 10s;
-    while (!condition()) {
-        if (std::chrono::steady_clock::now() > give_up) return false;
-        std::this_thread::sleep_for(500us);
-    }
-    return true;
-}
-
-class HaplyTest : public ::testing::Test {
+class HaplyTest : public SteppedDevice {
   protected:
     static constexpr const char* id = "049D";
     const Vec3 push{1, 2, 3};           // [N, device axes]
     const Vec3 push_arrives{1, -3, 2};  // the same in service axes
+    /// Of a service that answers at once: what has changed shows in the next answer, and a force
+    /// passes 20 ms later.
+    static constexpr std::chrono::microseconds soon{1000}, felt{22000};
 
     HaplyTest() {
         service.greet(snapshot({whole_device(id)}));
         service.answer(moved(id, Vec3(0.1, -0.2, 0.3)));
     }
 
-    std::unique_ptr<Device> open(const std::string& options = "") {
+    void step() override { device_->step(); }
+
+    std::unique_ptr<haply::Inverse3> open(const std::string& options = "") {
         const DeviceChoice choice =
-            parse_device("haply:host=127.0.0.1,port=" + std::to_string(service.port()) +
-                         (options.empty() ? "" : "," + options));
-        return open_haply(choice, {field, 0.5, 1000, {}});
+            parse_device("haply:host=127.0.0.1,port=4711" + (options.empty() ? "" : "," + options));
+        auto device = haply::open(choice, any_scene(), {service.channel(), {}}, timing);
+        device_ = device.get();
+        return device;
     }
 
     /// What opening it says instead; empty if it opens.
@@ -57,48 +53,43 @@ class HaplyTest : public ::testing::Test {
         return {};
     }
 
-    /// Writes the push once and looks how the device is, as a servo does each millisecond.
-    DeviceStatus press(Device& device) const {
-        device.write({push, Vec3::Zero()}, 0);
-        return device.read(0).status;
+    /// Writes the push once, as a servo does each millisecond.
+    void press(Device& device) const { device.write({push, Vec3::Zero()}, 0); }
+
+    bool becomes(Device& device, DeviceStatus status, Time time = soon) {
+        return within(
+            time, [&] { return device.read(0).status == status; }, [&] { press(device); });
+    }
+    bool says(const Device& device, const std::string& part, Time time = soon) {
+        return within(time, [&] { return device.problem().find(part) != std::string::npos; });
+    }
+    /// Until the push arrives.
+    bool is_pressed(Device& device, Time time = felt) {
+        const std::size_t since = service.forces().size();
+        return within(
+            time,
+            [&] {
+                const auto& forces = service.forces();
+                return std::find(forces.begin() + static_cast<std::ptrdiff_t>(since), forces.end(),
+                                 push_arrives) != forces.end();
+            },
+            [&] { press(device); });
+    }
+    /// Whether nothing arrives of a force that is written from now on; 100 ms.
+    bool nothing_is_felt(Device& device) {
+        const std::size_t since = service.forces().size();
+        const bool zero = throughout(
+            100ms,
+            [&] { return service.forces().size() == since || service.forces().back().isZero(0); },
+            [&] {
+                device.write({Vec3(4, 0, 0), Vec3::Zero()}, 0);
+            });
+        return zero && service.forces().size() > since + 10;
     }
 
-    bool until_status(Device& device, DeviceStatus status) const {
-        return until([&] { return press(device) == status; });
-    }
-
-    /// What is wrong is told just after the status.
-    bool until_problem(const Device& device, const std::string& part) const {
-        return until([&] { return device.problem().find(part) != std::string::npos; });
-    }
-
-    /// Until a force has arrived since the service had seen `since` of them.
-    bool until_pressed(Device& device, std::size_t since = 0) const {
-        return until([&] {
-            press(device);
-            const auto forces = service.forces();
-            for (std::size_t i = since; i < forces.size(); ++i) {
-                if (forces[i] == push_arrives) return true;
-            }
-            return false;
-        });
-    }
-
-    /// Whether nothing arrives of a force that is written from now on. One message may have been in
-    /// the making.
-    bool nothing_is_felt(Device& device) const {
-        const std::size_t now = service.forces().size();
-        const Vec3 later(4, 0, 0);
-        const bool went_on = until([&] {
-            device.write({later, Vec3::Zero()}, 0);
-            const auto forces = service.forces();
-            return forces.size() > now + 10 && forces.back().isZero(0);
-        });
-        return went_on && std::ranges::count(service.forces(), later) <= 1;
-    }
-
-    MockService service;
-    const Field field{Volume(Geometry{.size = {2, 2, 2}}, std::vector<float>(8, 0.0F))};
+    const Timing timing{&virtual_now, &pass_until};
+    FakeService service;
+    haply::Inverse3* device_ = nullptr;
 };
 
 }  // namespace palpate::devices

@@ -14,8 +14,9 @@
 #include <boost/beast/websocket/stream.hpp>
 #include <deque>
 #include <mutex>
-#include <nlohmann/json.hpp>
 #include <thread>
+
+#include "devices/haply/force_in.hpp"
 
 namespace palpate::support {
 namespace {
@@ -24,35 +25,20 @@ namespace asio = boost::asio;
 namespace websocket = boost::beast::websocket;
 using asio::ip::tcp;
 using boost::system::error_code;
-using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
-
-std::optional<Vec3> force_in(const std::string& message) {
-    const auto json = nlohmann::json::parse(message, nullptr, false);
-    if (!json.is_object() || !json.contains("inverse3")) return std::nullopt;
-    const auto& command = json["inverse3"][0]["commands"]["set_cursor_force"];
-    const auto& force = command.contains("values") ? command["values"] : command["vector"];
-    return Vec3(force["x"].get<double>(), force["y"].get<double>(), force["z"].get<double>());
-}
 
 }  // namespace
 
 struct MockService::Server {
-    struct Due {
-        Clock::time_point at;
-        Reply reply;
-    };
     using Stream = websocket::stream<tcp::socket, false>;
 
     mutable std::mutex mutex;  // guards the next group
     std::string greeting;
     Answer answer;
-    std::chrono::milliseconds late{0};
     std::size_t messages = 0;
-    std::string last_message;
     std::vector<Vec3> forces;
 
-    std::atomic<bool> quit{false}, hang{false}, mute{false}, http{false}, refuse{false};
+    std::atomic<bool> quit{false}, hang{false}, http{false};
     std::atomic<bool> drop{false}, closed_politely{false};
     std::atomic<int> connections{0};
 
@@ -71,7 +57,7 @@ struct MockService::Server {
                 continue;
             }
             socket.non_blocking(false);
-            if (!refuse) serve(std::move(socket));
+            serve(std::move(socket));
         }
     }
 
@@ -100,7 +86,7 @@ struct MockService::Server {
 
     void converse(Stream& stream) {
         boost::beast::flat_buffer incoming;
-        std::deque<Due> due;
+        std::deque<Reply> due;
         bool reading = false, arrived = false;
         error_code error;
         while (!quit && !drop && !error) {
@@ -123,9 +109,9 @@ struct MockService::Server {
                 incoming.clear();
                 reading = false;
             }
-            for (; !due.empty() && due.front().at <= Clock::now() && !error; due.pop_front()) {
-                stream.binary(due.front().reply.binary);
-                stream.write(asio::buffer(due.front().reply.text), error);
+            for (; !due.empty() && !error; due.pop_front()) {
+                stream.binary(due.front().binary);
+                stream.write(asio::buffer(due.front().text), error);
             }
         }
         if (error == websocket::error::closed) closed_politely = true;
@@ -136,13 +122,12 @@ struct MockService::Server {
         context.run();
     }
 
-    void take(const std::string& message, std::deque<Due>& due) {
+    void take(const std::string& message, std::deque<Reply>& due) {
         const std::lock_guard lock(mutex);
         ++messages;
-        last_message = message;
         if (const auto force = force_in(message)) forces.push_back(*force);
-        if (mute || !answer) return;
-        if (auto reply = answer(message)) due.push_back({Clock::now() + late, std::move(*reply)});
+        if (!answer) return;
+        if (auto reply = answer(message)) due.push_back(std::move(*reply));
     }
 };
 
@@ -170,24 +155,14 @@ void MockService::answer(Answer answer) {
 void MockService::answer(std::string text) {
     answer([text = std::move(text)](const std::string&) { return Reply{text}; });
 }
-void MockService::delay(std::chrono::milliseconds late) {
-    const std::lock_guard lock(server_->mutex);
-    server_->late = late;
-}
 void MockService::hang(bool on) {
     server_->hang = on;
-}
-void MockService::mute(bool on) {
-    server_->mute = on;
 }
 void MockService::speak_http(bool on) {
     server_->http = on;
 }
 void MockService::drop() {
     server_->drop = true;
-}
-void MockService::refuse(bool on) {
-    server_->refuse = on;
 }
 
 int MockService::connections() const {
@@ -199,10 +174,6 @@ bool MockService::closed_politely() const {
 std::size_t MockService::messages() const {
     const std::lock_guard lock(server_->mutex);
     return server_->messages;
-}
-std::string MockService::last_message() const {
-    const std::lock_guard lock(server_->mutex);
-    return server_->last_message;
 }
 std::vector<Vec3> MockService::forces() const {
     const std::lock_guard lock(server_->mutex);

@@ -1,8 +1,7 @@
 // A stand-in for Haply's Inverse Service on the loopback: a real WebSocket server that answers each
-// message with one, well or badly. No Boost in this header.
+// message with one. No Boost in this header; FakeService is one without a socket.
 #pragma once
 
-#include <chrono>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -33,19 +32,15 @@ class MockService {
     // How it behaves from now on. Any thread.
     void greet(std::string snapshot);  ///< first message on each new connection
     void answer(Answer answer);
-    void answer(std::string text);               ///< always this
-    void delay(std::chrono::milliseconds late);  ///< every answer, in order
-    void hang(bool on);                          ///< neither reads nor writes nor shakes hands
-    void mute(bool on);                          ///< reads, but answers nothing
-    void speak_http(bool on);                    ///< no WebSocket: refuses handshakes
-    void drop();                                 ///< closes the connection
-    void refuse(bool on);                        ///< closes new connections at once
+    void answer(std::string text);  ///< always this
+    void hang(bool on);             ///< neither reads nor writes nor shakes hands
+    void speak_http(bool on);       ///< no WebSocket: refuses handshakes
+    void drop();                    ///< closes the connection
 
     // What it saw. Any thread.
     int connections() const;  ///< that shook hands
     bool closed_politely() const;
     std::size_t messages() const;
-    std::string last_message() const;
     /// Forces of all the commands, oldest first [N, service axes].
     std::vector<Vec3> forces() const;
 

@@ -63,19 +63,23 @@ void drive(const std::array<double, 3>& force, const std::array<double, 3>& torq
     state.largest_torque = std::max(state.largest_torque, turning);
 }
 
+void call_all() {
+    std::vector<Scheduled> now;
+    {
+        const std::lock_guard lock(state.mutex);
+        if (!state.silent) now = scheduled;
+    }
+    for (const Scheduled& one : now) {
+        if (one.callback(one.data) != 0) continue;
+        const std::lock_guard lock(state.mutex);
+        std::erase_if(scheduled, [&](const Scheduled& s) { return s.handle == one.handle; });
+    }
+}
+
 void loop() {
     auto next = std::chrono::steady_clock::now();
     while (running) {
-        std::vector<Scheduled> now;
-        {
-            const std::lock_guard lock(state.mutex);
-            if (!state.silent) now = scheduled;
-        }
-        for (const Scheduled& one : now) {
-            if (one.callback(one.data) != 0) continue;
-            const std::lock_guard lock(state.mutex);
-            std::erase_if(scheduled, [&](const Scheduled& s) { return s.handle == one.handle; });
-        }
+        call_all();
         next = std::max(next + std::chrono::milliseconds(1), std::chrono::steady_clock::now());
         std::this_thread::sleep_until(next);
     }
@@ -85,6 +89,10 @@ void loop() {
 
 MOCK_EXPORT MockHd* mock_hd() {
     return &state;
+}
+
+MOCK_EXPORT void mock_hd_frame() {
+    if (running && !scheduler) call_all();
 }
 
 MOCK_EXPORT void mock_hd_reset() {
@@ -108,8 +116,8 @@ MOCK_EXPORT void mock_hd_reset() {
     state.refuses_null = state.refuses_all = state.refuses_start = false;
     state.update_helps = true;
     state.every_error = state.next_error = 0;
-    state.slow_ms = 0;
-    state.silent = state.no_position = false;
+    state.while_beginning = nullptr;
+    state.silent = state.no_position = state.own_thread = false;
     state.force = {};
     state.largest_force = 0;
     state.calls.clear();
@@ -145,16 +153,16 @@ MOCK_EXPORT void hdMakeCurrentDevice(unsigned int device) {
 }
 
 MOCK_EXPORT void hdBeginFrame(unsigned int device) {
-    int slow = 0;
+    std::function<void()> meanwhile;
     {
         const std::lock_guard lock(state.mutex);
         if (device != the_device || !state.device_open) complain(0x104);
         if (in_frame) complain(0x400);
         in_frame = true;
         frame_force = frame_torque = {};
-        slow = state.slow_ms;
+        meanwhile = state.while_beginning;
     }
-    if (slow) std::this_thread::sleep_for(std::chrono::milliseconds(slow));
+    if (meanwhile) meanwhile();
 }
 
 MOCK_EXPORT void hdEndFrame(unsigned int device) {
@@ -297,7 +305,7 @@ MOCK_EXPORT void hdStartScheduler() {
     called("start scheduler");
     if (state.refuses_start) return complain(0x304);
     if (running.exchange(true)) return;
-    scheduler.emplace(loop);
+    if (state.own_thread) scheduler.emplace(loop);
 }
 
 MOCK_EXPORT void hdStopScheduler() {
@@ -306,7 +314,7 @@ MOCK_EXPORT void hdStopScheduler() {
         called("stop scheduler");
         state.force_at_stop = state.force;
     }
-    if (!running.exchange(false)) return;
+    if (!running.exchange(false) || !scheduler) return;
     scheduler->join();
     scheduler.reset();
 }

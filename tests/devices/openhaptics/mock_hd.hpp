@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <mutex>
 #include <string>
 #include <vector>
@@ -25,16 +26,17 @@ struct MockHd {
     int calibration_style = 4;
 
     // How it misbehaves.
-    bool refuses_null = false;      // hdInitDevice(NULL) fails
-    bool refuses_all = false;       // and so does any name
-    bool refuses_start = false;     // hdStartScheduler
-    bool update_helps = true;       // hdUpdateCalibration
-    unsigned int every_error = 0;   // reported by every frame
-    unsigned int next_error = 0;    // reported by the next frame
-    int slow_ms = 0;                // hdBeginFrame takes this long
-    unsigned int torque_error = 0;  // reported by every call that sets a torque
-    bool silent = false;            // the servo loop calls nobody
-    bool no_position = false;       // hdGetDoublev(position) tells nothing
+    bool refuses_null = false;              // hdInitDevice(NULL) fails
+    bool refuses_all = false;               // and so does any name
+    bool refuses_start = false;             // hdStartScheduler
+    bool update_helps = true;               // hdUpdateCalibration
+    unsigned int every_error = 0;           // reported by every frame
+    unsigned int next_error = 0;            // reported by the next frame
+    unsigned int torque_error = 0;          // reported by every call that sets a torque
+    bool silent = false;                    // the servo loop calls nobody
+    bool no_position = false;               // hdGetDoublev(position) tells nothing
+    std::function<void()> while_beginning;  // called without the lock by hdBeginFrame
+    bool own_thread = false;  // its servo loop runs by itself; otherwise by mock_hd_frame()
 
     // What it saw.
     std::array<double, 3> force{};   // as applied: the last frame's, zero without force output
@@ -52,5 +54,7 @@ struct MockHd {
 
 /// The stand-in's one and only.
 extern "C" palpate::support::MockHd* mock_hd();
+/// One round of the servo loop, where that has no thread of its own.
+extern "C" void mock_hd_frame();
 /// A device that was just plugged in: all as at the start.
 extern "C" void mock_hd_reset();

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "devices/openhaptics/openhaptics_fixture.hpp"
+#include "support/eventually.hpp"
 
 namespace palpate::devices {
 namespace {
@@ -136,7 +137,8 @@ TEST_F(OpenHaptics, position_orientation_and_buttons_come_in_the_axes_of_the_dev
     EXPECT_EQ(reading.buttons, 2U);
     EXPECT_TRUE(has_no_problem(*device));
     with([](MockHd& hd) { hd.position = {11, 0, 0}; });
-    EXPECT_TRUE(eventually([&] { return device->read(0).position == Vec3(11, 0, 0); }));
+    step();
+    EXPECT_EQ(device->read(0).position, Vec3(11, 0, 0));
     EXPECT_EQ(with([](MockHd& hd) { return hd.outside; }), 0);
 }
 
@@ -149,8 +151,9 @@ TEST_F(OpenHaptics, a_force_arrives_in_newtons_in_the_axes_it_was_written_in) {
 TEST_F(OpenHaptics, a_force_beyond_the_devices_own_is_cut_to_it) {
     const auto device = open();
     const Vec3 cut = Vec3(0.6, 0.8, 0) * 3.3;
-    EXPECT_TRUE(eventually([&] { return (force() - cut).norm() < 1e-12; },
-                           [&] { device->write({Vec3(30, 40, 0)}, 0); }));
+    EXPECT_TRUE(within(
+        soon, [&] { return (force() - cut).norm() < 1e-12; },
+        [&] { device->write({Vec3(30, 40, 0)}, 0); }));
     EXPECT_LE(with([](MockHd& hd) { return hd.largest_force; }), 3.3 + 1e-12);
 }
 
@@ -158,14 +161,15 @@ TEST_F(OpenHaptics, a_force_that_is_no_number_is_none) {
     const auto device = open();
     ASSERT_TRUE(presses(*device, Vec3(1, 0, 0)));
     const double nan = std::numeric_limits<double>::quiet_NaN();
-    EXPECT_TRUE(eventually([&] { return force().isZero(0); },
-                           [&] { device->write({Vec3(1, nan, 0)}, 0); }));
+    device->write({Vec3(1, nan, 0)}, 0);
+    step();
+    EXPECT_TRUE(force().isZero(0));
 }
 
 TEST_F(OpenHaptics, the_force_goes_to_zero_when_the_servo_falls_silent) {
     const auto device = open();
     ASSERT_TRUE(presses(*device, Vec3(1, 2, 0)));
-    EXPECT_TRUE(eventually([&] { return force().isZero(0); }));
+    EXPECT_TRUE(goes_to_zero_in_silence());
     EXPECT_TRUE(becomes(*device, DeviceStatus::ready));
     EXPECT_TRUE(presses(*device, Vec3(1, 2, 0)));
 }
@@ -174,7 +178,9 @@ TEST_F(OpenHaptics, the_force_goes_to_zero_for_good_when_it_is_stopped) {
     const auto device = open();
     ASSERT_TRUE(presses(*device, Vec3(1, 2, 0)));
     device->stop();
-    EXPECT_TRUE(goes_to_zero(*device));
+    EXPECT_TRUE(device->is_stopping());
+    EXPECT_TRUE(stays_at_zero(*device));
+    EXPECT_FALSE(device->is_stopping());
     EXPECT_TRUE(becomes(*device, DeviceStatus::ready));
 }
 
@@ -189,7 +195,7 @@ TEST_F(OpenHaptics, it_is_closed_in_order_and_its_last_force_is_zero) {
                                             "disable",         "disable device"};
     EXPECT_EQ(calls, expected);
     const long frames = with([](MockHd& hd) { return hd.frames; });
-    std::this_thread::sleep_for(20ms);
+    for (int i = 0; i < 20; ++i) step();
     EXPECT_EQ(with([](MockHd& hd) { return hd.frames; }), frames);
 }
 
@@ -225,9 +231,13 @@ TEST_F(OpenHaptics,
     ASSERT_TRUE(becomes(*device, DeviceStatus::uncalibrated));
     EXPECT_TRUE(contains(device->problem(), "bringing its calibration up to date"));
     EXPECT_TRUE(stays_at_zero(*device));
-    const auto calls = with([](MockHd& hd) { return hd.calls; });
-    EXPECT_GE(std::count(calls.begin(), calls.end(), "update calibration 2"), 1);
-    EXPECT_LE(std::count(calls.begin(), calls.end(), "update calibration 2"), 10);
+    const auto updates = [&] {
+        const auto calls = with([](MockHd& hd) { return hd.calls; });
+        return std::count(calls.begin(), calls.end(), "update calibration 2");
+    };
+    EXPECT_EQ(updates(), 1);
+    EXPECT_TRUE(throughout(3s, [&] { return force().isZero(0); }));
+    EXPECT_EQ(updates(), 4);  // once per second
 }
 
 TEST_F(OpenHaptics, encoders_are_zeroed_only_when_asked_to) {
@@ -259,7 +269,7 @@ TEST_F(OpenHaptics, a_broken_connection_in_contact_is_lost_for_good_without_forc
     ASSERT_TRUE(becomes(*device, DeviceStatus::lost));
     EXPECT_TRUE(contains(device->problem(), "Communication error (0x302)")) << device->problem();
     EXPECT_TRUE(contains(device->problem(), "check cable")) << device->problem();
-    EXPECT_TRUE(goes_to_zero(*device));
+    EXPECT_TRUE(stays_at_zero(*device));
     EXPECT_EQ(device->read(0).status, DeviceStatus::lost);
 }
 
@@ -269,7 +279,7 @@ TEST_F(OpenHaptics, a_fault_of_the_device_is_one_for_good_without_force) {
     with([](MockHd& hd) { hd.next_error = 0x300; });
     ASSERT_TRUE(becomes(*device, DeviceStatus::fault));
     EXPECT_TRUE(contains(device->problem(), "Device fault (0x300)")) << device->problem();
-    EXPECT_TRUE(goes_to_zero(*device));
+    EXPECT_TRUE(stays_at_zero(*device));
     EXPECT_EQ(device->read(0).status, DeviceStatus::fault);
 }
 
@@ -280,8 +290,13 @@ TEST_F(OpenHaptics, warm_motors_get_no_force_until_they_have_cooled) {
     ASSERT_TRUE(becomes(*device, DeviceStatus::fault));
     EXPECT_TRUE(contains(device->problem(), "Warm motors (0x200)")) << device->problem();
     EXPECT_TRUE(contains(device->problem(), "cooled")) << device->problem();
-    EXPECT_TRUE(goes_to_zero(*device));
+    EXPECT_TRUE(stays_at_zero(*device));
     with([](MockHd& hd) { hd.every_error = 0; });
+    // A second after the last frame that reported it.
+    EXPECT_TRUE(throughout(
+        998ms, [&] { return device->read(0).status == DeviceStatus::fault && is_zero(); },
+        [&] { device->write({Vec3(1, 2, 0)}, 0); }));
+    EXPECT_TRUE(becomes(*device, DeviceStatus::ready));
     EXPECT_TRUE(presses(*device, Vec3(1, 2, 0)));
     EXPECT_TRUE(has_no_problem(*device));
 }
@@ -305,7 +320,7 @@ TEST_F(OpenHaptics, a_position_that_cannot_be_is_a_fault_and_never_told) {
         ASSERT_TRUE(becomes(*device, DeviceStatus::fault));
         EXPECT_EQ(device->read(0).position, Vec3(1, 2, 3));
         EXPECT_TRUE(contains(device->problem(), "cannot be")) << device->problem();
-        EXPECT_TRUE(goes_to_zero(*device));
+        EXPECT_TRUE(stays_at_zero(*device));
     }
 }
 
@@ -314,7 +329,7 @@ TEST_F(OpenHaptics, a_position_that_the_driver_does_not_give_is_none) {
     ASSERT_TRUE(presses(*device, Vec3(1, 2, 0)));
     with([](MockHd& hd) { hd.no_position = true; });
     EXPECT_TRUE(becomes(*device, DeviceStatus::fault));
-    EXPECT_TRUE(goes_to_zero(*device));
+    EXPECT_TRUE(stays_at_zero(*device));
 }
 
 TEST_F(OpenHaptics, a_servo_loop_that_stands_still_is_stale_and_can_be_closed) {
@@ -327,21 +342,42 @@ TEST_F(OpenHaptics, a_servo_loop_that_stands_still_is_stale_and_can_be_closed) {
     EXPECT_TRUE(presses(*device, Vec3(1, 2, 0)));
     with([](MockHd& hd) { hd.silent = true; });
     ASSERT_TRUE(becomes(*device, DeviceStatus::stale));
-    device.reset();
+    const std::int64_t then = support::virtual_now();
+    device.reset();  // waits half a second for a last frame
+    EXPECT_EQ(support::passed_since(then), 500ms);
     const auto calls = with([](MockHd& hd) { return hd.calls; });
     EXPECT_EQ(calls.back(), "disable device");
     EXPECT_TRUE(force().isZero(0));
 }
 
 TEST_F(OpenHaptics, readings_of_a_slow_driver_are_never_ready_and_get_no_force) {
-    with([](MockHd& hd) { hd.slow_ms = 50; });
+    with([](MockHd& hd) { hd.while_beginning = [] { pass(50ms); }; });
     const auto device = open();
     ASSERT_TRUE(becomes(*device, DeviceStatus::stale));
     EXPECT_TRUE(throughout(
         300ms, [&] { return device->read(0).status != DeviceStatus::ready && force().isZero(0); },
         [&] { device->write({Vec3(1, 1, 1)}, 0); }));
-    with([](MockHd& hd) { hd.slow_ms = 0; });
+    with([](MockHd& hd) { hd.while_beginning = nullptr; });
     EXPECT_TRUE(presses(*device, Vec3(1, 2, 0)));
+}
+
+/// The driver's servo loop, at its real pace.
+class PacedOpenHaptics : public OpenHaptics {};
+
+TEST_F(PacedOpenHaptics, its_loop_presses_and_is_closed) {
+    with([](MockHd& hd) { hd.own_thread = true; });
+    const std::string text = "openhaptics:library=" + std::string(MOCK_HD);
+    auto device = open_openhaptics(parse_device(text), any_scene());
+    const Vec3 newtons(1, 2, 0);
+    EXPECT_TRUE(support::comes_true([&] {
+        device->write({newtons, Vec3::Zero()}, 0);
+        return (force() - newtons).norm() < 1e-12;
+    }));
+    EXPECT_TRUE(support::comes_true([&] { return force().isZero(0); }));  // the servo is silent
+    EXPECT_TRUE(support::comes_true([&] { return device->read(0).status == DeviceStatus::ready; }));
+    device.reset();
+    EXPECT_EQ(with([](MockHd& hd) { return hd.force_at_stop; }), (std::array<double, 3>{}));
+    EXPECT_FALSE(with([](MockHd& hd) { return hd.device_open; }));
 }
 
 }  // namespace

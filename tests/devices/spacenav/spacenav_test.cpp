@@ -7,7 +7,9 @@
 #include <stdexcept>
 
 #include "devices/spacenav/mock_daemon.hpp"
-#include "devices/vendor_polling.hpp"
+#include "devices/stepped_device.hpp"
+#include "support/eventually.hpp"
+#include "support/scratch_folder.hpp"
 
 namespace palpate::devices {
 namespace {
@@ -15,24 +17,26 @@ namespace {
 using namespace std::chrono_literals;
 using support::any_scene;
 using support::contains;
-using support::eventually;
 using support::message_of;
 using support::MockDaemon;
-using support::throughout;
+using support::pass;
 
-class Spacenav : public testing::Test {
+class Spacenav : public support::SteppedDevice {
   protected:
-    std::unique_ptr<Device> open(const std::string& options = "") {
-        auto device =
-            open_spacenav(parse_device("spacenav:socket=" + daemon_.path() + options), any_scene());
-        EXPECT_TRUE(daemon_.accept());
-        return device;
+    void step() override {
+        pass(1ms);
+        mouse_->step();
     }
-    static bool becomes(Device& device, DeviceStatus status) {
-        return eventually([&] { return device.read(0).status == status; });
+    std::unique_ptr<spacenav::Mouse> open(const std::string& options = "") {
+        auto mouse = spacenav::open(parse_device("spacenav:socket=" + daemon_.path() + options),
+                                    any_scene(), {&support::virtual_now, &support::pass_until});
+        mouse_ = mouse.get();
+        EXPECT_TRUE(daemon_.accept());
+        return mouse;
     }
 
     MockDaemon daemon_;
+    spacenav::Mouse* mouse_ = nullptr;
 };
 
 TEST_F(Spacenav, a_daemon_that_is_not_there_is_told_with_every_place_that_was_tried) {
@@ -82,16 +86,15 @@ TEST_F(Spacenav, renders_no_force_and_says_so) {
     EXPECT_EQ(info.workspace_high, Vec3(80, 80, 80));
     device->write({Vec3(1, 2, 3)}, 0);
     device->stop();
-    EXPECT_TRUE(becomes(*device, DeviceStatus::ready));
+    step();
+    EXPECT_EQ(device->read(0).status, DeviceStatus::ready);
 }
 
 TEST_F(Spacenav, a_puck_at_rest_sends_nothing_and_stays_ready) {
     const auto device = open();
-    for (int i = 0; i < 20; ++i) {
-        std::this_thread::sleep_for(10ms);
-        // A machine that stalls just here is told apart from a device that has gone stale.
-        EXPECT_TRUE(becomes(*device, DeviceStatus::ready));
-    }
+    EXPECT_TRUE(throughout(5s, [&] { return device->read(0).status == DeviceStatus::ready; }));
+    pass(21ms);  // a thread that stands still
+    EXPECT_EQ(device->read(0).status, DeviceStatus::stale);
     EXPECT_EQ(device->read(0).position, Vec3(0, 0, 0));
     EXPECT_EQ(daemon_.heard(), 0U);  // protocol 0 needs no word from us
 }
@@ -99,38 +102,38 @@ TEST_F(Spacenav, a_puck_at_rest_sends_nothing_and_stays_ready) {
 TEST_F(Spacenav, the_hand_slides_while_the_puck_is_deflected) {
     const auto device = open(",speed=10");
     daemon_.say({0, 0, 0, -350, 0, 0, 0, 8});
-    EXPECT_TRUE(eventually([&] { return device->read(0).position[2] > 1; }));
+    for (int i = 0; i < 150; ++i) step();
+    const Vec3 there = device->read(0).position;
+    EXPECT_LE((there - Vec3(0, 0, 1.5)).norm(), 1e-12);
+    pass(1s);  // a machine that stalls: the hand does not jump
+    step();
+    EXPECT_LE((device->read(0).position - Vec3(0, 0, 1.7)).norm(), 1e-12);
     daemon_.say({0, 0, 0, 0, 0, 0, 0, 8});
-    Vec3 there = Vec3::Zero();
-    EXPECT_TRUE(eventually([&] {
-        there = device->read(0).position;
-        return throughout(50ms, [&] { return device->read(0).position == there; });
-    }));
-    EXPECT_LT(there[2], 79);  // let go, and not at the wall
-    EXPECT_EQ(there[0], 0);
-    EXPECT_EQ(there[1], 0);
+    EXPECT_TRUE(throughout(
+        50ms, [&] { return (device->read(0).position - Vec3(0, 0, 1.7)).norm() < 1e-12; }));
 }
 
 TEST_F(Spacenav, the_hand_turns_and_the_buttons_are_held) {
     const auto device = open(",turn=360");
     daemon_.say({0, 0, 0, 0, 0, 350, 0, 8});
     daemon_.say({1, 1, 0, 0, 0, 0, 0, 0});
-    EXPECT_TRUE(eventually([&] { return device->read(0).buttons == 2; }));
-    EXPECT_TRUE(eventually([&] { return device->read(0).orientation(0, 2) > 0.1; }));
+    step();
+    EXPECT_EQ(device->read(0).buttons, 2U);
+    for (int i = 1; i < 250; ++i) step();
+    EXPECT_NEAR(device->read(0).orientation(0, 2), 1, 1e-9);  // a quarter turn
     daemon_.say({2, 1, 0, 0, 0, 0, 0, 0});
-    EXPECT_TRUE(eventually([&] { return device->read(0).buttons == 0; }));
+    step();
+    EXPECT_EQ(device->read(0).buttons, 0U);
 }
 
 TEST_F(Spacenav, the_hand_turns_at_its_speed_until_the_puck_is_let_go_and_keeps_its_place) {
     const auto device = open(",turn=20");
     daemon_.say({0, 0, 0, 0, 350, 0, 0, 8});
-    EXPECT_TRUE(eventually([&] { return device->read(0).orientation(2, 1) > 0.05; }));
+    for (int i = 0; i < 1500; ++i) step();
     daemon_.say({0, 0, 0, 0, 0, 0, 0, 8});
-    Mat3 there = Mat3::Identity();
-    EXPECT_TRUE(eventually([&] {
-        there = device->read(0).orientation;
-        return throughout(50ms, [&] { return device->read(0).orientation == there; });
-    }));
+    const Mat3 there = device->read(0).orientation;
+    EXPECT_NEAR(there(2, 1), 0.5, 1e-9);  // 30 degrees
+    EXPECT_TRUE(throughout(50ms, [&] { return device->read(0).orientation == there; }));
     EXPECT_EQ(there(0, 0), 1);  // about x alone
     EXPECT_EQ(device->read(0).position, Vec3(0, 0, 0));
 }
@@ -149,19 +152,20 @@ TEST_F(Spacenav, absurd_rotations_and_other_types_leave_a_rotation) {
             return (m * m.transpose() - Mat3::Identity()).norm() < 1e-9 && m.determinant() > 0;
         }));
     }
-    EXPECT_TRUE(eventually([&] { return device->read(0).orientation != Mat3(Mat3::Identity()); }));
+    EXPECT_NE(device->read(0).orientation, Mat3(Mat3::Identity()));
 }
 
 TEST_F(Spacenav, a_daemon_that_hangs_up_while_the_hand_turns_stops_it) {
     const auto device = open();
     daemon_.say({0, 0, 0, 0, 0, 350, 0, 8});
-    ASSERT_TRUE(eventually([&] { return device->read(0).orientation(0, 2) > 0.05; }));
+    ASSERT_TRUE(within(100ms, [&] { return device->read(0).orientation(0, 2) > 0.05; }));
     daemon_.go_away();
-    ASSERT_TRUE(becomes(*device, DeviceStatus::lost));
+    step();
+    ASSERT_EQ(device->read(0).status, DeviceStatus::lost);
     const Mat3 there = device->read(0).orientation;
     daemon_.listen();
+    ASSERT_TRUE(within(251ms, [&] { return device->read(0).status == DeviceStatus::ready; }));
     ASSERT_TRUE(daemon_.accept());
-    ASSERT_TRUE(becomes(*device, DeviceStatus::ready));
     EXPECT_TRUE(throughout(50ms, [&] { return device->read(0).orientation == there; }));
 }
 
@@ -171,12 +175,13 @@ TEST_F(Spacenav, an_event_may_come_in_pieces) {
     const char* bytes = reinterpret_cast<const char*>(event.data());
     for (std::size_t i = 0; i + 1 < sizeof event; ++i) {
         daemon_.say_bytes(bytes + i, 1);
-        if (i % 8 == 0) std::this_thread::sleep_for(2ms);
+        if (i % 8 == 0) step();
     }
-    std::this_thread::sleep_for(20ms);
+    step();
     EXPECT_EQ(device->read(0).position, Vec3(0, 0, 0));
     daemon_.say_bytes(bytes + sizeof event - 1, 1);
-    EXPECT_TRUE(eventually([&] { return device->read(0).position[0] > 1; }));
+    step();
+    EXPECT_NEAR(device->read(0).position[0], 0.1, 1e-12);
 }
 
 TEST_F(Spacenav, garbage_moves_nothing_out_of_its_box_and_stops_nothing) {
@@ -186,39 +191,64 @@ TEST_F(Spacenav, garbage_moves_nothing_out_of_its_box_and_stops_nothing) {
     daemon_.say({-1, 350, 350, 350, 350, 350, 350, 350});
     daemon_.say({1, 99, 0, 0, 0, 0, 0, 0});
     daemon_.say({0, most, -most, 0, 0, 0, 0, -1});
-    EXPECT_TRUE(eventually([&] { return device->read(0).position == Vec3(80, -80, 0); }));
+    EXPECT_TRUE(within(81ms, [&] { return device->read(0).position == Vec3(80, -80, 0); }));
     EXPECT_EQ(device->read(0).buttons, 0U);
-    EXPECT_TRUE(becomes(*device, DeviceStatus::ready));
+    EXPECT_EQ(device->read(0).status, DeviceStatus::ready);
 }
 
 TEST_F(Spacenav, a_daemon_that_hangs_up_is_lost_until_it_is_back_and_the_hand_stays_where_it_was) {
     const auto device = open();
     daemon_.say({0, 350, 0, 0, 0, 0, 0, 8});
     daemon_.say({1, 0, 0, 0, 0, 0, 0, 0});
-    ASSERT_TRUE(eventually([&] { return device->read(0).position[0] > 2; }));
+    ASSERT_TRUE(within(25ms, [&] { return device->read(0).position[0] > 2; }));
     daemon_.say_bytes("half an event", 13);
     daemon_.go_away();
-    ASSERT_TRUE(becomes(*device, DeviceStatus::lost));
+    step();  // the half, and then the end
+    step();
+    ASSERT_EQ(device->read(0).status, DeviceStatus::lost);
     EXPECT_TRUE(contains(device->problem(), "closed the connection")) << device->problem();
     const Vec3 there = device->read(0).position;
-    EXPECT_TRUE(throughout(50ms, [&] { return device->read(0).position == there; }));
+    EXPECT_TRUE(throughout(100ms, [&] {
+        return device->read(0).position == there && device->read(0).status == DeviceStatus::lost;
+    }));
 
     daemon_.listen();
+    // It tries every 250 ms.
+    EXPECT_TRUE(throughout(149ms, [&] { return device->read(0).status == DeviceStatus::lost; }));
+    ASSERT_TRUE(within(2ms, [&] { return device->read(0).status == DeviceStatus::ready; }));
     ASSERT_TRUE(daemon_.accept());
-    ASSERT_TRUE(becomes(*device, DeviceStatus::ready));
     EXPECT_EQ(device->problem(), "");
     EXPECT_EQ(device->read(0).buttons, 0U);
     EXPECT_TRUE(throughout(50ms, [&] { return device->read(0).position == there; }));
     daemon_.say({0, 0, 350, 0, 0, 0, 0, 8});
-    EXPECT_TRUE(eventually([&] { return device->read(0).position[1] > 1; }));
+    ASSERT_TRUE(within(15ms, [&] { return device->read(0).position[1] > 1; }));
     EXPECT_EQ(device->read(0).position[0], there[0]);
 }
 
 TEST_F(Spacenav, can_be_closed_while_it_is_lost) {
     auto device = open();
     daemon_.go_away();
-    ASSERT_TRUE(becomes(*device, DeviceStatus::lost));
+    step();
+    ASSERT_EQ(device->read(0).status, DeviceStatus::lost);
     device.reset();
+}
+
+/// The device's thread, at its real pace.
+class PacedSpacenav : public Spacenav {};
+
+TEST_F(PacedSpacenav, its_thread_moves_the_hand_and_connects_again) {
+    auto device = open_spacenav(parse_device("spacenav:socket=" + daemon_.path()), any_scene());
+    ASSERT_TRUE(daemon_.accept());
+    daemon_.say({0, 0, 0, -350, 0, 0, 0, 8});
+    EXPECT_TRUE(support::comes_true([&] { return device->read(0).position[2] > 1; }));
+    const auto becomes = [&](DeviceStatus status) {
+        return support::comes_true([&] { return device->read(0).status == status; });
+    };
+    daemon_.go_away();
+    EXPECT_TRUE(becomes(DeviceStatus::lost));
+    daemon_.listen();
+    ASSERT_TRUE(daemon_.accept());
+    EXPECT_TRUE(becomes(DeviceStatus::ready));
 }
 
 }  // namespace
