@@ -3,13 +3,15 @@
 disks that nobody wishes it. It shares no code with the program. Every round has a seed of its own; what is
 found is printed with the words that do it again, and its files are kept.
 
-    adversary.py --program build/dev/apps/palpate/palpate --seconds 60
-    adversary.py --program ... --only readers --seed 4711 --rounds 1      one round again
+    adversary.py --program build/dev/apps/palpate/palpate --seeds 12,readers=48     the same rounds everywhere
+    adversary.py --program ... --minutes 60                               as many as the machine has time for
+    adversary.py --program ... --only readers --seed 4711 --seeds 1       one round again
 """
 
 import argparse
 import collections
 import importlib
+import math
 import random
 import shutil
 import subprocess
@@ -52,12 +54,13 @@ def only_files(folder, names):
     return [p.name for p in paths if not (p.is_file() or p.is_dir())]
 
 
-def attack(name, program, options, deadline):
-    """Rounds of one attack until the deadline, several at a time. Returns counts and findings."""
+def attack(name, program, options, rounds, deadline):
+    """Rounds of one attack, at most so many and none begun after the deadline, several at a time. Returns
+    counts and findings."""
     total, found, seed = collections.Counter(), [], options.seed
     with ThreadPoolExecutor(options.jobs) as pool:
         running = set()
-        more = lambda: (time.monotonic() < deadline and seed - options.seed < options.rounds
+        more = lambda: (time.monotonic() < deadline and seed - options.seed < rounds
                         and len(found) < options.most_findings)
         while running or more():
             while len(running) < options.jobs and more():
@@ -74,11 +77,24 @@ def attack(name, program, options, deadline):
     return total, found
 
 
+def seeds_from(text):
+    """How many seeds each attack gets: {attack: count} from "12,readers=48", one number for the others."""
+    counts = {}
+    for part in text.split(","):
+        name, _, count = part.rpartition("=")
+        if name and name not in ATTACKS:
+            raise argparse.ArgumentTypeError(f"no attack {name}")
+        counts[name] = int(count)
+    return {name: counts.get(name, counts.get("", 1)) for name in ATTACKS}
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("--program", required=True, help="palpate, built")
-    parser.add_argument("--seconds", type=float, default=60, help="for all attacks together")
-    parser.add_argument("--rounds", type=int, default=10**9, help="most rounds of each attack")
+    amount = parser.add_mutually_exclusive_group(required=True)
+    amount.add_argument("--seeds", type=seeds_from, metavar="N[,ATTACK=N...]",
+                        help="rounds of each attack, however long they take")
+    amount.add_argument("--minutes", type=float, help="for all attacks together, however many rounds that is")
     parser.add_argument("--seed", type=int, default=1, help="of the first round")
     parser.add_argument("--only", default="", help=f"attacks, comma between: {', '.join(ATTACKS)}")
     parser.add_argument("--most-findings", type=int, default=20, help="of an attack; then it ends")
@@ -107,8 +123,12 @@ def report(names, program, options):
     findings, rows = [], []
     for i, name in enumerate(names):
         begun = time.monotonic()
-        left = options.seconds * (i + 1) / len(names) - sum(row[2] for row in rows)
-        counts, found = attack(name, program, options, begun + left)
+        if options.seeds:
+            rounds, deadline = options.seeds[name], math.inf
+        else:
+            left = 60 * options.minutes * (i + 1) / len(names) - sum(row[2] for row in rows)
+            rounds, deadline = math.inf, begun + left
+        counts, found = attack(name, program, options, rounds, deadline)
         findings += found
         rows.append((name, counts, time.monotonic() - begun, len(found)))
         print(f"{name}: {dict(counts)}, {len(found)} found, {rows[-1][2]:.0f} s", flush=True)

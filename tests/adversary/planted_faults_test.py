@@ -51,7 +51,7 @@ def main():
                                               fault=fault.replace("%(program)r", repr(program))))
             wrapper.chmod(wrapper.stat().st_mode | stat.S_IXUSR)
             ran = subprocess.run([sys.executable, "-B", HERE / "adversary.py", "--program", wrapper, "--only",
-                                  attack, "--seconds", "120", "--rounds", "300", "--most-findings", "1",
+                                  attack, "--seeds", "300", "--most-findings", "1",
                                   "--slower", "0.5"], capture_output=True, text=True)
         found = any(word in ran.stdout for word in expected.split("|"))
         print(f"{attack}: {what}: {'found' if ran.returncode == 1 and found else 'MISSED'}", flush=True)
