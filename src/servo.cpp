@@ -99,6 +99,15 @@ struct Servo::Stamps {
     }
 };
 
+/// What times the parts of a tick [ns]; without a clock all of them happen at `start`.
+struct Servo::TickClock {
+    std::int64_t start;
+    Clock now = nullptr, cpu_now = nullptr;
+
+    std::int64_t read() const { return now ? now() : start; }
+    std::int64_t cpu() const { return cpu_now ? cpu_now() : start; }
+};
+
 Servo::Servo(Session session, Device& device, const ServoSettings& settings)
     : commands_(settings.command_room),
       session_(std::move(session)),
@@ -158,7 +167,7 @@ void Servo::stop() noexcept {
     stopping_.store(true, std::memory_order_release);
     const bool is_servo_thread = std::this_thread::get_id() == thread_id_.load();
     const auto runs = [&] { return state_.load(std::memory_order_acquire) == State::running; };
-    if (is_servo_thread && !in_step_ && runs()) end();
+    if (is_servo_thread && !in_step_ && runs()) end(schedule_.last_start);
     while (!is_servo_thread && runs() && !device_->has_lost_force()) {
         std::this_thread::sleep_for(poll);
     }
@@ -238,18 +247,26 @@ void Servo::run() noexcept {
 }
 
 bool Servo::step() noexcept {
+    return step(TickClock{now_(), now_, cpu_now_});
+}
+
+bool Servo::step(std::int64_t now) noexcept {
+    return step(TickClock{now});
+}
+
+bool Servo::step(const TickClock& clock) noexcept {
     State idle = State::idle;
-    if (state_.compare_exchange_strong(idle, State::running)) begin(now_());
+    if (state_.compare_exchange_strong(idle, State::running)) begin(clock.start);
     if (state_.load(std::memory_order_relaxed) == State::ended) return false;
     const auto is_over = [&] {
         return stopping_.load(std::memory_order_acquire) ||
                device_->failure() != DeviceFailure::none;
     };
     in_step_ = true;
-    if (!is_over()) tick();
+    if (!is_over()) tick(clock);
     const bool over = is_over();
     in_step_ = false;
-    if (over) end();
+    if (over) end(clock.read());
     return !over;
 }
 
@@ -261,43 +278,44 @@ void Servo::begin(std::int64_t first_tick) noexcept {
     schedule_.zero = schedule_.due = first_tick;
 }
 
-void Servo::end() noexcept {
-    device_->write({}, 1e-9 * static_cast<double>(now_() - schedule_.zero));
+void Servo::end(std::int64_t now) noexcept {
+    device_->write({}, 1e-9 * static_cast<double>(now - schedule_.zero));
     state_.store(State::ended, std::memory_order_release);
 }
 
-void Servo::tick() noexcept {
-    const std::int64_t start = now_();
-    const std::int64_t compute_start = cpu_now_();
+void Servo::tick(const TickClock& clock) noexcept {
+    const std::int64_t start = clock.start;
+    const std::int64_t compute_start = clock.cpu();
     const std::int64_t number = ticks_.load(std::memory_order_relaxed);
     const double time = 1e-9 * static_cast<double>(start - schedule_.zero);
 
     obey();
-    const std::int64_t before_read = now_();
+    const std::int64_t before_read = clock.read();
     const DeviceReading reading = device_->read(time);
-    const std::int64_t after_read = now_();
+    const std::int64_t after_read = clock.read();
     if (device_->failure() != DeviceFailure::none) return show_failure();
     if (reading.limits) keep_device_limits(*reading.limits);
-    SessionTick result = advance(session_, time, reading, now_);
-    const std::int64_t before_write = now_();
+    SessionTick result = advance(session_, time, reading, clock.now);
+    const std::int64_t before_write = clock.read();
     if (1e-9 * static_cast<double>(before_write - start) > session_.settings.overrun) {
         let_go(session_, result);
         add(overruns_, 1);
     }
     device_->write({result.tick.force, result.tick.torque}, time);
-    const std::int64_t after_write = now_();
+    const std::int64_t after_write = clock.read();
     if (device_->failure() != DeviceFailure::none) return show_failure();
     publish(number, result);
     record(result);
 
-    count(number, {.start = start,
-                   .compute = cpu_now_() - compute_start,
-                   .device = (after_read - before_read) + (after_write - before_write),
-                   .proxy = result.tick.update_ns});
+    count(number,
+          {.start = start,
+           .compute = clock.cpu() - compute_start,
+           .device = (after_read - before_read) + (after_write - before_write),
+           .proxy = result.tick.update_ns},
+          clock.read());
 }
 
-void Servo::count(std::int64_t number, const Stamps& stamps) noexcept {
-    const std::int64_t end = now_();
+void Servo::count(std::int64_t number, const Stamps& stamps, std::int64_t end) noexcept {
     const WorstTick tick{number, stamps.start - schedule_.due, end - stamps.start, stamps.compute,
                          stamps.cause(stamps.start - schedule_.due, end - stamps.start)};
     lateness_.add(tick.lateness_ns);

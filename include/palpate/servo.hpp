@@ -16,6 +16,11 @@
 
 namespace palpate {
 
+/// Who drives what runs beside the caller: a thread of its own at its real pace; or the owner, who
+/// calls step() and says what time it is. The latter is for tests and for sessions that run as fast
+/// as they can: the same calls give the same results.
+enum class Pace : std::uint8_t { own_thread, by_steps };
+
 /// Content of a recording, in the order in which it took effect.
 using SessionEvent = std::variant<SessionTick, Command>;
 
@@ -121,6 +126,9 @@ class Servo {
     /// One tick, now, on one thread; the first one is at time 0 of the session. False once the
     /// session has ended: stop() was called or the device has failed, and zero force was written.
     bool step() noexcept;
+    /// The same at a time of the caller's [ns, never back], without a clock: its parts take no
+    /// time.
+    bool step(std::int64_t now) noexcept;
     /// When the next tick is due [ns, of the settings' clock]. The thread of step().
     std::int64_t due() const noexcept { return schedule_.due; }
     /// One look of the watchdog, every 5 ms, by any one thread: gives up a call to the device that
@@ -166,15 +174,17 @@ class Servo {
         WorstTick worst = {};
     };
     struct Stamps;
+    struct TickClock;
     enum class State : std::uint8_t { idle, running, ended };
 
     void run() noexcept;
     void begin(std::int64_t first_tick) noexcept;
-    void end() noexcept;
-    void tick() noexcept;
+    bool step(const TickClock& clock) noexcept;
+    void end(std::int64_t now) noexcept;
+    void tick(const TickClock& clock) noexcept;
     void obey() noexcept;
     void keep_device_limits(const DeviceLimits& limits) noexcept;
-    void count(std::int64_t number, const Stamps& stamps) noexcept;
+    void count(std::int64_t number, const Stamps& stamps, std::int64_t end) noexcept;
     void record(const SessionEvent& event) noexcept;
     void show_failure() noexcept;
     void publish(std::int64_t number, const SessionTick& tick) noexcept;

@@ -1,4 +1,5 @@
-// Waits until a condition that other threads or programs cause becomes true.
+// Waits until a condition that other threads or programs cause becomes true. Where a class has a
+// step(), tests call that and need no waiting.
 #pragma once
 
 #include <chrono>
