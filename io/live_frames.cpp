@@ -5,10 +5,10 @@
 #include <stdexcept>
 #include <utility>
 
+#include "io/stepping_thread.hpp"
+
 namespace palpate::io {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 /// After this many polls without a frame, checks whether another file has the name.
 constexpr int polls_until_suspicion = 50;
@@ -53,26 +53,22 @@ std::shared_ptr<const Samples> LiveWindow::push(Frame frame) {
 }
 
 LiveFrames::LiveFrames(const std::filesystem::path& path, const LiveSettings& settings,
-                       OnChange on_change)
+                       OnChange on_change, Pace pace)
     : path_(path),
       settings_(checked(settings)),
       on_change_(std::move(on_change)),
       reader_(std::make_unique<LiveReader>(path, settings.memory_bytes)),
       window_(settings.frames),
       header_(reader_->header()),
-      last_(Clock::now()) {
-    follow();
-    thread_ = std::thread([this] { run(); });
+      last_(std::chrono::steady_clock::now()) {
+    step(last_);
+    if (pace == Pace::by_steps) return;
+    thread_ = stepping_thread(
+        std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 * settings_.poll_interval)),
+        [this](SteadyTime now) { step(now); });
 }
 
-LiveFrames::~LiveFrames() {
-    {
-        const std::lock_guard lock(mutex_);
-        stop_ = true;
-    }
-    changed_.notify_all();
-    thread_.join();
-}
+LiveFrames::~LiveFrames() = default;
 
 std::shared_ptr<const Samples> LiveFrames::newest() const {
     const std::lock_guard lock(mutex_);
@@ -86,21 +82,11 @@ std::shared_ptr<const Samples> LiveFrames::wait(double seconds) const {
     return newest_;
 }
 
-LiveStatus LiveFrames::status() const {
+LiveStatus LiveFrames::status(SteadyTime now) const {
     const std::lock_guard lock(mutex_);
     LiveStatus status = status_;
-    status.age = std::chrono::duration<double>(Clock::now() - last_).count();
+    status.age = std::chrono::duration<double>(now - last_).count();
     return status;
-}
-
-void LiveFrames::run() {
-    const std::chrono::duration<double> pause(settings_.poll_interval);
-    std::unique_lock lock(mutex_);
-    while (!changed_.wait_for(lock, pause, [this] { return stop_; })) {
-        lock.unlock();
-        follow();
-        lock.lock();
-    }
 }
 
 void LiveFrames::tell(const std::string& problem) {
@@ -108,8 +94,8 @@ void LiveFrames::tell(const std::string& problem) {
     status_.problem = problem;
 }
 
-/// Reads the new frames and publishes one version with them.
-void LiveFrames::follow() {
+/// One version with all that is new.
+void LiveFrames::step(SteadyTime now) {
     try {
         std::vector<Frame> frames = reader_->poll(settings_.frames);
         std::shared_ptr<const Samples> samples;
@@ -122,7 +108,7 @@ void LiveFrames::follow() {
             if (samples) {
                 status_.frames += count;
                 status_.problem.clear();
-                last_ = Clock::now();
+                last_ = now;
                 std::swap(newest_, samples);  // the old one dies after the lock
             }
         }

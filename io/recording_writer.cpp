@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "io/recording_head.hpp"
+#include "io/stepping_thread.hpp"
 #include "io/system.hpp"
 #include "io/trace_columns.hpp"
 
@@ -69,7 +70,8 @@ std::size_t room_for(double rate) {
 
 }  // namespace
 
-RecordingWriter::RecordingWriter(const std::filesystem::path& path, const RecordingHead& head)
+RecordingWriter::RecordingWriter(const std::filesystem::path& path, const RecordingHead& head,
+                                 Pace pace)
     : path_(path), queue_(room_for(head.rate)) {
     buffer_.reserve(most_buffered);
     std::error_code error;
@@ -92,15 +94,25 @@ RecordingWriter::RecordingWriter(const std::filesystem::path& path, const Record
         if (seekable_) std::filesystem::remove(path_, error);
         throw OutputError(wrong);
     }
-    thread_ = std::jthread([this] { run(); });
-    syncer_ = std::jthread([this] { sync(); });
+    if (pace == Pace::by_steps) return;
+    thread_ = stepping_thread(between_writes, [this](SteadyTime) { step(); });
+    // A thread of its own: a disk that is busy for seconds must not keep the queue from being
+    // emptied. Pipes have no disk; a write tells what is wrong.
+    syncer_ =
+        stepping_thread(between_syncs, [this](SteadyTime) { (void)synchronise(descriptor_); });
 }
 
 RecordingWriter::~RecordingWriter() {
-    done_ = true;
-    if (thread_.joinable()) thread_.join();
-    if (syncer_.joinable()) syncer_.join();
+    end_threads();
+    if (descriptor_ >= 0) step();
     close();
+}
+
+/// Together, as both may have to wait.
+void RecordingWriter::end_threads() {
+    syncer_.request_stop();
+    thread_ = {};
+    syncer_ = {};
 }
 
 std::string RecordingWriter::problem() const {
@@ -109,9 +121,8 @@ std::string RecordingWriter::problem() const {
 }
 
 void RecordingWriter::finish(std::int64_t lost) {
-    done_ = true;
-    if (thread_.joinable()) thread_.join();
-    if (syncer_.joinable()) syncer_.join();
+    end_threads();
+    drain();
     buffer_ += "#";
     buffer_ += end_mark;
     buffer_ += Json{{"ticks", ticks()}, {"lost", lost}, {"crc32", checksum_}}.dump() + "\n";
@@ -121,25 +132,9 @@ void RecordingWriter::finish(std::int64_t lost) {
     if (const std::string wrong = problem(); !wrong.empty()) throw OutputError(wrong);
 }
 
-void RecordingWriter::run() {
-    for (;;) {
-        const bool last = done_;  // before draining, so that what came before it is drained
-        drain();
-        flush();
-        if (last) return;
-        std::this_thread::sleep_for(between_writes);
-    }
-}
-
-/// A thread of its own: a disk that is busy for seconds must not keep the queue from being emptied.
-void RecordingWriter::sync() {
-    auto last = std::chrono::steady_clock::now();
-    while (!done_) {
-        std::this_thread::sleep_for(between_writes);
-        if (std::chrono::steady_clock::now() - last < between_syncs) continue;
-        (void)synchronise(descriptor_);  // pipes have no disk; a write tells what is wrong
-        last = std::chrono::steady_clock::now();
-    }
+void RecordingWriter::step() {
+    drain();
+    flush();
 }
 
 void RecordingWriter::drain() {

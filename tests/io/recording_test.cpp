@@ -6,14 +6,14 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <chrono>
+#include <algorithm>
 #include <csignal>
 #include <fstream>
 #include <limits>
 #include <sstream>
 #include <string>
-#include <thread>
 
+#include "support/eventually.hpp"
 #include "support/press.hpp"
 #include "support/random.hpp"
 #include "support/recordings.hpp"
@@ -21,7 +21,6 @@
 
 using namespace palpate;
 using namespace palpate::support;
-using namespace std::chrono_literals;
 
 namespace {
 
@@ -133,9 +132,9 @@ std::vector<SessionEvent> random_events(int count) {
 
 /// As a recording would have it; text compares every bit that is written.
 std::string written(const std::vector<SessionEvent>& events, const std::filesystem::path& path) {
-    io::RecordingWriter writer(path, some_head());
+    io::RecordingWriter writer(path, some_head(), Pace::by_steps);
     for (const SessionEvent& event : events) {
-        while (!writer.queue().push(event)) std::this_thread::sleep_for(1ms);
+        while (!writer.queue().push(event)) writer.step();
     }
     writer.finish(0);
     return bytes_of(path);
@@ -399,13 +398,11 @@ TEST(Recording, when_the_disk_is_full_what_was_recorded_stays_in_whole_lines) {
         std::signal(SIGXFSZ, SIG_IGN);
         const rlimit most{100'000, 100'000};
         ::setrlimit(RLIMIT_FSIZE, &most);
-        io::RecordingWriter writer(folder / "r.csv", some_head());
+        io::RecordingWriter writer(folder / "r.csv", some_head(), Pace::by_steps);
         Random random(1);
         for (int i = 0; i < 2000; ++i) {
-            while (!writer.queue().push(random_tick(random, i * 1e-3))) {
-                std::this_thread::sleep_for(1ms);
-            }
-            if (i % 100 == 0) std::this_thread::sleep_for(20ms);
+            EXPECT_TRUE(writer.queue().push(random_tick(random, i * 1e-3)));
+            if (i % 100 == 0) writer.step();
         }
         try {
             writer.finish(0);
@@ -423,19 +420,36 @@ TEST(Recording, when_the_disk_is_full_what_was_recorded_stays_in_whole_lines) {
     EXPECT_FALSE(reader.complete());
 }
 
-TEST(Recording, killed_in_the_middle_it_has_all_but_the_last_second) {
+TEST(Recording, killed_in_the_middle_it_has_all_up_to_the_last_step) {
     const ScratchFolder folder;
     const int status = in_child([&] {
-        io::RecordingWriter writer(folder / "r.csv", some_head());
+        io::RecordingWriter writer(folder / "r.csv", some_head(), Pace::by_steps);
         Random random(1);
         for (int i = 0; i < 1000; ++i) writer.queue().push(random_tick(random, i * 1e-3));
-        std::this_thread::sleep_for(1s);
+        writer.step();
+        for (int i = 1000; i < 1500; ++i) writer.queue().push(random_tick(random, i * 1e-3));
         ::kill(::getpid(), SIGKILL);
     });
     ASSERT_TRUE(WIFSIGNALED(status));
     io::RecordingReader reader(folder / "r.csv");
     EXPECT_EQ(read_all(reader).size(), 1000U);
     EXPECT_FALSE(reader.complete());
+}
+
+TEST(PacedRecording, is_written_by_itself_while_nobody_asks) {
+    const ScratchFolder folder;
+    const int status = in_child([&] {
+        io::RecordingWriter writer(folder / "r.csv", some_head());
+        Random random(1);
+        const auto lines = [&] { return std::ranges::count(bytes_of(folder / "r.csv"), '\n'); };
+        const auto head = lines();
+        for (int i = 0; i < 1000; ++i) writer.queue().push(random_tick(random, i * 1e-3));
+        if (!support::comes_true([&] { return lines() >= head + 1000; })) ::_exit(9);
+        ::kill(::getpid(), SIGKILL);
+    });
+    ASSERT_TRUE(WIFSIGNALED(status));
+    io::RecordingReader reader(folder / "r.csv");
+    EXPECT_EQ(read_all(reader).size(), 1000U);
 }
 #endif
 

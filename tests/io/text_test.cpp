@@ -4,19 +4,18 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <chrono>
+#include <atomic>
 #include <csignal>
 #include <thread>
 
 #include "palpate/io/csv.hpp"
+#include "support/eventually.hpp"
 #include "support/scratch_folder.hpp"
 
 using namespace palpate::io;
 using namespace palpate::support;
 
 namespace {
-
-using namespace std::chrono_literals;
 
 struct Cancelled {};
 
@@ -62,18 +61,29 @@ TEST(Text, of_a_pipe_without_a_writer_is_waited_for_until_the_caller_cancels) {
                  Cancelled);
 }
 
+/// Whether a thread of this process waits for something.
+bool is_waiting(pid_t thread) {
+    std::ifstream status("/proc/self/task/" + std::to_string(thread) + "/status");
+    for (std::string line; std::getline(status, line);) {
+        if (line.starts_with("State:")) return contains(line, "S (sleeping)");
+    }
+    return false;
+}
+
 TEST(Text, without_a_caller_to_ask_a_signal_ends_the_wait) {
     const ScratchFolder folder;
     ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
     const auto before = std::signal(SIGUSR1, [](int) {});  // restarts what it interrupts
     const pthread_t reader = ::pthread_self();
-    std::thread sender([&] {
-        std::this_thread::sleep_for(200ms);
-        ::pthread_kill(reader, SIGUSR1);
+    std::atomic<bool> ended{false};
+    std::thread sender([&] {  // one that comes before the wait does not end it
+        while (!ended) {
+            ::pthread_kill(reader, SIGUSR1);
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
     });
-    const auto start = std::chrono::steady_clock::now();
     EXPECT_TRUE(contains(refusal_of_text(folder / "pipe"), "interrupted"));
-    EXPECT_LT(std::chrono::steady_clock::now() - start, 8s);
+    ended = true;
     sender.join();
     std::signal(SIGUSR1, before);
 }
@@ -81,12 +91,14 @@ TEST(Text, without_a_caller_to_ask_a_signal_ends_the_wait) {
 TEST(Text, comes_whole_through_a_pipe_whose_writer_takes_its_time) {
     const ScratchFolder folder;
     ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+    const pid_t reader = ::gettid();
+    const auto reader_waits = [&] { EXPECT_TRUE(comes_true([&] { return is_waiting(reader); })); };
     std::thread writer([&] {
-        std::this_thread::sleep_for(100ms);
+        reader_waits();
         std::ofstream pipe(folder / "pipe", std::ios::binary);
         for (int i = 0; i < 3; ++i) {
             pipe << "\xEF\xBB\xBF" << i << '\n' << std::flush;
-            std::this_thread::sleep_for(100ms);
+            reader_waits();
         }
     });
     // Only the mark at the beginning is one.

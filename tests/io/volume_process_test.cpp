@@ -9,6 +9,7 @@
 #include <csignal>
 #include <thread>
 
+#include "support/eventually.hpp"
 #include "support/random.hpp"
 #include "volume_support.hpp"
 
@@ -202,15 +203,12 @@ TEST_F(HelperProcess, ends_with_its_caller_and_takes_its_unfinished_file_along) 
         _exit(0);
     }
     waitpid(caller, nullptr, 0);
-    for (int tries = 0; tries < 100; ++tries) {
+    EXPECT_TRUE(support::comes_true([&] {
         const auto names = folder_.names();
-        if (std::none_of(names.begin(), names.end(),
-                         [](const auto& name) { return name.rfind(".palpate", 0) == 0; })) {
-            return;
-        }
-        std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    }
-    FAIL() << "something is left: " << folder_.names().front();
+        return std::none_of(names.begin(), names.end(),
+                            [](const auto& name) { return name.rfind(".palpate", 0) == 0; });
+    })) << "something is left: "
+        << folder_.names().front();
 }
 
 TEST_F(HelperProcess, what_it_left_when_it_was_killed_goes_with_the_next_volume_written_there) {
@@ -249,9 +247,7 @@ TEST_F(HelperProcess, ctrl_c_at_any_moment_of_writing_leaves_the_whole_file_or_n
         waitpid(caller, &status, 0);
         interrupted += WIFSIGNALED(status) ? 1 : 0;
         // The helper is not ours to wait for; it has moments to clean up.
-        for (int tries = 0; tries < 100 && folder_.names().front()[0] == '.'; ++tries) {
-            std::this_thread::sleep_for(std::chrono::milliseconds(20));
-        }
+        EXPECT_TRUE(support::comes_true([&] { return folder_.names().front()[0] != '.'; }));
         for (const std::string& name : folder_.names()) {
             ASSERT_TRUE(name == "a.nrrd" || name == "big.nrrd") << name << " in round " << round;
         }

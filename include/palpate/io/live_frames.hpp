@@ -13,6 +13,7 @@
 
 #include "palpate/io/live_file.hpp"
 #include "palpate/samples.hpp"
+#include "palpate/servo.hpp"
 
 namespace palpate::io {
 
@@ -51,21 +52,24 @@ struct LiveStatus {
     std::string problem;       ///< what is wrong now; empty: nothing
 };
 
-/// Follows a live file with a thread of its own. The status shows a writer that stalls or dies; one
+/// Follows a live file. The status shows a writer that stalls or dies; one
 /// that is started again on the same grid is followed further.
 class LiveFrames {
   public:
-    /// Called from the thread, and from the constructor for frames that exist already. Must not
+    /// Called from step(), and from the constructor for frames that exist already. Must not
     /// throw.
     using OnChange = std::function<void(std::shared_ptr<const Samples>)>;
 
     /// Throws InputError as LiveReader does, std::invalid_argument for settings out of range.
     explicit LiveFrames(const std::filesystem::path& path, const LiveSettings& settings = {},
-                        OnChange on_change = {});
+                        OnChange on_change = {}, Pace pace = Pace::own_thread);
     ~LiveFrames();
     LiveFrames(const LiveFrames&) = delete;
     LiveFrames& operator=(const LiveFrames&) = delete;
 
+    /// Reads the new frames and publishes one version with them; its thread calls this every
+    /// `poll_interval`.
+    void step(std::chrono::steady_clock::time_point now);
     const Geometry& geometry() const { return header_.geometry; }
     SampleType type() const { return header_.type; }
     double interval() const { return header_.interval; }  ///< [s] nominal; 0: unknown
@@ -73,18 +77,17 @@ class LiveFrames {
     std::shared_ptr<const Samples> newest() const;
     /// The same, but waits for the first frame for this long at most [s].
     std::shared_ptr<const Samples> wait(double seconds) const;
-    LiveStatus status() const;
+    LiveStatus status(
+        std::chrono::steady_clock::time_point now = std::chrono::steady_clock::now()) const;
 
   private:
-    void run();
-    void follow();
     void reopen();
     void tell(const std::string& problem);
 
     const std::filesystem::path path_;
     const LiveSettings settings_;
     const OnChange on_change_;
-    // Used by the thread only, after the constructor.
+    // Used by step() only, after the constructor.
     std::unique_ptr<LiveReader> reader_;
     LiveWindow window_;
     int idle_polls_ = 0;
@@ -96,9 +99,8 @@ class LiveFrames {
     std::shared_ptr<const Samples> newest_;
     LiveStatus status_;
     std::chrono::steady_clock::time_point last_;
-    bool stop_ = false;
 
-    std::thread thread_;  // last: it uses all of the above
+    std::jthread thread_;  // last: it uses all of the above
 };
 
 }  // namespace palpate::io

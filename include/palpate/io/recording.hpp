@@ -47,20 +47,24 @@ struct RecordingHead {
     SessionSettings session;
 };
 
-/// Writes a recording from a thread of its own while the session runs. The file has its own name
-/// from the start and is brought to the disk twice a second, so that whatever ends the program, all
-/// but the last second is there. An existing file is never touched.
+/// Writes a recording while the session runs. The file has its own name from the start and is
+/// brought to the disk twice a second, so that whatever ends the program, all but the last second
+/// is there. An existing file is never touched.
 class RecordingWriter {
   public:
     /// Creates the file and writes the head. Throws OutputError: the file exists, or cannot be
     /// written.
-    RecordingWriter(const std::filesystem::path& path, const RecordingHead& head);
+    RecordingWriter(const std::filesystem::path& path, const RecordingHead& head,
+                    Pace pace = Pace::own_thread);
     /// finish(), but silent.
     ~RecordingWriter();
     RecordingWriter(const RecordingWriter&) = delete;
     RecordingWriter& operator=(const RecordingWriter&) = delete;
 
-    /// Where the servo puts its ticks; room for at least a second.
+    /// Writes what is in the queue. Its thread calls this ten times a second, and a second one
+    /// brings the file to the disk; with Pace::by_steps there is neither.
+    void step();
+    /// Where the servo puts its ticks; room for eight seconds.
     Queue<SessionEvent>& queue() { return queue_; }
     /// Why nothing is written any more (a full disk); empty while all is well. What was written
     /// stays. Any thread.
@@ -73,8 +77,7 @@ class RecordingWriter {
     void finish(std::int64_t lost);
 
   private:
-    void run();
-    void sync();
+    void end_threads();
     void drain();
     void append(const SessionTick& tick);
     void append(const Command& command);
@@ -90,7 +93,6 @@ class RecordingWriter {
     std::int64_t written_ = 0;                             // bytes that are whole lines on the disk
     bool seekable_ = false;
     std::atomic<std::int64_t> ticks_{0};
-    std::atomic<bool> done_{false};
     mutable std::mutex mutex_;  // of problem_; the servo never comes near
     std::string problem_;
     std::jthread thread_, syncer_;
