@@ -88,11 +88,11 @@ BrickLoader::BrickLoader(std::shared_ptr<const Store> store, Volume overview,
 
 BrickLoader::~BrickLoader() = default;
 
-void BrickLoader::look(std::span<const Interest> hands) {
+void BrickLoader::look(std::span<const Interest> hands, Clock::time_point now) {
     double seconds = 0;
     {
         const std::scoped_lock lock(mutex_);
-        choose_levels(hands);
+        choose_levels(hands, now);
         seconds = std::ldexp(brick_s_, -finest_);
     }
     std::vector<Index3> wanted = wanted_bricks(geometry_, empty_->resident()->count(), hands,
@@ -171,7 +171,7 @@ BrickLoaderStatus BrickLoader::status() const {
 }
 
 /// Needs the lock.
-void BrickLoader::choose_levels(std::span<const Interest> hands) {
+void BrickLoader::choose_levels(std::span<const Interest> hands, Clock::time_point now) {
     if (!settings_.coarse_first) return;
     double speed = 0;
     for (const Interest& hand : hands) {
@@ -181,7 +181,6 @@ void BrickLoader::choose_levels(std::span<const Interest> hands) {
     }
     const int coarsest = static_cast<int>(store_->info().levels.size()) - 1 - settings_.level;
     // A hand that a force lets go of jumps for a moment.
-    const Clock::time_point now = Clock::now();
     const double passed = std::chrono::duration<double>(now - looked_).count();
     speed_ += std::min(1.0, passed / speed_smoothing) * (speed - speed_);
     looked_ = now;

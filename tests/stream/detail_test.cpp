@@ -175,7 +175,7 @@ TEST(DetailReader, versions_say_which_samples_have_changed) {
 
 TEST(DetailReader, reads_no_more_at_a_time_than_it_may_and_waits_while_that_is_none) {
     const auto store = std::make_shared<VolumesStore>(ramps(), cube(8));
-    std::atomic<int> allowed{0}, at_once{0}, most{0}, reads{0};
+    std::atomic<int> allowed{0}, at_once{0}, most{0}, reads{0}, asked{0};
     store->before_read = [&](int, const SampleBox&, const std::stop_token&) {
         ++reads;
         const int now = ++at_once;
@@ -185,10 +185,14 @@ TEST(DetailReader, reads_no_more_at_a_time_than_it_may_and_waits_while_that_is_n
     };
     Seen seen;
     DetailSettings settings = settings_of(6);
-    settings.most_at_a_time = [&] { return allowed.load(); };
+    settings.most_at_a_time = [&] {
+        ++asked;
+        return allowed.load();
+    };
     DetailReader reader(store, ramps().back(), settings, seen.made());
     reader.want(3, {{0, {{0, 0, 0}, {63, 63, 40}}}});
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    const int before = asked;
+    ASSERT_TRUE(comes_true([&] { return asked >= before + 12; })) << "threads want to read";
     EXPECT_EQ(reads, 0);
     EXPECT_EQ(reader.status().missing, reader.status().wanted);
     allowed = 2;

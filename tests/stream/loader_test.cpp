@@ -112,17 +112,16 @@ TEST(BrickLoader, a_hand_that_is_too_fast_gets_coarser_bricks_and_finer_ones_whe
         levels.push_back(noise_of(SampleType::uint8, geometry, 5));
     }
     const auto store = std::make_shared<VolumesStore>(levels, Index3(16, 16, 16));
-    std::atomic<int> fine_reads{0};
-    store->before_read = [&](int level, const SampleBox&, const std::stop_token&) {
-        fine_reads += level == 0;
+    store->before_read = [&](int, const SampleBox&, const std::stop_token&) {
         std::this_thread::sleep_for(std::chrono::milliseconds(2));
     };
     BrickLoader loader(store, overview_of(*store, 1000),
                        {.memory = 4 * least_memory, .threads = 4, .coarse_first = true});
     Interest hand{Vec3(30, 60, 60), Vec3(30, 60, 60), Vec3::Zero()};
     std::shared_ptr<const Samples> newest;
+    std::chrono::steady_clock::time_point now{};
     const auto level_at = [&](const Vec3& at) {
-        loader.look({&hand, 1});
+        loader.look({&hand, 1}, now += std::chrono::milliseconds(1));
         if (auto version = loader.take()) newest = std::move(version->samples);
         const ResidentBrick* brick =
             newest ? newest->resident()->of_sample(at.cast<int>()) : nullptr;
@@ -133,17 +132,11 @@ TEST(BrickLoader, a_hand_that_is_too_fast_gets_coarser_bricks_and_finer_ones_whe
     // So fast that no brick of the finest level would come before it is gone, whatever the machine.
     hand.velocity = Vec3(1e6, 0, 0);
     for (int n = 0; n < 50; ++n) {  // what a hand does for a moment is smoothed
-        loader.look({&hand, 1});
-        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        loader.look({&hand, 1}, now += std::chrono::milliseconds(10));
     }
     hand.proxy = hand.hand = Vec3(450, 60, 60);
-    loader.look({&hand, 1});
+    loader.look({&hand, 1}, now);
     EXPECT_TRUE(comes_true([&] { return loader.status().missing == 0; }));
-    EXPECT_TRUE(comes_true([&] {  // what was under way ends
-        const int before = fine_reads;
-        std::this_thread::sleep_for(std::chrono::milliseconds(100));
-        return fine_reads == before;
-    }));
     EXPECT_GT(level_at(hand.hand), 0);
     hand.velocity = Vec3::Zero();
     EXPECT_TRUE(comes_true([&] { return level_at(hand.hand) == 0; }));
@@ -317,11 +310,11 @@ TEST(BrickLoader, who_waits_is_not_told_of_a_read_that_began_and_failed_before) 
     loader.look({&hand, 1});
     ASSERT_TRUE(comes_true([&] { return begun > 0; }));
     // All threads make a brick of the one piece now: one reads it, the others wait for it.
-    std::jthread ends([&] {
-        std::this_thread::sleep_for(std::chrono::milliseconds(50));
-        end.count_down();
-    });
-    EXPECT_NO_THROW(loader.wait_for({30, 30, 30}, 10));
+    const std::size_t wanted = loader.status().wanted;
+    std::jthread waits([&] { EXPECT_NO_THROW(loader.wait_for({30, 30, 30}, 10)); });
+    // Once it waits, what it needs is all that is wanted.
+    EXPECT_TRUE(comes_true([&] { return loader.status().wanted != wanted; }));
+    end.count_down();
 }
 
 TEST(BrickLoader, waits_for_all_that_an_update_may_look_at_and_refuses_what_does_not_fit) {

@@ -95,6 +95,9 @@ def make_handler(options):
     volume = VirtualVolume(not options.raw)
     chance = random.Random(options.seed)
     lock = threading.Lock()
+    asked = {"levels": set(), "chunks": set()}
+    together = {"levels": options.levels_together, "chunks": options.chunks_together}
+    arrived = threading.Condition(lock)
     counts = {"requests": 0, "at_once": 0, "most_at_once": 0, "failed": 0, "truncated": 0, "lied": 0}
 
     class Handler(BaseHTTPRequestHandler):
@@ -123,6 +126,7 @@ def make_handler(options):
                 waits = options.delay + options.jitter * chance.random()
                 draw = chance.random()
                 flip = chance.random()
+            self.gather()
             time.sleep(waits / 1000)
             with lock:
                 counts["at_once"] -= 1  # before the client can have the answer, and ask for more
@@ -130,6 +134,16 @@ def make_handler(options):
                 self.answer(draw, flip)
             except (BrokenPipeError, ConnectionResetError):
                 self.close_connection = True
+
+        def gather(self):
+            """Waits until so many levels, or chunks, have been asked for."""
+            parts = self.path.split("?")[0].split("/")[2:]
+            kind = "chunks" if len(parts) == 4 else "levels" if len(parts) == 2 else None
+            if kind and together[kind] > 0:
+                with arrived:
+                    asked[kind].add(parts[0] if kind == "levels" else self.path)
+                    arrived.notify_all()
+                    arrived.wait_for(lambda: len(asked[kind]) >= together[kind])
 
         def answer(self, draw, flip):
             if draw < options.failures:
@@ -190,6 +204,9 @@ def main():
     parser.add_argument("--truncated", type=float, default=0, help="share of bodies cut in half")
     parser.add_argument("--lies", type=float, default=0, help="share of chunks with a wrong byte")
     parser.add_argument("--no-ranges", action="store_true", help="whole files only")
+    parser.add_argument("--levels-together", type=int, default=0,
+                        help="levels of the virtual volume that must be asked for before one is answered")
+    parser.add_argument("--chunks-together", type=int, default=0, help="the same with chunks")
     parser.add_argument("--seed", type=int, default=1)
     server = Server(("127.0.0.1", 0), make_handler(parser.parse_args()))
     print(server.server_address[1], flush=True)

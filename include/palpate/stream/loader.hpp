@@ -94,8 +94,10 @@ class BrickLoader {
     const Geometry& geometry() const { return geometry_; }
     /// Samples without any brick, for a field to begin with.
     const std::shared_ptr<const Samples>& empty() const { return empty_; }
-    /// What the hands need from now on; never waits for a read.
-    void look(std::span<const Interest> hands);
+    /// What the hands need from `now` on; never waits for a read. Their speed is smoothed over
+    /// time.
+    void look(std::span<const Interest> hands,
+              std::chrono::steady_clock::time_point now = std::chrono::steady_clock::now());
     /// What is in memory now; nothing if that did not change since the last call. Reading slows
     /// down while more than a few bricks that were dropped are still in use, by who has older
     /// versions.
@@ -139,7 +141,7 @@ class BrickLoader {
     void wake();
     void put(const Job& job, const ResidentBrick& brick);
     void make_room();
-    void choose_levels(std::span<const Interest> hands);
+    void choose_levels(std::span<const Interest> hands, Clock::time_point now);
     std::uint64_t bytes() const;
     void count_process();
 
