@@ -47,20 +47,31 @@ void check_volume_name(const std::string& path, const Geometry& geometry) {
     if (!problem.empty()) throw std::invalid_argument(problem);
 }
 
-Data::Data(LoadedVolume loaded, const PlaybackSetup& playback)
-    : loaded_(std::move(loaded)), start_(start_samples(loaded_)) {
+Data::Data(LoadedVolume loaded, const PlaybackSetup& playback, Pace pace)
+    : pace_(pace), loaded_(std::move(loaded)), start_(start_samples(loaded_)) {
     if (loaded_.streamed) {
-        streamer_ = std::make_unique<Streamer>(loaded_);
-        editor_ =
-            std::make_unique<VolumeEditor>(start_, *streamer_, loaded_.streamed->loader.memory);
+        streamer_ = std::make_unique<Streamer>(loaded_, pace);
+        editor_ = std::make_unique<VolumeEditor>(start_, *streamer_,
+                                                 loaded_.streamed->loader.memory, pace);
     } else if (loaded_.live) {
-        player_ = std::make_unique<Player>(loaded_.live);
+        player_ = std::make_unique<Player>(loaded_.live, pace);
     } else if (loaded_.sequence.count() > 1) {
-        player_ = std::make_unique<Player>(loaded_.sequence, playback.loader);
+        player_ = std::make_unique<Player>(loaded_.sequence, playback.loader, pace);
     } else {
-        editor_ = std::make_unique<VolumeEditor>(start_);
+        editor_ = std::make_unique<VolumeEditor>(start_, pace);
     }
     if (player_) player_->play(playback.speed);
+}
+
+void Data::step(std::chrono::steady_clock::time_point now) {
+    if (player_) player_->step(now);
+    if (editor_) editor_->step(now);
+    if (streamer_) streamer_->step(now);
+}
+
+bool Data::is_settled() const {
+    if (player_) return player_->is_settled();
+    return !streamer_ || streamer_->status().missing == 0;
 }
 
 VolumeEditor& Data::editor() const {

@@ -2,9 +2,10 @@
 #include "palpate/run/player.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <stdexcept>
+
+#include "io/stepping_thread.hpp"
 
 namespace palpate::run {
 namespace {
@@ -32,22 +33,24 @@ std::shared_ptr<const Recipe> recipe_of(const Samples& samples) {
 
 }  // namespace
 
-Player::Player(io::Sequence sequence, const io::LoaderSettings& settings)
+Player::Player(io::Sequence sequence, const io::LoaderSettings& settings, Pace pace)
     : sequence_(std::move(sequence)),
       settings_(settings),
       loader_(std::make_unique<io::FrameLoader>(sequence_, settings_)),
       time_(sequence_.times.front()) {
-    thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+    begin(pace);
 }
 
-Player::Player(std::shared_ptr<const io::LiveFrames> live) : live_(std::move(live)) {
+Player::Player(std::shared_ptr<const io::LiveFrames> live, Pace pace) : live_(std::move(live)) {
     settings_.loop = false;
-    thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+    begin(pace);
 }
 
-Player::~Player() {
-    thread_.request_stop();
-    thread_.join();
+Player::~Player() = default;
+
+void Player::begin(Pace pace) {
+    if (pace == Pace::by_steps) return;
+    thread_ = io::stepping_thread(between_looks, [this](io::SteadyTime now) { step(now); });
 }
 
 std::unique_ptr<Servo> Player::attach(Session session, const StartServo& start) {
@@ -138,6 +141,11 @@ PlayState Player::state() const {
     return state;
 }
 
+bool Player::is_settled() const {
+    const std::scoped_lock lock(mutex_);
+    return !loader_ || (loader_->status().settled && loader_->newest() == sent_.samples);
+}
+
 void Player::show_live(PlayState& state) const {
     state.live = true;
     state.loop = false;
@@ -190,14 +198,11 @@ void Player::set_speed(double speed) {
     speed_ = speed;
 }
 
-void Player::run(const std::stop_token& stop) {
-    while (!stop.stop_requested()) {
-        std::this_thread::sleep_for(between_looks);
-        const std::scoped_lock lock(mutex_);
-        try {
-            update();
-        } catch (const std::exception&) {  // no memory: tried again in a moment
-        }
+void Player::step(io::SteadyTime /*now*/) {
+    const std::scoped_lock lock(mutex_);
+    try {
+        update();
+    } catch (const std::exception&) {  // no memory: tried again in a moment
     }
 }
 

@@ -50,12 +50,19 @@ std::unique_ptr<Device> open_for(const Field& field, double isovalue, const Setu
                               }});
 }
 
+/// Of data and recording, with Pace::by_steps [s].
+constexpr double between_steps = 0.004;
+
 /// Puts what a run begins with into its recording. Waits while the queue is full; the servo does
 /// not use it yet.
-void tell(io::RecordingWriter& recording, const std::vector<Command>& commands) {
+void tell(io::RecordingWriter& recording, Pace pace, const std::vector<Command>& commands) {
     for (const Command& command : commands) {
         while (recording.problem().empty() && !recording.queue().push(command)) {
-            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+            if (pace == Pace::by_steps) {
+                recording.step();
+            } else {
+                std::this_thread::sleep_for(std::chrono::milliseconds(10));
+            }
         }
     }
 }
@@ -104,6 +111,19 @@ void Run::start() {
     launch(session_now());
 }
 
+void Run::step() {
+    if (!running_ || data_->pace() != Pace::by_steps) {
+        throw std::logic_error("a run is stepped on data of that pace, from start() to stop()");
+    }
+    servo_->step(std::llround(1e9 * period_ * static_cast<double>(steps_++)));
+    time_ += period_;
+    if (time_ - told_ < between_steps) return;
+    told_ = time_;
+    if (recording_) recording_->step();
+    using namespace std::chrono;
+    data_->step(steady_clock::time_point(duration_cast<nanoseconds>(duration<double>(time_))));
+}
+
 void Run::stop() {
     if (running_) stop_servo();
     running_ = false;
@@ -127,13 +147,17 @@ void Run::take(const Session& session) {
 
 void Run::launch(Session session) {
     take(session);
-    const ServoSettings settings{.rate = rate_of(setup_.render, device_->info()),
+    const double rate = rate_of(setup_.render, device_->info());
+    period_ = 1 / rate;
+    steps_ = 0;
+    const Pace pace = data_->pace();
+    const ServoSettings settings{.rate = rate,
                                  .real_time = setup_.real_time,
                                  .recorder = recording_ ? &recording_->queue() : nullptr};
     servo_ = data_->attach(std::move(session), [&](Session now, const auto& history) {
-        if (recording_) tell(*recording_, history);
+        if (recording_) tell(*recording_, pace, history);
         auto servo = std::make_unique<Servo>(std::move(now), *device_, settings);
-        servo->start();
+        if (pace == Pace::own_thread) servo->start();
         return servo;
     });
     running_ = true;
@@ -268,7 +292,8 @@ void Run::use_field(Solid solid, Interpolation interpolation, std::optional<doub
 void Run::record(const std::filesystem::path& path) {
     Session session = session_now();
     auto recording = std::make_unique<io::RecordingWriter>(
-        path, recording_head(session, device_->info(), data_->loaded().source, setup_.render));
+        path, recording_head(session, device_->info(), data_->loaded().source, setup_.render),
+        data_->pace());
     if (!running_) {
         recording_ = std::move(recording);
         return;

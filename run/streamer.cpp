@@ -2,7 +2,8 @@
 #include "palpate/run/streamer.hpp"
 
 #include <algorithm>
-#include <chrono>
+
+#include "io/stepping_thread.hpp"
 
 namespace palpate::run {
 namespace {
@@ -14,18 +15,16 @@ constexpr double smoothing = 0.05;
 
 }  // namespace
 
-Streamer::Streamer(const LoadedVolume& loaded)
+Streamer::Streamer(const LoadedVolume& loaded, Pace pace)
     : loader_(loaded.streamed->store, loaded.volume, loaded.streamed->loader),
       edits_(loader_.empty()),
       bricks_(*loader_.empty()->resident()) {
     newest_.samples = loader_.empty();
-    thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+    if (pace == Pace::by_steps) return;
+    thread_ = io::stepping_thread(interval, [this](io::SteadyTime now) { step(now); });
 }
 
-Streamer::~Streamer() {
-    thread_.request_stop();
-    thread_.join();
-}
+Streamer::~Streamer() = default;
 
 std::unique_ptr<Servo> Streamer::attach(Session session, const StartServo& start,
                                         std::vector<Command> edits) {
@@ -73,37 +72,34 @@ std::vector<Command> Streamer::history(std::vector<Command> edits) const {
     return all;
 }
 
-void Streamer::run(const std::stop_token& stop) {
-    while (!stop.stop_requested()) {
-        std::this_thread::sleep_for(interval);
-        const std::scoped_lock lock(mutex_);
-        try {
-            look();
-            take();
-            send();
-        } catch (const std::exception&) {  // no memory: tried again in a moment
-        }
+void Streamer::step(io::SteadyTime now) {
+    const std::scoped_lock lock(mutex_);
+    try {
+        look(now);
+        take();
+        send();
+    } catch (const std::exception&) {  // no memory: tried again in a moment
     }
 }
 
 /// Tells the loader where the hands are.
-void Streamer::look() {
+void Streamer::look(io::SteadyTime now) {
     std::vector<stream::Interest> interests;
     for (Hand& hand : hands_) {
-        const auto now = hand.servo->snapshot();
-        if (!now) continue;
-        const Tick& tick = now->session.tick;
+        const auto felt = hand.servo->snapshot();
+        if (!felt) continue;
+        const Tick& tick = felt->session.tick;
         const double passed = tick.time - hand.time;
         if (hand.tick >= 0 && passed > 0) {
             const Vec3 velocity = (tick.proxy.hip - hand.at) / passed;
             hand.velocity += std::min(1.0, passed / smoothing) * (velocity - hand.velocity);
         }
-        hand.tick = now->number;
+        hand.tick = felt->number;
         hand.time = tick.time;
         hand.at = tick.proxy.hip;
         interests.push_back({tick.proxy.scp, tick.proxy.hip, hand.velocity});
     }
-    if (!interests.empty()) loader_.look(interests);
+    if (!interests.empty()) loader_.look(interests, now);
 }
 
 /// Makes a version of what came into memory and went.

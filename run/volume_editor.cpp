@@ -31,15 +31,15 @@ std::uint64_t bytes_of_edits(const Samples& samples) {
 
 }  // namespace
 
-VolumeEditor::VolumeEditor(std::shared_ptr<const Samples> samples)
-    : VolumeEditor(std::move(samples), nullptr, 0) {}
+VolumeEditor::VolumeEditor(std::shared_ptr<const Samples> samples, Pace pace)
+    : VolumeEditor(std::move(samples), nullptr, 0, pace) {}
 
 VolumeEditor::VolumeEditor(std::shared_ptr<const Samples> samples, Streamer& streamer,
-                           std::uint64_t memory)
-    : VolumeEditor(std::move(samples), &streamer, memory) {}
+                           std::uint64_t memory, Pace pace)
+    : VolumeEditor(std::move(samples), &streamer, memory, pace) {}
 
 VolumeEditor::VolumeEditor(std::shared_ptr<const Samples> samples, Streamer* streamer,
-                           std::uint64_t memory)
+                           std::uint64_t memory, Pace pace)
     : streamer_(streamer),
       memory_(memory),
       editor_(streamer ? Editor(samples, memory / history_part,
@@ -49,13 +49,14 @@ VolumeEditor::VolumeEditor(std::shared_ptr<const Samples> samples, Streamer* str
                        : Editor(samples)),
       versions_{{samples, {}}} {
     publish();
+    if (pace == Pace::by_steps) return;
     thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
 
 VolumeEditor::~VolumeEditor() {
     thread_.request_stop();
     reading_.request_stop();
-    thread_.join();
+    if (thread_.joinable()) thread_.join();
 }
 
 std::unique_ptr<Servo> VolumeEditor::attach(Session session, const StartServo& start) {
@@ -202,36 +203,43 @@ void VolumeEditor::read(const SampleBox& box, std::span<std::byte> out) {
 void VolumeEditor::run(const std::stop_token& stop) {
     while (!stop.stop_requested()) {
         std::this_thread::sleep_for(brush_interval);
-        std::unique_lock lock(mutex_);
-        brush_taken_up_.wait(lock, stop, [this] { return brush_.has_value(); });
-        try {
-            for (Hand& hand : hands_) brush(hand);
-        } catch (const stream::Cancelled&) {  // the editor ends
-        } catch (const std::exception& e) {   // no commands taken, no memory, nothing to be read
-            brush_.reset();
-            set_problem(std::string("the brush was put down: ") + e.what());
+        {
+            std::unique_lock lock(mutex_);
+            brush_taken_up_.wait(lock, stop, [this] { return brush_.has_value(); });
         }
+        step(std::chrono::steady_clock::now());
     }
 }
 
-void VolumeEditor::brush(Hand& hand) {
+void VolumeEditor::step(std::chrono::steady_clock::time_point now) {
+    const std::scoped_lock lock(mutex_);
+    try {
+        for (Hand& hand : hands_) brush(hand, now);
+    } catch (const stream::Cancelled&) {  // the editor ends
+    } catch (const std::exception& e) {   // no commands taken, no memory, nothing to be read
+        brush_.reset();
+        set_problem(std::string("the brush was put down: ") + e.what());
+    }
+}
+
+void VolumeEditor::brush(Hand& hand, std::chrono::steady_clock::time_point now) {
     if (!brush_) return;
-    const auto now = hand.servo->snapshot();
-    if (!now || now->number < hand.from || (hand.touch && now->number <= hand.touch->tick)) return;
-    const SessionTick& session = now->session;
+    const auto felt = hand.servo->snapshot();
+    if (!felt || felt->number < hand.from) return;
+    if (hand.touch && felt->number <= hand.touch->tick) return;
+    const SessionTick& session = felt->session;
     if (session.tick.proxy.mode == Mode::free) hand.resting = false;
     const bool works = !hand.resting && session.device.status == DeviceStatus::ready &&
-                       !session.frozen && !session.clutched && now->forces_on &&
+                       !session.frozen && !session.clutched && felt->forces_on &&
                        session.tick.proxy.mode == Mode::constrained &&
                        session.tick.proxy.status == UpdateStatus::done;
     if (!works) return hand.touch.reset();
-    const auto clock = std::chrono::steady_clock::now();
     const Touch to{
-        {session.tick.proxy.scp, session.tick.tool.proxy}, session.tick.time, now->number};
+        {session.tick.proxy.scp, session.tick.tool.proxy}, session.tick.time, felt->number};
     if (hand.touch && brush_from(*hand.touch, to, hand, session.tick.proxy.isovalue)) {
-        last_change_ = clock;
+        last_change_ = now;
     }
-    if (clock - last_change_ > rest) new_step_ = true;
+    if (now - last_change_ > rest) new_step_ = true;
     hand.touch = to;
 }
 

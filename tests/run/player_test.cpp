@@ -6,8 +6,6 @@
 namespace palpate::run {
 namespace {
 
-using test::comes_true;
-
 constexpr double period = 1;
 
 /// Five frames, 0.2 s apart, each of one value: 0, 10, 20, 30, 40.
@@ -23,9 +21,11 @@ struct Playing {
     Field field{io::read_frame(sequence, 0)};
     support::ScriptedDevice device{[](double) { return support::ready_at({3, 3, 3}); }};
     Player player;
-    std::unique_ptr<Servo> servo;
+    std::unique_ptr<Servo> servo, second;
+    test::Time time;
 
-    explicit Playing(const io::LoaderSettings& settings = {}) : player(sequence, settings) {}
+    explicit Playing(const io::LoaderSettings& settings = {})
+        : player(sequence, settings, Pace::by_steps) {}
     ~Playing() {
         servo->stop();
         player.detach(*servo);
@@ -39,18 +39,29 @@ struct Playing {
         const auto snapshot = servo->snapshot();
         return snapshot ? snapshot->session : SessionTick{};
     }
-    bool all_loaded() const {
-        return comes_true([&] { return player.state().loaded_to == player.state().end; });
+    void step() {
+        const auto follow = [&](auto now) { player.step(now); };
+        time.step({servo.get()}, follow);
+        if (second) second->step(1e-3 * double(++second_ticks));
     }
+    template <class Condition>
+    bool until(Condition&& holds) {
+        return test::steps_until([&] { step(); }, [&] { return player.is_settled(); }, holds);
+    }
+    bool all_loaded() {
+        return until([&] { return player.state().loaded_to == player.state().end; });
+    }
+
+    int second_ticks = 0;
 };
 
 TEST(Player, plays_round_and_the_field_lies_between_the_frames) {
     Playing p;
     p.start(1);
     ASSERT_TRUE(p.all_loaded());
-    ASSERT_TRUE(comes_true([&] { return p.now().moment > 1.5 * period; }));
+    ASSERT_TRUE(p.until([&] { return p.now().moment > 1.5 * period; }));
     for (int i = 0; i < 200; ++i) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        for (int tick = 0; tick < 7; ++tick) p.step();
         const SessionTick now = p.now();
         const double into = std::fmod(now.moment, period);
         const double want = into < 0.8 ? 50 * into : 40 * (1 - (into - 0.8) / 0.2);
@@ -68,7 +79,7 @@ TEST(Player, pauses_steps_and_seeks) {
     p.start(0);
     ASSERT_TRUE(p.all_loaded());
     const auto shows = [&](double density) {
-        return comes_true([&] { return std::abs(p.now().tick.proxy.density - density) < 1e-4; });
+        return p.until([&] { return std::abs(p.now().tick.proxy.density - density) < 1e-4; });
     };
     EXPECT_TRUE(shows(0));
     p.player.seek(0.3);
@@ -86,7 +97,7 @@ TEST(Player, pauses_steps_and_seeks) {
     p.player.step(-2);  // round the beginning
     EXPECT_TRUE(shows(40));
     p.player.play(-1);
-    EXPECT_TRUE(comes_true([&] { return p.now().tick.proxy.density < 35; }));
+    EXPECT_TRUE(p.until([&] { return p.now().tick.proxy.density < 35; }));
     p.player.step(0);
     EXPECT_EQ(p.player.state().speed, 0);
     EXPECT_THROW(p.player.play(2000), std::invalid_argument);
@@ -96,10 +107,10 @@ TEST(Player, pauses_steps_and_seeks) {
 TEST(Player, without_a_loop_it_stops_at_the_end_and_with_one_it_goes_on) {
     Playing p({.loop = false});
     p.start(20);
-    ASSERT_TRUE(comes_true([&] { return p.now().moment == 0.8; }));
+    ASSERT_TRUE(p.until([&] { return p.now().moment == 0.8; }));
     EXPECT_NEAR(p.now().tick.proxy.density, 40, 1e-4);
     p.player.set_loop(true);
-    EXPECT_TRUE(comes_true([&] { return p.now().moment > 5; }));
+    EXPECT_TRUE(p.until([&] { return p.now().moment > 5; }));
     EXPECT_TRUE(p.player.state().loop);
 }
 
@@ -108,13 +119,13 @@ TEST(Player, a_sequence_that_does_not_fit_plays_on_over_its_seam) {
     Playing p({.memory_bytes = 3 * 512 * sizeof(float)});
     p.start(1);
     double last = 0;
-    ASSERT_TRUE(comes_true([&] {
+    ASSERT_TRUE(p.until([&] {
         last = std::max(last, p.now().moment);
         return last > 2.5 * period;
     }));
     EXPECT_LE(p.player.state().time, period);
     p.player.seek(0.6);
-    EXPECT_TRUE(comes_true([&] {
+    EXPECT_TRUE(p.until([&] {
         const double time = p.player.state().time;
         return time >= 0.6 && time < 0.8;
     }));
@@ -125,7 +136,7 @@ TEST(Player, a_session_that_begins_anew_begins_where_play_was) {
     p.start(0);
     ASSERT_TRUE(p.all_loaded());
     p.player.seek(0.5);
-    ASSERT_TRUE(comes_true([&] { return p.now().moment == 0.5; }));
+    ASSERT_TRUE(p.until([&] { return p.now().moment == 0.5; }));
     p.servo->stop();
     p.player.detach(*p.servo);
     std::vector<Command> history;
@@ -152,10 +163,10 @@ TEST(Player, two_servos_get_the_same_frames_and_moments) {
     p.start(0);
     ASSERT_TRUE(p.all_loaded());
     support::ScriptedDevice other{[](double) { return support::ready_at({5, 5, 5}); }};
-    auto second = p.player.attach({make_renderer(p.field, 1000, {}), {}}, test::servo_on(other));
+    p.second = p.player.attach({make_renderer(p.field, 1000, {}), {}}, test::servo_on(other));
     const auto both_at = [&](double moment, double density) {
-        return comes_true([&] {
-            const auto now = second->snapshot();
+        return p.until([&] {
+            const auto now = p.second->snapshot();
             return now && now->session.moment == moment && p.now().moment == moment &&
                    std::abs(now->session.tick.proxy.density - density) < 1e-4;
         });
@@ -163,10 +174,32 @@ TEST(Player, two_servos_get_the_same_frames_and_moments) {
     EXPECT_TRUE(both_at(0, 0));
     p.player.seek(0.3);
     EXPECT_TRUE(both_at(0.3, 15));
-    second->stop();
-    p.player.detach(*second);
+    p.second->stop();
+    p.player.detach(*p.second);
+    p.second.reset();
     p.player.seek(0.6);
-    EXPECT_TRUE(comes_true([&] { return p.now().moment == 0.6; })) << "the first goes on alone";
+    EXPECT_TRUE(p.until([&] { return p.now().moment == 0.6; })) << "the first goes on alone";
+}
+
+TEST(PacedPlayer, follows_a_servo_at_its_real_pace_by_itself) {
+    const io::Sequence sequence = steps();
+    const Field field(io::read_frame(sequence, 0));
+    support::ScriptedDevice device([](double) { return support::ready_at({3, 3, 3}); });
+    Player player(sequence, {});
+    player.play(5);
+    const auto start = test::servo_on(device);
+    const auto servo =
+        player.attach({make_renderer(field, 1000, {}), {}}, [&](Session session, const auto& told) {
+            auto started = start(std::move(session), told);
+            started->start();
+            return started;
+        });
+    EXPECT_TRUE(test::comes_true([&] {
+        const auto now = servo->snapshot();
+        return now && now->session.moment > 2 * period && player.state().loaded_to == period;
+    }));
+    servo->stop();
+    player.detach(*servo);
 }
 
 }  // namespace

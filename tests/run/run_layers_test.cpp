@@ -1,14 +1,11 @@
 // Layers in a live run: the isovalue that waits for their end.
 #include <gtest/gtest.h>
 
-#include "palpate/run/run.hpp"
-#include "support/eventually.hpp"
+#include "run/run_support.hpp"
 #include "support/scratch_folder.hpp"
 
 namespace palpate::run {
 namespace {
-
-using support::comes_true;
 
 /// Two levels of the ball at which its session does not begin.
 std::shared_ptr<const Layers> two_levels() {
@@ -24,21 +21,16 @@ std::shared_ptr<const Layers> two_levels() {
 class RunWithLayers : public testing::Test {
   protected:
     RunWithLayers()
-        : live(std::make_shared<Data>(load(source_named("synthetic:sphere:32x32x32"))), setup()) {
+        : live(test::stepped_data(test::loaded("synthetic:sphere:32x32x32")),
+               test::with_device("mouse")) {
         live.start();
         live.send(command::Isovalue{60});
         live.send(command::UseLayers{two_levels()});
         (void)felt(20);
     }
-    static run::Setup setup() {
-        run::Setup setup;
-        setup.device = devices::parse_device("mouse");
-        setup.real_time = false;
-        return setup;
-    }
     /// The level of the session in a tick to come.
     bool felt(double level) {
-        return comes_true([&] {
+        return test::steps_until(live, [&] {
             const auto now = live.snapshot();
             return now && now->session.tick.proxy.isovalue == level;
         });

@@ -1,4 +1,4 @@
-// Servos that start on data, and waiting for what they feel.
+// Runs and servos that are driven by steps: a test says how far their time goes.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -6,14 +6,12 @@
 #include <chrono>
 #include <thread>
 
-#include "palpate/run/data.hpp"
 #include "palpate/run/recorded_samples.hpp"
+#include "palpate/run/run.hpp"
 #include "support/eventually.hpp"
 #include "support/scripted_device.hpp"
 
 namespace palpate::run::test {
-
-using namespace std::chrono_literals;
 
 using support::comes_true;
 
@@ -21,27 +19,64 @@ inline LoadedVolume loaded(const std::string& name) {
     return load(source_named(name));
 }
 
-/// Waits until a run or a servo has rendered so many ticks from now on, however slow the machine
-/// is.
-template <class Live>
-bool renders(const Live& live, int ticks) {
-    const auto number = [&] {
-        const auto now = live.snapshot();
-        return now ? now->number : 0;
-    };
-    const auto before = number();
-    return comes_true([&] { return number() > before + ticks; });
+inline std::shared_ptr<Data> stepped_data(LoadedVolume loaded, const PlaybackSetup& playback = {}) {
+    return std::make_shared<Data>(std::move(loaded), playback, Pace::by_steps);
 }
 
-/// Starts a servo on `device`; `told` gets the history, if it is not null.
+inline Setup with_device(const std::string& device) {
+    Setup setup;
+    setup.device = devices::parse_device(device);
+    setup.real_time = false;
+    return setup;
+}
+
+/// Steps until something holds; false if it does not within a minute of the session. While data is
+/// being read that time stands still, almost: it is the reader's threads that take long.
+template <class Step, class Settled, class Condition>
+bool steps_until(Step&& step, Settled&& is_settled, Condition&& holds) {
+    for (double steps = 0; steps < 60'000;) {
+        if (holds()) return true;
+        const bool settled = is_settled();
+        if (!settled) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        steps += settled ? 1 : 0.5;
+        step();
+    }
+    return false;
+}
+
+template <class Condition>
+bool steps_until(Run& live, Condition&& holds) {
+    return steps_until([&] { live.step(); }, [&] { return live.data().is_settled(); }, holds);
+}
+
+/// So many ticks.
+inline void step(Run& live, int ticks) {
+    for (int i = 0; i < ticks; ++i) live.step();
+}
+
+/// A servo that is stepped on `device`; `told` gets the history, if it is not null.
 inline StartServo servo_on(Device& device, std::vector<Command>* told = nullptr) {
     return [&device, told](Session session, const std::vector<Command>& history) {
         if (told) *told = history;
-        auto servo = std::make_unique<Servo>(std::move(session), device,
-                                             ServoSettings{.rate = 1000, .real_time = false});
-        servo->start();
-        return servo;
+        return std::make_unique<Servo>(std::move(session), device, ServoSettings{.rate = 1000});
     };
 }
+
+/// The time of servos and of what follows them, which tests move on.
+class Time {
+  public:
+    /// One tick of each servo; then, every 4 ms, `work`.
+    template <class Work>
+    void step(std::initializer_list<Servo*> servos, Work&& work) {
+        for (Servo* servo : servos) servo->step(std::int64_t{1'000'000} * ticks_);
+        if (++ticks_ % 4 == 0) work(now());
+    }
+    std::chrono::steady_clock::time_point now() const {
+        return std::chrono::steady_clock::time_point(std::chrono::milliseconds(ticks_));
+    }
+
+  private:
+    std::int64_t ticks_ = 0;
+};
 
 }  // namespace palpate::run::test

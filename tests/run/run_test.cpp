@@ -1,35 +1,23 @@
 // Live runs: commands, recordings, other devices and fields, several runs on the same data.
 #include "palpate/run/run.hpp"
 
-#include <gtest/gtest.h>
 #include <sys/resource.h>
 
-#include <chrono>
 #include <csignal>
 #include <functional>
-#include <thread>
 
 #include "palpate/run/replay.hpp"
-#include "support/eventually.hpp"
+#include "run/run_support.hpp"
 #include "support/scratch_folder.hpp"
 
 namespace palpate::run {
 namespace {
 
-using support::comes_true;
-
-using namespace std::chrono_literals;
 using support::ScratchFolder;
+using test::steps_until;
 
 std::shared_ptr<Data> ball() {
-    return std::make_shared<Data>(load(source_named("synthetic:sphere:32x32x32")));
-}
-
-Setup with_device(const std::string& device) {
-    Setup setup;
-    setup.device = devices::parse_device(device);
-    setup.real_time = false;
-    return setup;
+    return test::stepped_data(test::loaded("synthetic:sphere:32x32x32"));
 }
 
 /// A hand that presses from the first moment.
@@ -39,21 +27,16 @@ struct BallRun {
     Run live;
 
     explicit BallRun(const std::string& device = "mouse", std::shared_ptr<Data> data = ball())
-        : live(std::move(data), with_device(device)) {
+        : live(std::move(data), test::with_device(device)) {
         live.start();
     }
 };
 
-/// So many ticks from now on have gone by.
-bool ticks_go_on(const Run& live, std::int64_t count = 20) {
-    const auto before = live.snapshot();
-    const std::int64_t until = (before ? before->number : 0) + count;
-    const bool gone_on = comes_true([&] {
-        const auto now = live.snapshot();
-        return (now && now->number >= until) || live.device_failure() != DeviceFailure::none;
-    });
+/// So many ticks from now on; false where the device fails.
+bool ticks_go_on(Run& live, int count = 20) {
+    test::step(live, count);
     EXPECT_EQ(live.device_problem(), "");
-    return gone_on && live.device_failure() == DeviceFailure::none;
+    return live.device_failure() == DeviceFailure::none;
 }
 
 TEST(Run, commands_show_in_settings_and_snapshots) {
@@ -69,7 +52,7 @@ TEST(Run, commands_show_in_settings_and_snapshots) {
     EXPECT_EQ(s.live.isovalue(), 60);
     EXPECT_FALSE(s.live.settings().forces_on);
     EXPECT_TRUE(s.live.frozen());
-    EXPECT_TRUE(comes_true([&] {
+    EXPECT_TRUE(steps_until(s.live, [&] {
         const auto now = s.live.snapshot();
         return now && now->stiffness == 0.25 && now->session.tick.proxy.isovalue == 60 &&
                !now->forces_on && now->session.frozen;
@@ -110,7 +93,7 @@ TEST(Run, what_only_a_point_feels_and_a_tool_exclude_each_other_and_recordings_g
 TEST(Run, the_mouse_moves_the_hand) {
     BallRun s;
     s.live.mouse()->aim({10, 20, 30});
-    EXPECT_TRUE(comes_true([&] {
+    EXPECT_TRUE(steps_until(s.live, [&] {
         const auto now = s.live.snapshot();
         return now && (now->session.device.position - Vec3(10, 20, 30)).norm() < 0.1;
     }));
@@ -193,7 +176,7 @@ TEST(Run, a_level_that_was_pressed_to_stays_at_a_restart) {
     const ScratchFolder folder;
     BallRun s(pressing);
     s.live.send(penetrability_threshold(0.2, s.live.isovalue()));
-    ASSERT_TRUE(comes_true([&] {
+    ASSERT_TRUE(steps_until(s.live, [&] {
         const auto now = s.live.snapshot();
         return now && now->session.tick.proxy.isovalue > s.live.isovalue() + 2;
     }));
@@ -262,7 +245,7 @@ TEST(Run, when_the_disk_is_full_the_session_goes_on_and_says_so_at_the_end) {
     {
         const SmallDisk disk(30'000);
         s.live.record(folder / "a.csv");
-        ASSERT_TRUE(comes_true([&] { return !s.live.recording()->problem().empty(); }));
+        ASSERT_TRUE(steps_until(s.live, [&] { return !s.live.recording()->problem().empty(); }));
         EXPECT_TRUE(ticks_go_on(s.live));
         problem = support::message_of<io::OutputError>([&] { s.live.stop_recording(); });
     }
@@ -292,7 +275,7 @@ TEST(Run, another_device_goes_on_with_what_was_asked_for) {
         EXPECT_EQ(s.live.settings().proxy.friction.static_coefficient, 0.4);
     };
     as_asked();
-    EXPECT_TRUE(comes_true([&] {
+    EXPECT_TRUE(steps_until(s.live, [&] {
         const auto now = s.live.snapshot();
         return now && now->session.tick.proxy.mode == Mode::constrained &&
                now->session.tick.proxy.isovalue == 65.5;
@@ -346,7 +329,7 @@ TEST(Run, the_other_side_is_solid_when_that_is_asked_for_and_a_hand_by_itself_fi
     s.live.use_device(devices::parse_device(pressing));
     EXPECT_EQ(s.live.field().solid(), Solid::below);
     const Field& field = s.live.field();
-    ASSERT_TRUE(comes_true([&] {
+    ASSERT_TRUE(steps_until(s.live, [&] {
         const auto now = s.live.snapshot();
         return now && now->session.tick.proxy.mode == Mode::constrained;
     }));
@@ -374,7 +357,7 @@ TEST(Run, every_restart_begins_without_force_and_keeps_to_the_limits) {
     force.start_below = std::numeric_limits<double>::infinity();  // the ramp alone must do it
     s.live.send(force);
     const auto pressed = [&] {
-        return comes_true([&] {
+        return steps_until(s.live, [&] {
             const auto now = s.live.snapshot();
             return now && now->session.tick.force.norm() > 0.1;
         });
@@ -406,8 +389,8 @@ TEST(Run, every_restart_begins_without_force_and_keeps_to_the_limits) {
 }
 
 /// The version that a run feels within some ticks.
-bool feels(const Run& run, std::uint64_t version) {
-    return comes_true([&] {
+bool feels(Run& run, std::uint64_t version) {
+    return steps_until(run, [&] {
         const auto now = run.snapshot();
         return now && now->session.version == version;
     });
@@ -468,7 +451,7 @@ TEST(Run, a_run_that_starts_on_edited_data_begins_with_the_edits_and_so_does_its
     BallRun a("mouse", data);
     data->editor().apply(edit::Fill{{{5, 5, 5}, {20, 20, 20}}, 0});
     {
-        run::Run b(data, with_device(pressing));
+        run::Run b(data, test::with_device(pressing));
         b.record(folder / "b.csv");
         b.start();
         EXPECT_TRUE(feels(b, 1));

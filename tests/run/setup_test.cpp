@@ -1,8 +1,7 @@
 // What a run is set up with: the rate that suits the device.
 #include <gtest/gtest.h>
 
-#include "palpate/run/run.hpp"
-#include "support/eventually.hpp"
+#include "run/run_support.hpp"
 
 namespace palpate::run {
 namespace {
@@ -13,7 +12,7 @@ TEST(Setup, a_device_without_force_needs_a_quarter_of_the_ticks_and_shows_the_sa
     run::Setup setup;
     EXPECT_EQ(rate_of(setup.render, with), 1000);
     EXPECT_EQ(rate_of(setup.render, without), 250);
-    const auto data = std::make_shared<Data>(load(source_named("synthetic:sphere:32x32x32")));
+    const auto data = test::stepped_data(test::loaded("synthetic:sphere:32x32x32"));
     const Field field = make_field(data->loaded().volume, {});
     const auto stiffness = [&](const DeviceInfo& info) {
         return make_session(field, 100, info, setup).renderer.settings.force.stiffness;
@@ -24,13 +23,9 @@ TEST(Setup, a_device_without_force_needs_a_quarter_of_the_ticks_and_shows_the_sa
     setup.real_time = false;
     run::Run live(data, setup);
     live.start();
-    ASSERT_TRUE(support::comes_true([&] {
-        const auto now = live.snapshot();
-        return now && now->number >= 50;
-    }));
-    // In session time, which does not depend on the machine.
-    const Snapshot now = *live.snapshot();
-    EXPECT_GE(now.session.tick.time, 0.99 * double(now.number) / 250);
+    test::step(live, 51);
+    EXPECT_EQ(live.snapshot()->number, 50);
+    EXPECT_NEAR(live.snapshot()->session.tick.time, 50.0 / 250, 1e-12);
 
     setup.render.rate = 2000;
     EXPECT_EQ(rate_of(setup.render, without), 2000);

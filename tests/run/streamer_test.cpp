@@ -19,8 +19,7 @@ namespace palpate::run {
 namespace {
 
 using support::ScratchFolder;
-using test::comes_true;
-using test::renders;
+using test::steps_until;
 
 /// A ball in a volume of two bricks along each axis, as a file. Its overview is the whole volume,
 /// so its range is known.
@@ -86,28 +85,25 @@ TEST(Streamed, a_replay_that_waits_gives_the_ticks_of_the_whole_volume_bit_for_b
 
 TEST(Streamed, a_live_run_touches_and_its_recording_repeats_bit_for_bit) {
     const BallFile ball;
-    const auto data = std::make_shared<Data>(load(ball.streamed()));
-    run::Setup setup;
-    setup.device = devices::parse_device("simulated:hand=explore,seconds=60");
-    setup.real_time = false;
-    run::Run live(data, setup);
+    const auto data = test::stepped_data(load(ball.streamed()));
+    run::Run live(data, test::with_device("simulated:hand=explore,seconds=60"));
     const std::string recording = (ball.folder.path() / "touch.csv").string();
     live.record(recording);
     live.start();
     int contacts = 0;
-    EXPECT_TRUE(comes_true([&] {
+    EXPECT_TRUE(steps_until(live, [&] {
         const auto now = live.snapshot();
         contacts += now && now->session.tick.proxy.mode == Mode::constrained &&
                     now->session.tick.proxy.status == UpdateStatus::done;
         return contacts > 20;
     }));
-    EXPECT_TRUE(renders(live, 150));
+    test::step(live, 150);
     EXPECT_THROW(data->player(), std::invalid_argument);
     EXPECT_GT(data->streaming().loaded, 0U);
     // A second recording begins with bricks in memory.
     const std::string later = (ball.folder.path() / "later.csv").string();
     live.record(later);
-    EXPECT_TRUE(renders(live, 150));
+    test::step(live, 150);
     live.stop();
     live.stop_recording();
     for (const std::string& path : {recording, later}) {
@@ -146,11 +142,8 @@ Edit ball_at(const Vec3& centre, double radius, const Field& field, double isova
 
 TEST(Streamed, what_is_edited_is_felt_undone_recorded_and_repeats_bit_for_bit) {
     const BallFile ball;
-    const auto data = std::make_shared<Data>(load(ball.streamed()));
-    run::Setup setup;
-    setup.device = devices::parse_device("simulated:hand=explore,seconds=60");
-    setup.real_time = false;
-    run::Run live(data, setup);
+    const auto data = test::stepped_data(load(ball.streamed()));
+    run::Run live(data, test::with_device("simulated:hand=explore,seconds=60"));
     const std::string recording = (ball.folder.path() / "edits.csv").string();
     live.record(recording);
     live.start();
@@ -165,10 +158,10 @@ TEST(Streamed, what_is_edited_is_felt_undone_recorded_and_repeats_bit_for_bit) {
     EXPECT_NE(expected.samples->sample(middle), ball.volume.sample(middle));
     HandBrush brush = usual_brush(geometry);
     data->editor().set_brush(brush);
-    EXPECT_TRUE(comes_true([&] { return data->editor().state().undo_steps > 1; }))
+    EXPECT_TRUE(steps_until(live, [&] { return data->editor().state().undo_steps > 1; }))
         << "the hand carves: " << data->editor().state().problem;
     data->editor().set_brush(std::nullopt);
-    EXPECT_TRUE(renders(live, 150));
+    test::step(live, 150);
     const std::string later = (ball.folder.path() / "later.csv").string();
     live.record(later);  // begins with the edits and what is in memory
     data->editor().apply(edit::Fill{{{5, 5, 5}, {30, 30, 30}}, 0});
@@ -178,7 +171,7 @@ TEST(Streamed, what_is_edited_is_felt_undone_recorded_and_repeats_bit_for_bit) {
     const std::string last = (ball.folder.path() / "last.csv").string();
     live.record(last);  // with steps that were undone
     const std::uint64_t version = data->editor().state().version;
-    EXPECT_TRUE(renders(live, 150));
+    test::step(live, 150);
     EXPECT_GT(version, 0U);
     const std::shared_ptr<const Samples> felt = live.field_now().shared_samples();
     EXPECT_TRUE(felt->bricks());
@@ -272,15 +265,13 @@ TEST(Streamed, all_times_of_a_store_are_a_sequence) {
         std::memcmp(loaded.volume.data(), io::read_frame(loaded.sequence, 1).data(), 16 * 16 * 16),
         0);
 
-    run::Setup setup;
-    setup.device = devices::parse_device("simulated:hand=explore,seconds=60");
-    setup.real_time = false;
+    run::Setup setup = test::with_device("simulated:hand=explore,seconds=60");
     setup.playback.speed = 5;
-    run::Run live(std::make_shared<Data>(loaded, setup.playback), setup);
+    run::Run live(test::stepped_data(loaded, setup.playback), setup);
     const std::string recording = (folder.path() / "touch.csv").string();
     live.record(recording);
     live.start();
-    EXPECT_TRUE(comes_true([&] {
+    EXPECT_TRUE(steps_until(live, [&] {
         const auto now = live.snapshot();
         return now && now->number > 500 && now->session.moment > 1;
     }));
@@ -323,6 +314,42 @@ TEST(Streamed, sources_keep_level_channel_and_memory_in_their_names) {
     EXPECT_TRUE(std::holds_alternative<StoreSource>(
         source_from({{"volume", "https://example.org/a.zarr"}}).from));
     EXPECT_TRUE(std::holds_alternative<FileSource>(ball.whole().from)) << "a small file is read";
+}
+
+/// All threads of two runs on the same data at their real pace: servos, streamer, editor with a
+/// brush, recordings, and commands from here.
+TEST(PacedRun, of_a_store_touches_carves_and_its_recordings_repeat_bit_for_bit) {
+    const BallFile ball;
+    const auto data = std::make_shared<Data>(load(ball.streamed()));
+    run::Run live(data, test::with_device("simulated:hand=explore,seconds=600"));
+    run::Run other(data, test::with_device("mouse"));
+    const std::string recording = (ball.folder.path() / "touch.csv").string();
+    const std::string later = (ball.folder.path() / "later.csv").string();
+    live.record(recording);
+    live.start();
+    other.start();
+    EXPECT_THROW(live.step(), std::logic_error);
+    VolumeEditor& editor = data->editor();
+    editor.set_brush(usual_brush(ball.volume.geometry()));
+    EXPECT_TRUE(test::comes_true([&] { return editor.state().version > 5; }))
+        << "the hand carves: " << editor.state().problem;
+    const double level = live.isovalue() + 1;
+    live.send(command::Isovalue{level});
+    EXPECT_TRUE(editor.undo());
+    editor.set_brush({});
+    EXPECT_TRUE(
+        test::comes_true([&] { return live.snapshot()->session.tick.proxy.isovalue == level; }));
+    EXPECT_TRUE(test::comes_true([&] {
+        const auto now = other.snapshot();
+        return now && now->session.version > 0;
+    }));
+    EXPECT_TRUE(test::comes_true([&] { return live.recording()->ticks() > 100; }));
+    EXPECT_GT(live.report().compute.count, 100U);
+    live.record(later);
+    EXPECT_TRUE(test::comes_true([&] { return live.recording()->ticks() > 100; }));
+    live.stop();
+    live.stop_recording();
+    for (const std::string& path : {recording, later}) EXPECT_GT(expect_same_again(path), 100);
 }
 
 }  // namespace

@@ -9,16 +9,14 @@
 namespace palpate::run {
 namespace {
 
-using test::comes_true;
-using test::renders;
-
 /// A ball (its middle at 0), and a hand some millimetres deep in it.
 struct Pressing {
     LoadedVolume ball = test::loaded("synthetic:sphere");
     Field field{ball.volume};
     double isovalue = *ball.isovalue;
     support::ScriptedDevice device{[](double) { return support::ready_at({-15, 0, 0}); }};
-    VolumeEditor editor{field.shared_samples()};
+    VolumeEditor editor{field.shared_samples(), Pace::by_steps};
+    test::Time time;
     std::unique_ptr<Servo> servo =
         editor.attach({make_renderer(field, isovalue, {}), {}}, test::servo_on(device));
 
@@ -27,19 +25,28 @@ struct Pressing {
         editor.detach(*servo);
     }
 
+    void step(int ticks = 1) {
+        for (int i = 0; i < ticks; ++i) {
+            time.step({servo.get()}, [&](auto now) { editor.step(now); });
+        }
+    }
+    template <class Condition>
+    bool until(Condition&& holds) {
+        return test::steps_until([&] { step(); }, [] { return true; }, holds);
+    }
     Vec3 scp() const {
         const auto now = servo->snapshot();
         return now ? now->session.tick.proxy.scp : Vec3(Vec3::Constant(-1000));
     }
-    bool touches() const {
-        return comes_true([&] {
+    bool touches() {
+        return until([&] {
             const auto now = servo->snapshot();
             return now && now->session.tick.proxy.mode == Mode::constrained &&
                    now->session.tick.proxy.status == UpdateStatus::done && scp()[0] < -16;
         });
     }
-    bool felt(std::uint64_t version) const {
-        return comes_true([&] {
+    bool felt(std::uint64_t version) {
+        return until([&] {
             const auto now = servo->snapshot();
             return now && now->session.version == version;
         });
@@ -51,7 +58,7 @@ TEST(VolumeEditor, a_brush_that_carves_lets_the_hand_through_and_leaves_what_it_
     ASSERT_TRUE(p.touches());
     p.editor.set_brush(HandBrush{.radius = 6, .rate = 30});
     // The way is free once all in front of the hand is gone.
-    EXPECT_TRUE(comes_true([&] { return (p.scp() - Vec3(-15, 0, 0)).norm() < 1e-9; }));
+    EXPECT_TRUE(p.until([&] { return (p.scp() - Vec3(-15, 0, 0)).norm() < 1e-9; }));
     p.editor.set_brush({});
     const EditState work = p.editor.state();
     EXPECT_TRUE(work.changed);
@@ -64,7 +71,11 @@ TEST(VolumeEditor, one_with_the_tools_shape_lets_the_tool_through_and_cuts_nothi
     const LoadedVolume ball = test::loaded("synthetic:sphere");
     const Field field(ball.volume, Solid::above, {}, Interpolation::cubic);
     support::ScriptedDevice device{[](double) { return support::ready_at({-12, 0, 0}); }};
-    VolumeEditor editor(field.shared_samples());
+    VolumeEditor editor(field.shared_samples(), Pace::by_steps);
+    test::Time time;
+    const auto step = [&](Servo& servo) {
+        time.step({&servo}, [&](auto now) { editor.step(now); });
+    };
     RendererSettings settings;
     settings.tool = std::make_shared<const Tool>(box_tool({6, 10, 4}, 0.5));
     Session session{make_renderer(field, *ball.isovalue, settings), {}};
@@ -73,12 +84,14 @@ TEST(VolumeEditor, one_with_the_tools_shape_lets_the_tool_through_and_cuts_nothi
     brush.rate = 60;
     editor.set_brush(brush);
     // The hand begins inside: recovery brings the tool out, then it works its way to the hand.
-    EXPECT_TRUE(comes_true([&] {
-        const auto now = servo->snapshot();
-        return now && editor.state().version > 0 &&
-               (now->session.tick.proxy.scp - Vec3(-12, 0, 0)).norm() < 1e-6;
-    })) << editor.state().problem
-        << " version " << editor.state().version << ", "
+    EXPECT_TRUE(
+        test::steps_until([&] { step(*servo); }, [] { return true; },
+                          [&] {
+                              const auto now = servo->snapshot();
+                              return now && editor.state().version > 0 &&
+                                     (now->session.tick.proxy.scp - Vec3(-12, 0, 0)).norm() < 1e-6;
+                          }))
+        << editor.state().problem << " version " << editor.state().version << ", "
         << servo->snapshot()->session.tick.proxy.scp.transpose() << ", status "
         << int(servo->snapshot()->session.tick.proxy.status);
     editor.set_brush({});
@@ -96,7 +109,7 @@ TEST(VolumeEditor, one_that_adds_pushes_the_hand_out) {
     ASSERT_TRUE(p.touches());
     const double before = p.scp()[0];
     p.editor.set_brush(HandBrush{.kind = BrushKind::add, .radius = 4, .rate = 30});
-    EXPECT_TRUE(comes_true([&] { return p.scp()[0] < before - 2; }));
+    EXPECT_TRUE(p.until([&] { return p.scp()[0] < before - 2; }));
 }
 
 TEST(VolumeEditor, one_that_paints_without_a_value_takes_what_adding_leaves) {
@@ -104,7 +117,7 @@ TEST(VolumeEditor, one_that_paints_without_a_value_takes_what_adding_leaves) {
     ASSERT_TRUE(p.touches());
     const double before = p.scp()[0];
     p.editor.set_brush(HandBrush{.kind = BrushKind::paint, .radius = 4, .rate = 30});
-    EXPECT_TRUE(comes_true([&] { return p.scp()[0] < before - 2; }));
+    EXPECT_TRUE(p.until([&] { return p.scp()[0] < before - 2; }));
     EXPECT_EQ(p.editor.state().problem, "");
 }
 
@@ -113,7 +126,7 @@ TEST(VolumeEditor, works_only_in_contact) {
     p.editor.apply(edit::Fill{whole_box(p.field.geometry()), 0});
     ASSERT_TRUE(p.felt(1));
     p.editor.set_brush(HandBrush{.kind = BrushKind::add, .radius = 4, .rate = 1000});
-    ASSERT_TRUE(renders(*p.servo, 50));
+    p.step(50);
     EXPECT_EQ(p.editor.state().version, 1U);
 }
 
@@ -143,36 +156,52 @@ TEST(VolumeEditor, a_stroke_is_one_step_for_undo) {
     Pressing p;
     ASSERT_TRUE(p.touches());
     p.editor.set_brush(HandBrush{.radius = 3, .rate = 5});
-    ASSERT_TRUE(comes_true([&] { return p.editor.state().version > 20; }));
+    ASSERT_TRUE(p.until([&] { return p.editor.state().version > 20; }));
     p.editor.set_brush({});
     EXPECT_EQ(p.editor.state().undo_steps, 1U);
     EXPECT_TRUE(p.editor.undo());
     EXPECT_TRUE(p.felt(0));
 }
 
+TEST(VolumeEditor, a_brush_that_changed_nothing_for_half_a_second_begins_another_step_for_undo) {
+    for (const auto& [pause, steps] : {std::pair{400, 1U}, std::pair{600, 2U}}) {
+        Pressing p;
+        ASSERT_TRUE(p.touches());
+        const HandBrush carving{.radius = 3, .rate = 5};
+        p.editor.set_brush(carving);
+        ASSERT_TRUE(p.until([&] { return p.editor.state().version > 5; }));
+        p.editor.set_brush(HandBrush{.radius = 3, .rate = 5, .value = 200});  // changes nothing
+        p.step(pause);
+        p.editor.set_brush(carving);
+        const auto before = p.editor.state().version;
+        ASSERT_TRUE(p.until([&] { return p.editor.state().version > before; }));
+        EXPECT_EQ(p.editor.state().undo_steps, steps) << pause << " ms";
+    }
+}
+
 TEST(VolumeEditor, after_an_undo_the_brush_rests_until_it_is_taken_up_again) {
     Pressing p;
     ASSERT_TRUE(p.touches());
     p.editor.set_brush(HandBrush{.radius = 3, .rate = 5});
-    ASSERT_TRUE(comes_true([&] { return p.editor.state().version > 20; }));
+    ASSERT_TRUE(p.until([&] { return p.editor.state().version > 20; }));
     EXPECT_TRUE(p.editor.undo());
     EXPECT_TRUE(p.felt(0));
-    ASSERT_TRUE(renders(*p.servo, 50));
+    p.step(50);
     EXPECT_EQ(p.editor.state().version, 0U);
     EXPECT_EQ(p.editor.state().redo_steps, 1U) << "what was undone can come back";
     p.editor.set_brush({});
     p.editor.set_brush(HandBrush{.radius = 3, .rate = 5});
-    EXPECT_TRUE(comes_true([&] { return p.editor.state().version > 0; }));
+    EXPECT_TRUE(p.until([&] { return p.editor.state().version > 0; }));
 }
 
 TEST(VolumeEditor, a_brush_that_can_do_nothing_says_why) {
     Pressing p;
     ASSERT_TRUE(p.touches());
     p.editor.set_brush(HandBrush{.radius = 3, .rate = 5, .value = 200});  // solid: not to carve to
-    EXPECT_TRUE(comes_true([&] { return !p.editor.state().problem.empty(); }));
+    EXPECT_TRUE(p.until([&] { return !p.editor.state().problem.empty(); }));
     EXPECT_EQ(p.editor.state().version, 0U);
     p.editor.set_brush(HandBrush{.radius = 3, .rate = 5});
-    EXPECT_TRUE(comes_true([&] { return p.editor.state().version > 0; }));
+    EXPECT_TRUE(p.until([&] { return p.editor.state().version > 0; }));
     EXPECT_EQ(p.editor.state().problem, "");
 }
 

@@ -2,6 +2,7 @@
 // a sequence that plays, or a store that is read as it is felt.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <memory>
 
@@ -21,7 +22,15 @@ class Data {
   public:
     /// A sequence plays from the start as `playback` says. Throws std::invalid_argument for a
     /// sequence of which two frames do not fit into the memory granted.
-    explicit Data(LoadedVolume loaded, const PlaybackSetup& playback = {});
+    explicit Data(LoadedVolume loaded, const PlaybackSetup& playback = {},
+                  Pace pace = Pace::own_thread);
+
+    Pace pace() const { return pace_; }
+    /// With Pace::by_steps: what is to be done at this time for edits, playback and streaming.
+    /// Every 4 ms suits all of them. Run::step() does so.
+    void step(std::chrono::steady_clock::time_point now);
+    /// Whether all frames and samples that are wanted now are in memory, or cannot be read.
+    bool is_settled() const;
 
     /// As it was loaded.
     const LoadedVolume& loaded() const { return loaded_; }
@@ -64,6 +73,7 @@ class Data {
     stream::Opened opened() const;
     std::string save_edits(const std::filesystem::path& path, const io::Progress& progress);
 
+    Pace pace_;
     LoadedVolume loaded_;
     std::shared_ptr<const Samples> start_;
     std::unique_ptr<Player> player_;

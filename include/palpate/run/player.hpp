@@ -1,7 +1,8 @@
 // Plays a sequence for one or several runs: sends their servos the frames round the play position
-// as they come into memory, and seeks. It works in a thread of its own.
+// as they come into memory, and seeks.
 #pragma once
 
+#include <chrono>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -32,13 +33,15 @@ struct PlayState {
 class Player {
   public:
     /// Throws std::invalid_argument as io::FrameLoader.
-    Player(io::Sequence sequence, const io::LoaderSettings& settings);
+    Player(io::Sequence sequence, const io::LoaderSettings& settings, Pace pace = Pace::own_thread);
     /// The same for a live source: it can be paused and played, nothing else.
-    explicit Player(std::shared_ptr<const io::LiveFrames> live);
+    explicit Player(std::shared_ptr<const io::LiveFrames> live, Pace pace = Pace::own_thread);
     ~Player();
     Player(const Player&) = delete;
     Player& operator=(const Player&) = delete;
 
+    /// Follows the first servo and sends what has come; its thread calls this every 5 ms.
+    void step(std::chrono::steady_clock::time_point now);
     /// Starts a servo at the play position and keeps it up to date until detach(). What `start`
     /// throws is passed on.
     std::unique_ptr<Servo> attach(Session session, const StartServo& start);
@@ -56,6 +59,9 @@ class Player {
     void set_loop(bool on);
 
     PlayState state() const;
+    /// Whether the frames that are wanted now are in memory, or cannot be read; true for a live
+    /// source.
+    bool is_settled() const;
     /// Brings a field to the frames in memory and the play position.
     void apply_position(Field& field) const;
 
@@ -66,7 +72,7 @@ class Player {
         std::uint64_t version = 0;
     };
 
-    void run(const std::stop_token& stop);
+    void begin(Pace pace);
     void update();
     bool send_frames();
     bool send_to_all(const Command& command);
@@ -88,7 +94,7 @@ class Player {
     double time_ = 0;               // of the first servo when last seen; laps included
     std::optional<double> target_;  // where to go once its frames are in memory
     command::Samples sent_;
-    std::jthread thread_;
+    std::jthread thread_;  // last: it uses all of the above
 };
 
 }  // namespace palpate::run

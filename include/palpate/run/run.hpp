@@ -43,6 +43,12 @@ class Run {
 
     /// Starts the servo, once. Throws std::system_error if the system gives no thread.
     void start();
+    /// On data with Pace::by_steps, whose servo has no thread: one tick, a period after the one
+    /// before, and what is due for the data and the recording. The same steps and commands give the
+    /// same ticks, as far as the data is in memory. Throws std::logic_error for other data, and
+    /// before start().
+    void step();
+    double period() const { return period_; }  ///< [s] of its ticks; from start() on
     /// Forces go to zero and the servo ends, for good. What was seen of it stays.
     void stop();
 
@@ -131,6 +137,9 @@ class Run {
     std::unique_ptr<io::RecordingWriter> recording_;
     std::unique_ptr<Servo> servo_;  // none before start()
     bool running_ = false;
+    double period_ = 0;           // [s] of a tick of this servo
+    std::int64_t steps_ = 0;      // of this servo
+    double time_ = 0, told_ = 0;  // [s] of all steps; when the data was told last
 };
 
 }  // namespace palpate::run

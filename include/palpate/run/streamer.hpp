@@ -1,7 +1,8 @@
 // Follows the hands of one or several runs that feel a store, and sends their servos the bricks
-// round them as they come into memory, with the edits on top. It works in a thread of its own.
+// round them as they come into memory, with the edits on top.
 #pragma once
 
+#include <chrono>
 #include <deque>
 #include <map>
 #include <memory>
@@ -19,11 +20,13 @@ namespace palpate::run {
 class Streamer {
   public:
     /// Of a volume with a store. Throws std::invalid_argument as stream::BrickLoader.
-    explicit Streamer(const LoadedVolume& loaded);
+    explicit Streamer(const LoadedVolume& loaded, Pace pace = Pace::own_thread);
     ~Streamer();
     Streamer(const Streamer&) = delete;
     Streamer& operator=(const Streamer&) = delete;
 
+    /// Follows the hands and sends what has come; its thread calls this every 5 ms.
+    void step(std::chrono::steady_clock::time_point now);
     /// Starts a servo with what is in memory and keeps it up to date until detach(). `edits`: what
     /// a recording needs of them before its first tick (StartServo). What `start` throws is passed
     /// on.
@@ -55,8 +58,7 @@ class Streamer {
         Vec3 velocity = Vec3::Zero();  // [mm/s], low-pass filtered
     };
 
-    void run(const std::stop_token& stop);
-    void look();
+    void look(std::chrono::steady_clock::time_point now);
     void take();
     void send();
     void publish(std::uint64_t version, std::shared_ptr<const Recipe> recipe);

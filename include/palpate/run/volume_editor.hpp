@@ -1,5 +1,5 @@
 // Edits the samples that one or several runs feel: a brush that follows each proxy, single edits,
-// undo and redo. It works in a thread of its own; the servos feel an edit within two ticks.
+// undo and redo. The servos feel an edit within two ticks.
 #pragma once
 
 #include <chrono>
@@ -37,15 +37,18 @@ class Streamer;
 /// Any thread may call any function; state() does not wait for an edit.
 class VolumeEditor {
   public:
-    explicit VolumeEditor(std::shared_ptr<const Samples> samples);
+    explicit VolumeEditor(std::shared_ptr<const Samples> samples, Pace pace = Pace::own_thread);
     /// Of a volume that is read as it is felt: an edit waits for the samples that it changes. Edits
     /// take at most a quarter of `memory` [bytes] and what undo() needs an eighth. `streamer`
     /// outlives this and sends the versions; `samples` are those without any brick.
-    VolumeEditor(std::shared_ptr<const Samples> samples, Streamer& streamer, std::uint64_t memory);
+    VolumeEditor(std::shared_ptr<const Samples> samples, Streamer& streamer, std::uint64_t memory,
+                 Pace pace = Pace::own_thread);
     ~VolumeEditor();
     VolumeEditor(const VolumeEditor&) = delete;
     VolumeEditor& operator=(const VolumeEditor&) = delete;
 
+    /// Works with the brush where it touches; its thread calls this every 4 ms while there is one.
+    void step(std::chrono::steady_clock::time_point now);
     /// Starts a servo with the samples as they are and keeps it up to date until detach(): no edit
     /// is lost in between. Edits wait for `start` to return; what it throws is passed on.
     std::unique_ptr<Servo> attach(Session session, const StartServo& start);
@@ -91,10 +94,11 @@ class VolumeEditor {
         command::Samples recipe;               // without samples, with the number
     };
 
-    VolumeEditor(std::shared_ptr<const Samples> samples, Streamer* streamer, std::uint64_t memory);
+    VolumeEditor(std::shared_ptr<const Samples> samples, Streamer* streamer, std::uint64_t memory,
+                 Pace pace);
     void read(const SampleBox& box, std::span<std::byte> out);
     void run(const std::stop_token& stop);
-    void brush(Hand& hand);
+    void brush(Hand& hand, std::chrono::steady_clock::time_point now);
     bool brush_from(const Touch& from, const Touch& to, Hand& hand, double isovalue);
     Edit edit_of(const Brush& brush, const Touch& from, const Touch& to, Hand& hand);
     void edit(const Edit& edit, EditStep step);
