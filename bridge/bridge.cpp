@@ -1,4 +1,4 @@
-// The bridge's thread: one loop over all sockets.
+// One loop over all sockets.
 #include "bridge/bridge.hpp"
 
 #include <poll.h>
@@ -18,16 +18,14 @@
 namespace palpate::bridge {
 namespace {
 
-constexpr std::int64_t second_ns = 1'000'000'000;
-constexpr std::int64_t patience_ns = 10 * second_ns;  // with a peer that takes nothing
+using Time = std::chrono::steady_clock::time_point;
+
+constexpr std::chrono::seconds between_tries{1};  // to connect
+constexpr std::chrono::seconds patience{10};      // with a peer that takes nothing
 /// While more than this waits for a peer, answers to it are left out; a surface may be longer.
 constexpr std::size_t most_waiting = std::size_t{1} << 20;
 constexpr std::size_t piece_bytes = std::size_t{1} << 16;  // read at once
 constexpr int pieces_a_round = 16;                         // so that one peer cannot hold up others
-
-std::int64_t now_ns() {
-    return std::chrono::steady_clock::now().time_since_epoch().count();
-}
 
 double wall_time() {
     return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch())
@@ -43,12 +41,12 @@ struct Bridge::Peer {
     Reader reader;
     std::string out;  // what it has not taken yet, from `sent` on
     std::size_t sent = 0;
-    std::int64_t moved_ns;  // when it last took something
+    Time moved;  // when it last took something
     bool gone = false;
 
     std::size_t waiting() const { return out.size() - sent; }
-    void append(const std::string& bytes) {
-        if (waiting() == 0) moved_ns = now_ns();
+    void append(const std::string& bytes, Time now) {
+        if (waiting() == 0) moved = now;
         out.erase(0, sent);
         sent = 0;
         out += bytes;
@@ -78,7 +76,7 @@ bool is_local(const Settings& settings) {
     return is_loopback(settings.host);
 }
 
-Bridge::Bridge(const Settings& settings) : settings_(settings), port_(settings.port) {
+Bridge::Bridge(const Settings& settings, Pace pace) : settings_(settings), port_(settings.port) {
     if (settings_.client) {
         is_loopback(settings_.host);  // throws for a host that there is not
     } else {
@@ -87,16 +85,19 @@ Bridge::Bridge(const Settings& settings) : settings_(settings), port_(settings.p
         port_ = listening.port;
     }
     event_ = ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
-    thread_ = std::thread([this] { run(); });
+    if (pace == Pace::by_steps) return;
+    thread_ = std::thread([this] {
+        while (!done_) {
+            step(std::chrono::steady_clock::now());
+            (void)poll(200);
+        }
+    });
 }
 
 Bridge::~Bridge() {
-    {
-        const std::scoped_lock lock(mutex_);
-        done_ = true;
-    }
+    done_ = true;
     wake();
-    thread_.join();
+    if (thread_.joinable()) thread_.join();
     for (const auto& peer : peers_) ::close(peer->socket);
     for (const int socket : {listening_, connecting_, event_}) {
         if (socket >= 0) ::close(socket);
@@ -146,43 +147,42 @@ void Bridge::send_surface(int peer, const SurfaceMesh& mesh) {
     send(peer, "POLYDATA", polydata_body(mesh));
 }
 
-void Bridge::run() {
-    for (;;) {
-        {
-            const std::scoped_lock lock(mutex_);
-            if (done_) return;
-        }
-        try_to_connect();
-        std::vector<pollfd> sockets{
-            {event_, POLLIN, 0}, {listening_, POLLIN, 0}, {connecting_, POLLOUT, 0}};
-        for (const auto& peer : peers_) {
-            sockets.push_back({peer->socket,
-                               static_cast<short>(POLLIN | (peer->waiting() > 0 ? POLLOUT : 0)),
-                               0});
-        }
-        ::poll(sockets.data(), sockets.size(), 200);
-        std::uint64_t woken = 0;
-        [[maybe_unused]] const ssize_t ignored = ::read(event_, &woken, sizeof woken);
-        for (std::size_t i = 0; i < peers_.size(); ++i) {
-            if (sockets[i + 3].revents & (POLLIN | POLLHUP | POLLERR)) take_from(*peers_[i]);
-        }
-        if (sockets[1].revents & POLLIN) accept_peers();
-        if (sockets[2].revents != 0) {
-            const int socket = std::exchange(connecting_, -1);
-            if (is_connected(socket)) {
-                add_peer(socket, settings_.host + ":" + std::to_string(settings_.port));
-            } else {
-                ::close(socket);
-            }
-        }
-        hand_out();
-        drop_the_gone();
+std::vector<pollfd> Bridge::poll(int milliseconds) const {
+    std::vector<pollfd> sockets{
+        {event_, POLLIN, 0}, {listening_, POLLIN, 0}, {connecting_, POLLOUT, 0}};
+    for (const auto& peer : peers_) {
+        sockets.push_back(
+            {peer->socket, static_cast<short>(POLLIN | (peer->waiting() > 0 ? POLLOUT : 0)), 0});
     }
+    ::poll(sockets.data(), sockets.size(), milliseconds);
+    return sockets;
+}
+
+void Bridge::step(Time now) {
+    now_ = now;
+    try_to_connect();
+    const std::vector<pollfd> sockets = poll(0);
+    std::uint64_t woken = 0;
+    [[maybe_unused]] const ssize_t ignored = ::read(event_, &woken, sizeof woken);
+    for (std::size_t i = 0; i < peers_.size(); ++i) {
+        if (sockets[i + 3].revents & (POLLIN | POLLHUP | POLLERR)) take_from(*peers_[i]);
+    }
+    if (sockets[1].revents & POLLIN) accept_peers();
+    if (sockets[2].revents != 0) {
+        const int socket = std::exchange(connecting_, -1);
+        if (is_connected(socket)) {
+            add_peer(socket, settings_.host + ":" + std::to_string(settings_.port));
+        } else {
+            ::close(socket);
+        }
+    }
+    hand_out();
+    drop_the_gone();
 }
 
 void Bridge::try_to_connect() {
-    if (!settings_.client || connecting_ >= 0 || !peers_.empty() || now_ns() < next_try_ns_) return;
-    next_try_ns_ = now_ns() + second_ns;
+    if (!settings_.client || connecting_ >= 0 || !peers_.empty() || now_ < next_try_) return;
+    next_try_ = now_ + between_tries;
     try {
         connecting_ = connect_to(settings_.host, settings_.port);
     } catch (const std::runtime_error& e) {
@@ -210,7 +210,7 @@ void Bridge::accept_peers() {
 void Bridge::add_peer(int socket, const std::string& who) {
     set_prompt(socket);
     auto peer = std::make_unique<Peer>(
-        Peer{next_peer_++, socket, who, Reader(settings_.limits), {}, 0, now_ns()});
+        Peer{next_peer_++, socket, who, Reader(settings_.limits), {}, 0, now_});
     peers_.push_back(std::move(peer));
     note(who + " is connected");
 }
@@ -280,27 +280,27 @@ void Bridge::hand_out() {
         for (const Outgoing& one : outgoing) {
             if (one.peer != peer->number) continue;
             if (peer->waiting() < most_waiting) {
-                peer->append(one.bytes);
+                peer->append(one.bytes, now_);
             } else {
                 note(peer->who + " reads too slowly: an answer was left out");
             }
         }
-        if (frame && peer->waiting() == 0) peer->append(*frame);
+        if (frame && peer->waiting() == 0) peer->append(*frame, now_);
         flush(*peer);
-        if (peer->waiting() > 0 && now_ns() - peer->moved_ns > patience_ns) {
+        if (peer->waiting() > 0 && now_ - peer->moved > patience) {
             peer->gone = true;
             note(peer->who + " was disconnected: it took nothing for 10 s");
         }
     }
 }
 
-void Bridge::flush(Peer& peer) {
+void Bridge::flush(Peer& peer) const {
     while (peer.waiting() > 0) {
         const ssize_t sent =
             ::send(peer.socket, peer.out.data() + peer.sent, peer.waiting(), MSG_NOSIGNAL);
         if (sent <= 0) return;  // it takes no more now; that it has gone shows in reading
         peer.sent += static_cast<std::size_t>(sent);
-        peer.moved_ns = now_ns();
+        peer.moved = now_;
     }
     peer.out.clear();
     peer.sent = 0;

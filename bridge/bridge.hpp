@@ -1,8 +1,10 @@
-// A bridge to 3D Slicer and others by OpenIGTLink: a thread that sends what is felt and takes
-// volumes and commands. It lives beside a run: its owner shows it snapshots and carries out what
+// A bridge to 3D Slicer and others by OpenIGTLink: it sends what is felt and takes volumes and
+// commands. It lives beside a run: its owner shows it snapshots and carries out what
 // was asked for. Nobody waits for it. docs/bridge.md.
 #pragma once
 
+#include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -14,6 +16,8 @@
 
 #include "bridge/wire.hpp"
 #include "palpate/servo.hpp"
+
+struct pollfd;  // poll.h
 
 namespace palpate::bridge {
 
@@ -50,12 +54,15 @@ class Bridge {
 
     /// Listens, or starts to connect. Throws std::runtime_error with what is wrong with the
     /// address.
-    explicit Bridge(const Settings& settings);
+    explicit Bridge(const Settings& settings, Pace pace = Pace::own_thread);
     ~Bridge();
     Bridge(const Bridge&) = delete;
     Bridge& operator=(const Bridge&) = delete;
 
     int port() const { return port_; }
+    /// Exchanges what the network is ready for, without waiting. The thread does so whenever there
+    /// is something.
+    void step(std::chrono::steady_clock::time_point now);
 
     // By the owner's thread; none of these waits for the network.
 
@@ -78,7 +85,7 @@ class Bridge {
         std::string bytes;
     };
 
-    void run();
+    std::vector<pollfd> poll(int milliseconds) const;
     void wake() const;
     void send(int peer, std::string_view type, const std::string& body);
     void note(const std::string& text);
@@ -89,18 +96,18 @@ class Bridge {
     void take(Peer& peer, const Received& received);
     void ask(Peer& peer, Request request);
     void hand_out();
-    static void flush(Peer& peer);
+    void flush(Peer& peer) const;
     void drop_the_gone();
 
     Settings settings_;
     int port_ = 0;
     int listening_ = -1, connecting_ = -1, event_ = -1;
-    std::int64_t next_try_ns_ = 0;
+    std::chrono::steady_clock::time_point now_, next_try_;
     std::vector<std::unique_ptr<Peer>> peers_;  // the thread's
     int next_peer_ = 1;
 
-    std::mutex mutex_;  // of what follows
-    bool done_ = false;
+    std::atomic<bool> done_{false};
+    std::mutex mutex_;                  // of what follows
     std::optional<std::string> frame_;  // the newest state, not handed out yet
     std::vector<Outgoing> outgoing_;
     std::vector<Request> requests_;

@@ -16,11 +16,13 @@ bool is_local(const Settings&) {
     return true;
 }
 
-Bridge::Bridge(const Settings& settings) {
+Bridge::Bridge(const Settings& settings, Pace) {
     settings_ = settings_from(settings.host, settings.client);  // throws
 }
 
 Bridge::~Bridge() = default;
+
+void Bridge::step(std::chrono::steady_clock::time_point) {}
 
 void Bridge::show(const Snapshot&, bool) {}
 

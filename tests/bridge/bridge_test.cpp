@@ -46,6 +46,34 @@ TEST(Bridge, a_port_that_is_taken_is_an_error_that_says_so) {
     }
 }
 
+/// A bridge whose time the test moves on. What crosses a socket takes a moment of the machine's.
+struct Stepped {
+    Bridge bridge;
+    std::chrono::steady_clock::time_point now{std::chrono::hours(1)};
+
+    explicit Stepped(const Settings& settings) : bridge(settings, Pace::by_steps) {}
+    void step(std::chrono::milliseconds passed = {}) { bridge.step(now += passed); }
+    template <class Condition>
+    bool until(Condition&& holds) {
+        return comes_true([&] {
+            step();
+            return holds();
+        });
+    }
+    bool asks() {
+        return until([&] { return !bridge.requests().empty(); });
+    }
+    bool has_noted(const std::string& text) {
+        for (const std::string& note : bridge.notes()) told += note + '\n';
+        return contains(told, text);
+    }
+    bool notes(const std::string& text) {
+        return until([&] { return has_noted(text); });
+    }
+
+    std::string told;
+};
+
 /// A socket to a bridge that never waits.
 class Plug {
   public:
@@ -65,28 +93,19 @@ class Plug {
     int socket_;
 };
 
-bool is_noted(Bridge& bridge, const std::string& text) {
-    return comes_true([&] {
-        for (const std::string& note : bridge.notes()) {
-            if (contains(note, text)) return true;
-        }
-        return false;
-    });
-}
-
 TEST(Bridge, requests_that_are_too_many_are_refused_and_those_taken_keep_their_order) {
-    Bridge bridge(at_port(0));
-    const Plug plug(bridge.port());
+    Stepped s(at_port(0));
+    const Plug plug(s.bridge.port());
     std::string all;
     for (int i = 0; i < 200; ++i) {
         all += message("STRING", "", string_body("isovalue " + std::to_string(i)), 0);
     }
     plug.say(all + message("GET_POLYDATA", "", "", 0));
     // While nobody takes them.
-    EXPECT_TRUE(is_noted(bridge, "is connected"));
+    EXPECT_TRUE(s.notes("is connected"));
     std::vector<Request> requests;
-    EXPECT_TRUE(comes_true([&] {
-        for (Request& one : bridge.requests()) requests.push_back(std::move(one));
+    EXPECT_TRUE(s.until([&] {
+        for (Request& one : s.bridge.requests()) requests.push_back(std::move(one));
         return requests.size() >= Bridge::most_requests;
     }));
     int last = -1;
@@ -100,39 +119,73 @@ TEST(Bridge, requests_that_are_too_many_are_refused_and_those_taken_keep_their_o
 }
 
 TEST(Bridge, a_peer_that_sends_garbage_is_disconnected_and_the_others_are_served) {
-    Bridge bridge(at_port(0));
-    const Plug good(bridge.port());
-    const Plug bad(bridge.port());
+    Stepped s(at_port(0));
+    const Plug good(s.bridge.port());
+    const Plug bad(s.bridge.port());
     bad.say(std::string(100, 'x'));
-    EXPECT_TRUE(is_noted(bridge, "was disconnected: it sent"));
+    EXPECT_TRUE(s.notes("was disconnected: it sent"));
     good.say(message("STRING", "", string_body("freeze on"), 0));
-    EXPECT_TRUE(comes_true([&] { return !bridge.requests().empty(); }));
+    EXPECT_TRUE(s.asks());
 }
 
-TEST(Bridge, a_peer_that_reads_nothing_holds_nobody_up) {
-    Bridge bridge(at_port(0));
-    const Plug deaf(bridge.port());
-    EXPECT_TRUE(is_noted(bridge, "is connected"));
-    const Snapshot state;
-    const auto begin = std::chrono::steady_clock::now();
-    for (int i = 0; i < 20'000; ++i) bridge.show(state, false);
-    // By far less than a servo's tick each, whatever the network does.
-    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
-    const Plug good(bridge.port());
+TEST(Bridge, a_peer_that_reads_nothing_holds_nobody_up_and_is_disconnected_after_ten_seconds) {
+    Stepped s(at_port(0));
+    const Plug deaf(s.bridge.port());
+    EXPECT_TRUE(s.notes("is connected"));
+    // Until the system takes no more for it.
+    constexpr const char* reason = "it took nothing for 10 s";
+    bool told = false;
+    for (int round = 0; round < 1000 && !told; ++round) {
+        for (int i = 0; i < 1000; ++i) {
+            s.bridge.show({}, false);
+            s.step();
+        }
+        s.step(std::chrono::milliseconds(9900));
+        EXPECT_FALSE(s.has_noted(reason)) << "too early";
+        s.step(std::chrono::milliseconds(200));
+        told = s.has_noted(reason);
+    }
+    EXPECT_TRUE(told);
+    const Plug good(s.bridge.port());
     good.say(message("STRING", "", string_body("freeze on"), 0));
-    EXPECT_TRUE(comes_true([&] { return !bridge.requests().empty(); }));
+    EXPECT_TRUE(s.asks());
+}
+
+TEST(Bridge, a_client_tries_again_each_second_until_there_is_a_server) {
+    // A port that nobody listens at: that of a server that has gone.
+    const int port = Bridge(at_port(0), Pace::by_steps).port();
+    Stepped client(settings_from(std::to_string(port), true));
+    client.step();
+    Stepped server(at_port(port));
+    for (int i = 0; i < 20; ++i) {
+        client.step();
+        server.step();
+    }
+    EXPECT_FALSE(server.has_noted("is connected")) << "only after a second";
+    client.step(std::chrono::milliseconds(1000));
+    EXPECT_TRUE(server.notes("is connected"));
+    EXPECT_TRUE(client.notes("is connected"));
 }
 
 TEST(Bridge, many_peers_that_come_and_go_leave_it_working) {
-    Bridge bridge(at_port(0));
+    Stepped s(at_port(0));
     for (int round = 0; round < 30; ++round) {
-        const Plug one(bridge.port()), other(bridge.port());
+        const Plug one(s.bridge.port()), other(s.bridge.port());
         one.say(message("STRING", "", string_body("freeze on"), 0).substr(0, 30 + round % 20));
-        bridge.show({}, false);
-        bridge.reply(round, "gone already");
+        s.step();
+        s.bridge.show({}, false);
+        s.bridge.reply(round, "gone already");
+        s.step();
     }
-    const Plug last(bridge.port());
+    const Plug last(s.bridge.port());
     last.say(message("STRING", "", string_body("freeze on"), 0));
+    EXPECT_TRUE(s.asks());
+}
+
+TEST(PacedBridge, serves_peers_by_itself) {
+    Bridge bridge(at_port(0));
+    const Plug plug(bridge.port());
+    plug.say(message("STRING", "", string_body("freeze on"), 0));
     EXPECT_TRUE(comes_true([&] { return !bridge.requests().empty(); }));
 }
 
