@@ -78,6 +78,9 @@ void RunOptions::add_script_options(CLI::App& command) {
         .add_option("--seconds", seconds,
                     "End after this time [s] (default: when the hand has finished)")
         ->check(CLI::PositiveNumber);
+    command.add_flag("--unpaced", unpaced,
+                     "Do not wait for the clock, with a simulated or recorded hand: the session is "
+                     "computed as fast as possible, in the same way each time");
     command.add_option(
         "--brush", brush,
         "Brush that follows the proxy from the start: 'KIND RADIUS [RATE [VALUE]]', "

@@ -20,6 +20,7 @@ struct RunOptions {
     std::string brush;   ///< as the command's words: "carve 3"; empty: none
     std::string save;    ///< file for the edited volume; empty: none
     bool json = false;
+    bool unpaced = false;  ///< as fast as the session can be computed
 
     /// `record` has --output in place of --record; `view` can do without a volume, and has no
     /// options for scripts (--commands, --seconds, --json).

@@ -64,6 +64,8 @@ std::string streaming_text(const stream::BrickLoaderStatus& s) {
 }
 
 std::string report_text(const ServoReport& r, double seconds) {
+    if (r.compute.count == 0)
+        return fmt::format("ticks {} in {:.1f} s, unpaced\n", r.ticks, seconds);
     std::string text = fmt::format(
         "ticks {} in {:.1f} s, missed deadlines {}, forces taken back {}\n"
         "compute time (ours)    {}\n"

@@ -52,7 +52,7 @@ class Terminal {
         if (line_) std::fputs("\r\033[K", stderr);
     }
 
-    /// One round, every 10 ms; false once the run is to end.
+    /// One round, every 10 ms of the session; false once the run is to end.
     bool update() {
         if (run_.device_failure() != DeviceFailure::none) return false;
         const auto now = run_.snapshot();
@@ -73,6 +73,7 @@ class Terminal {
                        status_line(*now, run_.settings().layers.get(), run_.report(),
                                    terminal_columns() - 1));
         }
+        if (options_.unpaced) queue_.finish();  // what was asked for takes no time of the session
         const bool over = options_.seconds > 0 && now->session.tick.time >= options_.seconds;
         return !over && now->session.device.status != DeviceStatus::finished;
     }
@@ -292,6 +293,28 @@ void finish_recording(run::Run& run, const RunOptions& options) {
     }
 }
 
+constexpr auto between_rounds = 10ms;
+
+/// A round's time of an unpaced session. Data that is being read goes at its own pace.
+void step(run::Run& run) {
+    const double until = std::chrono::duration<double>(between_rounds).count();
+    for (double passed = 0; passed < until - 1e-9; passed += run.period()) {
+        if (!run.data().is_settled()) std::this_thread::sleep_for(1ms);
+        run.step();
+    }
+}
+
+/// Throws std::invalid_argument for a session that only goes with the clock.
+void require_own_time(const TouchOptions& options, const run::Setup& setup) {
+    if (!options.unpaced) return;
+    if ((setup.device.name == "simulated" || setup.device.name == "recorded") &&
+        options.igtl.empty() && options.igtl_connect.empty()) {
+        return;
+    }
+    throw std::invalid_argument(
+        "--unpaced is for a simulated or recorded hand without a bridge: others go with the clock");
+}
+
 void require_no_mouse(const run::Setup& setup) {
     if (setup.device.name != "mouse") return;
     throw devices::DeviceError(
@@ -306,7 +329,13 @@ std::string feel(run::Run& run, const RunOptions& options, std::vector<TimedRequ
     run.start();
     if (!options.source.quiet) announce(run, run.device());
     Terminal terminal(run, options, std::move(requests), commands, remote);
-    while (!interrupted() && terminal.update()) std::this_thread::sleep_for(10ms);
+    while (!interrupted() && terminal.update()) {
+        if (options.unpaced) {
+            step(run);
+        } else {
+            std::this_thread::sleep_for(between_rounds);
+        }
+    }
     run.stop();
     return terminal.finish();
 }
@@ -319,8 +348,10 @@ void touch(const TouchOptions& options) {
     const run::Setup setup = options.setup();
     check_outputs({options.source.name(), options.commands}, {options.record, options.save});
     require_no_mouse(setup);
+    require_own_time(options, setup);
     const auto remote = make_remote(options.igtl, options.igtl_connect, options.source.quiet);
-    auto data = std::make_shared<run::Data>(load_for_terminal(options.source), setup.playback);
+    auto data = std::make_shared<run::Data>(load_for_terminal(options.source), setup.playback,
+                                            options.unpaced ? Pace::by_steps : Pace::own_thread);
     auto run = std::make_unique<run::Run>(data, setup);
     warn_of_isovalue(run->field(), run->isovalue());
     if (!options.save.empty()) data->check_save_name(options.save);
@@ -362,7 +393,7 @@ void touch(const TouchOptions& options) {
 /// False for scripts and without a display.
 bool wants_window(const TouchOptions& options) {
     const bool remote = !options.igtl.empty() || !options.igtl_connect.empty();
-    const bool script = remote || options.json || options.seconds > 0 ||
+    const bool script = remote || options.json || options.seconds > 0 || options.unpaced ||
                         !options.commands.empty() || !options.brush.empty() ||
                         !options.save.empty();
     return !options.headless && !script && has_display() && !viewer_program().empty();

@@ -10,8 +10,8 @@ MEASURED = {"update_ns"}  # a measurement, which is not compared
 
 
 def one(program, random, folder, counts):
-    words = ["touch", "synthetic:sphere:16x16x16", "--headless", "--normal-priority", "--quiet", "--seconds",
-             "0.4", "--device", f"simulated:hand={random.choice(('press', 'explore', 'circle'))}",
+    words = ["touch", "synthetic:sphere:16x16x16", "--headless", "--unpaced", "--quiet", "--seconds", "0.4",
+              "--device", f"simulated:hand={random.choice(('press', 'explore', 'circle'))}",
              "--record", "r.csv"]
     (folder / "c.txt").write_text("0.1 isovalue 60%\n0.15 scale 2\n0.2 freeze on\n0.25 freeze off\n")
     judge(program.run([*words, "--commands", "c.txt"], folder), {0})

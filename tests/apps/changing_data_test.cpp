@@ -23,9 +23,10 @@ TEST(Touch, recordings_of_edits_and_sequences_replay_bit_for_bit) {
     put_bytes(folder / "c.txt",
               "0.2 brush carve 4 50\n0.8 brush off\n0.9 undo\n1.0 redo\n"
               "1.1 carve 0,0,0:3,3,3 5\n1.2 fill 1,1,1:4,4,4 90%\n");
-    const Outcome done = palpate(folder, "touch " + ball +
-                                             " --device simulated:hand=press --seconds 2.5 "
-                                             "--commands c.txt --record r.csv --save out.nrrd");
+    const Outcome done =
+        palpate(folder, "touch " + ball +
+                            " --unpaced --device simulated:hand=press --seconds 2.5 "
+                            "--commands c.txt --record r.csv --save out.nrrd");
     ASSERT_EQ(done.status, 0) << done.err;
     const Outcome valid = palpate(folder, "replay r.csv --validate");
     EXPECT_EQ(valid.status, 0) << valid.err;
@@ -33,8 +34,8 @@ TEST(Touch, recordings_of_edits_and_sequences_replay_bit_for_bit) {
     EXPECT_EQ(saved.geometry().size, Index3(32, 32, 32));
     EXPECT_EQ(saved.sample({16, 16, 16}), 0);
     EXPECT_NEAR(saved.sample({2, 2, 2}), 0.9 * 240, 12);
-    // The recording has every edit in order: strokes of the brush, as many as the machine had time
-    // for, undo and redo, the stroke and the box of the commands. It ends on the last version.
+    // The recording has every edit in order: strokes of the brush, undo and redo, the stroke and
+    // the box of the commands. It ends on the last version.
     std::string edits;
     std::uint64_t made = 0, felt = 0;
     io::RecordingReader reader(folder / "r.csv");
@@ -54,10 +55,10 @@ TEST(Touch, recordings_of_edits_and_sequences_replay_bit_for_bit) {
     EXPECT_TRUE(std::regex_match(edits, std::regex("s+--sf"))) << edits;
     EXPECT_EQ(felt, made);
 
-    const Outcome beats =
-        palpate(folder,
-                "touch synthetic:beating:24x24x24 --device simulated:hand=press --seconds 1 "
-                "--playback 3 --record b.csv");
+    const Outcome beats = palpate(
+        folder,
+        "touch synthetic:beating:24x24x24 --unpaced --device simulated:hand=press --seconds 1 "
+        "--playback 3 --record b.csv");
     ASSERT_EQ(beats.status, 0) << beats.err;
     const Outcome again = palpate(folder, "replay b.csv --validate");
     EXPECT_EQ(again.status, 0) << again.err;
@@ -71,9 +72,10 @@ TEST(Touch, a_saved_raw_or_tiff_file_opens_with_the_options_that_it_names) {
     std::iota(samples.begin(), samples.end(), 100);
     io::write_volume(Volume(geometry, std::move(samples)), folder / "a.tif");
     put_bytes(folder / "c.txt", "0.1 fill 1,1,1:4,4,4 9\n0.2 save b.tif\n0.4 quit\n");
-    const Outcome done = palpate(folder,
-                                 "touch a.tif --isovalue 300 --device simulated:hand=hold "
-                                 "--commands c.txt --save b.raw");
+    const Outcome done =
+        palpate(folder,
+                "touch a.tif --unpaced --isovalue 300 --device simulated:hand=hold "
+                "--commands c.txt --save b.raw");
     ASSERT_EQ(done.status, 0) << done.err;
     EXPECT_TRUE(
         contains(done.out, "saved b.raw (open it with dims 8x8x8, type uint16, spacing 0.5,0.5,2)"))
@@ -97,9 +99,9 @@ TEST(Touch, plays_a_numbered_series_and_opens_one_frame_of_it) {
         io::write_volume(frame, folder / ("f_00" + std::to_string(number) + ".nrrd"));
     }
     const Outcome done =
-        palpate(folder, Words{"touch", "f_%03d.nrrd", "--isovalue", "200", "--frame-interval",
-                              "0.1", "--device", "simulated:hand=hold", "--seconds", "2", "--once",
-                              "--record", "r.csv"});
+        palpate(folder, Words{"touch", "f_%03d.nrrd", "--unpaced", "--isovalue", "200",
+                              "--frame-interval", "0.1", "--device", "simulated:hand=hold",
+                              "--seconds", "2", "--once", "--record", "r.csv"});
     ASSERT_EQ(done.status, 0) << done.err;
     double last = 0;
     io::RecordingReader reader(folder / "r.csv");
@@ -116,15 +118,16 @@ TEST(Touch, plays_a_numbered_series_and_opens_one_frame_of_it) {
 TEST(Touch, says_which_commands_the_data_do_not_allow) {
     const ScratchFolder folder;
     put_bytes(folder / "c.txt", "0.1 undo\n0.2 play 2\n0.3 quit\n");
-    const Outcome still =
-        palpate(folder, "touch " + ball + " --device simulated:hand=hold --commands c.txt");
+    const Outcome still = palpate(
+        folder, "touch " + ball + " --unpaced --device simulated:hand=hold --commands c.txt");
     EXPECT_EQ(still.status, 0);
     EXPECT_TRUE(contains(still.err, "nothing to undo")) << still.err;
     EXPECT_TRUE(contains(still.err, "no sequence")) << still.err;
     put_bytes(folder / "c.txt", "0.1 brush carve 3\n0.2 quit\n");
-    const Outcome moving = palpate(folder,
-                                   "touch synthetic:beating:16x16x16 --device simulated:hand=hold "
-                                   "--commands c.txt");
+    const Outcome moving =
+        palpate(folder,
+                "touch synthetic:beating:16x16x16 --unpaced --device simulated:hand=hold "
+                "--commands c.txt");
     EXPECT_EQ(moving.status, 0);
     EXPECT_TRUE(contains(moving.err, "cannot be edited")) << moving.err;
     for (const char* line :
@@ -164,7 +167,8 @@ TEST(Touch, a_volume_that_cannot_be_saved_gives_status_5_and_the_session_goes_on
     const ScratchFolder folder;
     put_bytes(folder / "c.txt", "0.1 fill 1,1,1:4,4,4 9\n0.2 save no/such/folder.nrrd\n0.4 quit\n");
     const Outcome done = palpate(
-        folder, "touch " + ball + " --device simulated:hand=hold --commands c.txt --record r.csv");
+        folder, "touch " + ball +
+                    " --unpaced --device simulated:hand=hold --commands c.txt --record r.csv");
     EXPECT_EQ(done.status, 5);
     EXPECT_TRUE(contains(done.err, "folder does not exist")) << done.err;
     EXPECT_EQ(rescued_sample(done), 9);
@@ -177,8 +181,8 @@ TEST(Touch, edits_that_cannot_be_saved_at_the_end_are_kept_elsewhere_and_the_rec
     put_bytes(folder / "c.txt",
               "0.1 fill 1,1,1:4,4,4 9\n0.2 save o.zarr\n0.3 fill 1,1,1:4,4,4 8\n0.4 quit\n");
     const Outcome done = palpate(folder, "touch " + ball +
-                                             " --device simulated:hand=hold --commands c.txt "
-                                             "--record r.csv --save o.zarr");
+                                             " --unpaced --device simulated:hand=hold "
+                                             "--commands c.txt --record r.csv --save o.zarr");
     EXPECT_EQ(done.status, 5);
     EXPECT_TRUE(contains(done.err, "o.zarr: is there already")) << done.err;
     EXPECT_EQ(rescued_sample(done), 8);
@@ -205,7 +209,7 @@ TEST(Touch, an_output_that_cannot_be_is_refused_before_the_session) {
     }
 }
 
-TEST(Touch, feels_frames_that_another_program_pushes) {
+TEST(PacedTouch, feels_frames_that_another_program_pushes) {
     const ScratchFolder folder;
     Geometry geometry;
     geometry.size = Index3::Constant(8);

@@ -173,7 +173,7 @@ TEST(LayersOption, are_recorded_and_replayed_bit_for_bit) {
          {"--layers two.json", "--labels s.seg.nrrd", "--labels s.seg.nrrd --layers mixed.json"}) {
         const Outcome done =
             palpate(folder,
-                    "touch synthetic:sphere:32x32x32 --device simulated:hand=press "
+                    "touch synthetic:sphere:32x32x32 --unpaced --device simulated:hand=press "
                     "--seconds 1.5 --commands c.txt --record r.csv " +
                         from);
         ASSERT_EQ(done.status, 0) << done.err;

@@ -90,6 +90,17 @@ class Running {
         return false;
     }
 
+    /// Whether it has opened this file.
+    bool has_open(const std::filesystem::path& path) const {
+        std::error_code gone;
+        const std::filesystem::directory_iterator files("/proc/" + std::to_string(pid_) + "/fd",
+                                                        gone);
+        for (const auto& file : files) {
+            if (std::filesystem::read_symlink(file, gone) == path) return true;
+        }
+        return false;
+    }
+
     void signal(int signal) const { ::kill(pid_, signal); }
 
     /// Sends `signal` (0: none) and waits for the end.

@@ -15,7 +15,7 @@ namespace {
 
 using support::contains;
 
-TEST(DoctorLatency, counts_every_tick_of_a_real_servo_once) {
+TEST(PacedLatency, counts_every_tick_of_a_real_servo_once) {
     double part = 0;
     const Latency latency = measure_latency({0.5, true, [&](double now) {
                                                  EXPECT_GE(now, part);

@@ -17,11 +17,11 @@ namespace {
 
 using support::comes_true;
 
-/// A hand that moves along z from 40 to 12 mm (device axes: +z is towards the person) and stays. If
+/// A hand that moves along z from 24 to 12 mm (device axes: +z is towards the person) and stays. If
 /// it feels nothing there it comes anew, because a force begins small: after a stall of the machine
 /// there is none deep inside.
 struct Hand {
-    std::atomic<double> depth{40}, step{-0.02};
+    std::atomic<double> depth{24}, step{-0.02};
     std::atomic<double> force{0}, largest{0};
     std::atomic<int> reads{0}, closes{0};
     std::atomic<bool> lost{false};
@@ -34,7 +34,7 @@ int32_t read_hand(palpate_reading* reading, void* context) {
     const double now = hand.depth;
     const bool inside = now <= 12;
     if (inside && hand.force == 0) hand.step = 0.02;
-    if (now >= 40) hand.step = -0.02;
+    if (now >= 24) hand.step = -0.02;
     if (!inside || hand.step > 0) hand.depth = now + hand.step;
     reading->status = PALPATE_DEVICE_READY;
     reading->position[2] = now;

@@ -4,11 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <fstream>
 #include <stdexcept>
-#include <thread>
 
 #include "palpate/run/run.hpp"
 #include "support/random.hpp"
@@ -18,7 +16,6 @@
 namespace palpate::viewer {
 namespace {
 
-using namespace std::chrono_literals;
 using support::message_of;
 using support::ScratchFolder;
 
@@ -37,7 +34,8 @@ struct Recorded {
         RendererSettings settings;
         settings.method = &update_exact;
         Session session{make_renderer(field, 76.5, settings), {}};
-        io::RecordingWriter writer(path, run::recording_head(session, {}, volume(), {}));
+        io::RecordingWriter writer(path, run::recording_head(session, {}, volume(), {}),
+                                   Pace::by_steps);
         std::vector<SessionEvent> events;
         for (int i = 0; i < count; ++i) {
             if (i % 1500 == 700) {
@@ -62,7 +60,7 @@ struct Recorded {
             events.emplace_back(ticks.back());
         }
         for (const SessionEvent& event : events) {
-            while (!writer.queue().push(event)) std::this_thread::sleep_for(1ms);
+            while (!writer.queue().push(event)) writer.step();
         }
         writer.finish(0);
     }

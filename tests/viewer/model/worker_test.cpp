@@ -7,14 +7,15 @@
 #include <chrono>
 #include <stdexcept>
 
+#include "support/eventually.hpp"
+
 namespace palpate::viewer {
 namespace {
 
 using namespace std::chrono_literals;
 
 void wait_for(const Worker& worker) {
-    for (int i = 0; i < 20'000 && !worker.ended(); ++i) std::this_thread::sleep_for(1ms);
-    ASSERT_TRUE(worker.ended());
+    ASSERT_TRUE(support::comes_true([&] { return worker.ended(); }));
 }
 
 TEST(Worker, result_is_there_once_it_has_ended) {
@@ -42,7 +43,7 @@ TEST(Worker, a_cancelled_task_stops_at_its_next_progress_and_is_not_done) {
             }
         },
         [] {});
-    while (!begun) std::this_thread::sleep_for(1ms);
+    ASSERT_TRUE(support::comes_true([&] { return begun.load(); }));
     worker.cancel();
     wait_for(worker);
     EXPECT_FALSE(worker.finish());
@@ -58,27 +59,31 @@ TEST(Worker, owner_is_woken_for_each_percent_at_most_and_at_the_end) {
     wait_for(worker);
     EXPECT_EQ(worker.progress(), 1);
     // The last wake comes after ended() is seen.
-    for (int i = 0; i < 1000 && woken < 50; ++i) std::this_thread::sleep_for(1ms);
-    EXPECT_GE(woken, 50);
+    EXPECT_TRUE(support::comes_true([&] { return woken >= 50; }));
     EXPECT_LE(woken, 105);
 }
 
 TEST(Worker, destroying_it_cancels_the_task) {
     std::atomic<int> turns{0};
+    std::atomic<bool> left{false};
+    struct Leaves {
+        std::atomic<bool>& left;
+        ~Leaves() { left = true; }
+    };
     {
         const Worker worker(
             [&](const io::Progress& progress) {
+                const Leaves leaves{left};
                 for (;; ++turns) {
                     progress(0);
                     std::this_thread::sleep_for(1ms);
                 }
             },
             [] {});
-        while (turns < 3) std::this_thread::sleep_for(1ms);
+        ASSERT_TRUE(support::comes_true([&] { return turns >= 3; }));
+        EXPECT_FALSE(left);
     }
-    const int then = turns;
-    std::this_thread::sleep_for(20ms);
-    EXPECT_EQ(turns, then);
+    EXPECT_TRUE(left);
 }
 
 }  // namespace
