@@ -1,4 +1,4 @@
-// Decides which render thread draws what, and which image is shown.
+// Decides which painter draws what, and which image is shown.
 #include "apps/viewer/scene/background_renderer.hpp"
 
 #include <algorithm>
@@ -40,7 +40,8 @@ constexpr SurfaceLimits limits_of_others{2'000'000, 20'000};
 
 }  // namespace
 
-BackgroundRenderer::BackgroundRenderer() {
+BackgroundRenderer::BackgroundRenderer(MakePainter make_painter)
+    : make_painter_(std::move(make_painter)) {
     connect(&felt_, &PatchedSource::made, this, &BackgroundRenderer::paint);
     connect(&felt_, &PatchedSource::finished, this, [this] { announce_ = true; });
     connect(&felt_, &PatchedSource::problem, this, &BackgroundRenderer::problem);
@@ -62,8 +63,8 @@ BackgroundRenderer::~BackgroundRenderer() {
     if (quick_) quick_->give_up();
 }
 
-void BackgroundRenderer::start_threads() {
-    const RenderThread::Results results{
+void BackgroundRenderer::make_painters() {
+    const Painter::Results results{
         [this](RenderedImage image) {
             auto shared = std::make_shared<RenderedImage>(std::move(image));
             hand_over(this, [this, shared] { take(std::move(*shared)); });
@@ -74,14 +75,14 @@ void BackgroundRenderer::start_threads() {
                 broken_ = true;
             });
         }};
-    quick_ = std::make_unique<RenderThread>(RenderThread::Priority::normal, results);
-    fine_ = std::make_unique<RenderThread>(RenderThread::Priority::low, results);
+    quick_ = make_painter_(Painter::Priority::normal, results);
+    fine_ = make_painter_(Painter::Priority::low, results);
 }
 
 void BackgroundRenderer::paint() {
     ++request_.number;
     if (request_.width < 1 || request_.height < 1 || broken_) return;
-    if (!quick_) start_threads();
+    if (!quick_) make_painters();
     fine_->give_up();
     collect_surfaces();
     RenderRequest request = request_;

@@ -1,4 +1,4 @@
-// Renders the static part of the scene on threads of its own, and keeps the newest image. No
+// Lets painters render the static part of the scene, and keeps the newest image. No
 // widget: input and display are in scene.hpp.
 #pragma once
 
@@ -9,18 +9,18 @@
 #include <optional>
 #include <vector>
 
+#include "apps/viewer/scene/painter.hpp"
 #include "apps/viewer/scene/patched_source.hpp"
 #include "apps/viewer/scene/render_request.hpp"
-#include "apps/viewer/scene/render_thread.hpp"
 
 namespace palpate::viewer {
 
-/// Belongs to the window's thread. Two render threads: one for quick images, and one for fine
+/// Belongs to the window's thread. Two painters: one for quick images, and one for fine
 /// images, which may take long and are cancelled when something changes.
 class BackgroundRenderer : public QObject {
     Q_OBJECT
   public:
-    BackgroundRenderer();
+    explicit BackgroundRenderer(MakePainter make_painter);
     ~BackgroundRenderer() override;
 
     void set_field(const Field& field, double isovalue);
@@ -52,23 +52,24 @@ class BackgroundRenderer : public QObject {
     void problem(const QString& what);
 
   private:
-    void start_threads();
+    void make_painters();
     void match_sources();
     void collect_surfaces();
     void paint();
     void take(RenderedImage image);
 
+    MakePainter make_painter_;
     RenderRequest request_;
     std::shared_ptr<const RenderedImage> shown_;
     std::optional<ScenePatch> patch_;
     bool announce_ = false;  // the felt surface is finished, but not yet drawn
     double frame_seconds_ = 0;
-    bool broken_ = false;  // no render thread can draw
+    bool broken_ = false;  // no painter can draw
     QTimer rest_;
     PatchedSource felt_;
     std::vector<std::unique_ptr<PatchedSource>> others_;  // as in the look
     std::vector<DrawnSurface> overlay_;
-    std::unique_ptr<RenderThread> quick_, fine_;
+    std::unique_ptr<Painter> quick_, fine_;
 };
 
 }  // namespace palpate::viewer

@@ -8,6 +8,7 @@
 #include <QOpenGLFunctions>
 
 #include <exception>
+#include <utility>
 
 #include "apps/viewer/scene/offscreen_renderer.hpp"
 #include "apps/viewer/scene/thread_priority.hpp"
@@ -90,6 +91,10 @@ void RenderThread::run() {
     }
     context_->doneCurrent();
     context_.reset();
+}
+
+std::unique_ptr<Painter> make_render_thread(Painter::Priority priority, Painter::Results results) {
+    return std::make_unique<RenderThread>(priority, std::move(results));
 }
 
 }  // namespace palpate::viewer

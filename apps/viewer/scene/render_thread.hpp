@@ -1,18 +1,17 @@
-// A thread that draws render requests with an OpenGL context of its own, so that the window never
-// waits for an image.
+// The painter of the program: a thread that draws with an OpenGL context of its own, so that the
+// window never waits for an image.
 #pragma once
 
 #include <QThread>
 
 #include <atomic>
 #include <condition_variable>
-#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 
-#include "apps/viewer/scene/render_request.hpp"
+#include "apps/viewer/scene/painter.hpp"
 
 class QOffscreenSurface;
 class QOpenGLContext;
@@ -22,23 +21,15 @@ namespace palpate::viewer {
 /// True if OpenGL's renderer of this name (GL_RENDERER) is the machine's graphics hardware.
 bool is_hardware(const std::string& renderer_name);
 
-class RenderThread {
+class RenderThread final : public Painter {
   public:
-    /// Called on the render thread.
-    struct Results {
-        std::function<void(RenderedImage)> drawn;
-        std::function<void(std::string what)> failed;
-    };
-    enum class Priority { normal, low };
-    /// To be called on the window's thread. With low priority other threads go first.
+    /// To be called on the window's thread. Results come on the render thread.
     RenderThread(Priority priority, Results results);
     /// Cancels the present request and waits for the thread.
-    ~RenderThread();
+    ~RenderThread() override;
 
-    /// Draws this one next; a request that still waits is dropped.
-    void draw(RenderRequest request);
-    /// Drops a waiting request and cancels the present one; neither gives an image.
-    void give_up();
+    void draw(RenderRequest request) override;
+    void give_up() override;
 
   private:
     void run();

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "apps/viewer/model/hand_state.hpp"
 #include "apps/viewer/scene/cut_handles.hpp"
@@ -34,7 +35,10 @@ Colour ink_of(const QPalette& palette) {
 
 }  // namespace
 
-Scene::Scene(QWidget* parent) : QVTKOpenGLNativeWidget(parent), parts_(std::make_unique<Parts>()) {
+Scene::Scene(QWidget* parent, MakePainter make_painter)
+    : QVTKOpenGLNativeWidget(parent),
+      parts_(std::make_unique<Parts>(std::move(make_painter))),
+      refresh_(this) {
     setObjectName("scene");
     setAccessibleName(tr("3-D view"));
     setFocusPolicy(Qt::StrongFocus);

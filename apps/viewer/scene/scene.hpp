@@ -15,6 +15,7 @@
 #include "apps/viewer/model/patch_choice.hpp"
 #include "apps/viewer/scene/cut_handles.hpp"
 #include "apps/viewer/scene/navigation.hpp"
+#include "apps/viewer/scene/painter.hpp"
 #include "palpate/servo.hpp"
 #include "pictures/scene.hpp"
 #include "pictures/view.hpp"
@@ -25,13 +26,13 @@ struct Contact;
 struct DrawnSurface;
 struct ScenePatch;
 
-/// Parallel projection. The static part (surface, volume, slices, box) is rendered on threads of
-/// its own, quickly while something changes and finely after that; the widget draws hand, proxy and
-/// force over the newest image. Points are physical [mm].
+/// Parallel projection. Painters render the static part (surface, volume, slices, box), usually on
+/// threads of their own, quickly while something changes and finely after that; the widget draws
+/// hand, proxy and force over the newest image. Points are physical [mm].
 class Scene : public QVTKOpenGLNativeWidget {
     Q_OBJECT
   public:
-    explicit Scene(QWidget* parent = nullptr);
+    explicit Scene(QWidget* parent = nullptr, MakePainter make_painter = &make_render_thread);
     /// Cancels all rendering and waits for the threads, a few milliseconds.
     ~Scene() override;
 

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "apps/viewer/scene/annotations.hpp"
@@ -47,7 +48,7 @@ struct Scene::Parts {
     std::unique_ptr<CutMarks> cut;
     std::unique_ptr<MeasureMarks> measures;
 
-    Parts() {
+    explicit Parts(MakePainter make_painter) : background(std::move(make_painter)) {
         vtkTimerLog::LoggingOff();  // one log for all threads, unprotected; windows write into it
         window->SetMultiSamples(0);
         window->SetNumberOfLayers(3);

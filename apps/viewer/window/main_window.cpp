@@ -17,6 +17,8 @@
 #include <QSettings>
 #include <QStatusBar>
 
+#include <utility>
+
 #include "apps/viewer/model/hand_state.hpp"
 #include "apps/viewer/panel/isovalue_controls.hpp"
 #include "apps/viewer/panel/layout.hpp"
@@ -46,8 +48,8 @@ constexpr int give_back_ms = 2000;
 
 }  // namespace
 
-MainWindow::MainWindow(const RunRequest& request)
-    : views_(new Views(this)),
+MainWindow::MainWindow(const RunRequest& request, MakePainter make_painter)
+    : views_(new Views(std::move(make_painter), this)),
       welcome_(new Welcome(this)),
       panel_(new Panel(this)),
       timeline_(new Timeline(this)),

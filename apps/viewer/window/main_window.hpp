@@ -5,6 +5,7 @@
 #include <QMainWindow>
 #include <QTimer>
 
+#include "apps/viewer/scene/painter.hpp"
 #include "apps/viewer/window/actions.hpp"
 #include "apps/viewer/window/content.hpp"
 #include "apps/viewer/window/detail_controller.hpp"
@@ -36,9 +37,9 @@ class MainWindow : public QMainWindow {
     Q_OBJECT
 
   public:
-    /// `request`: the command line's, for the runs to come. Opens
+    /// `request`: the command line's, for the runs to come. `make_painter`: as of Scene. Opens
     /// nothing yet.
-    explicit MainWindow(const RunRequest& request);
+    explicit MainWindow(const RunRequest& request, MakePainter make_painter = &make_render_thread);
     /// Ends the live run: forces are zero.
     ~MainWindow() override;
     /// The same, and ends the program. Unsaved edits are rescued: rescue_edits().
@@ -70,6 +71,8 @@ class MainWindow : public QMainWindow {
     void save_picture(const QString& path, bool whole_window);
     /// Nothing is being loaded, saved or drawn.
     bool settled() const;
+    /// What a timer does 60 times a second: shows what has changed.
+    void tick();
 
   protected:
     void closeEvent(QCloseEvent* event) override;
@@ -84,7 +87,6 @@ class MainWindow : public QMainWindow {
     void show_title();
     void restore_layout();
     void use(const Preferences& preferences);
-    void tick();
     void show_readout(const Snapshot& now);
     void show_streaming();
     void rest_or_wake(const std::optional<Snapshot>& now);

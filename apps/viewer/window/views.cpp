@@ -5,6 +5,7 @@
 #include <QMouseEvent>
 #include <QSplitter>
 #include <algorithm>
+#include <utility>
 
 #include "apps/viewer/panel/layout.hpp"
 #include "apps/viewer/scene/scene.hpp"
@@ -12,9 +13,9 @@
 
 namespace palpate::viewer {
 
-Views::Views(QWidget* parent)
+Views::Views(MakePainter make_painter, QWidget* parent)
     : QWidget(parent),
-      scene_(new Scene),
+      scene_(new Scene(nullptr, std::move(make_painter))),
       slices_{new SlicePane(0), new SlicePane(1), new SlicePane(2)},
       across_(new QSplitter(Qt::Horizontal)),
       left_(new QSplitter(Qt::Vertical)),

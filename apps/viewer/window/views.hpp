@@ -10,6 +10,7 @@
 #include "apps/viewer/model/look.hpp"
 #include "apps/viewer/model/measurement.hpp"
 #include "apps/viewer/model/overlay.hpp"
+#include "apps/viewer/scene/painter.hpp"
 #include "palpate/servo.hpp"
 
 class QSplitter;
@@ -23,7 +24,8 @@ class Views : public QWidget {
     Q_OBJECT
 
   public:
-    explicit Views(QWidget* parent = nullptr);
+    /// `make_painter`: as of Scene.
+    explicit Views(MakePainter make_painter, QWidget* parent = nullptr);
 
     /// `counted`: as SlicePane::set_field().
     void set_field(const Field& field, double isovalue,
