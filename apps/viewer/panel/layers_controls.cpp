@@ -23,7 +23,6 @@ namespace palpate::viewer {
 namespace {
 
 /// Changes of the same thing within so long are one step.
-constexpr int one_step_ms = 1000;
 /// [range] Levels stay so far apart.
 constexpr double least_gap = 1e-3;
 constexpr int most_rows = 6;  // of the list without scrolling
@@ -199,7 +198,7 @@ void LayersControls::say(const QString& note) {
 /// A change that continues the last one is one step with it.
 void LayersControls::edit(const SharedLayers& next, const QString& key) {
     const bool goes_on = !key.isEmpty() && key == last_key_ && since_edit_.isValid() &&
-                         since_edit_.elapsed() < one_step_ms;
+                         since_edit_.elapsed() < one_step_ms_;
     history_.keep(layers_, goes_on);
     last_key_ = key;
     since_edit_.start();

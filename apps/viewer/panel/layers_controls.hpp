@@ -61,6 +61,8 @@ class LayersControls : public QWidget {
     void choose_layer(int layer);
     LevelRoom room(int layer) const;
     void show_snapshot(const Snapshot& now);
+    /// A change of the same number that comes within `ms` is one step to undo with the one before.
+    void set_one_step(int ms) { one_step_ms_ = ms; }
     /// Forgets a request that waits.
     void drop() { limiter_.drop(); }
 
@@ -103,6 +105,7 @@ class LayersControls : public QWidget {
     LayersHistory history_;
     QString last_key_;
     QElapsedTimer since_edit_;
+    int one_step_ms_ = 1000;
 
     QComboBox* choice_;
     QPushButton *open_, *save_, *undo_, *redo_, *add_, *remove_, *earlier_, *later_;

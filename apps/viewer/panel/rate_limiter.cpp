@@ -5,7 +5,7 @@
 
 namespace palpate::viewer {
 
-RateLimiter::RateLimiter(QObject* parent, int interval) : QObject(parent) {
+RateLimiter::RateLimiter(QObject* parent, int interval) : QObject(parent), timer_(this) {
     timer_.setSingleShot(true);
     timer_.setInterval(interval);
     timer_.setTimerType(Qt::PreciseTimer);

@@ -35,7 +35,7 @@ GreyWindow whole_range(const Field& field) {
 
 }  // namespace
 
-SlicePane::SlicePane(int axis, QWidget* parent) : QWidget(parent), axis_(axis) {
+SlicePane::SlicePane(int axis, QWidget* parent) : QWidget(parent), axis_(axis), later_(this) {
     setObjectName(QStringLiteral("slice%1").arg(axis));
     setAccessibleName(tr("Slice"));
     setWhatsThis(
