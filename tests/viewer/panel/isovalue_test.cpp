@@ -105,7 +105,7 @@ TEST(RateLimiter, a_held_request_passes_after_the_interval) {
     RateLimiter limiter(nullptr, 5);
     int passed = -1;
     for (int i = 0; i < 10; ++i) limiter.put([&passed, i] { passed = i; });
-    for (int i = 0; i < 2000 && passed != 9; ++i) QTest::qWait(1);
+    wait_until_quiet(limiter);
     EXPECT_EQ(passed, 9);
 }
 

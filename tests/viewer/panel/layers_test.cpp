@@ -300,15 +300,23 @@ TEST_F(LayersPart, what_the_device_cannot_render_is_marked_with_what_it_renders)
 TEST_F(LayersPart, a_drag_of_a_slider_is_one_step_to_undo) {
     choose(1);
     auto* slider = find<QSlider>("layer_stiffness_slider");
-    for (const int place : {200, 300, 400}) {
-        slider->setValue(place);
-        QTest::qWait(20);
-    }
+    const auto drag_slider = [&](int one_step_ms) {
+        panel.layers_controls().set_one_step(one_step_ms);
+        for (const int place : {200, 300, 400}) {
+            slider->setValue(place);
+            settle();
+        }
+    };
+    drag_slider(std::numeric_limits<int>::max());
     EXPECT_NE(layer(0)[stiffness], 0.3);
     press("undo_layers");
     EXPECT_EQ(layer(0)[stiffness], 0.3);
     press("redo_layers");
     EXPECT_NE(layer(0)[stiffness], 0.3);
+    press("undo_layers");
+    drag_slider(0);
+    press("undo_layers");
+    EXPECT_NE(layer(0)[stiffness], 0.3) << "changes far apart are steps of their own";
 }
 
 TEST_F(LayersPart, the_curve_of_stiffness_is_dragged_and_gets_and_loses_points) {

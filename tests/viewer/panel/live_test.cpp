@@ -103,17 +103,15 @@ TEST_F(WithLive, switches_show_in_the_sessions_own_snapshots) {
     press("forces");
     type("stiffness_box", "0.25");
     type("scale", "3");
-    for (int i = 0; i < 2000; ++i) {
-        const auto now = live->snapshot();
-        if (now && !now->forces_on && now->stiffness == 0.25 && now->session.transform.scale == 3) {
-            panel.show_snapshot(*now);
-            EXPECT_FALSE(find<QPushButton>("forces")->isChecked());
-            EXPECT_EQ(find<QLabel>("device_state")->text(), "ready");
-            return;
-        }
-        QTest::qWait(1);
-    }
-    FAIL() << "the servo never did what was asked for";
+    std::optional<Snapshot> now;
+    wait_until([&] {
+        now = live->snapshot();
+        return now && !now->forces_on && now->stiffness == 0.25 &&
+               now->session.transform.scale == 3;
+    });
+    panel.show_snapshot(*now);
+    EXPECT_FALSE(find<QPushButton>("forces")->isChecked());
+    EXPECT_EQ(find<QLabel>("device_state")->text(), "ready");
 }
 
 }  // namespace

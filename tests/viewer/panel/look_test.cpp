@@ -247,7 +247,7 @@ TEST_F(Looks, the_panel_can_be_destroyed_during_a_drag_with_a_dialog_open) {
     other->set_session(*field, histogram, 300, {}, desktop_device());
     other->look_controls().set_look(look);
     other->show();
-    (void)wait_until_exposed(*other);
+    wait_until_exposed(*other);
     auto* held = other->findChild<TransferEditor*>();
     const QPointF at = held->place_of(look.transfer.points[3]);
     drag(held, at, at + QPointF(8, -15), Qt::NoModifier, false);

@@ -63,8 +63,7 @@ class PanelFixture : public testing::Test {
         for (Section* section : panel.findChildren<Section*>()) section->set_open(true);
         panel.resize(400, 1450);
         panel.show();
-        QApplication::setActiveWindow(&panel);
-        (void)wait_until_exposed(panel);
+        activate(panel);
     }
 
     void set(const RendererSettings& settings = {}, double isovalue = 300,
@@ -76,11 +75,8 @@ class PanelFixture : public testing::Test {
         QApplication::processEvents();
     }
 
-    /// Until nothing is held back any more, however busy the machine is.
-    static void settle() {
-        QTest::qWait(40);  // longer than anything is held back
-        QApplication::processEvents();
-    }
+    /// Until nothing is held back any more.
+    void settle() const { wait_until_quiet(panel); }
 
     /// On the page that is shown from now on.
     template <class T>
@@ -135,6 +131,7 @@ class PanelFixture : public testing::Test {
     }
 
     QString message(const char* part) {
+        settle();
         return find<QLabel>((std::string(part) + "_message").c_str())->text();
     }
 

@@ -51,7 +51,8 @@ class Pressing : public PanelFixture {
         editor->selectAll();
         QTest::keyClicks(editor, text);
         QTest::keyClick(editor, Qt::Key_Return);
-        QTest::qWait(1);  // a table takes it, and the editor goes, a little later
+        // A table takes it, and the editor goes, a little later.
+        wait_until([this] { return !table()->findChild<QLineEdit*>(); });
     }
     static void expect_range(const Penetrability& p, int at, double low, double high,
                              double within) {

@@ -41,8 +41,7 @@ class ATimeline : public testing::Test {
         bar.resize(900, bar.sizeHint().height());
         bar.set_view(six());
         bar.show();
-        QApplication::setActiveWindow(&bar);
-        (void)wait_until_exposed(bar);
+        activate(bar);
         QObject::connect(&bar, &Timeline::speed_asked, [this](double s) { speeds.push_back(s); });
         QObject::connect(&bar, &Timeline::moment_asked, [this](double t) { times.push_back(t); });
         QObject::connect(&bar, &Timeline::loop_asked, [this](bool l) { loops.push_back(l); });
@@ -56,10 +55,7 @@ class ATimeline : public testing::Test {
     TimelineTrack* track() { return find<TimelineTrack>("timeline_track"); }
     QString text() { return find<QLabel>("timeline_time")->text(); }
     void press(const char* name) { QTest::mouseClick(find<QWidget>(name), Qt::LeftButton); }
-    static void settle() {
-        QTest::qWait(40);  // longer than anything is held back
-        QApplication::processEvents();
-    }
+    void settle() const { wait_until_quiet(bar); }
     void move_to(double part) {
         QMouseEvent event(QEvent::MouseMove, QPointF(part * track()->width(), 5), Qt::NoButton,
                           Qt::LeftButton, Qt::NoModifier);
@@ -304,7 +300,7 @@ TEST_F(ATimeline, a_view_like_the_last_draws_nothing) {
     TimelineView view = six();
     view.time = 1.9;
     bar.set_view(view);
-    ASSERT_TRUE(QTest::qWaitFor([&] { return paints.count > 0; }, 20'000));
+    wait_until([&] { return paints.count > 0; });
 }
 
 TEST(TimelineValues, what_is_in_memory_may_go_round_the_end) {

@@ -1,4 +1,4 @@
-// Which changes the render threads draw, and which they leave: each picture of a volume costs much.
+// Which changes the painters get, and which they do not: each picture of a volume costs much.
 #include "apps/viewer/scene/background_renderer.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace {
 /// Settled with a ball, its label and slices. What is asked for after that is drawn unless
 /// settled() stays true.
 struct DrawnBall {
-    BackgroundRenderer renderer;
+    BackgroundRenderer renderer{painter_of_test()};
     RenderRequest wanted;
     ExtractedSurface label;
 
@@ -34,8 +34,8 @@ struct DrawnBall {
         settle();
     }
     std::vector<DrawnSurface> labels() const { return {{label, Colour{0.9, 0.1, 0.1}, 0.7}}; }
-    bool settle() {
-        return wait_until([this] { return renderer.settled(); });
+    void settle() {
+        wait_until([this] { return renderer.settled(); });
     }
 };
 
@@ -57,7 +57,9 @@ TEST(BackgroundRenderer, draws_an_overlay_whose_surfaces_have_changed) {
     auto labels = drawn.labels();
     const auto draws = [&] {
         drawn.renderer.set_overlay(labels);
-        return !drawn.renderer.settled() && drawn.settle();
+        const bool asked = !drawn.renderer.settled();
+        drawn.settle();
+        return asked;
     };
     labels[0].opacity = 0;
     EXPECT_TRUE(draws());

@@ -36,13 +36,13 @@ struct Torus : ShownScene {
     }
 };
 
-TEST(SceneLooks, show_a_surface_with_probe_proxy_spring_and_force) {
+TEST(DrawnLooks, show_a_surface_with_probe_proxy_spring_and_force) {
     Torus shown{Look()};
     shown.scene.show_snapshot(shown.pressed());
     expect_as_committed(shown.settled("look_contact"), "contact");
 }
 
-TEST(SceneLooks, show_glass_in_a_dark_window) {
+TEST(DrawnLooks, show_glass_in_a_dark_window) {
     Look look;
     look.surface_opacity = 0.35;
     Torus shown(look);
@@ -53,7 +53,7 @@ TEST(SceneLooks, show_glass_in_a_dark_window) {
     expect_as_committed(shown.settled("look_glass"), "glass");
 }
 
-TEST(SceneLooks, show_a_volume_with_slices) {
+TEST(DrawnLooks, show_a_volume_with_slices) {
     Look look;
     look.surface = false;
     look.volume = look.slices = true;
@@ -63,7 +63,7 @@ TEST(SceneLooks, show_a_volume_with_slices) {
     expect_as_committed(shown.settled("look_volume"), "volume");
 }
 
-TEST(SceneLooks, show_lattice_and_planes_round_the_proxy) {
+TEST(DrawnLooks, show_lattice_and_planes_round_the_proxy) {
     Look look;
     look.surface_opacity = 0.4;
     look.tetrahedra = look.planes = true;
@@ -87,7 +87,7 @@ TEST(SceneLooks, show_lattice_and_planes_round_the_proxy) {
     expect_as_committed(shown.settled("look_lattice"), "lattice");
 }
 
-TEST(SceneLooks, show_several_surfaces_cut_open) {
+TEST(DrawnLooks, show_several_surfaces_cut_open) {
     Look look;
     look.surface_opacity = 0.35;
     look.surfaces = {{200, {0.84, 0.37, 0.25}, 1, true}};
@@ -97,7 +97,7 @@ TEST(SceneLooks, show_several_surfaces_cut_open) {
     expect_as_committed(shown.settled("look_surfaces"), "surfaces");
 }
 
-TEST(SceneLooks, show_labels_inside_glass) {
+TEST(DrawnLooks, show_labels_inside_glass) {
     Look look;
     look.surface_opacity = 0.35;
     Torus shown(look);
@@ -122,7 +122,7 @@ TEST(SceneLooks, show_labels_inside_glass) {
     expect_as_committed(shown.settled("look_labels"), "labels");
 }
 
-TEST(SceneLooks, show_an_edit_while_the_brush_is_on) {
+TEST(DrawnLooks, show_an_edit_while_the_brush_is_on) {
     Torus shown{Look()};
     const Snapshot pressed = shown.pressed();
     edit::Stroke stroke;

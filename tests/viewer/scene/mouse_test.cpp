@@ -86,7 +86,7 @@ TEST(SceneMouse, wheel_zooms_about_the_pointer_and_right_drag_about_where_it_beg
     EXPECT_LT((seen({300, 60}) - point).norm(), 1e-9);
 }
 
-TEST(SceneMouse, shift_and_double_click_recentre_on_the_surface_and_beside_it_does_nothing) {
+TEST(DrawnMouse, shift_and_double_click_recentre_on_the_surface_and_beside_it_does_nothing) {
     Hands hands;
     hands.settled();
     const Vec3 before = hands.scene.camera().focus;

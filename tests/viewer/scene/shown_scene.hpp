@@ -16,21 +16,32 @@
 #include "apps/viewer/scene/scene.hpp"
 #include "viewer/kept_picture.hpp"
 #include "viewer/references.hpp"
+#include "viewer/undrawn.hpp"
 #include "viewer/waiting.hpp"
 
 namespace palpate::viewer {
 
+/// Draws in suites whose names begin with Drawn.
 struct ShownScene {
-    Scene scene;
+    Scene scene{nullptr, painter_of_test()};
+    int frames = 0;
 
     explicit ShownScene(int width = 400, int height = 320) {
         scene.resize(width, height);
         scene.show();
-        EXPECT_TRUE(wait_until_exposed(scene));
+        wait_until_exposed(scene);
+        QObject::connect(&scene, &Scene::frameSwapped, [this] { ++frames; });
     }
-    /// What is shown once nothing is under way; left in the folder of pictures as well.
+    /// Until another picture has come, or all have.
+    void next_frame() {
+        const int before = frames;
+        wait_until([&] { return frames > before || scene.settled(); });
+    }
+    /// What is shown once nothing is under way, null where nothing is drawn; left in the folder of
+    /// pictures as well.
     QImage settled(const std::string& name = {}) {
-        EXPECT_TRUE(wait_until([this] { return scene.settled(); }));
+        wait_until([this] { return scene.settled(); });
+        if (!draws()) return {};
         const QImage image = scene.picture().convertToFormat(QImage::Format_RGB32);
         if (!name.empty()) {
             std::filesystem::create_directories(PALPATE_PICTURES);

@@ -33,7 +33,7 @@ struct Ball : ShownScene {
     }
 };
 
-TEST(SceneSurfaces, are_seen_beside_the_felt_one_where_their_levels_lie) {
+TEST(DrawnSurfaces, are_seen_beside_the_felt_one_where_their_levels_lie) {
     Look look = bare();
     look.surface = false;
     look.surfaces = {{60, red, 1, true}};
@@ -50,7 +50,7 @@ TEST(SceneSurfaces, are_seen_beside_the_felt_one_where_their_levels_lie) {
     EXPECT_EQ(blob(shown.settled(), is_red).count, 0);
 }
 
-TEST(SceneSurfaces, an_inner_one_is_seen_through_glass_and_glass_through_glass) {
+TEST(DrawnSurfaces, an_inner_one_is_seen_through_glass_and_glass_through_glass) {
     Look look = bare();
     look.surface_opacity = 0.3;
     look.surfaces = {{220, red, 1, true}, {60, green, 0.3, true}};
@@ -67,7 +67,7 @@ TEST(SceneSurfaces, an_inner_one_is_seen_through_glass_and_glass_through_glass) 
     EXPECT_GT(qGreen(rim), qRed(rim) + 10);
 }
 
-TEST(SceneSurfaces, of_another_volume_are_its_own_and_all_follow_edits) {
+TEST(DrawnSurfaces, of_another_volume_are_its_own_and_all_follow_edits) {
     Look look = bare();
     look.surface = false;
     look.surfaces = {{128, red, 1, true}};
@@ -87,7 +87,7 @@ TEST(SceneSurfaces, of_another_volume_are_its_own_and_all_follow_edits) {
     EXPECT_LT(small.right - small.left, half.bottom - half.top);
 }
 
-TEST(SceneSurfaces, can_be_changed_at_any_time) {
+TEST(DrawnSurfaces, can_be_changed_at_any_time) {
     Look look = bare();
     Ball shown(look);
     support::Random random(7);
@@ -98,14 +98,14 @@ TEST(SceneSurfaces, can_be_changed_at_any_time) {
         }
         look.cut = static_cast<Cut>(i % 3);
         shown.scene.set_look(look);
-        if (i % 4 == 0) QTest::qWait(3);
+        if (i % 4 == 0) shown.next_frame();
         if (i % 20 == 9) shown.scene.clear();
         if (i % 20 == 14) shown.scene.set_field(shown.field, 100 + i);
     }
     shown.settled();
 }
 
-TEST(SceneCut, a_plane_takes_away_the_side_of_its_normal_and_shows_what_is_behind) {
+TEST(DrawnCut, a_plane_takes_away_the_side_of_its_normal_and_shows_what_is_behind) {
     Look look = bare();
     look.surfaces = {{220, red, 1, true}};
     Ball shown(look);
@@ -124,7 +124,7 @@ TEST(SceneCut, a_plane_takes_away_the_side_of_its_normal_and_shows_what_is_behin
     EXPECT_GT(blob(shown.settled(), is_bone).right, 230);
 }
 
-TEST(SceneCut, a_box_keeps_what_is_inside) {
+TEST(DrawnCut, a_box_keeps_what_is_inside) {
     Look look = bare();
     look.cut = Cut::box;
     look.cut_box = {{0, 0, 0.5}, {1, 1, 1}};
@@ -134,7 +134,7 @@ TEST(SceneCut, a_box_keeps_what_is_inside) {
     EXPECT_LT(upper.top, 120);
 }
 
-TEST(SceneCut, the_volume_is_cut_too) {
+TEST(DrawnCut, the_volume_is_cut_too) {
     Look look = bare();
     look.surface = false;
     look.volume = true;
@@ -259,7 +259,7 @@ TEST(Compose, puts_the_nearest_over_the_others_at_each_pixel_and_leaves_out_what
     EXPECT_EQ(composed({a}, solid).rgba, a.rgba);
 }
 
-TEST(ScenePatch, of_the_level_felt_is_seen_through_the_surface_that_was_pressed_through) {
+TEST(DrawnPatch, of_the_level_felt_is_seen_through_the_surface_that_was_pressed_through) {
     Ball shown(bare());
     const double radius = shown.radius_at(220);
     const Vec3 scp(0, -radius, 0);

@@ -72,7 +72,6 @@ QImage picture_of(ShownPane& shown) {
     // Which of two windows has the focus is not what is compared.
     shown.pane.setFocusPolicy(Qt::NoFocus);
     shown.pane.clearFocus();
-    QTest::qWait(500);
     return shown.picture();
 }
 
@@ -87,7 +86,7 @@ TEST(ChangingSlices, a_pane_shows_the_newest_of_many_versions_as_if_it_had_been_
     for (int i = 0; i < 30; ++i) {
         field = carved(field, {20 - 0.5 * i, 0.3 * i, 0}, 5);
         shown.pane.update_field(field);
-        QTest::qWait(3);
+        handle_events();
     }
     const QImage after = picture_of(shown);
     keep_picture(shown.pane, "carved_slice");

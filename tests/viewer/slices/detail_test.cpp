@@ -53,25 +53,6 @@ int differing(const QImage& a, const QImage& b, const QRect& part) {
     return count;
 }
 
-/// Once it is drawn.
-QImage drawn(ShownPane& shown) {
-    (void)shown.picture();
-    QTest::qWait(120);
-    return shown.picture();
-}
-
-/// Once both are drawn: a slice that was slow leaves time to others first, seconds on a busy
-/// machine.
-int differing_at_last(ShownPane& a, ShownPane& b, int granted) {
-    int count = 0;
-    for (int i = 0; i < 100; ++i) {
-        count = differing(a.picture(), b.picture(), a.pane.rect());
-        if (count <= granted) break;
-        QTest::qWait(100);
-    }
-    return count;
-}
-
 class SliceDetail : public testing::TestWithParam<Interpolation> {};
 
 TEST_P(SliceDetail, all_of_a_level_looks_like_the_volume_itself) {
@@ -88,7 +69,8 @@ TEST_P(SliceDetail, all_of_a_level_looks_like_the_volume_itself) {
             for (SlicePane* pane : {&whole.pane, &store.pane}) {
                 pane->set_crosshair(physical_from_index(levels.fine, index));
             }
-            EXPECT_LE(differing_at_last(whole, store, 40), 40) << axis << ' ' << part;
+            EXPECT_LE(differing(whole.picture(), store.picture(), whole.pane.rect()), 40)
+                << axis << ' ' << part;
         }
     }
 }
@@ -127,7 +109,7 @@ TEST_P(SliceDetail, a_slice_that_has_left_the_part_shows_the_overview) {
     store.pane.set_field(levels.field(levels.coarse), 0.3, levels.fine);
     const auto at = [&](double layer) {
         store.pane.set_crosshair(physical_from_index(levels.fine, Vec3(30, 30, layer)));
-        return drawn(store);
+        return store.picture();
     };
     const QImage coarse = at(30), coarse_end = at(47);
     store.pane.set_detail(levels.detail({{0, 0, 18}, {63, 55, 28}}));

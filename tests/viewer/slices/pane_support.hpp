@@ -32,7 +32,7 @@ struct ShownPane {
         pane.resize(400, 360);
         if (field) pane.set_field(*field, isovalue);
         pane.show();
-        (void)wait_until_exposed(pane);
+        wait_until_exposed(pane);
         QObject::connect(&pane, &SlicePane::crosshair_chosen, &pane,
                          [this](const Vec3& p) { chosen.push_back(p); });
         QObject::connect(&pane, &SlicePane::probe_aimed, &pane,
@@ -53,7 +53,15 @@ struct ShownPane {
         QApplication::sendEvent(&pane, &move);
         QTest::mouseRelease(&pane, button, keys, to);
     }
-    QImage picture() { return pane.grab().toImage(); }
+    /// Once the pane has caught up: one whose slice takes long leaves time to others first.
+    QImage picture() {
+        do {
+            pane.grab();
+            wait_until_quiet(pane);
+            pane.grab();
+        } while (holds_back(pane));
+        return pane.grab().toImage();
+    }
 
     SlicePane pane;
     std::vector<Vec3> chosen, aimed;

@@ -156,6 +156,16 @@ TEST(SlicePane, a_millimetre_is_as_many_pixels_in_every_direction) {
     EXPECT_GT(one, 1);
 }
 
+/// Of the pixel and those beside it: a thin line may lie between two.
+QColor nearest_to_orange(const QImage& picture, const QPoint& at) {
+    QColor nearest = picture.pixel(at);
+    for (const QPoint& by : {QPoint(1, 0), QPoint(-1, 0), QPoint(0, 1), QPoint(0, -1)}) {
+        const QColor one = picture.pixel(at + by);
+        if (one.red() - one.blue() > nearest.red() - nearest.blue()) nearest = one;
+    }
+    return nearest;
+}
+
 TEST(SlicePane, grey_levels_run_from_low_to_high_and_the_contour_is_on_the_surface) {
     const Field field = ball_on(oblique_direction());
     // The lattice's field and a linear one differ a little between samples.
@@ -172,7 +182,7 @@ TEST(SlicePane, grey_levels_run_from_low_to_high_and_the_contour_is_on_the_surfa
                            0.3 * field.geometry().direction.col((axis + 2) % 3);
         const RayHit hit = cast_ray(field, 0.5, 24 * along.normalized(), Vec3::Zero());
         ASSERT_TRUE(hit.hit);
-        const QColor there = picture.pixel(shown.pane.pixel_of(hit.point).toPoint());
+        const QColor there = nearest_to_orange(picture, shown.pane.pixel_of(hit.point).toPoint());
         EXPECT_NEAR(there.red(), contour_colour().red(), 60);
         EXPECT_GT(there.red() - there.blue(), 100);
     }
@@ -249,10 +259,10 @@ TEST(SlicePane, however_fast_the_crosshair_moves_the_last_slice_is_shown) {
     const QImage expected = there.picture();
     for (int i = 0; i < 50; ++i) {
         moved.pane.set_crosshair(physical_from_index(field.geometry(), {30, 12, 5 + 0.31 * i}));
-        moved.picture();
+        moved.pane.grab();
     }
     moved.pane.set_crosshair(last);
-    EXPECT_TRUE(QTest::qWaitFor([&] { return moved.picture() == expected; }, 20'000));
+    EXPECT_EQ(moved.picture(), expected);
 }
 
 TEST(SlicePane, empty_or_emptied_in_the_middle_of_a_drag_it_takes_everything) {

@@ -42,7 +42,7 @@ struct ThreePanes {
         }
         window.resize(QSize(1200, 420));
         window.show();
-        (void)wait_until_exposed(window);
+        wait_until_exposed(window);
     }
 };
 
@@ -68,7 +68,7 @@ TEST(SlicePictures, show_a_small_pane_under_the_pointer) {
     pane.resize(240, 260);
     pane.set_field(Field(real("cthead_unc.nrrd")), 500);
     pane.show();
-    (void)wait_until_exposed(pane);
+    wait_until_exposed(pane);
     QMouseEvent move(QEvent::MouseMove, QPointF(140, 120), Qt::NoButton, Qt::NoButton,
                      Qt::NoModifier);
     QApplication::sendEvent(&pane, &move);
@@ -118,7 +118,7 @@ TEST(SlicePictures, show_empty_panes_and_focus_in_dark_and_light) {
         window.resize(700, 340);
         window.show();
         QApplication::setActiveWindow(&window);
-        (void)wait_until_exposed(window);
+        wait_until_exposed(window);
         full->setFocus();
         keep_picture(window, dark ? "slices_dark" : "slices_light");
     }

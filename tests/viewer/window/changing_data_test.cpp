@@ -16,14 +16,6 @@
 namespace palpate::viewer::test {
 namespace {
 
-/// Presses a button of the question that comes.
-void answer(QMessageBox::StandardButton button) {
-    QTimer::singleShot(300, [button] {
-        auto* box = qobject_cast<QMessageBox*>(QApplication::activeModalWidget());
-        if (box) QTest::mouseClick(box->button(button), Qt::LeftButton);
-    });
-}
-
 class ChangingData : public InWindow {
   protected:
     run::EditState work() { return window_->live()->data().editor().state(); }
@@ -31,7 +23,7 @@ class ChangingData : public InWindow {
     void carve() {
         press_until_force();
         press(Qt::Key_B);
-        ASSERT_TRUE(wait_until([&] { return work().version > 0; }));
+        wait_until([&] { return work().version > 0; });
         press(Qt::Key_B);
     }
 };
@@ -42,16 +34,16 @@ TEST_F(ChangingData, the_brush_carves_what_is_felt_and_undo_and_redo_bring_it_ba
     const auto start = work().samples;
     carve();
     EXPECT_TRUE(work().changed);
-    ASSERT_TRUE(wait_until([&] { return window_->settled(); }));
+    wait_until_settled();
     save("carved");
     press(Qt::Key_Z, Qt::ControlModifier);
-    EXPECT_TRUE(wait_until([&] { return work().samples == start; }));
-    EXPECT_TRUE(wait_until([&] { return now().session.version == 0; }));
+    wait_until([&] { return work().samples == start; });
+    wait_until([&] { return now().session.version == 0; });
     press(Qt::Key_Z, Qt::ControlModifier | Qt::ShiftModifier);
-    EXPECT_TRUE(wait_until([&] { return work().samples != start; }));
-    ASSERT_TRUE(wait_until([&] { return part<QPushButton>("undo").isEnabled(); }));
+    wait_until([&] { return work().samples != start; });
+    wait_until([&] { return part<QPushButton>("undo").isEnabled(); });
     QTest::mouseClick(&part<QPushButton>("undo"), Qt::LeftButton);
-    EXPECT_TRUE(wait_until([&] { return work().samples == start; }));
+    wait_until([&] { return work().samples == start; });
 }
 
 TEST_F(ChangingData, the_edited_volume_is_saved_by_a_dialog_and_can_be_opened) {
@@ -59,7 +51,7 @@ TEST_F(ChangingData, the_edited_volume_is_saved_by_a_dialog_and_can_be_opened) {
     carve();
     const auto carved = work().samples;
     type_in_dialog(Qt::Key_S, scratch("carved.nrrd"), Qt::ShiftModifier);
-    ASSERT_TRUE(wait_until([&] { return !work().changed; }));
+    wait_until([&] { return !work().changed; });
     const Volume saved = io::read_volume(scratch_.path() / "carved.nrrd").volume;
     const Volume felt = flattened(*carved);
     ASSERT_EQ(saved.bytes(), felt.bytes());
@@ -73,7 +65,7 @@ TEST_F(ChangingData, the_edited_volume_is_saved_as_zarr_and_then_read_as_it_is_f
     carve();
     const Volume felt = flattened(*work().samples);
     type_in_dialog(Qt::Key_S, scratch("carved.zarr"), Qt::ShiftModifier);
-    ASSERT_TRUE(wait_until([&] { return !work().changed; }));
+    wait_until([&] { return !work().changed; });
     const auto store = stream::open_store((scratch_.path() / "carved.zarr").string());
     const Volume saved = stream::read_level(*store, 0);
     EXPECT_EQ(saved.geometry().origin, felt.geometry().origin);
@@ -83,10 +75,12 @@ TEST_F(ChangingData, the_edited_volume_is_saved_as_zarr_and_then_read_as_it_is_f
     EXPECT_TRUE(window_->live()->data().is_streamed());
 }
 
-TEST_F(ChangingData, the_brush_is_outlined_in_scene_and_slices) {
+using DrawnChangingData = ChangingData;
+
+TEST_F(DrawnChangingData, the_brush_is_outlined_in_scene_and_slices) {
     feel("synthetic:sphere:48x48x48");
     press_until_force();
-    ASSERT_TRUE(wait_until([&] { return window_->settled(); }));
+    wait_until_settled();
     const auto orange = [](const QImage& image) {
         int count = 0;
         for (int y = 0; y < image.height(); ++y) {
@@ -101,11 +95,11 @@ TEST_F(ChangingData, the_brush_is_outlined_in_scene_and_slices) {
     const auto slice = [&] { return orange(window_->views().slice(2).grab().toImage()); };
     const int before_scene = scene(), before_slice = slice();
     press(Qt::Key_B);
-    EXPECT_TRUE(wait_until([&] { return scene() > before_scene + 50; }));
-    EXPECT_TRUE(wait_until([&] { return slice() > before_slice + 20; }));
+    wait_until([&] { return scene() > before_scene + 50; });
+    wait_until([&] { return slice() > before_slice + 20; });
     save("brush");
     press(Qt::Key_B);
-    EXPECT_TRUE(wait_until([&] { return scene() <= before_scene + 5; }));
+    wait_until([&] { return scene() <= before_scene + 5; });
 }
 
 TEST_F(ChangingData, what_was_saved_is_what_is_open) {
@@ -113,10 +107,10 @@ TEST_F(ChangingData, what_was_saved_is_what_is_open) {
     EXPECT_FALSE(window_->isWindowModified());
     carve();
     const auto carved = work().samples;
-    EXPECT_TRUE(wait_until([&] { return window_->isWindowModified(); }));
+    wait_until([&] { return window_->isWindowModified(); });
     type_in_dialog(Qt::Key_S, scratch("carved.nrrd"), Qt::ShiftModifier);
-    ASSERT_TRUE(wait_until([&] { return !window_->editing().saving(); }));
-    EXPECT_TRUE(wait_until([&] { return !window_->isWindowModified(); }));
+    wait_until([&] { return !window_->editing().saving(); });
+    wait_until([&] { return !window_->isWindowModified(); });
     EXPECT_TRUE(window_->windowTitle().startsWith("carved.nrrd[*]"));
     EXPECT_EQ(recent_files().value(0), scratch("carved.nrrd"));
     type_in_dialog(Qt::Key_S, scratch("case.json"));
@@ -125,7 +119,7 @@ TEST_F(ChangingData, what_was_saved_is_what_is_open) {
               scratch("carved.nrrd").toStdString());
     // Opened here, where the volume of before the edits is still at hand.
     window_->files().open_path(scratch("case.json"));
-    ASSERT_TRUE(wait_until([&] { return window_->settled() && !window_->files().loading(); }));
+    wait_until([&] { return window_->settled() && !window_->files().loading(); });
     EXPECT_EQ(work().version, 0U);
     EXPECT_TRUE(window_->windowTitle().contains("(case.json)"));
     const Volume felt = flattened(*work().samples), edited = flattened(*carved);
@@ -142,7 +136,7 @@ TEST_F(ChangingData, closing_offers_to_save_and_closes_once_that_is_done) {
     answer(QMessageBox::Save);
     typing(scratch("kept.nrrd"),
            [&] { EXPECT_FALSE(window_->close()) << "not before it is saved"; });
-    EXPECT_TRUE(wait_until([&] { return !window_->isVisible(); }));
+    wait_until([&] { return !window_->isVisible(); });
     EXPECT_TRUE(QFile::exists(scratch("kept.nrrd")));
 }
 
@@ -152,7 +146,7 @@ TEST_F(ChangingData, a_session_of_a_volume_with_unsaved_edits_asks_first) {
     answer(QMessageBox::Cancel);
     press(Qt::Key_S, Qt::ControlModifier);
     EXPECT_TRUE(work().changed);
-    ASSERT_TRUE(wait_until_active(*window_));
+    activate(*window_);
     answer(QMessageBox::Discard);
     type_in_dialog(Qt::Key_S, scratch("case.json"));
     EXPECT_TRUE(work().changed) << "the edits are not lost";
@@ -194,33 +188,32 @@ TEST_F(ChangingData, a_recording_of_edits_is_played_with_them) {
     const auto carved = work().samples;
     window_->recordings().stop();
     window_->files().open_path(scratch("carving.csv"));
-    ASSERT_TRUE(wait_until([&] { return window_->playback() != nullptr; }))
-        << window_->messages().problem().toStdString();
+    wait_until([&] { return window_->playback() != nullptr; });
     EXPECT_EQ(window_->playback()->different(), 0U);
     window_->playing().show_time(window_->playback()->end());
     Playback& playback = *window_->playback();
     const Volume seen = flattened(playback.field_at(playback.at(playback.end())).samples());
     const Volume felt = flattened(*carved);
     EXPECT_EQ(std::memcmp(seen.data(), felt.data(), felt.bytes()), 0);
-    ASSERT_TRUE(wait_until([&] { return window_->settled(); }));
+    wait_until_settled();
     save("played");
 }
 
 TEST_F(ChangingData, a_sequence_plays_steps_and_is_sought_with_the_timeline) {
     // Not feel(): what plays does not settle.
     window_->files().open_path("synthetic:beating:32x32x32");
-    ASSERT_TRUE(wait_until([&] { return window_->live() && window_->live()->snapshot(); }));
+    wait_until([&] { return window_->live() && window_->live()->snapshot(); });
     EXPECT_TRUE(window_->timeline().isVisible());
     const double before = now().session.moment;
-    ASSERT_TRUE(wait_until([&] { return now().session.moment > before + 0.1; })) << "it plays";
+    wait_until([&] { return now().session.moment > before + 0.1; });  // it plays
     QTest::mouseClick(&part<QToolButton>("timeline_play"), Qt::LeftButton);
-    ASSERT_TRUE(wait_until([&] { return now().speed == 0; }));
+    wait_until([&] { return now().speed == 0; });
     QTest::mouseClick(&part<QToolButton>("timeline_forward"), Qt::LeftButton);
-    ASSERT_TRUE(wait_until([&] {
+    wait_until([&] {
         const double frames = now().session.moment / 0.04;
         return std::abs(frames - std::round(frames)) < 1e-6;
-    }));
-    ASSERT_TRUE(wait_until([&] { return window_->settled(); }));
+    });
+    wait_until_settled();
     save("beating");
     // The brush is not for sequences, and says so.
     press(Qt::Key_B);
@@ -228,7 +221,7 @@ TEST_F(ChangingData, a_sequence_plays_steps_and_is_sought_with_the_timeline) {
     EXPECT_TRUE(window_->statusBar()->toolTip().contains("cannot be edited"));
     EXPECT_FALSE(window_->panel().brush().on);
     press(Qt::Key_K);
-    EXPECT_TRUE(wait_until([&] { return now().speed == 1; }));
+    wait_until([&] { return now().speed == 1; });
     feel("synthetic:sphere:32x32x32");
     EXPECT_FALSE(window_->timeline().isVisible());
     EXPECT_TRUE(part<QAction>("brush_action").isEnabled());

@@ -20,6 +20,7 @@
 #include "apps/viewer/window/recording_controller.hpp"
 #include "apps/viewer/window/timeline_controller.hpp"
 #include "support/scratch_folder.hpp"
+#include "viewer/waiting.hpp"
 
 namespace palpate::viewer::test {
 namespace {
@@ -94,12 +95,12 @@ TEST_F(Controllers, a_background_task_hands_its_result_over_or_shows_its_error) 
     task.start(
         "count", [&](const io::Progress&) { result = 3; }, [&] { then = result; });
     EXPECT_TRUE(task.busy());
-    ASSERT_TRUE(QTest::qWaitFor([&] { return !task.busy(); }, 20'000));
+    wait_until([&] { return !task.busy(); });
     EXPECT_EQ(then, 3);
     task.start(
         "fail", [](const io::Progress&) { throw std::runtime_error("no such thing"); },
         [&] { then = 0; });
-    ASSERT_TRUE(QTest::qWaitFor([&] { return !task.busy(); }, 20'000));
+    wait_until([&] { return !task.busy(); });
     EXPECT_EQ(then, 3);
     EXPECT_TRUE(messages.problem().contains("no such thing"));
     EXPECT_NE(parent.findChild<QMessageBox*>("problem"), nullptr);
@@ -108,14 +109,12 @@ TEST_F(Controllers, a_background_task_hands_its_result_over_or_shows_its_error) 
 TEST_F(Controllers, a_cancelled_background_task_has_no_result) {
     BackgroundTask task(messages);
     bool then = false;
-    task.start(
-        "wait",
-        [](const io::Progress& progress) {
-            while (true) progress(0.5);
-        },
-        [&] { then = true; });
+    const Worker::Task endless = [](const io::Progress& progress) {
+        for (;;) progress(0.5);
+    };
+    task.start("wait", endless, [&] { then = true; });
     task.cancel();
-    ASSERT_TRUE(QTest::qWaitFor([&] { return !task.busy(); }, 20'000));
+    wait_until([&] { return !task.busy(); });
     EXPECT_FALSE(then);
     EXPECT_TRUE(messages.problem().isEmpty());
 }
@@ -151,8 +150,7 @@ TEST_F(Controllers, a_recording_ends_when_another_volume_is_opened_and_is_played
     const auto file = scratch.path() / "a.csv";
     recordings.start(QString::fromStdString(file.string()));
     ASSERT_TRUE(recordings.recording());
-    ASSERT_TRUE(
-        QTest::qWaitFor([&] { return content.live()->recording()->ticks() > 200; }, 20'000));
+    wait_until([&] { return content.live()->recording()->ticks() > 200; });
     const auto volume = content.volume();
     feel("synthetic:torus:24x24x12");
     EXPECT_FALSE(recordings.recording());
@@ -165,10 +163,11 @@ TEST_F(Controllers, a_recording_ends_when_another_volume_is_opened_and_is_played
     EXPECT_EQ(content.time(), content.playback()->end());
     timeline.toggle_playing();
     EXPECT_EQ(content.time(), content.playback()->begin()) << "it begins again";
-    QTest::qWait(20);
-    playing.advance();
-    playing.observe();
-    EXPECT_GT(content.time(), content.playback()->begin());
+    wait_until([&] {
+        playing.advance();
+        playing.observe();
+        return content.time() > content.playback()->begin();
+    });
     content.close();
     EXPECT_TRUE(timeline.isHidden());
 }
@@ -187,7 +186,7 @@ TEST_F(Controllers, without_edits_nothing_is_unsaved_and_nothing_can_be_undone) 
     const auto file = scratch.path() / "saved.nrrd";
     editing.save(QString::fromStdString(file.string()));
     EXPECT_FALSE(editing.may_lose_edits({})) << "it is being saved";
-    ASSERT_TRUE(QTest::qWaitFor([&] { return !editing.saving(); }, 20'000));
+    wait_until([&] { return !editing.saving(); });
     EXPECT_TRUE(std::filesystem::exists(file));
 }
 

@@ -17,15 +17,15 @@ constexpr const char* sphere = "synthetic:sphere:40x40x40";
 TEST_F(Failures, an_unavailable_device_is_reported_wherever_it_is_requested) {
     feel(sphere);
     window_->recordings().start(scratch("a.csv"));
-    ASSERT_TRUE(wait_until([&] { return window_->live()->recording()->ticks() > 50; }));
+    wait_until([&] { return window_->live()->recording()->ticks() > 50; });
     window_->recordings().stop();
     window_.reset();
     open_window("recorded:file=missing.csv");
     window_->files().open_path(scratch("a.csv"));
-    ASSERT_TRUE(wait_until([&] { return window_->playback() != nullptr; }));
+    wait_until([&] { return window_->playback() != nullptr; });
     // The volume that is open already: nothing is loaded in between.
     window_->files().open_path(sphere);
-    ASSERT_TRUE(wait_until([&] { return !window_->messages().problem().isEmpty(); }));
+    wait_until([&] { return !window_->messages().problem().isEmpty(); });
     EXPECT_TRUE(window_->messages().problem().contains("missing.csv"));
     EXPECT_EQ(window_->live(), nullptr);
 }
@@ -33,16 +33,16 @@ TEST_F(Failures, an_unavailable_device_is_reported_wherever_it_is_requested) {
 TEST_F(Failures, leaving_a_recording_keeps_level_and_view) {
     feel(sphere);
     Q_EMIT window_->panel().asked(command::Isovalue{110});
-    ASSERT_TRUE(wait_until([&] { return now().session.tick.proxy.isovalue == 110; }));
+    wait_until([&] { return now().session.tick.proxy.isovalue == 110; });
     window_->recordings().start(scratch("a.csv"));
-    ASSERT_TRUE(wait_until([&] { return window_->live()->recording()->ticks() > 50; }));
+    wait_until([&] { return window_->live()->recording()->ticks() > 50; });
     window_->recordings().stop();
     window_->files().open_path(scratch("a.csv"));
-    ASSERT_TRUE(wait_until([&] { return window_->playback() != nullptr; }));
-    QTest::qWait(100);
+    wait_until([&] { return window_->playback() != nullptr; });
+    wait_until_settled();
     window_->views().scene().look_from(pictures::view_named("top"));
     press(Qt::Key_Escape);
-    ASSERT_TRUE(wait_until([&] { return window_->live() != nullptr; }));
+    wait_until([&] { return window_->live() != nullptr; });
     EXPECT_EQ(window_->live()->isovalue(), 110);
     EXPECT_NE(window_->live()->mouse(), nullptr);
     EXPECT_GT(window_->views().scene().camera().towards_viewer.normalized()[2], 0.99);
@@ -53,7 +53,7 @@ TEST_F(Failures, a_session_of_another_persons_device_is_felt_with_the_one_at_han
         << R"({"format": "palpate-session", "version": 1, "isovalue": 90,
                "volume": {"volume": "synthetic:sphere:40x40x40"}, "device": "recorded:none.csv"})";
     window_->files().open_path(scratch("s.json"));
-    ASSERT_TRUE(wait_until([&] { return window_->live() != nullptr; }));
+    wait_until([&] { return window_->live() != nullptr; });
     EXPECT_EQ(window_->live()->isovalue(), 90);
     EXPECT_NE(window_->live()->mouse(), nullptr);
     EXPECT_TRUE(window_->messages().problem().isEmpty())
@@ -78,13 +78,14 @@ TEST_F(Failures, a_recording_that_cannot_be_begun_leaves_the_session_as_it_was) 
 TEST_F(Failures, opening_what_is_open_gives_up_what_is_being_loaded) {
     feel(sphere);
     window_->recordings().start(scratch("a.csv"));
-    ASSERT_TRUE(wait_until([&] { return window_->live()->recording()->ticks() > 50; }));
+    wait_until([&] { return window_->live()->recording()->ticks() > 50; });
     window_->recordings().stop();
     window_->files().open_volume(run::source_named("synthetic:noise:200x200x200"));
     window_->files().open_path(scratch("a.csv"));
-    ASSERT_TRUE(wait_until([&] { return window_->playback() != nullptr; }));
-    QTest::qWait(500);
-    ASSERT_NE(window_->playback(), nullptr) << "the other volume came after all";
+    wait_until([&] { return window_->playback() != nullptr; });
+    EXPECT_FALSE(window_->files().loading()) << "the other volume may come after all";
+    QApplication::processEvents();
+    ASSERT_NE(window_->playback(), nullptr);
     EXPECT_EQ(window_->live(), nullptr);
 }
 
@@ -94,8 +95,11 @@ TEST_F(Failures, looking_for_devices_again_changes_neither_pointer_nor_device) {
     ASSERT_TRUE(pointer->isChecked());
     press(Qt::Key_H);
     ASSERT_FALSE(pointer->isChecked());
+    wait_until_settled();
+    QSignalSpy found(&window_->run(), &RunController::devices_found);
     Q_EMIT window_->panel().device_controls().refresh_wanted();
-    QTest::qWait(1500);
+    wait_until([&] { return !found.isEmpty(); });
+    window_->tick();
     EXPECT_FALSE(pointer->isChecked());
     EXPECT_NE(window_->live()->mouse(), nullptr);
 }
@@ -119,8 +123,7 @@ TEST_F(Failures, text_is_readable_in_light_and_dark) {
         EXPECT_GT(contrast(QPalette::WindowText, QPalette::Window), 120);
         EXPECT_GT(contrast(QPalette::ButtonText, QPalette::Button), 120);
         EXPECT_GT(contrast(QPalette::Text, QPalette::Base), 120);
-        ASSERT_TRUE(wait_until([&] { return window_->settled(); }));
-        QTest::qWait(100);
+        wait_until_settled();
         save(appearance == Appearance::dark ? "dark" : "light");
     }
 }
@@ -128,7 +131,8 @@ TEST_F(Failures, text_is_readable_in_light_and_dark) {
 TEST_F(Failures, the_servo_ends_first_when_the_window_is_destroyed) {
     feel(sphere);
     window_->files().open_volume(run::source_named("synthetic:marschner-lobb:260x260x260"));
-    QTest::qWait(50);
+    QSignalSpy progress(&window_->files().loader(), &BackgroundTask::progressed);
+    wait_until([&] { return !progress.isEmpty(); });
     window_.reset();  // neither hangs nor crashes
 }
 

@@ -43,7 +43,7 @@ TEST_F(Files, a_dropped_file_is_opened) {
     EXPECT_TRUE(enter.isAccepted());
     QDropEvent drop({10, 10}, Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
     QApplication::sendEvent(window_.get(), &drop);
-    ASSERT_TRUE(wait_until([&] { return window_->live() != nullptr; }));
+    wait_until([&] { return window_->live() != nullptr; });
     EXPECT_EQ(window_->live()->field().geometry().size, Index3(24, 24, 24));
 }
 
@@ -51,15 +51,15 @@ TEST_F(Files, recent_files_are_listed_newest_first_and_open_again) {
     const QString first = file_of(16, "first.nrrd"), second = file_of(20, "second.nrrd");
     feel(first.toStdString());
     feel(second.toStdString());
-    ASSERT_TRUE(wait_until([&] { return window_->live()->field().geometry().size[0] == 20; }));
+    wait_until([&] { return window_->live()->field().geometry().size[0] == 20; });
     auto& menu = part<QMenu>("recent");
     Q_EMIT menu.aboutToShow();
     ASSERT_GE(menu.actions().size(), 2);
     EXPECT_EQ(menu.actions()[0]->text(), second);
     EXPECT_EQ(menu.actions()[1]->text(), first);
     menu.actions()[1]->trigger();
-    ASSERT_TRUE(wait_until(
-        [&] { return window_->live() && window_->live()->field().geometry().size[0] == 16; }));
+    wait_until(
+        [&] { return window_->live() && window_->live()->field().geometry().size[0] == 16; });
 }
 
 TEST_F(Files, loading_can_be_cancelled_and_what_was_felt_goes_on) {
@@ -72,7 +72,7 @@ TEST_F(Files, loading_can_be_cancelled_and_what_was_felt_goes_on) {
     auto& cancel = part<QPushButton>("cancel");
     ASSERT_TRUE(cancel.isVisible());
     QTest::mouseClick(&cancel, Qt::LeftButton);
-    ASSERT_TRUE(wait_until([&] { return window_->settled(); }));
+    wait_until_settled();
     EXPECT_FALSE(cancel.isVisible());
     EXPECT_EQ(window_->live(), before);
     EXPECT_EQ(window_->live()->field().geometry().size[0], 32);
@@ -88,11 +88,11 @@ TEST_F(Files, a_volume_is_dequantized_and_felt_at_the_same_level) {
     const auto type = [&] { return window_->live()->field().volume().type(); };
     EXPECT_EQ(type(), SampleType::uint8);
     box.click();
-    ASSERT_TRUE(wait_until([&] { return window_->live() && type() == SampleType::float32; }));
+    wait_until([&] { return window_->live() && type() == SampleType::float32; });
     EXPECT_TRUE(box.isChecked());
     EXPECT_EQ(window_->live()->isovalue(), 100.25);
     box.click();
-    ASSERT_TRUE(wait_until([&] { return window_->live() && type() == SampleType::uint8; }));
+    wait_until([&] { return window_->live() && type() == SampleType::uint8; });
     EXPECT_FALSE(box.isChecked());
     EXPECT_EQ(window_->live()->isovalue(), 100.25);
 }
@@ -109,9 +109,9 @@ TEST_F(Files, of_several_series_one_is_chosen_by_its_picture) {
     }
     const auto choose = [&](int row) {
         window_->files().open_path(scratch("."));
-        ASSERT_TRUE(wait_until([&] { return window_->findChild<QDialog*>("choose-series"); }));
+        wait_until([&] { return window_->findChild<QDialog*>("choose-series"); });
         auto& table = part<QTableWidget>("series");
-        ASSERT_TRUE(wait_until_active(table));
+        activate(table);
         EXPECT_EQ(table.rowCount(), 2);
         EXPECT_EQ(table.item(1, 1)->text(), "CHEST");
         EXPECT_EQ(table.item(1, 3)->text(), "6");
@@ -121,13 +121,13 @@ TEST_F(Files, of_several_series_one_is_chosen_by_its_picture) {
         const QPoint place = table.visualItemRect(table.item(row, 1)).center();
         QTest::mouseClick(table.viewport(), Qt::LeftButton, {}, place);
         QTest::keyClick(&table, Qt::Key_Return);
-        ASSERT_TRUE(wait_until([&] { return window_->live() && window_->settled(); }));
+        wait_until([&] { return window_->live() && window_->settled(); });
     };
     const auto slices = [&] { return window_->live()->field().geometry().size[2]; };
     choose(1);
     EXPECT_EQ(slices(), 6);
     choose(0);
-    ASSERT_TRUE(wait_until([&] { return slices() == 3; }));
+    wait_until([&] { return slices() == 3; });
     EXPECT_TRUE(window_->messages().problem().isEmpty());
 }
 
@@ -144,7 +144,7 @@ TEST_F(Files, a_raw_file_is_opened_once_the_dialog_knows_its_size) {
     }
     std::ofstream(scratch_.path() / "samples.raw", std::ios::binary) << bytes;
     window_->files().open_path(scratch("samples.raw"));
-    ASSERT_TRUE(wait_until([&] { return window_->findChild<QDialog*>("raw"); }));
+    wait_until([&] { return window_->findChild<QDialog*>("raw"); });
     const auto set = [&](const char* name, int value) { part<QSpinBox>(name).setValue(value); };
     QPushButton* open = nullptr;
     for (auto* button : part<QDialog>("raw").findChildren<QPushButton*>()) {
@@ -168,7 +168,7 @@ TEST_F(Files, a_raw_file_is_opened_once_the_dialog_knows_its_size) {
     part<QDialog>("raw").grab().save(QString(PALPATE_PICTURES) + "/raw-dialog.png");
     ASSERT_TRUE(open->isEnabled());
     QTest::mouseClick(open, Qt::LeftButton);
-    ASSERT_TRUE(wait_until([&] { return window_->live() && window_->settled(); }));
+    wait_until([&] { return window_->live() && window_->settled(); });
     const Volume& volume = window_->live()->field().volume();
     EXPECT_EQ(volume.geometry().size, Index3(12, 10, 8));
     EXPECT_EQ(volume.minimum(), 0x0001);
@@ -180,7 +180,7 @@ TEST_F(Files, the_surface_is_saved_as_a_mesh) {
     window_->editing().save_surface(scratch("ball.xyz"));
     EXPECT_TRUE(window_->messages().problem().contains("ply"));
     window_->editing().save_surface(scratch("ball.obj"));
-    ASSERT_TRUE(wait_until([&] { return !window_->editing().saving(); }));
+    wait_until([&] { return !window_->editing().saving(); });
     std::ifstream file(scratch_.path() / "ball.obj");
     int vertices = 0, normals = 0, triangles = 0;
     for (std::string line; std::getline(file, line);) {
@@ -206,7 +206,9 @@ TEST_F(Files, a_single_slice_is_seen_face_on) {
     save("slice");
 }
 
-TEST_F(Files, pictures_of_scene_and_window_are_what_is_seen) {
+using DrawnFiles = Files;
+
+TEST_F(DrawnFiles, pictures_of_scene_and_window_are_what_is_seen) {
     feel("synthetic:torus:48x48x24");
     window_->save_picture(scratch("scene.png"), false);
     window_->save_picture(scratch("window.png"), true);
@@ -230,7 +232,7 @@ TEST_F(Files, pictures_of_scene_and_window_are_what_is_seen) {
 TEST_F(Files, screenshot_waits_for_the_hand_writes_and_closes) {
     window_->files().open_path("synthetic:sphere:32x32x32");
     const Screenshot screenshot(*window_, scratch("shot.png"), 0.3);
-    ASSERT_TRUE(wait_until([&] { return !window_->isVisible(); }));
+    wait_until([&] { return !window_->isVisible(); });
     EXPECT_EQ(screenshot.status(), 0);
     EXPECT_FALSE(QImage(scratch("shot.png")).isNull());
 }
@@ -238,7 +240,7 @@ TEST_F(Files, screenshot_waits_for_the_hand_writes_and_closes) {
 TEST_F(Files, screenshot_of_what_cannot_be_opened_ends_with_its_status) {
     window_->files().open_path(scratch("missing.nrrd"));
     const Screenshot screenshot(*window_, scratch("shot.png"), 0);
-    ASSERT_TRUE(wait_until([&] { return !window_->isVisible(); }));
+    viewer::wait_until([&] { return !window_->isVisible(); });
     EXPECT_EQ(screenshot.status(), 3);
     EXPECT_FALSE(QFile::exists(scratch("shot.png")));
 }
@@ -249,8 +251,7 @@ TEST_F(Files, a_slice_puts_the_probe_where_it_is_clicked) {
     const QPoint at(axial.width() / 2, axial.height() / 8);
     const Vec3 wanted = axial.point_at(at);
     QTest::mouseClick(&axial, Qt::LeftButton, {}, at);
-    ASSERT_TRUE(wait_until([&] { return (now().session.tick.proxy.hip - wanted).norm() < 0.1; }))
-        << "wanted " << wanted.transpose() << ", is " << now().session.tick.proxy.hip.transpose();
+    wait_until([&] { return (now().session.tick.proxy.hip - wanted).norm() < 0.1; });
 }
 
 TEST(WindowSize, is_read_or_refused) {

@@ -104,7 +104,7 @@ class German : public InWindow {
     QSet<QString> words_of_all() {
         QSet<QString> all = all_words(*window_);
         feel_sample();
-        QTest::qWait(200);
+        wait_until_settled();
         all |= all_words(*window_);
         for (QDialog* dialog :
              {make_first_steps_dialog(window_.get()), make_shortcuts_dialog(window_.get()),
@@ -182,7 +182,7 @@ TEST_F(German, no_label_of_the_panel_is_cut_off_at_the_usual_width) {
     auto& tabs = part<QTabWidget>("tabs");
     for (int i = 0; i < tabs.count(); ++i) {
         tabs.setCurrentIndex(i);
-        QTest::qWait(150);
+        wait_until_settled();
         EXPECT_TRUE(cut_off().isEmpty()) << cut_off().join(" | ").toStdString();
         save(QString("page-%1").arg(i).toStdString());
     }
@@ -205,7 +205,7 @@ TEST_F(German, numbers_in_files_keep_their_point) {
     window_->files().save_session(scratch("session.json"));
     feel("synthetic:sphere:48x48x48");
     window_->files().open_session(scratch("session.json"));
-    ASSERT_TRUE(wait_until([&] { return window_->settled() && window_->live(); }));
+    wait_until([&] { return window_->settled() && window_->live(); });
     EXPECT_TRUE(window_->messages().problem().isEmpty())
         << window_->messages().problem().toStdString();
     EXPECT_EQ(window_->live()->isovalue(), level);

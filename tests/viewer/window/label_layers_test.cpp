@@ -41,16 +41,16 @@ class LabelsInWindow : public InWindow {
     void open_labels() {
         write_labels();
         window_->overlays().open(run::source_named((scratch_.path() / "ball.seg.nrrd").string()));
-        ASSERT_TRUE(wait_until([&] { return window_->overlays().overlay() && settled(); }));
+        wait_until([&] { return window_->overlays().overlay() != nullptr; });
+        wait_until_settled();
     }
     void feel_labels() {
         open_labels();
         auto* tabs = window_->findChild<QTabWidget*>("tabs");
         tabs->setCurrentIndex(2);
-        QTest::qWait(50);
+        QApplication::processEvents();
         QTest::mouseClick(&part<QPushButton>("feel_labels"), Qt::LeftButton);
-        ASSERT_TRUE(wait_until([&] { return layers() != nullptr; }))
-            << window_->messages().problem().toStdString();
+        wait_until([&] { return layers() != nullptr; });
     }
     void drop(const QString& path) {
         QMimeData data;
@@ -62,10 +62,6 @@ class LabelsInWindow : public InWindow {
         QApplication::sendEvent(window_.get(), &event);
     }
     SharedLayers layers() { return window_->live()->settings().layers; }
-    bool settled() {
-        QTest::qWait(60);
-        return wait_until([&] { return window_->settled(); });
-    }
     /// Of a set that can be chosen; -1: it is not there.
     int row_of(const QString& set) { return part<QComboBox>("layers").findText(set); }
     bool possible(const QString& set) {
@@ -76,7 +72,7 @@ class LabelsInWindow : public InWindow {
         auto& box = part<QComboBox>("layers");
         box.setCurrentIndex(row_of(set));
         Q_EMIT box.activated(box.currentIndex());
-        QTest::qWait(60);
+        wait_until_quiet(*window_);
     }
     /// The wheel over the scene, until a layer of that name is touched. A whole notch may be more
     /// than a layer holds: the hand would be through it between two looks.
@@ -85,11 +81,7 @@ class LabelsInWindow : public InWindow {
             const int touched = now().session.tick.layers.touched;
             return touched >= 0 && layers()->layers[std::size_t(touched)].name == name;
         };
-        for (int i = 0; i < 300 && !on(); ++i) {
-            turn_wheel(window_->views().scene(), 1, 30);
-            QTest::qWait(15);
-        }
-        return on();
+        return press_until(on, 30);
     }
 };
 
@@ -102,18 +94,18 @@ TEST_F(LabelsInWindow, one_click_feels_the_labels_with_their_names_and_colours) 
     EXPECT_EQ(layers()->layers[1].level, 7);
     EXPECT_NEAR(layers()->layers[1].colour[2], 0.9, 1e-6);
     auto& list = part<QListWidget>("layer_list");
-    EXPECT_TRUE(wait_until([&] { return list.isVisible(); })) << "the page Feel is shown";
+    wait_until([&] { return list.isVisible(); });  // the page Feel is shown
     EXPECT_EQ(list.item(1)->text(), "core   label 7");
     EXPECT_EQ(part<QComboBox>("layers").currentText(), "Labels of ball.seg.nrrd");
     EXPECT_TRUE(press_until_on("shell"));
     EXPECT_TRUE(press_until_on("core")) << "through the shell, which gives way";
-    EXPECT_TRUE(wait_until([&] { return part<QLabel>("touched_layers").text().contains("core"); }));
-    ASSERT_TRUE(settled());
+    wait_until([&] { return part<QLabel>("touched_layers").text().contains("core"); });
+    wait_until_settled();
     save("felt");
     const double level = window_->live()->isovalue();
     choose("No layers: one surface");
-    EXPECT_TRUE(wait_until([&] { return !layers(); }));
-    EXPECT_TRUE(wait_until([&] { return now().session.tick.proxy.isovalue == level; }));
+    wait_until([&] { return !layers(); });
+    wait_until([&] { return now().session.tick.proxy.isovalue == level; });
 }
 
 TEST_F(LabelsInWindow, hidden_labels_are_not_felt) {
@@ -121,7 +113,7 @@ TEST_F(LabelsInWindow, hidden_labels_are_not_felt) {
     open_labels();
     part<QListWidget>("overlay_labels").item(0)->setCheckState(Qt::Unchecked);
     QTest::mouseClick(&part<QPushButton>("feel_labels"), Qt::LeftButton);
-    ASSERT_TRUE(wait_until([&] { return layers() != nullptr; }));
+    wait_until([&] { return layers() != nullptr; });
     ASSERT_EQ(layers()->layers.size(), 1U);
     EXPECT_EQ(layers()->layers[0].name, "core");
 }
@@ -136,8 +128,7 @@ TEST_F(LabelsInWindow, a_session_keeps_them_also_when_it_is_moved_with_its_data)
     box.selectAll();
     QTest::keyClicks(&box, "0.123");
     QTest::keyClick(&box, Qt::Key_Return);
-    ASSERT_TRUE(wait_until(
-        [&] { return layers()->layers[0][HapticProperty::stiffness].value_or(0) == 0.123; }));
+    wait_until([&] { return layers()->layers[0][HapticProperty::stiffness].value_or(0) == 0.123; });
     window_->files().save_session(scratch("s.json"));
     EXPECT_EQ(window_->messages().problem(), "");
     feel("synthetic:torus:40x40x40");
@@ -148,9 +139,8 @@ TEST_F(LabelsInWindow, a_session_keeps_them_also_when_it_is_moved_with_its_data)
         std::filesystem::rename(scratch_.path() / name, moved / name);
     }
     window_->files().open_path(QString::fromStdString((moved / "s.json").string()));
-    ASSERT_TRUE(wait_until([&] { return window_->live() && layers(); }))
-        << window_->messages().problem().toStdString();
-    ASSERT_TRUE(settled());
+    wait_until([&] { return window_->live() && layers(); });
+    wait_until_settled();
     EXPECT_EQ(window_->messages().problem(), "");
     EXPECT_TRUE(layers()->by_label);
     EXPECT_EQ(layers()->layers[0][HapticProperty::stiffness], 0.123);
@@ -158,8 +148,8 @@ TEST_F(LabelsInWindow, a_session_keeps_them_also_when_it_is_moved_with_its_data)
     EXPECT_TRUE(press_until_on("shell"));
     std::filesystem::remove(moved / "ball.seg.nrrd");
     window_->files().open_path(QString::fromStdString((moved / "s.json").string()));
-    EXPECT_TRUE(wait_until([&] { return !window_->messages().problem().isEmpty(); }));
-    EXPECT_TRUE(wait_until([&] { return window_->live() && !layers(); })) << "felt without them";
+    wait_until([&] { return !window_->messages().problem().isEmpty(); });
+    wait_until([&] { return window_->live() && !layers(); });  // felt without them
 }
 
 TEST_F(LabelsInWindow, a_recording_is_played_with_them) {
@@ -169,20 +159,17 @@ TEST_F(LabelsInWindow, a_recording_is_played_with_them) {
     window_->recordings().start(scratch("a.csv"));
     EXPECT_EQ(window_->live()->isovalue(), level);
     ASSERT_TRUE(press_until_on("shell"));
-    QTest::qWait(200);
     window_->recordings().stop();
     window_->files().open_path(scratch("a.csv"));
-    ASSERT_TRUE(wait_until([&] { return window_->playback() != nullptr; }))
-        << window_->messages().problem().toStdString();
+    wait_until([&] { return window_->playback() != nullptr; });
     EXPECT_EQ(window_->playback()->different(), 0U);
     window_->playing().show_time(window_->playback()->end());
-    EXPECT_TRUE(wait_until([&] { return part<QLabel>("readout").text().contains("on shell"); }))
-        << part<QLabel>("readout").text().toStdString();
+    wait_until([&] { return part<QLabel>("readout").text().contains("on shell"); });
     press(Qt::Key_Escape);
-    ASSERT_TRUE(wait_until([&] { return window_->live() && layers(); }));
-    EXPECT_TRUE(wait_until([&] { return window_->overlays().overlay() != nullptr; }))
-        << "their label map is shown";
-    ASSERT_TRUE(settled());
+    wait_until([&] { return window_->live() && layers(); });
+    wait_until(
+        [&] { return window_->overlays().overlay() != nullptr; });  // their label map is shown
+    wait_until_settled();
 }
 
 constexpr const char* by_label_set = R"({"palpate_layers": 1, "name": "Organs", "by_label": true,
@@ -203,16 +190,16 @@ TEST_F(LabelsInWindow, a_set_by_label_can_be_chosen_once_there_is_a_label_map) {
     const auto& box = part<QComboBox>("layers");
     EXPECT_TRUE(box.itemData(row_of("Organs"), Qt::ToolTipRole).toString().contains("label map"));
     drop(scratch("named.json"));
-    ASSERT_TRUE(wait_until([&] { return layers() != nullptr; }));
+    wait_until([&] { return layers() != nullptr; });
     EXPECT_FALSE(layers()->by_label);
     EXPECT_EQ(row_of("Named, by label"), -1);
     open_labels();
     EXPECT_TRUE(possible("Organs"));
     choose("Organs");
-    ASSERT_TRUE(wait_until([&] { return layers() && layers()->name == "Organs"; }));
+    wait_until([&] { return layers() && layers()->name == "Organs"; });
     EXPECT_TRUE(press_until_on("core"));
     choose("Named, by label");
-    ASSERT_TRUE(wait_until([&] { return layers()->by_label && layers()->layers.size() == 2; }));
+    wait_until([&] { return layers()->by_label && layers()->layers.size() == 2; });
     EXPECT_EQ(layers()->layers[1].level, 7);
 }
 
@@ -225,11 +212,10 @@ TEST_F(LabelsInWindow, a_layer_file_that_is_opened_is_used_and_a_bad_one_is_one_
     window_->activateWindow();
     feel("synthetic:sphere:48x48x48");
     type_in_dialog(Qt::Key_O, scratch("named.json"));
-    ASSERT_TRUE(wait_until([&] { return layers() != nullptr; }))
-        << window_->messages().problem().toStdString();
+    wait_until([&] { return layers() != nullptr; });
     EXPECT_EQ(layers()->name, "Named");
     drop(scratch("bad.json"));
-    ASSERT_TRUE(wait_until([&] { return !window_->messages().problem().isEmpty(); }));
+    wait_until([&] { return !window_->messages().problem().isEmpty(); });
     const QString problem = window_->messages().problem();
     EXPECT_TRUE(problem.contains("bad.json") && problem.contains("level")) << problem.toStdString();
     EXPECT_FALSE(problem.contains('\n'));

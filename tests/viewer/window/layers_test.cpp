@@ -55,34 +55,26 @@ class LayersInWindow : public InWindow {
         auto& box = part<QComboBox>("layers");
         const int row = box.findText(set);
         ASSERT_GE(row, 0);
+        // A list takes no click within this time after it dropped down.
+        const int interval = QApplication::doubleClickInterval();
+        QApplication::setDoubleClickInterval(0);
         QTest::mouseClick(&box, Qt::LeftButton);
-        ASSERT_TRUE(wait_until([&] { return box.view()->isVisible(); }));
-        QTest::qWait(2 * QApplication::doubleClickInterval());  // a release before opens the list
+        wait_until([&] { return box.view()->isVisible(); });
+        QApplication::processEvents();
         const QRect at = box.view()->visualRect(box.model()->index(row, 0));
         QTest::mouseMove(box.view()->viewport(), at.center());
         QTest::mouseClick(box.view()->viewport(), Qt::LeftButton, {}, at.center());
-        ASSERT_TRUE(wait_until([&] { return !box.view()->isVisible(); }));
+        wait_until([&] { return !box.view()->isVisible(); });
+        QApplication::setDoubleClickInterval(interval);
     }
     SharedLayers layers() { return window_->live()->settings().layers; }
     LayersControls& controls() { return window_->panel().layers_controls(); }
-    bool settle() {
-        QTest::qWait(60);
-        return wait_until([&] { return window_->settled(); });
-    }
-    /// The wheel over the scene, until it is so.
-    bool press_until(const std::function<bool()>& so) {
-        for (int i = 0; i < 200 && !so(); ++i) {
-            turn_wheel(window_->views().scene(), 1);
-            QTest::qWait(20);
-        }
-        return so();
-    }
 };
 
 TEST_F(LayersInWindow, a_ct_is_opened_a_set_is_picked_and_both_layers_are_felt_in_one_stroke) {
     io::write_volume(ct_ball(), scratch_.path() / "ct.nrrd");
     type_in_dialog(Qt::Key_O, scratch("ct.nrrd"));
-    ASSERT_TRUE(wait_until([&] { return window_->live() && window_->settled(); }));
+    wait_until([&] { return window_->live() && window_->settled(); });
     pick(ct_set);
     ASSERT_TRUE(layers());
     EXPECT_EQ(layers()->name, ct_set);
@@ -95,27 +87,29 @@ TEST_F(LayersInWindow, a_ct_is_opened_a_set_is_picked_and_both_layers_are_felt_i
         return felt.touched == 1 && force() > 0.3;
     }));
     EXPECT_EQ(touched, (std::set<std::string>{"skin", "bone"}));
-    EXPECT_TRUE(wait_until([&] {
+    wait_until([&] {
         return part<QLabel>("touched_layers").text() == "on bone, in skin" &&
                part<QLabel>("readout").text().startsWith("on bone, in skin");
-    }));
+    });
     const auto& points = part<StrokePlot>("stroke_plot").stroke().points();
     std::set<int> plotted;
     for (const Stroke::Point& point : points) plotted.insert(point.layer);
     EXPECT_TRUE(plotted.count(0) && plotted.count(1));
-    ASSERT_TRUE(settle());
+    wait_until_settled();
     save("felt");
     QTest::mouseClick(&part<QPushButton>("clear_stroke"), Qt::LeftButton);
     EXPECT_LE(points.size(), 2U);
 }
 
-TEST_F(LayersInWindow, the_built_in_head_shows_skin_as_glass_over_bone) {
+using DrawnLayers = LayersInWindow;
+
+TEST_F(DrawnLayers, the_built_in_head_shows_skin_as_glass_over_bone) {
     feel(io::sample_volume_path().string());
     const double before = window_->live()->isovalue();
     pick(head_set);
     ASSERT_TRUE(layers());
     EXPECT_FALSE(part<QLabel>("layers_note").isVisible());
-    ASSERT_TRUE(settle());
+    wait_until_settled();
     EXPECT_EQ(window_->display().isovalue(), layers()->layers[0].level);
     const QImage image = window_->views().scene().picture();
     EXPECT_FALSE(image.isNull());
@@ -124,7 +118,7 @@ TEST_F(LayersInWindow, the_built_in_head_shows_skin_as_glass_over_bone) {
     pick("No layers: one surface");
     EXPECT_FALSE(layers());
     EXPECT_TRUE(part<QWidget>("isovalue_box").isEnabled());
-    EXPECT_TRUE(wait_until([&] { return window_->display().isovalue() == before; }));
+    wait_until([&] { return window_->display().isovalue() == before; });
     EXPECT_EQ(window_->live()->isovalue(), before);
 }
 
@@ -137,11 +131,11 @@ TEST_F(LayersInWindow, a_level_is_dragged_on_the_histogram_while_one_feels) {
     const double y = chart.strip().top() - 20;
     const auto at = [&](double level) { return QPointF(axis.x_of(level), y).toPoint(); };
     drag(chart, at(250), at(500));
-    ASSERT_TRUE(wait_until([&] { return std::abs(layers()->layers[1].level - 500) < 20; }));
+    wait_until([&] { return std::abs(layers()->layers[1].level - 500) < 20; });
     EXPECT_EQ(layers()->layers[0].level, -300);
     EXPECT_EQ(part<QListWidget>("layer_list").currentRow(), 1) << "the one that was taken";
     drag(chart, at(layers()->layers[1].level), at(-900));
-    ASSERT_TRUE(wait_until([&] { return layers()->layers[1].level < 0; }));
+    wait_until([&] { return layers()->layers[1].level < 0; });
     EXPECT_GT(layers()->layers[1].level, -300) << "it cannot pass its neighbour";
     const auto order = layers();
     EXPECT_NO_THROW(check(*order, Solid::above));
@@ -161,7 +155,7 @@ TEST_F(LayersInWindow, a_changed_set_goes_to_a_file_and_into_the_session_and_com
     name.selectAll();
     QTest::keyClicks(&name, "hide");
     QTest::keyClick(&name, Qt::Key_Return);
-    ASSERT_TRUE(wait_until([&] { return layers()->layers[0].name == "hide"; }));
+    wait_until([&] { return layers()->layers[0].name == "hide"; });
     typing(scratch("own.json"),
            [&] { QTest::mouseClick(&part<QPushButton>("save_layers"), Qt::LeftButton); });
     const io::LayersFile file = io::read_layers(scratch("own.json").toStdString());
@@ -170,54 +164,48 @@ TEST_F(LayersInWindow, a_changed_set_goes_to_a_file_and_into_the_session_and_com
     window_->files().save_session(scratch("s.json"));
     const SharedLayers saved = layers();
     window_->files().open_path(QString::fromStdString((scratch_.path() / "ct.nrrd").string()));
-    ASSERT_TRUE(wait_until([&] { return window_->live() && !layers(); }));
-    ASSERT_TRUE(settle());
+    wait_until([&] { return window_->live() && !layers(); });
+    wait_until_settled();
     window_->files().open_path(scratch("s.json"));
-    ASSERT_TRUE(wait_until([&] { return window_->live() && layers(); }));
+    wait_until([&] { return window_->live() && layers(); });
     EXPECT_TRUE(same(layers(), saved));
-    ASSERT_TRUE(settle());
+    wait_until_settled();
     EXPECT_EQ(part<QComboBox>("layers").currentText(), QString(ct_set) + " (changed)");
     pick("No layers: one surface");
     typing(scratch("own.json"),
            [&] { QTest::mouseClick(&part<QPushButton>("open_layers"), Qt::LeftButton); });
-    ASSERT_TRUE(wait_until([&] { return layers() != nullptr; }));
+    wait_until([&] { return layers() != nullptr; });
     EXPECT_EQ(layers()->layers[0].name, "hide");
 }
 
 TEST_F(LayersInWindow, a_recording_names_the_layers_that_were_felt) {
     feel_ct();
     pick(ct_set);
-    ASSERT_TRUE(settle());
+    wait_until_settled();
     window_->recordings().start(scratch("a.csv"));
     ASSERT_TRUE(press_until([&] { return now().session.tick.layers.touched == 0; }));
-    QTest::qWait(200);
     window_->recordings().stop();
     window_->files().open_path(scratch("a.csv"));
-    ASSERT_TRUE(wait_until([&] { return window_->playback() != nullptr; }))
-        << window_->messages().problem().toStdString();
+    wait_until([&] { return window_->playback() != nullptr; });
     EXPECT_EQ(window_->playback()->different(), 0U);
     window_->playing().show_time(window_->playback()->end());
-    EXPECT_TRUE(wait_until([&] { return part<QLabel>("readout").text().contains("on skin"); }))
-        << part<QLabel>("readout").text().toStdString();
+    wait_until([&] { return part<QLabel>("readout").text().contains("on skin"); });
     EXPECT_EQ(window_->display().isovalue(), -300);
     press(Qt::Key_Escape);
-    ASSERT_TRUE(wait_until([&] { return window_->live() && layers(); })) << "felt again, with them";
+    wait_until([&] { return window_->live() && layers(); });  // felt again, with them
     EXPECT_EQ(part<QComboBox>("layers").currentText(), ct_set);
 }
 
 TEST_F(LayersInWindow, of_the_command_line_are_for_the_first_volume) {
     io::write_volume(ct_ball(), scratch_.path() / "ct.nrrd");
-    run::Setup setup;
-    setup.device = devices::parse_device("mouse");
-    setup.real_time = false;
+    run::Setup setup = setup_with("mouse");
     setup.render.layers = io::layers_named("ct-soft-tissue-and-bone");
-    window_ = std::make_unique<MainWindow>(RunRequest{setup, {}, {}});
-    window_->show();
+    open_window(setup);
     feel((scratch_.path() / "ct.nrrd").string());
     ASSERT_TRUE(layers());
     EXPECT_EQ(part<QComboBox>("layers").currentText(), ct_set);
     feel("synthetic:sphere:48x48x48");
-    EXPECT_TRUE(wait_until([&] { return window_->live() && !layers(); }));
+    wait_until([&] { return window_->live() && !layers(); });
 }
 
 TEST_F(LayersInWindow, sets_that_do_not_suit_the_solid_side_cannot_be_picked) {

@@ -10,7 +10,7 @@
 namespace palpate::viewer::test {
 namespace {
 
-class WindowReferences : public InWindow {
+class DrawnReferences : public InWindow {
   protected:
     /// As large as in the committed pictures.
     void SetUp() override {
@@ -20,10 +20,9 @@ class WindowReferences : public InWindow {
 
     /// Half as large: letters count less.
     void expect_as(const std::string& name) {
-        const auto is_settled = [&] { return window_->settled(); };
-        ASSERT_TRUE(wait_until(is_settled));
-        QTest::qWait(300);  // numbers follow a few times a second
-        ASSERT_TRUE(wait_until(is_settled));
+        wait_until_settled();
+        for (int i = 0; i < 8; ++i) window_->tick();  // numbers follow a few times a second
+        wait_until_settled();
         const QImage image = window_->grab().toImage();
         expect_as_committed(
             image.scaled(image.size() / 2, Qt::IgnoreAspectRatio, Qt::SmoothTransformation)
@@ -32,44 +31,44 @@ class WindowReferences : public InWindow {
     }
 };
 
-TEST_F(WindowReferences, welcome) {
-    ASSERT_TRUE(
-        wait_until([&] { return part<QLabel>("welcome_devices").text().contains("mouse"); }));
+TEST_F(DrawnReferences, welcome) {
+    wait_until([&] { return part<QLabel>("welcome_devices").text().contains("mouse"); });
     expect_as("welcome");
 }
 
-TEST_F(WindowReferences, first_contact) {
+TEST_F(DrawnReferences, first_contact) {
     feel("synthetic:sphere:48x48x48");
     Scene& scene = window_->views().scene();
     QTest::mouseClick(&scene, Qt::LeftButton, {}, scene.rect().center() + QPoint(70, -50));
-    ASSERT_TRUE(wait_until([&] { return !window_->probe().travelling(); }));
+    wait_until([&] { return !window_->probe().travelling(); });
     turn_wheel(scene, 4);
+    wait_for_hand();
+    wait_for_ticks(2);
     ASSERT_GT(force(), 0.3);
     expect_as("first_contact");
 }
 
-TEST_F(WindowReferences, several_surfaces) {
+TEST_F(DrawnReferences, several_surfaces) {
     feel(io::sample_volume_path().string());
     QTest::mouseClick(&part<QPushButton>("add_surface"), Qt::LeftButton);
-    QTest::qWait(60);
     expect_as("several_surfaces");
 }
 
-TEST_F(WindowReferences, overlay) {
+TEST_F(DrawnReferences, overlay) {
     feel("synthetic:sphere:48x48x48");
     write_segmentation(scratch_.path() / "ball.seg.nrrd");
     window_->overlays().open(run::source_named((scratch_.path() / "ball.seg.nrrd").string()));
-    ASSERT_TRUE(wait_until([&] { return window_->overlays().overlay() != nullptr; }));
+    wait_until([&] { return window_->overlays().overlay() != nullptr; });
     window_->views().set_crosshair({3, 3, 3});
     expect_as("overlay");
 }
 
-TEST_F(WindowReferences, an_edit_under_way) {
+TEST_F(DrawnReferences, an_edit_under_way) {
     feel("synthetic:sphere:48x48x48");
     press_until_force();
     press(Qt::Key_B);
     const auto version = [&] { return window_->live()->data().editor().state().version; };
-    ASSERT_TRUE(wait_until([&] { return version() > 0 && force() < 0.01; })) << "it is carved away";
+    wait_until([&] { return version() > 0 && force() < 0.01; });  // it is carved away
     expect_as("edit");
 }
 

@@ -27,20 +27,11 @@ class ToolInWindow : public InWindow {
         ASSERT_GE(row, 0) << name;
         box.setCurrentIndex(row);
         Q_EMIT box.activated(row);
-        ASSERT_TRUE(wait_until([&] { return window_->live()->waiting() == 0; }));
+        wait_until([&] { return window_->live()->waiting() == 0; });
     }
     void turn(const QPoint& from, const QPoint& to) {
-        QWidget& scene = window_->views().scene();
-        QTest::mousePress(&scene, Qt::LeftButton, Qt::ControlModifier, from);
-        for (int i = 1; i <= 6; ++i) {
-            const QPoint at = from + (to - from) * i / 6;
-            QMouseEvent event(QEvent::MouseMove, at, scene.mapToGlobal(at), Qt::NoButton,
-                              Qt::LeftButton, Qt::ControlModifier);
-            QApplication::sendEvent(&scene, &event);
-            QTest::qWait(15);
-        }
-        QTest::mouseRelease(&scene, Qt::LeftButton, Qt::ControlModifier, to);
-        ASSERT_TRUE(hand_arrives());
+        drag(window_->views().scene(), from, to, Qt::LeftButton, Qt::ControlModifier);
+        wait_for_hand();
     }
 };
 
@@ -57,14 +48,13 @@ TEST_F(ToolInWindow, is_pressed_and_turned_with_the_mouse) {
     const double turned = tick.tool.hand.angularDistance(Quaternion::Identity());
     EXPECT_GT(turned, 0.3);
     // A flat face that is turned on a ball pushes back.
-    EXPECT_TRUE(wait_until([&] { return now().session.tick.torque.norm() > 1; }));
+    wait_until([&] { return now().session.tick.torque.norm() > 1; });
     save("tool-turned");
     QTest::keyClick(&window_->views().scene(), Qt::Key_Left, Qt::ControlModifier);
-    EXPECT_TRUE(wait_until(
-        [&] { return now().session.tick.tool.hand.angularDistance(tick.tool.hand) > 0.05; }));
+    wait_until([&] { return now().session.tick.tool.hand.angularDistance(tick.tool.hand) > 0.05; });
     choose("Point");
     EXPECT_FALSE(tool());
-    EXPECT_TRUE(wait_until([&] { return now().session.tick.tool.contacts == 0; }));
+    wait_until([&] { return now().session.tick.tool.contacts == 0; });
 }
 
 TEST_F(ToolInWindow, comes_from_a_mesh_that_is_dropped_and_goes_with_the_session) {
@@ -82,7 +72,7 @@ TEST_F(ToolInWindow, comes_from_a_mesh_that_is_dropped_and_goes_with_the_session
     QApplication::sendEvent(window_.get(), &enter);
     QDropEvent drop({100, 100}, Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
     QApplication::sendEvent(window_.get(), &drop);
-    ASSERT_TRUE(wait_until([&] { return tool() != nullptr; }));
+    wait_until([&] { return tool() != nullptr; });
     EXPECT_EQ(tool()->shape().triangles.size(), 4U);
     EXPECT_EQ(part<QComboBox>("tool").currentText(), "hook.stl");
     const std::size_t points = tool()->points().size();
@@ -94,7 +84,7 @@ TEST_F(ToolInWindow, comes_from_a_mesh_that_is_dropped_and_goes_with_the_session
     choose("Point");
     ASSERT_FALSE(tool());
     window_->files().open_path(session);
-    ASSERT_TRUE(wait_until([&] { return window_->live() && tool() != nullptr; }));
+    wait_until([&] { return window_->live() && tool() != nullptr; });
     EXPECT_EQ(tool()->points().size(), points);
     EXPECT_EQ(tool()->shape().triangles.size(), 4U);
     EXPECT_EQ(part<QComboBox>("tool").currentText(), "As given");
@@ -110,14 +100,14 @@ TEST_F(ToolInWindow, drills_with_its_own_shape) {
     shape.click();
     press(Qt::Key_B);
     const auto edits = [&] { return window_->live()->data().editor().state(); };
-    ASSERT_TRUE(wait_until([&] { return edits().version > 0; }));
+    wait_until([&] { return edits().version > 0; });
     for (int i = 0; i < 10; ++i) {
         turn_wheel(window_->views().scene(), 1);
-        QTest::qWait(50);
+        wait_for_hand();
     }
     // The room that the tool has made for itself: nothing is solid where it is.
     press(Qt::Key_B);
-    ASSERT_TRUE(wait_until([&] { return window_->settled(); }));
+    wait_until_settled();
     const Tick tick = now().session.tick;
     const Field field(edits().samples, Solid::above);
     EXPECT_LT(value_at(field, tick.proxy.scp), tick.proxy.isovalue);
@@ -134,7 +124,7 @@ TEST_F(ToolInWindow, that_cannot_be_read_is_said_and_changes_nothing) {
     const auto path = scratch_.path() / "bad.stl";
     std::ofstream(path) << "no mesh";
     window_->tools().open(QString::fromStdString(path.string()));
-    ASSERT_TRUE(wait_until([&] { return !window_->messages().problem().isEmpty(); }));
+    wait_until([&] { return !window_->messages().problem().isEmpty(); });
     EXPECT_TRUE(window_->messages().problem().contains("bad.stl"));
     EXPECT_EQ(tool(), before);
 }

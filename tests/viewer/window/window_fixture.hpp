@@ -7,13 +7,16 @@
 #include <QDialog>
 #include <QDir>
 #include <QLineEdit>
+#include <QMessageBox>
 #include <QSettings>
 #include <QTimer>
 #include <QWheelEvent>
 #include <QtTest>
 #include <fstream>
 #include <functional>
+#include <limits>
 #include <memory>
+#include <stdexcept>
 
 #include "apps/viewer/panel/brush_controls.hpp"
 #include "apps/viewer/panel/device_controls.hpp"
@@ -26,6 +29,7 @@
 #include "apps/viewer/window/views.hpp"
 #include "support/scratch_folder.hpp"
 #include "viewer/kept_picture.hpp"
+#include "viewer/undrawn.hpp"
 #include "viewer/waiting.hpp"
 
 namespace palpate::viewer::test {
@@ -45,6 +49,7 @@ inline void write_segmentation(const std::filesystem::path& path) {
     }
 }
 
+/// A window that draws only in suites whose names begin with Drawn.
 class InWindow : public testing::Test {
   protected:
     void SetUp() override {
@@ -57,50 +62,85 @@ class InWindow : public testing::Test {
         QApplication::exec();
         open_window("mouse");
     }
+
     void TearDown() override {
-        if (!window_) return;
-        save("at-the-end");
+        if (window_) save("at-the-end");
         window_.reset();
     }
 
-    void open_window(const std::string& device) {
+    /// Forces begin at once and go on however long the machine stalls.
+    static run::Setup setup_with(const std::string& device) {
         run::Setup setup;
         setup.device = devices::parse_device(device);
         setup.real_time = false;
-        window_ = std::make_unique<MainWindow>(RunRequest{setup, {}, {}});
+        setup.render.force.ramp = 0;
+        setup.render.force.stale_after = std::numeric_limits<double>::infinity();
+        return setup;
+    }
+    void open_window(const std::string& device) { open_window(setup_with(device)); }
+    void open_window(const run::Setup& setup) {
+        window_ = std::make_unique<MainWindow>(RunRequest{setup, {}, {}}, painter_of_test());
         window_->resize(1060, 720);  // small: frames are drawn in software
         window_->show();
-        ASSERT_TRUE(wait_until_active(*window_));
+        activate(*window_);
+    }
+
+    /// As viewer::wait_until(), but a problem that the window tells meanwhile ends the test.
+    void wait_until(const std::function<bool()>& so,
+                    const std::source_location& here = std::source_location::current()) const {
+        const auto problem = [this] { return window_ ? window_->messages().problem() : QString(); };
+        const QString before = problem();
+        viewer::wait_until([&] { return so() || problem() != before; }, here);
+        if (!so()) throw std::runtime_error(problem().toStdString());
+    }
+    /// Until the servo has done so many ticks more, of this run or the next.
+    void wait_for_ticks(std::int64_t ticks) const {
+        std::int64_t last = now().number;
+        wait_until([&] {
+            const std::int64_t number = window_->live() ? now().number : last + ticks;
+            ticks -= number >= last ? number - last : number;
+            last = number;
+            return ticks <= 0;
+        });
+    }
+    /// Until what was asked for is felt and shown.
+    void wait_until_settled() const {
+        const auto is_settled = [this] { return window_->settled(); };
+        wait_until(is_settled);
+        if (window_->live()) wait_for_ticks(2);
+        window_->tick();
+        wait_until_quiet(*window_);
+        wait_until(is_settled);
     }
 
     /// Opens a volume and waits until it is felt.
     void feel(const std::string& name) {
         window_->files().open_path(QString::fromStdString(name));
-        ASSERT_TRUE(wait_until([&] { return window_->live() && window_->live()->snapshot(); }))
-            << window_->messages().problem().toStdString();
-        ASSERT_TRUE(wait_until([&] { return window_->settled(); }));
+        wait_until([&] { return window_->live() && window_->live()->snapshot(); });
+        wait_until_settled();
+        if (window_->live()->mouse()) wait_for_hand();
     }
 
     /// What is felt; right after a start, once there is something.
     Snapshot now() const {
-        (void)wait_until([&] { return window_->live()->snapshot().has_value(); });
+        wait_until([&] { return window_->live()->snapshot().has_value(); });
         return window_->live()->snapshot().value();
     }
     double force() const { return now().session.tick.force.norm(); }
 
-    /// Waits until the hand is where the mouse aims, and turned as it is to be.
-    bool hand_arrives() {
-        return wait_until([&] {
+    /// Until the hand is where the mouse aims, and turned as it is to be. `within` [device mm].
+    void wait_for_hand(double within = 1e-3) const {
+        wait_until([&] {
             const devices::Mouse& mouse = *window_->live()->mouse();
             const DeviceReading hand = now().session.device;
-            return (hand.position - mouse.aimed()).norm() < 1e-3 &&
+            return (hand.position - mouse.aimed()).norm() < within &&
                    Quaternion(hand.orientation).angularDistance(mouse.turned_to()) < 1e-3;
         });
     }
 
     /// A key that goes to whatever of the window has it as a shortcut.
     void press(Qt::Key key, Qt::KeyboardModifiers with = {}) {
-        ASSERT_TRUE(wait_until_active(*window_));
+        activate(*window_);
         QTest::keyClick(window_.get(), key, with);
     }
 
@@ -113,35 +153,38 @@ class InWindow : public testing::Test {
                               {0, steps > 0 ? notch : -notch}, Qt::NoButton, Qt::NoModifier,
                               Qt::NoScrollPhase, false);
             QApplication::sendEvent(&widget, &event);
-            QTest::qWait(20);
         }
     }
     void drag(QWidget& widget, const QPoint& from, const QPoint& to,
-              Qt::MouseButton button = Qt::LeftButton) {
-        QTest::mousePress(&widget, button, {}, from);
+              Qt::MouseButton button = Qt::LeftButton, Qt::KeyboardModifiers keys = {}) {
+        QTest::mousePress(&widget, button, keys, from);
         constexpr int steps = 8;
         for (int i = 1; i <= steps; ++i) {
             const QPoint at = from + (to - from) * i / steps;
             // QTest's own move has no button: the event is made as the window system would.
             QMouseEvent event(QEvent::MouseMove, at, widget.mapToGlobal(at), Qt::NoButton, button,
-                              Qt::NoModifier);
+                              keys);
             QApplication::sendEvent(&widget, &event);
-            QTest::qWait(15);
+            QApplication::processEvents();
         }
-        QTest::mouseRelease(&widget, button, {}, to);
+        QTest::mouseRelease(&widget, button, keys, to);
+    }
+    /// Turns the wheel over the scene, a step each time the hand has arrived, until it is so or the
+    /// hand has gone through everything.
+    bool press_until(const std::function<bool()>& so, int notch = 120) {
+        for (int i = 0; i < 300 && !so(); ++i) {
+            turn_wheel(window_->views().scene(), 1, notch);
+            wait_for_hand(0.1);
+        }
+        return so();
     }
     /// Pushes the probe into the depth of the view until there is force.
     void press_until_force() {
-        QWidget& scene = window_->views().scene();
-        for (int i = 0; i < 200 && !(force() > 0.3); ++i) {
-            turn_wheel(scene, 1);
-            QTest::qWait(20);
-        }
-        ASSERT_GT(force(), 0.3);
+        ASSERT_TRUE(press_until([&] { return force() > 0.3; }));
     }
 
     /// Does what opens a file dialog, and types a name there. The dialog has an event loop of its
-    /// own: the keys come from within.
+    /// own: the keys come from within, again where they came before it was ready.
     void typing(const QString& name, const std::function<void()>& open) {
         QTimer typist;
         int typed = 0;
@@ -149,20 +192,31 @@ class InWindow : public testing::Test {
             QWidget* dialog = QApplication::activeModalWidget();
             auto* line = dialog ? dialog->findChild<QLineEdit*>("fileNameEdit") : nullptr;
             if (!line || !line->isVisible()) return;
-            // A dialog that was not ready for the first words gets them again, and goes in the end.
-            if (++typed > 20) return static_cast<QDialog*>(dialog)->reject();
+            ++typed;
             line->clear();
             QTest::keyClicks(line, name);
             QTest::keyClick(line, Qt::Key_Return);
         });
-        typist.start(300);
+        typist.start(10);
         open();
         EXPECT_GT(typed, 0);
     }
     /// The same, of a dialog that a key opens, with Ctrl.
     void type_in_dialog(Qt::Key key, const QString& name, Qt::KeyboardModifiers with = {}) {
         typing(name, [&] { press(key, Qt::ControlModifier | with); });
-        ASSERT_TRUE(wait_until_active(*window_));
+        activate(*window_);
+    }
+    /// Presses a button of the question that comes.
+    void answer(QMessageBox::StandardButton button) {
+        auto* finger = new QTimer(window_.get());
+        QObject::connect(finger, &QTimer::timeout, [finger, button] {
+            auto* box = qobject_cast<QMessageBox*>(QApplication::activeModalWidget());
+            if (!box || !box->isVisible()) return;
+            finger->deleteLater();
+            finger->stop();
+            QTest::mouseClick(box->button(button), Qt::LeftButton);
+        });
+        finger->start(10);
     }
 
     template <class Widget>
@@ -174,8 +228,9 @@ class InWindow : public testing::Test {
     QString scratch(const char* name) const {
         return QString::fromStdString((scratch_.path() / name).string());
     }
-    /// A picture for people to look at.
+    /// A picture for people to look at, in a suite that draws.
     void save(const std::string& name) {
+        if (!draws()) return;
         QDir().mkpath(PALPATE_PICTURES);
         const auto* test = testing::UnitTest::GetInstance()->current_test_info();
         EXPECT_TRUE(keep(window_->grab().toImage(),
