@@ -7,6 +7,7 @@
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <ostream>
 #include <stdexcept>
 #include <thread>
 #include <vector>
@@ -88,10 +89,16 @@ struct FailureCase {
     How how;
 };
 
-std::string name_of_case(const testing::TestParamInfo<FailureCase>& info) {
+std::string words_of(const FailureCase& failure) {
     const char* const how[] = {"waits", "spins", "throws"};
-    return std::string(info.param.call == Call::read ? "read" : "write") + "_" +
-           how[static_cast<int>(info.param.how)];
+    return std::string(failure.call == Call::read ? "read" : "write") + "_" +
+           how[static_cast<int>(failure.how)];
+}
+std::string name_of_case(const testing::TestParamInfo<FailureCase>& info) {
+    return words_of(info.param);
+}
+void PrintTo(const FailureCase& failure, std::ostream* out) {
+    *out << words_of(failure);
 }
 
 /// Another thread, while this one waits for it.

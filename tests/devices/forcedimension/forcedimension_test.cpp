@@ -250,6 +250,7 @@ TEST_F(ForceDimension, one_that_cannot_initialise_itself_says_why) {
     EXPECT_TRUE(says(*device, "it could not initialise itself (geometry error)"));
     EXPECT_TRUE(becomes(*device, DeviceStatus::uncalibrated));
     EXPECT_TRUE(stays_at_zero(*device));
+    EXPECT_EQ(called("initialise"), 1);  // it tries once
 }
 
 TEST_F(ForceDimension, a_device_whose_force_cannot_be_switched_on_is_no_ready_one) {

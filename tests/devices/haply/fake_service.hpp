@@ -32,10 +32,10 @@ class FakeService {
         answer_ = [text = std::move(text)](const std::string&) { return Reply{text}; };
     }
     void delay(std::chrono::milliseconds late) { late_ = late; }  ///< every answer, in order
-    void hang(bool on) { hangs_ = on; }       ///< neither reads nor writes nor shakes hands
-    void mute(bool on) { mute_ = on; }        ///< reads, but answers nothing
-    void refuse(bool on) { refuses_ = on; }   ///< no connections
-    void drop() { open_ = false; }            ///< closes the connection
+    void hang(bool on) { hangs_ = on; }      ///< neither reads nor writes nor shakes hands
+    void mute(bool on) { mute_ = on; }       ///< reads, but answers nothing
+    void refuse(bool on) { refuses_ = on; }  ///< no connections
+    void drop() { open_ = false; }           ///< closes the connection
 
     // What it saw.
     const devices::haply::Address& address() const { return address_; }  ///< connected to last
@@ -82,7 +82,8 @@ class FakeService {
         }
         Received receive(Clock::time_point deadline) override {
             service_.read_all();
-            if (!service_.open_) return error_ = "it is gone", Received{Received::What::closed, false, {}};
+            if (!service_.open_)
+                return error_ = "it is gone", Received{Received::What::closed, false, {}};
             std::deque<Due>& due = service_.due_;
             if (service_.hangs_ || due.empty() || due.front().at > deadline) {
                 pass_to(deadline);

@@ -1,5 +1,5 @@
-// The socket against a real one on the loopback that behaves badly, and the device's thread against it
-// at its real pace.
+// The socket against a real one on the loopback that behaves badly, and the device's thread against
+// it at its real pace.
 #include <gtest/gtest.h>
 
 #include "devices/haply/haply.hpp"
@@ -65,8 +65,8 @@ TEST_F(HaplySocket, where_nothing_listens_that_is_said_with_the_address) {
         port = gone.port();
     }
     const std::string place = "127.0.0.1:" + std::to_string(port);
-    const std::string said = start_talk(talk, haply::look_up("127.0.0.1", port), "",
-                                        haply::Clock::now() + patience);
+    const std::string said =
+        start_talk(talk, haply::look_up("127.0.0.1", port), "", haply::Clock::now() + patience);
     EXPECT_TRUE(contains(said, place)) << said;
     EXPECT_TRUE(contains(said, "haply-inverse-service")) << said;
 }
@@ -137,9 +137,9 @@ TEST_F(PacedHaply, its_thread_presses_at_4_khz_at_most_connects_again_and_says_g
     std::unique_ptr<Device> device;
     ASSERT_TRUE(comes_true([&] {
         try {
-            device = open_haply(
-                parse_device("haply:host=127.0.0.1,timeout=5,port=" + std::to_string(service.port())),
-                any_scene());
+            device = open_haply(parse_device("haply:host=127.0.0.1,timeout=5,port=" +
+                                             std::to_string(service.port())),
+                                any_scene());
         } catch (const DeviceError&) {
         }
         return device != nullptr;
