@@ -12,22 +12,23 @@ are left as they are; when nothing is missing, apt is not run.
   --check  install nothing; exit with 1 when one is missing
 
 groups (default: all)
-  core     compiler, CMake, Eigen, GoogleTest, Google Benchmark, Python for the rule checks
+  core     compiler, CMake, Eigen, GoogleTest, Google Benchmark; Python and Git for the rule checks
   program  core, and what reads and writes files and reaches devices: ITK, VTK, CLI11, fmt, JSON,
            EGL and Mesa for pictures without a display, PNG, zlib, gnuplot, Boost, oneTBB, codecs of
            chunks, libcurl
   io       program; for the Python module pybind11, NumPy, Dask, pip, nibabel; for tests zarr, h5py, tifffile
            and OpenIGTLink
   viewer   io, and VTK's and Qt's windows and translations, Xvfb to test them
-  dev      clang, lld, its sanitizers and fuzzer, clang-format, clang-tidy, shellcheck,
-           Mono, lintian
+  package  what scripts/package.sh uses in addition to viewer
+  test     package, and what only the tests use: lintian and pkg-config for the Debian packages, Mono for C#
+  dev      clang, lld, its sanitizers and fuzzer, clang-format, clang-tidy, shellcheck
   docs     MkDocs and Doxygen, for the documentation as a site
   windows  core, MinGW and Wine, and the headers that the libraries for Windows are built with; not in all
   all      everything above
 TEXT
 }
 
-core=(g++ cmake ninja-build ccache libeigen3-dev libgtest-dev libgmock-dev libbenchmark-dev python3)
+core=(g++ cmake ninja-build ccache libeigen3-dev libgtest-dev libgmock-dev libbenchmark-dev python3 git)
 python=(python3-dev pybind11-dev python3-numpy python3-pytest python3-nibabel python3-zarr
         python3-h5py python3-tifffile python3-setuptools python3-wheel python3-pip python3-dask
         python3-distributed)
@@ -36,7 +37,9 @@ program=("${core[@]}" libinsighttoolkit5-dev libvtk9-dev libcli11-dev libfmt-dev
     libgl1-mesa-dri libembree-dev libtbb-dev libblosc-dev libzstd-dev liblz4-dev libxxhash-dev libcurl4-openssl-dev)
 io=("${program[@]}" libopenigtlink-dev "${python[@]}")
 viewer=("${io[@]}" libvtk9-qt-dev qtbase5-dev qttools5-dev qttools5-dev-tools qttranslations5-l10n xvfb)
-dev=(git lintian pkg-config mono-mcs mono-runtime clang lld clang-format-14 clang-tidy libclang-rt-14-dev shellcheck)
+package=(dpkg-dev file)
+test=("${package[@]}" lintian pkg-config mono-mcs mono-runtime)
+dev=(clang lld clang-format-14 clang-tidy libclang-rt-14-dev shellcheck)
 docs=(mkdocs doxygen python3-pygments libjs-jquery)
 windows=("${core[@]}" g++-mingw-w64-x86-64-posix wine64 libz-mingw-w64-dev nlohmann-json3-dev
     libboost-dev libcli11-dev libfmt-dev)
@@ -53,10 +56,12 @@ for group in "${@:-all}"; do
         program) wanted+=("${program[@]}") ;;
         io) wanted+=("${io[@]}") ;;
         viewer) wanted+=("${viewer[@]}") ;;
+        package) wanted+=("${package[@]}") ;;
+        test) wanted+=("${test[@]}") ;;
         dev) wanted+=("${dev[@]}") ;;
         docs) wanted+=("${docs[@]}") ;;
         windows) wanted+=("${windows[@]}") ;;
-        all) wanted+=("${viewer[@]}" "${dev[@]}" "${docs[@]}") ;;
+        all) wanted+=("${viewer[@]}" "${test[@]}" "${dev[@]}" "${docs[@]}") ;;
         -h | --help) usage; exit 0 ;;
         *) echo "install_packages.sh: no group '$group'" >&2; usage >&2; exit 2 ;;
     esac

@@ -7,8 +7,9 @@ usage() {
     cat <<'TEXT'
 usage: scripts/package.sh [windows] [--build FOLDER] [OUTPUT]
 
-Builds Palpate for /usr (in build/package; a quarter of an hour on two cores) and makes the Debian
-packages palpate, palpate-io-helper, libpalpate-c0 and libpalpate-dev, in OUTPUT (default: packages).
+Installs the packages that are missing, builds Palpate for /usr (in build/package; a quarter of an hour on
+two cores) and makes the Debian packages palpate, palpate-io-helper, libpalpate-c0 and libpalpate-dev, in
+OUTPUT (default: packages).
 With `windows`, builds for Windows (in build/windows-package) and makes a zip with the DLL, its header and
 import library, the command line, sample data, examples and licences.
 With --build FOLDER, packages what another build folder holds, as it is: for trying the packages.
@@ -61,8 +62,13 @@ package_for_windows() {
 tried=yes
 if [ -z "$build" ]; then
     tried=no
-    build=build/package
-    [ "$system" = debian ] || build=build/windows-package
+    if [ "$system" = debian ]; then
+        build=build/package
+        scripts/install_packages.sh viewer package
+    else
+        build=build/windows-package
+        scripts/install_packages.sh windows
+    fi
     cmake --preset "$(basename "$build")"
     cmake --build "$build"
 fi

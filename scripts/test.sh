@@ -51,8 +51,8 @@ if [ "$packages" = yes ]; then
         core) scripts/install_packages.sh core ;;
         asan) scripts/install_packages.sh io dev ;;
         tsan) scripts/install_packages.sh io ;;
-        clang) scripts/install_packages.sh viewer dev ;;
-        *) scripts/install_packages.sh viewer ;;
+        clang) scripts/install_packages.sh viewer test dev ;;
+        *) scripts/install_packages.sh viewer test ;;
     esac
 fi
 
