@@ -130,6 +130,9 @@ struct Known {
     double minimum, maximum;
     std::vector<double> spacing;
     std::string orientation;
+    friend std::ostream& operator<<(std::ostream& out, const Known& known) {
+        return out << known.name;
+    }
 };
 
 class RealVolume : public testing::TestWithParam<Known> {};

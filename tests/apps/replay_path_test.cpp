@@ -91,6 +91,9 @@ struct PathCase {
     double isovalue;
     std::string method;
     std::string options = {};
+    friend std::ostream& operator<<(std::ostream& out, const PathCase& c) {
+        return out << c.volume << " at " << c.isovalue << ", " << c.method << ' ' << c.options;
+    }
 };
 
 Volume volume_of(const std::string& name) {

@@ -31,6 +31,9 @@ TEST(Usage, every_command_prints_the_version) {
 
 struct Case {
     std::string words, reason;
+    friend std::ostream& operator<<(std::ostream& out, const Case& c) {
+        return out << '\'' << c.words << '\'';
+    }
 };
 
 class WrongWords : public testing::TestWithParam<Case> {};

@@ -8,6 +8,7 @@
 #include "palpate/session.hpp"
 #include "support/constants.hpp"
 #include "support/edits.hpp"
+#include "support/parameter.hpp"
 #include "support/resident.hpp"
 
 using namespace palpate;
@@ -203,8 +204,7 @@ TEST_P(ReachOnFields,
 }
 
 INSTANTIATE_TEST_SUITE_P(Fields, ReachOnFields,
-                         testing::Values(Interpolation::linear, Interpolation::cubic),
-                         [](const auto& info) { return std::string(name_of(info.param)); });
+                         testing::Values(Interpolation::linear, Interpolation::cubic));
 
 TEST(Reach, what_a_field_remembers_gives_the_parts_that_looking_again_gives) {
     PartOf part(rough());

@@ -18,18 +18,14 @@ using namespace palpate::support;
 
 namespace {
 
-struct ProxyScan {
-    const char* file;
-    double isovalue;
-    Solid solid = Solid::above;
-};
+using io::test::Scan;
 
-class ProxyOnRealVolumes : public testing::TestWithParam<ProxyScan> {};
+class ProxyOnRealVolumes : public testing::TestWithParam<Scan> {};
 
 }  // namespace
 
 TEST_P(ProxyOnRealVolumes, keeps_its_guarantees) {
-    const ProxyScan scan = GetParam();
+    const Scan scan = GetParam();
     const auto path = io::test::real_volume(scan.file);
     if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
     const Field field(io::read_volume(path).volume, scan.solid);
@@ -51,7 +47,7 @@ TEST_P(ProxyOnRealVolumes, keeps_its_guarantees) {
 }
 
 TEST_P(ProxyOnRealVolumes, keeps_its_guarantees_on_the_smooth_field) {
-    const ProxyScan scan = GetParam();
+    const Scan scan = GetParam();
     const auto path = io::test::real_volume(scan.file);
     if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
     const Field field(io::read_volume(path).volume, scan.solid, std::nullopt, Interpolation::cubic);
@@ -70,7 +66,7 @@ TEST_P(ProxyOnRealVolumes, keeps_its_guarantees_on_the_smooth_field) {
 }
 
 TEST_P(ProxyOnRealVolumes, keeps_the_order_of_layers) {
-    const ProxyScan scan = GetParam();
+    const Scan scan = GetParam();
     const auto path = io::test::real_volume(scan.file);
     if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
     const Volume volume = io::read_volume(path).volume;
@@ -121,16 +117,9 @@ TEST(LayersOnTheHead, keep_their_order_from_skin_to_bone) {
 
 INSTANTIATE_TEST_SUITE_P(
     Scans, ProxyOnRealVolumes,
-    testing::Values(
-        ProxyScan{"head", io::sample_volume_skin}, ProxyScan{"head", io::sample_volume_bone},
-        ProxyScan{"head", io::sample_volume_skin, Solid::below}, ProxyScan{"lobster.nrrd", 35},
-        ProxyScan{"lobster.nrrd", 110}, ProxyScan{"orange.nrrd", 15}, ProxyScan{"orange.nrrd", 60},
-        ProxyScan{"daisy_pollen.nrrd", 40}, ProxyScan{"daisy_pollen.nrrd", 100},
-        ProxyScan{"cthead_unc.nrrd", 500}, ProxyScan{"cthead_unc.nrrd", 1200},
-        ProxyScan{"cthead_unc.nrrd", 500, Solid::below}, ProxyScan{"iguana.nii.gz", 120}),
-    [](const auto& scan) {
-        std::string name = scan.param.file;
-        for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
-        return name + "_at_" + std::to_string(static_cast<int>(scan.param.isovalue)) +
-               (scan.param.solid == Solid::below ? "_below" : "");
-    });
+    testing::Values(Scan{"head", io::sample_volume_skin}, Scan{"head", io::sample_volume_bone},
+                    Scan{"head", io::sample_volume_skin, Solid::below}, Scan{"lobster.nrrd", 35},
+                    Scan{"lobster.nrrd", 110}, Scan{"orange.nrrd", 15}, Scan{"orange.nrrd", 60},
+                    Scan{"daisy_pollen.nrrd", 40}, Scan{"daisy_pollen.nrrd", 100},
+                    Scan{"cthead_unc.nrrd", 500}, Scan{"cthead_unc.nrrd", 1200},
+                    Scan{"cthead_unc.nrrd", 500, Solid::below}, Scan{"iguana.nii.gz", 120}));

@@ -3,8 +3,10 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <ostream>
 #include <string>
 
+#include "palpate/field.hpp"
 #include "palpate/io/sample_volume.hpp"
 
 namespace palpate::io::test {
@@ -16,5 +18,16 @@ inline std::filesystem::path real_volume(const std::string& name) {
     const char* const set = std::getenv("PALPATE_DATA");
     return std::filesystem::path(set != nullptr ? set : PALPATE_DATA_FOLDER) / name;
 }
+
+/// A surface in one of them, as a parameter of tests.
+struct Scan {
+    const char* file;
+    double isovalue;
+    Solid solid = Solid::above;
+    friend std::ostream& operator<<(std::ostream& out, const Scan& scan) {
+        return out << scan.file << " at " << scan.isovalue
+                   << (scan.solid == Solid::below ? " below" : "");
+    }
+};
 
 }  // namespace palpate::io::test

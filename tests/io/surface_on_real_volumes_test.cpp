@@ -17,13 +17,9 @@ using namespace palpate;
 
 namespace {
 
-struct SurfaceScan {
-    const char* file;
-    double isovalue;
-    Solid solid = Solid::above;
-};
+using io::test::Scan;
 
-class SurfaceOnRealVolumes : public testing::TestWithParam<SurfaceScan> {};
+class SurfaceOnRealVolumes : public testing::TestWithParam<Scan> {};
 
 /// Volume of the solid [mm^3], by counting at random points, with four standard deviations.
 struct Count {
@@ -69,18 +65,13 @@ TEST_P(SurfaceOnRealVolumes, is_closed_and_encloses_the_solid) {
 }
 
 // Isovalues from the list that comes with the data; the iguana from the inside out.
-INSTANTIATE_TEST_SUITE_P(
-    Scans, SurfaceOnRealVolumes,
-    testing::Values(SurfaceScan{"head", io::sample_volume_skin},
-                    SurfaceScan{"head", io::sample_volume_bone, Solid::below},
-                    SurfaceScan{"fuel_small.nrrd", 30}, SurfaceScan{"lobster.nrrd", 35},
-                    SurfaceScan{"orange.nrrd", 15}, SurfaceScan{"daisy_pollen.nrrd", 40},
-                    SurfaceScan{"engine.nrrd", 60}, SurfaceScan{"cthead_unc.nrrd", 1200},
-                    SurfaceScan{"neuron_confocal.nrrd", 30}, SurfaceScan{"HeadMRVolume.mhd", 60},
-                    SurfaceScan{"dicom_sphere", 600},
-                    SurfaceScan{"iguana.nii.gz", 120, Solid::below},
-                    SurfaceScan{"visible_human_head.nrrd", 110}),
-    [](const auto& scan) {
-        const std::string name = scan.param.file;
-        return name.substr(0, name.find('.')) + (scan.param.solid == Solid::below ? "_below" : "");
-    });
+INSTANTIATE_TEST_SUITE_P(Scans, SurfaceOnRealVolumes,
+                         testing::Values(Scan{"head", io::sample_volume_skin},
+                                         Scan{"head", io::sample_volume_bone, Solid::below},
+                                         Scan{"fuel_small.nrrd", 30}, Scan{"lobster.nrrd", 35},
+                                         Scan{"orange.nrrd", 15}, Scan{"daisy_pollen.nrrd", 40},
+                                         Scan{"engine.nrrd", 60}, Scan{"cthead_unc.nrrd", 1200},
+                                         Scan{"neuron_confocal.nrrd", 30},
+                                         Scan{"HeadMRVolume.mhd", 60}, Scan{"dicom_sphere", 600},
+                                         Scan{"iguana.nii.gz", 120, Solid::below},
+                                         Scan{"visible_human_head.nrrd", 110}));

@@ -59,11 +59,7 @@ INSTANTIATE_TEST_SUITE_P(
               SampleType::int16,
               {1, 1, 1},
               -1024,
-              1017}),
-    [](const auto& tested) {
-        std::string name = tested.param.name;
-        return name.substr(0, name.find('.'));
-    });
+              1017}));
 
 TEST(real_volume, the_time_steps_of_the_turning_head_differ_and_cover_its_range) {
     const auto path = real_volume("fmri_headturn_4d.nrrd");

@@ -40,9 +40,4 @@ TEST_P(SurfaceOfScenes, is_closed_and_encloses_what_is_solid) {
     EXPECT_LT(tolerance, 0.25 * part * box);  // the count says something
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, SurfaceOfScenes, testing::ValuesIn(scenes::volume_names()),
-                         [](const auto& scene) {
-                             std::string name = scene.param;
-                             for (char& c : name) c = c == '-' ? '_' : c;
-                             return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(Scenes, SurfaceOfScenes, testing::ValuesIn(scenes::volume_names()));

@@ -14,8 +14,7 @@ constexpr double seconds = 3;
 const std::string hold = ",hand=hold,depth=6,seconds=3";
 
 class EveryProfile : public testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(ClosedLoop, EveryProfile, testing::ValuesIn(profile_names()),
-                         [](const auto& name) { return name.param; });
+INSTANTIATE_TEST_SUITE_P(ClosedLoop, EveryProfile, testing::ValuesIn(profile_names()));
 
 TEST_P(EveryProfile, comes_to_rest_at_its_rated_stiffness_in_every_grip) {
     const Body body;

@@ -10,6 +10,7 @@
 #include "apps/viewer/model/patch_choice.hpp"
 #include "apps/viewer/scene/surface_blocks.hpp"
 #include "palpate/scenes/volumes.hpp"
+#include "support/parameter.hpp"
 #include "viewer/scene/mesh_points.hpp"
 
 namespace palpate::viewer {
@@ -251,10 +252,7 @@ TEST_P(Patch, blocks_that_stay_the_same_are_the_same_and_so_is_all_of_it_the_nex
 }
 
 INSTANTIATE_TEST_SUITE_P(Fields, Patch,
-                         testing::Values(Interpolation::linear, Interpolation::cubic),
-                         [](const auto& way) {
-                             return way.param == Interpolation::linear ? "linear" : "cubic";
-                         });
+                         testing::Values(Interpolation::linear, Interpolation::cubic));
 
 }  // namespace
 }  // namespace palpate::viewer

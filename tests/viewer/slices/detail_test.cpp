@@ -4,6 +4,7 @@
 #include <random>
 
 #include "support/edits.hpp"
+#include "support/parameter.hpp"
 #include "viewer/slices/pane_support.hpp"
 
 namespace palpate::viewer {
@@ -162,10 +163,7 @@ TEST(SeenSlice, a_pane_tells_what_it_shows) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Fields, SliceDetail,
-                         testing::Values(Interpolation::linear, Interpolation::cubic),
-                         [](const auto& way) {
-                             return way.param == Interpolation::linear ? "linear" : "cubic";
-                         });
+                         testing::Values(Interpolation::linear, Interpolation::cubic));
 
 }  // namespace
 }  // namespace palpate::viewer
