@@ -26,7 +26,7 @@ clang-format-14 "${mode[@]}" "${sources[@]}"
 echo "format: ${#sources[@]} C++ files"
 
 if command -v shellcheck >/dev/null; then
-    mapfile -t scripts < <(git ls-files "scripts/*.sh" scripts/deep .ci/run)
+    mapfile -t scripts < <(git ls-files 'scripts/*.sh' 'scripts/deep/*' .ci/run)
     shellcheck "${scripts[@]}"
     echo "shellcheck: ${#scripts[@]} scripts"
 fi
