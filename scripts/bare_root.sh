@@ -7,8 +7,13 @@
 [ -n "${PALPATE_OWN_MOUNTS:-}" ] || PALPATE_OWN_MOUNTS=yes exec unshare --mount "$PWD/scripts/deep/${0##*/}" "$@"
 
 root=$PWD/build/deep/root
+# Never reaches into what is mounted there: a bind mount may be on the same file system.
 remove_root() {
     umount --recursive --lazy "$root" 2>/dev/null || true
+    if grep -qF " $root" /proc/self/mountinfo; then
+        echo "bare_root.sh: $root is still mounted; it stays" >&2
+        return 1
+    fi
     rm -rf --one-file-system "$root"
 }
 trap remove_root EXIT

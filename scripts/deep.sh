@@ -41,7 +41,7 @@ for argument in "$@"; do
     case "$argument" in
         -h | --help) usage; exit 0 ;;
         --again) again=yes ;;
-        --list) for check in "${checks[@]}"; do printf '%-10s %s\n' "$check" "$(sed -n '2s/^# //p' "scripts/deep/$check")"; done; exit 0 ;;
+        --list) for check in "${checks[@]}"; do printf '%-10s %s\n' "$check" "$(grep -m 1 -oP '^# (?!inputs:)\K.*' "scripts/deep/$check")"; done; exit 0 ;;
         --turn) echo "${checks[$(($(git rev-list --count HEAD) % ${#checks[@]}))]}"; exit 0 ;;
         *)
             if [[ " ${checks[*]} " != *" $argument "* ]]; then
