@@ -19,14 +19,14 @@ struct PlainSamples {
     std::filesystem::path file;  ///< that holds the samples
     std::uint64_t offset = 0;    ///< [bytes] of the first sample; x fastest, then y, z, time
     bool swapped = false;  ///< the bytes of a sample are in the other order than the machine's
-    double slope = 1, intercept = 0;  ///< what a stored number means; 1 and 0: itself
+    ValueMap value_map;
     int times = 1;
     double frame_interval = 0;  ///< [s]; 0: the file does not say
     std::vector<std::string> notes;
 };
 
 /// True for a raw layout of a file that is not packed, and for NRRD, MetaImage and NIfTI files
-/// whose header says, or whose first bytes show, that their samples are not compressed.
+/// unless their header, which the helper process reads, says that they are read as a whole only.
 bool may_be_plain(const std::filesystem::path& path, const ReadOptions& options);
 
 /// Of raw files (options.raw), NRRD, MetaImage and NIfTI. Checks the header and the file's length;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdio>
 #include <cstring>
 
 namespace palpate::io {
@@ -10,6 +11,26 @@ namespace {
 
 constexpr std::array<std::string_view, 10> stored_names = {
     "int8", "uint8", "int16", "uint16", "int32", "uint32", "int64", "uint64", "float32", "float64"};
+
+std::string short_text(double number) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.6g", number);
+    return text;
+}
+
+void convert_mapped(Stored stored, const std::byte* from, std::byte* to, std::size_t count,
+                    const ValueMap& values) {
+    with_stored(stored, [&](auto source) {
+        using From = decltype(source);
+        for (std::size_t i = 0; i < count; ++i) {
+            From number;
+            std::memcpy(&number, from + i * sizeof(From), sizeof number);
+            const auto value =
+                static_cast<float>(static_cast<double>(number) * values.slope + values.intercept);
+            std::memcpy(to + i * sizeof value, &value, sizeof value);
+        }
+    });
+}
 
 }  // namespace
 
@@ -27,7 +48,8 @@ std::optional<Stored> stored_named(std::string_view name) {
     return static_cast<Stored>(found - stored_names.begin());
 }
 
-SampleType kept_as(Stored stored) {
+SampleType kept_as(Stored stored, const ValueMap& values) {
+    if (values.changes()) return SampleType::float32;
     switch (stored) {
         case Stored::uint8:
             return SampleType::uint8;
@@ -41,7 +63,13 @@ SampleType kept_as(Stored stored) {
     }
 }
 
-void note_conversion(Stored stored, std::vector<std::string>& notes) {
+void note_conversion(Stored stored, const ValueMap& values, std::vector<std::string>& notes) {
+    if (values.changes()) {
+        notes.push_back("the file's slope (" + short_text(values.slope) + ") and intercept (" +
+                        short_text(values.intercept) + ") were applied: " + name_of(stored) +
+                        " became float32");
+        return;
+    }
     const std::string kept(name_of(kept_as(stored)));
     if (kept == name_of(stored)) return;
     notes.push_back("samples of type " + name_of(stored) + " became " + kept +
@@ -49,7 +77,8 @@ void note_conversion(Stored stored, std::vector<std::string>& notes) {
 }
 
 void convert(Stored stored, const std::byte* from, SampleType type, std::byte* to,
-             std::size_t count) {
+             std::size_t count, const ValueMap& values) {
+    if (values.changes()) return convert_mapped(stored, from, to, count, values);
     if (name_of(stored) == name_of(type)) {
         std::memcpy(to, from, count * size_of(stored));
         return;

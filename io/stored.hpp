@@ -15,14 +15,20 @@ namespace palpate::io {
 
 enum class Stored { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
 
+/// What a stored number means: slope * number + intercept [data units].
+struct ValueMap {
+    double slope = 1, intercept = 0;
+    bool changes() const { return slope != 1 || intercept != 0; }
+};
+
 std::size_t size_of(Stored stored);
 std::string name_of(Stored stored);
 /// The inverse of name_of; nothing for any other name.
 std::optional<Stored> stored_named(std::string_view name);
 /// The type its samples have in a Volume.
-SampleType kept_as(Stored stored);
-/// Appends a note if that is another type.
-void note_conversion(Stored stored, std::vector<std::string>& notes);
+SampleType kept_as(Stored stored, const ValueMap& values = {});
+/// Appends a note if that is another type, or if the numbers are mapped.
+void note_conversion(Stored stored, const ValueMap& values, std::vector<std::string>& notes);
 
 /// f(T{}) with the C++ type T of a stored sample.
 template <class F>
@@ -52,8 +58,9 @@ auto with_stored(Stored stored, F&& f) {
     return f(double{});
 }
 
-/// Converts `count` samples; `to` has room for them.
+/// Converts `count` samples; `to` has room for them. Mapped values are computed in double precision
+/// and rounded once, to float32: then `type` has to be that.
 void convert(Stored stored, const std::byte* from, SampleType type, std::byte* to,
-             std::size_t count);
+             std::size_t count, const ValueMap& values = {});
 
 }  // namespace palpate::io

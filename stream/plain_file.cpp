@@ -1,6 +1,10 @@
 // Plain files of samples, read where they lie: opening costs a header, whatever the file's size.
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <optional>
 #include <vector>
 
 #include "io/helper_process.hpp"
@@ -42,8 +46,12 @@ class PlainFile : public Store {
                 const std::size_t count = row * static_cast<std::size_t>(rows);
                 raw.resize(count * bytes_.size());
                 fetch({box.low[0], y, z}, raw);
-                bytes_.convert(raw, to);
-                to += count * size_of(info_.type);
+                bytes_.unpack(raw, to);
+                const std::span<std::byte> samples{to, count * size_of(info_.type)};
+                if (!finite_samples(info_.type, samples).all) {
+                    make_finite(info_.type, samples, least_finite(stop));
+                }
+                to += samples.size();
             }
         }
     }
@@ -63,7 +71,7 @@ class PlainFile : public Store {
         if (file_.number() < 0) {
             throw io::InputError(path + ": " + io::reason(errno) + "; check its permissions");
         }
-        bytes_ = {plain.stored, plain.swapped, plain.slope, plain.intercept, 0};
+        bytes_ = {plain.stored, plain.swapped, plain.value_map, 0};
         info_.address = path;
         info_.format = plain.format;
         info_.type = bytes_.type();
@@ -72,11 +80,11 @@ class PlainFile : public Store {
         info_.notes = plain.notes;
         // A row is the least that costs one access to a disk.
         info_.levels = {{plain.geometry, Index3(plain.geometry.size[0], 1, 1)}};
-        if (bytes_.scaled()) {
-            info_.notes.push_back("the file's slope and intercept are applied: " +
-                                  io::name_of(plain.stored) + " becomes float32");
-        } else {
-            io::note_conversion(plain.stored, info_.notes);
+        io::note_conversion(plain.stored, plain.value_map, info_.notes);
+        if (info_.type == SampleType::float32) {
+            info_.notes.emplace_back(
+                "samples that are not finite (NaN or infinity), if there are any, become the least "
+                "finite value");
         }
         check_choice(info_, options);
         info_.channel = options.channel;
@@ -87,6 +95,32 @@ class PlainFile : public Store {
     }
 
     const Geometry& grid() const { return info_.levels.front().geometry; }
+
+    /// The least finite sample of the chosen time, which takes the place of those that are not
+    /// finite, as in io::read_volume(). Reads all of them when it is first needed.
+    float least_finite(const std::stop_token& stop) const {
+        const std::lock_guard lock(searching_);
+        if (least_finite_) return *least_finite_;
+        const Index3& size = grid().size;
+        std::vector<std::byte> raw, row;
+        float least = std::numeric_limits<float>::infinity();
+        for (int z = 0; z < size[2]; ++z) {
+            for (int y = 0; y < size[1]; ++y) {
+                if (stop.stop_requested()) throw Cancelled{};
+                raw.resize(static_cast<std::size_t>(size[0]) * bytes_.size());
+                row.resize(static_cast<std::size_t>(size[0]) * sizeof(float));
+                fetch({0, y, z}, raw);
+                bytes_.unpack(raw, row.data());
+                least = std::min(least, finite_samples(info_.type, row).least);
+            }
+        }
+        if (std::isinf(least)) {
+            throw io::InputError(info_.address +
+                                 ": none of its samples is a finite number; export it again");
+        }
+        least_finite_ = least;
+        return least;
+    }
 
     /// The stored bytes from a sample on.
     void fetch(const Index3& from, std::span<std::byte> raw) const {
@@ -114,6 +148,8 @@ class PlainFile : public Store {
     StoreInfo info_;
     SampleBytes bytes_;
     std::uint64_t first_ = 0;  ///< [bytes] of the first sample of the chosen time
+    mutable std::mutex searching_;
+    mutable std::optional<float> least_finite_;
     mutable TrafficCount traffic_;
 };
 

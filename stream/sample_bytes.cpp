@@ -12,21 +12,6 @@
 namespace palpate::stream {
 namespace {
 
-/// As ITK scales NIfTI: in double, rounded once to float after the sample itself was.
-void scale(std::span<std::byte> raw, const SampleBytes& how, std::byte* to) {
-    io::with_stored(how.stored, [&](auto zero) {
-        using T = decltype(zero);
-        for (std::size_t i = 0; i < raw.size() / sizeof(T); ++i) {
-            T value;
-            std::memcpy(&value, raw.data() + i * sizeof(T), sizeof value);
-            const double scaled =
-                static_cast<double>(static_cast<float>(value)) * how.slope + how.intercept;
-            const auto kept = static_cast<float>(scaled);
-            std::memcpy(to + i * sizeof kept, &kept, sizeof kept);
-        }
-    });
-}
-
 void replace_non_finite(std::byte* samples, std::size_t count, float with) {
     for (std::size_t i = 0; i < count; ++i) {
         float value;
@@ -37,15 +22,29 @@ void replace_non_finite(std::byte* samples, std::size_t count, float with) {
 
 }  // namespace
 
-void SampleBytes::convert(std::span<std::byte> raw, std::byte* to) const {
+void SampleBytes::unpack(std::span<std::byte> raw, std::byte* to) const {
     if (swapped) io::swap_bytes(raw, size());
-    const std::size_t count = raw.size() / size();
-    if (scaled()) {
-        scale(raw, *this, to);
-    } else {
-        io::convert(stored, raw.data(), type(), to, count);
+    io::convert(stored, raw.data(), type(), to, raw.size() / size(), values);
+}
+
+void SampleBytes::convert(std::span<std::byte> raw, std::byte* to) const {
+    unpack(raw, to);
+    make_finite(type(), {to, raw.size() / size() * size_of(type())}, fill);
+}
+
+FiniteSamples finite_samples(SampleType type, std::span<const std::byte> bytes) {
+    FiniteSamples found;
+    if (type != SampleType::float32) return found;
+    for (std::size_t at = 0; at + sizeof(float) <= bytes.size(); at += sizeof(float)) {
+        float value;
+        std::memcpy(&value, bytes.data() + at, sizeof value);
+        if (!std::isfinite(value)) {
+            found.all = false;
+        } else if (value < found.least) {
+            found.least = value;
+        }
     }
-    if (type() == SampleType::float32) replace_non_finite(to, count, static_cast<float>(fill));
+    return found;
 }
 
 void make_finite(SampleType type, std::span<std::byte> bytes, double instead) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <span>
 
 #include "io/stored.hpp"
@@ -11,17 +12,25 @@ namespace palpate::stream {
 
 struct SampleBytes {
     io::Stored stored = io::Stored::uint8;
-    bool swapped = false;             ///< in the other byte order than the machine's
-    double slope = 1, intercept = 0;  ///< what a stored number means; 1 and 0: itself
-    double fill = 0;                  ///< in place of what is not finite [data units]
+    bool swapped = false;  ///< in the other byte order than the machine's
+    io::ValueMap values = {};
+    double fill = 0;  ///< in place of what is not finite [data units]
 
-    bool scaled() const { return slope != 1 || intercept != 0; }
-    SampleType type() const { return scaled() ? SampleType::float32 : io::kept_as(stored); }
+    SampleType type() const { return io::kept_as(stored, values); }
     std::size_t size() const { return io::size_of(stored); }
     /// Converts the stored samples of `raw`, which it may change, into `to`, which has room for as
-    /// many of type().
+    /// many of type(). Those that are not finite become `fill`.
     void convert(std::span<std::byte> raw, std::byte* to) const;
+    /// The same, but those that are not finite stay.
+    void unpack(std::span<std::byte> raw, std::byte* to) const;
 };
+
+/// What is known of some samples: the least finite one, and whether others are not finite.
+struct FiniteSamples {
+    float least = std::numeric_limits<float>::infinity();
+    bool all = true;
+};
+FiniteSamples finite_samples(SampleType type, std::span<const std::byte> bytes);
 
 /// Samples that are not finite become `instead`, as io::read_volume() does it.
 void make_finite(SampleType type, std::span<std::byte> bytes, double instead);

@@ -37,9 +37,18 @@ std::shared_ptr<const void> kept_by(py::object owner, const void* data) {
             }};
 }
 
+/// Masked elements have numbers below their mask that nobody meant.
+void refuse_masked(const py::array& given) {
+    if (!py::hasattr(given, "mask")) return;
+    if (!py::module_::import("numpy").attr("any")(given.attr("mask")).cast<bool>()) return;
+    throw std::invalid_argument(
+        "the array has masked elements; give them a value first, with array.filled(value)");
+}
+
 }  // namespace
 
 Volume volume_from(const py::array& given, const Geometry& geometry_but_size, bool copy) {
+    refuse_masked(given);
     if (given.ndim() != 3) {
         throw std::invalid_argument("a volume's array has three axes, z, y and x; this one has " +
                                     std::to_string(given.ndim()));

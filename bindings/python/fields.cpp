@@ -1,4 +1,6 @@
 // Fields: what is felt, and questions about it.
+#include <cmath>
+
 #include "bindings/python/arrays.hpp"
 #include "bindings/python/bindings.hpp"
 #include "palpate/density.hpp"
@@ -13,7 +15,9 @@ py::array_t<double> values_at(const Field& field, const Doubles& points) {
     std::vector<double> values(at.size());
     {
         const py::gil_scoped_release unlocked;
-        for (std::size_t i = 0; i < at.size(); ++i) values[i] = value_at(field, at[i]);
+        for (std::size_t i = 0; i < at.size(); ++i) {
+            values[i] = at[i].hasNaN() ? std::nan("") : value_at(field, at[i]);
+        }
     }
     return array_from(std::move(values));
 }
@@ -22,7 +26,9 @@ py::array_t<double> gradients_at(const Field& field, const Doubles& points) {
     std::vector<Vec3> at = points_from(points, "points");
     {
         const py::gil_scoped_release unlocked;
-        for (Vec3& point : at) point = gradient_at(field, point);
+        for (Vec3& point : at) {
+            point = point.hasNaN() ? Vec3::Constant(std::nan("")) : gradient_at(field, point);
+        }
     }
     return array_from(std::move(at));
 }
@@ -93,8 +99,10 @@ void bind_fields(py::module_& module) {
         .def_property_readonly("background", &Field::background, "[data units]")
         .def_property_readonly("range", &Field::range,
                                "Greatest less least density, background included [data units].")
-        .def("value", &values_at, py::arg("points"),
-             "Density [data units], shape (n,), at physical points [mm], shape (n, 3).")
+        .def(
+            "value", &values_at, py::arg("points"),
+            "Density [data units], shape (n,), at physical points [mm], shape (n, 3). NaN where a\n"
+            "coordinate is NaN.")
         .def("gradient", &gradients_at, py::arg("points"),
              "Gradient [data units / mm], physical axes, shape (n, 3), at points [mm], (n, 3).")
         .def("cast_ray", &ray, py::arg("isovalue"), py::arg("start"), py::arg("end"),

@@ -141,6 +141,37 @@ FrameTimes frame_times(double interval, double first, const std::string& unit,
     return {interval * second, std::isfinite(first) ? first * second : 0};
 }
 
+void add_note(std::vector<std::string>& notes, const std::string& note) {
+    if (std::ranges::find(notes, note) == notes.end()) notes.push_back(note);
+}
+
+std::optional<double> millimetres_of(const std::string& unit) {
+    static const std::map<std::string, double> known = {
+        {"nm", 1e-6},         {"nanometer", 1e-6}, {"nanometers", 1e-6}, {"um", 1e-3},
+        {"\\u00b5m", 1e-3},   {"\xc2\xb5m", 1e-3}, {"\xb5m", 1e-3},      {"\xce\xbcm", 1e-3},
+        {"micron", 1e-3},     {"microns", 1e-3},   {"micrometer", 1e-3}, {"micrometers", 1e-3},
+        {"micrometre", 1e-3}, {"mm", 1},           {"millimeter", 1},    {"millimeters", 1},
+        {"millimetre", 1},    {"millimetres", 1},  {"\xc3\x85", 1e-7},   {"angstrom", 1e-7},
+        {"cm", 10},           {"centimeter", 10},  {"centimeters", 10},  {"centimetre", 10},
+        {"dm", 100},          {"m", 1000},         {"meter", 1000},      {"meters", 1000},
+        {"metre", 1000},      {"inch", 25.4},      {"inches", 25.4},     {"in", 25.4}};
+    const auto found = known.find(lower(trimmed(unit)));
+    if (found == known.end()) return std::nullopt;
+    return found->second;
+}
+
+double length_unit(const std::string& unit, std::vector<std::string>& notes) {
+    if (unit.empty()) return 1;
+    const auto length = millimetres_of(unit);
+    if (!length) {
+        add_note(notes,
+                 "its unit of length '" + unit.substr(0, 40) + "' is not known: mm were taken");
+    } else if (*length != 1) {
+        add_note(notes, "its lengths are in " + unit + ": they were converted to mm");
+    }
+    return length.value_or(1);
+}
+
 std::string text_of(std::span<const std::int64_t> sizes) {
     std::string text;
     for (const auto s : sizes) {

@@ -25,6 +25,12 @@ class Failure : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+/// The samples are there, but cannot be read from where they lie by the box.
+class OnlyWhole : public Failure {
+  public:
+    using Failure::Failure;
+};
+
 /// A series has to be chosen.
 class ChooseSeries : public Failure {
   public:
@@ -52,6 +58,16 @@ struct FrameTimes {
 /// interval that is not finite or not above 0 counts as unknown.
 FrameTimes frame_times(double interval, double first, const std::string& unit,
                        std::vector<std::string>& notes);
+
+/// Appends a note unless it is there.
+void add_note(std::vector<std::string>& notes, const std::string& note);
+
+/// The length of a unit [mm], as headers, ImageJ's users and OME-XML write it; nothing for pixels
+/// and unknown units.
+std::optional<double> millimetres_of(const std::string& unit);
+/// The same with a note unless it is mm: lengths are converted, those of unknown units taken as mm.
+/// No unit is mm.
+double length_unit(const std::string& unit, std::vector<std::string>& notes);
 
 struct Result {
     std::string format;

@@ -1,4 +1,4 @@
-// Reads NRRD and MetaImage: their headers say all that it takes, so no library is needed.
+// Reads NRRD, MetaImage and NIfTI: their headers say all that it takes, so no library is needed.
 #include "io/helper/headers.hpp"
 #include "io/helper/readers.hpp"
 
@@ -10,6 +10,7 @@ class StepTaker {
   public:
     StepTaker(const VolumeHeader& header, int step, SampleType type, std::span<std::byte> to)
         : stored_(header.stored),
+          values_(header.value_map),
           type_(type),
           together_(header.together),
           steps_(header.steps),
@@ -26,7 +27,7 @@ class StepTaker {
             if (run % steps_ == step_) {
                 const auto count = static_cast<std::size_t>(end - at);
                 const auto offset = static_cast<std::size_t>(at - first) * sample;
-                convert(stored_, bytes.data() + offset, type_, to_.data() + taken_, count);
+                convert(stored_, bytes.data() + offset, type_, to_.data() + taken_, count, values_);
                 taken_ += count * size_of(type_);
             }
             at = end;
@@ -35,6 +36,7 @@ class StepTaker {
 
   private:
     Stored stored_;
+    ValueMap values_;
     SampleType type_;
     std::int64_t together_, steps_, step_;
     std::span<std::byte> to_;
@@ -46,9 +48,9 @@ Result read_with(VolumeHeader header, const Request& request) {
     say_doing(request.path.filename().string());
     Result result;
     result.geometry = header.geometry;
-    result.type = kept_as(header.stored);
+    result.type = kept_as(header.stored, header.value_map);
     result.values = header.values;
-    note_conversion(header.stored, header.notes);
+    note_conversion(header.stored, header.value_map, header.notes);
     take_step(request, header.steps, header.times, result);
     const auto samples = shared_samples(static_cast<std::size_t>(sample_count(result.geometry)) *
                                         size_of(result.type));
@@ -61,19 +63,20 @@ Result read_with(VolumeHeader header, const Request& request) {
 
 PlainLayout samples_of(VolumeHeader header, const Request& request) {
     if (header.place.encoding != DataPlace::Encoding::raw) {
-        throw Failure(
+        throw OnlyWhole(
             "its samples are compressed or text, so they cannot be read piece by piece; save it "
             "uncompressed, or convert it to OME-Zarr");
     }
     if (header.steps > 1 &&
         header.together * header.steps != static_cast<std::int64_t>(header.samples())) {
-        throw Failure(
+        throw OnlyWhole(
             "the samples of its volumes are mixed, so they cannot be read piece by piece; save one "
             "volume of it");
     }
     check_raw_length(header);
     PlainLayout plain;
     plain.stored = header.stored;
+    plain.value_map = header.value_map;
     plain.place = header.place;
     plain.place.offset += header.place.skip;
     plain.about.geometry = header.geometry;
@@ -100,6 +103,12 @@ PlainLayout meta_image_samples(const Request& request) {
     return plain;
 }
 
+PlainLayout nifti_samples(const Request& request) {
+    PlainLayout plain = samples_of(nifti_header(request), request);
+    plain.about.format = "NIfTI";
+    return plain;
+}
+
 Result read_nrrd(const Request& request) {
     Result result = read_with(nrrd_header(request), request);
     result.format = "NRRD";
@@ -109,6 +118,12 @@ Result read_nrrd(const Request& request) {
 Result read_meta_image(const Request& request) {
     Result result = read_with(meta_image_header(request), request);
     result.format = "MetaImage";
+    return result;
+}
+
+Result read_nifti(const Request& request) {
+    Result result = read_with(nifti_header(request), request);
+    result.format = "NIfTI";
     return result;
 }
 

@@ -1,6 +1,6 @@
-// Headers of NRRD, MetaImage and NIfTI files as Palpate reads them. Of NRRD and MetaImage this is
-// the only reading; of NIfTI it is a check before ITK reads the file, because ITK loads cut-off and
-// damaged files without an error. Every function throws Failure.
+// Headers of NRRD, MetaImage and NIfTI files: each format has one function here that turns a file
+// into a description, which reading it whole and reading it by the box both use. Every function
+// throws Failure.
 #pragma once
 
 #include <map>
@@ -33,15 +33,13 @@ struct DataPlace {
     bool swapped = false;  ///< the bytes of a sample are in the other order than the machine's
 };
 
-struct HeaderFacts {
+/// All that reading the samples of one volume takes.
+struct VolumeHeader {
     std::vector<std::int64_t> sizes;  ///< every axis, the file's order
     Stored stored = Stored::uint8;
+    ValueMap value_map;
     std::vector<std::string> notes;
     FrameTimes times;  ///< of a file with several volumes
-};
-
-/// All that reading the samples of one volume takes.
-struct VolumeHeader : HeaderFacts {
     Geometry geometry;
     DataPlace place;
     std::int64_t steps = 1;  ///< volumes in the file
@@ -56,20 +54,14 @@ struct VolumeHeader : HeaderFacts {
 
 VolumeHeader nrrd_header(const Request& request);
 VolumeHeader meta_image_header(const Request& request);
-/// What a NIfTI file says of its samples.
-struct NiftiHeader : HeaderFacts {
-    DataPlace place;
-    double slope = 1, intercept = 0;  ///< of all samples; 1 and 0: as they are stored
-};
-/// Also checks the length and the checksum of the data.
-NiftiHeader check_nifti(const Request& request);
+VolumeHeader nifti_header(const Request& request);
 
 /// Samples that lie uncompressed in a file, those of each volume together.
 struct PlainLayout {
     Result about;  ///< of the first volume
     Stored stored = Stored::uint8;
+    ValueMap value_map;
     DataPlace place;
-    double slope = 1, intercept = 0;  ///< as in NiftiHeader
 };
 
 /// Throws Failure unless the file has the bytes that raw samples take; up to 4096 more give a note.

@@ -1,4 +1,4 @@
-// palpate-io-itk: reads NIfTI, writes NRRD, MetaImage and NIfTI.
+// palpate-io-itk: writes NRRD, MetaImage and NIfTI.
 #include "io/helper/jobs.hpp"
 
 namespace palpate::io {
@@ -15,6 +15,5 @@ void write(const std::filesystem::path& path, const std::string& extension,
 
 int main(int argc, char** argv) {
     using namespace palpate::io;
-    serve("palpate-io-itk", {.read = &read_nifti, .locate = &nifti_samples, .write = &write}, argc,
-          argv);
+    serve("palpate-io-itk", {.write = &write}, argc, argv);
 }

@@ -102,17 +102,17 @@ nlohmann::json run_locate(const fs::path& path, const nlohmann::json& asked, Loc
     request.path = path;
     if (asked.contains("spacing")) request.spacing = vec3_from(asked["spacing"]);
     limit_this_process(asked, 1 << 30);
-    const PlainLayout plain = locate(request);
-    return {{"format", plain.about.format},
-            {"geometry", json_from(plain.about.geometry)},
-            {"stored", name_of(plain.stored)},
-            {"file", plain.place.file.string()},
-            {"offset", plain.place.offset},
-            {"swapped", plain.place.swapped},
-            {"slope", plain.slope},
-            {"intercept", plain.intercept},
-            {"times", plain.about.time_steps},
-            {"frame_interval", plain.about.times.interval},
+    PlainLayout plain;
+    try {
+        plain = locate(request);
+    } catch (const OnlyWhole& e) {
+        return {{"only_whole", e.what()}};
+    }
+    return {{"format", plain.about.format},    {"geometry", json_from(plain.about.geometry)},
+            {"stored", name_of(plain.stored)}, {"file", plain.place.file.string()},
+            {"offset", plain.place.offset},    {"swapped", plain.place.swapped},
+            {"slope", plain.value_map.slope},  {"intercept", plain.value_map.intercept},
+            {"times", plain.about.time_steps}, {"frame_interval", plain.about.times.interval},
             {"notes", plain.about.notes}};
 }
 

@@ -10,6 +10,8 @@
 namespace palpate::io {
 namespace {
 
+constexpr std::size_t longest_header = 1 << 24;
+
 bool is_true(const std::string& value) {
     const std::string v = lower(value);
     return !v.empty() && (v[0] == 't' || v[0] == '1' || v[0] == 'y');
@@ -19,9 +21,10 @@ HeaderFields read_fields(const std::filesystem::path& path) {
     std::ifstream in(path, std::ios::binary);
     HeaderFields fields;
     std::string line;
-    for (int lines = 0; lines < 1000 && std::getline(in, line); ++lines) {
+    // Some programs write several fields for each frame of a recording.
+    for (std::size_t bytes = 0; bytes < longest_header && std::getline(in, line);) {
+        bytes += line.size() + 1;
         const auto equals = line.find('=');
-        if (line.size() > 100000) break;
         if (equals == std::string::npos) {
             if (trimmed(line).empty()) continue;
             break;
@@ -125,9 +128,19 @@ void read_geometry(const HeaderFields& fields, VolumeHeader& header) {
         }
     }
     if (spacing.empty()) header.notes.push_back("its header gives no spacing: 1 mm was taken");
-    const std::string units = lower(fields.value("distanceunits"));
-    if (!units.empty() && units != "mm" && units != "?") {
-        header.notes.push_back("its lengths are in " + units + ", they were taken as mm");
+    const std::string unit = fields.value("distanceunits");
+    const double length = unit == "?" ? 1 : length_unit(unit, header.notes);
+    g.spacing *= length;
+    g.origin *= length;
+    const std::string slope = fields.value("elementtointensityfunctionslope"),
+                      offset = fields.value("elementtointensityfunctionoffset");
+    if ((!slope.empty() &&
+         numbers_in(slope, "ElementToIntensityFunctionSlope") != std::vector{1.0}) ||
+        (!offset.empty() &&
+         numbers_in(offset, "ElementToIntensityFunctionOffset") != std::vector{0.0})) {
+        header.notes.emplace_back(
+            "its header maps samples to intensities (ElementToIntensityFunction): that was "
+            "ignored, the samples are as they are stored");
     }
     if (spacing.size() == 4 && header.steps > 1) {
         header.times = frame_times(spacing[3], 0, "", header.notes);

@@ -1,5 +1,7 @@
-// Checks NIfTI-1 files: the 348-byte header in either byte order, packed or not, and the data's
-// size.
+// Reads NIfTI-1 headers: 348 bytes in either byte order, packed or not, whatever the file's name.
+// Format: https://nifti.nimh.nih.gov/pub/dist/src/niftilib/nifti1.h. Where it leaves a choice,
+// nibabel's is taken (docs/io.md).
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -15,7 +17,6 @@ namespace palpate::io {
 namespace {
 
 constexpr std::size_t header_bytes = 348;
-constexpr std::uint64_t extra_allowed = 4096;
 
 /// The header's bytes, and numbers from them.
 struct Header {
@@ -56,16 +57,6 @@ Header read_header(const std::filesystem::path& path) {
     }
     std::copy(start.begin(), start.end(), header.bytes.begin());
     return header;
-}
-
-/// Bytes of the whole file, unpacked up to its checksum, or up to the first one that is too many.
-std::uint64_t unpacked_bytes(const std::filesystem::path& path, std::uint64_t at_most) {
-    if (!is_gzip(path)) return std::filesystem::file_size(path);
-    try {
-        return inflate_checked(path, {0, UINT64_MAX, at_most}, {});
-    } catch (const DamagedStream& e) {
-        throw Failure(std::string(e.what()) + "; copy or download it again");
-    }
 }
 
 void check_kind(Header& header) {
@@ -114,99 +105,247 @@ FrameTimes times_of(const Header& header, std::vector<std::string>& notes) {
                        unit == units.end() ? "no time" : unit->second, notes);
 }
 
-/// The numbers that ITK decomposes into spacing and directions.
-void check_placement(const Header& header, std::vector<std::string>& notes) {
-    for (const std::size_t axis : {1U, 2U, 3U}) {  // also of axes that are one sample thick
-        const auto spacing = header.number<float>(76 + 4 * axis);
-        if (std::abs(spacing) <= greatest_length) continue;
-        throw Failure("its header field 'pixdim' has the number " + text_of(double{spacing}) +
-                      "; correct the header");
-    }
-    if (header.number<std::int16_t>(252) > 0) {
-        for (const std::size_t at : {256U, 260U, 264U}) {
-            if (std::abs(header.number<float>(at)) <= 1.01F) continue;
-            throw Failure("its header field 'quatern' is no rotation; correct the header");
+/// The size of an axis, counted from 0; 1 for those that the file does not have.
+int size_of_axis(const Header& header, std::size_t axis) {
+    return static_cast<int>(axis) < header.number<std::int16_t>(40)
+               ? header.number<std::int16_t>(42 + 2 * axis)
+               : 1;
+}
+
+/// How long the header's unit of length is [mm].
+double unit_of_length(const Header& header, std::vector<std::string>& notes) {
+    static const std::array<std::string, 8> names = {"", "m", "mm", "um", "4", "5", "6", "7"};
+    const std::string& name = names[header.number<std::uint8_t>(123) & 7];
+    if (name.empty()) add_note(notes, "its header names no unit of length: mm were taken");
+    return length_unit(name, notes);
+}
+
+/// Index to physical space (LPS) [mm]: a column for the step along each axis, and one for the place
+/// of the first sample.
+using Transform = Eigen::Matrix<double, 3, 4>;
+
+Transform in_lps(Transform ras, double unit) {
+    ras.topRows<2>() *= -1;
+    return unit * ras;
+}
+
+/// pixdim [mm]. No distance is measured along an axis of one sample, which may have no spacing.
+Vec3 spacings_of(const Header& header, double unit) {
+    Vec3 spacings;
+    for (std::size_t a = 0; a < 3; ++a) {
+        const double given = header.number<float>(80 + 4 * a);
+        const bool measures = size_of_axis(header, a) > 1;
+        if (measures) check_spacing(given * unit, "header field 'pixdim'");
+        if (!(std::abs(given) <= greatest_length)) {
+            throw Failure("its header field 'pixdim' has the number " + text_of(given) +
+                          "; correct the header");
         }
-        for (const std::size_t at : {268U, 272U, 276U}) {
-            check_coordinate(header.number<float>(at), "header field 'qoffset'");
-        }
+        const bool sensible = given * unit >= least_length;
+        spacings[static_cast<Eigen::Index>(a)] = sensible ? given * unit : 1;
     }
-    if (header.number<std::int16_t>(254) <= 0) return;
-    const auto entry = [&](std::size_t row, std::size_t column) {
-        return static_cast<double>(header.number<float>(280 + 16 * row + 4 * column));
-    };
-    for (std::size_t row = 0; row < 3; ++row)
-        check_coordinate(entry(row, 3), "header field 'srow'");
-    for (std::size_t column = 0; column < 3; ++column) {
-        const double length = std::hypot(entry(0, column), entry(1, column), entry(2, column));
-        const bool measures = header.number<std::int16_t>(42 + 2 * column) > 1;
+    return spacings;
+}
+
+/// Method 2 of the format: a quaternion, pixdim and an offset.
+Transform qform_of(const Header& header, double unit) {
+    const Vec3 vector(header.number<float>(256), header.number<float>(260),
+                      header.number<float>(264));
+    const double square = vector.squaredNorm();
+    if (!(square <= 1.002)) {
+        throw Failure("its header field 'quatern' is no rotation; correct the header");
+    }
+    const Eigen::Quaterniond rotation(std::sqrt(std::max(0.0, 1 - square)), vector[0], vector[1],
+                                      vector[2]);
+    const double handed = header.number<float>(76) < 0 ? -1 : 1;
+    Transform ras;
+    ras.leftCols<3>() = rotation.normalized().toRotationMatrix() * Vec3(1, 1, handed).asDiagonal();
+    for (const std::size_t a : {0U, 1U, 2U}) {
+        const double offset = header.number<float>(268 + 4 * a);
+        check_coordinate(offset * unit, "header field 'qoffset'");
+        ras(static_cast<Eigen::Index>(a), 3) = offset;
+    }
+    Transform lps = in_lps(ras, unit);
+    lps.leftCols<3>() = in_lps(ras, 1).leftCols<3>() * spacings_of(header, unit).asDiagonal();
+    return lps;
+}
+
+/// Method 3 of the format: twelve numbers.
+Transform sform_of(const Header& header, double unit) {
+    Transform ras;
+    for (std::size_t i = 0; i < 12; ++i) {
+        ras(static_cast<Eigen::Index>(i / 4), static_cast<Eigen::Index>(i % 4)) =
+            header.number<float>(280 + 4 * i);
+    }
+    Transform lps = in_lps(ras, unit);
+    for (int row = 0; row < 3; ++row) check_coordinate(lps(row, 3), "header field 'srow'");
+    for (int axis = 0; axis < 3; ++axis) {
+        const double length = lps.col(axis).norm();
+        const bool measures = size_of_axis(header, static_cast<std::size_t>(axis)) > 1;
         if (measures || length != 0) check_spacing(length, "header field 'srow'");
-        const double spacing = header.number<float>(80 + 4 * column);
-        if (!measures || std::abs(length - spacing) <= 0.01 * spacing) continue;
-        notes.push_back("its header gives two spacings along axis " + std::to_string(column + 1) +
-                        ": " + text_of(spacing) + " mm (pixdim) was taken, not " + text_of(length) +
-                        " mm (srow)");
+    }
+    // Where only an axis of one sample has no direction, the other two tell it.
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!lps.col(axis).isZero(0)) continue;
+        const Vec3 across = lps.col((axis + 1) % 3).cross(Vec3(lps.col((axis + 2) % 3)));
+        lps.col(axis) = across.normalized();
+    }
+    return lps;
+}
+
+/// True where the axes are not at right angles, more than a grid's may be (check(Geometry)).
+bool is_sheared(const Transform& lps) {
+    const Mat3 axes = lps.leftCols<3>().colwise().normalized();
+    return !((axes.transpose() * axes - Mat3::Identity()).cwiseAbs().array() < 1e-4).all();
+}
+
+/// Where the corners of the grid lie farthest apart [mm].
+double distance_between(const Transform& a, const Transform& b, const Header& header) {
+    double most = 0;
+    for (unsigned corner = 0; corner < 8; ++corner) {
+        Eigen::Vector4d at(0, 0, 0, 1);
+        for (unsigned axis = 0; axis < 3; ++axis) {
+            if (corner >> axis & 1) at[axis] = size_of_axis(header, axis) - 1;
+        }
+        most = std::max(most, ((a - b) * at).norm());
+    }
+    return most;
+}
+
+/// A tenth of the smallest spacing is what two rounded descriptions of one grid may differ by.
+void note_disagreement(const Transform& taken, const Transform& qform, const Header& header,
+                       std::vector<std::string>& notes) {
+    const double distance = distance_between(taken, qform, header);
+    if (distance <= 0.1 * taken.leftCols<3>().colwise().norm().minCoeff()) return;
+    notes.push_back("its sform and qform place it differently (" + text_of(distance) +
+                    " mm apart): the sform was taken");
+}
+
+void note_spacings(const Transform& sform, const Header& header, double unit,
+                   std::vector<std::string>& notes) {
+    for (std::size_t a = 0; a < 3; ++a) {
+        const double taken = sform.col(static_cast<Eigen::Index>(a)).norm();
+        const double given = unit * header.number<float>(80 + 4 * a);
+        if (size_of_axis(header, a) <= 1 || std::abs(taken - given) <= 0.01 * taken) continue;
+        notes.push_back("its header gives two spacings along axis " + std::to_string(a + 1) + ": " +
+                        text_of(taken) + " mm (sform) was taken, not " + text_of(given) +
+                        " mm (pixdim)");
     }
 }
 
-/// As ITK takes it: a slope of 0 means none.
-void take_scaling(const Header& header, NiftiHeader& facts) {
+/// The sform goes before the qform, unless it is sheared, which a grid cannot be.
+Transform transform_of(const Header& header, std::vector<std::string>& notes) {
+    const double unit = unit_of_length(header, notes);
+    const bool has_qform = header.number<std::int16_t>(252) > 0;
+    const bool has_sform = header.number<std::int16_t>(254) > 0;
+    if (!has_sform && !has_qform) {
+        notes.push_back(
+            "its header says nothing of its orientation in the body (no sform, no "
+            "qform): its axes were taken as those of LPS");
+        Transform plain = Transform::Zero();
+        plain.leftCols<3>() = spacings_of(header, unit).asDiagonal();
+        return plain;
+    }
+    if (!has_sform) return qform_of(header, unit);
+    const Transform sform = sform_of(header, unit);
+    if (!is_sheared(sform)) {
+        note_spacings(sform, header, unit, notes);
+        if (has_qform) note_disagreement(sform, qform_of(header, unit), header, notes);
+        return sform;
+    }
+    if (!has_qform) {
+        throw Failure(
+            "its sform is sheared (its axes are not at right angles) and it has no qform; resample "
+            "it to a grid with axes at right angles");
+    }
+    notes.push_back(
+        "its sform is sheared (its axes are not at right angles), which a grid cannot be: its "
+        "qform was taken");
+    return qform_of(header, unit);
+}
+
+Geometry geometry_of(const Header& header, std::vector<std::string>& notes) {
+    const Transform lps = transform_of(header, notes);
+    Geometry g;
+    for (int axis = 0; axis < 3; ++axis) {
+        g.size[axis] = size_of_axis(header, static_cast<std::size_t>(axis));
+        g.spacing[axis] = lps.col(axis).norm();
+        g.direction.col(axis) = (lps.col(axis) / g.spacing[axis]).array() + 0.0;  // no -0
+    }
+    g.origin = lps.col(3).array() + 0.0;
+    return g;
+}
+
+/// A slope of 0, NaN or infinity means that the numbers are the values, whatever the intercept.
+ValueMap values_of(const Header& header, std::vector<std::string>& notes) {
     const double slope = header.number<float>(112), intercept = header.number<float>(116);
-    if (!std::isfinite(slope) || !std::isfinite(intercept) || slope == 0) return;
-    facts.slope = slope;
-    facts.intercept = intercept;
+    if (slope != 0 && std::isfinite(slope)) {
+        if (std::isfinite(intercept)) return {slope, intercept};
+        throw Failure("its header has the slope " + text_of(slope) + " and the intercept " +
+                      text_of(intercept) + "; correct the header");
+    }
+    const bool unset = (intercept == 0 || std::isnan(intercept)) && !std::isinf(slope);
+    if (!unset) {
+        notes.push_back(
+            "its header has the slope " + text_of(slope) +
+            ", which means none: the samples are as they are stored, and the intercept " +
+            text_of(intercept) + " was ignored");
+    }
+    return {};
 }
 
-}  // namespace
-
-NiftiHeader check_nifti(const Request& request) {
-    Header header = read_header(request.path);
-    check_kind(header);
-    NiftiHeader facts;
-    facts.stored = stored_from(header.number<std::int16_t>(70));
-    if (header.number<std::int16_t>(72) != static_cast<int>(8 * size_of(facts.stored))) {
-        throw Failure("its header's bits a sample do not fit its type; the header is damaged");
-    }
+std::vector<std::int64_t> sizes_of(const Header& header) {
     const int axes = header.number<std::int16_t>(40);
     if (axes < 1 || axes > 7) {
         throw Failure("its header gives " + std::to_string(axes) + " axes; the header is damaged");
     }
-    for (std::size_t a = 1; a <= static_cast<std::size_t>(axes); ++a) {
-        const auto size = header.number<std::int16_t>(40 + 2 * a);
-        facts.sizes.push_back(size);
-        const auto spacing = header.number<float>(76 + 4 * a);
-        if (a <= 3 && size > 1) check_spacing(spacing, "header field 'pixdim'");
+    std::vector<std::int64_t> sizes;
+    for (std::size_t a = 0; a < static_cast<std::size_t>(axes); ++a) {
+        sizes.push_back(header.number<std::int16_t>(42 + 2 * a));
     }
-    check_placement(header, facts.notes);
-    const std::uint64_t bytes = checked_bytes(facts.sizes, size_of(facts.stored),
-                                              std::filesystem::file_size(request.path), request);
-    const float offset = header.number<float>(108);
-    if (!(offset >= 348 && offset < 1e9F)) {
-        throw Failure("its header puts the samples at byte " + text_of(double{offset}) +
+    while (sizes.size() > 3 && sizes.back() == 1) sizes.pop_back();
+    return sizes;
+}
+
+DataPlace place_of(const Header& header, const std::filesystem::path& path) {
+    const double offset = header.number<float>(108);
+    if (!(offset >= 348 && offset < 1e9) || offset != std::floor(offset)) {
+        throw Failure("its header puts the samples at byte " + text_of(offset) +
                       "; the header is damaged");
     }
-    const auto first = static_cast<std::uint64_t>(offset);
-    const std::uint64_t all = unpacked_bytes(request.path, first + bytes + extra_allowed);
-    const std::uint64_t start = std::min(first, all);
-    if (all - start < bytes || all - start > bytes + extra_allowed) {
-        throw Failure("its header asks for " + std::to_string(bytes) +
-                      " bytes of samples, there are " + std::to_string(all - start) +
-                      "; it is cut off or its header is wrong: copy it again");
+    DataPlace place;
+    place.file = path;
+    place.skip = static_cast<std::uint64_t>(offset);
+    place.swapped = header.swapped;
+    if (is_gzip(path)) place.encoding = DataPlace::Encoding::compressed;
+    return place;
+}
+
+}  // namespace
+
+VolumeHeader nifti_header(const Request& request) {
+    Header bytes = read_header(request.path);
+    check_kind(bytes);
+    VolumeHeader header;
+    header.stored = stored_from(bytes.number<std::int16_t>(70));
+    if (bytes.number<std::int16_t>(72) != static_cast<int>(8 * size_of(header.stored))) {
+        throw Failure("its header's bits a sample do not fit its type; the header is damaged");
     }
-    while (facts.sizes.size() > 3 && facts.sizes.back() == 1) facts.sizes.pop_back();
-    if (facts.sizes.size() > 4) {
-        throw Failure("it has " + text_of(facts.sizes) +
+    header.sizes = sizes_of(bytes);
+    (void)checked_bytes(header.sizes, size_of(header.stored),
+                        std::filesystem::file_size(request.path), request);
+    if (header.sizes.size() > 4) {
+        throw Failure("it has " + text_of(header.sizes) +
                       " samples in more than 4 axes (vectors?); save one volume of it");
     }
-    if (facts.sizes.size() == 4) facts.times = times_of(header, facts.notes);
-    facts.place.file = request.path;
-    facts.place.offset = first;
-    facts.place.swapped = header.swapped;
-    take_scaling(header, facts);
-    if (header.number<std::int16_t>(252) == 0 && header.number<std::int16_t>(254) == 0) {
-        facts.notes.push_back("its header says nothing of its orientation in the body");
+    header.place = place_of(bytes, request.path);
+    header.geometry = geometry_of(bytes, header.notes);
+    header.value_map = values_of(bytes, header.notes);
+    if (header.sizes.size() == 4) {
+        header.steps = header.sizes[3];
+        header.times = times_of(bytes, header.notes);
     }
-    return facts;
+    header.together = static_cast<std::int64_t>(header.samples()) / header.steps;
+    return header;
 }
 
 }  // namespace palpate::io

@@ -1,7 +1,7 @@
 // palpate-io-helper: reads or writes one volume, or reads a mesh, and reports as described in
-// protocol.hpp. It exists so that a crash of a format's library does not crash the caller. NRRD and
-// MetaImage it reads itself; for all else it becomes the program that has the library, so that none
-// is loaded for nothing.
+// protocol.hpp. It exists so that a crash of a format's library does not crash the caller. It reads
+// NRRD, MetaImage and NIfTI itself; for all else it becomes the program that has the library, so
+// that none is loaded for nothing.
 #include <unistd.h>
 
 #include <algorithm>
@@ -24,11 +24,13 @@ constexpr const char *dicom = "palpate-io-dicom", *images = "palpate-io-images",
 const Formats* own_formats(Job job, const fs::path& path) {
     static constexpr Formats nrrd{.read = &read_nrrd, .locate = &nrrd_samples};
     static constexpr Formats meta_image{.read = &read_meta_image, .locate = &meta_image_samples};
+    static constexpr Formats nifti{.read = &read_nifti, .locate = &nifti_samples};
     std::error_code error;
     if ((job != Job::read && job != Job::locate) || fs::is_directory(path, error)) return nullptr;
     const std::string extension = extension_of(path);
     if (extension == ".nrrd" || extension == ".nhdr") return &nrrd;
     if (extension == ".mha" || extension == ".mhd") return &meta_image;
+    if (extension == ".nii" || extension == ".nii.gz") return &nifti;
     return nullptr;
 }
 
@@ -80,7 +82,6 @@ const char* program_for_folder(const fs::path& folder) {
 const char* program_for_file(const fs::path& path) {
     if (fs::is_directory(path)) return program_for_folder(path);
     const std::string extension = extension_of(path);
-    if (extension == ".nii" || extension == ".nii.gz") return itk;
     if (extension == ".vti") return vtk;
     if (extension == ".tif" || extension == ".tiff") return images;
     if (extension == ".dcm" || extension == ".dicom" || extension == ".ima" ||

@@ -18,8 +18,8 @@ Result read_tiff_file(const Request& request);
 Result read_tiff_folder(const Request& request);
 Result read_vti(const Request& request);
 
-/// Where the samples of request.path lie, without reading them. Throws Failure where they cannot be
-/// read from there by the box: compressed, text, or those of several volumes mixed.
+/// Where the samples of request.path lie, without reading them. Throws OnlyWhole where they cannot
+/// be read from there by the box: compressed, text, or those of several volumes mixed.
 PlainLayout nrrd_samples(const Request& request);
 PlainLayout meta_image_samples(const Request& request);
 PlainLayout nifti_samples(const Request& request);

@@ -46,18 +46,6 @@ double count_in(const Description& description, const char* name) {
 
 }  // namespace
 
-std::optional<double> millimetres_of(const std::string& unit) {
-    static const std::map<std::string, double> known = {
-        {"nm", 1e-6},        {"nanometer", 1e-6},  {"um", 1e-3},        {"\\u00b5m", 1e-3},
-        {"\xc2\xb5m", 1e-3}, {"\xb5m", 1e-3},      {"\xce\xbcm", 1e-3}, {"micron", 1e-3},
-        {"microns", 1e-3},   {"micrometer", 1e-3}, {"mm", 1},           {"millimeter", 1},
-        {"\xc3\x85", 1e-7},  {"cm", 10},           {"centimeter", 10},  {"m", 1000},
-        {"meter", 1000},     {"inch", 25.4},       {"in", 25.4}};
-    const auto found = known.find(lower(unit));
-    if (found == known.end()) return std::nullopt;
-    return found->second;
-}
-
 Moments image_j_moments(TIFF* tiff, std::size_t pages, std::vector<std::string>& notes) {
     const Description description = description_of(tiff);
     if (!description.contains("ImageJ")) return {};

@@ -12,10 +12,6 @@
 
 namespace palpate::io {
 
-/// The length of a unit [mm], as ImageJ's users and OME-XML write it; nothing for pixels and
-/// unknown units.
-std::optional<double> millimetres_of(const std::string& unit);
-
 /// The spacing of the current page [mm]; nothing unless ImageJ's description gives all three
 /// lengths.
 std::optional<Vec3> image_j_spacing(TIFF* tiff);

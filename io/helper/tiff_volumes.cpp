@@ -141,7 +141,7 @@ Result read_slices(const std::vector<Slice>& slices, const Request& request) {
                 samples.data() + i * count * size_of(result.type), count);
         say_progress(static_cast<double>(i + 1) / static_cast<double>(slices.size()));
     }
-    note_conversion(first.stored, result.notes);
+    note_conversion(first.stored, {}, result.notes);
     result.geometry.size = {static_cast<int>(first.width), static_cast<int>(first.height),
                             static_cast<int>(slices.size())};
     if (told) {

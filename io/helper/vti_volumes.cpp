@@ -197,7 +197,7 @@ Result read_vti(const Request& request) {
     }
     const Stored stored = stored_from(array->GetDataType());
     result.type = kept_as(stored);
-    note_conversion(stored, result.notes);
+    note_conversion(stored, {}, result.notes);
     const auto samples = shared_samples(count * size_of(result.type));
     convert(stored, static_cast<const std::byte*>(array->GetVoidPointer(0)), result.type,
             samples.data(), count);

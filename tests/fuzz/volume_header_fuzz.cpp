@@ -32,11 +32,9 @@ void read_volume(char format, const std::string& path) {
         require(extent.rows >= 0 && extent.columns >= 0 && extent.frames >= 0);
         return;
     }
-    if (format == 'n') {
-        for (const std::int64_t size : check_nifti(request).sizes) require(size > 0);
-        return;
-    }
-    VolumeHeader header = format == 'm' ? meta_image_header(request) : nrrd_header(request);
+    VolumeHeader header = format == 'm'   ? meta_image_header(request)
+                          : format == 'n' ? nifti_header(request)
+                                          : nrrd_header(request);
     check_geometry(header.geometry);
     require(header.bytes() <= memory_limit * std::uint64_t(header.steps));
     std::uint64_t handed = 0;

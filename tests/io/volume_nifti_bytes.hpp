@@ -2,11 +2,15 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <string>
 
-#include "volume_support.hpp"
+#include "io/volume_support.hpp"
 
 namespace palpate::io::test {
+
+inline constexpr float infinite = std::numeric_limits<float>::infinity();
+inline constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
 
 /// A NIfTI-1 file of 2x3x4 int16 samples 0, 1, 2, ... with changes to its header.
 inline std::string nifti(const std::function<void(std::string&)>& change, int steps = 1) {

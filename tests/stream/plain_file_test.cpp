@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "io/real_volumes.hpp"
+#include "io/volume_nifti_bytes.hpp"
 #include "io/volume_support.hpp"
 #include "palpate/io/output.hpp"
 #include "stream/store_support.hpp"
@@ -121,18 +122,58 @@ TEST(PlainFile, each_time_of_a_file_with_several_is_read) {
     EXPECT_TRUE(contains(refusal(folder / "t.nrrd", beyond), "it has 3, numbered from 0"));
 }
 
-TEST(PlainFile, samples_that_are_not_finite_become_0) {
+TEST(PlainFile, samples_that_are_not_finite_become_the_least_finite_one_of_the_file) {
     const ScratchFolder folder;
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const float infinity = std::numeric_limits<float>::infinity();
-    put_bytes(folder / "v.raw", little(1.5F) + little(nan) + little(-infinity) + little(2.0F));
+    put_bytes(folder / "v.raw", little(1.5F) + little(nan) + little(-infinity) + little(2.0F) +
+                                    little(-7.0F) + little(3.0F));
     StoreOptions options;
-    options.raw = {Index3(4, 1, 1), SampleType::float32};
+    options.raw = {Index3(2, 3, 1), SampleType::float32};
     const auto store = open_store(folder / "v.raw", options);
-    const auto bytes = read_box(*store, 0, {Index3::Zero(), Index3(3, 0, 0)});
+    // The least one, -7, lies outside of the box.
+    const auto bytes = read_box(*store, 0, {Index3::Zero(), Index3(1, 1, 0)});
     std::array<float, 4> values{};
     std::memcpy(values.data(), bytes.data(), sizeof values);
-    EXPECT_EQ(values, (std::array{1.5F, 0.0F, 0.0F, 2.0F}));
+    EXPECT_EQ(values, (std::array{1.5F, -7.0F, -7.0F, 2.0F}));
+    EXPECT_TRUE(contains(store->info().notes.at(0), "not finite"));
+    io::ReadOptions read;
+    read.raw = options.raw;
+    expect_same_boxes(*store, io::read_volume(folder / "v.raw", read).volume, 3);
+    put_bytes(folder / "v.raw", little(nan) + little(nan));
+    options.raw = {Index3(2, 1, 1), SampleType::float32};
+    const std::string message = message_of<io::InputError>([&] {
+        (void)read_box(*open_store(folder / "v.raw", options), 0,
+                       {Index3::Zero(), Index3(1, 0, 0)});
+    });
+    EXPECT_TRUE(contains(message, "finite")) << message;
+}
+
+TEST(PlainFile, nifti_slopes_units_and_times_are_as_in_the_file_read_whole) {
+    const ScratchFolder folder;
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    for (const float slope : {0.0F, nan, 1.0F, -0.37F}) {
+        for (const float intercept : {0.0F, 7.0F}) {
+            put_bytes(folder / "a.nii", io::test::nifti(
+                                            [&](std::string& h) {
+                                                io::test::put_at(h, 112,
+                                                                 little(slope) + little(intercept));
+                                                io::test::put_at(h, 123, "\x03");
+                                                io::test::put_at(h, 268, little(500.0F));
+                                            },
+                                            2));
+            StoreOptions options;
+            options.time = 1;
+            io::ReadOptions read;
+            read.time_step = 1;
+            const auto store = open_store(folder / "a.nii", options);
+            const auto whole = io::read_volume(folder / "a.nii", read);
+            EXPECT_EQ(store->info().type, whole.volume.type());
+            EXPECT_EQ(store->info().levels.at(0).geometry, whole.volume.geometry());
+            EXPECT_EQ(whole.volume.geometry().origin[0], -0.5);
+            expect_same_boxes(*store, whole.volume, 2);
+        }
+    }
 }
 
 /// What this process has read so far, from files and otherwise [bytes].

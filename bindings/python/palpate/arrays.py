@@ -1,5 +1,7 @@
 """Volumes from arrays of any kind, by what they can do: NumPy, nibabel, zarr, h5py, dask."""
 
+import warnings
+
 import numpy
 
 from ._palpate import Volume
@@ -14,7 +16,9 @@ def as_volume(data, spacing=None, origin=None, direction=None, frame=None):
 
     data: a Volume; a nibabel image (its affine, RAS, gives spacing, origin and direction, LPS);
     or anything with a shape that NumPy can read, indexed [z, y, x]: an array, zarr, h5py, dask.
-    bool becomes uint8, int8 int16 and anything else that Palpate does not keep float32.
+    bool becomes uint8, int8 int16 and anything else that Palpate does not keep float32. NaN and
+    infinity become the least finite sample, with a warning. An array with masked elements is a
+    ValueError: fill them first.
     spacing, origin [mm] (x, y, z) and direction (3, 3) go before what `data` says.
     frame: of four-dimensional data this one, from 0; an axis in front ([t, z, y, x]), in nibabel
     the last.
@@ -27,7 +31,7 @@ def as_volume(data, spacing=None, origin=None, direction=None, frame=None):
         samples, place = _frame_of(data, frame, axis=0), {}
     given = {"spacing": spacing, "origin": origin, "direction": direction}
     place.update({name: value for name, value in given.items() if value is not None})
-    return Volume(_kept(numpy.asarray(samples)), copy=True, **place)
+    return Volume(_kept(numpy.asanyarray(samples)), copy=True, **place)
 
 
 def _frame_of(data, frame, axis):
@@ -47,12 +51,46 @@ def _frame_of(data, frame, axis):
 def _from_nibabel(image, frame):
     """Samples [z, y, x] and their place: nibabel's are [x, y, z], its space is RAS."""
     samples = numpy.asanyarray(_frame_of(image.dataobj, frame, axis=3))
-    affine = numpy.diag([-1.0, -1.0, 1.0, 1.0]) @ numpy.asarray(image.affine, dtype=float)
+    affine = numpy.diag([-1.0, -1.0, 1.0, 1.0]) @ _affine_of(image)
     spacing = numpy.linalg.norm(affine[:3, :3], axis=0)
     if not numpy.all(spacing > 0):
         raise ValueError("the image's affine has an axis of length 0")
     return samples.T, {"spacing": spacing, "origin": affine[:3, 3],
                        "direction": affine[:3, :3] / spacing}
+
+
+def _affine_of(image):
+    """Index to RAS [mm], chosen as load() chooses it for a NIfTI file (docs/io.md)."""
+    affine, header = numpy.asarray(image.affine, dtype=float), image.header
+    if not hasattr(header, "get_qform"):
+        return affine
+    unit = {"meter": 1000.0, "micron": 1e-3}.get(header.get_xyzt_units()[0], 1.0)
+    placed = header["sform_code"] > 0 or header["qform_code"] > 0
+    if not placed and numpy.allclose(affine, header.get_base_affine()):
+        warnings.warn("the image's header says nothing of its orientation in the body: its axes "
+                      "were taken as those of LPS", stacklevel=4)
+        affine = numpy.diag([-1.0, -1.0, 1.0, 1.0]) @ numpy.diag([*header["pixdim"][1:4], 1.0])
+    elif _is_sheared(affine) and header["qform_code"] > 0:
+        warnings.warn("the image's affine is sheared, which a grid cannot be: its qform was taken",
+                      stacklevel=4)
+        affine = header.get_qform()
+    return numpy.diag([unit, unit, unit, 1.0]) @ affine
+
+
+def _is_sheared(affine):
+    axes = affine[:3, :3] / numpy.linalg.norm(affine[:3, :3], axis=0)
+    return numpy.abs(axes.T @ axes - numpy.eye(3)).max() >= 1e-4
+
+
+def _finite(samples):
+    """NaN and infinity become the least finite sample, as load() does it."""
+    good = numpy.isfinite(samples)
+    count = samples.size - numpy.count_nonzero(good)
+    if count in (0, samples.size):  # of the latter a Volume says that none is finite
+        return samples
+    warnings.warn(f"{count} samples were not finite (NaN or infinity) and became the least finite "
+                  "value", stacklevel=4)
+    return numpy.where(good, samples, samples[good].min())
 
 
 def _kept(samples):
@@ -61,4 +99,8 @@ def _kept(samples):
         raise ValueError(f"samples of type {samples.dtype} are no numbers that can be felt")
     name = samples.dtype.name
     wanted = name if name in _KEPT else _WIDER.get(name, "float32")
-    return samples.astype(wanted, copy=False)
+    with numpy.errstate(over="ignore"):  # what float32 cannot hold is infinite, and said
+        samples = samples.astype(wanted, copy=False)
+    if wanted != "float32" or numpy.ma.is_masked(samples):  # Volume refuses masked elements
+        return samples
+    return _finite(samples)

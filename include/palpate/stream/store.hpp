@@ -87,8 +87,8 @@ const Level& level_of(const Store& store, int level);
 Volume read_level(const Store& store, int level, const io::Progress& progress = {});
 
 /// True if an address names something that open_store() reads by the box: a web address, a folder
-/// or file of a chunked format, or a plain file whose samples lie in it uncompressed. Looks at the
-/// name and at most at the first bytes of a file.
+/// or file of a chunked format, or a plain file whose samples lie in it uncompressed. Reads at
+/// most a file's header.
 bool is_store(const std::string& address, const StoreOptions& options = {});
 
 /// True if it is one of these and no plain file: one that is read by the box without being asked

@@ -210,7 +210,8 @@ TEST(read_as_itk, headers_with_something_unusual) {
          {three, three + "space: LPS\n", three + "space: LPS\nspace origin: (1,2,3)\n",
           three + "space: RAS\nspace directions: (0,2,0) (2,0,0) (0,0,-3)\n",
           three + "space: LPS\nspace directions: none (0,1,0) (0,0,3)\n",
-          three + "axis mins: 5 6 7\naxis maxs: 9 12 19\ncenters: cell node cell\n",
+          three +
+              "spacings: 2 3 3\naxis mins: 5 6 7\naxis maxs: 9 12 19\ncenters: cell node cell\n",
           three + "spacings: 1 2 3\nkinds: domain domain domain\nunits: \"mm\" \"mm\" \"mm\"\n",
           plain + "dimension: 2\nsizes: 4 6\nspacings: 2 3\n", plain + "dimension: 1\nsizes: 24\n",
           plain + "dimension: 2\nsizes: 4 6\nspace dimension: 2\nspace directions: (0,2) (3,0)\n"
@@ -301,6 +302,20 @@ TEST(read_otherwise_than_itk, left_anterior_superior_turns_the_axis_that_differs
     const Geometry g = read_volume(folder / "a.nrrd").volume.geometry();
     EXPECT_EQ(g.origin, Vec3(10, -20, 30));
     EXPECT_EQ(g.direction, Mat3(Vec3(1, -1, 1).asDiagonal()));
+}
+
+TEST(read_otherwise_than_itk, the_ends_of_an_axis_tell_its_spacing) {
+    // ITK 5.2 takes them for the origin, but 1 mm for the spacing.
+    const ScratchFolder folder;
+    put_bytes(folder / "a.nrrd",
+              "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 3 4\naxis mins: 5 6 7\n"
+              "axis maxs: 9 12 19\ncenters: cell node cell\nencoding: raw\n\n" +
+                  std::string(24, 'x'));
+    const ItkVolume itk = read_with_itk(folder / "a.nrrd");
+    EXPECT_EQ(itk.spacing, (std::vector<double>{1, 1, 1}));
+    const Geometry g = read_volume(folder / "a.nrrd").volume.geometry();
+    EXPECT_EQ(g.spacing, Vec3(2, 3, 3));
+    EXPECT_EQ(g.origin, Vec3(itk.origin[0], itk.origin[1], itk.origin[2]));
 }
 
 TEST(read_otherwise_than_itk, a_time_axis_outside_of_space_is_read) {

@@ -1,7 +1,8 @@
-// Reads NRRD and MetaImage with ITK's ImageIO classes.
+// Reads NRRD, MetaImage and NIfTI with ITK's ImageIO classes.
 #include "itk_reader.hpp"
 
 #include <itkMetaImageIO.h>
+#include <itkNiftiImageIO.h>
 #include <itkNrrdImageIO.h>
 
 #include <cstring>
@@ -77,6 +78,9 @@ ItkVolume read_with_itk(const std::filesystem::path& path) {
     try {
         if (extension == ".nrrd" || extension == ".nhdr") {
             return read(*itk::NrrdImageIO::New(), path);
+        }
+        if (extension == ".nii" || extension == ".gz") {
+            return read(*itk::NiftiImageIO::New(), path);
         }
         return read(*itk::MetaImageIO::New(), path);
     } catch (const std::exception& e) {

@@ -1,0 +1,360 @@
+// What the axes of a NRRD header count and where its grid lies: sizes, kinds, spacings, centerings,
+// units, the space. Where the format leaves a choice, ITK's is taken (docs/io.md).
+#include "io/helper/nrrd_axes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <sstream>
+
+namespace palpate::io {
+namespace {
+
+/// Fields that have one entry for each axis; an entry that is missing or left open is nothing.
+struct Axis {
+    std::int64_t size = 1;
+    std::string kind = "???";
+    std::optional<double> spacing, minimum, maximum;
+    std::string center = "???";  ///< "node": minimum and maximum are samples, not ends of cells
+    std::optional<Vec3> direction;
+    std::string unit;
+
+    double cells() const { return static_cast<double>(center == "node" ? size - 1 : size); }
+
+    /// False for an axis of values (colours, vectors, lists), not of places or times.
+    bool is_domain() const {
+        return kind == "domain" || kind == "space" || kind == "time" || kind == "???" ||
+               kind == "none";
+    }
+};
+
+void check_count(std::size_t count, std::size_t axes, const std::string& field) {
+    if (count == axes) return;
+    throw Failure("its header field '" + field + "' has " + std::to_string(count) +
+                  " entries for " + std::to_string(axes) + " axes; correct the header");
+}
+
+std::vector<std::string> words_of(const HeaderFields& fields, const std::string& field,
+                                  std::size_t axes) {
+    std::vector<std::string> words;
+    std::istringstream text(lower(fields.value(field)));
+    for (std::string word; text >> word;) words.push_back(word);
+    if (fields.has(field)) check_count(words.size(), axes, field);
+    words.resize(axes, "???");
+    return words;
+}
+
+std::vector<std::optional<double>> numbers_of(const HeaderFields& fields, const std::string& field,
+                                              std::size_t axes) {
+    const auto numbers = numbers_in(fields.value(field), field);
+    if (fields.has(field)) check_count(numbers.size(), axes, field);
+    std::vector<std::optional<double>> found(axes);
+    for (std::size_t a = 0; a < numbers.size(); ++a) {
+        if (!std::isnan(numbers[a])) found[a] = numbers[a];
+    }
+    return found;
+}
+
+/// Units, each in "..." or, as some programs write them, without.
+std::vector<std::string> units_in(const std::string& text) {
+    std::vector<std::string> units;
+    if (text.find('"') == std::string::npos) {
+        std::istringstream words(text);
+        for (std::string word; words >> word;) units.push_back(word);
+    }
+    for (std::size_t at = 0; (at = text.find('"', at)) != std::string::npos;) {
+        const auto close = text.find('"', at + 1);
+        if (close == std::string::npos) break;
+        units.push_back(trimmed(text.substr(at + 1, close - at - 1)));
+        at = close + 1;
+    }
+    std::replace(units.begin(), units.end(), std::string("???"), std::string());
+    return units;
+}
+
+/// The space that directions and origin are given in.
+struct Space {
+    std::size_t dimension = 0;   ///< 0: the header gives none
+    Vec3 to_lps = Vec3::Ones();  ///< factors to left, posterior, superior [mm]
+};
+
+Space named_space(const HeaderFields& fields) {
+    static const std::map<std::string, Space> spaces = {
+        {"right-anterior-superior", {3, {-1, -1, 1}}},
+        {"ras", {3, {-1, -1, 1}}},
+        {"left-anterior-superior", {3, {1, -1, 1}}},
+        {"las", {3, {1, -1, 1}}},
+        {"left-posterior-superior", {3, {1, 1, 1}}},
+        {"lps", {3, {1, 1, 1}}},
+        {"right-anterior-superior-time", {4, {-1, -1, 1}}},
+        {"rast", {4, {-1, -1, 1}}},
+        {"left-anterior-superior-time", {4, {1, -1, 1}}},
+        {"last", {4, {1, -1, 1}}},
+        {"left-posterior-superior-time", {4, {1, 1, 1}}},
+        {"lpst", {4, {1, 1, 1}}},
+        {"scanner-xyz", {3, {1, 1, 1}}},
+        {"scanner-xyz-time", {4, {1, 1, 1}}},
+        {"3d-right-handed", {3, {1, 1, 1}}},
+        {"3d-left-handed", {3, {1, 1, 1}}},
+        {"3d-right-handed-time", {4, {1, 1, 1}}},
+        {"3d-left-handed-time", {4, {1, 1, 1}}}};
+    if (fields.has("space")) {
+        const auto found = spaces.find(lower(fields.value("space")));
+        if (found != spaces.end()) return found->second;
+        throw Failure("its header field 'space' is '" + fields.value("space") +
+                      "', which is not known; correct the header");
+    }
+    Space space;
+    if (fields.has("space dimension")) {
+        space.dimension = static_cast<std::size_t>(
+            whole_number_in(fields.value("space dimension"), "space dimension", 1));
+    }
+    return space;
+}
+
+/// The named space, in mm. Notes what it does not say of the patient, and units.
+Space space_of(const HeaderFields& fields, std::vector<std::string>& notes) {
+    Space space = named_space(fields);
+    const std::string name = lower(fields.value("space"));
+    if (name.rfind("scanner", 0) == 0 || name.rfind("3d-", 0) == 0) {
+        notes.push_back("its space is '" + name +
+                        "', which is not the patient's: its axes were taken as those of LPS");
+    }
+    const auto units = units_in(fields.value("space units"));
+    if (space.dimension == 0 && !units.empty()) {
+        notes.emplace_back("its header has space units but no space: they were ignored");
+        return space;
+    }
+    for (std::size_t i = 0; i < std::min<std::size_t>(3, units.size()); ++i) {
+        space.to_lps[static_cast<Eigen::Index>(i)] *= length_unit(units[i], notes);
+    }
+    return space;
+}
+
+/// "(1,0,0)" at `at` and behind it: the numbers in the next brackets.
+std::vector<double> next_vector(const std::string& text, std::size_t& at,
+                                const std::string& field) {
+    const auto close = text.find(')', at);
+    if (text[at] != '(' || close == std::string::npos) {
+        throw Failure("its header field '" + field + "' is damaged; correct the header");
+    }
+    std::string inside = text.substr(at + 1, close - at - 1);
+    std::replace(inside.begin(), inside.end(), ',', ' ');
+    at = close + 1;
+    return numbers_in(inside, field);
+}
+
+Vec3 vector_in(const std::vector<double>& numbers, const Space& space, const std::string& field) {
+    if (numbers.size() != space.dimension) {
+        throw Failure("its header field '" + field +
+                      "' and its space do not agree; correct the "
+                      "header");
+    }
+    Vec3 v = Vec3::Zero();
+    for (std::size_t i = 0; i < std::min<std::size_t>(3, numbers.size()); ++i) {
+        v[static_cast<Eigen::Index>(i)] = numbers[i];
+    }
+    return v.cwiseProduct(space.to_lps);
+}
+
+void read_directions(const HeaderFields& fields, const Space& space, std::vector<Axis>& axes) {
+    const std::string field = "space directions", text = fields.value(field);
+    std::size_t at = 0, count = 0;
+    while ((at = text.find_first_not_of(" \t", at)) != std::string::npos) {
+        Axis ignored;
+        Axis& axis = count < axes.size() ? axes[count] : ignored;
+        ++count;
+        if (text.compare(at, 4, "none") == 0) {
+            at += 4;
+            continue;
+        }
+        axis.direction = vector_in(next_vector(text, at, field), space, field);
+        check_spacing(axis.direction->norm(), "header field '" + field + "'");
+    }
+    if (fields.has(field)) check_count(count, axes.size(), field);
+}
+
+std::vector<Axis> axes_of(const HeaderFields& fields, const std::vector<std::int64_t>& sizes,
+                          const Space& space) {
+    std::vector<Axis> axes(sizes.size());
+    const auto kinds = words_of(fields, "kinds", sizes.size());
+    const auto centers = words_of(fields, "centerings", sizes.size());
+    const auto spacings = numbers_of(fields, "spacings", sizes.size());
+    const auto minima = numbers_of(fields, "axis mins", sizes.size());
+    const auto maxima = numbers_of(fields, "axis maxs", sizes.size());
+    const auto units = units_in(fields.value("units"));
+    for (std::size_t a = 0; a < axes.size(); ++a) {
+        axes[a] = {sizes[a],  kinds[a],   spacings[a],  minima[a],
+                   maxima[a], centers[a], std::nullopt, a < units.size() ? units[a] : ""};
+    }
+    read_directions(fields, space, axes);
+    return axes;
+}
+
+/// Finds the axis that counts volumes, if there is one, and returns the axes of space.
+std::vector<Axis> spatial_axes(const std::vector<Axis>& axes, VolumeHeader& header) {
+    std::vector<Axis> spatial;
+    std::int64_t before = 1;
+    for (std::size_t a = 0; a < axes.size(); ++a) {
+        const Axis& axis = axes[a];
+        if (axis.is_domain()) {
+            if (axis.kind == "time" && a + 1 != axes.size()) {
+                throw Failure(
+                    "its time axis is not the last one; put it last (unu permute) or mark it as a "
+                    "list");
+            }
+            spatial.push_back(axis);
+        } else if (axis.size > 1) {
+            if (axis.kind != "list" || axes.size() < 4) {
+                throw Failure("it has " + std::to_string(axis.size) +
+                              " values a sample (colours or vectors); give a volume with one");
+            }
+            if (header.steps > 1) {
+                throw Failure("it has two axes of lists; save one volume of it");
+            }
+            header.steps = axis.size;
+            header.together = before;
+            header.times = frame_times(axis.spacing.value_or(0), axis.minimum.value_or(0),
+                                       lower(axis.unit), header.notes);
+        }
+        before *= axis.size;
+    }
+    return spatial;
+}
+
+/// A space has as many dimensions as there are axes, or lacks time.
+void check_dimensions(const Space& space, const std::vector<Axis>& spatial) {
+    if (spatial.empty()) throw Failure("it has no axis of space; give a volume");
+    const bool timeless = space.dimension == 3 && spatial.size() == 4 && !spatial[3].direction;
+    if (space.dimension == 0 || space.dimension == spatial.size() || timeless) return;
+    throw Failure("its header gives a space of " + std::to_string(space.dimension) +
+                  " dimensions for " + std::to_string(spatial.size()) +
+                  " axes; correct the header");
+}
+
+/// Axes beyond the third count volumes.
+void take_steps(std::vector<Axis>& spatial, VolumeHeader& header) {
+    if (spatial.size() <= 3) {
+        if (header.steps == 1) header.together = static_cast<std::int64_t>(header.samples());
+        return;
+    }
+    if (header.steps > 1) {
+        throw Failure("it has more than 4 axes (" + text_of(header.sizes) +
+                      "); save one volume of it");
+    }
+    for (std::size_t a = 3; a < spatial.size(); ++a) header.steps *= spatial[a].size;
+    header.together = static_cast<std::int64_t>(header.samples()) / header.steps;
+    if (spatial.size() == 4) {
+        const Axis& time = spatial[3];
+        header.times = frame_times(time.spacing.value_or(0), time.minimum.value_or(0),
+                                   lower(time.unit), header.notes);
+    }
+    spatial.resize(3);
+}
+
+/// Completes what spacing, minimum and maximum of an axis say of each other, in mm.
+void complete(Axis& axis, std::vector<std::string>& notes) {
+    if (!axis.spacing && !axis.minimum && !axis.maximum) return;
+    const double unit = length_unit(axis.unit, notes);
+    for (auto* length : {&axis.spacing, &axis.minimum, &axis.maximum}) {
+        if (*length) **length *= unit;
+    }
+    const double cells = axis.cells();
+    if (axis.minimum && axis.maximum && cells > 0) {
+        const double between = (*axis.maximum - *axis.minimum) / cells;
+        if (!axis.spacing) {
+            check_spacing(between, "header fields 'axis mins' and 'axis maxs'");
+            axis.spacing = between;
+        } else if (!(std::abs(between - *axis.spacing) <= 0.01 * *axis.spacing)) {
+            add_note(notes,
+                     "its header's spacings do not fit its axis mins and maxs: the spacings "
+                     "were taken");
+        }
+    }
+    if (!axis.minimum && axis.maximum) {
+        axis.minimum = *axis.maximum - cells * axis.spacing.value_or(1);
+    }
+    if (axis.minimum && axis.center != "node" && axis.center != "cell") {
+        add_note(notes,
+                 "its header does not say whether axis mins are places of samples "
+                 "(centerings: node) or ends of cells: ends of cells were taken");
+    }
+}
+
+/// The place of the first sample on an axis outside of any space.
+double first_of(const Axis& axis) {
+    if (!axis.minimum) return 0;
+    return *axis.minimum + (axis.center == "node" ? 0 : axis.spacing.value_or(1) / 2);
+}
+
+/// Axes without a direction, in a space where others have one, are at right angles to those.
+void complete_directions(const std::vector<Axis>& spatial, Mat3& direction) {
+    std::vector<Eigen::Index> known, open;
+    for (std::size_t a = 0; a < 3; ++a) {
+        const bool told = a < spatial.size() && spatial[a].direction;
+        (told ? known : open).push_back(static_cast<Eigen::Index>(a));
+    }
+    if (known.empty() || open.empty()) return;
+    if (open.size() == 2) {
+        direction.col(open[0]) = direction.col(known[0]).unitOrthogonal();
+        known.push_back(open[0]);
+        open.erase(open.begin());
+    }
+    // Right-handed: the axes follow each other in a circle.
+    const Eigen::Index last = open[0];
+    direction.col(last) =
+        direction.col((last + 1) % 3).cross(direction.col((last + 2) % 3)).normalized();
+}
+
+Geometry geometry_of(const HeaderFields& fields, const Space& space, std::vector<Axis>& spatial,
+                     std::vector<std::string>& notes) {
+    Geometry g;
+    g.size = Index3::Ones();
+    for (std::size_t a = 0; a < spatial.size(); ++a) {
+        Axis& axis = spatial[a];
+        const auto i = static_cast<Eigen::Index>(a);
+        g.size[i] = static_cast<int>(axis.size);
+        if (axis.spacing && space.dimension > 0) {
+            throw Failure(
+                "its header gives both spacings and a space for the same axis; correct the header");
+        }
+        if (space.dimension == 0) {
+            complete(axis, notes);
+            if (fields.has("spacings")) {
+                check_spacing(axis.spacing.value_or(std::nan("")), "header field 'spacings'");
+            }
+            g.spacing[i] = axis.spacing.value_or(1);
+            g.origin[i] = first_of(axis);
+        } else if (!axis.unit.empty() && lower(axis.unit) != "mm") {
+            add_note(notes, "its header has a space: the units of its axes were ignored");
+        }
+        if (axis.direction) {
+            g.spacing[i] = axis.direction->norm();
+            g.direction.col(i) = *axis.direction / g.spacing[i];
+        }
+        if (!axis.spacing && !axis.direction) {
+            add_note(notes, "its header gives no spacing: 1 mm was taken");
+        }
+    }
+    complete_directions(spatial, g.direction);
+    if (space.dimension > 0 && fields.has("space origin")) {
+        std::size_t at = 0;
+        const Vec3 origin = vector_in(next_vector(fields.value("space origin"), at, "space origin"),
+                                      space, "space origin");
+        if (!std::isnan(origin[0])) g.origin = origin;
+    }
+    return g;
+}
+
+}  // namespace
+
+void take_axes(const HeaderFields& fields, VolumeHeader& header) {
+    const Space space = space_of(fields, header.notes);
+    std::vector<Axis> spatial = spatial_axes(axes_of(fields, header.sizes, space), header);
+    check_dimensions(space, spatial);
+    take_steps(spatial, header);
+    header.geometry = geometry_of(fields, space, spatial, header.notes);
+}
+
+}  // namespace palpate::io
