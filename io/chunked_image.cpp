@@ -36,6 +36,7 @@ ImageArray array_from(const nlohmann::json& json) {
     array.chunk = sizes_from(json.at("chunk"));
     array.stored = stored_named(json.at("stored").get<std::string>()).value();
     array.swapped = json.at("swapped").get<bool>();
+    array.values = {json.value("slope", 1.0), json.value("intercept", 0.0)};
     array.fill = json.at("fill").get<double>();
     array.codecs = lines_from(json.at("codecs"), 64);
     array.scale = json.at("scale").get<std::array<double, 3>>();
@@ -60,6 +61,8 @@ nlohmann::json json_from(const ChunkedImage& image) {
                                   {"chunk", array.chunk},
                                   {"stored", name_of(array.stored)},
                                   {"swapped", array.swapped},
+                                  {"slope", array.values.slope},
+                                  {"intercept", array.values.intercept},
                                   {"fill", array.fill},
                                   {"codecs", array.codecs},
                                   {"scale", array.scale},

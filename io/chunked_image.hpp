@@ -19,7 +19,8 @@ struct ImageArray {
     std::array<std::int64_t, 3> shape = {1, 1, 1}, chunk = {1, 1, 1};  ///< [samples]
     Stored stored = Stored::uint8;
     bool swapped = false;  ///< in the other byte order than the machine's
-    double fill = 0;       ///< of chunks that are not stored
+    ValueMap values = {};
+    double fill = 0;  ///< of chunks that are not stored [data units]
     std::vector<std::string>
         codecs;  ///< in the order of decoding, by the names of stream/codecs.hpp
     std::array<double, 3> scale = {1, 1, 1}, translation = {0, 0, 0};  ///< [unit]

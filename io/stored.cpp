@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <limits>
 
 namespace palpate::io {
 namespace {
@@ -18,17 +20,32 @@ std::string short_text(double number) {
     return text;
 }
 
-void convert_mapped(Stored stored, const std::byte* from, std::byte* to, std::size_t count,
-                    const ValueMap& values) {
+/// True where whole numbers are only shifted, and 16 bits hold all that they may become: ImageJ's
+/// signed images.
+bool shifted_within_int16(Stored stored, const ValueMap& values) {
+    if (values.slope != 1 || values.intercept != std::floor(values.intercept)) return false;
+    if (stored == Stored::float32 || stored == Stored::float64) return false;
+    return with_stored(stored, [&](auto type) {
+        using From = std::numeric_limits<decltype(type)>;
+        using To = std::numeric_limits<std::int16_t>;
+        return static_cast<double>(From::lowest()) + values.intercept >= To::lowest() &&
+               static_cast<double>(From::max()) + values.intercept <= To::max();
+    });
+}
+
+void convert_mapped(Stored stored, const std::byte* from, SampleType type, std::byte* to,
+                    std::size_t count, const ValueMap& values) {
     with_stored(stored, [&](auto source) {
-        using From = decltype(source);
-        for (std::size_t i = 0; i < count; ++i) {
-            From number;
-            std::memcpy(&number, from + i * sizeof(From), sizeof number);
-            const auto value =
-                static_cast<float>(static_cast<double>(number) * values.slope + values.intercept);
-            std::memcpy(to + i * sizeof value, &value, sizeof value);
-        }
+        with_type(type, [&](auto target) {
+            using From = decltype(source);
+            for (std::size_t i = 0; i < count; ++i) {
+                From number;
+                std::memcpy(&number, from + i * sizeof(From), sizeof number);
+                const auto value = static_cast<decltype(target)>(
+                    static_cast<double>(number) * values.slope + values.intercept);
+                std::memcpy(to + i * sizeof value, &value, sizeof value);
+            }
+        });
     });
 }
 
@@ -49,7 +66,9 @@ std::optional<Stored> stored_named(std::string_view name) {
 }
 
 SampleType kept_as(Stored stored, const ValueMap& values) {
-    if (values.changes()) return SampleType::float32;
+    if (values.changes()) {
+        return shifted_within_int16(stored, values) ? SampleType::int16 : SampleType::float32;
+    }
     switch (stored) {
         case Stored::uint8:
             return SampleType::uint8;
@@ -67,7 +86,7 @@ void note_conversion(Stored stored, const ValueMap& values, std::vector<std::str
     if (values.changes()) {
         notes.push_back("the file's slope (" + short_text(values.slope) + ") and intercept (" +
                         short_text(values.intercept) + ") were applied: " + name_of(stored) +
-                        " became float32");
+                        " became " + std::string(name_of(kept_as(stored, values))));
         return;
     }
     const std::string kept(name_of(kept_as(stored)));
@@ -78,7 +97,7 @@ void note_conversion(Stored stored, const ValueMap& values, std::vector<std::str
 
 void convert(Stored stored, const std::byte* from, SampleType type, std::byte* to,
              std::size_t count, const ValueMap& values) {
-    if (values.changes()) return convert_mapped(stored, from, to, count, values);
+    if (values.changes()) return convert_mapped(stored, from, type, to, count, values);
     if (name_of(stored) == name_of(type)) {
         std::memcpy(to, from, count * size_of(stored));
         return;

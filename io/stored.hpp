@@ -25,7 +25,8 @@ std::size_t size_of(Stored stored);
 std::string name_of(Stored stored);
 /// The inverse of name_of; nothing for any other name.
 std::optional<Stored> stored_named(std::string_view name);
-/// The type its samples have in a Volume.
+/// The type its samples have in a Volume. Mapped ones are float32, unless whole numbers are only
+/// shifted within what int16 holds.
 SampleType kept_as(Stored stored, const ValueMap& values = {});
 /// Appends a note if that is another type, or if the numbers are mapped.
 void note_conversion(Stored stored, const ValueMap& values, std::vector<std::string>& notes);
@@ -58,8 +59,8 @@ auto with_stored(Stored stored, F&& f) {
     return f(double{});
 }
 
-/// Converts `count` samples; `to` has room for them. Mapped values are computed in double precision
-/// and rounded once, to float32: then `type` has to be that.
+/// Converts `count` samples; `to` has room for them; `type` is what kept_as() says. Mapped values
+/// are computed in double precision and rounded once.
 void convert(Stored stored, const std::byte* from, SampleType type, std::byte* to,
              std::size_t count, const ValueMap& values = {});
 

@@ -69,7 +69,7 @@ class Taking {
         info.type = finest.bytes.type();
         info.fill = finest.bytes.fill;
         info.range = image.range;
-        io::note_conversion(finest.bytes.stored, {}, info.notes);
+        io::note_conversion(finest.bytes.stored, finest.bytes.values, info.notes);
         take_choice(image, roles);
         volume_.space = roles.space;
         for (std::size_t i = 0; i < volume_.arrays.size(); ++i) {

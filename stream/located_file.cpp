@@ -20,6 +20,7 @@ ChunkedArray located_array(const io::ImageArray& level, const io::ChunkFile& fil
     array.folder = file.path.filename().string();
     array.bytes.stored = level.stored;
     array.bytes.swapped = level.swapped;
+    array.bytes.values = level.values;
     array.bytes.fill = fitting_fill(level.fill, array.bytes);
     for (std::size_t a = 0; a < 3; ++a) {
         array.shape.push_back(level.shape[a]);

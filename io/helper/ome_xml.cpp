@@ -38,17 +38,18 @@ std::optional<double> length_of(const XmlElement& pixels, const std::string& nam
     return millimetres ? std::optional(*length * *millimetres) : std::nullopt;
 }
 
-void take_spacing(const XmlElement& pixels, OmeImage& image, std::vector<std::string>& notes) {
+void take_spacing(const XmlElement& pixels, OmeImage& image) {
     const auto x = length_of(pixels, "PhysicalSizeX"), y = length_of(pixels, "PhysicalSizeY"),
                z = length_of(pixels, "PhysicalSizeZ");
     if (!x || !y) {
-        notes.emplace_back("it does not tell its spacing: 1 mm was taken along every axis");
+        image.spacing_note =
+            "its OME-XML does not tell its spacing: 1 mm was taken along every axis";
         return;
     }
     image.spacing = {z.value_or(*x), *y, *x};
     if (!z && image.sizes[0] > 1) {
-        notes.emplace_back(
-            "it does not tell the distance between slices: that of pixels was taken");
+        image.spacing_note =
+            "its OME-XML does not tell the distance between slices: that of pixels was taken";
     }
 }
 
@@ -142,7 +143,7 @@ OmeImage ome_image(const std::string& xml, std::vector<std::string>& notes) {
     const double planes = static_cast<double>(image.sizes[0]) *
                           static_cast<double>(image.sizes[1]) * static_cast<double>(image.sizes[2]);
     if (planes > static_cast<double>(most_planes)) throw Failure("it has more than 2^20 planes");
-    take_spacing(*pixels[0], image, notes);
+    take_spacing(*pixels[0], image);
     const auto interval = number_from<double>(trimmed(pixels[0]->attribute("TimeIncrement")));
     if (interval && image.sizes[2] > 1) {
         const std::string unit = pixels[0]->attribute("TimeIncrementUnit");

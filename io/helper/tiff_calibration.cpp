@@ -14,9 +14,8 @@ namespace {
 
 using Description = std::map<std::string, std::string>;
 
-Description description_of(TIFF* tiff) {
-    const char* text = nullptr;
-    if (TIFFGetField(tiff, TIFFTAG_IMAGEDESCRIPTION, &text) == 0 || text == nullptr) return {};
+/// Empty unless ImageJ wrote it.
+Description fields_of(const std::string& text) {
     std::istringstream lines(text);
     Description description;
     for (std::string line; std::getline(lines, line);) {
@@ -24,7 +23,15 @@ Description description_of(TIFF* tiff) {
         if (equals == std::string::npos) continue;
         description.emplace(trimmed(line.substr(0, equals)), trimmed(line.substr(equals + 1)));
     }
+    if (!description.contains("ImageJ")) description.clear();
     return description;
+}
+
+/// A number of the description; nothing if it has none of that name.
+std::optional<double> number_in(const Description& description, const char* name) {
+    const auto found = description.find(name);
+    if (found == description.end()) return std::nullopt;
+    return number_from<double>(found->second);
 }
 
 /// The distance between slices in ImageJ's unit. ImageJ leaves out a 1 where there are slices.
@@ -39,16 +46,21 @@ std::optional<double> slice_distance(const Description& description) {
 
 /// A count of the description; 1 if it does not say.
 double count_in(const Description& description, const char* name) {
-    const auto found = description.find(name);
-    if (found == description.end()) return 1;
-    return number_from<double>(found->second).value_or(1);
+    return number_in(description, name).value_or(1);
+}
+
+/// How long the unit of an axis is [mm]: its own, or that of all.
+std::optional<double> unit_in(const Description& description, const char* own) {
+    const auto found = description.find(description.contains(own) ? own : "unit");
+    return found == description.end() ? std::nullopt : millimetres_of(found->second);
 }
 
 }  // namespace
 
-Moments image_j_moments(TIFF* tiff, std::size_t pages, std::vector<std::string>& notes) {
-    const Description description = description_of(tiff);
-    if (!description.contains("ImageJ")) return {};
+Moments image_j_moments(const std::string& text, std::size_t pages,
+                        std::vector<std::string>& notes) {
+    const Description description = fields_of(text);
+    if (description.empty()) return {};
     if (const double channels = count_in(description, "channels"); channels > 1) {
         throw Failure("holds " + text_of(channels) +
                       " channels slice by slice; save one of them (ImageJ: Image > Duplicate)");
@@ -74,19 +86,34 @@ Moments image_j_moments(TIFF* tiff, std::size_t pages, std::vector<std::string>&
     return moments;
 }
 
-std::optional<Vec3> image_j_spacing(TIFF* tiff) {
-    const Description description = description_of(tiff);
-    const auto unit = description.find("unit");
-    if (!description.contains("ImageJ") || unit == description.end()) return std::nullopt;
-    const auto length = millimetres_of(unit->second);
-    const auto distance = slice_distance(description);
+std::optional<Vec3> image_j_spacing(TIFF* tiff, const std::string& text) {
+    const Description description = fields_of(text);
+    const auto along_x = unit_in(description, "unit"), along_y = unit_in(description, "yunit"),
+               along_z = unit_in(description, "zunit"), distance = slice_distance(description);
     float x = 0, y = 0;
     TIFFGetField(tiff, TIFFTAG_XRESOLUTION, &x);
     TIFFGetField(tiff, TIFFTAG_YRESOLUTION, &y);
-    if (!length || !distance || !(x > 0) || !(y > 0)) return std::nullopt;
-    const Vec3 spacing = *length * Vec3(1.0 / double(x), 1.0 / double(y), *distance);
+    if (!along_x || !along_y || !along_z || !distance || !(x > 0) || !(y > 0)) return std::nullopt;
+    const Vec3 spacing(*along_x / double(x), *along_y / double(y), *along_z * *distance);
     if (!spacing.allFinite() || !(spacing.minCoeff() > 0)) return std::nullopt;
     return spacing;
+}
+
+ValueMap image_j_values(const std::string& text, Stored stored, std::vector<std::string>& notes) {
+    constexpr double straight_line = 0, none = 20;  // ij.measure.Calibration
+    const Description description = fields_of(text);
+    const auto function = number_in(description, "cf");
+    if (!function || *function == none) return {};
+    const ValueMap values{number_in(description, "c1").value_or(0),
+                          number_in(description, "c0").value_or(0)};
+    const bool whole = stored != Stored::float32 && stored != Stored::float64;
+    if (*function == straight_line && whole && std::isfinite(values.slope) && values.slope != 0 &&
+        std::isfinite(values.intercept)) {
+        return values;
+    }
+    notes.emplace_back("ImageJ's calibration of its values (cf=" + text_of(*function) +
+                       ") was ignored: the samples are as they are stored");
+    return {};
 }
 
 void set_image_j_spacing(TIFF* tiff, const Vec3& spacing, int slices) {

@@ -13,8 +13,13 @@
 namespace palpate::io {
 
 /// The spacing of the current page [mm]; nothing unless ImageJ's description gives all three
-/// lengths.
-std::optional<Vec3> image_j_spacing(TIFF* tiff);
+/// lengths. An axis may have a unit of its own.
+std::optional<Vec3> image_j_spacing(TIFF* tiff, const std::string& description);
+
+/// What a stored number means. ImageJ keeps signed 16-bit images as unsigned samples with such a
+/// calibration. Notes a calibration that is not a straight line, which is ignored.
+ValueMap image_j_values(const std::string& description, Stored stored,
+                        std::vector<std::string>& notes);
 
 /// Into how many moments, one after the other, ImageJ's description divides the pages.
 struct Moments {
@@ -23,7 +28,8 @@ struct Moments {
 };
 /// Throws Failure where it has channels, or other counts than there are pages (ImageJ's own files
 /// above 4 GB have one page).
-Moments image_j_moments(TIFF* tiff, std::size_t pages, std::vector<std::string>& notes);
+Moments image_j_moments(const std::string& description, std::size_t pages,
+                        std::vector<std::string>& notes);
 
 /// Writes the spacing [mm] of a stack into its first page, which is the current one.
 void set_image_j_spacing(TIFF* tiff, const Vec3& spacing, int slices);

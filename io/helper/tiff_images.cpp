@@ -7,15 +7,13 @@
 #include <cstdio>
 
 #include "io/helper/images.hpp"
-#include "io/helper/ome_xml.hpp"
-#include "io/helper/tiff_calibration.hpp"
+#include "io/helper/tiff_layout.hpp"
 #include "io/helper/tiff_page.hpp"
 
 namespace palpate::io {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr std::size_t most_levels = 64;
 
 /// Tiles of a page, and what unpacks them.
 struct Tiling {
@@ -65,10 +63,6 @@ Tiling tiling_of(TIFF* tiff, const fs::path& file, std::vector<std::string>& not
     tiling.page = page_of(tiff, file, notes);
     TIFFGetField(tiff, TIFFTAG_TILEWIDTH, &tiling.tile_width);
     TIFFGetField(tiff, TIFFTAG_TILELENGTH, &tiling.tile_height);
-    std::uint32_t depth = 1;
-    if (TIFFGetField(tiff, TIFFTAG_IMAGEDEPTH, &depth) != 0 && depth > 1) {
-        throw Failure("it has pages with a depth of their own, which are not read");
-    }
     if (tiling.page.width == 0 || tiling.page.height == 0 || tiling.tile_width == 0 ||
         tiling.tile_height == 0) {
         fail_damaged_tiff(file);
@@ -77,88 +71,12 @@ Tiling tiling_of(TIFF* tiff, const fs::path& file, std::vector<std::string>& not
     return tiling;
 }
 
-/// Offsets of the coarser levels of the current page.
-std::vector<std::uint64_t> coarser_of(TIFF* tiff) {
-    std::uint16_t count = 0;
-    const std::uint64_t* offsets = nullptr;
-    if (TIFFGetField(tiff, TIFFTAG_SUBIFD, &count, &offsets) == 0 || !offsets) return {};
-    return {offsets, offsets + std::min<std::size_t>(count, most_levels)};
-}
-
-std::string description_text(TIFF* tiff) {
-    const char* text = nullptr;
-    if (TIFFGetField(tiff, TIFFTAG_IMAGEDESCRIPTION, &text) == 0 || !text) return "";
-    return text;
-}
-
-/// Every page in the file's list, and which of them are reduced ones.
-struct Pages {
-    std::vector<std::uint32_t> whole, reduced;
-};
-
-Pages pages_of(TIFF* tiff, const fs::path& file) {
-    constexpr std::uint32_t most = 1 << 20;
-    Pages pages;
-    for (std::uint32_t page = 0; page < most; ++page) {
-        std::uint32_t kind = 0;
-        TIFFGetField(tiff, TIFFTAG_SUBFILETYPE, &kind);
-        if ((kind & FILETYPE_REDUCEDIMAGE) != 0) {
-            pages.reduced.push_back(page);
-        } else if ((kind & FILETYPE_MASK) == 0) {
-            pages.whole.push_back(page);
-        }
-        if (TIFFReadDirectory(tiff) == 0) break;
-    }
-    if (!first_tiff_error().empty() || pages.whole.empty()) fail_damaged_tiff(file);
-    return pages;
-}
-
-/// What a file says of its planes, and which page each is.
-struct Layout {
-    OmeImage image;
-    /// Pages of coarser levels, of a file of one plane with such pages instead of SubIFDs.
-    std::vector<std::uint32_t> reduced = {};
-};
-
-Layout layout_of(TIFF* tiff, const fs::path& file, std::vector<std::string>& notes) {
-    const std::string description = description_text(tiff);
-    const auto spacing = image_j_spacing(tiff);
-    const Pages pages = pages_of(tiff, file);
-    TIFFSetDirectory(tiff, 0);
-    if (is_ome_xml(description)) {
-        Layout layout{ome_image(description, notes)};
-        const std::size_t known = pages.whole.size() + pages.reduced.size();
-        for (const std::uint32_t page : layout.image.pages) {
-            if (page >= known) {
-                throw Failure("its OME-XML tells of page " + std::to_string(page) +
-                              ", but it has " + std::to_string(known) +
-                              "; it is cut off: copy it again");
-            }
-        }
-        return layout;
-    }
-    Layout layout;
-    layout.image.format = "TIFF";
-    const Moments moments = image_j_moments(tiff, pages.whole.size(), notes);
-    layout.image.sizes = {static_cast<std::int64_t>(pages.whole.size()) / moments.count, 1,
-                          moments.count};
-    layout.image.frame_interval = moments.times.interval;
-    layout.image.pages = pages.whole;
-    if (pages.whole.size() == 1 && coarser_of(tiff).empty()) layout.reduced = pages.reduced;
-    if (spacing) {
-        layout.image.spacing = {(*spacing)[2], (*spacing)[1], (*spacing)[0]};
-    } else {
-        notes.emplace_back("it does not tell its spacing: 1 mm was taken along every axis");
-    }
-    return layout;
-}
-
-void go_to(TIFF* tiff, const fs::path& file, const Layout& layout, std::uint32_t page,
+void go_to(TIFF* tiff, const fs::path& file, const TiffLayout& layout, std::uint32_t page,
            std::size_t level) {
     if (level > 0 && !layout.reduced.empty()) page = layout.reduced.at(level - 1);
     if (TIFFSetDirectory(tiff, page) == 0) fail_damaged_tiff(file);
     if (level == 0 || !layout.reduced.empty()) return;
-    const auto offsets = coarser_of(tiff);
+    const auto offsets = coarser_levels(tiff);
     if (level > offsets.size()) {
         throw Failure("its planes have different numbers of levels; save it again");
     }
@@ -170,12 +88,14 @@ std::string id_of(std::size_t level, int channel, int time) {
 }
 
 /// Coarser levels are planes of coarser pixels; a sample is the mean of whole ones.
-ImageArray level_from(const Tiling& tiling, std::int64_t depth, bool swapped) {
+ImageArray level_from(const Tiling& tiling, std::int64_t depth, bool swapped,
+                      const ValueMap& values) {
     ImageArray array;
     array.shape = {depth, tiling.page.height, tiling.page.width};
     array.chunk = {1, tiling.tile_height, tiling.tile_width};
     array.stored = tiling.page.stored;
     array.swapped = swapped && size_of(array.stored) > 1;
+    array.values = values;
     array.codecs = tiling.codecs;
     return array;
 }
@@ -185,8 +105,9 @@ ImageArray level_from(const Tiling& tiling, std::int64_t depth, bool swapped) {
 ChunkedImage tiff_image(const fs::path& path, int channel, int time) {
     const Tiff tiff = open_to_read(path, "O");  // O: offsets of tiles only when they are asked for
     ChunkedImage found;
-    const Layout layout = layout_of(tiff.get(), path, found.notes);
+    const TiffLayout layout = layout_of(tiff.get(), path, found.notes);
     const OmeImage& image = layout.image;
+    if (!image.spacing_note.empty()) found.notes.push_back(image.spacing_note);
     found.format = image.format;
     found.unit = "millimeter";
     found.channels = image.channels;
@@ -196,12 +117,13 @@ ChunkedImage tiff_image(const fs::path& path, int channel, int time) {
     const std::uint32_t first = image.pages.at(image.plane(0, channel, time));
     go_to(tiff.get(), path, layout, first, 0);
     const std::size_t levels =
-        1 + (layout.reduced.empty() ? coarser_of(tiff.get()).size() : layout.reduced.size());
+        1 + (layout.reduced.empty() ? coarser_levels(tiff.get()).size() : layout.reduced.size());
     std::array<double, 3> factor = {1, 1, 1};
-    for (std::size_t l = 0; l < std::min(levels, most_levels); ++l) {
+    for (std::size_t l = 0; l < std::min(levels, most_tiff_levels); ++l) {
         go_to(tiff.get(), path, layout, first, l);
         const Tiling tiling = tiling_of(tiff.get(), path, found.notes);
-        ImageArray level = level_from(tiling, image.sizes[0], TIFFIsByteSwapped(tiff.get()) != 0);
+        ImageArray level =
+            level_from(tiling, image.sizes[0], TIFFIsByteSwapped(tiff.get()) != 0, layout.values);
         level.id = id_of(l, channel, time);
         for (std::size_t a = 0; a < 3; ++a) {
             if (l > 0) {
@@ -225,7 +147,7 @@ void tiff_places(const fs::path& path, const ChunkBox& box, std::span<ChunkPlace
     }
     const Tiff tiff = open_to_read(path, "O");
     std::vector<std::string> notes;
-    const Layout layout = layout_of(tiff.get(), path, notes);
+    const TiffLayout layout = layout_of(tiff.get(), path, notes);
     const auto page_at = [&](std::int64_t z) {
         return layout.image.pages.at(layout.image.plane(z, channel, time));
     };

@@ -53,6 +53,13 @@ TiffPage page_of(TIFF* tiff, const fs::path& file, std::vector<std::string>& not
     TIFFGetFieldDefaulted(tiff, TIFFTAG_BITSPERSAMPLE, &bits);
     TIFFGetFieldDefaulted(tiff, TIFFTAG_SAMPLEFORMAT, &format);
     TIFFGetField(tiff, TIFFTAG_PHOTOMETRIC, &photometric);
+    std::uint32_t depth = 1;
+    if (TIFFGetField(tiff, TIFFTAG_IMAGEDEPTH, &depth) != 0 && depth > 1) {
+        throw Failure(
+            quoted(file) + " has pages of " + std::to_string(depth) +
+            " slices each (a volumetric TIFF, ImageDepth), which is not read; save a page "
+            "for each slice");
+    }
     if (samples != 1 || photometric == PHOTOMETRIC_PALETTE || photometric == PHOTOMETRIC_RGB) {
         throw Failure(quoted(file) + " has colours (" + std::to_string(samples) +
                       " values a sample); save it in grey");

@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "io/helper/readers.hpp"
-#include "io/helper/tiff_calibration.hpp"
+#include "io/helper/tiff_layout.hpp"
 #include "io/helper/tiff_page.hpp"
 #include "io/inflate.hpp"
 
@@ -81,24 +81,18 @@ struct Slice {
     std::uint32_t page = 0;
 };
 
-/// The pages that are slices: thumbnails and masks are left out.
-std::vector<Slice> pages_of(const fs::path& file) {
-    const Tiff tiff = open_to_read(file);
-    std::vector<Slice> slices;
-    for (std::uint32_t page = 0;; ++page) {
-        std::uint32_t kind = 0;
-        TIFFGetField(tiff.get(), TIFFTAG_SUBFILETYPE, &kind);
-        if ((kind & (FILETYPE_REDUCEDIMAGE | FILETYPE_MASK)) == 0) slices.push_back({file, page});
-        if (slices.size() > 1 << 20) fail_damaged_tiff(file);
-        if (!first_tiff_error().empty()) fail_damaged_tiff(file);
-        if (TIFFReadDirectory(tiff.get()) == 0) break;
-    }
-    if (!first_tiff_error().empty() || slices.empty()) fail_damaged_tiff(file);
-    return slices;
+void go_to_slice(TIFF* tiff, const Slice& slice) {
+    const std::uint32_t now = TIFFCurrentDirectory(tiff);
+    // libtiff looks for a page from the first one on, unless it is the next one.
+    const bool there =
+        slice.page == now ||
+        (slice.page == now + 1 ? TIFFReadDirectory(tiff) : TIFFSetDirectory(tiff, slice.page));
+    if (!there) fail_damaged_tiff(slice.file);
 }
 
-Result read_slices(const std::vector<Slice>& slices, const Request& request) {
-    const auto told = image_j_spacing(open_to_read(slices.front().file).get());
+/// `layout`: what the file, or the first of a folder, says of spacing and values.
+Result read_slices(const std::vector<Slice>& slices, const TiffLayout& layout,
+                   const Request& request) {
     Result result;
     TiffPage first;
     std::span<std::byte> samples;
@@ -108,12 +102,7 @@ Result read_slices(const std::vector<Slice>& slices, const Request& request) {
         const Slice& slice = slices[i];
         say_doing(slice.file.filename().string());
         if (i == 0 || slice.file != slices[i - 1].file) tiff = open_to_read(slice.file);
-        if (slice.page != TIFFCurrentDirectory(tiff.get()) && TIFFReadDirectory(tiff.get()) == 0) {
-            fail_damaged_tiff(slice.file);
-        }
-        while (slice.page != TIFFCurrentDirectory(tiff.get())) {
-            if (TIFFReadDirectory(tiff.get()) == 0) fail_damaged_tiff(slice.file);
-        }
+        go_to_slice(tiff.get(), slice);
         const TiffPage page = page_of(tiff.get(), slice.file, result.notes);
         if (i == 0) {
             first = page;
@@ -121,7 +110,7 @@ Result read_slices(const std::vector<Slice>& slices, const Request& request) {
                                           static_cast<std::int64_t>(slices.size())};
             const std::int64_t plane[] = {page.width, page.height};
             checked_bytes(plane, size_of(page.stored), fs::file_size(slice.file), request);
-            result.type = kept_as(page.stored);
+            result.type = kept_as(page.stored, layout.values);
             samples =
                 shared_samples(checked_bytes(sizes, size_of(result.type), UINT64_MAX, request));
             page_samples.resize(std::size_t{page.width} * page.height * size_of(page.stored));
@@ -138,19 +127,16 @@ Result read_slices(const std::vector<Slice>& slices, const Request& request) {
         if (!first_tiff_error().empty()) fail_damaged_tiff(slice.file);
         const std::size_t count = std::size_t{page.width} * page.height;
         convert(page.stored, page_samples.data(), result.type,
-                samples.data() + i * count * size_of(result.type), count);
+                samples.data() + i * count * size_of(result.type), count, layout.values);
         say_progress(static_cast<double>(i + 1) / static_cast<double>(slices.size()));
     }
-    note_conversion(first.stored, {}, result.notes);
+    note_conversion(first.stored, layout.values, result.notes);
     result.geometry.size = {static_cast<int>(first.width), static_cast<int>(first.height),
                             static_cast<int>(slices.size())};
-    if (told) {
-        result.geometry.spacing = *told;
-    } else if (!request.spacing) {
-        result.notes.emplace_back(
-            "it does not tell the distance between slices (as ImageJ would): a spacing of 1 mm was "
-            "taken along every axis; give the spacing");
-    }
+    const auto& spacing = layout.image.spacing;
+    result.geometry.spacing = {spacing[2], spacing[1], spacing[0]};
+    const std::string& note = layout.image.spacing_note;
+    if (!request.spacing && !note.empty()) result.notes.push_back(note);
     finish(result, request, samples);
     return result;
 }
@@ -219,18 +205,35 @@ void note_gaps(const std::vector<fs::path>& files, std::vector<std::string>& not
     }
 }
 
+/// What the first file of a folder says of spacing and values; the files' names say the order.
+TiffLayout layout_of_folder(const fs::path& first, std::vector<std::string>& notes) {
+    const Tiff tiff = open_to_read(first);
+    if (!is_ome_xml(description_of(tiff.get()))) return layout_of(tiff.get(), first, notes);
+    notes.emplace_back(
+        "the OME-XML of its files was not used: they were put together by the numbers in their "
+        "names, 1 mm apart along every axis");
+    return {};
+}
+
 }  // namespace
 
 Result read_tiff_file(const Request& request) {
-    const std::vector<Slice> slices = pages_of(request.path);
     std::vector<std::string> notes;
-    const Moments moments = image_j_moments(open_to_read(request.path).get(), slices.size(), notes);
-    const auto each = static_cast<std::ptrdiff_t>(slices.size()) / moments.count;
-    const auto begin = slices.begin() + checked_time_step(request, moments.count) * each;
-    Result result = read_slices({begin, begin + each}, request);
-    result.format = "TIFF";
+    const TiffLayout layout = layout_of(open_to_read(request.path).get(), request.path, notes);
+    const OmeImage& image = layout.image;
+    const int step = checked_time_step(request, image.sizes[2]);
+    std::vector<Slice> slices;
+    for (std::int64_t z = 0; z < image.sizes[0]; ++z) {
+        slices.push_back({request.path, image.pages.at(image.plane(z, 0, step))});
+    }
+    if (image.sizes[1] > 1) {
+        notes.push_back("channel 0 (" + image.channels.at(0).substr(0, 60) + ") of " +
+                        std::to_string(image.sizes[1]) + " was taken");
+    }
+    Result result = read_slices(slices, layout, request);
+    result.format = image.format;
     result.notes.insert(result.notes.begin(), notes.begin(), notes.end());
-    take_step(request, moments.count, moments.times, result);
+    take_step(request, image.sizes[2], {image.frame_interval, 0}, result);
     note_stick(result);
     return result;
 }
@@ -243,16 +246,19 @@ Result read_tiff_folder(const Request& request) {
     std::sort(files.begin(), files.end(), numbered_before);
     std::vector<Slice> slices;
     for (const fs::path& file : files) {
-        const auto pages = pages_of(file);
+        const auto pages = pages_of(open_to_read(file).get(), file).whole;
         if (pages.size() != 1 && files.size() > 1) {
             throw Failure(quoted(file) + " has " + std::to_string(pages.size()) +
                           " pages in a folder of slices; give that file alone");
         }
-        slices.insert(slices.end(), pages.begin(), pages.end());
+        for (const std::uint32_t page : pages) slices.push_back({file, page});
     }
     checked_time_step(request, 1);
-    Result result = read_slices(slices, request);
+    std::vector<std::string> notes;
+    const TiffLayout layout = layout_of_folder(files.front(), notes);
+    Result result = read_slices(slices, layout, request);
     result.format = "TIFF slices";
+    result.notes.insert(result.notes.begin(), notes.begin(), notes.end());
     note_stick(result);
     note_gaps(files, result.notes);
     return result;

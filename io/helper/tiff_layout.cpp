@@ -1,0 +1,121 @@
+// What a TIFF file says of its planes; see the header.
+#include "io/helper/tiff_layout.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "io/helper/tiff_calibration.hpp"
+#include "io/helper/tiff_page.hpp"
+
+namespace palpate::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+OmeImage told_by_ome(const std::string& description, const TiffPages& pages,
+                     std::vector<std::string>& notes) {
+    OmeImage image = ome_image(description, notes);
+    const std::size_t known = pages.whole.size() + pages.reduced.size();
+    for (const std::uint32_t page : image.pages) {
+        if (page < known) continue;
+        throw Failure("its OME-XML tells of page " + std::to_string(page) + ", but it has " +
+                      std::to_string(known) + "; it is cut off: copy it again");
+    }
+    if (image.pages.size() < pages.whole.size()) {
+        notes.push_back("its OME-XML tells of " + std::to_string(image.pages.size()) + " of its " +
+                        std::to_string(pages.whole.size()) + " pages: the others were ignored");
+    }
+    return image;
+}
+
+/// tifffile writes {"shape": [5, 7, 8]}; of a file of one page it may be the only word of the rest.
+void check_shape(const std::string& description, const TiffPage& page, std::size_t pages,
+                 std::vector<std::string>& notes) {
+    const nlohmann::json told = nlohmann::json::parse(description, nullptr, false);
+    if (!told.is_object() || !told.contains("shape") || !told["shape"].is_array()) return;
+    double samples = 1;
+    std::string text;
+    int axes = 0;
+    for (const nlohmann::json& size : told["shape"]) {
+        if (!size.is_number_unsigned()) return;
+        samples *= size.get<double>();
+        text += (text.empty() ? "" : "x") + std::to_string(size.get<std::uint64_t>());
+        axes += size.get<std::uint64_t>() > 1 ? 1 : 0;
+    }
+    const double there = static_cast<double>(pages) * page.width * page.height;
+    if (samples > there) {
+        throw Failure("its description gives it the shape " + text.substr(0, 60) + ", but it has " +
+                      std::to_string(pages) +
+                      " pages as TIFF counts them; save each slice as a page");
+    }
+    if (axes > 3) {
+        notes.push_back("its description gives it the shape " + text.substr(0, 60) +
+                        ": all its pages were taken as slices");
+    }
+}
+
+}  // namespace
+
+std::string description_of(TIFF* tiff) {
+    const char* text = nullptr;
+    if (TIFFGetField(tiff, TIFFTAG_IMAGEDESCRIPTION, &text) == 0 || !text) return "";
+    return text;
+}
+
+std::vector<std::uint64_t> coarser_levels(TIFF* tiff) {
+    std::uint16_t count = 0;
+    const std::uint64_t* offsets = nullptr;
+    if (TIFFGetField(tiff, TIFFTAG_SUBIFD, &count, &offsets) == 0 || !offsets) return {};
+    return {offsets, offsets + std::min<std::size_t>(count, most_tiff_levels)};
+}
+
+TiffPages pages_of(TIFF* tiff, const fs::path& file) {
+    constexpr std::uint32_t most = 1 << 20;
+    TiffPages pages;
+    for (std::uint32_t page = 0; page < most; ++page) {
+        std::uint32_t kind = 0;
+        TIFFGetField(tiff, TIFFTAG_SUBFILETYPE, &kind);
+        if ((kind & FILETYPE_REDUCEDIMAGE) != 0) {
+            pages.reduced.push_back(page);
+        } else if ((kind & FILETYPE_MASK) == 0) {
+            pages.whole.push_back(page);
+        }
+        if (!first_tiff_error().empty()) fail_damaged_tiff(file);
+        if (TIFFReadDirectory(tiff) == 0) break;
+    }
+    if (!first_tiff_error().empty() || pages.whole.empty()) fail_damaged_tiff(file);
+    return pages;
+}
+
+TiffLayout layout_of(TIFF* tiff, const fs::path& file, std::vector<std::string>& notes) {
+    const std::string description = description_of(tiff);
+    const TiffPages pages = pages_of(tiff, file);
+    TIFFSetDirectory(tiff, 0);
+    TiffLayout layout;
+    if (is_ome_xml(description)) {
+        layout.image = told_by_ome(description, pages, notes);
+        return layout;
+    }
+    OmeImage& image = layout.image;
+    image.format = "TIFF";
+    std::vector<std::string> of_page;  // said again when it is read
+    const TiffPage first = page_of(tiff, file, of_page);
+    check_shape(description, first, pages.whole.size(), notes);
+    const Moments moments = image_j_moments(description, pages.whole.size(), notes);
+    layout.values = image_j_values(description, first.stored, notes);
+    image.sizes = {static_cast<std::int64_t>(pages.whole.size()) / moments.count, 1, moments.count};
+    image.frame_interval = moments.times.interval;
+    image.pages = pages.whole;
+    if (pages.whole.size() == 1 && coarser_levels(tiff).empty()) layout.reduced = pages.reduced;
+    if (const auto spacing = image_j_spacing(tiff, description)) {
+        image.spacing = {(*spacing)[2], (*spacing)[1], (*spacing)[0]};
+    } else {
+        image.spacing_note =
+            "it does not tell its spacing (as ImageJ and OME-XML would): 1 mm was taken along "
+            "every "
+            "axis; give the spacing";
+    }
+    return layout;
+}
+
+}  // namespace palpate::io

@@ -1,0 +1,41 @@
+// What a TIFF file says of its planes: which page each is, their spacing, channels, times and what
+// their numbers mean; by OME-XML, ImageJ's or tifffile's description. Reading it whole and reading
+// it by the tile both use this. Functions throw Failure.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "io/helper/decode.hpp"
+#include "io/helper/ome_xml.hpp"
+#include "io/helper/tiff_library.hpp"
+
+namespace palpate::io {
+
+constexpr std::size_t most_tiff_levels = 64;
+
+struct TiffLayout {
+    OmeImage image;
+    ValueMap values;
+    /// Pages of coarser levels, of a file of one plane with such pages instead of SubIFDs.
+    std::vector<std::uint32_t> reduced = {};
+};
+
+/// Leaves the first page as the current one.
+TiffLayout layout_of(TIFF* tiff, const std::filesystem::path& file,
+                     std::vector<std::string>& notes);
+
+/// Every page in the file's list but masks, and which of them are reduced ones.
+struct TiffPages {
+    std::vector<std::uint32_t> whole, reduced;
+};
+TiffPages pages_of(TIFF* tiff, const std::filesystem::path& file);
+
+/// Offsets of the coarser levels of the current page.
+std::vector<std::uint64_t> coarser_levels(TIFF* tiff);
+
+/// The current page's description; empty if it has none.
+std::string description_of(TIFF* tiff);
+
+}  // namespace palpate::io

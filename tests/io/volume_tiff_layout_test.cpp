@@ -1,0 +1,158 @@
+// What TIFF files say of their planes: OME-XML in every order, ImageJ's units and calibrations,
+// tifffile's shapes.
+#include <algorithm>
+#include <array>
+
+#include "volume_tiff_bytes.hpp"
+
+namespace palpate::io::test {
+namespace {
+
+/// Pages whose first sample is their number; the first one has the description.
+void put_pages(const ScratchFolder& folder, int count, const std::string& description) {
+    std::vector<TestPage> pages;
+    for (int i = 0; i < count; ++i) pages.push_back(counting_page(4 * i));
+    pages[0].description = description;
+    pages[0].resolution[0] = 2;
+    pages[0].resolution[1] = 1;
+    put_bytes(folder / "a.tif", tiff_bytes(pages));
+}
+
+int page_of(const VolumeFile& file, int z) {
+    return static_cast<int>(file.volume.sample({0, 0, z})) / 4;
+}
+
+std::string ome(const std::string& attributes, const std::string& inside = "") {
+    return "<?xml version=\"1.0\"?><OME><Image><Pixels Type=\"uint8\" SizeX=\"4\" SizeY=\"3\" " +
+           attributes + ">" + inside + "</Pixels></Image></OME>";
+}
+
+const char* const lengths = "PhysicalSizeX=\"0.1\" PhysicalSizeY=\"0.2\" PhysicalSizeZ=\"0.3\" ";
+
+TEST(tiff, planes_of_an_ome_tiff_in_strips_are_found_in_every_order) {
+    const ScratchFolder folder;
+    const int sizes[3] = {3, 2, 4};  // z, c, t
+    std::string letters = "CTZ";
+    int orders = 0;
+    do {
+        put_pages(folder, 24,
+                  ome(std::string("SizeZ=\"3\" SizeC=\"2\" SizeT=\"4\" ") + lengths +
+                      "DimensionOrder=\"XY" + letters + "\""));
+        for (int t = 0; t < 4; ++t) {
+            ReadOptions options;
+            options.time_step = t;
+            const VolumeFile file = read_volume(folder / "a.tif", options);
+            ASSERT_EQ(file.volume.geometry().size, Index3(4, 3, 3));
+            EXPECT_TRUE(file.volume.geometry().spacing.isApprox(Vec3(1e-4, 2e-4, 3e-4)));
+            EXPECT_EQ(file.time_steps, 4);
+            EXPECT_TRUE(contains(all_notes(file), "channel 0 (channel 0) of 2 was taken"));
+            for (int z = 0; z < 3; ++z) {
+                int page = 0, stride = 1;
+                for (const char letter : letters) {
+                    const auto axis = std::string("ZCT").find(letter);
+                    page += stride * std::array{z, 0, t}[axis];
+                    stride *= sizes[axis];
+                }
+                EXPECT_EQ(page_of(file, z), page) << letters << " " << z << " " << t;
+            }
+        }
+        ++orders;
+    } while (std::next_permutation(letters.begin(), letters.end()));
+    EXPECT_EQ(orders, 6);
+}
+
+TEST(tiff, planes_of_an_ome_tiff_lie_where_its_tiff_data_say) {
+    const ScratchFolder folder;
+    std::mt19937 random(7);
+    for (int round = 0; round < 5; ++round) {
+        std::vector<int> pages = {0, 1, 2, 3, 4};
+        std::shuffle(pages.begin(), pages.end(), random);
+        std::string data;
+        for (std::size_t z = 0; z < 5; ++z) {
+            data += "<TiffData FirstZ=\"" + std::to_string(z) + "\" IFD=\"" +
+                    std::to_string(pages[z]) + "\" PlaneCount=\"1\"/>";
+        }
+        put_pages(folder, 5,
+                  ome(std::string(lengths) + "SizeZ=\"5\" DimensionOrder=\"XYZCT\"", data));
+        const VolumeFile file = read_volume(folder / "a.tif");
+        for (int z = 0; z < 5; ++z) EXPECT_EQ(page_of(file, z), pages[static_cast<std::size_t>(z)]);
+    }
+    put_pages(folder, 5, ome(std::string(lengths) + "SizeZ=\"3\" DimensionOrder=\"XYZCT\""));
+    EXPECT_TRUE(contains(all_notes(read_volume(folder / "a.tif")), "3 of its 5 pages"));
+    put_pages(folder, 2, ome("SizeZ=\"3\" DimensionOrder=\"XYZCT\""));
+    EXPECT_TRUE(contains(refusal(folder / "a.tif"), "tells of page 2, but it has 2"));
+    put_pages(folder, 3, ome("SizeZ=\"3\" DimensionOrder=\"XYZCT\""));
+    EXPECT_TRUE(contains(all_notes(read_volume(folder / "a.tif")), "1 mm was taken"));
+}
+
+TEST(tiff, every_axis_may_have_a_unit_of_its_own_in_image_j) {
+    const ScratchFolder folder;
+    struct Unit {
+        const char* name;
+        double mm;
+    };
+    const Unit units[] = {{"um", 1e-3}, {"mm", 1}, {"cm", 10}, {"", 0}};
+    for (const Unit& y : units) {
+        for (const Unit& z : units) {
+            std::string text = "ImageJ=1.53t\nimages=2\nslices=2\nunit=um\nspacing=3\n";
+            if (y.mm > 0) text += std::string("yunit=") + y.name + "\n";
+            if (z.mm > 0) text += std::string("zunit=") + z.name + "\n";
+            put_pages(folder, 2, text);
+            const Vec3 mm(1e-3, y.mm > 0 ? y.mm : 1e-3, z.mm > 0 ? z.mm : 1e-3);
+            const Vec3 spacing = read_volume(folder / "a.tif").volume.geometry().spacing;
+            EXPECT_TRUE(spacing.isApprox(mm.cwiseProduct(Vec3(0.5, 0.5, 3)))) << text;
+        }
+    }
+    put_pages(folder, 2, "ImageJ=1.53t\nimages=2\nslices=2\nunit=mm\nzunit=row\nspacing=3\n");
+    EXPECT_TRUE(contains(all_notes(read_volume(folder / "a.tif")), "1 mm was taken"));
+}
+
+TEST(tiff, calibrations_of_image_j_give_the_values_that_it_shows) {
+    const ScratchFolder folder;
+    const auto read = [&](int bits, const std::string& samples, const std::string& calibration) {
+        TestPage page;
+        page.width = 2;
+        page.height = 1;
+        page.bits = bits;
+        page.samples = samples;
+        page.description = "ImageJ=1.53t\nunit=mm\nslices=1\nspacing=2\n" + calibration;
+        put_bytes(folder / "a.tif", tiff_bytes({page}));
+        return read_volume(folder / "a.tif");
+    };
+    const std::string wide = little<std::uint16_t>(31768) + little<std::uint16_t>(65535);
+    const VolumeFile is_signed = read(16, wide, "cf=0\nc0=-32768.0\nc1=1.0\nvunit=gray value\n");
+    EXPECT_EQ(is_signed.volume.type(), SampleType::int16);
+    EXPECT_EQ(is_signed.volume.minimum(), -1000);
+    EXPECT_EQ(is_signed.volume.maximum(), 32767);
+    EXPECT_TRUE(contains(all_notes(is_signed), "intercept (-32768)"));
+    const VolumeFile scaled = read(8, "\x01\xff", "cf=0\nc0=-100.0\nc1=2.0\n");
+    EXPECT_EQ(scaled.volume.type(), SampleType::float32);
+    EXPECT_EQ(scaled.volume.minimum(), -98);
+    EXPECT_EQ(scaled.volume.maximum(), 410);
+    EXPECT_EQ(read(16, wide, "cf=0\nc0=-1000\nc1=1\n").volume.minimum(), 30768);
+    const VolumeFile none = read(16, wide, "cf=20\n");
+    EXPECT_EQ(none.volume.type(), SampleType::uint16);
+    EXPECT_EQ(all_notes(none), "");
+    const VolumeFile curved = read(16, wide, "cf=3\nc0=1\nc1=2\nc2=3\n");
+    EXPECT_EQ(curved.volume.maximum(), 65535);
+    EXPECT_TRUE(contains(all_notes(curved), "calibration"));
+}
+
+TEST(tiff, slices_within_a_page_are_refused_and_never_one_slice) {
+    const ScratchFolder folder;
+    TestPage page = counting_page(0);
+    page.depth = 16;
+    put_bytes(folder / "a.tif", tiff_bytes({page}));
+    EXPECT_TRUE(contains(refusal(folder / "a.tif"), "ImageDepth"));
+    page.depth = 1;
+    page.description = "{\"shape\": [5, 3, 4], \"truncated\": true}";
+    put_bytes(folder / "a.tif", tiff_bytes({page}));
+    EXPECT_TRUE(contains(refusal(folder / "a.tif"), "shape 5x3x4, but it has 1 pages"));
+    put_pages(folder, 6, "{\"shape\": [2, 3, 3, 4]}");
+    EXPECT_TRUE(contains(all_notes(read_volume(folder / "a.tif")), "taken as slices"));
+    put_pages(folder, 5, "{\"shape\": [5, 3, 4]}");
+    EXPECT_EQ(read_volume(folder / "a.tif").volume.geometry().size[2], 5);
+}
+
+}  // namespace
+}  // namespace palpate::io::test
