@@ -23,6 +23,8 @@ class DicomBytes {
     void deflated_from(std::uint64_t at);
     /// From here on, numbers are big-endian.
     void set_swapped() { swapped_ = true; }
+    bool swapped() const { return swapped_; }
+    std::uint64_t mapped_size() const { return mapped_.size(); }
 
     /// Whether there are bytes up to `end`. Throws DamagedStream.
     bool reaches(std::uint64_t end);

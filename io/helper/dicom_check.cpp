@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <charconv>
+#include <iterator>
+#include <map>
 #include <set>
 
 #include "io/helper/dicom_bytes.hpp"
@@ -34,6 +36,9 @@ class Walk {
             const std::string syntax = meta_information();
             begin_data_set(syntax);
             walk(data_set_, UINT64_MAX, syntax != "1.2.840.10008.1.2", 0);
+            if (extent_.sop_class.empty()) fail("is cut off in its first lines, or damaged there");
+            take_out_overlays();
+            extent_.needs_copy = extent_.deflated || !changes_.empty();
             if (extent_.rows > 0 && extent_.columns > 0) check_pixels(syntax);
         } catch (const DamagedStream& e) {
             fail(std::string("is damaged (") + e.what() + ")");
@@ -41,24 +46,46 @@ class Walk {
         return extent_;
     }
 
-    /// After whole_file(): all of a deflated file, with the transfer syntax of one that is not.
-    std::vector<std::byte> inflated() const {
-        const auto all = bytes_.unpacked();
-        std::vector<std::byte> plain(all.begin(), all.end());
-        // One UID is the beginning of the other; the rest is padding.
-        std::fill_n(plain.begin() + static_cast<std::ptrdiff_t>(syntax_at_ + 19), 3, std::byte{0});
-        return plain;
+    /// After whole_file().
+    std::vector<std::byte> tidied() {
+        const auto all =
+            extent_.deflated ? bytes_.unpacked() : bytes_.view(0, bytes_.mapped_size());
+        std::vector<std::byte> tidy;
+        std::uint64_t from = 0;
+        const auto copy_up_to = [&](std::uint64_t end) {
+            tidy.insert(tidy.end(), all.begin() + static_cast<std::ptrdiff_t>(from),
+                        all.begin() + static_cast<std::ptrdiff_t>(end));
+        };
+        if (extent_.deflated) {
+            // One UID is the beginning of the other; the rest is padding.
+            changes_.push_back({syntax_at_ + 19, 3, std::string(3, '\0')});
+        }
+        std::ranges::sort(changes_, {}, &Change::at);
+        for (const Change& change : changes_) {
+            copy_up_to(change.at);
+            for (const char c : change.put) tidy.push_back(static_cast<std::byte>(c));
+            from = change.at + change.removed;
+        }
+        copy_up_to(all.size());
+        return tidy;
     }
 
   private:
+    /// Bytes in place of others.
+    struct Change {
+        std::uint64_t at = 0, removed = 0;
+        std::string put;
+    };
+
     [[noreturn]] void fail(const std::string& what) const {
         throw Failure(quoted(file_) + " " + what + "; copy or export it again");
     }
 
-    /// Group 2, which is explicit little endian in every file; returns the transfer syntax.
+    /// Group 2, which is explicit little endian in every file; returns the transfer syntax. Some
+    /// files have no such group, and some not the 128 bytes and four letters before it (PS3.10).
     std::string meta_information() {
         if (!bytes_.reaches(140)) fail("is too short for a DICOM file");
-        std::uint64_t at = 132;
+        std::uint64_t at = number<std::uint32_t>(128) == 0x4d434944 ? 132 : 0;  // "DICM"
         std::string syntax;
         while (bytes_.reaches(at + 8) && number<std::uint16_t>(at) == 0x0002) {
             const Element e = element(at, true);
@@ -69,10 +96,17 @@ class Walk {
             }
             at = past_value(at, e);
         }
-        if (extent_.sop_class.empty()) fail("is cut off in its first lines, or damaged there");
         data_set_ = at;
-        return syntax;
+        if (!syntax.empty()) return syntax;
+        extent_.notes.emplace_back(
+            "it does not say how its elements are written (no transfer "
+            "syntax): that was seen from the first of them");
+        return is_upper(number<char>(at + 4)) && is_upper(number<char>(at + 5))
+                   ? "1.2.840.10008.1.2.1"
+                   : "1.2.840.10008.1.2";
     }
+
+    static bool is_upper(char c) { return c >= 'A' && c <= 'Z'; }
 
     void begin_data_set(const std::string& syntax) {
         if (syntax == "1.2.840.10008.1.2.2") bytes_.set_swapped();
@@ -174,10 +208,15 @@ class Walk {
     std::uint64_t walk(std::uint64_t at, std::uint64_t end, bool is_explicit, int depth) {
         if (depth > deepest) fail("is damaged (nested too deep)");
         while (at < end && (depth > 0 || bytes_.reaches(at + 1))) {
+            if (depth == 0 && only_zeros_from(at)) return at;
             if (!bytes_.reaches(at + 8)) fail("is cut off");
+            const std::uint64_t start = at;
             const Element e = element(at, is_explicit);
             if (e.tag == item_end || e.tag == sequence_end) return at;
-            if (depth == 0) take_size(at, e);
+            if (depth == 0) {
+                take_size(at, e);
+                tidy_up(start, at, e);
+            }
             const bool pixels = e.tag == pixel_data && depth == 0;
             if (pixels) begin_pixels(at, e);
             if (e.length != undefined_length) {
@@ -188,6 +227,78 @@ class Walk {
             }
         }
         return at;
+    }
+
+    /// Padding to the blocks of a medium, after the last element.
+    bool only_zeros_from(std::uint64_t at) {
+        std::uint64_t end = at;
+        for (; bytes_.reaches(end + 1); ++end) {
+            if (number<char>(end) != 0) return false;
+        }
+        changes_.push_back({at, end - at, ""});  // GDCM aborts on some of them
+        extent_.notes.push_back("there are " + std::to_string(end - at) +
+                                " zero bytes after its last element: they were ignored");
+        return true;
+    }
+
+    std::string bytes_of(std::uint16_t number) const {
+        const char low = static_cast<char>(number & 0xff), high = static_cast<char>(number >> 8);
+        return bytes_.swapped() ? std::string{high, low} : std::string{low, high};
+    }
+
+    /// What a library is to be given instead of an element of the data set.
+    void tidy_up(std::uint64_t start, std::uint64_t at, const Element& e) {
+        // Of PixelSpacing and other lengths, positions and slopes.
+        static const std::set<std::uint32_t> numbers = {0x00180050, 0x00180088, 0x00181164,
+                                                        0x00200032, 0x00200037, 0x00280030,
+                                                        0x00281052, 0x00281053};
+        if (e.length == undefined_length || !bytes_.reaches(at + e.length)) return;
+        if (e.tag == 0x00080016 && extent_.sop_class.empty()) extent_.sop_class = text(at, e);
+        if (e.tag == 0x00280004 && text(at, e) == "MONOCHROME1") {
+            changes_.push_back({at + 10, 1, "2"});
+            extent_.notes.emplace_back(
+                "its MONOCHROME1 says that greater values are shown darker: "
+                "values were taken as they are stored");
+        }
+        if (e.tag >> 24 == 0x60) {
+            Overlay& overlay = overlays_[e.tag >> 16];
+            overlay.elements.push_back({start, at + e.length - start, ""});
+            overlay.has_data |= (e.tag & 0xffff) == 0x3000;
+        }
+        if (numbers.contains(e.tag) && e.length <= 1024) tidy_number(start, at, e);
+    }
+
+    void tidy_number(std::uint64_t start, std::uint64_t at, const Element& e) {
+        std::string value;
+        for (std::uint64_t i = 0; i < e.length; ++i) value += number<char>(at + i);
+        value = trimmed(value.substr(0, value.find('\0')));
+        const bool one_length = e.tag == 0x00280030 && !value.empty() &&
+                                value.find_first_of("\\,") == std::string::npos;
+        if (one_length) {
+            value += '\\' + value;
+            extent_.notes.emplace_back(
+                "its PixelSpacing has one number, which was taken for rows "
+                "and columns");
+        }
+        static const std::set<std::string> texts = {"UT", "UC", "LT", "ST", "LO", "SH", "CS"};
+        const bool other_type = texts.contains(e.vr);
+        if (!one_length && !other_type) return;
+        if (value.size() % 2 == 1) value += ' ';
+        const auto length = static_cast<std::uint16_t>(value.size());
+        // Without types, the length has four bytes.
+        const std::string head = !e.vr.empty()      ? "DS" + bytes_of(length)
+                                 : bytes_.swapped() ? bytes_of(0) + bytes_of(length)
+                                                    : bytes_of(length) + bytes_of(0);
+        changes_.push_back({start + 4, at + e.length - start - 4, head + value});
+    }
+
+    /// Overlays without data of their own lie in bits that the samples do not use.
+    void take_out_overlays() {
+        for (auto& [group, overlay] : overlays_) {
+            if (overlay.has_data) continue;
+            std::ranges::move(overlay.elements, std::back_inserter(changes_));
+            add_note(extent_.notes, "overlays in unused bits of its samples were ignored");
+        }
     }
 
     void begin_pixels(std::uint64_t at, const Element& e) {
@@ -234,6 +345,12 @@ class Walk {
     DicomExtent extent_;
     DicomPixels pixels_;
     std::set<std::uint32_t> taken_;
+    std::vector<Change> changes_;
+    struct Overlay {
+        std::vector<Change> elements;
+        bool has_data = false;
+    };
+    std::map<std::uint32_t, Overlay> overlays_;  // by group
     std::uint64_t syntax_at_ = 0, data_set_ = 0;
     std::uint64_t allowed_pixels_ = 0;  // bytes of a deflated file up to the end of its pixels
 };
@@ -252,10 +369,10 @@ DicomExtent check_dicom(const std::filesystem::path& file) {
     return Walk(file).whole_file();
 }
 
-std::vector<std::byte> inflated_dicom(const std::filesystem::path& file) {
+std::vector<std::byte> tidied_dicom(const std::filesystem::path& file) {
     Walk walk(file);
     walk.whole_file();
-    return walk.inflated();
+    return walk.tidied();
 }
 
 bool has_no_image(const std::string& sop_class) {

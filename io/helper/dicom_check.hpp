@@ -14,6 +14,7 @@ struct DicomExtent {
     std::int64_t components = 1;  ///< values a pixel
     std::int64_t bits = 16;       ///< allocated for a value
     bool deflated = false;        ///< the data set as a whole
+    bool needs_copy = false;      ///< a library is to be given tidied_dicom() instead
     std::string compression;      ///< "JPEG 2000", "deflate", ...; empty if there is none
     std::vector<std::string> notes;
 
@@ -31,7 +32,10 @@ DicomExtent check_dicom(const std::filesystem::path& file);
 /// True for classes of objects that are known to have no image: reports, plans, the folder's index.
 bool has_no_image(const std::string& sop_class);
 
-/// A deflated file, unpacked, as bytes of a file in explicit little endian.
-std::vector<std::byte> inflated_dicom(const std::filesystem::path& file);
+/// The file as libraries read it as it is meant: a deflated one unpacked, in explicit little
+/// endian; MONOCHROME1, which is about display only, as MONOCHROME2, so that no value is turned;
+/// numbers of lengths as text of the usual type; without overlays that lie in unused bits of the
+/// samples.
+std::vector<std::byte> tidied_dicom(const std::filesystem::path& file);
 
 }  // namespace palpate::io

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 
 #include "io/helper/headers.hpp"
@@ -49,7 +50,9 @@ std::string DicomGroup::text(DicomTag tag) const {
 std::vector<double> DicomGroup::numbers(DicomTag tag) const {
     std::string value = text(tag);
     std::replace(value.begin(), value.end(), '\\', ' ');
-    return numbers_in(value, "DICOM tag");
+    char name[40];
+    std::snprintf(name, sizeof name, "DICOM tag (%04x,%04x)", tag.group, tag.element);
+    return numbers_in(value, name);
 }
 
 double DicomGroup::number(DicomTag tag, double otherwise) const {

@@ -83,10 +83,31 @@ class FunctionalGroups {
     const DicomGroup* shared_;
 };
 
+/// The table that stands in place of slope and intercept (PS3.3 C.11.1).
+void set_table(DicomSlice& s, const DicomGroup& data) {
+    const auto items = data.items({0x0028, 0x3000});
+    if (items.empty()) return;
+    const auto told = items.front().counts({0x0028, 0x3002});
+    const auto values = items.front().counts({0x0028, 0x3006});
+    const std::size_t count = told.size() == 3 && told[0] == 0 ? 65536 : told.empty() ? 0 : told[0];
+    if (told.size() != 3 || count == 0 || values.size() < count) {
+        throw Failure("its Modality LUT is damaged or has entries of 8 bits; export it again");
+    }
+    ValueTable table;
+    const bool is_signed = data.counts({0x0028, 0x0103}) == std::vector<std::uint32_t>{1};
+    table.first =
+        is_signed ? static_cast<std::int16_t>(told[1]) : static_cast<std::int32_t>(told[1]);
+    table.values.assign(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count));
+    s.table = std::make_shared<const ValueTable>(std::move(table));
+    const std::string units = items.front().text({0x0028, 0x3004});
+    s.values.units = units == "US" ? "" : units;
+    s.notes.emplace_back("the table of values in its header (Modality LUT) was applied");
+}
+
 /// PixelPaddingValue, in units.
 void set_padding(DicomSlice& s, const DicomGroup& data) {
     const auto stored = data.counts({0x0028, 0x0120});
-    if (stored.size() != 1) return;
+    if (stored.size() != 1 || data.has({0x0028, 0x3000})) return;
     const bool is_signed = data.counts({0x0028, 0x0103}) == std::vector<std::uint32_t>{1};
     const double value = is_signed ? static_cast<std::int16_t>(stored[0]) : double(stored[0]);
     s.values.padding = s.slope * value + s.intercept;
@@ -219,7 +240,7 @@ std::vector<DicomSlice> plain_frames(DicomSlice file, const DicomGroup& data) {
 DicomSlice file_as_slice(const fs::path& file, const DicomExtent& extent, const DicomGroup& data) {
     DicomSlice s;
     s.file = file;
-    s.deflated = extent.deflated;
+    s.needs_copy = extent.needs_copy;
     s.compression = extent.compression;
     s.notes = extent.notes;
     s.rows = static_cast<int>(extent.rows);
@@ -239,6 +260,7 @@ DicomSlice file_as_slice(const fs::path& file, const DicomExtent& extent, const 
     set_rescale(s, data);
     set_window(s, data);
     set_padding(s, data);
+    set_table(s, data);
     if (constexpr DicomTag dose{0x3004, 0x000e}; data.has(dose)) {
         s.slope = data.number(dose, 1);
         s.own_values = true;
@@ -249,9 +271,9 @@ DicomSlice file_as_slice(const fs::path& file, const DicomExtent& extent, const 
 
 }  // namespace
 
-LibraryFile::LibraryFile(const fs::path& file, bool deflated) : path_(file) {
-    if (!deflated) return;
-    const auto bytes = inflated_dicom(file);
+LibraryFile::LibraryFile(const fs::path& file, bool needs_copy) : path_(file) {
+    if (!needs_copy) return;
+    const auto bytes = tidied_dicom(file);
     memory_ = memfd_create("palpate-dicom", MFD_CLOEXEC);
     for (std::size_t at = 0; at < bytes.size();) {
         const ssize_t written = write(memory_, bytes.data() + at, bytes.size() - at);
@@ -265,9 +287,13 @@ LibraryFile::~LibraryFile() {
     if (memory_ >= 0) close(memory_);
 }
 
-std::vector<DicomSlice> slices_from(const fs::path& file) {
+namespace {
+
+std::vector<DicomSlice> slices_of(const fs::path& file) {
     const DicomExtent extent = check_dicom(file);
-    const LibraryFile readable(file, extent.deflated);
+    // Reports, plans and the folder's index have no rows; an image that has none is cut off.
+    if (extent.rows < 1 && has_no_image(extent.sop_class)) return {};
+    const LibraryFile readable(file, extent.needs_copy);
     const MemoryBound bound(8 * fs::file_size(file) + 2 * extent.bytes());
     gdcm::Reader reader;
     reader.SetFileName(readable.name().c_str());
@@ -278,8 +304,6 @@ std::vector<DicomSlice> slices_from(const fs::path& file) {
     const DicomGroup data(reader.GetFile().GetDataSet());
     const DicomSlice slice = file_as_slice(file, extent, data);
     if (slice.rows < 1 || slice.columns < 1) {
-        // Reports, plans and the folder's index have no rows; an image that has none is cut off.
-        if (has_no_image(extent.sop_class)) return {};
         throw Failure(quoted(file) +
                       " gives no size of its image; it is cut off or damaged: copy "
                       "or export it again");
@@ -291,6 +315,18 @@ std::vector<DicomSlice> slices_from(const fs::path& file) {
     }
     if (data.has({0x5200, 0x9230})) return enhanced_frames(slice, data);
     return slice.frames == 1 ? std::vector{slice} : plain_frames(slice, data);
+}
+
+}  // namespace
+
+std::vector<DicomSlice> slices_from(const fs::path& file) {
+    try {
+        return slices_of(file);
+    } catch (const Failure& e) {
+        const std::string what = e.what();
+        if (what.find(quoted(file)) != std::string::npos) throw;
+        throw Failure(quoted(file) + ": " + what);
+    }
 }
 
 }  // namespace palpate::io

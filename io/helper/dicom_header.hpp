@@ -11,10 +11,10 @@ namespace palpate::io {
 /// and others lie one behind the other. Throws Failure.
 std::vector<DicomSlice> slices_from(const std::filesystem::path& file);
 
-/// What GDCM is given: the file itself, or a deflated one unpacked in memory.
+/// What GDCM is given: the file itself, or its tidied_dicom() in memory.
 class LibraryFile {
   public:
-    LibraryFile(const std::filesystem::path& file, bool deflated);
+    LibraryFile(const std::filesystem::path& file, bool needs_copy);
     ~LibraryFile();
     LibraryFile(const LibraryFile&) = delete;
     LibraryFile& operator=(const LibraryFile&) = delete;

@@ -83,7 +83,7 @@ Stored stored_from(itk::IOComponentEnum type) {
 /// All frames of a slice's file, the slope and intercept of the first one applied.
 Decoded decode_file(const DicomSlice& slice, const Request& request) {
     say_doing(slice.file.filename().string());
-    const LibraryFile readable(slice.file, slice.deflated);
+    const LibraryFile readable(slice.file, slice.needs_copy);
     const auto io = itk::GDCMImageIO::New();
     io->SetFileName(readable.name());
     io->ReadImageInformation();
@@ -143,6 +143,23 @@ void rescale(Decoded& frame, const DicomSlice& own) {
     frame.samples = std::move(values);
 }
 
+/// Stored numbers replaced by what the table says.
+void look_up(Decoded& frame, const ValueTable& table) {
+    const std::size_t count = frame.samples.size() / size_of(frame.stored);
+    std::vector<std::byte> values(count * sizeof(std::uint16_t));
+    auto* const to = reinterpret_cast<std::uint16_t*>(values.data());
+    const double last = static_cast<double>(table.values.size() - 1);
+    with_stored(frame.stored, [&](auto zero) {
+        const auto* from = reinterpret_cast<const decltype(zero)*>(frame.samples.data());
+        for (std::size_t i = 0; i < count; ++i) {
+            const double entry = std::clamp(static_cast<double>(from[i]) - table.first, 0.0, last);
+            to[i] = table.values[static_cast<std::size_t>(entry)];
+        }
+    });
+    frame.stored = Stored::uint16;
+    frame.samples = std::move(values);
+}
+
 Decoded frame_of(const Decoded& file, const DicomSlice& slice) {
     Decoded frame;
     frame.stored = file.stored;
@@ -168,6 +185,7 @@ std::vector<Decoded> decode(const std::vector<DicomSlice>& slices, const Request
         for (const std::size_t i : members) {
             decoded[i] = slices[i].frames == 1 ? std::move(file) : frame_of(file, slices[i]);
             if (slices[i].own_values) rescale(decoded[i], slices[i]);
+            if (slices[i].table) look_up(decoded[i], *slices[i].table);
         }
         say_progress(0.1 + 0.8 * static_cast<double>(++done) / static_cast<double>(by_file.size()));
     }

@@ -2,9 +2,17 @@
 // missing ones and shifts between them. Uses no library.
 #pragma once
 
+#include <memory>
+
 #include "io/helper/decode.hpp"
 
 namespace palpate::io {
+
+/// What stored numbers mean, from `first` on; those below and above are as the first and last one.
+struct ValueTable {
+    std::int32_t first = 0;
+    std::vector<std::uint16_t> values;
+};
 
 /// What the header of one slice says.
 struct DicomSlice {
@@ -24,9 +32,10 @@ struct DicomSlice {
     bool own_values = false;          ///< these hold, not what a library takes for the whole file
     bool is_moment = false;           ///< the frames of its file are one place at several times
     double seconds = 0;               ///< from one of them to the next; 0 if not given
-    bool deflated = false;            ///< the file as a whole
-    std::string compression;          ///< "JPEG 2000", "deflate", ...; empty if there is none
-    std::vector<std::string> notes;   ///< on the file
+    std::shared_ptr<const ValueTable> table = {};  ///< of the values; null: slope and intercept
+    bool needs_copy = false;         ///< libraries are given a tidied copy of the file
+    std::string compression;         ///< "JPEG 2000", "deflate", ...; empty if there is none
+    std::vector<std::string> notes;  ///< on the file
 };
 
 /// Slices that belong together: one series UID, one stack, one size, one orientation.

@@ -256,10 +256,15 @@ Result read_dicom_file(const Request& request) {
 
 Result read_dicom_folder(const Request& request) {
     std::vector<fs::path> files;
-    for (const auto& entry : fs::directory_iterator(request.path)) {
+    const auto take = [&](const fs::directory_entry& entry) {
         if (entry.is_regular_file() && looks_like_dicom(entry.path())) {
             files.push_back(entry.path());
         }
+    };
+    if (has_dicom_index(request.path)) {
+        std::ranges::for_each(fs::recursive_directory_iterator(request.path), take);
+    } else {
+        std::ranges::for_each(fs::directory_iterator(request.path), take);
     }
     std::sort(files.begin(), files.end());
     std::vector<DicomSlice> slices;

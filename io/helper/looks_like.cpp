@@ -8,11 +8,43 @@ namespace palpate::io {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+/// The first two elements of a data set or of the meta information, in little endian, without what
+/// comes before them in most files.
+bool begins_with_elements(const char* bytes, std::size_t size) {
+    const auto number = [&](std::size_t at) {
+        return static_cast<unsigned>(static_cast<unsigned char>(bytes[at])) |
+               static_cast<unsigned>(static_cast<unsigned char>(bytes[at + 1])) << 8;
+    };
+    const unsigned group = number(0), element = number(2);
+    if ((group != 0x0002 && group != 0x0008) || element > 0x0020) return false;
+    const auto is_upper = [](char c) { return c >= 'A' && c <= 'Z'; };
+    const bool is_explicit = is_upper(bytes[4]) && is_upper(bytes[5]);
+    if (!is_explicit && number(6) != 0) return false;  // the length's upper half
+    const std::size_t next = 8 + number(is_explicit ? 6 : 4);
+    if (next + 4 > size) return false;
+    return number(next) == group && number(next + 2) > element;
+}
+
+}  // namespace
+
 bool looks_like_dicom(const fs::path& file) {
     std::ifstream in(file, std::ios::binary);
-    char start[132] = {};
+    char start[256] = {};
     in.read(start, sizeof start);
-    return in.gcount() == sizeof start && std::memcmp(start + 128, "DICM", 4) == 0;
+    const auto size = static_cast<std::size_t>(in.gcount());
+    if (size >= 132 && std::memcmp(start + 128, "DICM", 4) == 0) return true;
+    return size == sizeof start && begins_with_elements(start, size);
+}
+
+bool has_dicom_index(const fs::path& folder) {
+    for (const auto& entry : fs::directory_iterator(folder)) {
+        if (entry.is_regular_file() && lower(entry.path().filename().string()) == "dicomdir") {
+            return true;
+        }
+    }
+    return false;
 }
 
 bool looks_like_tiff(const fs::path& file) {

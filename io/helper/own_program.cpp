@@ -56,6 +56,7 @@ std::string listed(std::vector<std::string> names) {
 
 /// The program for a folder of slices.
 const char* program_for_folder(const fs::path& folder) {
+    if (has_dicom_index(folder)) return dicom;
     int dicoms = 0, tiffs = 0;
     bool folders = false;
     std::vector<std::string> volumes;
@@ -108,6 +109,9 @@ const char* program_for(Job job, const fs::path& path) {
                    : extension == ".tif" || extension == ".tiff" ? images
                                                                  : itk;
         case Job::locate:
+            throw Failure(
+                "is of a format that is read as a whole and not piece by piece; convert it to "
+                "OME-Zarr");
         case Job::none:
             break;
     }

@@ -24,8 +24,10 @@ PlainLayout nrrd_samples(const Request& request);
 PlainLayout meta_image_samples(const Request& request);
 PlainLayout nifti_samples(const Request& request);
 
-/// DICOM's four letters after 128 bytes.
+/// DICOM's four letters after 128 bytes, or, without these, elements as files begin with.
 bool looks_like_dicom(const std::filesystem::path& file);
+/// Whether a folder is a disc's: its slices are in folders of folders.
+bool has_dicom_index(const std::filesystem::path& folder);
 bool looks_like_tiff(const std::filesystem::path& file);
 
 struct MeshSize {

@@ -1,0 +1,215 @@
+// What the numbers in DICOM files mean, and files that are written in unusual ways: display that is
+// inverted, tables of values, lengths of odd types, padding, no preamble, discs with an index.
+#include <algorithm>
+#include <cstring>
+#include <functional>
+
+#include "volume_dicom_slice.hpp"
+
+namespace palpate::io::test {
+namespace {
+
+TestSlice slice_at(int number) {
+    TestSlice slice;
+    slice.number = number;
+    slice.position = "10\\20\\" + std::to_string(2 * number);
+    return slice;
+}
+
+std::string tag_bytes(std::uint16_t group, std::uint16_t element) {
+    return little(group) + little(element);
+}
+
+std::string element(std::uint16_t group, std::uint16_t element, const char* vr,
+                    const std::string& value) {
+    DicomBytes one;
+    one.text(group, element, vr, value);
+    return one.bytes();
+}
+
+std::string long_element(std::uint16_t group, std::uint16_t element, const char* vr,
+                         const std::string& value) {
+    DicomBytes one;
+    one.long_value(group, element, vr, value);
+    return one.bytes();
+}
+
+/// The data set with `what` before the element of this tag.
+std::string with(std::string data, std::uint16_t group, std::uint16_t element,
+                 const std::string& what) {
+    return data.insert(data.find(tag_bytes(group, element)), what);
+}
+
+/// Without an element of a short type.
+std::string without(std::string data, std::uint16_t group, std::uint16_t element) {
+    const std::size_t at = data.find(tag_bytes(group, element));
+    std::uint16_t length = 0;
+    std::memcpy(&length, data.data() + at + 6, 2);
+    return data.erase(at, 8 + length);
+}
+
+std::string file_of(const TestSlice& slice, const std::string& data) {
+    return dicom_start(slice, "1.2.840.10008.1.2.1") + data;
+}
+
+/// Four slices, each changed.
+VolumeFile read_changed(const ScratchFolder& folder,
+                        const std::function<std::string(const TestSlice&)>& change) {
+    for (int i = 0; i < 4; ++i) {
+        put_bytes(folder / (std::to_string(i) + ".dcm"), change(slice_at(i)));
+    }
+    return read_volume(folder.path());
+}
+
+void expect_usual(const VolumeFile& file) {
+    const Geometry& g = file.volume.geometry();
+    ASSERT_EQ(g.size, Index3(4, 3, 4));
+    EXPECT_EQ(g.spacing, Vec3(0.25, 0.5, 2));
+    EXPECT_EQ(g.origin, Vec3(10, 20, 0));
+    EXPECT_EQ(file.volume.type(), SampleType::uint16);
+    for (int z = 0; z < 4; ++z) {
+        EXPECT_EQ(file.volume.sample({0, 0, z}), 100 * z);
+        EXPECT_EQ(file.volume.sample({3, 2, z}), 100 * z + 11);
+    }
+}
+
+TEST(dicom, inverted_display_leaves_the_values_and_is_said) {
+    const ScratchFolder folder;
+    const VolumeFile file = read_changed(folder, [](const TestSlice& slice) {
+        std::string bytes = dicom_bytes(slice);
+        return bytes.replace(bytes.find("MONOCHROME2"), 11, "MONOCHROME1");
+    });
+    expect_usual(file);
+    EXPECT_TRUE(contains(all_notes(file), "MONOCHROME1"));
+}
+
+TEST(dicom, a_table_of_values_stands_in_place_of_slope_and_intercept) {
+    for (const bool is_signed : {false, true}) {
+        for (const int first : {0, 50, is_signed ? -20 : 400}) {
+            const ScratchFolder folder;
+            const VolumeFile file = read_changed(folder, [&](TestSlice slice) {
+                slice.is_signed = is_signed;
+                std::string entries;
+                for (int i = 0; i < 200; ++i) entries += little<std::uint16_t>(1000 - 3 * i);
+                const std::string item =
+                    element(0x28, 0x3002, is_signed ? "SS" : "US",
+                            little<std::uint16_t>(200) + little<std::int16_t>(first) +
+                                little<std::uint16_t>(16)) +
+                    element(0x28, 0x3004, "LO", "OD") + long_element(0x28, 0x3006, "OW", entries);
+                const std::string items = tag_bytes(0xfffe, 0xe000) +
+                                          little(static_cast<std::uint32_t>(item.size())) + item;
+                std::string data = dicom_data_set(slice);
+                data = without(without(data, 0x28, 0x1052), 0x28, 0x1053);
+                return file_of(slice,
+                               with(data, 0x7fe0, 0x10, long_element(0x28, 0x3000, "SQ", items)));
+            });
+            for (int z = 0; z < 4; ++z) {
+                const int entry = std::clamp(100 * z + 11 - first, 0, 199);
+                EXPECT_EQ(file.volume.sample({3, 2, z}), 1000 - 3 * entry) << first << " " << z;
+            }
+            EXPECT_EQ(file.values.units, "OD");
+            EXPECT_TRUE(contains(all_notes(file), "Modality LUT"));
+        }
+    }
+}
+
+TEST(dicom, lengths_of_another_type_and_one_length_for_both_are_read) {
+    const ScratchFolder folder;
+    expect_usual(read_changed(folder, [](const TestSlice& slice) {
+        std::string data = without(dicom_data_set(slice), 0x28, 0x30);
+        return file_of(slice, with(data, 0x28, 0x100, long_element(0x28, 0x30, "UT", "0.5\\0.25")));
+    }));
+    const VolumeFile one = read_changed(folder, [](TestSlice slice) {
+        slice.pixel_spacing = "0.5";
+        return dicom_bytes(slice);
+    });
+    EXPECT_EQ(one.volume.geometry().spacing, Vec3(0.5, 0.5, 2));
+    EXPECT_TRUE(contains(all_notes(one), "rows and columns"));
+}
+
+TEST(dicom, padding_after_the_last_element_is_passed_over) {
+    for (const std::size_t bytes : {1U, 7U, 8U, 512U}) {
+        const ScratchFolder folder;
+        const VolumeFile file = read_changed(folder, [&](const TestSlice& slice) {
+            return dicom_bytes(slice) + std::string(bytes, '\0');
+        });
+        expect_usual(file);
+        EXPECT_TRUE(contains(all_notes(file), "zero bytes after its last element"));
+    }
+    const ScratchFolder folder;
+    put_bytes(folder / "1.dcm", dicom_bytes(slice_at(1)) + std::string(64, '\0') + "x");
+    EXPECT_TRUE(contains(refusal(folder / "1.dcm"), "damaged"));
+}
+
+TEST(dicom, overlays_in_unused_bits_are_no_part_of_the_values) {
+    const ScratchFolder folder;
+    const VolumeFile file = read_changed(folder, [](TestSlice slice) {
+        for (int i = 0; i < 12; ++i) {
+            slice.pixels.push_back(
+                static_cast<std::uint16_t>((100 * slice.number + i) | (i % 3 == 0 ? 0x1000 : 0)));
+        }
+        std::string data = dicom_data_set(slice);
+        const auto set = [&](std::uint16_t which, std::uint16_t value) {
+            data.replace(data.find(tag_bytes(0x28, which)) + 8, 2, little(value));
+        };
+        set(0x101, 12);
+        set(0x102, 11);
+        const std::string overlay =
+            element(0x6000, 0x10, "US", little<std::uint16_t>(3)) +
+            element(0x6000, 0x11, "US", little<std::uint16_t>(4)) +
+            element(0x6000, 0x40, "CS", "G") +
+            element(0x6000, 0x50, "SS", little<std::uint16_t>(1) + little<std::uint16_t>(1)) +
+            element(0x6000, 0x100, "US", little<std::uint16_t>(16)) +
+            element(0x6000, 0x102, "US", little<std::uint16_t>(12));
+        return file_of(slice, with(data, 0x7fe0, 0x10, overlay));
+    });
+    expect_usual(file);
+    EXPECT_TRUE(contains(all_notes(file), "overlays"));
+}
+
+TEST(dicom, files_without_preamble_or_meta_information_are_read) {
+    const ScratchFolder folder;
+    const VolumeFile no_preamble =
+        read_changed(folder, [](const TestSlice& slice) { return dicom_bytes(slice).substr(132); });
+    expect_usual(no_preamble);
+    const VolumeFile no_meta =
+        read_changed(folder, [](const TestSlice& slice) { return dicom_data_set(slice); });
+    expect_usual(no_meta);
+    EXPECT_TRUE(contains(all_notes(no_meta), "transfer syntax"));
+}
+
+TEST(dicom, a_number_with_a_comma_is_refused_with_its_slice_and_tag) {
+    for (const auto& [change, tag] :
+         std::initializer_list<std::pair<void (*)(TestSlice&), const char*>>{
+             {[](TestSlice& s) { s.position = "1,5\\0\\0"; }, "(0020,0032)"},
+             {[](TestSlice& s) { s.pixel_spacing = "0,5\\0,5"; }, "(0028,0030)"},
+             {[](TestSlice& s) { s.pixel_spacing = "0.5,0.5"; }, "(0028,0030)"},
+             {[](TestSlice& s) { s.slope = "0,5"; }, "(0028,1053)"},
+             {[](TestSlice& s) { s.intercept = "-1024,5"; }, "(0028,1052)"}}) {
+        const ScratchFolder folder;
+        for (int i = 0; i < 3; ++i) {
+            TestSlice slice = slice_at(i);
+            if (i == 1) change(slice);
+            put_slice(folder / (std::to_string(i) + ".dcm"), slice);
+        }
+        const std::string message = refusal(folder.path());
+        EXPECT_TRUE(contains(message, tag)) << message;
+        EXPECT_TRUE(contains(message, "'1.dcm'")) << message;
+    }
+}
+
+TEST(dicom_folder, a_disc_with_an_index_has_its_slices_in_folders_of_folders) {
+    const ScratchFolder folder;
+    std::filesystem::create_directories(folder / "DICOM/PAT1/SER1");
+    for (int i = 0; i < 4; ++i) {
+        put_slice(folder / ("DICOM/PAT1/SER1/IM" + std::to_string(i)), slice_at(i));
+    }
+    TestSlice index;
+    index.kind = "1.2.840.10008.1.3.10";
+    put_bytes(folder / "DICOMDIR", dicom_start(index, "1.2.840.10008.1.2.1"));
+    put_bytes(folder / "README.TXT", "a disc");
+    expect_usual(read_volume(folder.path()));
+}
+
+}  // namespace
+}  // namespace palpate::io::test
