@@ -1,7 +1,6 @@
-// Reads the triangles of meshes: OBJ by a parser of our own, other formats by VTK.
+// Reads the triangles of meshes: OBJ and PLY by parsers of our own, other formats by VTK.
 #include <vtkCellArray.h>
 #include <vtkNew.h>
-#include <vtkPLYReader.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkSTLReader.h>
@@ -17,6 +16,7 @@
 #include <string_view>
 #include <vector>
 
+#include "io/helper/ply_mesh.hpp"
 #include "io/helper/readers.hpp"
 #include "io/helper/vtk_errors.hpp"
 #include "io/number.hpp"
@@ -34,7 +34,7 @@ void check_length_of_stl(const std::filesystem::path& path) {
     const std::string text(head, static_cast<std::size_t>(in.gcount()));
     // A text begins with this word, and so does the free header of some binary files, which have
     // bytes in it that no text has.
-    if (text.starts_with("solid") && text.find('\0') == std::string::npos) return;
+    if (lower(text.substr(0, 5)) == "solid" && text.find('\0') == std::string::npos) return;
     if (text.size() < head_bytes) throw Failure("is too short for an STL file; copy it again");
     std::uint32_t count = 0;
     std::memcpy(&count, head + 80, sizeof count);
@@ -109,13 +109,30 @@ vtkSmartPointer<vtkPolyData> read_obj(const std::filesystem::path& path) {
     return data;
 }
 
+vtkSmartPointer<vtkPolyData> read_ply(const std::filesystem::path& path) {
+    const PlyMesh mesh = ply_mesh(path);
+    const vtkNew<vtkPoints> points;
+    points->SetDataTypeToDouble();
+    for (const auto& vertex : mesh.vertices) points->InsertNextPoint(vertex.data());
+    const vtkNew<vtkCellArray> faces;
+    std::vector<vtkIdType> corners;
+    for (const auto& face : mesh.faces) {
+        corners.assign(face.begin(), face.end());
+        faces->InsertNextCell(static_cast<vtkIdType>(corners.size()), corners.data());
+    }
+    auto data = vtkSmartPointer<vtkPolyData>::New();
+    data->SetPoints(points);
+    data->SetPolys(faces);
+    return data;
+}
+
 vtkSmartPointer<vtkPolyData> read_poly_data(const std::filesystem::path& path,
                                             const std::string& extension) {
     if (extension == ".stl") {
         check_length_of_stl(path);
         return read_with<vtkSTLReader>(path);
     }
-    if (extension == ".ply") return read_with<vtkPLYReader>(path);
+    if (extension == ".ply") return read_ply(path);
     if (extension == ".obj") return read_obj(path);
     if (extension == ".vtp") return read_with<vtkXMLPolyDataReader>(path);
     throw Failure("has no extension of a known mesh format (stl, ply, obj, vtp)");

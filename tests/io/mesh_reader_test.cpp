@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <random>
 
@@ -131,6 +132,119 @@ TEST(MeshReader, damaged_files_are_refused_or_give_a_mesh) {
             }
         }
     }
+}
+
+/// One number of a PLY file, as text or in either byte order.
+template <class T>
+std::string ply_number(T value, int encoding) {
+    if (encoding == 0) return std::to_string(+value) + " ";
+    std::string bytes = little(value);
+    if (encoding == 2) std::reverse(bytes.begin(), bytes.end());
+    return bytes;
+}
+
+/// The wedge with its elements in this order and other lists around the vertices of a face.
+std::string ply_of(const std::vector<std::string>& order, int encoding, int lists,
+                   const std::string& name) {
+    const SurfaceMesh mesh = wedge();
+    const bool before = lists & 1, after = lists & 2;
+    std::string head = std::string("ply\nformat ") +
+                       std::array{"ascii", "binary_little_endian", "binary_big_endian"}[encoding] +
+                       " 1.0\ncomment made by hand\n";
+    std::string body;
+    for (const std::string& element : order) {
+        if (element == "vertex") {
+            head +=
+                "element vertex 4\nproperty uchar red\nproperty double z\nproperty float x\n"
+                "property float y\n";
+            for (const Vec3& v : mesh.vertices) {
+                body += ply_number(std::uint8_t{200}, encoding) + ply_number(v[2], encoding) +
+                        ply_number(float(v[0]), encoding) + ply_number(float(v[1]), encoding);
+            }
+        } else if (element == "face") {
+            const std::string texture = "property list uchar float texcoord\n";
+            head += "element face 4\n" + (before ? texture : "") + "property list uchar uint " +
+                    name + "\n" + (after ? texture : "") + "property short flags\n";
+            std::string coordinates = ply_number(std::uint8_t{6}, encoding);
+            for (int i = 0; i < 6; ++i) coordinates += ply_number(0.25F * float(i), encoding);
+            for (const auto& t : mesh.triangles) {
+                if (before) body += coordinates;
+                body += ply_number(std::uint8_t{3}, encoding);
+                for (const std::uint32_t corner : t) body += ply_number(corner, encoding);
+                if (after) body += coordinates;
+                body += ply_number(std::int16_t{-1}, encoding);
+            }
+        } else {
+            head += "element " + element +
+                    " 2\nproperty int vertex1\nproperty list int double weights\n";
+            for (int i = 0; i < 2; ++i) {
+                body += ply_number(std::int32_t{i}, encoding) +
+                        ply_number(std::int32_t{1}, encoding) + ply_number(0.5, encoding);
+            }
+        }
+        if (encoding == 0) body += "\n";
+    }
+    return head + "end_header\n" + body;
+}
+
+TEST(MeshReader, a_ply_file_keeps_every_triangle_in_any_order_of_elements_and_lists) {
+    const support::ScratchFolder folder;
+    std::vector<std::string> order = {"edge", "face", "vertex"};
+    int files = 0;
+    do {
+        for (int encoding = 0; encoding < 3; ++encoding) {
+            for (int lists = 0; lists < 4; ++lists) {
+                const char* const name = lists % 2 == 0 ? "vertex_indices" : "vertex_index";
+                put_bytes(folder / "a.ply", ply_of(order, encoding, lists, name));
+                EXPECT_EQ(corners_of(read_mesh(folder / "a.ply")), corners_of(wedge()))
+                    << order[0] << order[1] << order[2] << " " << encoding << " " << lists;
+                ++files;
+            }
+        }
+    } while (std::ranges::next_permutation(order).found);
+    EXPECT_EQ(files, 72);
+}
+
+TEST(MeshReader, a_damaged_ply_file_is_refused_or_read_and_never_a_crash) {
+    const support::ScratchFolder folder;
+    std::mt19937 random(5);
+    for (int i = 0; i < 60; ++i) {
+        std::string bytes = ply_of({"vertex", "edge", "face"}, i % 3, i % 4, "vertex_indices");
+        if (i % 2 == 0) {
+            bytes.resize(random() % (bytes.size() - 20));
+        } else {
+            bytes[random() % bytes.size()] = static_cast<char>(random());
+        }
+        put_bytes(folder / "a.ply", bytes);
+        const std::string message = refusal_of_mesh(folder / "a.ply");
+        EXPECT_FALSE(contains(message, "crash")) << message;
+        EXPECT_TRUE(i % 2 == 1 || !message.empty()) << "cut off";
+    }
+}
+
+TEST(MeshReader, strips_of_triangles_in_a_ply_file_are_read) {
+    const support::ScratchFolder folder;
+    put_bytes(folder / "a.ply",
+              "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+              "property float z\nelement tristrips 1\nproperty list int int vertex_indices\n"
+              "end_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n8 0 1 2 3 -1 0 1 3\n");
+    EXPECT_EQ(read_mesh(folder / "a.ply").triangles.size(), 3U);
+}
+
+TEST(MeshReader, an_stl_text_in_capitals_is_read) {
+    const support::ScratchFolder folder;
+    std::string text = "SOLID A\n";
+    for (const auto& t : wedge().triangles) {
+        text += "FACET NORMAL 0 0 1\nOUTER LOOP\n";
+        for (const std::uint32_t i : t) {
+            const Vec3 v = wedge().vertices[i];
+            text += "VERTEX " + std::to_string(v[0]) + " " + std::to_string(v[1]) + " " +
+                    std::to_string(v[2]) + "\n";
+        }
+        text += "ENDLOOP\nENDFACET\n";
+    }
+    put_bytes(folder / "a.stl", text + "ENDSOLID A\n");
+    EXPECT_EQ(read_mesh(folder / "a.stl").triangles.size(), 4U);
 }
 
 }  // namespace
