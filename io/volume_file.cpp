@@ -17,6 +17,7 @@
 #include "io/raw_file.hpp"
 #include "io/removal.hpp"
 #include "io/system.hpp"
+#include "palpate/io/output.hpp"
 #include "palpate/io/written_formats.hpp"
 
 namespace palpate::io {
@@ -137,13 +138,6 @@ class Workshop {
   public:
     explicit Workshop(const fs::path& output) {
         const fs::path parent = output.has_parent_path() ? output.parent_path() : fs::path(".");
-        std::error_code error;
-        if (!fs::is_directory(parent, error)) {
-            throw OutputError(output.string() + ": its folder does not exist; create it first");
-        }
-        if (fs::is_directory(output, error)) {
-            throw OutputError(output.string() + ": is a folder; give a file name");
-        }
         remove_leftovers(parent);
         folder_ = temporary_in(parent);
     }
@@ -160,6 +154,7 @@ class Workshop {
 }  // namespace
 
 void write_volume(const Volume& volume, const fs::path& path, const WriteOptions& options) {
+    check_output(path);
     const std::string problem = why_not_written(path, volume.geometry());
     if (!problem.empty()) throw OutputError(problem);
     if (written_extension_of(path) == ".raw") return write_raw(volume, path, options.progress);

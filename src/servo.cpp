@@ -307,6 +307,11 @@ void Servo::tick(const TickClock& clock) noexcept {
     publish(number, result);
     record(result);
 
+    if (!clock.now) {  // nothing to time
+        schedule_.last_start = start;
+        add(ticks_, 1);
+        return;
+    }
     count(number,
           {.start = start,
            .compute = clock.cpu() - compute_start,

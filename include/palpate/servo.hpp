@@ -126,8 +126,8 @@ class Servo {
     /// One tick, now, on one thread; the first one is at time 0 of the session. False once the
     /// session has ended: stop() was called or the device has failed, and zero force was written.
     bool step() noexcept;
-    /// The same at a time of the caller's [ns, never back], without a clock: its parts take no
-    /// time.
+    /// The same at a time of the caller's [ns, never back], without a clock: nothing is
+    /// timed.
     bool step(std::int64_t now) noexcept;
     /// When the next tick is due [ns, of the settings' clock]. The thread of step().
     std::int64_t due() const noexcept { return schedule_.due; }

@@ -170,7 +170,7 @@ TEST(Touch, a_volume_that_cannot_be_saved_gives_status_5_and_the_session_goes_on
         folder, "touch " + ball +
                     " --unpaced --device simulated:hand=hold --commands c.txt --record r.csv");
     EXPECT_EQ(done.status, 5);
-    EXPECT_TRUE(contains(done.err, "folder does not exist")) << done.err;
+    EXPECT_TRUE(contains(done.err, "does not exist: create it first")) << done.err;
     EXPECT_EQ(rescued_sample(done), 9);
     EXPECT_EQ(palpate(folder, "replay r.csv --validate").status, 0);
 }

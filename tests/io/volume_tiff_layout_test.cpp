@@ -132,7 +132,7 @@ TEST(tiff, calibrations_of_image_j_give_the_values_that_it_shows) {
     EXPECT_EQ(read(16, wide, "cf=0\nc0=-1000\nc1=1\n").volume.minimum(), 30768);
     const VolumeFile none = read(16, wide, "cf=20\n");
     EXPECT_EQ(none.volume.type(), SampleType::uint16);
-    EXPECT_EQ(all_notes(none), "");
+    EXPECT_FALSE(contains(all_notes(none), "calibration"));
     const VolumeFile curved = read(16, wide, "cf=3\nc0=1\nc1=2\nc2=3\n");
     EXPECT_EQ(curved.volume.maximum(), 65535);
     EXPECT_TRUE(contains(all_notes(curved), "calibration"));
