@@ -21,7 +21,8 @@ constexpr std::uint64_t best_packing = 1032;  // : 1, of deflate
 struct DicomBytes::Inflating {
     z_stream state{};
     bool ended = false;
-    std::uint64_t most = 0;
+    std::uint64_t most = 0;     // that it can be, with what is before it in the file
+    std::uint64_t allowed = 0;  // the same, of what may be unpacked
 
     explicit Inflating(std::span<const std::byte> in) {
         if (inflateInit2(&state, -15) != Z_OK) throw std::bad_alloc();
@@ -63,16 +64,25 @@ DicomBytes::~DicomBytes() {
     ::munmap(const_cast<std::byte*>(mapped_.data()), mapped_.size());
 }
 
-void DicomBytes::deflated_from(std::uint64_t at) {
+void DicomBytes::deflated_from(std::uint64_t at, std::uint64_t most) {
     const auto packed = mapped_.subspan(at);
     if (packed.size() > UINT32_MAX) throw DamagedStream("its deflated data are larger than 4 GB");
     unpacked_.assign(mapped_.begin(), mapped_.begin() + static_cast<std::ptrdiff_t>(at));
     inflating_ = std::make_unique<Inflating>(packed);
     inflating_->most = at + best_packing * packed.size() + step_bytes;
+    inflating_->allowed = at + most;
+}
+
+void DicomBytes::allow(std::uint64_t more) {
+    if (inflating_) inflating_->allowed += more;
 }
 
 bool DicomBytes::reaches(std::uint64_t end) {
     if (!inflating_) return end <= mapped_.size();
+    if (end <= unpacked_.size() || inflating_->ended) return end <= unpacked_.size();
+    if (end > inflating_->allowed) {
+        throw DamagedStream("its deflated data unpack to more than its header asks for");
+    }
     if (end > inflating_->most) return false;
     while (unpacked_.size() < end && !inflating_->ended) inflating_->step(unpacked_);
     return end <= unpacked_.size();

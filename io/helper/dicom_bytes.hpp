@@ -19,14 +19,17 @@ class DicomBytes {
     DicomBytes(const DicomBytes&) = delete;
     DicomBytes& operator=(const DicomBytes&) = delete;
 
-    /// From byte `at` on the file is deflated. Its compressed data have no checksum.
-    void deflated_from(std::uint64_t at);
+    /// From byte `at` on the file is deflated. Its compressed data have no checksum. No more than
+    /// `most` bytes are unpacked from there, until allow() says more.
+    void deflated_from(std::uint64_t at, std::uint64_t most);
+    void allow(std::uint64_t more);
     /// From here on, numbers are big-endian.
     void set_swapped() { swapped_ = true; }
     bool swapped() const { return swapped_; }
     std::uint64_t mapped_size() const { return mapped_.size(); }
 
-    /// Whether there are bytes up to `end`. Throws DamagedStream.
+    /// Whether there are bytes up to `end`. Throws DamagedStream, also where more than is allowed
+    /// would have to be unpacked to know.
     bool reaches(std::uint64_t end);
     /// A number of a place that reaches() has found.
     template <class T>

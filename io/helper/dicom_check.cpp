@@ -19,6 +19,7 @@ constexpr std::uint32_t item = 0xfffee000, item_end = 0xfffee00d, sequence_end =
 constexpr std::uint32_t pixel_data = 0x7fe00010;
 constexpr int deepest = 64;
 constexpr std::uint64_t most_beside_pixels = std::uint64_t{64} << 20;  // of a deflated file
+constexpr std::size_t most_changes = 10000;  // 16 overlays have some 20 elements each
 const char* const deflated_syntax = "1.2.840.10008.1.2.1.99";
 
 struct Element {
@@ -51,6 +52,7 @@ class Walk {
         const auto all =
             extent_.deflated ? bytes_.unpacked() : bytes_.view(0, bytes_.mapped_size());
         std::vector<std::byte> tidy;
+        tidy.reserve(all.size());
         std::uint64_t from = 0;
         const auto copy_up_to = [&](std::uint64_t end) {
             tidy.insert(tidy.end(), all.begin() + static_cast<std::ptrdiff_t>(from),
@@ -112,7 +114,7 @@ class Walk {
         if (syntax == "1.2.840.10008.1.2.2") bytes_.set_swapped();
         extent_.deflated = syntax == deflated_syntax;
         if (!extent_.deflated) return;
-        bytes_.deflated_from(data_set_);
+        bytes_.deflated_from(data_set_, most_beside_pixels);
         extent_.compression = "deflate";
     }
 
@@ -161,9 +163,6 @@ class Walk {
 
     std::uint64_t past_value(std::uint64_t at, const Element& e) {
         const std::uint64_t end = at + e.length;
-        if (extent_.deflated && end > data_set_ + most_beside_pixels + allowed_pixels_) {
-            fail("is damaged (its deflated data unpack to more than its header asks for)");
-        }
         if (!bytes_.reaches(end)) fail("is cut off or damaged (an element reaches beyond its end)");
         return end;
     }
@@ -212,15 +211,14 @@ class Walk {
             if (!bytes_.reaches(at + 8)) fail("is cut off");
             const std::uint64_t start = at;
             const Element e = element(at, is_explicit);
+            const std::uint64_t value = at;
             if (e.tag == item_end || e.tag == sequence_end) return at;
-            if (depth == 0) {
-                take_size(at, e);
-                tidy_up(start, at, e);
-            }
+            if (depth == 0) take_size(at, e);
             const bool pixels = e.tag == pixel_data && depth == 0;
-            if (pixels) begin_pixels(at, e);
+            if (pixels) begin_pixels(e);
             if (e.length != undefined_length) {
                 at = past_value(at, e);
+                if (depth == 0) tidy_up(start, value, e);
             } else {
                 // A sequence of unknown type is always implicit (PS3.5, 6.2.2).
                 at = items(at, is_explicit && e.vr != "UN", pixels, depth);
@@ -231,11 +229,13 @@ class Walk {
 
     /// Padding to the blocks of a medium, after the last element.
     bool only_zeros_from(std::uint64_t at) {
-        std::uint64_t end = at;
-        for (; bytes_.reaches(end + 1); ++end) {
+        // Elements may be zeros, too: every byte is looked at once.
+        if (at < zeros_end_) return false;
+        std::uint64_t& end = zeros_end_;
+        for (end = at; bytes_.reaches(end + 1); ++end) {
             if (number<char>(end) != 0) return false;
         }
-        changes_.push_back({at, end - at, ""});  // GDCM aborts on some of them
+        change({at, end - at, ""});  // GDCM aborts on some of them
         extent_.notes.push_back("there are " + std::to_string(end - at) +
                                 " zero bytes after its last element: they were ignored");
         return true;
@@ -246,21 +246,33 @@ class Walk {
         return bytes_.swapped() ? std::string{high, low} : std::string{low, high};
     }
 
-    /// What a library is to be given instead of an element of the data set.
+    void change(Change what) {
+        count_change();
+        changes_.push_back(std::move(what));
+    }
+
+    /// They would need more memory than the elements themselves if there were as many.
+    void count_change() {
+        if (++counted_changes_ > most_changes) {
+            fail("is damaged (it has elements again and again that an image has once)");
+        }
+    }
+
+    /// What a library is to be given instead of an element of the data set, which is all there.
     void tidy_up(std::uint64_t start, std::uint64_t at, const Element& e) {
         // Of PixelSpacing and other lengths, positions and slopes.
         static const std::set<std::uint32_t> numbers = {0x00180050, 0x00180088, 0x00181164,
                                                         0x00200032, 0x00200037, 0x00280030,
                                                         0x00281052, 0x00281053};
-        if (e.length == undefined_length || !bytes_.reaches(at + e.length)) return;
         if (e.tag == 0x00080016 && extent_.sop_class.empty()) extent_.sop_class = text(at, e);
         if (e.tag == 0x00280004 && text(at, e) == "MONOCHROME1") {
-            changes_.push_back({at + 10, 1, "2"});
-            extent_.notes.emplace_back(
-                "its MONOCHROME1 says that greater values are shown darker: "
-                "values were taken as they are stored");
+            change({at + 10, 1, "2"});
+            add_note(extent_.notes,
+                     "its MONOCHROME1 says that greater values are shown darker: "
+                     "values were taken as they are stored");
         }
         if (e.tag >> 24 == 0x60) {
+            count_change();
             Overlay& overlay = overlays_[e.tag >> 16];
             overlay.elements.push_back({start, at + e.length - start, ""});
             overlay.has_data |= (e.tag & 0xffff) == 0x3000;
@@ -276,9 +288,9 @@ class Walk {
                                 value.find_first_of("\\,") == std::string::npos;
         if (one_length) {
             value += '\\' + value;
-            extent_.notes.emplace_back(
-                "its PixelSpacing has one number, which was taken for rows "
-                "and columns");
+            add_note(extent_.notes,
+                     "its PixelSpacing has one number, which was taken for rows "
+                     "and columns");
         }
         static const std::set<std::string> texts = {"UT", "UC", "LT", "ST", "LO", "SH", "CS"};
         const bool other_type = texts.contains(e.vr);
@@ -289,7 +301,7 @@ class Walk {
         const std::string head = !e.vr.empty()      ? "DS" + bytes_of(length)
                                  : bytes_.swapped() ? bytes_of(0) + bytes_of(length)
                                                     : bytes_of(length) + bytes_of(0);
-        changes_.push_back({start + 4, at + e.length - start - 4, head + value});
+        change({start + 4, at + e.length - start - 4, head + value});
     }
 
     /// Overlays without data of their own lie in bits that the samples do not use.
@@ -301,14 +313,15 @@ class Walk {
         }
     }
 
-    void begin_pixels(std::uint64_t at, const Element& e) {
+    void begin_pixels(const Element& e) {
         if (pixels_.found) fail("is damaged (it has its samples twice)");
         pixels_.found = true;
         if (e.length == undefined_length) return;
         pixels_.plain = e.length;
-        // Before as much is unpacked.
-        if (extent_.rows > 0 && extent_.columns > 0) check_plain_pixels(file_, e.length, extent_);
-        allowed_pixels_ = at - data_set_ + e.length;
+        // Before as much is unpacked. Samples of no declared size are allowed no memory.
+        if (extent_.rows < 1 || extent_.columns < 1) return;
+        check_plain_pixels(file_, e.length, extent_);
+        bytes_.allow(e.length);
     }
 
     /// The items of a sequence, or the fragments of compressed pixel data, without a length.
@@ -346,13 +359,14 @@ class Walk {
     DicomPixels pixels_;
     std::set<std::uint32_t> taken_;
     std::vector<Change> changes_;
+    std::size_t counted_changes_ = 0;
     struct Overlay {
         std::vector<Change> elements;
         bool has_data = false;
     };
     std::map<std::uint32_t, Overlay> overlays_;  // by group
     std::uint64_t syntax_at_ = 0, data_set_ = 0;
-    std::uint64_t allowed_pixels_ = 0;  // bytes of a deflated file up to the end of its pixels
+    std::uint64_t zeros_end_ = 0;  // where the last run of zeros that was looked at ends
 };
 
 }  // namespace

@@ -139,6 +139,10 @@ TEST(dicom, padding_after_the_last_element_is_passed_over) {
     const ScratchFolder folder;
     put_bytes(folder / "1.dcm", dicom_bytes(slice_at(1)) + std::string(64, '\0') + "x");
     EXPECT_TRUE(contains(refusal(folder / "1.dcm"), "damaged"));
+    // Elements of no length, in implicit little endian; looked at once, not once for each.
+    put_bytes(folder / "1.dcm",
+              dicom_start(slice_at(1), "1.2.840.10008.1.2") + std::string(8 << 20, '\0') + "x");
+    EXPECT_TRUE(contains(refusal(folder / "1.dcm"), "cut off"));
 }
 
 TEST(dicom, overlays_in_unused_bits_are_no_part_of_the_values) {

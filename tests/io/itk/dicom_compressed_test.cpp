@@ -131,27 +131,30 @@ INSTANTIATE_TEST_SUITE_P(dicom, Compressed,
                          testing::Values(Compression::jpeg_lossless, Compression::jpeg_ls,
                                          Compression::jpeg_2000, Compression::rle));
 
-/// `bytes` with `zeros` behind them, packed; the zeros are never in memory together.
-std::string deflated(const std::string& bytes, std::size_t zeros = 0) {
+/// A part of a packed stream that refers to nothing before it, or the end of one.
+std::string deflated_part(const std::string& bytes, int flush) {
     z_stream state{};
     deflateInit2(&state, 6, Z_DEFLATED, -15, 9, Z_DEFAULT_STRATEGY);
     std::string packed, out(1 << 16, '\0');
-    const auto feed = [&](const std::string& in, int flush) {
-        state.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(in.data()));
-        state.avail_in = static_cast<uInt>(in.size());
-        do {
-            state.next_out = reinterpret_cast<Bytef*>(out.data());
-            state.avail_out = static_cast<uInt>(out.size());
-            deflate(&state, flush);
-            packed.append(out, 0, out.size() - state.avail_out);
-        } while (state.avail_out == 0);
-    };
-    feed(bytes, Z_NO_FLUSH);
-    const std::string block(1 << 20, '\0');
-    for (std::size_t i = 0; i < zeros; i += block.size()) feed(block, Z_NO_FLUSH);
-    feed({}, Z_FINISH);
+    state.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
+    state.avail_in = static_cast<uInt>(bytes.size());
+    do {
+        state.next_out = reinterpret_cast<Bytef*>(out.data());
+        state.avail_out = static_cast<uInt>(out.size());
+        deflate(&state, flush);
+        packed.append(out, 0, out.size() - state.avail_out);
+    } while (state.avail_out == 0);
     deflateEnd(&state);
     return packed;
+}
+
+/// `bytes` with `zeros` behind them, packed; the zeros are never in memory together.
+std::string deflated(const std::string& bytes, std::size_t zeros = 0) {
+    if (zeros == 0) return deflated_part(bytes, Z_FINISH);
+    std::string packed = deflated_part(bytes, Z_FULL_FLUSH);
+    const std::string block = deflated_part(std::string(1 << 20, '\0'), Z_FULL_FLUSH);
+    for (std::size_t i = 0; i < zeros; i += 1 << 20) packed += block;
+    return packed + deflated_part({}, Z_FINISH);
 }
 
 std::string deflated_dicom(const TestSlice& slice) {
@@ -183,7 +186,7 @@ TEST(deflated_dicom, with_a_size_that_its_samples_do_not_have_is_refused) {
     }
 }
 
-TEST(deflated_dicom, damage_and_bombs_cost_no_more_memory_than_is_declared) {
+TEST(deflated_dicom, damage_costs_no_more_memory_than_is_declared) {
     const ScratchFolder folder;
     TestSlice slice = smooth_slice();
     slice.columns = slice.rows = 512;
@@ -209,22 +212,45 @@ TEST(deflated_dicom, damage_and_bombs_cost_no_more_memory_than_is_declared) {
         }
     }
     EXPECT_GT(refused, 20);
-    // A private element of 1 GB before the image, and an image larger than it declares.
-    const std::string start = dicom_start(slice, "1.2.840.10008.1.2.1.99");
+    for (const std::size_t length : {whole.size() - 1, whole.size() / 2, whole.size() / 2 + 1}) {
+        put_bytes(folder / "a.dcm", whole.substr(0, length));
+        EXPECT_TRUE(one_line_about(refusal(folder / "a.dcm"), folder / "a.dcm"));
+    }
+    EXPECT_LT(largest_helper(), 700e6);
+}
+
+TEST(deflated_dicom, bombs_cost_no_more_memory_than_is_declared) {
+    const ScratchFolder folder;
+    // 1 GB: a private element before the image, an image larger than it declares, one of a size
+    // that is not declared, and zeros behind an image.
+    const std::string start = dicom_start(smooth_slice(), "1.2.840.10008.1.2.1.99");
     DicomBytes element;
     element.long_value(9, 0x1001, "OB", "");
     put_bytes(folder / "a.dcm",
               start + deflated(element.bytes().substr(0, 8) + little(std::uint32_t{1} << 30),
                                std::size_t{1} << 30));
     EXPECT_TRUE(contains(refusal(folder / "a.dcm"), "unpack to more than its header asks for"));
-    std::string data_set = dicom_data_set(smooth_slice());
-    data_set.resize(data_set.size() - 2 * 40 * 24 - 4);
+    const std::string image = dicom_data_set(smooth_slice());
+    const std::string data_set = image.substr(0, image.size() - 2 * 40 * 24 - 4);
     put_bytes(folder / "a.dcm",
               start + deflated(data_set + little(std::uint32_t{1} << 30), std::size_t{1} << 30));
     EXPECT_TRUE(contains(refusal(folder / "a.dcm"), "its header asks for 1920"));
-    for (const std::size_t length : {whole.size() - 1, whole.size() / 2, whole.size() / 2 + 1}) {
-        put_bytes(folder / "a.dcm", whole.substr(0, length));
-        EXPECT_TRUE(one_line_about(refusal(folder / "a.dcm"), folder / "a.dcm"));
+    const std::string no_size = with_number(data_set, 0x10, 0);
+    put_bytes(folder / "a.dcm",
+              start + deflated(no_size + little(std::uint32_t{1} << 30), std::size_t{1} << 30));
+    EXPECT_TRUE(contains(refusal(folder / "a.dcm"), "unpack to more than its header asks for"));
+    put_bytes(folder / "a.dcm", start + deflated(image, std::size_t{1} << 30));
+    EXPECT_TRUE(contains(refusal(folder / "a.dcm"), "unpack to more than its header asks for"));
+    put_bytes(folder / "a.dcm", start + deflated(image, std::size_t{1} << 20));
+    EXPECT_TRUE(contains(all_notes(read_volume(folder / "a.dcm")), "1048576 zero bytes after"));
+    // Elements of no length, again and again: what is noted of each would be larger than it.
+    for (const auto& [group, number] : {std::pair{0x28, 0x1053}, std::pair{0x6000, 0x22}}) {
+        DicomBytes empty;
+        empty.text(static_cast<std::uint16_t>(group), static_cast<std::uint16_t>(number), "LO", "");
+        std::string many;
+        for (int i = 0; i < 7 << 20; ++i) many += empty.bytes();
+        put_bytes(folder / "a.dcm", start + deflated(many + image));
+        EXPECT_TRUE(contains(refusal(folder / "a.dcm"), "again and again"));
     }
     EXPECT_LT(largest_helper(), 700e6);
 }
