@@ -32,24 +32,24 @@ void put_offset(std::string& header, float x, float y, float z) {
 TEST(nifti, units_scale_the_spacing_and_the_origin_of_every_transform) {
     const ScratchFolder folder;
     // Unknown units and codes that the format does not have are taken as mm, and said.
-    for (const auto& [unit, mm] : {std::pair{0, 1.0}, {1, 1e3}, {2, 1.0}, {3, 1e-3}, {6, 1.0}}) {
+    for (const auto& [code, mm] : {std::pair{0, 1.0}, {1, 1e3}, {2, 1.0}, {3, 1e-3}, {6, 1.0}}) {
         for (const auto& [qform, sform] : {std::pair{0, 0}, {1, 0}, {0, 1}, {1, 1}}) {
-            const VolumeFile file =
-                read_nifti(folder, nifti([&](std::string& h) {
-                               put_at(h, 123, std::string(1, static_cast<char>(unit | 16)));
-                               put_pixdim(h, 2, 4, 8);
-                               put_offset(h, 16, 32, 64);
-                               put_transform(h, {2, 0, 0, 16, 0, 4, 0, 32, 0, 0, 8, 64});
-                               put_codes(h, static_cast<std::int16_t>(qform),
-                                         static_cast<std::int16_t>(sform));
-                           }));
-            SCOPED_TRACE(testing::Message() << unit << " " << qform << " " << sform);
+            const VolumeFile file = read_nifti(
+                folder, nifti([&, code = code, qform = qform, sform = sform](std::string& h) {
+                    put_at(h, 123, std::string(1, static_cast<char>(code | 16)));
+                    put_pixdim(h, 2, 4, 8);
+                    put_offset(h, 16, 32, 64);
+                    put_transform(h, {2, 0, 0, 16, 0, 4, 0, 32, 0, 0, 8, 64});
+                    put_codes(h, static_cast<std::int16_t>(qform),
+                              static_cast<std::int16_t>(sform));
+                }));
+            SCOPED_TRACE(testing::Message() << code << " " << qform << " " << sform);
             const Geometry& g = file.volume.geometry();
             EXPECT_TRUE(g.spacing.isApprox(mm * Vec3(2, 4, 8), 1e-12)) << g.spacing.transpose();
             const bool placed = qform + sform > 0;
             const Vec3 origin = placed ? Vec3(mm * Vec3(-16, -32, 64)) : Vec3::Zero();
             EXPECT_TRUE(g.origin.isApprox(origin, 1e-12)) << g.origin.transpose();
-            EXPECT_EQ(contains(all_notes(file), "mm were taken"), unit == 0 || unit == 6);
+            EXPECT_EQ(contains(all_notes(file), "mm were taken"), code == 0 || code == 6);
             EXPECT_EQ(contains(all_notes(file), "orientation"), !placed);
         }
     }

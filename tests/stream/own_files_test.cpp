@@ -299,7 +299,7 @@ TEST(OwnFiles, a_conversion_whose_folder_goes_meanwhile_ends_with_a_line) {
         const ScratchFolder folder;
         const fs::path out = folder / "v.zarr";
         const Disturbing store(store_of(noise(1), "v"), 7,
-                               [&] { disturb(out.string() + ".partial"); });
+                               [&, disturb = disturb] { disturb(out.string() + ".partial"); });
         const std::string message = refusal(store, out);
         EXPECT_TRUE(contains(message, "run it again")) << message;
         EXPECT_FALSE(fs::exists(out));
