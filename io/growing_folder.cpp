@@ -13,6 +13,7 @@
 
 #include "io/helper_process.hpp"
 #include "io/leftovers.hpp"
+#include "io/own_names.hpp"
 #include "io/removal.hpp"
 #include "io/system.hpp"
 #include "palpate/io/error.hpp"
@@ -24,7 +25,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int as_folder = O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC;
-constexpr const char* marker_name = "palpate-partial.json";
 constexpr const char* maker = "Palpate made this folder; a result grows in it";
 constexpr std::size_t longest_marker = std::size_t{1} << 20;
 constexpr std::size_t nonce_digits = 32;
@@ -33,11 +33,6 @@ const char* const what_to_do = "; rename it or remove it, or give another name";
 
 fs::path parent_of(const fs::path& path) {
     return path.has_parent_path() ? path.parent_path() : fs::path(".");
-}
-
-/// "a.zarr/" is "a.zarr".
-fs::path without_slash(const fs::path& path) {
-    return path.has_filename() ? path : path.parent_path();
 }
 
 fs::path with_end(const fs::path& path, const std::string& end) {
@@ -76,7 +71,7 @@ std::string new_nonce() {
 std::string text_of_marker(int folder) {
     // O_NONBLOCK: a pipe of that name must not hold us up.
     const Descriptor file(
-        ::openat(folder, marker_name, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+        ::openat(folder, growing_marker, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
     struct stat about {};
     if (file.number() < 0 || ::fstat(file.number(), &about) != 0 || !S_ISREG(about.st_mode) ||
         about.st_uid != ::geteuid() || about.st_size > static_cast<off_t>(longest_marker)) {
@@ -108,17 +103,15 @@ fs::path free_name(const fs::path& out, const std::string& end) {
 }
 
 /// Removes a folder that is open as `held`, under a temporary name: a kill meanwhile leaves nothing
-/// that could be taken for another thing.
-bool remove_held(const fs::path& folder, int held) {
+/// that could be taken for another thing. Returns what stays because Palpate did not write it or
+/// because it cannot be removed, as a path from the folder.
+std::string remove_held(const fs::path& folder, int held) {
     const fs::path away = temporary_in(parent_of(folder));
-    if (!rename_new(folder, away)) return false;
-    if (is_still(AT_FDCWD, away.c_str(), held)) {
-        remove_tree(away);
-        return true;
-    }
-    rename_new(away, folder);  // another one, put there in this moment
-    errno = EBUSY;
-    return false;
+    if (!rename_new(folder, away)) return errno == ENOENT ? "" : ".";
+    std::string left = ".";  // another one, put there in this moment
+    if (is_still(AT_FDCWD, away.c_str(), held)) left = remove_known(away, OwnFolder::growing);
+    if (!left.empty()) rename_new(away, folder);
+    return left;
 }
 
 }  // namespace
@@ -162,7 +155,7 @@ void GrowingFolder::make(const std::string* job) {
     try {
         const nlohmann::json marker = {
             {"palpate", maker}, {"nonce", new_nonce()}, {"job", job ? *job : ""}};
-        if (job) write_file(folder_ / marker_name, marker.dump(1));
+        if (job) write_file(folder_ / growing_marker, marker.dump(1));
         hold(::open(folder_.c_str(), as_folder));
     } catch (...) {
         remove_tree(folder_);
@@ -215,18 +208,20 @@ bool GrowingFolder::take(const std::string& job) {
 }
 
 void GrowingFolder::begin_anew() {
-    const std::string unknown = unknown_name_in(folder_, [](const std::string& name) {
-        return name == marker_name || name == "result" || name == "work";
-    });
-    const bool removed = unknown.empty() && remove_held(folder_, lock_);
-    const int problem = errno;
+    std::string unknown;
+    try {
+        unknown = unknown_below(folder_, OwnFolder::growing);
+    } catch (const OutputError&) {
+        let_go();
+        throw;
+    }
+    if (unknown.empty()) unknown = remove_held(folder_, lock_);
     let_go();
     if (!unknown.empty()) {
         refuse(folder_ / unknown,
-               "was not written by Palpate, so that this folder of an "
-               "interrupted run is not removed; move it elsewhere");
+               "was not written by Palpate or cannot be removed, so that this folder of an "
+               "interrupted run stays; move it elsewhere");
     }
-    if (!removed) refuse(folder_, reason(problem) + what_to_do);
     note_ = folder_.string() +
             ": was of another source, of other settings or of another version: begun anew";
 }
@@ -251,8 +246,23 @@ void GrowingFolder::let_go() noexcept {
 }
 
 GrowingFolder::~GrowingFolder() {
-    if (!stays_ && lock_ >= 0) remove_held(folder_, lock_);
+    remove_own();
     let_go();
+}
+
+/// What stays gets a name that people see.
+void GrowingFolder::remove_own() noexcept {
+    if (stays_ || lock_ < 0) return;
+    try {
+        const std::string left = remove_held(folder_, lock_);
+        stays_ = true;
+        if (left.empty() || !is_there(folder_)) return;
+        const fs::path kept = free_name(out_, ".kept");
+        const bool is_hidden = is_temporary(folder_.filename().string());
+        const fs::path place = is_hidden && rename_new(folder_, kept) ? kept : folder_;
+        note_ = (place / left).string() + ": stays, because Palpate did not write it";
+    } catch (const std::exception&) {  // no memory for names: all stays
+    }
 }
 
 void GrowingFolder::check() const {
@@ -273,6 +283,7 @@ void GrowingFolder::put_in_place(const MayReplace& may_replace) {
     }
     stays_ = false;
     synchronise_folder(parent_of(out_));
+    remove_own();
 }
 
 void GrowingFolder::move_into_place(const MayReplace& may_replace) {
@@ -297,8 +308,8 @@ bool GrowingFolder::exchange_with_out(const MayReplace& may_replace) {
     if (exchange(result(), out_)) {
         try {
             may_replace(result());  // it may have been replaced since it was looked at
-        } catch (const OutputError&) {
-            exchange(result(), out_);
+        } catch (const OutputError& e) {
+            if (!exchange(result(), out_)) keep_replaced(e.what());
             throw;
         }
         return true;
@@ -307,6 +318,15 @@ bool GrowingFolder::exchange_with_out(const MayReplace& may_replace) {
     const bool cannot = errno == EINVAL || errno == ENOSYS || errno == EOPNOTSUPP;
     if (!cannot) refuse(out_, reason(errno) + what_to_do);
     return replace_in_steps();
+}
+
+/// What must not be replaced lies in result() and cannot go back.
+void GrowingFolder::keep_replaced(const std::string& problem) {
+    const fs::path aside = free_name(out_, ".previous");
+    const bool is_moved = rename_new(result(), aside);
+    if (!is_moved) stays_ = true;
+    throw OutputError(problem + "; it is kept as " + (is_moved ? aside : result()).string() +
+                      ", and the new result is in its place");
 }
 
 /// Where names cannot be exchanged. False if another process was quicker.
@@ -343,15 +363,6 @@ void check_new_folder(const fs::path& out) {
     if (const int problem = why_unwritable(parent)) {
         refuse(name, "cannot be written (" + reason(problem) + "); choose another folder");
     }
-}
-
-std::string unknown_name_in(const fs::path& folder,
-                            const std::function<bool(const std::string&)>& is_known) {
-    const Descriptor open(::open(folder.c_str(), as_folder));
-    for (const std::string& name : names_in(open.number())) {
-        if (!is_known(name)) return name;
-    }
-    return "";
 }
 
 }  // namespace palpate::io

@@ -33,7 +33,8 @@ class GrowingFolder {
     /// For what is thrown away at the end; not made yet.
     std::filesystem::path work() const { return folder_ / "work"; }
     bool is_continued() const { return is_continued_; }
-    /// A sentence if an interrupted run of another job was removed.
+    /// A sentence if an interrupted run of another job was removed, or if something that Palpate
+    /// did not write stays behind.
     const std::string& note() const { return note_; }
 
     /// Throws if the folder, or its result, was removed, renamed or replaced meanwhile.
@@ -49,10 +50,12 @@ class GrowingFolder {
     void make(const std::string* job);
     bool take(const std::string& job);
     void begin_anew();
+    void remove_own() noexcept;
     void hold(int folder);
     void let_go() noexcept;
     void move_into_place(const MayReplace& may_replace);
     bool exchange_with_out(const MayReplace& may_replace);
+    [[noreturn]] void keep_replaced(const std::string& problem);
     bool replace_in_steps();
     void rescue(const std::string& problem) const;
 
@@ -66,9 +69,5 @@ class GrowingFolder {
 /// Throws OutputError unless a folder `out` can be made: nothing has its name, and its parent is
 /// there and can be written.
 void check_new_folder(const std::filesystem::path& out);
-
-/// The first name in a folder for which `is_known` is false; empty if there is none.
-std::string unknown_name_in(const std::filesystem::path& folder,
-                            const std::function<bool(const std::string&)>& is_known);
 
 }  // namespace palpate::io

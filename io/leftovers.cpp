@@ -15,7 +15,9 @@
 #include <system_error>
 
 #include "io/number.hpp"
+#include "io/own_names.hpp"
 #include "io/removal.hpp"
+#include "palpate/io/error.hpp"
 
 namespace palpate::io {
 namespace {
@@ -47,6 +49,21 @@ bool is_dead(pid_t process) {
     return ::kill(process, 0) != 0 && errno == ESRCH;
 }
 
+bool is_marked(int folder) {
+    struct stat about {};
+    return ::fstatat(folder, temporary_marker, &about, AT_SYMLINK_NOFOLLOW) == 0 &&
+           S_ISREG(about.st_mode) && about.st_uid == ::geteuid();
+}
+
+void remove_if_known(const fs::path& folder) {
+    try {
+        if (unknown_below(folder, OwnFolder::growing).empty()) {
+            (void)remove_known(folder, OwnFolder::growing);
+        }
+    } catch (const OutputError&) {  // it cannot be read, so it stays
+    }
+}
+
 /// A living process keeps a lock, so that one in another container counts as living, too.
 void remove_one(const fs::path& path) {
     // O_NONBLOCK: a pipe of that name must not hold us up.
@@ -55,7 +72,11 @@ void remove_one(const fs::path& path) {
     struct stat about {};
     if (::fstat(descriptor, &about) == 0 && about.st_uid == ::geteuid() &&
         ::flock(descriptor, LOCK_EX | LOCK_NB) == 0) {
-        if (S_ISREG(about.st_mode) || S_ISDIR(about.st_mode)) remove_tree(path);
+        if (S_ISREG(about.st_mode) || (S_ISDIR(about.st_mode) && is_marked(descriptor))) {
+            remove_tree(path);
+        } else if (S_ISDIR(about.st_mode)) {
+            remove_if_known(path);
+        }
     }
     ::close(descriptor);
 }
@@ -71,6 +92,10 @@ bool is_new(const fs::path& folder) {
 }
 
 }  // namespace
+
+bool is_temporary(std::string_view name) {
+    return process_of(name) > 0;
+}
 
 fs::path temporary_in(const fs::path& folder) {
     static std::atomic<unsigned> count = 0;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string_view>
 #include <system_error>
 
 namespace palpate::io {
@@ -10,6 +11,12 @@ namespace palpate::io {
 /// A path in `folder` for a temporary file or folder of this process, `.palpate-PID-N.part`, at
 /// which there is nothing.
 std::filesystem::path temporary_in(const std::filesystem::path& folder);
+
+/// Whether a name is such a one, of any process.
+bool is_temporary(std::string_view name);
+
+/// An empty file of this name in a folder with such a name says that Palpate made the folder.
+inline constexpr const char* temporary_marker = ".palpate-temporary";
 
 /// Makes a folder with such a name, readable as `folder` is by default; an error is left in
 /// `error`.
@@ -23,7 +30,8 @@ int lock_temporary(const std::filesystem::path& path);
 
 /// Removes what processes that were killed have left in `folder`: files and folders that have a
 /// temporary name, belong to this user, are no symbolic links, and whose process neither lives nor
-/// holds their lock. Looks into a folder once for each process; nothing is an error.
+/// holds their lock. Of folders, only those with the marker, and those in which Palpate has written
+/// everything. Looks into a folder once for each process; nothing is an error.
 void remove_leftovers(const std::filesystem::path& folder);
 
 }  // namespace palpate::io

@@ -36,6 +36,10 @@ bool is_dead(DWORD process) {
 
 }  // namespace
 
+bool is_temporary(std::string_view name) {
+    return process_of(name) > 0;
+}
+
 fs::path temporary_in(const fs::path& folder) {
     static std::atomic<unsigned> count = 0;
     const std::string begin =
@@ -65,7 +69,15 @@ void remove_leftovers(const fs::path& folder) {
     for (fs::directory_iterator entry(folder, error), end; entry != end && !error;
          entry.increment(error)) {
         const DWORD process = process_of(entry->path().filename().string());
-        if (process > 0 && is_dead(process)) remove_tree(entry->path());
+        if (process == 0 || !is_dead(process)) continue;
+        std::error_code ignored;
+        const bool is_folder = fs::is_directory(entry->symlink_status(ignored));
+        // A folder without the marker is removed only if it is empty.
+        if (!is_folder || fs::exists(entry->path() / temporary_marker, ignored)) {
+            remove_tree(entry->path());
+        } else {
+            fs::remove(entry->path(), ignored);
+        }
     }
 }
 

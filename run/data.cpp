@@ -15,7 +15,8 @@ namespace palpate::run {
 namespace {
 
 bool is_zarr(const std::filesystem::path& path) {
-    return path.extension() == ".zarr" && !path.stem().empty();
+    const std::filesystem::path name = io::without_slash(path);
+    return name.extension() == ".zarr" && !name.stem().empty();
 }
 
 std::vector<std::filesystem::path> places_of_rescue() {
@@ -116,7 +117,7 @@ std::string Data::problem() const {
 }
 
 void Data::check_save_name(const std::string& path) const {
-    if (streamer_) return stream::check_edits_place(path, opened());
+    if (streamer_) return stream::check_edits_place(path, loaded_.streamed->opened);
     check_volume_name(path, start_->geometry());
     is_zarr(path) ? stream::check_zarr_place(path) : io::check_output(path);
 }
@@ -149,7 +150,9 @@ std::string Data::save(const std::filesystem::path& path, const io::Progress& pr
 }
 
 std::filesystem::path Data::rescue() {
-    std::exception_ptr problem;
+    // Also if its original was replaced meanwhile: there is no choice left.
+    if (loaded_.streamed) loaded_.streamed->opened.is_rescue = true;
+    std::string problems;
     for (const std::filesystem::path& place : places_of_rescue()) {
         std::filesystem::path folder;
         try {
@@ -157,28 +160,21 @@ std::filesystem::path Data::rescue() {
             std::filesystem::path kept = folder / (streamer_ ? "edits.zarr" : "edits.nrrd");
             save(kept, {});
             return kept;
-        } catch (const std::exception&) {
-            problem = std::current_exception();
+        } catch (const std::exception& e) {
+            problems += (problems.empty() ? "" : "; ") + std::string(e.what());
             std::error_code ignored;
             if (!folder.empty()) std::filesystem::remove(folder, ignored);  // if it is empty
         }
     }
-    std::rethrow_exception(problem);
-}
-
-stream::Opened Data::opened() const {
-    const auto& from = std::get<StoreSource>(loaded_.source.from);
-    stream::Opened opened{from.address, from.options};
-    opened.options.time = loaded_.source.frame.value_or(0);
-    return opened;
+    throw io::OutputError(problems);
 }
 
 /// What was edited of a store, beside it.
 std::string Data::save_edits(const std::filesystem::path& path, const io::Progress& progress) {
     const auto& from = std::get<StoreSource>(loaded_.source.from);
     const std::shared_ptr<const Samples> edits = editor_->state().samples;
-    stream::save_edits(*loaded_.streamed->store, opened(), from.loader.level, *edits, path,
-                       progress);
+    stream::save_edits(*loaded_.streamed->store, loaded_.streamed->opened, from.loader.level,
+                       *edits, path, progress);
     editor_->set_saved(edits);
     return "saved the edits of " + from.address + " as " + path.string() +
            ": it opens as the edited volume while the original stays where it is";

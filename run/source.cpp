@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "palpate/filters/dequantize.hpp"
+#include "palpate/io/error.hpp"
 #include "palpate/scenes/beating.hpp"
 #include "palpate/scenes/volumes.hpp"
 
@@ -156,6 +157,18 @@ LoadedVolume all_times_of(const StoreSource& from, const Source& source,
     return loaded;
 }
 
+/// So that edits are not saved for another volume that takes its place meanwhile.
+void note_original(StreamedVolume& streamed) {
+    std::error_code error;
+    const auto whole = std::filesystem::absolute(streamed.opened.address, error);
+    if (!error) streamed.opened.address = whole.string();
+    try {
+        streamed.opened.content =
+            stream::content_below_edits(*streamed.store, streamed.loader.level);
+    } catch (const io::InputError&) {  // damaged somewhere: it can be touched elsewhere
+    }
+}
+
 LoadedVolume loaded_of(const StoreSource& from, const Source& source,
                        const io::Progress& progress) {
     if (from.all_times) return all_times_of(from, source, progress);
@@ -181,8 +194,9 @@ LoadedVolume loaded_of(const StoreSource& from, const Source& source,
     if (!info.range) {
         loaded.notes.emplace_back("its range is estimated from that overview");
     }
-    loaded.streamed = StreamedVolume{std::move(store), from.loader};
+    loaded.streamed = StreamedVolume{std::move(store), from.loader, {from.address, options}};
     start_samples(loaded);  // says now what is wrong with the level
+    if (!is_web_address(from.address)) note_original(*loaded.streamed);
     return loaded;
 }
 

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "io/own_names.hpp"
 #include "io/path_json.hpp"
 #include "palpate/io/error.hpp"
 #include "stream/box_bytes.hpp"
@@ -18,7 +19,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-constexpr const char* note_name = "palpate-edits.json";
 constexpr std::uintmax_t longest_note = std::uintmax_t{64} << 20;
 constexpr std::size_t most_edited_levels = 64;
 
@@ -33,6 +33,14 @@ Vector three_of(const Json& list) {
     return {list[0].get<Number>(), list[1].get<Number>(), list[2].get<Number>()};
 }
 
+/// Without "..", links on the way and a slash at the end, so that one can be relative to another.
+fs::path placed(const fs::path& path) {
+    const fs::path whole = fs::absolute(path.has_filename() ? path : path.parent_path());
+    std::error_code error;
+    const fs::path folder = fs::weakly_canonical(whole.parent_path(), error);
+    return error ? whole : folder / whole.filename();
+}
+
 Json json_of(const EditsNote& note, const fs::path& out) {
     const StoreOptions& options = note.of.options;
     Json json = {{"of", io::json_of_path(note.of.address)},
@@ -42,9 +50,10 @@ Json json_of(const EditsNote& note, const fs::path& out) {
                  {"time", options.time},
                  {"bounds", {note.bounds.minimum, note.bounds.maximum}}};
     if (!is_remote(note.of.address)) {
-        const fs::path of = fs::absolute(note.of.address);
-        json["of"] = io::json_of_path(of);
-        json["beside"] = io::json_of_path(of.lexically_relative(fs::absolute(out).parent_path()));
+        json["of"] = io::json_of_path(fs::absolute(note.of.address));
+        const fs::path beside =
+            placed(note.of.address).lexically_relative(placed(out).parent_path());
+        if (!beside.empty()) json["beside"] = io::json_of_path(beside);
     }
     if (options.raw) {
         json["raw"] = {{"size", list_of(options.raw->size)},
@@ -69,10 +78,10 @@ EditsNote note_from(const Json& json, const fs::path& folder, const StoreOptions
     EditsNote note;
     note.of = {io::path_from_json(json.at("of")).string(), options};
     note.content = json.value("content", std::string());
-    const fs::path beside =
-        fs::absolute(folder).parent_path() / io::path_from_json(json.value("beside", Json("")));
+    const fs::path relative = io::path_from_json(json.value("beside", Json("")));
+    const fs::path beside = placed(folder).parent_path() / relative;
     std::error_code error;
-    if (json.contains("beside") && fs::exists(beside, error)) note.of.address = beside.string();
+    if (!relative.empty() && fs::exists(beside, error)) note.beside = beside.string();
     StoreOptions& of = note.of.options;
     of.channel = json.at("channel").get<int>();
     of.time = json.at("time").get<int>();
@@ -104,7 +113,7 @@ EditsNote note_from(const Json& json, const fs::path& folder, const StoreOptions
 }
 
 EditsNote read_note(const fs::path& folder, const StoreOptions& options) {
-    const fs::path path = folder / note_name;
+    const fs::path path = folder / io::edits_note;
     std::error_code error;
     const std::uintmax_t size = fs::file_size(path, error);
     if (error || size > longest_note) {
@@ -207,15 +216,12 @@ void EditedStore::read(int level, const SampleBox& box, std::span<std::byte> out
 
 bool holds_edits(const fs::path& folder) {
     std::error_code error;
-    return fs::is_regular_file(folder / note_name, error);
+    return fs::is_regular_file(folder / io::edits_note, error);
 }
 
-bool is_edits_note(const std::string& name) {
-    return name == note_name;
-}
+namespace {
 
-std::shared_ptr<const Store> open_edits(const std::string& folder, const StoreOptions& options) {
-    EditsNote note = read_note(folder, options);
+std::shared_ptr<const Store> open_with_original(const std::string& folder, EditsNote note) {
     if (!is_remote(note.of.address) && holds_edits(note.of.address)) {
         throw io::InputError(folder + ": is of a volume that is of edits itself: it is damaged");
     }
@@ -232,9 +238,26 @@ std::shared_ptr<const Store> open_edits(const std::string& folder, const StoreOp
     }
 }
 
+}  // namespace
+
+std::shared_ptr<const Store> open_edits(const std::string& folder, const StoreOptions& options) {
+    EditsNote note = read_note(folder, options);
+    if (note.beside.empty()) return open_with_original(folder, std::move(note));
+    EditsNote moved = note;
+    moved.of.address = note.beside;
+    try {
+        return open_with_original(folder, std::move(moved));
+    } catch (const io::InputError&) {
+        // Another volume may lie there while the right one is where it was.
+        std::error_code error;
+        if (note.of.address == note.beside || !fs::exists(note.of.address, error)) throw;
+    }
+    return open_with_original(folder, std::move(note));
+}
+
 void write_note(const fs::path& folder, const fs::path& out, const EditsNote& note) {
     const std::string text = json_of(note, out).dump(1);
-    put_file(folder / note_name, std::as_bytes(std::span(text)));
+    put_file(folder / io::edits_note, std::as_bytes(std::span(text)));
 }
 
 }  // namespace palpate::stream

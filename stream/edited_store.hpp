@@ -20,6 +20,7 @@ struct EditsNote {
     Range bounds;                  ///< of the edited samples
     std::vector<ChunkSet> chunks;  ///< for that level and the coarser ones
     std::string content = {};      ///< of the original from that level on: content_of()
+    std::string beside = {};       ///< where the original is if it was moved with the edits
 };
 
 /// The samples of a chunk that lie in the grid.
@@ -62,8 +63,6 @@ class EditedStore : public Store {
 
 /// True for a folder that save_edits() wrote.
 bool holds_edits(const std::filesystem::path& folder);
-/// The name of its note.
-bool is_edits_note(const std::string& name);
 /// Opens one with its original. Throws io::InputError.
 std::shared_ptr<const Store> open_edits(const std::string& folder, const StoreOptions& options);
 /// Of a folder that is being made and will be `out`. Throws io::OutputError.

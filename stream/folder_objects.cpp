@@ -15,10 +15,11 @@ namespace {
 
 class FolderObjects : public Objects {
   public:
-    explicit FolderObjects(std::filesystem::path folder) : folder_(std::move(folder)) {}
+    FolderObjects(std::filesystem::path folder, std::filesystem::path name)
+        : folder_(std::move(folder)), name_(std::move(name)) {}
 
     std::string name_of(const std::string& key) const override {
-        return (key.empty() ? folder_ : folder_ / key).string();
+        return (key.empty() ? name_ : name_ / key).string();
     }
     Traffic traffic() const override { return traffic_.now(); }
     std::optional<std::uint64_t> size_of(const std::string& key) const override {
@@ -29,7 +30,9 @@ class FolderObjects : public Objects {
 
     std::optional<Bytes> get(const Wanted& wanted, std::stop_token stop) const override {
         if (stop.stop_requested()) throw Cancelled{};
-        const io::Descriptor file(::open((folder_ / wanted.key).c_str(), O_RDONLY | O_CLOEXEC));
+        // O_NONBLOCK: a pipe of that name must not hold us up.
+        const io::Descriptor file(
+            ::open((folder_ / wanted.key).c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
         if (file.number() < 0) {
             if (errno == ENOENT || errno == ENOTDIR) return std::nullopt;
             fail(wanted.key, io::reason(errno) + "; check its permissions");
@@ -71,7 +74,7 @@ class FolderObjects : public Objects {
         return bytes;
     }
 
-    std::filesystem::path folder_;
+    std::filesystem::path folder_, name_;
     mutable TrafficCount traffic_;
 };
 
@@ -85,7 +88,10 @@ std::vector<std::optional<Bytes>> Objects::get_all(std::span<const Wanted> wante
 }
 
 std::shared_ptr<const Objects> folder_objects(const std::filesystem::path& folder) {
-    return std::make_shared<FolderObjects>(folder);
+    // Absolute, so that it is found when the working folder has gone.
+    std::error_code error;
+    const std::filesystem::path whole = std::filesystem::absolute(folder, error);
+    return std::make_shared<FolderObjects>(error ? folder : whole, folder);
 }
 
 std::string key_below(const std::string& folder, const std::string& name) {

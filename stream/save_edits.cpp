@@ -6,7 +6,8 @@
 #include <map>
 
 #include "io/growing_folder.hpp"
-#include "palpate/io/error.hpp"
+#include "io/own_names.hpp"
+#include "palpate/io/output.hpp"
 #include "stream/box_bytes.hpp"
 #include "stream/content.hpp"
 #include "stream/edited_store.hpp"
@@ -161,21 +162,28 @@ class Saving {
     const io::Progress& progress_;
 };
 
+/// Of the original, which must be the one that was opened.
+std::string checked_content(const Store& from, const Opened& opened, int level) {
+    if (opened.is_rescue && !opened.content.empty()) return opened.content;
+    std::string content = content_below_edits(from, level);
+    if (opened.content.empty() || content == opened.content) return content;
+    throw io::OutputError(opened.address +
+                          ": was replaced since it was opened, so that these edits do not fit it; "
+                          "put it back and save them again");
+}
+
 /// What the note says before anything is written: with what the store has of edits itself.
 EditsNote note_for(const Store& from, const Opened& opened, int level, const Samples& edits) {
     const auto* edited = dynamic_cast<const EditedStore*>(&from);
     EditsNote note{opened, level, {edits.minimum(), edits.maximum()}, {}, {}};
     note.chunks.resize(from.info().levels.size() - static_cast<std::size_t>(level));
-    if (!edited) {
-        note.content = content_of(from, level);
-        return note;
-    }
+    note.content = checked_content(from, opened, level);
+    if (!edited) return note;
     const EditsNote& before = edited->note();
     note.of = before.of;
     note.level += before.level;
     note.bounds.minimum = std::min(note.bounds.minimum, before.bounds.minimum);
     note.bounds.maximum = std::max(note.bounds.maximum, before.bounds.maximum);
-    note.content = content_of(edited->original(), note.level);
     for (std::size_t l = 0; l < note.chunks.size(); ++l) {
         note.chunks[l] = before.chunks[l + static_cast<std::size_t>(level)];
     }
@@ -191,17 +199,21 @@ void check_replaceable(const fs::path& out) {
     if (!fs::is_directory(fs::symlink_status(out, error)) || !holds_edits(out)) {
         refuse("is there already and is no folder of edits");
     }
-    const std::string unknown = io::unknown_name_in(out, [](const std::string& name) {
-        const bool is_level = name.find_first_not_of("0123456789") == std::string::npos;
-        return is_level || is_edits_note(name) || name == "zarr.json";
-    });
+    const std::string unknown = io::unknown_below(out, io::OwnFolder::image);
     if (!unknown.empty()) refuse("holds " + unknown + ", which Palpate did not write");
 }
 
 }  // namespace
 
+std::string content_below_edits(const Store& from, int level) {
+    const auto* edited = dynamic_cast<const EditedStore*>(&from);
+    return edited ? content_of(edited->original(), edited->note().level + level)
+                  : content_of(from, level);
+}
+
 void check_edits_name(const fs::path& out) {
-    if (out.extension() == ".zarr" && !out.stem().empty()) return;
+    const fs::path name = io::without_slash(out);
+    if (name.extension() == ".zarr" && !name.stem().empty()) return;
     throw std::invalid_argument(out.string() +
                                 ": edits of a volume that is read as it is felt are saved as a "
                                 "folder: give a name that ends with .zarr");
@@ -217,7 +229,8 @@ void check_edits_place(const fs::path& out, const Opened& opened) {
 }
 
 void save_edits(const Store& from, const Opened& opened, int level, const Samples& edits,
-                const fs::path& out, const io::Progress& progress) {
+                const fs::path& name, const io::Progress& progress) {
+    const fs::path out = io::without_slash(name);
     if (!edits.bricks() || edits.bricks()->size() == 0) {
         throw std::invalid_argument("nothing was edited, so there is nothing to save");
     }

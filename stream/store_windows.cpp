@@ -35,6 +35,10 @@ void check_edits_name(const std::filesystem::path& out) {
     throw std::invalid_argument(out.string() + no_chunks);
 }
 
+std::string content_below_edits(const Store&, int) {
+    return {};
+}
+
 void check_edits_place(const std::filesystem::path& out, const Opened&) {
     check_edits_name(out);
 }

@@ -1,11 +1,16 @@
 // Writes the files of a multiscale OME-Zarr image; see the header.
 #include "stream/zarr_writer.hpp"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <fstream>
 #include <stdexcept>
 
+#include "io/helper_process.hpp"
+#include "io/system.hpp"
 #include "palpate/io/error.hpp"
 #include "stream/zarr_metadata.hpp"
 
@@ -129,6 +134,10 @@ void put_file(const fs::path& path, std::span<const std::byte> bytes,
     const fs::path before = path.string() + temporary;
     std::error_code error;
     fs::create_directories(path.parent_path(), error);
+    // A pipe of that name would hold us up, and a link would lead elsewhere.
+    const auto status = fs::symlink_status(before, error);
+    if (fs::exists(status) && !fs::is_regular_file(status)) fs::remove(before, error);
+    error.clear();
     std::ofstream file(before, std::ios::binary);
     file.write(reinterpret_cast<const char*>(bytes.data()),
                static_cast<std::streamsize>(bytes.size()));
@@ -249,15 +258,22 @@ bool ZarrWriter::write_chunk(int level, const Index3& chunk, const Bytes& sample
 }
 
 std::optional<Bytes> ZarrWriter::written_chunk(int level, const Index3& chunk) const {
-    std::ifstream file(path_of(level, chunk), std::ios::binary | std::ios::ate);
-    if (!file) return std::nullopt;
+    // O_NONBLOCK: a pipe of that name must not hold us up.
+    const io::Descriptor file(
+        ::open(path_of(level, chunk).c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
+    struct stat about {};
+    if (file.number() < 0 || ::fstat(file.number(), &about) != 0 || !S_ISREG(about.st_mode)) {
+        return std::nullopt;
+    }
     const ChunkedArray& array = arrays_[static_cast<std::size_t>(level)];
-    const auto size = static_cast<std::size_t>(file.tellg());
+    const auto size = static_cast<std::size_t>(about.st_size);
     if (size > packed_at_most(array.bytes_in_chunk())) return std::nullopt;
     Bytes bytes(size);
-    file.seekg(0);
-    file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
-    if (!file) return std::nullopt;
+    for (std::size_t at = 0; at < size;) {
+        const auto got = io::read_at(file.number(), bytes.data() + at, size - at, at);
+        if (got <= 0) return std::nullopt;
+        at += static_cast<std::size_t>(got);
+    }
     try {
         return decoded(array.codecs, std::move(bytes), array.bytes_in_chunk());
     } catch (const DamagedChunk&) {

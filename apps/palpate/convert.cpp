@@ -10,6 +10,7 @@
 #include "apps/palpate/commands.hpp"
 #include "apps/palpate/outputs.hpp"
 #include "apps/palpate/progress.hpp"
+#include "palpate/io/output.hpp"
 #include "palpate/io/written_formats.hpp"
 #include "palpate/stream/convert.hpp"
 
@@ -110,7 +111,7 @@ void to_file(const ConvertWords& words, const Taken& taken) {
 
 void convert(const ConvertWords& words) {
     check_outputs({words.source.name()}, {words.output});
-    const bool zarr = std::filesystem::path(words.output).extension() == ".zarr";
+    const bool zarr = io::without_slash(words.output).extension() == ".zarr";
     if (zarr) stream::check_zarr_place(words.output);
     const Taken taken = opened(words);
     const auto levels = static_cast<int>(taken.store->info().levels.size());

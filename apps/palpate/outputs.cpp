@@ -30,7 +30,7 @@ bool same_file(const std::string& a, const std::string& b) {
 
 /// A folder, whose own check comes from what makes it.
 bool is_zarr(const fs::path& name) {
-    return name.extension() == ".zarr";
+    return io::without_slash(name).extension() == ".zarr";
 }
 
 }  // namespace

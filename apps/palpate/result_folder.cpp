@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <fstream>
 
 #include "io/leftovers.hpp"
 #include "io/removal.hpp"
@@ -29,6 +30,7 @@ ResultFolder::ResultFolder(const fs::path& folder) : folder_(folder) {
                               error.message() + "): choose another with --output");
     }
     lock_ = io::lock_temporary(part_);
+    std::ofstream(part_ / io::temporary_marker).close();
 }
 
 ResultFolder::~ResultFolder() {
@@ -43,6 +45,7 @@ void ResultFolder::complete() {
         throw io::OutputError(folder_.string() + ": " + io::reason(errno) + ": check the disk");
     }
     for (const auto& entry : fs::directory_iterator(part_)) {
+        if (entry.path().filename() == io::temporary_marker) continue;
         std::error_code error;
         const fs::path target = folder_ / entry.path().filename();
         fs::rename(entry.path(), target, error);

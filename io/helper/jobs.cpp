@@ -11,12 +11,14 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
 #include <new>
 
 #include "io/helper/child.hpp"
 #include "io/helper/library_words.hpp"
 #include "io/helper/mirrored.hpp"
 #include "io/helper/report.hpp"
+#include "io/leftovers.hpp"
 #include "io/system.hpp"
 #include "palpate/io/error.hpp"
 #include "palpate/io/written_formats.hpp"
@@ -28,7 +30,7 @@ namespace fs = std::filesystem;
 namespace {
 
 // What a writer leaves in its folder, for the signal handler, which may not allocate.
-char unfinished[3][4096];
+char unfinished[4][4096];
 char unfinished_folder[4096];
 
 extern "C" void clean_up_and_go(int signal_number) {
@@ -165,6 +167,7 @@ class Workshop {
         remember(unfinished[0], inside_);
         remember(unfinished[1], fs::path(inside_).replace_extension(".raw"));
         remember(unfinished[2], fs::path(inside_).replace_extension(".zraw"));
+        remember(unfinished[3], marker());
         remember(unfinished_folder, folder);
         // SIGPIPE: a dying caller's pipes close before its death is announced (PR_SET_PDEATHSIG),
         // and a report between the two would end this process with its file left behind.
@@ -178,6 +181,7 @@ class Workshop {
             throw Failure("cannot be written there (" + (error ? error.message() : reason(EEXIST)) +
                           "); choose another folder");
         }
+        std::ofstream(marker()).close();
         // Locked until this process ends: others see that it is in use.
         const int folder = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
         if (folder >= 0) (void)::flock(folder, LOCK_EX | LOCK_NB);
@@ -188,7 +192,7 @@ class Workshop {
     void move_out() const {
         std::vector<fs::path> made;
         for (const auto& entry : fs::directory_iterator(folder_)) {
-            if (entry.path() != inside_) made.push_back(entry.path());
+            if (entry.path() != inside_ && entry.path() != marker()) made.push_back(entry.path());
         }
         made.push_back(inside_);
         const fs::path parent = target_.has_parent_path() ? target_.parent_path() : ".";
@@ -200,10 +204,12 @@ class Workshop {
             if (!moved) throw Failure("cannot be put in its place (" + reason(error) + ")");
         }
         synchronise_folder(parent);
+        fs::remove(marker());
         fs::remove(folder_);
     }
 
   private:
+    fs::path marker() const { return folder_ / temporary_marker; }
     static void remember(char* to, const fs::path& path) {
         std::snprintf(to, sizeof unfinished_folder, "%s", path.c_str());
     }

@@ -146,6 +146,14 @@ TEST(Convert, a_folder_of_somebody_else_where_it_would_grow_is_refused_and_stays
     }
 }
 
+TEST(Convert, a_slash_after_the_folder_changes_nothing) {
+    const ScratchFolder folder;
+    expect_done(palpate(folder, std::string("convert -q ") + small + " a.zarr/"));
+    EXPECT_TRUE(fs::exists(folder / "a.zarr/zarr.json"));
+    expect_failure(palpate(folder, std::string("convert -q ") + small + " a.zarr/"), 5,
+                   "is there already");
+}
+
 TEST(Convert, wrong_use_bad_input_and_outputs_that_cannot_be_leave_nothing_behind) {
     const ScratchFolder folder;
     expect_done(palpate(folder, std::string("convert -q ") + small + " a.zarr"));

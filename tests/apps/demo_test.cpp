@@ -108,6 +108,7 @@ TEST(Demo, uses_an_existing_folder_and_keeps_other_files) {
     support::put_bytes(folder / "out/mine.txt", "mine");
     // Of runs that were killed. No process has such a number.
     std::filesystem::create_directory(folder / "out/.palpate-999999999.part");
+    support::put_bytes(folder / "out/.palpate-999999999.part/.palpate-temporary", "");
     support::put_bytes(folder / "out/.palpate-999999999.part/surface.png", "half");
     std::filesystem::create_directory(folder / "out/.palpate-999999999-7.part");
     ASSERT_EQ(palpate(folder, quick + "-o out -q").status, 0);

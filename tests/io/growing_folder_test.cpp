@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include "io/own_names.hpp"
 #include "io/path_json.hpp"
 #include "io/removal.hpp"
 #include "palpate/io/error.hpp"
@@ -96,6 +97,31 @@ TEST(GrowingFolder, replaces_what_it_may_and_keeps_its_result_where_it_may_not) 
     }
     EXPECT_EQ(bytes_of(out / "new"), "newer");
     EXPECT_EQ(folder.names(), (Names{"o", "o.rescued"}));
+}
+
+TEST(GrowingFolder, knows_its_own_names_and_does_not_guess_what_it_cannot_read) {
+    const ScratchFolder folder;
+    const fs::path image = folder / "i.zarr";
+    fs::create_directories(image / "0/c/3/2");
+    fs::create_directories(image / "1/4/5");
+    for (const char* name : {"zarr.json", ".zgroup", "palpate-edits.json", "0/zarr.json",
+                             "0/c/3/2/1", "0/c/3/2/7.part", "0/c/3/2/8.part-host-1-2", "1/.zarray",
+                             "1/4/5/6", ".palpate-12-3.part"}) {
+        put_bytes(image / name, "ours");
+    }
+    EXPECT_EQ(unknown_below(image, OwnFolder::image), "");
+    for (const char* name : {"0/c/3/2/01", "0/c/3/x", "0/c/5", "64", "notes", "1/4/5/6.txt"}) {
+        put_bytes(image / name, "years");
+        EXPECT_EQ(unknown_below(image, OwnFolder::image), name);
+        EXPECT_EQ(bytes_of(image / name), "years");
+        fs::remove(image / name);
+    }
+    put_bytes(image / "1/4/notes", "years");
+    EXPECT_EQ(remove_known(image, OwnFolder::image), "1/4/notes");
+    EXPECT_EQ(bytes_of(image / "1/4/notes"), "years");
+    EXPECT_FALSE(fs::exists(image / "0"));
+    put_bytes(folder / "file", "x");
+    EXPECT_THROW((void)unknown_below(folder / "file", OwnFolder::image), OutputError);
 }
 
 TEST(PathJson, has_every_path_and_refuses_what_is_none) {

@@ -253,6 +253,7 @@ TEST(Output, folders_of_killed_processes_are_removed_with_all_that_is_in_them) {
     const std::string dead = ".palpate-" + dead_process();
     for (const std::string& name : {dead + "-0.part", dead + "-12", dead + ".part"}) {
         std::filesystem::create_directories(folder / (name + "/inner"));
+        put_bytes(folder / (name + "/.palpate-temporary"), "");
         put_bytes(folder / (name + "/inner/half.raw"), "half");
         std::filesystem::create_directory_symlink(elsewhere.path(), folder / (name + "/link"));
     }
@@ -295,8 +296,14 @@ TEST(Output, what_only_resembles_a_leftover_stays) {
     const auto in_use = add("-5.part");  // by a process that cannot be seen from here
     std::filesystem::create_directory(in_use);
     const int lock = lock_temporary(in_use);
+    const auto of_a_user = add("-6.part"), with_a_link = add("-7.part");
+    std::filesystem::create_directories(of_a_user / "result");
+    put_bytes(of_a_user / "result/thesis.txt", "kept");
+    std::filesystem::create_directory(with_a_link);
+    std::filesystem::create_symlink(elsewhere / "precious", with_a_link / ".palpate-temporary");
     write_in_another_process(folder);
     ::close(lock);
+    EXPECT_EQ(bytes_of(of_a_user / "result/thesis.txt"), "kept");
     std::sort(names.begin(), names.end());
     EXPECT_EQ(folder.names(), names);
     EXPECT_EQ(bytes_of(elsewhere / "precious"), "kept");

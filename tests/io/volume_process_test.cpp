@@ -218,6 +218,7 @@ TEST_F(HelperProcess, what_it_left_when_it_was_killed_goes_with_the_next_volume_
     const ScratchFolder folder;
     const auto left = folder / (".palpate-" + std::to_string(dead) + "-0.part");
     std::filesystem::create_directory(left);
+    put_bytes(left / ".palpate-temporary", "");
     put_bytes(left / "big.raw", "half");
     std::mt19937 random(35);
     write_volume(random_volume<std::uint8_t>(random, random_geometry(random, true, false)),

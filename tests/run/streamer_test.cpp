@@ -7,10 +7,12 @@
 #include <cstring>
 #include <fstream>
 
+#include "palpate/io/error.hpp"
 #include "palpate/run/offline.hpp"
 #include "palpate/run/replay.hpp"
 #include "palpate/run/run.hpp"
 #include "palpate/scenes/volumes.hpp"
+#include "palpate/stream/convert.hpp"
 #include "run/run_support.hpp"
 #include "support/scratch_folder.hpp"
 #include "support/zarr_image.hpp"
@@ -223,6 +225,44 @@ TEST(Streamed, what_was_edited_is_saved_beside_the_original_and_opens_again) {
     again.streamed->store->read(0, whole_box(geometry), bytes, {});
     const Volume whole = flattened(*expected.samples);
     EXPECT_EQ(std::memcmp(bytes.data(), whole.data(), bytes.size()), 0);
+}
+
+TEST(Streamed, edits_are_rescued_where_the_working_folder_has_gone) {
+    namespace fs = std::filesystem;
+    const BallFile ball;
+    const fs::path zarr = ball.folder.path() / "ball.zarr", sub = ball.folder.path() / "sub";
+    stream::convert_to_zarr(*stream::store_of(ball.volume, "v"), 0, zarr, {});
+    fs::create_directory(sub);
+    const fs::path before = fs::current_path();
+    fs::current_path(sub);
+    Data data(load(source_from({{"volume", "../ball.zarr"}, {"level", "0"}})));
+    data.editor().apply(edit::Fill{{{10, 10, 10}, {20, 20, 20}}, 3});
+    fs::remove(sub);
+    const fs::path kept = data.rescue();
+    fs::current_path(before);
+    EXPECT_NO_THROW((void)load(source_from({{"volume", kept.string()}})));
+    fs::remove_all(kept.parent_path());
+}
+
+TEST(Streamed, edits_of_an_original_that_was_replaced_are_not_saved_as_those_of_the_new_one) {
+    namespace fs = std::filesystem;
+    const BallFile ball;
+    const fs::path zarr = ball.folder.path() / "ball.zarr", out = ball.folder.path() / "e.zarr";
+    const auto put_original = [&](const std::string& name) {
+        fs::remove_all(zarr);
+        stream::convert_to_zarr(*stream::store_of(scenes::make_volume(name).volume, "v"), 0, zarr,
+                                {});
+    };
+    put_original("sphere:64x64x64");
+    Data data(load(source_from({{"volume", zarr.string()}, {"level", "0"}})));
+    data.editor().apply(edit::Fill{{{10, 10, 10}, {20, 20, 20}}, 3});
+    put_original("torus:64x64x64");
+    EXPECT_THROW(data.save(out, {}), io::OutputError);
+    const fs::path kept = data.rescue();
+    EXPECT_THROW((void)load(source_from({{"volume", kept.string()}})), io::InputError);
+    put_original("sphere:64x64x64");
+    EXPECT_NO_THROW((void)load(source_from({{"volume", kept.string()}})));
+    fs::remove_all(kept.parent_path());
 }
 
 /// Ticks of a recording that its replay does not repeat.

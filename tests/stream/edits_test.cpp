@@ -154,6 +154,26 @@ TEST(Edits, a_raw_file_is_opened_again_with_its_layout_also_where_both_were_move
     EXPECT_TRUE(same_bits(volume_of(*again), flattened(*edited(plain, fill).samples)));
 }
 
+TEST(Edits, open_wherever_they_were_saved_and_whatever_lies_beside_them) {
+    Case c(SampleType::uint8, 12);
+    const auto original = open_store(c.zarr.string());
+    auto plain = samples_of(c.volume);
+    const auto edits = c.some_edits(*original, 0, &plain);
+    const fs::path sub = c.folder.path() / "sub";
+    fs::create_directory(sub);
+    for (const fs::path& out : {sub / "../up.zarr", sub / "./down.zarr", sub / "slash.zarr/"}) {
+        save_edits(*original, {c.zarr.string(), {}}, 0, *edits, out, {});
+        EXPECT_TRUE(same_bits(volume_of(*open_store(out.string())), flattened(*plain))) << out;
+    }
+    // A copy elsewhere, beside another volume of the original's name.
+    const fs::path other = c.folder.path() / "other";
+    fs::create_directory(other);
+    fs::copy(c.folder.path() / "up.zarr", other / "up.zarr", fs::copy_options::recursive);
+    convert_to_zarr(*store_of(noise_of(c.type, c.volume.geometry(), 13), "other"), 0,
+                    other / c.zarr.filename(), {});
+    EXPECT_TRUE(same_bits(volume_of(*open_store((other / "up.zarr").string())), flattened(*plain)));
+}
+
 TEST(Edits, replace_older_ones_and_nothing_else) {
     Case c(SampleType::uint8, 2);
     const auto original = open_store(c.zarr.string());

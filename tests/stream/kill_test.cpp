@@ -3,6 +3,7 @@
 // before or the new data, whole.
 #include <cstdlib>
 
+#include "io/growing_folder.hpp"
 #include "palpate/io/error.hpp"
 #include "palpate/stream/convert.hpp"
 #include "palpate/stream/edits.hpp"
@@ -246,6 +247,32 @@ TEST_F(Killed, a_rename_that_fails_costs_neither_the_old_edits_nor_the_new_ones)
         }
         EXPECT_GT(failed, calls);
         EXPECT_GT(rescued, 0);
+    }
+}
+
+TEST_F(Killed, what_must_not_be_replaced_survives_every_rename_that_fails) {
+    const auto renames = [](const FileCall& call) { return call.renames; };
+    for (const bool only_one : {true, false}) {
+        for (int at = 0; at < 6; ++at) {
+            SCOPED_TRACE(at);
+            const ScratchFolder folder;
+            const fs::path out = folder / "e.zarr";
+            fs::create_directories(out / "0/c/0/0");
+            support::put_bytes(out / "0/c/0/0/0", "years");  // looks like a chunk of ours
+            const auto work = [&] {
+                io::GrowingFolder grown = io::GrowingFolder::alone(out);
+                int looks = 0;
+                grown.put_in_place([&](const fs::path&) {
+                    if (++looks == 2) throw io::OutputError("is precious");
+                });
+            };
+            EXPECT_EQ(run_traced(work, from_call(at, Fate::fails, renames, only_one)), 1);
+            int kept = 0;
+            for (const auto& entry : fs::recursive_directory_iterator(folder.path())) {
+                kept += entry.is_regular_file() && support::bytes_of(entry.path()) == "years";
+            }
+            EXPECT_EQ(kept, 1);
+        }
     }
 }
 

@@ -127,19 +127,54 @@ TEST(OwnFiles, a_partial_of_other_work_with_a_foreign_file_in_it_is_refused_by_i
     EXPECT_TRUE(fs::exists(partial / "result/0/c/0/0/0"));
 }
 
-TEST(OwnFiles, a_link_inside_a_partial_of_ours_is_removed_and_never_followed) {
+TEST(OwnFiles, a_link_inside_a_partial_of_ours_is_refused_and_never_followed) {
     const ScratchFolder folder, precious;
     put_bytes(precious / "thesis.txt", "years");
     const fs::path out = folder / "v.zarr", partial = folder / "v.zarr.partial";
     leave_behind(*store_of(noise(1), "v"), out);
-    fs::create_directory_symlink(precious.path(), partial / "result/0/c/link");
+    fs::create_directory_symlink(precious.path(), partial / "result/0/c/7");
     const Volume other = noise(2);
+    const std::string message = refusal(*store_of(other, "v"), out);
+    EXPECT_TRUE(contains(message, "result/0/c/7")) << message;
+    EXPECT_EQ(bytes_of(precious / "thesis.txt"), "years");
+    fs::remove(partial / "result/0/c/7");
     const Converted converted = convert_to_zarr(*store_of(other, "v"), 0, out, small_chunks());
     EXPECT_EQ(converted.kept, 0U);
     EXPECT_TRUE(contains(converted.note, "begun anew")) << converted.note;
     EXPECT_EQ(bytes_of(precious / "thesis.txt"), "years");
     expect_same_boxes(*open_store(out), other, 3);
     EXPECT_EQ(folder.names(), std::vector<std::string>{"v.zarr"});
+}
+
+TEST(OwnFiles, a_foreign_file_at_any_depth_of_a_partial_stays) {
+    const std::vector<std::string> places = {"thesis.txt",
+                                             "result/thesis.txt",
+                                             "result/0/thesis.txt",
+                                             "result/0/c/0/0/0.txt",
+                                             "work/thesis.txt",
+                                             "result/2024/thesis.txt",
+                                             "previous"};
+    for (const std::string& place : places) {
+        SCOPED_TRACE(place);
+        const ScratchFolder folder;
+        const fs::path out = folder / "v.zarr", partial = folder / "v.zarr.partial";
+        leave_behind(*store_of(noise(1), "v"), out);
+        fs::create_directories((partial / place).parent_path());
+        put_bytes(partial / place, "years");
+        const std::string message = refusal(*store_of(noise(2), "v"), out);
+        EXPECT_TRUE(contains(message, place)) << message;
+        EXPECT_EQ(bytes_of(partial / place), "years");
+        // The same work goes on; what lies in its result goes with that.
+        const Converted converted =
+            convert_to_zarr(*store_of(noise(1), "v"), 0, out, small_chunks());
+        if (place.starts_with("result/")) {
+            EXPECT_EQ(bytes_of(out / place.substr(7)), "years");
+            continue;
+        }
+        EXPECT_TRUE(contains(converted.note, place)) << converted.note;
+        EXPECT_EQ(bytes_of(partial / place), "years");
+        EXPECT_FALSE(fs::exists(partial / "palpate-partial.json"));
+    }
 }
 
 TEST(OwnFiles, saving_edits_touches_no_partial_whoever_made_it) {
@@ -169,13 +204,20 @@ TEST(OwnFiles, saving_edits_touches_no_partial_whoever_made_it) {
     }
     EXPECT_EQ(bytes_of(precious / "thesis.txt"), "years");
     // What somebody else has put into a folder of edits stays there.
-    put_bytes(folder / "edits.zarr/notes.txt", "mine");
-    const std::string message = message_of<io::OutputError>([&] {
-        save_edits(*original, {folder / "v.zarr", {}}, 0, *edits.samples, folder / "edits.zarr",
-                   {});
-    });
-    EXPECT_TRUE(contains(message, "notes.txt")) << message;
-    EXPECT_EQ(bytes_of(folder / "edits.zarr/notes.txt"), "mine");
+    for (const std::string place :
+         {"notes.txt", "0/notes.txt", "2024/notes.txt", "0/c/notes.txt"}) {
+        const fs::path file = folder / ("edits.zarr/" + place);
+        fs::create_directories(file.parent_path());
+        put_bytes(file, "mine");
+        const std::string message = message_of<io::OutputError>([&] {
+            save_edits(*original, {folder / "v.zarr", {}}, 0, *edits.samples, folder / "edits.zarr",
+                       {});
+        });
+        EXPECT_TRUE(contains(message, place.substr(0, place.find('/')))) << message;
+        EXPECT_EQ(bytes_of(file), "mine");
+        fs::remove(file);
+        if (place.starts_with("2024")) fs::remove(file.parent_path());
+    }
 }
 
 TEST(OwnFiles, an_interrupted_run_is_continued_for_the_same_content_only) {
@@ -258,6 +300,57 @@ TEST(OwnFiles, edits_do_not_open_over_another_volume_in_the_originals_place) {
     EXPECT_TRUE(contains(message, "holds other data")) << message;
     put_original(1);  // made anew, the same: a copy on another disk must do
     EXPECT_EQ(read_box(*open_store(folder / "e.zarr"), 0, {{5, 5, 5}, {5, 5, 5}})[0], std::byte{7});
+}
+
+TEST(OwnFiles, edits_of_an_original_that_was_replaced_meanwhile_are_only_rescued) {
+    const ScratchFolder folder;
+    const auto put_original = [&](std::uint64_t seed) {
+        fs::remove_all(folder / "v.zarr");
+        (void)convert_to_zarr(*store_of(noise(seed), "v"), 0, folder / "v.zarr", small_chunks());
+    };
+    put_original(1);
+    const auto original = open_store(folder / "v.zarr");
+    Opened opened{folder / "v.zarr", {}, content_below_edits(*original, 0)};
+    const auto edits = edited(
+        empty_samples(*original, noise(1), 0), edit::Fill{{{3, 3, 3}, {9, 9, 9}}, 7},
+        [&](const SampleBox& box, std::span<std::byte> to) { original->read(0, box, to, {}); });
+    const auto save = [&] {
+        save_edits(*original, opened, 0, *edits.samples, folder / "e.zarr", {});
+    };
+    put_original(2);
+    const std::string message = message_of<io::OutputError>(save);
+    EXPECT_TRUE(contains(message, "was replaced since it was opened")) << message;
+    EXPECT_FALSE(fs::exists(folder / "e.zarr"));
+    opened.is_rescue = true;
+    save();
+    EXPECT_THROW((void)open_store(folder / "e.zarr"), io::InputError);
+    put_original(1);
+    EXPECT_EQ(read_box(*open_store(folder / "e.zarr"), 0, {{5, 5, 5}, {5, 5, 5}})[0], std::byte{7});
+}
+
+TEST(OwnFiles, a_pipe_or_a_link_at_the_name_of_a_chunk_neither_hangs_nor_leads_elsewhere) {
+    const ScratchFolder folder, precious;
+    put_bytes(precious / "thesis.txt", "years");
+    const Volume volume = noise(1);
+    const fs::path out = folder / "v.zarr", chunks = folder / "v.zarr.partial/result/0/c/0/0";
+    leave_behind(*store_of(volume, "v"), out);
+    fs::remove(chunks / "0");
+    ASSERT_EQ(::mkfifo((chunks / "0").c_str(), 0600), 0);
+    ASSERT_EQ(::mkfifo((chunks / "0.part").c_str(), 0600), 0);
+    fs::remove(chunks / "1");
+    fs::create_symlink(precious / "thesis.txt", chunks / "1");
+    fs::create_symlink(precious / "thesis.txt", chunks / "1.part");
+    EXPECT_GT(convert_to_zarr(*store_of(volume, "v"), 0, out, small_chunks()).kept, 0U);
+    const DiskCache cache(folder / "cache", 1 << 20);
+    cache.put("a", Bytes(100));
+    for (const auto& entry : fs::recursive_directory_iterator(folder / "cache")) {
+        if (!entry.is_regular_file()) continue;
+        fs::remove(entry.path());
+        ASSERT_EQ(::mkfifo(entry.path().c_str(), 0600), 0);
+    }
+    EXPECT_FALSE(cache.find("a"));
+    expect_same_boxes(*open_store(out), volume, 3);
+    EXPECT_EQ(bytes_of(precious / "thesis.txt"), "years");
 }
 
 /// A volume whose folder of results goes while it is read.

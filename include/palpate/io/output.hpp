@@ -16,6 +16,11 @@ namespace palpate::io {
 /// its name. Makes and opens nothing, so a long run can begin with it; a PendingFile does so, too.
 void check_output(const std::filesystem::path& path);
 
+/// "a.zarr/" is "a.zarr": the slash that completion puts after a folder.
+inline std::filesystem::path without_slash(const std::filesystem::path& path) {
+    return path.has_filename() ? path : path.parent_path();
+}
+
 /// A file being written: `.palpate-PID-N.part` beside the target. Files and folders of this kind
 /// that killed processes have left in the folder are removed when a process opens its first file
 /// there. Without commit() the target stays unchanged and nothing is left behind. A target that

@@ -66,11 +66,10 @@ class Data {
 
     /// Saves where there is no choice left: in a new folder that only this user can enter, in that
     /// of temporary files or, if that fails, in the home folder or the current one. Returns the
-    /// name. Throws as save() of the last one.
+    /// name. Throws io::OutputError with what went wrong in each.
     std::filesystem::path rescue();
 
   private:
-    stream::Opened opened() const;
     std::string save_edits(const std::filesystem::path& path, const io::Progress& progress);
 
     Pace pace_;

@@ -11,6 +11,7 @@
 
 #include "palpate/io/live_frames.hpp"
 #include "palpate/io/sequence.hpp"
+#include "palpate/stream/edits.hpp"
 #include "palpate/stream/loader.hpp"
 
 namespace palpate::run {
@@ -73,6 +74,7 @@ Source source_from(const std::map<std::string, std::string>& names);
 struct StreamedVolume {
     std::shared_ptr<const stream::Store> store;
     stream::BrickLoaderSettings loader;
+    stream::Opened opened = {};  ///< an absolute address; its content if it is on this machine
 };
 
 /// A volume and what is known about it.

@@ -12,7 +12,16 @@ namespace palpate::stream {
 struct Opened {
     std::string address;
     StoreOptions options;
+    /// What content_below_edits() gave then; empty: not known.
+    std::string content = {};
+    /// Saves the edits also if the original was replaced since. They open over the original of
+    /// before only; around them, what was not edited may be of the other one.
+    bool is_rescue = false;
 };
+
+/// Recognises the content of the original from a level of `from` on: of `from`, or of what its
+/// edits are of. Throws what the store throws.
+std::string content_below_edits(const Store& from, int level);
 
 /// Throws std::invalid_argument unless the name ends with .zarr.
 void check_edits_name(const std::filesystem::path& out);
@@ -25,7 +34,8 @@ void check_edits_place(const std::filesystem::path& out, const Opened& opened);
 /// original, the one that `from` itself names if it is of edits, and has what was edited there,
 /// too. It is OME-Zarr 0.5; other programs see 0 where nothing was edited. Made in a folder of its
 /// own first, which takes the place of an older folder of edits, and of nothing else, at once. If
-/// that fails, they are kept beside it and the error says where. Throws io::OutputError, as
+/// that fails, they are kept beside it and the error says where. An original that holds other data
+/// than when it was opened is refused. Throws io::OutputError, as
 /// check_edits_name(), what `progress` throws and what the store throws.
 void save_edits(const Store& from, const Opened& opened, int level, const Samples& edits,
                 const std::filesystem::path& out, const io::Progress& progress);
