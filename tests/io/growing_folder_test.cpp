@@ -43,7 +43,7 @@ TEST(GrowingFolder, of_one_job_is_locked_continued_and_put_in_place) {
     const fs::path out = folder / "o";
     {
         const GrowingFolder first = GrowingFolder::resumable(out, "a job");
-        put_bytes(first.result() / "part", "done");
+        put_bytes(first.result() / "zarr.json", "done");
         const std::string busy =
             message_of<OutputError>([&] { (void)GrowingFolder::resumable(out, "a job"); });
         EXPECT_TRUE(contains(busy, "another process is writing it")) << busy;
@@ -53,16 +53,16 @@ TEST(GrowingFolder, of_one_job_is_locked_continued_and_put_in_place) {
     }
     GrowingFolder again = GrowingFolder::resumable(out, "a job");
     EXPECT_TRUE(again.is_continued());
-    EXPECT_EQ(bytes_of(again.result() / "part"), "done");
+    EXPECT_EQ(bytes_of(again.result() / "zarr.json"), "done");
     fs::create_directory(again.work());
     again.put_in_place();
-    EXPECT_EQ(bytes_of(out / "part"), "done");
+    EXPECT_EQ(bytes_of(out / "zarr.json"), "done");
 }
 
 TEST(GrowingFolder, leaves_nothing_else_and_begins_anew_for_another_job) {
     const ScratchFolder folder;
     const fs::path out = folder / "o";
-    put_bytes(GrowingFolder::resumable(out, "a job").result() / "part", "done");
+    put_bytes(GrowingFolder::resumable(out, "a job").result() / "zarr.json", "done");
     {
         GrowingFolder anew = GrowingFolder::resumable(out, "another job");
         EXPECT_FALSE(anew.is_continued());
@@ -79,23 +79,23 @@ TEST(GrowingFolder, replaces_what_it_may_and_keeps_its_result_where_it_may_not) 
     const ScratchFolder folder;
     const fs::path out = folder / "o";
     fs::create_directory(out);
-    put_bytes(out / "old", "old");
+    put_bytes(out / ".zattrs", "old");
     {
         GrowingFolder alone = GrowingFolder::alone(out);
-        put_bytes(alone.result() / "new", "new");
+        put_bytes(alone.result() / ".zgroup", "new");
         const std::string message = message_of<OutputError>(
             [&] { alone.put_in_place([](const fs::path&) { throw OutputError("precious"); }); });
         EXPECT_TRUE(contains(message, "precious; the result is kept as ")) << message;
     }
-    EXPECT_EQ(bytes_of(out / "old"), "old");
-    EXPECT_EQ(bytes_of(folder / "o.rescued/new"), "new");
+    EXPECT_EQ(bytes_of(out / ".zattrs"), "old");
+    EXPECT_EQ(bytes_of(folder / "o.rescued/.zgroup"), "new");
     EXPECT_EQ(folder.names(), (Names{"o", "o.rescued"}));
     {
         GrowingFolder alone = GrowingFolder::alone(out);
-        put_bytes(alone.result() / "new", "newer");
+        put_bytes(alone.result() / ".zgroup", "newer");
         alone.put_in_place([](const fs::path&) {});
     }
-    EXPECT_EQ(bytes_of(out / "new"), "newer");
+    EXPECT_EQ(bytes_of(out / ".zgroup"), "newer");
     EXPECT_EQ(folder.names(), (Names{"o", "o.rescued"}));
 }
 

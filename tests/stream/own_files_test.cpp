@@ -162,7 +162,9 @@ TEST(OwnFiles, a_foreign_file_at_any_depth_of_a_partial_stays) {
         fs::create_directories((partial / place).parent_path());
         put_bytes(partial / place, "years");
         const std::string message = refusal(*store_of(noise(2), "v"), out);
-        EXPECT_TRUE(contains(message, place)) << message;
+        // A folder that is not ours is named itself.
+        const std::string named = contains(place, "2024") ? "result/2024" : place;
+        EXPECT_TRUE(contains(message, named)) << message;
         EXPECT_EQ(bytes_of(partial / place), "years");
         // The same work goes on; what lies in its result goes with that.
         const Converted converted =
