@@ -2,6 +2,7 @@
 // units, the space. Where the format leaves a choice, ITK's is taken (docs/io.md).
 #include "io/helper/nrrd_axes.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <map>
