@@ -28,7 +28,7 @@ LARGE = ("Eigen/Core", "Eigen/Geometry", "Eigen/LU", "gtest/gtest.h", "nlohmann/
 # The options that decide what those headers are and mean; other definitions do not reach them.
 DECISIVE = ("-std", "-f", "-DEIGEN", "-DGTEST", "-DJSON", "-DCLI", "-DPYBIND", "-DNDEBUG")
 WORTHWHILE = 4  # sources that share a set of them
-LEFT_OUT = ("tests", "apps", "bindings", "evaluation", "doctor", "benchmarks", "examples")  # unless named
+LEFT_OUT = ("tests", "apps", "bindings", "evaluation", "doctor", "examples")  # unless named
 
 Source = collections.namedtuple("Source", "file options shared key")
 

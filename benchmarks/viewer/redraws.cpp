@@ -18,9 +18,9 @@
 #include <vector>
 
 #include "apps/viewer/scene/scene.hpp"
+#include "benchmarks/viewer/timing.hpp"
 #include "palpate/edit.hpp"
 #include "palpate/scenes/volumes.hpp"
-#include "tests/viewer/scene/timing.hpp"
 
 namespace {
 

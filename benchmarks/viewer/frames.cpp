@@ -1,6 +1,6 @@
 // Measures the 3-D view on this machine: how long a picture takes while the camera turns, how soon
 // the fine one is there, how long the window was busy at a stretch. For docs/performance.md:
-//   scripts/with_display.sh build/dev/tests/viewer/scene/viewer_frames synthetic:sphere:256x256x256
+//   scripts/with_display.sh build/dev/benchmarks/viewer_frames synthetic:sphere:256x256x256
 #include <sys/resource.h>
 #include <QApplication>
 #include <QElapsedTimer>
@@ -18,8 +18,8 @@
 #include <vector>
 
 #include "apps/viewer/scene/scene.hpp"
+#include "benchmarks/viewer/timing.hpp"
 #include "palpate/run/source.hpp"
-#include "tests/viewer/scene/timing.hpp"
 
 namespace {
 
