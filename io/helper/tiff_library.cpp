@@ -60,6 +60,7 @@ Tiff open_mirror(const std::filesystem::path& file, const char* mode) {
 }  // namespace
 
 Tiff open_tiff(const std::filesystem::path& file, const char* mode) {
+    first_error.clear();
     TIFFSetErrorHandler(keep_error);
     TIFFSetWarningHandler(nullptr);
     if (uses_mirror()) return open_mirror(file, mode);

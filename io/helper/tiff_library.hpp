@@ -14,7 +14,7 @@ using Tiff = std::unique_ptr<TIFF, decltype(&TIFFClose)>;
 /// TIFFOpen; null if that fails. `mode` as there: "r", "w", with letters after it.
 Tiff open_tiff(const std::filesystem::path& file, const char* mode);
 
-/// libtiff's first error in this process; empty if there was none.
+/// libtiff's first error since open_tiff(); empty if there was none.
 const std::string& first_tiff_error();
 
 }  // namespace palpate::io

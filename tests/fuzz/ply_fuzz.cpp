@@ -1,0 +1,27 @@
+// Any bytes are the vertices and faces of a PLY mesh, or a failure of one line.
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <string>
+#include <string_view>
+
+#include "io/helper/decode.hpp"
+#include "io/helper/ply_mesh.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    using namespace palpate::io;
+    const int file = memfd_create("mesh", MFD_CLOEXEC);
+    if (file < 0) return 0;
+    if (write(file, data, size) == static_cast<ssize_t>(size)) {
+        try {
+            const PlyMesh mesh = ply_mesh("/proc/self/fd/" + std::to_string(file));
+            // Nothing comes from nowhere: an entry takes a byte or more of the file.
+            if (mesh.vertices.size() + mesh.faces.size() > size) std::abort();
+        } catch (const Failure& failure) {
+            if (std::string_view(failure.what()).size() > 4000) std::abort();
+        }
+    }
+    close(file);
+    return 0;
+}
