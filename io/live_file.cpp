@@ -208,7 +208,7 @@ LiveWriter::LiveWriter(const std::filesystem::path& path, const Geometry& geomet
     if (!(std::isfinite(interval) && interval >= 0)) {
         throw std::invalid_argument("the interval between frames is not a number of seconds");
     }
-    header_ = {geometry, type, slots, interval, live_header_bytes, 0};
+    header_ = {orthonormal(geometry), type, slots, interval, live_header_bytes, 0};
     header_.slot_bytes = padded(live_slot_header_bytes + header_.frame_bytes());
     if (header_.slot_bytes > (std::uint64_t{1} << 62) / static_cast<std::uint64_t>(slots)) {
         throw std::invalid_argument("frames of that size do not fit into a file");

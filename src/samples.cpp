@@ -175,6 +175,7 @@ Samples::Samples(Volume overview, const Geometry& geometry, ResidentBricks resid
                  double maximum)
     : geometry_(geometry), resident_(std::move(resident)), minimum_(minimum), maximum_(maximum) {
     check(geometry);
+    geometry_ = orthonormal(geometry);
     if (resident_->count() != ResidentBricks(geometry.size).count()) {
         throw std::invalid_argument("the bricks do not fit the grid");
     }

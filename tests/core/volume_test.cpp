@@ -205,6 +205,27 @@ TEST(Volume, index_and_physical_space_are_each_others_inverse) {
               1e-12);
 }
 
+TEST(Volume, has_the_nearest_direction_that_is_orthonormal_to_all_digits) {
+    Random random(92);
+    for (int i = 0; i < 200; ++i) {
+        Geometry geometry = grid({2, 2, 2}, {0.5, 0.7, 2}, {-300, 30, 7}, oblique_direction());
+        if (i % 2) geometry.direction.col(1) *= -1;
+        EXPECT_EQ(made(geometry).geometry(), geometry) << "what is orthonormal stays as it is";
+        const Mat3 exact = geometry.direction;
+        for (int k = 0; k < 9; ++k) geometry.direction(k / 3, k % 3) += random.uniform(-3e-5, 3e-5);
+        const Geometry had = made(geometry).geometry();
+        const Mat3 error = had.direction.transpose() * had.direction - Mat3::Identity();
+        EXPECT_LE(error.cwiseAbs().maxCoeff(), 1e-14);
+        EXPECT_LE((had.direction - exact).cwiseAbs().maxCoeff(), 1e-4);
+        const Vec3 physical = random.point(-10, 10);
+        const Vec3 back = physical_from_index(had, index_from_physical(had, physical));
+        EXPECT_LE((back - physical).norm(), 1e-11) << "300 mm from the origin";
+        // Samples of a large grid as well.
+        const Samples large(made(geometry), geometry, ResidentBricks(geometry.size), 0, 1);
+        EXPECT_EQ(large.geometry(), had);
+    }
+}
+
 /// One pass at one sample, straight from the definition.
 double binomial(const Volume& volume, const Index3& at) {
     double sum = 0;
