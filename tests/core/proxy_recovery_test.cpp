@@ -299,3 +299,25 @@ TEST(Place, refuses_a_hip_that_is_not_finite) {
     EXPECT_FALSE(place(proxy, test.field, Vec3(0, std::nan(""), 0), 128));
     EXPECT_FALSE(place(proxy, test.field, Vec3(1e30, 0, 0), 128));
 }
+
+TEST(Recovery, never_ends_an_update_deeper_than_it_began) {
+    // With a small budget updates end while the smooth field's line search is at any of its trials.
+    const Field field = smooth(noise_field().field);
+    Random random(8);
+    int inside = 0;
+    for (int i = 0; i < scaled(20'000); ++i) {
+        Proxy proxy;
+        proxy.isovalue = 40;
+        proxy.placed = true;
+        proxy.scp_physical = random.point(2, 21);
+        const double before = excess_at(field, proxy.scp_physical, 40);
+        if (!(before > 0)) continue;
+        ProxySettings settings;
+        settings.step_budget = 1 + random.below(30);
+        const ProxyUpdate r = update_exact(proxy, field, proxy.scp_physical, settings);
+        if (r.status != UpdateStatus::recovering) continue;
+        ++inside;
+        ASSERT_LE(excess_at(field, r.scp, 40), before + 1e-12);
+    }
+    EXPECT_GT(inside, scaled(1000));
+}
