@@ -23,6 +23,17 @@ constexpr double least_progress = 1e-9;
 /// Tries before the proxy looks round in all directions.
 constexpr int most_failures = 6;
 
+/// Whether the `i`-th of 125 places round a point is a direction of its own: those with three even
+/// axes are twice another one.
+constexpr bool is_direction(int i) {
+    return i % 5 % 2 == 1 || i / 5 % 5 % 2 == 1 || i / 25 % 2 == 1;
+}
+constexpr int count_of_directions() {
+    int count = 0;
+    for (int i = 0; i < 125; ++i) count += is_direction(i);
+    return count;
+}
+
 /// The tangent plane of the surface through a point, and where the target lies from it. Folded
 /// vectors in millimetres; heights are times the slope, so that none of this needs a root.
 struct Contact {
@@ -282,12 +293,13 @@ class CubicDescent {
         return true;
     }
 
-    /// Where the normal does not show a way: of 52 directions the one in which a small step leads
+    /// Where the normal does not show a way: of 49 directions the one in which a small step leads
     /// closest, and along it as far as a voxel. Takes as much of the budget as it has directions,
     /// for that is its work.
     bool look_round() {
         constexpr double step = 1e-3;  // [voxel]
-        constexpr int directions = 52;
+        constexpr int directions = 49;
+        static_assert(count_of_directions() == 2 * directions, "half of them lead closer");
         if (progress_.budget <= directions) {
             progress_.budget = 0;
             return true;
@@ -300,8 +312,7 @@ class CubicDescent {
         Progress unseen{progress_.geometry, {}, progress_.target, progress_.budget};
         for (int i = 0; i < 125; ++i) {
             const Vec3 axes(i % 5 - 2, i / 5 % 5 - 2, i / 25 - 2);
-            if (dot(axes, h) <= 0) continue;
-            if (std::abs(axes[0]) + std::abs(axes[1]) + std::abs(axes[2]) == 6) continue;
+            if (!is_direction(i) || dot(axes, h) <= 0) continue;
             const Vec3 v = axes * (shortest_ / std::sqrt(dot(axes, axes)));
             site_.return_to(start);
             if (!go(step * v, h, site_.slide_level(), unseen)) continue;
