@@ -97,6 +97,8 @@ struct ProxyUpdate {
     double isovalue = 0;      ///< [data units] of the surface felt; free: of the one ahead
     bool behind = false;      ///< the surface felt is that of Proxy::behind
     int tetrahedra = 0;       ///< number of them that the SCP moved through
+    int work = 0;             ///< straight pieces evaluated, of the step budget
+    double searched = 0;      ///< [mm] how far from the SCP recovery has looked for free space
     int level = 0;            ///< of detail of the samples at the SCP (reach.hpp)
 };
 

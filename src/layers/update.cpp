@@ -33,7 +33,7 @@ class LayersTick {
         Vec3 from = state_.moved ? state_.hip : input_.hip;
         move_to(input_.hip);
         while (update_.status == UpdateStatus::done && felt_.punctured < most_punctures &&
-               update_.tetrahedra < input_.proxy.step_budget) {
+               update_.work < input_.proxy.step_budget) {
             const std::optional<double> share = gives_way(from);
             if (!share || !open()) break;
             ++felt_.punctured;
@@ -145,14 +145,16 @@ class LayersTick {
         ProxySettings settings = bound();
         const ProxyMethod method = state_.needle.inserted ? &update_straight : input_.method;
         // The tick has one budget, however many surfaces give way in it.
-        const int before = update_.tetrahedra;
-        settings.step_budget -= before;
-        if (before > 0 && settings.step_budget < 1) {
+        const ProxyUpdate before = update_;
+        settings.step_budget -= before.work;
+        if (before.work > 0 && settings.step_budget < 1) {
             update_.status = UpdateStatus::out_of_budget;
             return;
         }
         update_ = method(tissues_.proxy(), tissues_.field(), target_of(hand), settings, observer_);
-        update_.tetrahedra += before;
+        update_.tetrahedra += before.tetrahedra;
+        update_.work += before.work;
+        update_.searched = std::max(update_.searched, before.searched);
         if (!moved()) return;
         tissues_.look(update_);
         state_.touched = tissues_.touched(update_);

@@ -10,6 +10,10 @@
 namespace palpate {
 namespace {
 
+double squared(const Vec3& v) {
+    return dot(v, v);
+}
+
 double sum_of(const Vec3& v) {
     return v[0] + v[1] + v[2];
 }
@@ -83,7 +87,8 @@ Update<AnySite>::Update(Proxy& proxy, const Field& field, const Vec3& hip_index,
                         const ProxySettings& settings, StepObserver observer)
     : site(AnySite::of(proxy, field,
                        proxy.placed ? scp_in(field, proxy) : AnySite::located(hip_index))),
-      progress{field.geometry(), observer, hip_index, settings.step_budget} {
+      progress{field.geometry(), observer, hip_index, settings.step_budget},
+      budget(settings.step_budget) {
     if (!proxy.placed) progress.report(StepKind::place, site);
     if (site.is_beyond_behind()) site.turn();
     if (!site.is_inside()) {
@@ -91,10 +96,16 @@ Update<AnySite>::Update(Proxy& proxy, const Field& field, const Vec3& hip_index,
         return;
     }
     const Vec3 start = site.index();
+    const Vec3& spacing = progress.geometry.spacing;
+    const auto from_start = [&] {
+        return std::sqrt(squared((site.index() - start).cwiseProduct(spacing)));
+    };
     recovering = !recover(site, progress, proxy.recovery_reach) || site.is_beyond_behind();
+    searched = std::max(from_start(), proxy.recovery_reach * spacing.minCoeff());
     if (recovering) return;
-    if (!proxy.ahead.isZero(0) && push_ahead(site, progress, start, proxy.ahead)) return;
-    prefer_free_hip(site, progress, start);
+    const bool pushed = !proxy.ahead.isZero(0) && push_ahead(site, progress, start, proxy.ahead);
+    searched = std::max(searched, from_start());
+    if (!pushed) prefer_free_hip(site, progress, start);
 }
 
 template <class AnySite>
@@ -126,7 +137,9 @@ ProxyUpdate finish_update(Proxy& proxy, Update<AnySite>& update, const Vec3& hip
             .density = density,
             .isovalue = behind ? *proxy.behind : proxy.isovalue,
             .behind = behind,
-            .tetrahedra = update.progress.tetrahedra};
+            .tetrahedra = update.progress.tetrahedra,
+            .work = update.budget - std::max(0, update.progress.budget),
+            .searched = update.searched};
 }
 
 template struct Update<Site>;

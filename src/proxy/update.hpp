@@ -41,6 +41,8 @@ struct Update {
 
     AnySite site;
     Progress progress;
+    const int budget;
+    double searched = 0;  ///< [mm], see ProxyUpdate
     bool recovering = false;
 };
 
