@@ -1,6 +1,7 @@
 // Renderer: one tick, from the device's state by HIP, proxy and penetrability to the force.
 #include "palpate/renderer.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -282,8 +283,10 @@ void check(const RendererSettings& s) {
     if (s.proxy.step_budget < 1) throw std::invalid_argument("the step budget must be at least 1");
     const Mat3 r = s.transform.rotation.transpose() * s.transform.rotation - Mat3::Identity();
     // maxCoeff() alone may pass over a NaN.
-    if (!r.allFinite() || r.cwiseAbs().maxCoeff() >= 1e-6) {
-        throw std::invalid_argument("device transform: rotation must be orthonormal");
+    if (!r.allFinite() || r.cwiseAbs().maxCoeff() >= 1e-6 ||
+        !(s.transform.rotation.determinant() > 0)) {
+        throw std::invalid_argument(
+            "device transform: rotation must be orthonormal and must not mirror");
     }
     const Vec3& translation = s.transform.translation;
     if (!translation.allFinite() || translation.cwiseAbs().maxCoeff() > farthest_translation) {

@@ -14,7 +14,7 @@ namespace palpate {
 /// The place of the device's workspace in the volume's physical space:
 /// physical = translation + scale * rotation * device.
 struct DeviceTransform {
-    Mat3 rotation = Mat3::Identity();  ///< orthonormal, device axes to physical axes
+    Mat3 rotation = Mat3::Identity();  ///< orthonormal, not mirrored, device axes to physical axes
     Vec3 translation = Vec3::Zero();   ///< [mm, physical] where the device's origin lies
     double scale = 1;                  ///< physical mm per device mm, > 0
 };

@@ -269,6 +269,8 @@ TEST(Renderer, refuses_settings_that_cannot_be_rendered) {
                            [=](RendererSettings& s) { s.transform.rotation(i / 3, i % 3) = bad; });
         }
     }
+    // Closing the clutch would turn one of its axes over, and a tool has no mirrored orientation.
+    expect_refused("mirror", [](RendererSettings& s) { s.transform.rotation(1, 1) = -1; });
     for (int i = 0; i < 3; ++i) {
         expect_refused("translation",
                        [=](RendererSettings& s) { s.transform.translation[i] = not_a_number; });
