@@ -363,6 +363,8 @@ void use_tool(Renderer& renderer, std::shared_ptr<const Tool> tool,
         point.scp = locate(point.interpolation,
                            index_from_physical(renderer.field.geometry(), point.scp_physical));
         renderer.proxy = point;
+        proxy->kept.surroundings.samples.reset();  // nobody feels them
+        renderer.layers = {};
     }
     settings.tool = std::move(tool);
     renderer.force.waiting = true;

@@ -252,6 +252,19 @@ TEST(ToolSession, tools_are_taken_up_and_put_down_where_the_proxy_is) {
     EXPECT_EQ(live.last.tick.tool.contacts, 0);
 }
 
+TEST(ToolSession, a_tool_that_was_put_down_keeps_no_samples) {
+    FeltLive live(at_once());
+    apply(live.session, command::UseTool{std::make_shared<const Tool>(sphere_tool(2, 0.5))});
+    live.rest_at(33);
+    const std::weak_ptr<const Samples> felt = live.session.renderer.field.shared_samples();
+    apply(live.session, command::UseTool{nullptr});
+    live.next();
+    const Field other = smooth(ramp_field());
+    apply(live.session, command::Samples{other.shared_samples()});
+    live.next();
+    EXPECT_TRUE(felt.expired());
+}
+
 TEST(ToolSession, what_a_tool_cannot_do_yet_is_refused_in_words) {
     const auto refused = [](auto&& change, Interpolation interpolation = Interpolation::cubic) {
         RendererSettings settings = settings_with(one_arm({1, 0, 0}));
