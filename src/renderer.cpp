@@ -103,6 +103,18 @@ ProxyUpdate wait_for_samples(const Renderer& renderer, const Vec3& hip) {
     return held;
 }
 
+/// Recovery is bound to no ball that was found in memory before. What it found does not count where
+/// nearer samples are not there: it looks again when they are. True if the point, which was at
+/// `before` and should go to `hip`, has to wait.
+bool looked_beyond_memory(Renderer& renderer, const Proxy& before, const Vec3& hip,
+                          double searched) {
+    const Vec3& from = before.placed ? before.scp_physical : hip;
+    if (!(searched > 0) || is_resident(renderer.field, from, searched)) return false;
+    renderer.proxy = before;
+    renderer.proxy.recovery_reach = 0;
+    return true;
+}
+
 /// Layers move the proxy from where the hand was, too.
 Pull pull_of(const Renderer& renderer, const Vec3& hip) {
     Pull pull{renderer.proxy.placed ? renderer.proxy.scp_physical : hip, hip};
@@ -114,7 +126,7 @@ Pull pull_of(const Renderer& renderer, const Vec3& hip) {
 
 /// The proxy's part of a tick, with what may press it through surfaces.
 Moved move_proxy(Renderer& renderer, const DeviceState& device, const Vec3& hip,
-                 StepObserver observer) {
+                 const Proxy& before, StepObserver observer) {
     const RendererSettings& settings = renderer.settings;
     // A position that is not trusted moves nothing.
     if (!device.valid) return {refuse_update(renderer.proxy, renderer.field, hip), {}};
@@ -122,29 +134,33 @@ Moved move_proxy(Renderer& renderer, const DeviceState& device, const Vec3& hip,
     if (part == 0 || (part < 1 && (settings.layers || settings.penetrability.on))) {
         return {wait_for_samples(renderer, hip), {}};
     }
-    if (!settings.layers) {
-        const Vec3 from = renderer.proxy.placed ? renderer.proxy.scp_physical : hip;
+    Moved moved;
+    if (settings.layers) {
+        const DeviceTransform& transform = settings.transform;
+        const LayerInput input{.method = settings.method,
+                               .hip = hip,
+                               .proxy = settings.proxy,
+                               .force = settings.force,
+                               .limits = settings.device,
+                               .device_per_volume = 1 / transform.scale,
+                               .time = device.time,
+                               .pointing = transform.rotation * device.pointing};
+        moved.layers = update_layers(*settings.layers, renderer.layers, renderer.proxy,
+                                     renderer.field, input, observer);
+        moved.proxy = moved.layers->proxy;
+    } else {
+        const Vec3 from = before.placed ? before.scp_physical : hip;
         const Vec3 goal = part == 1 ? hip : Vec3(from + part * (hip - from));
-        Moved moved{settings.method(renderer.proxy, renderer.field, goal, settings.proxy, observer),
-                    {}};
+        moved.proxy =
+            settings.method(renderer.proxy, renderer.field, goal, settings.proxy, observer);
         moved.proxy.hip = hip;
         const bool arrived = moved.proxy.mode == Mode::free && counts(moved.proxy.status);
         if (part < 1 && arrived) moved.proxy.status = UpdateStatus::waiting;
-        return moved;
     }
-    const DeviceTransform& transform = settings.transform;
-    const LayerInput input{.method = settings.method,
-                           .hip = hip,
-                           .proxy = settings.proxy,
-                           .force = settings.force,
-                           .limits = settings.device,
-                           .device_per_volume = 1 / transform.scale,
-                           .time = device.time,
-                           .pointing = transform.rotation * device.pointing};
-    Moved moved;
-    moved.layers = update_layers(*settings.layers, renderer.layers, renderer.proxy, renderer.field,
-                                 input, observer);
-    moved.proxy = moved.layers->proxy;
+    if (looked_beyond_memory(renderer, before, hip, moved.proxy.searched)) {
+        renderer.layers = {};
+        return {wait_for_samples(renderer, hip), {}};
+    }
     return moved;
 }
 
@@ -168,6 +184,14 @@ ToolUpdate move_tool(Renderer& renderer, const Pose& hand, const ToolSettings& a
     }
     update = update_tool(proxy, renderer.field, goal, asked, observer);
     update.hand = hand;
+    if (update.searched > 0 &&
+        !is_resident(renderer.field, from.position, update.searched + proxy.tool().radius())) {
+        proxy.pose = update.proxy = from;
+        proxy.contact_count = 0;
+        proxy.kept.inside = true;
+        proxy.kept.search = 0;
+        update.status = UpdateStatus::waiting;
+    }
     if (part < 1 && update.mode == Mode::free && counts(update.status)) {
         update.status = UpdateStatus::waiting;
     }
@@ -395,7 +419,7 @@ Tick render(Renderer& renderer, const DeviceState& device, StepObserver observer
     tick.time = device.time;
     const std::int64_t begin = clock ? clock() : 0;
     const Proxy before = renderer.proxy;
-    Moved moved = move_proxy(renderer, device, hip, observer);
+    Moved moved = move_proxy(renderer, device, hip, before, observer);
     if (!is_finite(renderer.proxy)) {
         renderer.proxy = before;
         renderer.layers = {};

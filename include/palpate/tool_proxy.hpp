@@ -45,6 +45,8 @@ struct ToolUpdate {
     int contacts = 0;  ///< how many points hold the proxy
     int rounds = 0;
     int work = 0;  ///< cubes looked at
+    /// [mm] How far from its pose recovery has looked for free space for the reference point.
+    double searched = 0;
 };
 
 namespace tool {

@@ -473,7 +473,12 @@ ToolUpdate update_tool(ToolProxy& proxy, const Field& field, const Pose& hand,
         kept.isovalue = proxy.isovalue;
         kept.renewed = false;
     }
-    if (others || kept.inside) kept.inside = !tool::recover(proxy, around, observer);
+    if (others || kept.inside) {
+        const Vec3 start = proxy.pose.position;
+        kept.inside = !tool::recover(proxy, around, observer);
+        result.searched =
+            std::max((proxy.pose.position - start).norm(), tool::searched_so_far(proxy, around));
+    }
     proxy.placed = true;
     if (!kept.inside) {
         tool::Rounds rounds(proxy, around, result.hand, settings, observer);

@@ -8,6 +8,7 @@
 #include "palpate/session.hpp"
 #include "support/constants.hpp"
 #include "support/edits.hpp"
+#include "support/layer.hpp"
 #include "support/parameter.hpp"
 #include "support/resident.hpp"
 
@@ -274,6 +275,43 @@ TEST(Reach, a_tool_waits_too_and_none_of_its_points_leaves_what_is_in_memory) {
     }
     EXPECT_GT(waiting, scaled(300));
     EXPECT_GT(done, scaled(300));
+}
+
+enum class Felt { surface, layers, tool };
+
+TEST_P(ReachOnFields, recovery_waits_where_nearer_samples_are_missing) {
+    // Free from x = 70 to 80, in brick 1, and from 140 on, in brick 2.
+    const Volume volume = volume_of<float>(grid({192, 8, 8}), [](const Index3& i) {
+        return (i[0] >= 70 && i[0] <= 80) || i[0] >= 140 ? -1 : 1;
+    });
+    const Vec3 hand(40, 4, 4);
+    for (const Felt felt : {Felt::surface, Felt::layers, Felt::tool}) {
+        if (felt == Felt::tool && GetParam() == Interpolation::linear) continue;
+        PartOf part(volume);
+        part.add({0, 0, 0});
+        part.add({2, 0, 0});
+        RendererSettings settings;
+        if (felt == Felt::layers) {
+            Layers layers;
+            layers.layers = {layer_of("solid", 0, 0.5, infinity)};
+            settings.layers = std::make_shared<const Layers>(layers);
+        }
+        if (felt == Felt::tool) settings.tool = std::make_shared<const Tool>(sphere_tool(1, 1));
+        // The background is solid, so no side is a way out.
+        Renderer renderer =
+            make_renderer(Field(part.samples(), Solid::above, 1, GetParam()), 0, settings);
+        Tick tick;
+        for (int i = 0; i < 60; ++i) {
+            tick = render(renderer, hand_at(hand, i));
+            ASSERT_LT((tick.proxy.scp - hand).norm(), 8) << int(felt) << " tick " << i;
+        }
+        EXPECT_EQ(tick.proxy.status, UpdateStatus::waiting) << int(felt);
+        part.add({1, 0, 0});
+        renderer.field.use(part.samples());
+        for (int i = 60; i < 160; ++i) tick = render(renderer, hand_at(hand, i));
+        EXPECT_EQ(tick.proxy.status, UpdateStatus::done) << int(felt);
+        EXPECT_NEAR(tick.proxy.scp[0], 70, 3) << int(felt);
+    }
 }
 
 TEST(Reach, layers_and_penetrability_wait_until_the_whole_way_of_the_hand_is_there) {
