@@ -243,6 +243,7 @@ static void members(auto& v, Is<command::Scale> auto& s) {
 
 static void members(auto& v, Is<command::UseLayers> auto& s) {
     v("layers", s.layers);
+    v("same_surfaces", s.same_surfaces);
 }
 static void members(auto& v, Is<command::UseTool> auto& s) {
     v("tool", s.tool);

@@ -78,68 +78,6 @@ void Field::set_time(double time) noexcept {
     look();
 }
 
-void Field::show_labels(std::uint32_t labels) noexcept {
-    labels_ = labels;
-    background_ = labels & 1U;
-    if (shows_labels_) return;
-    shows_labels_ = true;
-    look();
-}
-
-/// Visits the labels of `count` samples along each axis, from `low` on, x fastest.
-template <int count, class Visit>
-void Field::for_each_label(const Index3& low, Visit&& visit) const {
-    const auto is_inside = [&](int a) { return low[a] >= 0 && low[a] <= size_[a] - count; };
-    const auto* labels = static_cast<const std::uint8_t*>(data_);
-    if (is_inside(0) && is_inside(1) && is_inside(2)) {
-        labels += low[0] + low[1] * row_ + low[2] * slice_;
-        for (int z = 0; z < count; ++z, labels += slice_) {
-            const std::uint8_t* row = labels;
-            for (int y = 0; y < count; ++y, row += row_) {
-                visit(row[0]);
-                visit(row[1]);
-                if constexpr (count == 3) visit(row[2]);
-            }
-        }
-        return;
-    }
-    // Not negative and below the size, in one comparison.
-    const auto is_in_grid = [&](int a, int i) {
-        return static_cast<unsigned>(i) < static_cast<unsigned>(size_[a]);
-    };
-    for (int z = low[2]; z < low[2] + count; ++z) {
-        for (int y = low[1]; y < low[1] + count; ++y) {
-            const bool row_in_grid = is_in_grid(1, y) && is_in_grid(2, z);
-            for (int x = low[0]; x < low[0] + count; ++x) {
-                const bool in_grid = row_in_grid && is_in_grid(0, x);
-                visit(in_grid ? labels[x + y * row_ + z * slice_] : std::uint8_t{0});
-            }
-        }
-    }
-}
-
-std::uint32_t Field::labels_around(const Index3& at) const noexcept {
-    std::uint32_t labels = 0;
-    for_each_label<3>(at - Index3::Ones(),
-                      [&](std::uint8_t label) { labels |= std::uint32_t{1} << label; });
-    return labels;
-}
-
-CellSamples Field::shown_cell(const Index3& cell) const {
-    CellSamples samples;
-    double* out = samples.data();
-    for_each_label<2>(cell, [&](std::uint8_t label) { *out++ = labels_ >> label & 1U; });
-    return samples;
-}
-
-std::array<std::uint8_t, 27> Field::shown_around(const Index3& at) const {
-    std::array<std::uint8_t, 27> samples;
-    std::uint8_t* out = samples.data();
-    for_each_label<3>(at - Index3::Ones(),
-                      [&, shown = labels_](std::uint8_t label) { *out++ = shown >> label & 1U; });
-    return samples;
-}
-
 void Field::cover(const std::shared_ptr<const Field>& labels, std::uint32_t solid_labels,
                   double open, double solid) noexcept {
     if (cover_.labels != labels) {
@@ -178,34 +116,41 @@ int Field::covering_label(const Index3& at) const noexcept {
         labels.data_)[there[0] + there[1] * labels.row_ + there[2] * labels.slice_];
 }
 
-/// In `count` samples along each axis from `low` on, all inside of both grids, which are the same.
-template <int count>
-bool Field::has_label(const Index3& low) const noexcept {
-    const auto* plane = static_cast<const std::uint8_t*>(cover_.labels->data_) +
-                        (low[0] + low[1] * row_ + low[2] * slice_);
-    unsigned labels = 0;
-    for (int z = 0; z < count; ++z, plane += slice_) {
-        for (int y = 0; y < count; ++y) {
-            for (int x = 0; x < count; ++x) labels |= plane[x + y * row_];
+bool Field::is_covered_around(const Index3& at) const noexcept {
+    unsigned any = 0;
+    if (cover_.same_grid && is_inner(at)) {
+        const auto* label = static_cast<const std::uint8_t*>(cover_.labels->data_) +
+                            (at[0] + at[1] * row_ + at[2] * slice_);
+        for (const std::ptrdiff_t z : {-slice_, std::ptrdiff_t{0}, slice_}) {
+            for (const std::ptrdiff_t y : {z - row_, z, z + row_}) {
+                for (int x = -1; x <= 1; ++x) any |= label[y + x];
+            }
+        }
+        return any != 0;
+    }
+    for (int i = 0; i < 27 && any == 0; ++i) {
+        any = unsigned(covering_label(at + Index3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1)));
+    }
+    return any != 0;
+}
+
+/// Turns a block of samples, less offset(), into what they count as under the labels.
+template <std::size_t count>
+void Field::cover_samples(const Index3& low,
+                          std::array<double, count * count * count>& samples) const {
+    constexpr int side = static_cast<int>(count);
+    double* sample = samples.data();
+    const bool inside =
+        cover_.same_grid && (low.array() >= 0).all() && (low.array() <= size_.array() - side).all();
+    const auto* labels = static_cast<const std::uint8_t*>(cover_.labels->data_);
+    for (int z = low[2]; z < low[2] + side; ++z) {
+        for (int y = low[1]; y < low[1] + side; ++y) {
+            const std::ptrdiff_t row = y * row_ + z * slice_;
+            for (int x = low[0]; x < low[0] + side; ++x, ++sample) {
+                *sample = covered(inside ? labels[row + x] : covering_label({x, y, z}), *sample);
+            }
         }
     }
-    return labels != 0;
-}
-
-bool Field::is_covered_around(const Index3& at) const noexcept {
-    if (cover_.same_grid && is_inner(at)) return has_label<3>(at - Index3::Ones());
-    bool any = false;
-    for (int i = 0; i < 27 && !any; ++i) {
-        any = covering_label(at + Index3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1)) > 0;
-    }
-    return any;
-}
-
-/// What a sample, less offset(), counts as under the labels.
-double Field::covered(const Index3& at, double sample) const noexcept {
-    const int label = covering_label(at);
-    if (cover_.solid_labels >> label & 1U) return cover_.solid;
-    return label > 0 ? cover_.open : sample;
 }
 
 /// Updates what is derived from samples and time.
@@ -233,14 +178,7 @@ void Field::look() noexcept {
     tolerance_ = std::max(1e-12 * range_, 8 * std::numeric_limits<double>::epsilon() * largest);
     lowest_ = (low - offset_) - range_;
     highest_ = (high - offset_) + range_;
-    reads_bricks_ = resident_ && offset_ == 0 && !shows_labels_ && !cover_.labels;
-    if (!shows_labels_) return;
-    range_ = 1;
-    lowest_ = -1;
-    highest_ = 2;
-    offset_ = 0;
-    tolerance_ = 1e-12;
-    plain_.setZero();
+    reads_bricks_ = resident_ && offset_ == 0 && !cover_.labels;
 }
 
 /// As stored_cell(), which costs more calls.
@@ -263,18 +201,14 @@ template CellSamples Field::resident_cell<std::uint16_t>(const Index3&) const;
 template CellSamples Field::resident_cell<float>(const Index3&) const;
 
 CellSamples Field::other_cell(const Index3& cell) const {
-    if (shows_labels_) return shown_cell(cell);
     const auto is_plain = [&](int a) {
         return static_cast<unsigned>(cell[a]) < static_cast<unsigned>(cover_.plain[a]);
     };
-    if (is_plain(0) && is_plain(1) && is_plain(2) && !has_label<2>(cell)) {
-        return corners(type_, data_, cell[0] + cell[1] * row_ + cell[2] * slice_, row_, slice_);
-    }
-    CellSamples samples = uncovered_cell(cell);
-    if (!cover_.labels) return samples;
-    for (int c = 0; c < 8; ++c) {
-        samples[c] = covered(cell + Index3(c & 1, c >> 1 & 1, c >> 2 & 1), samples[c]);
-    }
+    CellSamples samples =
+        is_plain(0) && is_plain(1) && is_plain(2)
+            ? corners(type_, data_, cell[0] + cell[1] * row_ + cell[2] * slice_, row_, slice_)
+            : uncovered_cell(cell);
+    if (cover_.labels) cover_samples<2>(cell, samples);
     return samples;
 }
 
@@ -323,12 +257,15 @@ std::array<double, count * count * count> Field::clipped(const Index3& low) cons
 }
 
 Neighbours Field::other_around(const Index3& at) const {
-    Neighbours samples = uncovered_around(at);
-    if (!cover_.labels) return samples;
-    for (int i = 0; i < 27; ++i) {
-        const Index3 next = at + Index3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
-        samples[std::size_t(i)] = covered(next, samples[std::size_t(i)]);
+    Neighbours samples;
+    const auto is_plain = [&](int a) { return at[a] > 0 && at[a] < cover_.plain[a]; };
+    if (is_plain(0) && is_plain(1) && is_plain(2)) {
+        samples = with_type(
+            type_, [&](auto zero) { return clipped<decltype(zero), 3>(at - Index3::Ones()); });
+    } else {
+        samples = uncovered_around(at);
     }
+    if (cover_.labels) cover_samples<3>(at - Index3::Ones(), samples);
     return samples;
 }
 

@@ -118,7 +118,8 @@ std::shared_ptr<const Field> numbered_labels(const Volume& labels, std::span<con
             }
         }
     });
-    return std::make_shared<const Field>(Volume(labels.geometry(), std::move(numbers)));
+    return std::make_shared<const Field>(Volume(labels.geometry(), std::move(numbers)),
+                                         Solid::above, 0.0);
 }
 
 double property_of(const Layers& layers, int layer, HapticProperty property, double density,

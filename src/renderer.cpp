@@ -29,7 +29,6 @@ constexpr int magnet_budget = 512;
 double distance_to_surface(const Field& field, const ProxyUpdate& at, const Vec3& normal,
                            double reach) {
     if (normal.isZero(0) || !std::isfinite(at.isovalue)) return -1;
-    if (!is_resident(field, at.scp, reach)) return -1;
     const RayHit ray = cast_ray(field, at.isovalue, at.scp, at.scp - reach * normal, magnet_budget);
     return ray.hit ? (ray.point - at.scp).norm() : -1;
 }
@@ -75,16 +74,24 @@ ForceInput force_input(const Renderer& renderer, const DeviceState& device, cons
         input.texture_slope = to_device * texture_slope(force.texture, at.scp);
     } else if (force.magnet.distance > 0 && force.magnet.peak > 0) {
         const double reach = force.magnet.distance * transform.scale;
-        const Vec3 normal = normal_at(renderer.proxy, renderer.field);
-        const double distance = distance_to_surface(renderer.field, at, normal, reach);
+        const Field& felt = felt_field(renderer);
+        const Vec3 normal = normal_at(renderer.proxy, felt);
+        const double distance = is_resident(renderer.field, at.scp, reach)
+                                    ? distance_to_surface(felt, at, normal, reach)
+                                    : -1;
         input.normal = to_device * normal;
         input.surface_distance = distance / transform.scale;
     }
     return input;
 }
 
-/// Layers set the proxy's level; the isovalue waits for their end.
-void keep_isovalue(Renderer& renderer) {
+/// Layers set the proxy's level; the isovalue waits for their end. What other layers knew does not
+/// count.
+void look_at_layers(Renderer& renderer) {
+    const Layers* const set = renderer.settings.tool ? nullptr : renderer.settings.layers.get();
+    if (renderer.layers.set && renderer.layers.set != set) {
+        forget_layers(renderer.layers, renderer.proxy, renderer.field);
+    }
     auto& waiting = renderer.isovalue_without_layers;
     const bool by_layers = have_surfaces(renderer.settings.layers) && !renderer.settings.tool;
     if (by_layers == waiting.has_value()) return;
@@ -98,7 +105,8 @@ void keep_isovalue(Renderer& renderer) {
 
 /// An update that leaves the proxy where it is, because samples are missing.
 ProxyUpdate wait_for_samples(const Renderer& renderer, const Vec3& hip) {
-    ProxyUpdate held = refuse_update(renderer.proxy, renderer.field, hip, UpdateStatus::waiting);
+    ProxyUpdate held =
+        refuse_update(renderer.proxy, felt_field(renderer), hip, UpdateStatus::waiting);
     if (!renderer.proxy.placed) held.scp = hip;
     return held;
 }
@@ -129,7 +137,7 @@ Moved move_proxy(Renderer& renderer, const DeviceState& device, const Vec3& hip,
                  const Proxy& before, StepObserver observer) {
     const RendererSettings& settings = renderer.settings;
     // A position that is not trusted moves nothing.
-    if (!device.valid) return {refuse_update(renderer.proxy, renderer.field, hip), {}};
+    if (!device.valid) return {refuse_update(renderer.proxy, felt_field(renderer), hip), {}};
     const double part = part_within_reach(renderer.field, pull_of(renderer, hip));
     if (part == 0 || (part < 1 && (settings.layers || settings.penetrability.on))) {
         return {wait_for_samples(renderer, hip), {}};
@@ -158,7 +166,7 @@ Moved move_proxy(Renderer& renderer, const DeviceState& device, const Vec3& hip,
         if (part < 1 && arrived) moved.proxy.status = UpdateStatus::waiting;
     }
     if (looked_beyond_memory(renderer, before, hip, moved.proxy.searched)) {
-        renderer.layers = {};
+        forget_layers(renderer.layers, renderer.proxy, renderer.field);
         return {wait_for_samples(renderer, hip), {}};
     }
     return moved;
@@ -371,6 +379,7 @@ void use_tool(Renderer& renderer, std::shared_ptr<const Tool> tool,
     RendererSettings& settings = renderer.settings;
     std::optional<ToolProxy>& proxy = renderer.tool_proxy;
     if (tool && !(proxy && proxy->use(tool))) return;
+    forget_layers(renderer.layers, renderer.proxy, renderer.field);
     if (tool && !settings.tool) {
         proxy->pose = {renderer.proxy.scp_physical,
                        Quaternion(settings.transform.rotation * orientation).normalized()};
@@ -383,12 +392,9 @@ void use_tool(Renderer& renderer, std::shared_ptr<const Tool> tool,
         point.isovalue = renderer.proxy.isovalue;
         point.placed = proxy->placed;
         point.scp_physical = proxy->pose.position;
-        point.interpolation = renderer.field.interpolation();
-        point.scp = locate(point.interpolation,
-                           index_from_physical(renderer.field.geometry(), point.scp_physical));
+        put_on_lattice(point, renderer.field);
         renderer.proxy = point;
         proxy->kept.surroundings.samples.reset();  // nobody feels them
-        renderer.layers = {};
     }
     settings.tool = std::move(tool);
     renderer.force.waiting = true;
@@ -412,7 +418,7 @@ std::string isovalue_warning(const Field& field, double isovalue) {
 Tick render(Renderer& renderer, const DeviceState& device, StepObserver observer, Clock clock,
             PoseObserver pose_observer) {
     const RendererSettings& settings = renderer.settings;
-    keep_isovalue(renderer);
+    look_at_layers(renderer);
     if (settings.tool) return render_with_tool(renderer, device, clock, pose_observer);
     const Vec3 hip = physical_from_device(settings.transform, device.position);
     Tick tick;
@@ -422,8 +428,8 @@ Tick render(Renderer& renderer, const DeviceState& device, StepObserver observer
     Moved moved = move_proxy(renderer, device, hip, before, observer);
     if (!is_finite(renderer.proxy)) {
         renderer.proxy = before;
-        renderer.layers = {};
-        moved = {refuse_update(before, renderer.field, hip, UpdateStatus::not_finite), {}};
+        forget_layers(renderer.layers, renderer.proxy, renderer.field);
+        moved = {refuse_update(renderer.proxy, renderer.field, hip, UpdateStatus::not_finite), {}};
     }
     tick.update_ns = clock ? clock() - begin : 0;
     const bool has_surfaces = have_surfaces(settings.layers);
@@ -441,6 +447,7 @@ Tick render(Renderer& renderer, const DeviceState& device, StepObserver observer
     // The force comes back with the ramp.
     if (moved.proxy.status == UpdateStatus::waiting) renderer.force.ramp_begin = device.time;
     tick.proxy = moved.proxy;
+    if (renderer.layers.covered) tick.proxy.density = value_at(renderer.field, moved.proxy.scp);
     tick.proxy.level = level_at(renderer.field, moved.proxy.scp);
     if (moved.layers) tick.layers = moved.layers->felt;
     tick.force = force.force;

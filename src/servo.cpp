@@ -60,12 +60,14 @@ Snapshot snapshot_of(const Session& session, const SessionTick& tick, std::int64
     Snapshot snapshot;
     snapshot.number = number;
     snapshot.session = tick;
-    snapshot.scp = renderer.proxy.scp;
     snapshot.interpolation = renderer.proxy.interpolation;
-    const LayerState& layers = renderer.layers;
-    snapshot.normal = layers.labels && !layers.labels->covering_labels()
-                          ? normal_at(layers.label_proxy, *layers.labels)
-                          : normal_at(renderer.proxy, renderer.field);
+    snapshot.scp = renderer.proxy.scp;
+    if (renderer.layers.covered) {  // to the lattice of the data
+        snapshot.scp =
+            locate(snapshot.interpolation,
+                   index_from_physical(renderer.field.geometry(), renderer.proxy.scp_physical));
+    }
+    snapshot.normal = normal_at(renderer.proxy, felt_field(renderer));
     if (renderer.settings.tool) {
         snapshot.contacts = renderer.tool_proxy->contacts;
         snapshot.contact_count = renderer.tool_proxy->contact_count;

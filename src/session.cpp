@@ -58,12 +58,24 @@ void scale_about_scp(Renderer& renderer, double scale) {
     transform.scale = scale;
 }
 
-void use_layers(Renderer& renderer, const std::shared_ptr<const Layers>& layers) noexcept {
-    if (!layers) {
-        renderer.layers = {};
-        renderer.proxy.behind.reset();
-    }
-    renderer.settings.layers = layers;
+void use_layers(Renderer& renderer, const command::UseLayers& to) noexcept {
+    RendererSettings& settings = renderer.settings;
+    const bool keeps = to.same_surfaces && settings.layers && to.layers &&
+                       keep_for(renderer.layers, *settings.layers, *to.layers);
+    // Before the set goes, so that nothing of it is freed here.
+    if (!keeps) forget_layers(renderer.layers, renderer.proxy, renderer.field);
+    settings.layers = to.layers;
+}
+
+/// Changes the samples or their time, in every field that is made of them.
+template <class Change>
+void change_data(Renderer& renderer, Change&& change) noexcept {
+    std::optional<Field>& covered = renderer.layers.covered;
+    // Labels stand still.
+    const bool are_felt = !covered || covered->shared_samples() == renderer.field.shared_samples();
+    if (are_felt) field_will_change(renderer.proxy, felt_field(renderer));
+    change(renderer.field);
+    if (covered && are_felt) change(*covered);
 }
 
 /// Moves a playing sequence on with the time of the ticks, within its frames.
@@ -71,8 +83,8 @@ void play(Session& session, double time) {
     Field& field = session.renderer.field;
     const double dt = session.begun ? time - session.last_tick : 0;
     if (session.speed != 0 && dt > 0) {
-        field_will_change(session.renderer.proxy, field);
-        field.set_time(field.samples().within(field.time() + session.speed * dt));
+        const double to = field.samples().within(field.time() + session.speed * dt);
+        change_data(session.renderer, [to](Field& changed) { changed.set_time(to); });
     }
     if (std::isfinite(time)) {
         session.begun = true;
@@ -180,17 +192,18 @@ void apply(Session& session,  // NOLINT(bugprone-exception-escape)
             session.holding = false;  // what was held was held at the other scale
         },
         [&](const command::Samples& to) {
-            field_will_change(renderer.proxy, field);
-            field.use(to.samples);
-            field.set_time(to.samples->within(field.time()));
+            change_data(renderer, [&](Field& changed) {
+                changed.use(to.samples);
+                changed.set_time(to.samples->within(changed.time()));
+            });
             session.version = to.version;
         },
         [&](const command::Moment& to) {
-            field_will_change(renderer.proxy, field);
-            field.set_time(field.samples().within(to.time));
+            const double time = field.samples().within(to.time);
+            change_data(renderer, [time](Field& changed) { changed.set_time(time); });
         },
         [&](const command::Speed& to) { session.speed = to.speed; },
-        [&](const command::UseLayers& to) { use_layers(renderer, to.layers); },
+        [&](const command::UseLayers& to) { use_layers(renderer, to); },
         [&](const command::UseTool& to) { use_tool(renderer, to.tool, session.tool); },
         [&](const ForceSettings& to) { settings.force = stable(to, settings.device); },
         [&](const Friction& to) { settings.proxy.friction = to; },

@@ -53,15 +53,11 @@ class Field {
     void use(const std::shared_ptr<const Samples>& samples) noexcept;
     /// Goes to a time of a sequence [s], see Samples::moment_at().
     void set_time(double time) noexcept;
-    /// From now on the field is 1 in samples whose label, from 0 to 31, is one of these bits and 0
-    /// in all others; outside the grid is label 0. Of one uint8 volume that is not edited.
-    void show_labels(std::uint32_t labels) noexcept;
-    /// Bits of the labels of the sample `at` and its neighbours, whether they are shown or not.
-    std::uint32_t labels_around(const Index3& at) const noexcept;
     /// From now on samples with a label above 0 are `solid` [data units] where it is one of these
     /// bits, else `open`; with bit 0 samples without a label, and all outside the grid, are solid,
     /// too. `labels`: one uint8 volume of labels up to 31 that is not edited, on any grid; a sample
-    /// of this field has the label that is nearest to it, 0 outside of them. Does not allocate.
+    /// of this field has the label that is nearest to it, 0 outside of them. Does not allocate. The
+    /// samples may be those of the labels: then `open` has to be 0.
     void cover(const std::shared_ptr<const Field>& labels, std::uint32_t solid_labels, double open,
                double solid) noexcept;
     /// Null without cover().
@@ -112,8 +108,7 @@ class Field {
     Neighbours around(const Index3& at) const;
     /// The same samples where they lie: returns visit(centre, row, slice), where `centre` points to
     /// the sample, its neighbours in x are beside it, those in y `row` away, in z `slice`. Samples
-    /// that lie otherwise (at the border, edited, between frames) are gathered first, as doubles;
-    /// labels, as bytes.
+    /// that lie otherwise (at the border, edited, between frames) are gathered first, as doubles.
     template <class Visit>
     auto visit_around(const Index3& at, Visit&& visit) const {
         Gathered gathered;
@@ -123,7 +118,6 @@ class Field {
     struct Gathered {
         bool done = false;  ///< the caller sets it back for another place
         Neighbours samples;
-        std::array<std::uint8_t, 27> shown;  ///< of labels
     };
     template <class Visit>
     auto visit_around(const Index3& at, Visit&& visit, Gathered& gathered) const;
@@ -165,9 +159,12 @@ class Field {
     bool lies_as_read() const { return !bricks_ && !(moment_.weight > 0) && !resident_; }
     Neighbours other_around(const Index3& at) const;
     Neighbours uncovered_around(const Index3& at) const;
-    double covered(const Index3& at, double sample) const noexcept;
-    template <int count>
-    bool has_label(const Index3& low) const noexcept;
+    double covered(int label, double sample) const noexcept {
+        if (cover_.solid_labels >> label & 1U) return cover_.solid;
+        return label > 0 ? cover_.open : sample;
+    }
+    template <std::size_t count>
+    void cover_samples(const Index3& low, std::array<double, count * count * count>& samples) const;
     CellSamples absolute_cell(const Index3& cell) const;
     bool has_sample(const Index3& at) const {
         return (at.array() >= 0).all() && (at.array() < size_.array()).all();
@@ -183,12 +180,8 @@ class Field {
     double most_solid() const;
     double sample_at(const Index3& index) const;
     CellSamples stored_cell(const Index3& cell) const;
-    template <int count, class Visit>
-    void for_each_label(const Index3& low, Visit&& visit) const;
-    CellSamples shown_cell(const Index3& cell) const;
     template <class Visit>
     auto visit_gathered(const Index3& at, Visit& visit, Gathered& gathered) const;
-    std::array<std::uint8_t, 27> shown_around(const Index3& at) const;
     void look() noexcept;
 
     std::shared_ptr<const Samples> samples_;
@@ -212,9 +205,7 @@ class Field {
     SampleType type_ = SampleType::uint8;
     Solid solid_ = Solid::above;
     Interpolation interpolation_ = Interpolation::linear;
-    bool shows_labels_ = false;
     bool reads_bricks_ = false;  // of a large grid, as they lie there
-    std::uint32_t labels_ = 0;   // that are 1
 
     /// Labels over the samples.
     struct Cover {
@@ -245,14 +236,9 @@ inline CellSamples Field::cell_of(const Index3& cell) const {
 
 template <class Visit>
 auto Field::visit_gathered(const Index3& at, Visit& visit, Gathered& gathered) const {
-    if (shows_labels_) {
-        if (!gathered.done) gathered.shown = shown_around(at);
-        gathered.done = true;
-        const std::uint8_t* const centre = gathered.shown.data() + 13;
-        return visit(centre, std::ptrdiff_t{3}, std::ptrdiff_t{9});
-    }
     const auto is_plain = [&](int a) { return at[a] > 0 && at[a] < cover_.plain[a]; };
-    if (cover_.labels && is_plain(0) && is_plain(1) && is_plain(2) && !is_covered_around(at)) {
+    const bool may_be_plain = cover_.labels && (cover_.solid_labels & 1U) == 0;
+    if (may_be_plain && is_plain(0) && is_plain(1) && is_plain(2) && !is_covered_around(at)) {
         return with_type(type_, [&](auto zero) {
             const auto* samples = static_cast<const decltype(zero)*>(data_);
             return visit(samples + (at[0] + at[1] * row_ + at[2] * slice_), row_, slice_);

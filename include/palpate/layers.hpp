@@ -163,13 +163,15 @@ struct NeedleState {
 
 /// Everything that layers keep between two ticks.
 struct LayerState {
-    int layer_count = -1;  ///< of the layers in use
-    /// By labels: which layers (bit k + 1; bit 0: none of them) the SCP may be in, the field of all
-    /// others, and the proxy on its lattice. With levels beside labels: the field of both, on the
-    /// data's lattice.
+    /// The set that this is about, which is only compared; null: of none yet.
+    const Layers* set = nullptr;
+    int layer_count = -1, level_count = -1;  ///< of that set
+    /// Which labels (bit k + 1 for layer k; bit 0: none of them) the SCP may be in.
     std::uint32_t open = 1;
-    std::optional<Field> labels;
-    Proxy label_proxy;
+    /// By labels: the field that the proxy touches in place of the data's, which is the data's
+    /// covered by the labels or, without levels beside them, that of the labels alone, on their own
+    /// lattice: 1 where the SCP may not be, 0 elsewhere, felt at 0.5.
+    std::optional<Field> covered;
     Vec3 label_opening = Vec3::Zero();  ///< where a label gave way last [mm, physical]
     /// The SCP may be anywhere from inside `outer` layers to inside `inner` ones: the surfaces
     /// between them gave way, at `opening` [mm, physical], and have not closed yet.
@@ -182,6 +184,12 @@ struct LayerState {
     double time = 0;          ///< [s] of the last tick
     Vec3 hip = Vec3::Zero();  ///< of the last tick [mm, physical]
 };
+
+/// Keeps a state for another set where that has the same surfaces: as many layers, as many of them
+/// levels, and the same labels. Everything else may differ. False: it is none of the kind.
+bool keep_for(LayerState& state, const Layers& before, const Layers& after) noexcept;
+/// Forgets what layers knew: the proxy stays where it is, on the lattice of the data.
+void forget_layers(LayerState& state, Proxy& proxy, const Field& data) noexcept;
 
 /// Whether layers, if any, have surfaces of their own.
 inline bool have_surfaces(const std::shared_ptr<const Layers>& layers) {
@@ -210,7 +218,8 @@ struct LayersUpdate {
 /// One tick: moves the proxy, in place of a ProxyMethod and of penetrability. Never through a
 /// surface that did not give way, from either side (G1, G2 for all of them; docs/layers.md). A
 /// surface gives way where on the hand's way its spring reached the puncture force; the SCP then
-/// goes on towards the hand in the same tick, at most through eight surfaces.
+/// goes on towards the hand in the same tick, at most through eight surfaces. A state of another
+/// set begins anew, where the proxy is.
 LayersUpdate update_layers(const Layers& layers, LayerState& state, Proxy& proxy,
                            const Field& field, const LayerInput& input, StepObserver observer = {});
 

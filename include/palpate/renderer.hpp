@@ -54,7 +54,7 @@ struct RendererSettings {
 /// Everything between two ticks. Settings may be exchanged between ticks (through check() first);
 /// use_isovalue() for another level.
 struct Renderer {
-    Field field;
+    Field field;  ///< of the samples
     RendererSettings settings;
     Proxy proxy;
     ForceState force;
@@ -64,6 +64,12 @@ struct Renderer {
     /// Of the tool; `proxy.isovalue` counts. Has a value where there is a tool, or may be one.
     std::optional<ToolProxy> tool_proxy = {};
 };
+
+/// The one field that the proxy touches: that of the samples or, with layers by label, the one that
+/// these cover. The proxy lies on its lattice.
+inline const Field& felt_field(const Renderer& renderer) {
+    return renderer.layers.covered ? *renderer.layers.covered : renderer.field;
+}
 
 /// A monotonic clock of the caller's [ns]. The core reads none of its own.
 using Clock = std::int64_t (*)() noexcept;

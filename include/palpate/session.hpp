@@ -77,9 +77,13 @@ struct Moment {
 struct Speed {
     double speed;
 };
-/// Layers from the next tick on; null: none, and the isovalue is felt again.
+/// Layers from the next tick on; null: none, and the isovalue is felt again. What gave way and is
+/// still open is forgotten: the SCP is in whatever is where it is.
 struct UseLayers {
     std::shared_ptr<const Layers> layers;
+    /// They are the surfaces that are felt, with other levels or properties: what gave way stays
+    /// open. Counts where there are as many of them, and of labels the same.
+    bool same_surfaces = false;
 };
 /// Another tool from the next tick on; null: a point. The force starts again. While a tool is felt,
 /// layers, penetrability, magnet and texture rest.

@@ -15,15 +15,14 @@ constexpr int most_punctures = 8;
 
 using enum HapticProperty;
 
-template <class Tissues>
 class LayersTick {
   public:
-    LayersTick(const Layers& layers, LayerState& state, const Field& density, Tissues tissues,
+    LayersTick(const Layers& layers, LayerState& state, Proxy& proxy, const Field& density,
                const LayerInput& input, StepObserver observer)
         : layers_(layers),
           state_(state),
           density_(density),
-          tissues_(tissues),
+          tissues_(layers, state, proxy, density),
           input_(input),
           observer_(observer) {}
 
@@ -44,7 +43,6 @@ class LayersTick {
         }
         if (update_.status == UpdateStatus::recovering) begin();
         if (update_.status == UpdateStatus::done) close();
-        tissues_.finish();
         return result();
     }
 
@@ -158,10 +156,7 @@ class LayersTick {
         if (!moved()) return;
         tissues_.look(update_);
         state_.touched = tissues_.touched(update_);
-        if (came_to_channel()) {
-            tissues_.open(update_, update_.scp);
-            return move_to(hand);
-        }
+        if (came_to_channel() && tissues_.open(update_, update_.scp)) return move_to(hand);
         const bool touching = update_.mode == Mode::constrained;
         state_.spring.touching &= touching;
         if (!touching) return;
@@ -192,22 +187,25 @@ class LayersTick {
     }
     Vec3 normal() { return normal_at(tissues_.proxy(), tissues_.field()); }
 
-    /// The surface touched gives way. False if there is no room to remember that.
+    /// The surface touched gives way. False if it holds, or if there is no room to remember that.
     bool open() {
         NeedleState& needle = state_.needle;
+        if (layers_.needle && needle.inserted && !has_room(needle)) return false;
+        const int beyond = tissues_.beyond(update_);
+        const Vec3 out = layers_.needle ? normal() : Vec3::Zero();
+        if (!tissues_.open(update_, update_.scp)) return false;
         if (layers_.needle) {
-            if (!needle.inserted) insert_needle();
-            if (!has_room(needle)) return false;
-            cross(needle, state_.touched, tissues_.beyond(update_), update_.scp);
+            if (!needle.inserted) insert_needle(out);
+            cross(needle, state_.touched, beyond, update_.scp);
         }
-        tissues_.open(update_, update_.scp);
         return true;
     }
 
-    void insert_needle() {
+    /// `out`: unit normal of the surface.
+    void insert_needle(const Vec3& out) {
         const Vec3 pull = (update_.hip - update_.scp).normalized();
         // A tool that points along the surface or out of it says nothing.
-        const bool points = input_.pointing.dot(-normal()) > 0.2;
+        const bool points = input_.pointing.dot(-out) > 0.2;
         insert(state_.needle, update_.scp, points ? input_.pointing : pull);
         NeedleState& needle = state_.needle;
         needle.hand = along_line(needle, state_.moved ? state_.hip : input_.hip);
@@ -295,19 +293,7 @@ class LayersTick {
 
 LayersUpdate update_layers(const Layers& layers, LayerState& state, Proxy& proxy,
                            const Field& field, const LayerInput& input, StepObserver observer) {
-    if (layers.by_label && layers.labels && layers.levels_beside_labels > 0) {
-        return LayersTick(layers, state, field, MixedTissues(layers, state, proxy, field), input,
-                          observer)
-            .run();
-    }
-    if (layers.by_label && layers.labels) {
-        return LayersTick(layers, state, field, LabelTissues(layers, state, proxy, field), input,
-                          observer)
-            .run();
-    }
-    return LayersTick(layers, state, field, LevelTissues(layers, state, proxy, field), input,
-                      observer)
-        .run();
+    return LayersTick(layers, state, proxy, field, input, observer).run();
 }
 
 }  // namespace palpate

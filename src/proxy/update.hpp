@@ -29,6 +29,12 @@ inline LatticePoint scp_in(const Field& field, const Proxy& proxy) {
     if (proxy.interpolation == field.interpolation()) return proxy.scp;
     return locate(field.interpolation(), index_from_physical(field.geometry(), proxy.scp_physical));
 }
+/// The SCP stays in physical space, on the lattice of another field from now on.
+inline void put_on_lattice(Proxy& proxy, const Field& field) {
+    proxy.interpolation = field.interpolation();
+    proxy.scp =
+        locate(field.interpolation(), index_from_physical(field.geometry(), proxy.scp_physical));
+}
 /// False if the SCP is NaN or infinite.
 bool is_finite(const Proxy& proxy);
 

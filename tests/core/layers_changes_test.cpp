@@ -277,7 +277,9 @@ TEST(LayersChanges, moved_levels_push_the_proxy_like_an_isovalue) {
     Ramp one(surfaces({20, 40}, 0.5, 5));
     one.to(at_depth(19));
     for (const double level : {18.0, 10.0, 25.0}) {
-        one.renderer.settings.layers = std::make_shared<Layers>(surfaces({level, 40}, 0.5, 5));
+        const auto moved = std::make_shared<Layers>(surfaces({level, 40}, 0.5, 5));
+        ASSERT_TRUE(keep_for(one.renderer.layers, *one.renderer.settings.layers, *moved));
+        one.renderer.settings.layers = moved;
         const Tick tick = one.to(at_depth(19));
         EXPECT_EQ(tick.proxy.status, UpdateStatus::done);
         EXPECT_NEAR(tick.proxy.scp[2], std::min(level, 19.0), 1e-6);

@@ -102,13 +102,13 @@ TEST(LabelLayers, are_felt_from_inside_and_named) {
     EXPECT_EQ(tick.layers.inside, 0);
 }
 
-TEST(LabelLayers, keep_the_proxy_of_the_data_where_it_is_felt) {
+TEST(LabelLayers, tell_the_density_of_the_data_where_they_are_felt) {
     LabelHand hand{labelled(ramp_field(), three_labels(), slabs())};
     hand.to(at_depth(10));
     const Tick tick = hand.to(at_depth(19.5));
-    const Proxy& proxy = hand.renderer.proxy;
-    EXPECT_EQ(proxy.scp_physical, tick.proxy.scp);
-    EXPECT_NEAR(value_at(hand.renderer.field, proxy.scp), 19, 1e-6) << "the ramp's density is z";
+    EXPECT_EQ(hand.renderer.proxy.scp_physical, tick.proxy.scp);
+    EXPECT_NEAR(tick.proxy.density, 19, 1e-6) << "the ramp's density is z";
+    EXPECT_EQ(tick.proxy.isovalue, 0.5) << "of the labels that may not be entered";
 }
 
 TEST(LabelLayers, take_curves_over_the_densities_at_their_surfaces) {
@@ -155,9 +155,14 @@ TEST(LabelLayers, are_never_passed_while_they_hold) {
                 inside += tick.layers.inside > 0;
                 if (i == 0 || tick.layers.punctured > 0) continue;
                 // At most half of the SCP's place belongs to labels that did not give way.
-                Field closed = *hand.renderer.settings.layers->labels;
-                closed.set_interpolation(interpolation);
-                closed.show_labels(0xFU & ~before);
+                const Field& numbers = *hand.renderer.settings.layers->labels;
+                const Field closed(volume_of<std::uint8_t>(numbers.geometry(),
+                                                           [&](const Index3& at) {
+                                                               const int label =
+                                                                   int(numbers.volume().sample(at));
+                                                               return before >> label & 1U ? 0 : 1;
+                                                           }),
+                                   Solid::above, before & 1U ? 0 : 1, interpolation);
                 ASSERT_LE(value_at(closed, tick.proxy.scp), 0.5 + 1e-9)
                     << "hand " << seed << ", tick " << i;
             }

@@ -185,9 +185,9 @@ TEST(MixedLayers, are_never_passed_while_they_hold) {
                 in_label += tick.layers.inside > 2;
                 ASSERT_LE(tick.layers.inside, 4) << "nobody is in a label that never gives way";
                 ASSERT_NE(tick.layers.inside, 2) << "or behind the inner level";
-                if (i == 0 || tick.layers.punctured > 0 || !before.labels) continue;
+                if (i == 0 || tick.layers.punctured > 0 || !before.covered) continue;
                 // The field of both as it was: its level ahead may move with what closes.
-                const Field& both = *before.labels;
+                const Field& both = *before.covered;
                 const double sign = data.sign(), value = value_at(both, tick.proxy.scp);
                 const Proxy& proxy = hand.renderer.proxy;
                 const bool same = before.open == hand.renderer.layers.open &&

@@ -8,6 +8,7 @@
 #include "support/cubic_guarantees.hpp"
 #include "support/fields.hpp"
 #include "support/hand.hpp"
+#include "support/labelled.hpp"
 #include "support/press.hpp"
 
 using namespace palpate;
@@ -106,8 +107,8 @@ Balance work_of(const TestField& test, const Layers& layers, int loops, int step
     return balance;
 }
 
-void expect_passive(const TestField& test, const Layers& layers, std::uint64_t seed) {
-    const int loops = scaled_or_asked(200);
+void expect_passive(const TestField& test, const Layers& layers, std::uint64_t seed,
+                    int loops = scaled_or_asked(200)) {
     const Balance balance = work_of(test, layers, loops, 4000, seed);
     std::printf(
         "[ evidence ] %-12s loops %d  contacts %d  punctures %d  most gained %.2e J  lost %.2e J\n",
@@ -143,4 +144,40 @@ TEST(LayersEnergy, is_not_made_by_stiffness_that_varies_along_a_surface) {
     Layers layers = layers_of(test, {0}, {1}, no_puncture);
     layers[stiffness].gradient.knots = {{0, 0}, {0.3, 1}};
     expect_passive(test, layers, 54);
+}
+
+/// The same layers with labels beside them, or in place of them.
+Layers with_labels(const TestField& test, Layers layers, bool beside, std::uint64_t seed) {
+    if (!beside) layers.layers.clear();
+    layers.by_label = true;
+    layers.levels_beside_labels = layers.layers.size();
+    for (int i = 1; i <= 3; ++i) {
+        Layer layer;
+        layer.name = "label " + std::to_string(i);
+        layer.level = i;
+        layer[stiffness] = 0.4 * i;
+        layer[puncture_force] = i == 3 ? no_puncture : 0.4;
+        layers.layers.push_back(layer);
+    }
+    Geometry geometry = test.field.geometry();
+    geometry.size = cube(16);
+    geometry.spacing *= double(test.field.geometry().size[0]) / 16;
+    layers.labels = numbered_labels(random_labels(seed, 3, geometry), layers.layers,
+                                    layers.levels_beside_labels);
+    return layers;
+}
+
+TEST(LayersEnergy, is_not_made_by_labels_beside_levels) {
+    for (const bool cubic : {false, true}) {
+        for (const bool beside : {true, false}) {
+            for (const std::uint64_t seed : {61U, 62U, 63U}) {
+                TestField test = noise_field();
+                if (cubic) test = smoothed(test);
+                const Layers levels = layers_of(test, {-0.2, 0, 0.2}, {0.4, 1.5, 0.8}, 0.5);
+                const Layers layers = with_labels(test, levels, beside, seed);
+                SCOPED_TRACE(std::to_string(cubic) + std::to_string(beside) + std::to_string(seed));
+                expect_passive(test, layers, seed, scaled_or_asked(30));
+            }
+        }
+    }
 }

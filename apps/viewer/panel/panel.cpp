@@ -159,7 +159,12 @@ void Panel::connect_layers() {
 }
 
 void Panel::ask_layers(const SharedLayers& layers) {
-    ask(layers_part_, command::UseLayers{layers});
+    const SharedLayers& before = now_.settings.layers;
+    // Edited layers keep their names: what gave way stays open.
+    const bool same_surfaces =
+        before && layers &&
+        std::ranges::equal(before->layers, layers->layers, {}, &Layer::name, &Layer::name);
+    ask(layers_part_, command::UseLayers{layers, same_surfaces});
 }
 
 /// Surfaces of the look are levels on the chart.

@@ -52,7 +52,8 @@ TEST(LayersServo, layers_that_were_sent_are_felt_until_there_are_none) {
     EXPECT_TRUE(live.feels(30));
     for (const double level : {33.0, 20.0, 35.0}) {
         const auto layers = std::make_shared<const Layers>(level_that_holds(level));
-        ASSERT_TRUE(live.servo.send(command::UseLayers{layers}));
+        // The same surface at another level: the hand is not inside of it.
+        ASSERT_TRUE(live.servo.send(command::UseLayers{layers, true}));
         EXPECT_TRUE(live.feels(level)) << level;
     }
     ASSERT_TRUE(live.servo.send(command::UseLayers{nullptr}));
@@ -84,7 +85,7 @@ TEST(LayersServo, layers_are_freed_by_those_who_send_others) {
             const double level = 31 + i % 4;
             const std::shared_ptr<const Layers> layers(new Layers(level_that_holds(level)),
                                                        freeing);
-            ASSERT_TRUE(live.servo.send(command::UseLayers{layers}));
+            ASSERT_TRUE(live.servo.send(command::UseLayers{layers, true}));
             ASSERT_TRUE(live.feels(level));
             // The next ones lie deeper: the hand does not begin inside of them.
             ASSERT_TRUE(i % 4 > 0 || live.servo.send(command::UseLayers{nullptr}));
