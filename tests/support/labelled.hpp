@@ -15,9 +15,8 @@ namespace palpate::support {
 /// the data.
 inline Volume random_labels(std::uint64_t seed, int count, const Geometry& geometry) {
     Random random(seed);
-    return volume_of<std::uint8_t>(geometry, [&](const Index3&) {
-        return std::max(0, random.below(2 * count) - count + 1);
-    });
+    return volume_of<std::uint8_t>(
+        geometry, [&](const Index3&) { return std::max(0, random.below(2 * count) - count + 1); });
 }
 
 /// What the proxy touches, evaluated slowly: samples from what may be entered, by the definition in
@@ -60,7 +59,10 @@ struct TouchedField {
         double half = 0.5 * sign() * range();
         if (has_behind()) half = 0.5 * (ahead() - behind());
         if (!open(label)) return ahead() + half;
-        return label > 0 ? ahead() - half : paper_sample(data, at);
+        if (label > 0) return ahead() - half;
+        const Index3& size = data.geometry().size;
+        const bool inside = (at.array() >= 0).all() && (at.array() < size.array()).all();
+        return inside ? data.samples().sample(at, data.moment()) : data.background();
     }
     double value(const Vec3& physical) const {
         const Vec3 index = index_from_physical(grid_of().geometry(), physical);
