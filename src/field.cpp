@@ -140,17 +140,35 @@ void Field::cover_samples(const Index3& low,
                           std::array<double, count * count * count>& samples) const {
     constexpr int side = static_cast<int>(count);
     double* sample = samples.data();
-    const bool inside =
-        cover_.same_grid && (low.array() >= 0).all() && (low.array() <= size_.array() - side).all();
-    const auto* labels = static_cast<const std::uint8_t*>(cover_.labels->data_);
     for (int z = low[2]; z < low[2] + side; ++z) {
         for (int y = low[1]; y < low[1] + side; ++y) {
-            const std::ptrdiff_t row = y * row_ + z * slice_;
             for (int x = low[0]; x < low[0] + side; ++x, ++sample) {
-                *sample = covered(inside ? labels[row + x] : covering_label({x, y, z}), *sample);
+                *sample = covered(covering_label({x, y, z}), *sample);
             }
         }
     }
+}
+
+/// A block where samples and labels lie as they were read, on one grid.
+template <std::size_t count>
+std::array<double, count * count * count> Field::plain_covered(const Index3& low) const {
+    return with_type(type_, [&](auto zero) {
+        const std::ptrdiff_t begin = low[0] + low[1] * row_ + low[2] * slice_;
+        const auto* sample = static_cast<const decltype(zero)*>(data_) + begin;
+        const auto* label = static_cast<const std::uint8_t*>(cover_.labels->data_) + begin;
+        std::array<double, count * count * count> samples;
+        double* out = samples.data();
+        for (std::size_t z = 0; z < count; ++z, sample += slice_, label += slice_) {
+            for (std::size_t y = 0; y < count; ++y) {
+                const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(y) * row_;
+                for (std::size_t x = 0; x < count; ++x) {
+                    *out++ = covered(label[row + std::ptrdiff_t(x)],
+                                     double(sample[row + std::ptrdiff_t(x)]));
+                }
+            }
+        }
+        return samples;
+    });
 }
 
 /// Updates what is derived from samples and time.
@@ -204,10 +222,8 @@ CellSamples Field::other_cell(const Index3& cell) const {
     const auto is_plain = [&](int a) {
         return static_cast<unsigned>(cell[a]) < static_cast<unsigned>(cover_.plain[a]);
     };
-    CellSamples samples =
-        is_plain(0) && is_plain(1) && is_plain(2)
-            ? corners(type_, data_, cell[0] + cell[1] * row_ + cell[2] * slice_, row_, slice_)
-            : uncovered_cell(cell);
+    if (is_plain(0) && is_plain(1) && is_plain(2)) return plain_covered<2>(cell);
+    CellSamples samples = uncovered_cell(cell);
     if (cover_.labels) cover_samples<2>(cell, samples);
     return samples;
 }
@@ -257,15 +273,11 @@ std::array<double, count * count * count> Field::clipped(const Index3& low) cons
 }
 
 Neighbours Field::other_around(const Index3& at) const {
-    Neighbours samples;
     const auto is_plain = [&](int a) { return at[a] > 0 && at[a] < cover_.plain[a]; };
-    if (is_plain(0) && is_plain(1) && is_plain(2)) {
-        samples = with_type(
-            type_, [&](auto zero) { return clipped<decltype(zero), 3>(at - Index3::Ones()); });
-    } else {
-        samples = uncovered_around(at);
-    }
-    if (cover_.labels) cover_samples<3>(at - Index3::Ones(), samples);
+    const Index3 low = at - Index3::Ones();
+    if (is_plain(0) && is_plain(1) && is_plain(2)) return plain_covered<3>(low);
+    Neighbours samples = uncovered_around(at);
+    if (cover_.labels) cover_samples<3>(low, samples);
     return samples;
 }
 

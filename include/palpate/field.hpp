@@ -165,6 +165,8 @@ class Field {
     }
     template <std::size_t count>
     void cover_samples(const Index3& low, std::array<double, count * count * count>& samples) const;
+    template <std::size_t count>
+    std::array<double, count * count * count> plain_covered(const Index3& low) const;
     CellSamples absolute_cell(const Index3& cell) const;
     bool has_sample(const Index3& at) const {
         return (at.array() >= 0).all() && (at.array() < size_.array()).all();

@@ -128,12 +128,16 @@ Tissues::Shares Tissues::shares_at(const Vec3& physical) const {
     Neighbours densities{};
     if (levels_ > 0) densities = density_.around(nearest);
     const double ahead = bounds().ahead;
+    Mat3 along;  // of the three samples along each axis
+    for (int a = 0; a < 9; ++a) {
+        along(a % 3, a / 3) =
+            std::max(0.0, 1.5 - std::abs(index[a / 3] - nearest[a / 3] + 1 - a % 3));
+    }
     Shares shares;
     for (int i = 0; i < 27; ++i) {
-        const Index3 at = nearest + Index3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
-        const Vec3 away = (index - at.cast<double>()).cwiseAbs();
-        const double weight = (1.5 - away.array()).max(0).prod();
-        const int label = now.covering_label(at);
+        const double weight = along(i % 3, 0) * along(i / 3 % 3, 1) * along(i / 9, 2);
+        if (weight == 0) continue;
+        const int label = now.covering_label(nearest + Index3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1));
         shares.of[static_cast<std::size_t>(label)] += weight;
         if (label > 0 || levels_ == 0) continue;
         const double density = density_.with_offset(densities[static_cast<std::size_t>(i)]);
