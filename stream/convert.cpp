@@ -124,13 +124,14 @@ class Conversion {
         : from_(from),
           level_(level),
           options_(options),
-          partial_(partial.result()),
+          partial_(partial),
           image_(partial.result(), from.info().type,
                  from.info().levels.at(static_cast<std::size_t>(level)).geometry, options) {
         for (int l = 0; l < image_.levels(); ++l) total_ += chunks(l);
     }
 
     Converted run() {
+        partial_.check();  // that the image holds the same folder
         image_.write_metadata({});
         std::int64_t before = 0;
         for (int l = 0; l < image_.levels(); ++l) {
@@ -142,7 +143,7 @@ class Conversion {
         }
         tell(total_);
         if (image_.stored_chunks() + empty_ != static_cast<std::uint64_t>(total_)) {
-            throw io::OutputError(partial_.string() +
+            throw io::OutputError(partial_.result().string() +
                                   ": chunks were removed while it was written; run it again");
         }
         image_.write_metadata(seen_.range());
@@ -186,7 +187,7 @@ class Conversion {
     const Store& from_;
     int level_;
     const ConvertOptions& options_;
-    fs::path partial_;
+    const io::GrowingFolder& partial_;
     GrowingImage image_;
     SeenRange seen_;
     std::int64_t total_ = 0;

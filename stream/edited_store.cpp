@@ -257,7 +257,7 @@ std::shared_ptr<const Store> open_edits(const std::string& folder, const StoreOp
 
 void write_note(const fs::path& folder, const fs::path& out, const EditsNote& note) {
     const std::string text = json_of(note, out).dump(1);
-    put_file(folder / io::edits_note, std::as_bytes(std::span(text)));
+    HeldFolder(folder).put(io::edits_note, std::as_bytes(std::span(text)));
 }
 
 }  // namespace palpate::stream

@@ -1,12 +1,9 @@
 // Writes the files of a multiscale OME-Zarr image; see the header.
 #include "stream/zarr_writer.hpp"
 
-#include <fcntl.h>
 #include <sys/stat.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <fstream>
 #include <stdexcept>
 
 #include "io/helper_process.hpp"
@@ -124,35 +121,9 @@ void check_format(const ConvertOptions& options) {
     }
 }
 
-void fail_without(const fs::path& folder) {
-    throw io::OutputError(folder.string() +
-                          ": was removed or renamed while it was written; run it again");
-}
-
-void put_file(const fs::path& path, std::span<const std::byte> bytes,
-              const std::string& temporary) {
-    const fs::path before = path.string() + temporary;
-    std::error_code error;
-    fs::create_directories(path.parent_path(), error);
-    // A pipe of that name would hold us up, and a link would lead elsewhere.
-    const auto status = fs::symlink_status(before, error);
-    if (fs::exists(status) && !fs::is_regular_file(status)) fs::remove(before, error);
-    error.clear();
-    std::ofstream file(before, std::ios::binary);
-    file.write(reinterpret_cast<const char*>(bytes.data()),
-               static_cast<std::streamsize>(bytes.size()));
-    file.close();
-    if (file) fs::rename(before, path, error);
-    if (!file || error) {
-        throw io::OutputError(path.string() + ": cannot be written (" +
-                              (error ? error.message() : io::reason(errno)) +
-                              "); is the disk full?");
-    }
-}
-
 ZarrWriter::ZarrWriter(fs::path folder, SampleType type, std::vector<CoarserGrid> levels,
                        const ConvertOptions& options, std::string temporary)
-    : folder_(std::move(folder)),
+    : folder_(std::make_shared<HeldFolder>(std::move(folder))),
       type_(type),
       levels_(std::move(levels)),
       options_(options),
@@ -176,21 +147,20 @@ void ZarrWriter::write_metadata(const std::optional<Range>& range) const {
         }
     }
     if (range) ours["range"] = {range->minimum, range->maximum};
-    std::error_code error;
-    if (!range) fs::create_directories(folder_, error);  // if it fails, so does what comes next
+    if (!range) folder_->make();
     const bool two = options_.zarr_version == 2;
     for (std::size_t i = 0; i < levels_.size(); ++i) {
         const Geometry& grid = levels_[i].geometry;
-        const fs::path level = folder_ / std::to_string(i);
+        const fs::path level = std::to_string(i);
         put_json(level / (two ? ".zarray" : "zarr.json"),
                  two ? array2(grid, type_, options_) : array3(grid, type_, options_));
     }
     if (two) {
         image["version"] = "0.4";
-        put_json(folder_ / ".zgroup", {{"zarr_format", 2}});
-        put_json(folder_ / ".zattrs", {{"multiscales", {image}}, {"palpate", ours}});
+        put_json(".zgroup", {{"zarr_format", 2}});
+        put_json(".zattrs", {{"multiscales", {image}}, {"palpate", ours}});
     } else {
-        put_json(folder_ / "zarr.json",
+        put_json("zarr.json",
                  {{"zarr_format", 3},
                   {"node_type", "group"},
                   {"attributes",
@@ -198,23 +168,16 @@ void ZarrWriter::write_metadata(const std::optional<Range>& range) const {
     }
 }
 
-void ZarrWriter::put(const fs::path& path, std::span<const std::byte> bytes) const {
-    // Not made again where it has gone: half an image would grow there.
-    std::error_code error;
-    if (!fs::is_directory(folder_, error)) fail_without(folder_);
-    put_file(path, bytes, temporary_);
-}
-
-void ZarrWriter::put_json(const fs::path& path, const Json& json) const {
+void ZarrWriter::put_json(const fs::path& name, const Json& json) const {
     const std::string text = json.dump(1);
-    put(path, std::as_bytes(std::span(text)));
+    folder_->put(name, std::as_bytes(std::span(text)), temporary_);
 }
 
 std::uint64_t ZarrWriter::stored_chunks() const {
     std::uint64_t count = 0;
     std::error_code error;
-    for (fs::recursive_directory_iterator entry(folder_, error), end; entry != end && !error;
-         entry.increment(error)) {
+    for (fs::recursive_directory_iterator entry(folder_->path(), error), end;
+         entry != end && !error; entry.increment(error)) {
         const std::string name = entry->path().filename().string();
         const bool is_chunk = name.find_first_not_of("0123456789") == std::string::npos;
         count += is_chunk && entry->is_regular_file(error) ? 1 : 0;
@@ -227,9 +190,9 @@ Index3 ZarrWriter::chunks_of(int level) const {
     return (size.array() + (options_.chunk - 1)) / options_.chunk;
 }
 
-fs::path ZarrWriter::path_of(int level, const Index3& chunk) const {
+std::string ZarrWriter::name_of(int level, const Index3& chunk) const {
     const std::array<std::int64_t, 3> index = {chunk[2], chunk[1], chunk[0]};
-    return folder_ / key_of(arrays_[static_cast<std::size_t>(level)], index);
+    return key_of(arrays_[static_cast<std::size_t>(level)], index);
 }
 
 Bytes ZarrWriter::packed(const Bytes& samples) const {
@@ -248,23 +211,20 @@ Bytes ZarrWriter::packed(const Bytes& samples) const {
 
 bool ZarrWriter::write_chunk(int level, const Index3& chunk, const Bytes& samples) const {
     if (std::ranges::all_of(samples, [](std::byte b) { return b == std::byte{0}; })) return false;
-    put(path_of(level, chunk), packed(samples));
+    const fs::path name = name_of(level, chunk);
+    folder_->put(name, packed(samples), temporary_);
     const auto back = written_chunk(level, chunk);
     if (!back || *back != samples) {
-        throw io::OutputError(path_of(level, chunk).string() +
+        throw io::OutputError((folder_->path() / name).string() +
                               ": reads back as something else; check the disk");
     }
     return true;
 }
 
 std::optional<Bytes> ZarrWriter::written_chunk(int level, const Index3& chunk) const {
-    // O_NONBLOCK: a pipe of that name must not hold us up.
-    const io::Descriptor file(
-        ::open(path_of(level, chunk).c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
+    const io::Descriptor file = folder_->open(name_of(level, chunk));
     struct stat about {};
-    if (file.number() < 0 || ::fstat(file.number(), &about) != 0 || !S_ISREG(about.st_mode)) {
-        return std::nullopt;
-    }
+    if (file.number() < 0 || ::fstat(file.number(), &about) != 0) return std::nullopt;
     const ChunkedArray& array = arrays_[static_cast<std::size_t>(level)];
     const auto size = static_cast<std::size_t>(about.st_size);
     if (size > packed_at_most(array.bytes_in_chunk())) return std::nullopt;

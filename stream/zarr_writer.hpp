@@ -2,11 +2,13 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 
 #include "palpate/stream/convert.hpp"
 #include "stream/chunked_array.hpp"
+#include "stream/held_folder.hpp"
 #include "stream/pyramid.hpp"
 
 namespace palpate::stream {
@@ -33,25 +35,16 @@ class ZarrWriter {
     Index3 chunks_of(int level) const;
 
   private:
-    void put(const std::filesystem::path& path, std::span<const std::byte> bytes) const;
-    void put_json(const std::filesystem::path& path, const nlohmann::json& json) const;
-    std::filesystem::path path_of(int level, const Index3& chunk) const;
+    void put_json(const std::filesystem::path& name, const nlohmann::json& json) const;
+    std::string name_of(int level, const Index3& chunk) const;
     Bytes packed(const Bytes& samples) const;
 
-    std::filesystem::path folder_;
+    std::shared_ptr<HeldFolder> folder_;
     SampleType type_;
     std::vector<CoarserGrid> levels_;
     ConvertOptions options_;
     std::string temporary_;
     std::vector<ChunkedArray> arrays_;
 };
-
-/// What io::OutputError says where the folder that is written has gone.
-[[noreturn]] void fail_without(const std::filesystem::path& folder);
-
-/// All of a small file in a folder that is being made, and perhaps in folders below it, which this
-/// makes; while it is written its name ends in `temporary`. Throws io::OutputError.
-void put_file(const std::filesystem::path& path, std::span<const std::byte> bytes,
-              const std::string& temporary = ".part");
 
 }  // namespace palpate::stream

@@ -401,6 +401,19 @@ TEST(OwnFiles, a_conversion_whose_folder_goes_meanwhile_ends_with_a_line) {
     }
 }
 
+TEST(OwnFiles, a_conversion_whose_folder_is_moved_writes_nothing_into_the_one_in_its_place) {
+    const ScratchFolder folder;
+    const fs::path out = folder / "v.zarr", partial = folder / "v.zarr.partial";
+    const auto disturb = [&] {
+        fs::rename(partial, folder / "moved");
+        fs::create_directories(partial / "result/0/c");
+    };
+    const std::string message = refusal(Disturbing(store_of(noise(1), "v"), 2, disturb), out);
+    EXPECT_TRUE(contains(message, "run it again")) << message;
+    EXPECT_TRUE(fs::is_empty(partial / "result/0/c"));
+    EXPECT_TRUE(fs::exists(folder / "moved/result/0/c/0/0/0"));
+}
+
 TEST(OwnFiles, paths_that_are_not_utf8_are_written_and_read_again) {
     const ScratchFolder folder;
     const fs::path here = folder / "caf\xe9", there = folder / "th\xe9";
