@@ -100,11 +100,10 @@ bool is_file_in(Place place, const std::string& whole) {
     }
 }
 
-std::string walk(int folder, Place place, dev_t device, bool removes);
+std::string walk(int folder, Place place, bool removes);
 
 /// The same for one name in an open folder; true if it is ours, and if asked for, has gone.
-bool is_ours(int folder, const std::string& name, Place place, dev_t device, bool removes,
-             std::string& below) {
+bool is_ours(int folder, const std::string& name, Place place, bool removes, std::string& below) {
     struct stat about {};
     if (::fstatat(folder, name.c_str(), &about, AT_SYMLINK_NOFOLLOW) != 0) return errno == ENOENT;
     if (!S_ISDIR(about.st_mode)) {
@@ -112,22 +111,22 @@ bool is_ours(int folder, const std::string& name, Place place, dev_t device, boo
         return !removes || ::unlinkat(folder, name.c_str(), 0) == 0 || errno == ENOENT;
     }
     const auto inside = folder_in(place, name);
-    if (!inside || about.st_dev != device) return false;
+    if (!inside) return false;
     {
-        const Descriptor inner(::openat(folder, name.c_str(), own_folder_mode));
+        const Descriptor inner(open_inner(folder, name));
         if (inner.number() < 0) return errno == ENOENT;
-        below = walk(inner.number(), *inside, device, removes);
+        below = walk(inner.number(), *inside, removes);
     }
     if (!below.empty()) return false;
     return !removes || ::unlinkat(folder, name.c_str(), AT_REMOVEDIR) == 0 || errno == ENOENT;
 }
 
 /// The first path that is not ours; removes what is ours if asked for.
-std::string walk(int folder, Place place, dev_t device, bool removes) {
+std::string walk(int folder, Place place, bool removes) {
     std::string first;
     for (const std::string& name : names_in(folder)) {
         std::string below;
-        if (is_ours(folder, name, place, device, removes, below)) continue;
+        if (is_ours(folder, name, place, removes, below)) continue;
         if (first.empty()) first = below.empty() ? name : name + "/" + below;
         if (!removes) break;
     }
@@ -143,12 +142,11 @@ Place place_of(OwnFolder kind) {
 std::string unknown_below(const fs::path& folder, OwnFolder kind) {
     const Descriptor open(::open(folder.c_str(), own_folder_mode));
     if (open.number() < 0 && errno == ENOENT) return "";
-    struct stat about {};
-    if (open.number() < 0 || ::fstat(open.number(), &about) != 0) {
+    if (open.number() < 0) {
         throw OutputError(folder.string() + ": cannot be read (" + reason(errno) +
                           "), so that it stays; give another name");
     }
-    return walk(open.number(), place_of(kind), about.st_dev, false);
+    return walk(open.number(), place_of(kind), false);
 }
 
 std::string remove_known(const fs::path& folder, OwnFolder kind) noexcept {
@@ -156,11 +154,10 @@ std::string remove_known(const fs::path& folder, OwnFolder kind) noexcept {
         std::string left;
         {
             const Descriptor open(::open(folder.c_str(), own_folder_mode));
-            struct stat about {};
-            if (open.number() < 0 || ::fstat(open.number(), &about) != 0) {
+            if (open.number() < 0) {
                 return errno == ENOENT ? "" : ".";
             }
-            left = walk(open.number(), place_of(kind), about.st_dev, true);
+            left = walk(open.number(), place_of(kind), true);
         }
         if (left.empty() && ::rmdir(folder.c_str()) != 0 && errno != ENOENT) left = ".";
         return left;

@@ -4,7 +4,9 @@
 
 #include <dirent.h>
 #include <fcntl.h>
+#include <linux/openat2.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -19,23 +21,39 @@ namespace {
 
 constexpr int open_folder = O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC;
 
-/// Removes a name in `folder`; folders of other devices (mount points) stay.
-bool remove_from(int folder, const std::string& name, dev_t device) {
+/// Removes a name in `folder`; mount points stay.
+bool remove_from(int folder, const std::string& name) {
     if (::unlinkat(folder, name.c_str(), 0) == 0 || errno == ENOENT) return true;
     if (errno != EISDIR && errno != EPERM) return false;
-    const Descriptor inner(::openat(folder, name.c_str(), open_folder));
-    struct stat about {};
-    if (inner.number() < 0 || ::fstat(inner.number(), &about) != 0 || about.st_dev != device) {
-        return false;
-    }
+    const Descriptor inner(open_inner(folder, name));
+    if (inner.number() < 0) return false;
     bool all = true;
     for (const std::string& each : names_in(inner.number())) {
-        all = remove_from(inner.number(), each, device) && all;
+        all = remove_from(inner.number(), each) && all;
     }
     return all && ::unlinkat(folder, name.c_str(), AT_REMOVEDIR) == 0;
 }
 
 }  // namespace
+
+int open_inner(int folder, const std::string& name) {
+    open_how how{};
+    how.flags = open_folder;
+    how.resolve = RESOLVE_BENEATH | RESOLVE_NO_SYMLINKS | RESOLVE_NO_XDEV;
+    const long opened = ::syscall(SYS_openat2, folder, name.c_str(), &how, sizeof how);
+    if (opened >= 0 || (errno != ENOSYS && errno != EPERM)) return static_cast<int>(opened);
+    // A kernel before 5.6, or a container that denies the call: mounts of another device show.
+    const int inner = ::openat(folder, name.c_str(), open_folder);
+    struct stat outside {
+    }, inside{};
+    if (inner < 0 || (::fstat(folder, &outside) == 0 && ::fstat(inner, &inside) == 0 &&
+                      outside.st_dev == inside.st_dev)) {
+        return inner;
+    }
+    ::close(inner);
+    errno = EXDEV;
+    return -1;
+}
 
 std::vector<std::string> names_in(int folder) {
     std::vector<std::string> names;
@@ -58,8 +76,7 @@ std::vector<std::string> names_in(int folder) {
 
 bool remove_at(int folder, const std::string& name) noexcept {
     try {
-        struct stat about {};
-        return ::fstat(folder, &about) == 0 && remove_from(folder, name, about.st_dev);
+        return remove_from(folder, name);
     } catch (const std::exception&) {  // no memory for the names
         return false;
     }

@@ -8,8 +8,12 @@
 
 namespace palpate::io {
 
-/// Removes a file, a symbolic link (never what it points to), or a folder with all below it. Stays
-/// on one file system. False if something could not be removed; nothing there is no error.
+/// Opens a folder in an open one. Below 0 for a link, a mount point, and all that is no folder.
+int open_inner(int folder, const std::string& name);
+
+/// Removes a file, a symbolic link (never what it points to), or a folder with all below it. Mount
+/// points stay with all below them. False if something could not be removed; nothing there is no
+/// error.
 bool remove_tree(const std::filesystem::path& path) noexcept;
 
 /// The same for a name in an open folder.

@@ -2,7 +2,11 @@
 #include "io/growing_folder.hpp"
 
 #include <gtest/gtest.h>
+#include <sched.h>
+#include <sys/mount.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "io/own_names.hpp"
 #include "io/path_json.hpp"
@@ -36,6 +40,46 @@ TEST(Removal, takes_all_below_a_folder_and_nothing_that_a_link_points_to) {
     EXPECT_TRUE(remove_tree(folder / "not there"));
     EXPECT_EQ(folder.names(), Names{});
     EXPECT_EQ(bytes_of(precious / "thesis.txt"), "years");
+}
+
+/// Runs work() in a process with mounts of its own, in which `at` shows what is in `from`. False if
+/// this system has no such mounts.
+bool with_mount(const fs::path& from, const fs::path& at, const std::function<void()>& work) {
+    constexpr int no_mounts = 77;
+    const pid_t child = ::fork();
+    if (child == 0) {
+        const bool mounted =
+            (::unshare(CLONE_NEWNS) == 0 || ::unshare(CLONE_NEWUSER | CLONE_NEWNS) == 0) &&
+            ::mount(nullptr, "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0 &&
+            ::mount(from.c_str(), at.c_str(), nullptr, MS_BIND, nullptr) == 0;
+        if (mounted) work();
+        ::_exit(mounted ? 0 : no_mounts);
+    }
+    int status = 0;
+    EXPECT_EQ(::waitpid(child, &status, 0), child);
+    EXPECT_TRUE(WIFEXITED(status));
+    return WEXITSTATUS(status) == 0;
+}
+
+TEST(Removal, leaves_what_is_mounted_from_elsewhere_on_the_same_device) {
+    const ScratchFolder folder;
+    const fs::path precious = folder / "precious", tree = folder / "tree", image = folder / "image";
+    fs::create_directories(tree / "a/b");
+    fs::create_directories(image / "0");
+    fs::create_directory(precious);
+    put_bytes(precious / "zarr.json", "years");  // called as we would call it
+    put_bytes(tree / "a/file", "x");
+    if (!with_mount(precious, tree / "a/b", [&] { (void)remove_tree(tree); })) {
+        GTEST_SKIP() << "this system mounts nothing for this user";
+    }
+    EXPECT_FALSE(fs::exists(tree / "a/file"));
+    EXPECT_TRUE(with_mount(precious, image / "0", [&] {
+        put_bytes(folder / "unknown", unknown_below(image, OwnFolder::image));
+        put_bytes(folder / "left", remove_known(image, OwnFolder::image));
+    }));
+    EXPECT_EQ(bytes_of(precious / "zarr.json"), "years");
+    EXPECT_EQ(bytes_of(folder / "unknown"), "0");
+    EXPECT_EQ(bytes_of(folder / "left"), "0");
 }
 
 TEST(GrowingFolder, of_one_job_is_locked_continued_and_put_in_place) {
