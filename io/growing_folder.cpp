@@ -317,7 +317,7 @@ bool GrowingFolder::exchange_with_out(const MayReplace& may_replace) {
     if (errno == ENOENT) return false;
     const bool cannot = errno == EINVAL || errno == ENOSYS || errno == EOPNOTSUPP;
     if (!cannot) refuse(out_, reason(errno) + what_to_do);
-    return replace_in_steps();
+    return replace_in_steps(may_replace);
 }
 
 /// What must not be replaced lies in result() and cannot go back.
@@ -330,11 +330,17 @@ void GrowingFolder::keep_replaced(const std::string& problem) {
 }
 
 /// Where names cannot be exchanged. False if another process was quicker.
-bool GrowingFolder::replace_in_steps() {
+bool GrowingFolder::replace_in_steps(const MayReplace& may_replace) {
     const fs::path aside = free_name(out_, ".previous");
     if (!rename_new(out_, aside)) {
         if (errno == ENOENT || errno == EEXIST) return false;
         refuse(out_, reason(errno) + what_to_do);
+    }
+    try {
+        may_replace(aside);  // it may have been replaced since it was looked at
+    } catch (const OutputError& e) {
+        if (rename_new(aside, out_)) throw;
+        refuse(aside, std::string("must not be replaced and cannot go back: ") + e.what());
     }
     const bool done = rename_new(result(), out_);
     const int problem = errno;

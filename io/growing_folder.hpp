@@ -56,7 +56,7 @@ class GrowingFolder {
     void move_into_place(const MayReplace& may_replace);
     bool exchange_with_out(const MayReplace& may_replace);
     [[noreturn]] void keep_replaced(const std::string& problem);
-    bool replace_in_steps();
+    bool replace_in_steps(const MayReplace& may_replace);
     void rescue(const std::string& problem) const;
 
     std::filesystem::path out_, folder_;

@@ -252,14 +252,17 @@ TEST_F(Killed, a_rename_that_fails_costs_neither_the_old_edits_nor_the_new_ones)
 
 TEST_F(Killed, what_must_not_be_replaced_survives_every_rename_that_fails) {
     const auto renames = [](const FileCall& call) { return call.renames; };
-    for (const bool only_one : {true, false}) {
-        for (int at = 0; at < 6; ++at) {
-            SCOPED_TRACE(at);
+    for (const bool exchanges : {true, false}) {
+        for (int i = 0; i < 14; ++i) {
+            SCOPED_TRACE(i);
+            const int at = i % 7;  // the last one: none fails
+            const bool only_one = i < 7;
             const ScratchFolder folder;
             const fs::path out = folder / "e.zarr";
             fs::create_directories(out / "0/c/0/0");
             support::put_bytes(out / "0/c/0/0/0", "years");  // looks like a chunk of ours
             const auto work = [&] {
+                if (!exchanges) deny_exchange();
                 io::GrowingFolder grown = io::GrowingFolder::alone(out);
                 int looks = 0;
                 grown.put_in_place([&](const fs::path&) {
@@ -272,6 +275,9 @@ TEST_F(Killed, what_must_not_be_replaced_survives_every_rename_that_fails) {
                 kept += entry.is_regular_file() && support::bytes_of(entry.path()) == "years";
             }
             EXPECT_EQ(kept, 1);
+            if (at == 6) {
+                EXPECT_EQ(support::bytes_of(out / "0/c/0/0/0"), "years");
+            }
         }
     }
 }
