@@ -88,8 +88,12 @@ Bridge::Bridge(const Settings& settings, Pace pace) : settings_(settings), port_
     if (pace == Pace::by_steps) return;
     thread_ = std::thread([this] {
         while (!done_) {
-            step(std::chrono::steady_clock::now());
-            (void)poll(200);
+            try {
+                step(std::chrono::steady_clock::now());
+                (void)poll(200);
+            } catch (const std::exception&) {  // no memory at all: there may be some later
+                std::this_thread::sleep_for(between_tries);
+            }
         }
     });
 }
@@ -128,9 +132,53 @@ std::vector<std::string> Bridge::notes() {
     return std::exchange(notes_, {});
 }
 
-void Bridge::note(const std::string& text) {
-    const std::scoped_lock lock(mutex_);
-    if (notes_.size() < most_requests) notes_.push_back("OpenIGTLink: " + text);
+void Bridge::note(const std::string& text) noexcept {
+    try {
+        const std::scoped_lock lock(mutex_);
+        if (notes_.size() < most_requests) notes_.push_back("OpenIGTLink: " + text);
+    } catch (const std::exception&) {  // no memory for words
+    }
+}
+
+/// Its memory is free at once, its socket at the end of the step.
+void Bridge::drop(Peer& peer, const std::string& why) noexcept {
+    peer.gone = true;
+    peer.reader = Reader(settings_.limits);
+    peer.out = {};
+    peer.sent = 0;
+    note(peer.who + " was disconnected: " + why);
+}
+
+/// What fails for one peer, such as memory, ends that one and no other.
+template <class Work>
+void Bridge::serve(Peer& peer, Work&& work) noexcept {
+    try {
+        if (!peer.gone) work();
+    } catch (const std::bad_alloc&) {
+        drop(peer, "memory does not suffice for what it sent or asked for");
+    } catch (const std::exception& e) {
+        drop(peer, e.what());
+    }
+}
+
+/// The peers that hold most go until the others are within the bound.
+void Bridge::bound_memory() {
+    const auto held = [](const auto& peer) { return peer->gone ? 0 : peer->reader.held(); };
+    while (true) {
+        std::uint64_t all = 0;
+        for (const auto& peer : peers_) all += held(peer);
+        if (all <= settings_.limits.together) return;
+        drop(**std::ranges::max_element(peers_, {}, held),
+             "all clients together may send " + std::to_string(settings_.limits.together) +
+                 " bytes at a time");
+    }
+}
+
+/// [bytes] Of answers that no peer has taken yet.
+std::uint64_t Bridge::waiting() const {
+    std::uint64_t all = 0;
+    for (const auto& peer : peers_) all += peer->waiting();
+    return all;
 }
 
 void Bridge::send(int peer, std::string_view type, const std::string& body) {
@@ -165,7 +213,9 @@ void Bridge::step(Time now) {
     std::uint64_t woken = 0;
     [[maybe_unused]] const ssize_t ignored = ::read(event_, &woken, sizeof woken);
     for (std::size_t i = 0; i < peers_.size(); ++i) {
-        if (sockets[i + 3].revents & (POLLIN | POLLHUP | POLLERR)) take_from(*peers_[i]);
+        if (sockets[i + 3].revents & (POLLIN | POLLHUP | POLLERR)) {
+            serve(*peers_[i], [&] { take_from(*peers_[i]); });
+        }
     }
     if (sockets[1].revents & POLLIN) accept_peers();
     if (sockets[2].revents != 0) {
@@ -193,9 +243,7 @@ void Bridge::try_to_connect() {
 void Bridge::accept_peers() {
     for (int socket = accept_from(listening_); socket >= 0; socket = accept_from(listening_)) {
         if (peers_.size() == most_peers) {  // some may have left already
-            for (const auto& peer : peers_) {
-                if (!peer->gone) take_from(*peer);
-            }
+            for (const auto& peer : peers_) serve(*peer, [&] { take_from(*peer); });
             drop_the_gone();
         }
         if (peers_.size() < most_peers) {
@@ -207,11 +255,15 @@ void Bridge::accept_peers() {
     }
 }
 
-void Bridge::add_peer(int socket, const std::string& who) {
+void Bridge::add_peer(int socket, const std::string& who) noexcept {
     set_prompt(socket);
-    auto peer = std::make_unique<Peer>(
-        Peer{next_peer_++, socket, who, Reader(settings_.limits), {}, 0, now_});
-    peers_.push_back(std::move(peer));
+    try {
+        peers_.push_back(std::make_unique<Peer>(
+            Peer{next_peer_++, socket, who, Reader(settings_.limits), {}, 0, now_}));
+    } catch (const std::bad_alloc&) {
+        ::close(socket);
+        return;
+    }
     note(who + " is connected");
 }
 
@@ -228,10 +280,11 @@ void Bridge::take_from(Peer& peer) {
         try {
             peer.reader.feed({piece.data(), static_cast<std::size_t>(got)}, messages);
         } catch (const WireError& e) {
-            peer.gone = true;
-            note(peer.who + " was disconnected: it sent " + e.what());
+            drop(peer, std::string("it sent ") + e.what());
             break;
         }
+        bound_memory();
+        if (peer.gone) break;
     }
     for (const Received& received : messages) take(peer, received);
 }
@@ -249,6 +302,8 @@ void Bridge::take(Peer& peer, const Received& received) {
     } catch (const WireError& e) {
         note(peer.who + " sent " + e.what());
         reply(peer.number, std::string("not taken: ") + e.what());
+    } catch (const std::bad_alloc&) {
+        reply(peer.number, "not taken: there is too little memory for this " + type);
     }
 }
 
@@ -277,21 +332,24 @@ void Bridge::hand_out() {
         outgoing = std::exchange(outgoing_, {});
     }
     for (const auto& peer : peers_) {
-        for (const Outgoing& one : outgoing) {
-            if (one.peer != peer->number) continue;
-            if (peer->waiting() < most_waiting) {
-                peer->append(one.bytes, now_);
-            } else {
-                note(peer->who + " reads too slowly: an answer was left out");
+        serve(*peer, [&] {
+            for (const Outgoing& one : outgoing) {
+                if (one.peer == peer->number) answer(*peer, one.bytes);
             }
-        }
-        if (frame && peer->waiting() == 0) peer->append(*frame, now_);
-        flush(*peer);
-        if (peer->waiting() > 0 && now_ - peer->moved > patience) {
-            peer->gone = true;
-            note(peer->who + " was disconnected: it took nothing for 10 s");
-        }
+            if (frame && peer->waiting() == 0) peer->append(*frame, now_);
+            flush(*peer);
+            if (peer->waiting() > 0 && now_ - peer->moved > patience) {
+                drop(*peer, "it took nothing for 10 s");
+            }
+        });
     }
+}
+
+void Bridge::answer(Peer& peer, const std::string& bytes) {
+    const bool has_room =
+        peer.waiting() < most_waiting && waiting() + bytes.size() <= settings_.limits.together;
+    if (has_room) return peer.append(bytes, now_);
+    note(peer.who + " reads too slowly: an answer was left out");
 }
 
 void Bridge::flush(Peer& peer) const {

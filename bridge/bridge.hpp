@@ -61,7 +61,7 @@ class Bridge {
 
     int port() const { return port_; }
     /// Exchanges what the network is ready for, without waiting. The thread does so whenever there
-    /// is something.
+    /// is something. A peer for which memory does not suffice is disconnected.
     void step(std::chrono::steady_clock::time_point now);
 
     // By the owner's thread; none of these waits for the network.
@@ -88,14 +88,20 @@ class Bridge {
     std::vector<pollfd> poll(int milliseconds) const;
     void wake() const;
     void send(int peer, std::string_view type, const std::string& body);
-    void note(const std::string& text);
+    void note(const std::string& text) noexcept;
     void accept_peers();
     void try_to_connect();
-    void add_peer(int socket, const std::string& who);
+    void add_peer(int socket, const std::string& who) noexcept;
+    void drop(Peer& peer, const std::string& why) noexcept;
+    template <class Work>
+    void serve(Peer& peer, Work&& work) noexcept;
+    void bound_memory();
+    std::uint64_t waiting() const;
     void take_from(Peer& peer);
     void take(Peer& peer, const Received& received);
     void ask(Peer& peer, Request request);
     void hand_out();
+    void answer(Peer& peer, const std::string& bytes);
     void flush(Peer& peer) const;
     void drop_the_gone();
 

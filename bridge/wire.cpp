@@ -121,9 +121,13 @@ void Reader::feed(std::string_view bytes, std::vector<Received>& out) {
     while (!bytes.empty()) {
         const bool in_header = header_.size() < header_bytes;
         std::string& part = in_header ? header_ : body_;
-        const std::uint64_t missing = (in_header ? header_bytes : body_size_) - part.size();
+        const std::uint64_t whole = in_header ? header_bytes : body_size_;
+        const std::uint64_t missing = whole - part.size();
         const std::string_view now =
             bytes.substr(0, std::min<std::uint64_t>(missing, bytes.size()));
+        if (part.capacity() < part.size() + now.size()) {
+            part.reserve(std::min<std::uint64_t>(whole, 2 * (part.size() + now.size())));
+        }
         part += now;
         bytes.remove_prefix(now.size());
         if (in_header && header_.size() == header_bytes) take_header();

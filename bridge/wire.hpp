@@ -42,6 +42,8 @@ inline constexpr std::size_t most_mesh_bytes = std::size_t{1} << 30;
 struct WireLimits {
     std::uint64_t image = std::uint64_t{1} << 30;
     std::uint64_t other = std::uint64_t{1} << 16;
+    /// Of all peers together: messages that are not whole yet, and answers that were not taken yet.
+    std::uint64_t together = (std::uint64_t{1} << 30) + (std::uint64_t{1} << 26);
 };
 
 /// A message that came in whole, with the right checksum.
@@ -58,6 +60,8 @@ class Reader {
 
     /// Throws WireError: nothing that follows can be trusted then.
     void feed(std::string_view bytes, std::vector<Received>& out);
+    /// [bytes] Of memory, for the message that is not whole yet.
+    std::uint64_t held() const { return header_.capacity() + body_.capacity(); }
 
   private:
     void take_header();

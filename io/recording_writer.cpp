@@ -133,8 +133,15 @@ void RecordingWriter::finish(std::int64_t lost) {
 }
 
 void RecordingWriter::step() {
-    drain();
-    flush();
+    try {
+        drain();
+        flush();
+    } catch (const std::bad_alloc&) {  // an event is lost, so that nothing may follow
+        const std::scoped_lock lock(mutex_);
+        problem_ = path_.string() +
+                   ": recording stopped: there is too little memory; what was "
+                   "recorded before is kept";
+    }
 }
 
 void RecordingWriter::drain() {

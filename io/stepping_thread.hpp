@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <condition_variable>
+#include <exception>
 #include <functional>
 #include <mutex>
 #include <thread>
@@ -11,8 +12,8 @@ namespace palpate::io {
 
 using SteadyTime = std::chrono::steady_clock::time_point;
 
-/// Calls `step` with the time until the thread is asked to stop, which ends a pause at once. What
-/// `step` throws ends the program.
+/// Calls `step` with the time until the thread is asked to stop, which ends a pause at once. A step
+/// that throws, mostly for want of memory, is tried again after the pause: the program goes on.
 inline std::jthread stepping_thread(std::chrono::nanoseconds pause,
                                     std::function<void(SteadyTime now)> step) {
     return std::jthread([pause, step = std::move(step)](const std::stop_token& stop) {
@@ -20,7 +21,10 @@ inline std::jthread stepping_thread(std::chrono::nanoseconds pause,
         std::condition_variable_any never;
         std::unique_lock lock(mutex);
         while (never.wait_for(lock, stop, pause, [] { return false; }), !stop.stop_requested()) {
-            step(std::chrono::steady_clock::now());
+            try {
+                step(std::chrono::steady_clock::now());
+            } catch (const std::exception&) {
+            }
         }
     });
 }

@@ -2,13 +2,16 @@
 #include "bridge/bridge.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <chrono>
+#include <fstream>
 
 #include "bridge/sockets.hpp"
 #include "support/eventually.hpp"
+#include "support/random.hpp"
 #include "support/scratch_folder.hpp"
 
 namespace palpate::bridge {
@@ -92,6 +95,9 @@ class Plug {
             return ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL) ==
                    ssize_t(bytes.size());
         }));
+    }
+    void try_to_say(const std::string& bytes) const {
+        (void)::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
     }
 
   private:
@@ -182,6 +188,58 @@ TEST(Bridge, many_peers_that_come_and_go_leave_it_working) {
     const Plug last(s.bridge.port());
     last.say(message("STRING", "", string_body("freeze on"), 0));
     EXPECT_TRUE(s.asks());
+}
+
+/// The beginning of an IMAGE with a body of so many bytes.
+std::string image_of(std::size_t body, std::size_t sent) {
+    return message("IMAGE", "", std::string(body, 'x'), 0).substr(0, header_bytes + sent);
+}
+
+TEST(Bridge, peers_together_hold_no_more_than_the_bound_and_the_largest_goes_first) {
+    Settings settings = at_port(0);
+    settings.limits.image = 400'000;
+    settings.limits.together = 550'000;
+    Stepped s(settings);
+    const Plug small(s.bridge.port()), large(s.bridge.port()), late(s.bridge.port());
+    EXPECT_TRUE(s.notes("client 3 is connected"));
+    small.say(image_of(100'000, 60'000));
+    large.say(image_of(400'000, 20'000));
+    for (int i = 0; i < 18; ++i) {
+        large.say(std::string(20'000, 'x'));
+        s.step();
+    }
+    EXPECT_FALSE(s.has_noted("was disconnected"));
+    late.say(image_of(100'000, 60'000));
+    EXPECT_TRUE(s.notes("was disconnected: all clients together may send 550000 bytes")) << s.told;
+    EXPECT_TRUE(contains(s.told, "client 2 was disconnected")) << s.told;
+    EXPECT_FALSE(contains(s.told, "client 1 was disconnected")) << s.told;
+}
+
+/// Exits with 0 if a peer that sends too much is disconnected and another one is served.
+[[noreturn]] void serve_in_little_memory() {
+    rlim_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    const rlim_t most = pages * 4096 + (rlim_t{48} << 20);
+    const rlimit limit{most, most};
+    ::setrlimit(RLIMIT_AS, &limit);
+    Stepped s(at_port(0));
+    const Plug bad(s.bridge.port()), good(s.bridge.port());
+    std::string header = message("IMAGE", "", "", 0);
+    header.replace(42, 8, std::string("\0\0\0\0\x20\0\0\0", 8));  // of 512 MiB
+    bad.say(header);
+    const std::string piece(1 << 16, 'x');
+    for (int i = 0; i < 3000 && !s.has_noted("memory does not suffice"); ++i) {
+        bad.try_to_say(piece);
+        s.step();
+    }
+    const bool is_dropped = s.has_noted("memory does not suffice");
+    good.say(message("STRING", "", string_body("freeze on"), 0));
+    std::_Exit(is_dropped && s.asks() ? 0 : 1);
+}
+
+TEST(Bridge, a_peer_that_sends_more_than_there_is_memory_for_goes_and_others_are_served) {
+    if (support::is_slow_build) GTEST_SKIP() << "sanitizers reserve terabytes of addresses";
+    EXPECT_EXIT(serve_in_little_memory(), testing::ExitedWithCode(0), "");
 }
 
 TEST(PacedBridge, serves_peers_by_itself) {
