@@ -257,6 +257,17 @@ void save_as_asked(run::Data& data, const RunOptions& options) {
     }
 }
 
+/// Puts edits that would be lost into another place. Returns what became of them; empty if there
+/// are none.
+std::string rescued(run::Data& data) {
+    if (data.is_sequence() || !data.editor().state().changed) return "";
+    try {
+        return "; the edits are kept in " + data.rescue().string();
+    } catch (const std::exception& e) {
+        return "; they could not be kept elsewhere: " + std::string(e.what());
+    }
+}
+
 /// `unsaved`: why a command could not save; empty: none failed. Edits that could not be saved where
 /// they should be go to another place. Returns what went wrong and where they are.
 std::string save_at_end(run::Data& data, const RunOptions& options, std::string unsaved) {
@@ -267,12 +278,19 @@ std::string save_at_end(run::Data& data, const RunOptions& options, std::string 
     } catch (const std::exception& e) {
         unsaved += (unsaved.empty() ? "" : "; ") + std::string(e.what());
     }
-    if (unsaved.empty() || data.is_sequence() || !data.editor().state().changed) return unsaved;
+    return unsaved.empty() ? unsaved : unsaved + rescued(data);
+}
+
+/// The same after a session that failed: without words of success, and only what was edited.
+void save_after_failure(run::Data& data, const RunOptions& options) {
+    if (data.is_sequence() || !data.editor().state().changed) return;
+    std::string told = "the session failed";
     try {
-        return unsaved + "; the edits are kept in " + data.rescue().string();
+        if (!options.save.empty()) told = data.save(options.save, {});
     } catch (const std::exception& e) {
-        return unsaved + "; they could not be kept elsewhere: " + e.what();
+        told += "; " + std::string(e.what());
     }
+    std::fprintf(stderr, "palpate: %s%s\n", told.c_str(), rescued(data).c_str());
 }
 
 void start_recording(run::Run& run, const RunOptions& options) {
@@ -366,14 +384,23 @@ void touch(const TouchOptions& options) {
     const DeviceInfo device = run->device();
     stay_awake();
     auto begin = std::chrono::steady_clock::now();
-    std::string unsaved = feel(*run, options, std::move(requests), commands, remote.get());
-    while (auto pushed = remote ? remote->take_pushed() : nullptr) {
-        data = std::move(pushed);
-        run.reset();  // a device opens once
-        run = std::make_unique<run::Run>(data, setup);
-        commands = commands_for(*run);
-        begin = std::chrono::steady_clock::now();
-        unsaved += feel(*run, options, {}, commands, remote.get());
+    std::string unsaved;
+    try {
+        unsaved = feel(*run, options, std::move(requests), commands, remote.get());
+        while (auto pushed = remote ? remote->take_pushed() : nullptr) {
+            const std::string kept = rescued(*data);  // of what came after the last save
+            if (!kept.empty()) unsaved += data->loaded().name + " was replaced" + kept;
+            data = std::move(pushed);
+            run.reset();  // a device opens once
+            run = std::make_unique<run::Run>(data, setup);
+            commands = commands_for(*run);
+            begin = std::chrono::steady_clock::now();
+            unsaved += feel(*run, options, {}, commands, remote.get());
+        }
+    } catch (...) {
+        run.reset();  // no force while it is saved
+        save_after_failure(*data, options);
+        throw;
     }
     const double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -64,6 +64,22 @@ TEST(Touch, recordings_of_edits_and_sequences_replay_bit_for_bit) {
     EXPECT_EQ(again.status, 0) << again.err;
 }
 
+TEST(ChangingData, edits_are_saved_although_the_session_fails) {
+    const ScratchFolder folder;
+    // A line on standard error that cannot be written ends the session: a log on a full disk.
+    put_bytes(folder / "c.txt", "0.1 fill 1,1,1:4,4,4 90%\n0.5 save nofolder/o.nrrd\n");
+    const Outcome done =
+        Running({"-c",
+                 "exec \"$0\" touch -q " + ball +
+                     " --unpaced --device simulated:hand=press --seconds 2 --commands c.txt "
+                     "--save out.nrrd 2>/dev/full",
+                 std::string(PALPATE_PROGRAM)},
+                folder.path(), Stdout::captured, "/bin/sh")
+            .finish();
+    EXPECT_NE(done.status, 0);
+    EXPECT_GT(io::read_volume(folder / "out.nrrd").volume.sample({2, 2, 2}), 200);
+}
+
 TEST(Touch, a_saved_raw_or_tiff_file_opens_with_the_options_that_it_names) {
     const ScratchFolder folder;
     Geometry geometry{Index3::Constant(8)};
