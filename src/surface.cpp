@@ -167,9 +167,11 @@ SurfaceMesh extract_surface(const Field& field, double isovalue, const SurfaceOp
         return extract<LinearNodes>(field, isovalue, options);
     }
     SurfaceMesh mesh = extract<CubicNodes>(field, isovalue, options);
-    if (options.tolerance > 0) {
-        refine(mesh, field, isovalue, options.tolerance * field.geometry().spacing.minCoeff(),
-               std::min(options.max_vertices, nameable));
+    if (options.tolerance > 0 && mesh.complete &&
+        !refine(mesh, field, isovalue, options.tolerance * field.geometry().spacing.minCoeff(),
+                options)) {
+        mesh = {};
+        mesh.complete = false;
     }
     if (options.normals) {
         mesh.normals.reserve(mesh.vertices.size());

@@ -27,13 +27,16 @@ class Refinement {
           max_vertices_(max_vertices) {}
 
     /// Only what was split may have to be split again: all other edges are as they should be.
-    void run() {
+    bool run(const std::function<bool(double)>& progress) {
+        constexpr std::uint64_t between_reports = 4096;  // triangles
+        std::uint64_t seen = 0;
         std::vector<Triangle> done;
         std::vector<Triangle> fresh = std::move(mesh_.triangles);
         for (int round = 0; round < most_rounds && !fresh.empty(); ++round) {
             middle_.clear();
             std::vector<Triangle> next;
             for (const Triangle& triangle : fresh) {
+                if (seen++ % between_reports == 0 && progress && !progress(1)) return false;
                 Triangle middle;
                 for (int i = 0; i < 3; ++i) {
                     middle[i] = middle_of(triangle[i], triangle[(i + 1) % 3]);
@@ -48,6 +51,7 @@ class Refinement {
         }
         done.insert(done.end(), fresh.begin(), fresh.end());
         mesh_.triangles = std::move(done);
+        return true;
     }
 
   private:
@@ -115,9 +119,10 @@ class Refinement {
 
 }  // namespace
 
-void refine(SurfaceMesh& mesh, const Field& field, double isovalue, double tolerance,
-            std::uint64_t max_vertices) {
-    Refinement(mesh, field, isovalue, tolerance, max_vertices).run();
+bool refine(SurfaceMesh& mesh, const Field& field, double isovalue, double tolerance,
+            const SurfaceOptions& options) {
+    const std::uint64_t most = std::min<std::uint64_t>(options.max_vertices, none);
+    return Refinement(mesh, field, isovalue, tolerance, most).run(options.progress);
 }
 
 }  // namespace palpate::marching
