@@ -12,6 +12,7 @@
 #include <random>
 
 #include "io/helper_process.hpp"
+#include "io/json_text.hpp"
 #include "io/leftovers.hpp"
 #include "io/own_names.hpp"
 #include "io/removal.hpp"
@@ -84,7 +85,7 @@ std::string text_of_marker(int folder) {
 
 /// The job in the marker of an open folder; nothing if there is no marker of ours.
 std::optional<std::string> job_in(int folder) {
-    const nlohmann::json marker = nlohmann::json::parse(text_of_marker(folder), nullptr, false);
+    const nlohmann::json marker = parsed_or_discarded(text_of_marker(folder));
     if (!marker.is_object() || marker.value("palpate", nlohmann::json()) != maker)
         return std::nullopt;
     const nlohmann::json nonce = marker.value("nonce", nlohmann::json()),

@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "io/bundled.hpp"
+#include "io/json_text.hpp"
 #include "io/layers_json.hpp"
 #include "palpate/io/csv.hpp"
 #include "palpate/io/output.hpp"
@@ -44,7 +45,7 @@ fs::path preset_folder() {
 
 LayersFile layers_from_text(std::string_view text, const std::string& name) {
     try {
-        Json json = Json::parse(text, nullptr, true, true);
+        Json json = parsed_json(text, true);
         if (!json.is_object() || !json.contains("palpate_layers") ||
             json["palpate_layers"] != format) {
             throw std::invalid_argument("no layers: it must begin with \"palpate_layers\": 1");

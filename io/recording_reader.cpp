@@ -2,6 +2,7 @@
 #include <deque>
 #include <limits>
 
+#include "io/json_text.hpp"
 #include "io/recording_head.hpp"
 #include "io/trace_columns.hpp"
 
@@ -31,7 +32,7 @@ Head read_head(const std::string& comments, const std::string& name) {
              ", made by a later version: use that");
     }
     try {
-        return {*format, head_from_json(Json::parse(comments.substr(first.size())))};
+        return {*format, head_from_json(parsed_json(comments.substr(first.size())))};
     } catch (const Json::exception&) {
         fail("the head is not valid JSON: the file was changed or cut off");
     } catch (const std::invalid_argument& e) {
@@ -110,13 +111,13 @@ struct RecordingReader::Rows {
             checksum = checksum_with(comment, checksum_with("#", checksum));
             try {
                 waiting.emplace_back(
-                    command_from_json(Json::parse(comment.substr(command_mark.size())), bodies));
+                    command_from_json(parsed_json(comment.substr(command_mark.size())), bodies));
             } catch (const std::exception&) {  // JSON's own, or what is wrong with a member
                 csv.fail("the command " + quoted(comment) + " is not valid");
             }
         } else if (comment.starts_with(end_mark)) {
             require_before_end();
-            on_end(Json::parse(comment.substr(end_mark.size()), nullptr, false));
+            on_end(parsed_or_discarded(comment.substr(end_mark.size())));
         }
     }
 

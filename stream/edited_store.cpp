@@ -1,9 +1,9 @@
 // A store with edits on top, and the note that says of what it is; see the header.
 #include "stream/edited_store.hpp"
 
-#include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "io/json_text.hpp"
 #include "io/own_names.hpp"
 #include "io/path_json.hpp"
 #include "palpate/io/error.hpp"
@@ -114,14 +114,11 @@ EditsNote note_from(const Json& json, const fs::path& folder, const StoreOptions
 
 EditsNote read_note(const fs::path& folder, const StoreOptions& options) {
     const fs::path path = folder / io::edits_note;
-    std::error_code error;
-    const std::uintmax_t size = fs::file_size(path, error);
-    if (error || size > longest_note) {
-        throw io::InputError(path.string() + ": cannot be read, or is too large for a note");
-    }
-    std::ifstream file(path, std::ios::binary);
+    const auto bytes = folder_objects(folder)->get({io::edits_note, {}, longest_note}, {});
+    if (!bytes) throw io::InputError(path.string() + ": is not there");
+    const std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
     try {
-        return note_from(Json::parse(file), folder, options);
+        return note_from(io::parsed_json(text), folder, options);
     } catch (const std::exception&) {  // of the library, or above
         throw io::InputError(path.string() +
                              ": is damaged; without it the edits are of no known volume");

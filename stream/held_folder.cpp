@@ -93,8 +93,8 @@ io::Descriptor HeldFolder::open(const fs::path& name) {
     io::Descriptor file(
         ::openat(held(), name.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
     struct stat about {};
-    const bool is_file = file.number() >= 0 && ::fstat(file.number(), &about) == 0 &&
-                         S_ISREG(about.st_mode);
+    const bool is_file =
+        file.number() >= 0 && ::fstat(file.number(), &about) == 0 && S_ISREG(about.st_mode);
     return is_file ? std::move(file) : io::Descriptor();
 }
 

@@ -1,5 +1,5 @@
-// A folder that is being written, held open: its files go there whatever happens to its name. Linux.
-// Private to stream/.
+// A folder that is being written, held open: its files go there whatever happens to its name.
+// Linux. Private to stream/.
 #pragma once
 
 #include <cstddef>

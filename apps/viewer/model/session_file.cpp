@@ -11,6 +11,7 @@
 
 #include "apps/viewer/model/colour_map.hpp"
 #include "io/json_members.hpp"
+#include "io/json_text.hpp"
 #include "palpate/io/csv.hpp"
 #include "palpate/io/output.hpp"
 
@@ -391,7 +392,7 @@ SessionFile read_session(const std::filesystem::path& path) {
     if (!ignored && bytes > largest_file) throw fail("is no session: it is too large for one");
     const std::string text = io::read_text(path);
     try {
-        return session_from(Json::parse(text), path.parent_path());
+        return session_from(io::parsed_json(text), path.parent_path());
     } catch (const Json::exception&) {
         throw fail("is no session: it is not valid JSON, or was cut off");
     } catch (const std::invalid_argument& e) {

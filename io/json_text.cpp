@@ -1,0 +1,59 @@
+// JSON that others wrote; see the header.
+#include "io/json_text.hpp"
+
+#include <algorithm>
+#include <string>
+
+namespace palpate::io {
+namespace {
+
+using nlohmann::json;
+
+/// Where a comment that begins at `at` ends; `at` if none does.
+std::size_t end_of_comment(std::string_view text, std::size_t at) {
+    const std::string_view begin = text.substr(at, 2);
+    if (begin == "//") return std::min(text.find('\n', at), text.size());
+    if (begin != "/*") return at;
+    const std::size_t end = text.find("*/", at + 2);
+    return end == text.npos ? text.size() : end + 2;
+}
+
+std::size_t end_of_string(std::string_view text, std::size_t at) {
+    for (++at; at < text.size() && text[at] != '"'; ++at) at += text[at] == '\\' ? 1 : 0;
+    return std::min(at + 1, text.size());
+}
+
+bool is_too_deep(std::string_view text, bool with_comments) {
+    int depth = 0;
+    for (std::size_t at = 0; at < text.size();) {
+        const char c = text[at];
+        const std::size_t after = with_comments ? end_of_comment(text, at) : at;
+        if (after != at) {
+            at = after;
+            continue;
+        }
+        if (c == '[' || c == '{') ++depth;
+        if (c == ']' || c == '}') --depth;
+        if (depth > deepest_json) return true;
+        at = c == '"' ? end_of_string(text, at) : at + 1;
+    }
+    return false;
+}
+
+}  // namespace
+
+json parsed_json(std::string_view text, bool with_comments) {
+    if (is_too_deep(text, with_comments)) {
+        throw json::other_error::create(
+            501, "it is nested more than " + std::to_string(deepest_json) + " levels deep",
+            nullptr);
+    }
+    return json::parse(text, nullptr, true, with_comments);
+}
+
+json parsed_or_discarded(std::string_view text) {
+    if (is_too_deep(text, false)) return json(json::value_t::discarded);
+    return json::parse(text, nullptr, false);
+}
+
+}  // namespace palpate::io

@@ -1,0 +1,21 @@
+// JSON that others wrote: checked before it is parsed. All documents from files, the network and
+// programs go through this. Private to io/, stream/, run/ and programs.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+namespace palpate::io {
+
+/// What a document may be nested at most. Walks through JSON are recursive: deeper ones overflow
+/// the stack.
+inline constexpr int deepest_json = 64;
+
+/// Throws nlohmann::json::exception for what is no JSON or nested deeper. `with_comments`: as in
+/// C++ they are left out.
+nlohmann::json parsed_json(std::string_view text, bool with_comments = false);
+
+/// The same; discarded (nlohmann::json::is_discarded) instead of an exception.
+nlohmann::json parsed_or_discarded(std::string_view text);
+
+}  // namespace palpate::io
