@@ -300,10 +300,20 @@ void DetailReader::read(const Job& job, const std::stop_token& stop) {
 
 /// All of a coarse stage has come that will: what is missing of the last is made of it.
 void DetailReader::end_stage(Work& work) {
+    try {
+        make_base(work);
+    } catch (const std::bad_alloc&) {  // the base of before stays
+    }
+    const std::scoped_lock lock(mutex_);
+    ++work.stage;
+    work.has_new = true;
+}
+
+void DetailReader::make_base(Work& work) const {
     Work::Stage& stage = work.stages[work.stage];
     const Geometry grid = geometry_of(grid_of(*store_, stage.of), stage.of.box);
+    const std::scoped_lock content(work.content);
     {
-        const std::scoped_lock content(work.content);
         const SampleType type = store_->info().type;
         stage.samples.resize(count_of(stage.of.box) * palpate::size_of(type));
         for (const Piece& piece : stage.pieces) {
@@ -318,9 +328,6 @@ void DetailReader::end_stage(Work& work) {
             if (!piece.copied) work.changed = united(work.changed, piece.box);
         }
     }
-    const std::scoped_lock lock(mutex_);
-    ++work.stage;
-    work.has_new = true;
 }
 
 void DetailReader::publish(Work& work) {

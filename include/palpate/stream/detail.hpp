@@ -96,6 +96,7 @@ class DetailReader {
     std::optional<Job> piece_of(const std::shared_ptr<Work>& work, bool may_ask);
     void read(const Job& job, const std::stop_token& stop);
     void end_stage(Work& work);
+    void make_base(Work& work) const;
     void publish(Work& work);
 
     const std::shared_ptr<const Store> store_;
