@@ -7,6 +7,7 @@
 #include "palpate/io/error.hpp"
 #include "palpate/scenes/beating.hpp"
 #include "palpate/scenes/volumes.hpp"
+#include "stream/while_telling.hpp"
 
 namespace palpate::run {
 namespace {
@@ -121,32 +122,40 @@ LoadedVolume loaded_of(const FileSource& file, const Source& source, const io::P
     return loaded;
 }
 
+stream::StoreOptions options_of(const StoreSource& from, int time) {
+    stream::StoreOptions options = from.options;
+    options.time = time;
+    // Bricks and chunks that are being unpacked share what the process may take.
+    if (from.loader.whole_process) options.unpacking = from.loader.memory / 2;
+    return options;
+}
+
 LoadedVolume all_times_of(const StoreSource& from, const Source& source,
                           const io::Progress& progress) {
     if (source.frame) {
-        throw std::invalid_argument(from.address + ": one time step or all times, not both");
+        throw std::invalid_argument(io::without_secrets(from.address) +
+                                    ": one time step or all times, not both");
     }
     if (from.loader.whole_process || from.loader.coarse_first) {
-        throw std::invalid_argument(from.address +
+        throw std::invalid_argument(io::without_secrets(from.address) +
                                     ": all times are read whole, so memory and coarse-first do "
                                     "nothing; --sequence-memory bounds the frames");
     }
-    const auto open = [from](int time) {
-        stream::StoreOptions options = from.options;
-        options.time = time;
-        return stream::open_store(from.address, options);
+    const auto open = [from](int time, const io::Progress& tell) {
+        return stream::open_store(from.address, options_of(from, time), tell);
     };
-    const auto first = open(0);
+    const auto first = open(0, progress);
     const stream::StoreInfo& info = first->info();
     if (info.times < 2) {
-        throw std::invalid_argument(from.address + ": there is one time: it is no sequence");
+        throw std::invalid_argument(io::without_secrets(from.address) +
+                                    ": there is one time: it is no sequence");
     }
     io::VolumeFile file{stream::read_level(*first, from.loader.level, progress), info.format,
                         info.times, info.notes, info.frame_interval};
     io::SequenceFile got = io::sequence_of(
         std::move(file), source.frame_interval.value_or(0),
         [open, level = from.loader.level](int time, const io::Progress& each) {
-            return stream::read_level(*open(time), level, each);
+            return stream::read_level(*open(time, each), level, each);
         },
         [address = from.address](int time) { return address + ": time " + std::to_string(time); });
     LoadedVolume loaded = loaded_from(std::move(got.first), source);
@@ -173,16 +182,22 @@ LoadedVolume loaded_of(const StoreSource& from, const Source& source,
                        const io::Progress& progress) {
     if (from.all_times) return all_times_of(from, source, progress);
     if (source.smooth > 0 || source.dequantize > 0 || source.prefilter) {
-        throw std::invalid_argument(from.address +
+        throw std::invalid_argument(io::without_secrets(from.address) +
                                     ": is felt while it is read, so it cannot be smoothed, "
                                     "dequantized or sharpened");
     }
-    stream::StoreOptions options = from.options;
-    options.time = source.frame.value_or(0);
-    std::shared_ptr<const stream::Store> store = stream::open_store(from.address, options);
+    const stream::StoreOptions options = options_of(from, source.frame.value_or(0));
+    std::shared_ptr<const stream::Store> store =
+        stream::open_store(from.address, options, progress);
     const stream::StoreInfo& info = store->info();
-    if (progress) progress(0.1);
-    LoadedVolume loaded = loaded_from(stream::overview_of(*store), source);
+    const auto tell = [&] { progress(0.1); };
+    LoadedVolume loaded = loaded_from(
+        stream::while_telling(progress ? tell : std::function<void()>(),
+                              [&](std::stop_token stop) {
+                                  return stream::overview_of(*store, stream::overview_samples,
+                                                             std::move(stop));
+                              }),
+        source);
     loaded.format = info.format;
     loaded.notes = info.notes;
     loaded.time_steps = info.times;

@@ -1,6 +1,5 @@
 // Remote objects with a cache on the disk.
 #include <atomic>
-#include <string_view>
 
 #include "stream/disk_cache.hpp"
 #include "stream/remote_objects.hpp"
@@ -24,8 +23,10 @@ class CachedObjects : public Objects {
         return traffic;
     }
 
+    std::string version() const override { return objects_->version(); }
+
     std::optional<Bytes> get(const Wanted& wanted, std::stop_token stop) const override {
-        if (!wanted.lasting) return seen(wanted, objects_->get(wanted, std::move(stop)));
+        if (!wanted.lasting) return objects_->get(wanted, std::move(stop));
         const std::string name = entry_name(wanted);
         if (!wanted.again) {
             if (auto bytes = cache_.find(name); bytes && bytes->size() <= wanted.most) {
@@ -44,24 +45,13 @@ class CachedObjects : public Objects {
         for (const Wanted& one : wanted) {
             if (one.lasting) return Objects::get_all(wanted, std::move(stop));
         }
-        auto all = objects_->get_all(wanted, std::move(stop));
-        for (std::size_t i = 0; i < all.size(); ++i) all[i] = seen(wanted[i], std::move(all[i]));
-        return all;
+        return objects_->get_all(wanted, std::move(stop));
     }
 
   private:
-    /// What is fetched every time are metadata. They are a part of the names of entries, so that a
-    /// store that is written anew does not meet those of the old one.
-    std::optional<Bytes> seen(const Wanted& wanted, std::optional<Bytes> bytes) const {
-        if (!bytes) return bytes;
-        const std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
-        metadata_.fetch_xor(std::hash<std::string_view>{}(text)*31 +
-                            std::hash<std::string>{}(wanted.key));
-        return bytes;
-    }
-
+    /// A store that is written anew does not meet the entries of the old one.
     std::string entry_name(const Wanted& wanted) const {
-        std::string name = objects_->name_of(wanted.key) + '\n' + std::to_string(metadata_.load());
+        std::string name = objects_->name_of(wanted.key) + '\n' + objects_->version();
         if (wanted.range) {
             name += '\n' + std::to_string(wanted.range->offset) +
                     (wanted.range->from_end ? "e" : "+") + std::to_string(wanted.range->length);
@@ -71,7 +61,6 @@ class CachedObjects : public Objects {
 
     std::shared_ptr<const Objects> objects_;
     DiskCache cache_;
-    mutable std::atomic<std::size_t> metadata_ = 0;
     mutable std::atomic<std::uint64_t> found_ = 0;
 };
 

@@ -26,7 +26,8 @@ struct Job {
     CURL* easy = nullptr;
     int attempts = 0;
     Clock::time_point not_before{};
-    bool too_long = false;
+    std::uint64_t page_bytes = 0;  // of a page that explains an error
+    bool too_long = false, no_memory = false, page_was_cut = false;
     bool cancelled = false;  // under the mutex, as `done`
     bool done = false;
 };
@@ -41,21 +42,59 @@ long status_of(CURL* easy) {
     return status;
 }
 
-/// Of the header "Content-Range: bytes 0-63/1000".
-std::optional<std::uint64_t> whole_size_of(CURL* easy) {
+std::string header_of(CURL* easy, const char* name) {
     curl_header* header = nullptr;
-    if (curl_easy_header(easy, "Content-Range", 0, CURLH_HEADER, -1, &header) != CURLHE_OK) {
+    const bool found = curl_easy_header(easy, name, 0, CURLH_HEADER, -1, &header) == CURLHE_OK;
+    return found ? header->value : "";
+}
+
+/// Of the header "Content-Range: bytes 0-63/1000"; nothing where it is another one.
+struct ContentRange {
+    std::uint64_t first = 0, last = 0;
+    std::optional<std::uint64_t> whole;  ///< a server may say "*"
+};
+std::optional<ContentRange> content_range_of(CURL* easy) {
+    const std::string text = header_of(easy, "Content-Range");
+    const std::size_t space = text.find(' '), dash = text.find('-'), slash = text.find('/');
+    if (space == text.npos || dash == text.npos || slash == text.npos || dash < space ||
+        slash < dash) {
         return std::nullopt;
     }
-    const std::string text = header->value;
-    return io::number_from<std::uint64_t>(text.substr(text.rfind('/') + 1));
+    const auto first = io::number_from<std::uint64_t>(text.substr(space + 1, dash - space - 1));
+    const auto last = io::number_from<std::uint64_t>(text.substr(dash + 1, slash - dash - 1));
+    if (!first || !last || *last < *first || *last == UINT64_MAX) return std::nullopt;
+    return ContentRange{*first, *last, io::number_from<std::uint64_t>(text.substr(slash + 1))};
+}
+
+/// What is wrong with the headers of a part; empty: nothing. Other bytes than those that were asked
+/// for would be taken for samples.
+std::string problem_with_part(CURL* easy, const ByteRange& range) {
+    const std::string encoding = header_of(easy, "Content-Encoding");
+    if (!encoding.empty() && encoding != "identity") {
+        return "the server compresses what it gives (" + encoding +
+               "), so that no parts can be read; copy the store from there";
+    }
+    const auto given = content_range_of(easy);
+    if (!given) return "the server does not say which part it gives";
+    const std::uint64_t length = given->last - given->first + 1;
+    const bool is_end = !given->whole || given->last + 1 == *given->whole;
+    if (length == range.length && (range.from_end ? is_end : given->first == range.offset)) {
+        return "";
+    }
+    return "the server gives bytes " + std::to_string(given->first) + " to " +
+           std::to_string(given->last) + ", which were not asked for";
 }
 
 /// What libcurl hands over; fewer bytes returned than given end the transfer.
 std::size_t take_body(char* bytes, std::size_t one, std::size_t count, void* of) {
+    constexpr std::uint64_t longest_page = std::uint64_t{64} << 10;
     Job& job = *static_cast<Job*>(of);
     const std::size_t size = one * count;
-    if (status_of(job.easy) >= 300) return size;  // a page that explains
+    if (status_of(job.easy) >= 300) {  // a page that explains
+        job.page_bytes += size;
+        job.page_was_cut = job.page_bytes > longest_page;
+        return job.page_was_cut ? 0 : size;
+    }
     // A server that ignores the range would send the whole object.
     const bool whole = job.request.range && status_of(job.easy) == 200;
     if (whole || size > most_of(job.request) - job.answer.body.size()) {
@@ -63,7 +102,12 @@ std::size_t take_body(char* bytes, std::size_t one, std::size_t count, void* of)
         return 0;
     }
     const auto* const begin = reinterpret_cast<const std::byte*>(bytes);
-    job.answer.body.insert(job.answer.body.end(), begin, begin + size);
+    try {  // libcurl is C: nothing may be thrown through it
+        job.answer.body.insert(job.answer.body.end(), begin, begin + size);
+    } catch (const std::bad_alloc&) {
+        job.no_memory = true;
+        return 0;
+    }
     return size;
 }
 
@@ -91,6 +135,7 @@ std::string words_of(const Job& job, CURLcode code, long status) {
     if (job.too_long && job.request.range && status == 200) {
         return "the server gives whole files only, no parts of them; copy the store from there";
     }
+    if (job.no_memory) return "there is too little memory for its bytes";
     if (job.too_long) return "the server gives more bytes than the metadata allow";
     if (code != CURLE_OK) return curl_easy_strerror(code);
     if (status >= 400) return "the server answers with status " + std::to_string(status);
@@ -149,19 +194,25 @@ class HttpClient::Worker {
   private:
     void run(const std::stop_token& stop) {
         while (!stop.stop_requested()) {
-            drop_cancelled();
-            start_some();
-            int running = 0;
-            curl_multi_perform(multi_, &running);
-            int left = 0;
-            while (const CURLMsg* const message = curl_multi_info_read(multi_, &left)) {
-                if (message->msg == CURLMSG_DONE)
-                    finish(message->easy_handle, message->data.result);
+            try {
+                step();
+            } catch (const std::bad_alloc&) {  // there may be some memory later
             }
             curl_multi_poll(multi_, nullptr, 0, pause_ms(), nullptr);
         }
         for (const auto& job : running_) curl_multi_remove_handle(multi_, job->easy);
         for (const auto& job : running_) curl_easy_cleanup(job->easy);
+    }
+
+    void step() {
+        drop_cancelled();
+        start_some();
+        int running = 0;
+        curl_multi_perform(multi_, &running);
+        int left = 0;
+        while (const CURLMsg* const message = curl_multi_info_read(multi_, &left)) {
+            if (message->msg == CURLMSG_DONE) finish(message->easy_handle, message->data.result);
+        }
     }
 
     void drop_cancelled() {
@@ -205,7 +256,8 @@ class HttpClient::Worker {
         }
         ++job->attempts;
         job->answer = {};
-        job->too_long = false;
+        job->page_bytes = 0;
+        job->too_long = job->no_memory = job->page_was_cut = false;
         set_up(*job);
         running_.push_back(job);
         curl_multi_add_handle(multi_, job->easy);
@@ -225,6 +277,9 @@ class HttpClient::Worker {
         // for the first answer to see whether it does would cost plain HTTP a round trip.
         if (job.request.url.starts_with("https:")) curl_easy_setopt(easy, CURLOPT_PIPEWAIT, 1L);
         curl_easy_setopt(easy, CURLOPT_USERAGENT, "palpate");
+        // Nothing is to be compressed for the way; what lies there compressed is unpacked.
+        curl_easy_setopt(easy, CURLOPT_ACCEPT_ENCODING, "");
+        curl_easy_setopt(easy, CURLOPT_HTTPHEADER, headers_.get());
         const double bytes =
             static_cast<double>(std::min<std::uint64_t>(most_of(job.request), 1 << 30));
         const double limit_ms = 1e3 * (limits_.timeout_s + 1e-5 * bytes);
@@ -253,16 +308,24 @@ class HttpClient::Worker {
         curl_off_t wait_s = 0;
         curl_easy_getinfo(easy, CURLINFO_RETRY_AFTER, &wait_s);
         job->answer.status = status;
-        job->answer.whole_size = whole_size_of(easy);
+        if (const auto range = content_range_of(easy)) job->answer.whole_size = range->whole;
+        job->answer.version =
+            header_of(easy, "ETag") + '\n' + header_of(easy, "Last-Modified") + '\n';
         traffic_.request(job->answer.body.size());
-        const bool complete = status >= 400 || !job->request.range ||
-                              job->answer.body.size() == job->request.range->length;
+        if (job->page_was_cut) code = CURLE_OK;  // its status says enough
+        std::string wrong;
+        if (status == 206 && job->request.range) {
+            wrong = problem_with_part(easy, *job->request.range);
+        }
+        const bool complete =
+            wrong.empty() && (status >= 400 || !job->request.range ||
+                              job->answer.body.size() == job->request.range->length);
         release(job);
         const bool again = worth_another_attempt(code, status) || (code == CURLE_OK && !complete);
         if (!again && code == CURLE_OK) return give(job, "");
         if (again && job->attempts < limits_.attempts)
             return retry(job, static_cast<double>(wait_s));
-        give(job, words_of(*job, code, status) +
+        give(job, (wrong.empty() ? words_of(*job, code, status) : wrong) +
                       (job->attempts > 1 ? ", after " + std::to_string(job->attempts) + " attempts"
                                          : ""));
     }
@@ -315,6 +378,8 @@ class HttpClient::Worker {
 
     HttpLimits limits_;
     TrafficCount& traffic_;
+    const std::unique_ptr<curl_slist, decltype(&curl_slist_free_all)> headers_{
+        curl_slist_append(nullptr, "Accept-Encoding: identity"), &curl_slist_free_all};
     CURLM* multi_ = nullptr;
     std::vector<std::shared_ptr<Job>> running_;  // of the thread alone, as what follows
     std::vector<CURL*> idle_;                    // handles that can be used again

@@ -16,7 +16,7 @@ namespace palpate::stream {
 struct HttpRequest {
     std::string url;
     std::optional<ByteRange> range = std::nullopt;
-    std::uint64_t most = UINT64_MAX;  ///< bytes of the answer; more is an error
+    std::uint64_t most = UINT64_MAX;  ///< bytes of the answer, unpacked; more is an error
 };
 
 struct HttpAnswer {
@@ -24,7 +24,8 @@ struct HttpAnswer {
     Bytes body;       ///< of 200 and 206
     /// [bytes] Of the object that a range was asked of, where the server tells.
     std::optional<std::uint64_t> whole_size = std::nullopt;
-    std::string error;  ///< what went wrong after all attempts; empty: nothing
+    std::string version;  ///< ETag and Last-Modified, as far as the server tells them
+    std::string error;    ///< what went wrong after all attempts; empty: nothing
 };
 
 struct HttpLimits {

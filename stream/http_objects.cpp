@@ -1,6 +1,8 @@
 // Objects behind http://, https:// and s3:// addresses.
 #include <array>
 #include <cctype>
+#include <map>
+#include <mutex>
 
 #include "palpate/io/error.hpp"
 #include "stream/http_client.hpp"
@@ -40,8 +42,10 @@ std::string url_of_s3(const std::string& address) {
 
 class HttpObjects : public Objects {
   public:
-    HttpObjects(const std::string& address, const StoreOptions& options)
-        : client_({options.requests, options.timeout_s, options.attempts}, traffic_) {
+    HttpObjects(const std::string& address, const StoreOptions& options, std::stop_token stop)
+        : forbidden_is_missing_(options.forbidden_is_missing),
+          stop_(std::move(stop)),
+          client_({options.requests, options.timeout_s, options.attempts}, traffic_) {
         base_ = address.starts_with("s3://") ? url_of_s3(address) : address;
         const std::size_t question = std::min(base_.find('?'), base_.size());
         query_ = base_.substr(question);
@@ -53,16 +57,25 @@ class HttpObjects : public Objects {
     }
 
     std::string name_of(const std::string& key) const override {
-        return key.empty() ? base_ : base_ + "/" + key;
+        return io::without_secrets(key.empty() ? base_ : base_ + "/" + key);
     }
     Traffic traffic() const override { return traffic_.now(); }
 
     /// As the answer to a request for the first byte says.
     std::optional<std::uint64_t> size_of(const std::string& key) const override {
-        const HttpRequest first{base_ + "/" + escaped(key) + query_, ByteRange{0, 1}};
-        HttpAnswer answer = std::move(client_.get({&first, 1}, {}).front());
+        HttpAnswer answer = first_byte_of(url_of(key), stop_);
         const auto size = answer.whole_size;
         return body_of({.key = key}, std::move(answer)) ? size : std::nullopt;
+    }
+
+    /// Of the query, only a version is one of the object; signatures are other ones each time.
+    std::string version() const override {
+        std::string all;
+        const std::size_t at = query_.find("versionId=");
+        if (at != query_.npos) all = query_.substr(at, query_.find('&', at) - at);
+        const std::lock_guard lock(mutex_);
+        for (const auto& [key, version] : versions_) all += '\n' + key + '\n' + version;
+        return std::to_string(std::hash<std::string>{}(all));
     }
 
     std::optional<Bytes> get(const Wanted& wanted, std::stop_token stop) const override {
@@ -73,17 +86,54 @@ class HttpObjects : public Objects {
                                               std::stop_token stop) const override {
         std::vector<HttpRequest> requests;
         for (const Wanted& one : wanted) {
-            requests.push_back({base_ + "/" + escaped(one.key) + query_, one.range, one.most});
+            requests.push_back({url_of(one.key), one.range, one.most});
         }
-        std::vector<HttpAnswer> answers = client_.get(requests, std::move(stop));
+        if (!stop.stop_possible()) stop = stop_;
+        std::vector<HttpAnswer> answers = client_.get(requests, stop);
         std::vector<std::optional<Bytes>> all;
         for (std::size_t i = 0; i < answers.size(); ++i) {
-            all.push_back(body_of(wanted[i], std::move(answers[i])));
+            HttpAnswer& answer = answers[i];
+            if (lacks_suffixes(requests[i], answer)) answer = end_of(requests[i], answer, stop);
+            const std::string version = std::move(answer.version);
+            all.push_back(body_of(wanted[i], std::move(answer)));
+            if (!wanted[i].lasting && all.back()) remember(wanted[i].key, version, *all.back());
         }
         return all;
     }
 
   private:
+    std::string url_of(const std::string& key) const { return base_ + "/" + escaped(key) + query_; }
+
+    HttpAnswer first_byte_of(const std::string& url, const std::stop_token& stop) const {
+        const HttpRequest first{url, ByteRange{0, 1}};
+        return std::move(client_.get({&first, 1}, stop).front());
+    }
+
+    /// Some servers know "bytes=A-B" but not "bytes=-LENGTH": they give the whole, or an error.
+    static bool lacks_suffixes(const HttpRequest& request, const HttpAnswer& answer) {
+        const long status = answer.status;
+        return request.range && request.range->from_end &&
+               (status == 200 || status == 400 || status == 416 || status == 501 ||
+                (status == 206 && !answer.error.empty()));
+    }
+
+    /// The same bytes by their place; the answer of before if there is no such way.
+    HttpAnswer end_of(HttpRequest request, HttpAnswer before, const std::stop_token& stop) const {
+        const HttpAnswer first = first_byte_of(request.url, stop);
+        if (!first.error.empty() || first.status != 206) return before;
+        const std::uint64_t length = request.range->length;
+        if (!first.whole_size || *first.whole_size < length) return before;
+        request.range = ByteRange{*first.whole_size - length, length};
+        return std::move(client_.get({&request, 1}, stop).front());
+    }
+
+    void remember(const std::string& key, const std::string& version, const Bytes& bytes) const {
+        const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+        const std::string now = version + std::to_string(std::hash<std::string_view>{}(text));
+        const std::lock_guard lock(mutex_);
+        versions_[key] = now;
+    }
+
     std::optional<Bytes> body_of(const Wanted& wanted, HttpAnswer answer) const {
         if (!answer.error.empty()) {
             throw io::InputError(name_of(wanted.key) + ": " + answer.error +
@@ -91,13 +141,17 @@ class HttpObjects : public Objects {
         }
         const long status = answer.status;
         constexpr long forbidden = 403, not_found = 404, gone = 410;
-        if (status == not_found || status == gone || (wanted.probe && status == forbidden)) {
+        const bool may_be_missing = wanted.probe || (wanted.lasting && forbidden_is_missing_);
+        if (status == not_found || status == gone || (may_be_missing && status == forbidden)) {
             return std::nullopt;
         }
         if (status >= 300) {
             throw io::InputError(name_of(wanted.key) + ": the server answers with status " +
                                  std::to_string(status) +
-                                 (status == 401 || status == forbidden
+                                 (status == forbidden && wanted.lasting
+                                      ? "; if chunks that are not stored are answered so, as by "
+                                        "S3, give --forbidden-is-missing"
+                                  : status == 401 || status == forbidden
                                       ? "; only what everybody may read can be opened"
                                       : "; check the address"));
         }
@@ -105,6 +159,10 @@ class HttpObjects : public Objects {
     }
 
     std::string base_, query_;
+    bool forbidden_is_missing_;
+    std::stop_token stop_;
+    mutable std::mutex mutex_;
+    mutable std::map<std::string, std::string> versions_;  // by key, of what is not lasting
     mutable TrafficCount traffic_;
     mutable HttpClient client_;
 };
@@ -116,9 +174,9 @@ bool is_remote(const std::string& address) {
            address.starts_with("s3://");
 }
 
-std::shared_ptr<const Objects> http_objects(const std::string& address,
-                                            const StoreOptions& options) {
-    return std::make_shared<HttpObjects>(address, options);
+std::shared_ptr<const Objects> http_objects(const std::string& address, const StoreOptions& options,
+                                            std::stop_token stop) {
+    return std::make_shared<HttpObjects>(address, options, std::move(stop));
 }
 
 }  // namespace palpate::stream

@@ -48,9 +48,9 @@ std::size_t most_bricks(const Store& store, std::uint64_t memory) {
     const std::uint64_t each = bytes_of_brick(store.info().type);
     const auto count = static_cast<std::size_t>((memory - memory / pieces_part) / each);
     if (count < fewest_bricks) {
-        throw std::invalid_argument("at least " +
-                                    std::to_string(fewest_bricks * each * 4 / 3 / 1000000 + 1) +
-                                    " MB of memory are needed to feel " + store.info().address);
+        throw std::invalid_argument(
+            "at least " + std::to_string(fewest_bricks * each * 4 / 3 / 1000000 + 1) +
+            " MB of memory are needed to feel " + io::without_secrets(store.info().address));
     }
     return count;
 }
@@ -128,15 +128,15 @@ std::optional<BrickVersion> BrickLoader::take() {
 void BrickLoader::wait_for(const Vec3& centre, double radius) {
     const std::vector<Index3> needed = bricks_round(geometry_, centre, radius);
     if (needed.size() > most_bricks_ - most_bricks_ / 8) {
-        throw std::invalid_argument(store_->info().address +
+        throw std::invalid_argument(io::without_secrets(store_->info().address) +
                                     ": a stroke needs more samples at a time than fit into " +
                                     std::to_string(settings_.memory / 1000000) +
                                     " MB: allow more memory or feel a "
                                     "coarser level");
     }
     std::unique_lock lock(mutex_);
-    required_ = needed;
-    want(needed);
+    const auto own = required_.insert(required_.end(), needed);
+    want({});
     failed_.clear();
     ++waits_;
     wake();
@@ -145,7 +145,7 @@ void BrickLoader::wait_for(const Vec3& centre, double radius) {
             return failed_.contains({array_of(brick)}) || has(brick, 0);
         });
     });
-    required_.clear();
+    required_.erase(own);
     for (const Index3& brick : needed) {
         if (failed_.contains({array_of(brick)})) throw io::InputError(problem_);
     }
@@ -237,9 +237,13 @@ bool BrickLoader::has(const Index3& brick, int level) const {
     return held != held_.end() && held->second.level <= level;
 }
 
-/// Needs the lock.
+/// Needs the lock. What somebody waits for comes first, whatever the hands need.
 void BrickLoader::want(std::vector<Index3> bricks) {
-    wanted_ = std::move(bricks);
+    wanted_.clear();
+    for (const std::vector<Index3>& needed : required_) {
+        wanted_.insert(wanted_.end(), needed.begin(), needed.end());
+    }
+    wanted_.insert(wanted_.end(), bricks.begin(), bricks.end());
     begun_ = {};
 }
 

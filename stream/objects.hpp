@@ -50,6 +50,9 @@ class Objects {
     /// get().
     virtual std::optional<std::uint64_t> size_of(const std::string& key) const = 0;
     virtual Traffic traffic() const = 0;
+    /// Of an object among all that have had its name; changes when what was read each time, not
+    /// lasting, has changed: its bytes, or its version or time as a server tells them.
+    virtual std::string version() const { return {}; }
 };
 
 std::shared_ptr<const Objects> folder_objects(const std::filesystem::path& folder);

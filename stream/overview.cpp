@@ -1,10 +1,9 @@
 // Overviews and whole levels of stores, and single bricks as they are loaded.
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <cstring>
-#include <future>
+#include <functional>
 #include <limits>
 #include <stdexcept>
 
@@ -15,6 +14,7 @@
 #include "stream/brick_memory.hpp"
 #include "stream/sample_bytes.hpp"
 #include "stream/upsample.hpp"
+#include "stream/while_telling.hpp"
 
 namespace palpate::stream {
 namespace {
@@ -32,7 +32,6 @@ double least_finite(SampleType type, std::span<const std::byte> bytes) {
 
 /// That read an overview at a time.
 constexpr int threads = 32;
-constexpr std::chrono::milliseconds between_reports{20};
 /// Most reads for an overview of a level that is too large to be read whole: of rows, or of pieces.
 constexpr std::int64_t most_rows = 4096;
 constexpr std::int64_t most_pieces = 512;
@@ -102,8 +101,9 @@ Volume thinned_level(const Store& store, std::int64_t samples, std::stop_token s
 const Level& level_of(const Store& store, int level) {
     const auto count = static_cast<int>(store.info().levels.size());
     if (level < 0 || level >= count) {
-        throw std::invalid_argument(store.info().address + ": there is no level " +
-                                    std::to_string(level) + ": it has " + std::to_string(count) +
+        throw std::invalid_argument(io::without_secrets(store.info().address) +
+                                    ": there is no level " + std::to_string(level) + ": it has " +
+                                    std::to_string(count) +
                                     (count == 1 ? " level, 0" : " levels, from 0"));
     }
     return store.info().levels[static_cast<std::size_t>(level)];
@@ -116,22 +116,11 @@ Volume read_level(const Store& store, int level, const io::Progress& progress) {
         throw io::InputError(store.info().address + ": level " + std::to_string(level) +
                              " is larger than the memory there is; take a coarser one");
     }
-    std::stop_source stop;
     std::atomic<double> made{0};
-    auto reading = std::async(std::launch::async, [&] {
-        return whole_level(store, level, stop.get_token(), [&](double part) { made = part; });
+    const auto tell = [&] { progress(made); };
+    return while_telling(progress ? tell : std::function<void()>(), [&](std::stop_token stop) {
+        return whole_level(store, level, std::move(stop), [&](double part) { made = part; });
     });
-    // Also while a server lets everybody wait.
-    while (progress && reading.wait_for(between_reports) != std::future_status::ready) {
-        try {
-            progress(made);
-        } catch (...) {
-            stop.request_stop();
-            reading.wait();
-            throw;
-        }
-    }
-    return reading.get();
 }
 
 Volume overview_of(const Store& store, std::int64_t samples, std::stop_token stop) {

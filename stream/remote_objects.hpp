@@ -10,12 +10,13 @@ namespace palpate::stream {
 
 bool is_remote(const std::string& address);
 
-/// Behind an http://, https:// or s3:// address.
-std::shared_ptr<const Objects> http_objects(const std::string& address,
-                                            const StoreOptions& options);
+/// Behind an http://, https:// or s3:// address. `stop`: of requests that have no token of their
+/// own.
+std::shared_ptr<const Objects> http_objects(const std::string& address, const StoreOptions& options,
+                                            std::stop_token stop = {});
 
 /// The same objects; those that last (Wanted::lasting) are kept in a folder of at most
-/// `most_bytes`, which several processes may use at a time. A changed metadata file makes new
+/// `most_bytes`, which several processes may use at a time. Another Objects::version() makes new
 /// entries. Trouble with the disk is no error: then nothing is kept. Creates the folder.
 std::shared_ptr<const Objects> cached_objects(std::shared_ptr<const Objects> objects,
                                               const std::filesystem::path& folder,

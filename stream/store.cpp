@@ -11,6 +11,7 @@
 #include "stream/edited_store.hpp"
 #include "stream/remote_objects.hpp"
 #include "stream/stores.hpp"
+#include "stream/while_telling.hpp"
 
 namespace palpate::stream {
 namespace {
@@ -89,8 +90,9 @@ std::optional<RemoteFile> remote_file(const std::string& address) {
 }
 
 std::shared_ptr<const Objects> remote_objects(const std::string& address,
-                                              const StoreOptions& options) {
-    auto objects = http_objects(address, options);
+                                              const StoreOptions& options,
+                                              const std::stop_token& stop) {
+    auto objects = http_objects(address, options, stop);
     if (options.cache_folder.empty() || options.cache_bytes == 0) return objects;
     return cached_objects(objects, options.cache_folder, options.cache_bytes);
 }
@@ -121,12 +123,19 @@ bool is_store(const std::string& address, const StoreOptions& options) {
            is_plain(address, options);
 }
 
-std::shared_ptr<const Store> open_store(const std::string& address, const StoreOptions& options) {
+std::shared_ptr<const Store> open_store(const std::string& address, const StoreOptions& options,
+                                        const io::Progress& progress) {
     if (is_remote(address)) {
-        if (const auto file = remote_file(address)) {
-            return open_located(remote_objects(file->folder, options), file->name, options);
-        }
-        return open_chunked(remote_objects(address, options), address, options);
+        const auto tell = [&] { progress(0); };
+        return while_telling(
+            progress ? tell : std::function<void()>(),
+            [&](const std::stop_token& stop) -> std::shared_ptr<const Store> {
+                if (const auto file = remote_file(address)) {
+                    return open_located(remote_objects(file->folder, options, stop), file->name,
+                                        options);
+                }
+                return open_chunked(remote_objects(address, options, stop), address, options);
+            });
     }
     if (holds_edits(address)) return open_edits(address, options);
     if (is_chunked_folder(address)) {

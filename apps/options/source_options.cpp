@@ -87,6 +87,8 @@ void SourceOptions::add_streaming_to(CLI::App& command) {
     command.add_option("--cache", cache_folder, "Folder that keeps what came over the network");
     command.add_option("--cache-size", cache_bytes, "Most that this folder keeps (4GB)")
         ->transform(CLI::AsSizeValue(false));
+    command.add_flag("--forbidden-is-missing", forbidden_is_missing,
+                     "Chunks for which the server answers 403 are not stored, as with S3");
 }
 
 run::Source SourceOptions::source() const {
@@ -100,6 +102,7 @@ run::Source SourceOptions::source() const {
     if (all_times) given["all-times"] = "yes";
     run::Source source = run::source_from(given);
     if (auto* store = std::get_if<run::StoreSource>(&source.from)) {
+        store->options.forbidden_is_missing = forbidden_is_missing;
         store->options.cache_folder = cache_folder;
         store->options.cache_bytes = cache_folder.empty() ? 0 : cache_bytes;
     }

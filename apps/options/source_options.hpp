@@ -23,6 +23,7 @@ struct SourceOptions {
     bool coarse_first = false;
     bool all_times = false;
     std::string cache_folder;
+    bool forbidden_is_missing = false;
     std::uint64_t cache_bytes = std::uint64_t{4} << 30;
     bool quiet = false;
 

@@ -55,7 +55,12 @@ Taken opened(const ConvertWords& words) {
     const run::Source source = words.source.source();
     if (auto from = store_of(source)) {
         from->options.time = source.frame.value_or(0);
-        auto store = stream::open_store(from->address, from->options);
+        std::shared_ptr<const stream::Store> store;
+        {
+            ProgressBar bar("opening", words.source.quiet);
+            store = stream::open_store(from->address, from->options,
+                                       [&](double fraction) { bar.at(fraction); });
+        }
         if (!words.source.quiet) {
             for (const std::string& note : store->info().notes) {
                 fmt::print(stderr, "palpate: note: {}: {}\n", from->address, note);

@@ -1,8 +1,11 @@
 // Stores: samples that are read by the box, of files, chunked formats and web addresses. All
 // reading runs without the GIL.
 #include "bindings/python/bindings.hpp"
+#include "bindings/python/progress.hpp"
+#include "palpate/io/error.hpp"
 #include "palpate/stream/store.hpp"
 #include "stream/content.hpp"
+#include "stream/while_telling.hpp"
 
 namespace palpate::python {
 namespace {
@@ -16,9 +19,10 @@ struct OpenStore {
     const stream::StoreInfo& info() const { return store->info(); }
     const stream::Level& level(int number) const {
         if (number < 0 || number >= static_cast<int>(info().levels.size())) {
-            throw std::invalid_argument(
-                info().address + ": has " + std::to_string(info().levels.size()) +
-                " levels, numbered from 0; there is no level " + std::to_string(number));
+            throw std::invalid_argument(io::without_secrets(info().address) + ": has " +
+                                        std::to_string(info().levels.size()) +
+                                        " levels, numbered from 0; there is no level " +
+                                        std::to_string(number));
         }
         return info().levels[static_cast<std::size_t>(number)];
     }
@@ -34,7 +38,13 @@ struct OpenStore {
         grid.size = high - low;
         return with_type(info().type, [&](auto zero) {
             std::vector<decltype(zero)> samples(static_cast<std::size_t>(sample_count(grid)));
-            store->read(number, box, std::as_writable_bytes(std::span(samples)), {});
+            const ProgressFunction none;
+            const auto progress = progress_of(none);  // Ctrl-C
+            stream::while_telling([&] { progress(0); },
+                                  [&](std::stop_token stop) {
+                                      store->read(number, box,
+                                                  std::as_writable_bytes(std::span(samples)), stop);
+                                  });
             return Volume(grid, std::move(samples));
         });
     }
@@ -93,7 +103,8 @@ void bind_open_store(py::module_& module) {
             options.time = time;
             options.cache_folder = cache;
             if (!cache.empty()) options.cache_bytes = std::uint64_t{4} << 30;
-            return OpenStore{stream::open_store(address, options)};
+            const ProgressFunction none;
+            return OpenStore{stream::open_store(address, options, progress_of(none))};
         },
         py::arg("address"), py::kw_only(), py::arg("raw") = py::none(),
         py::arg("spacing") = py::none(), py::arg("channel") = 0, py::arg("time") = 0,

@@ -318,6 +318,30 @@ TEST(BrickLoader, who_waits_is_not_told_of_a_read_that_began_and_failed_before) 
     end.count_down();
 }
 
+TEST(BrickLoader, who_waits_gets_the_bricks_although_hands_look_elsewhere_and_others_wait) {
+    const auto store =
+        store_in_pieces(noise_of(SampleType::uint8, grid({400, 64, 64}), 7), {32, 64, 64});
+    Volume overview = overview_of(*store);
+    std::atomic<bool> may_read{false};
+    store->before_read = [&](int, const SampleBox&, const std::stop_token& stop) {
+        while (!may_read && !stop.stop_requested()) std::this_thread::yield();
+    };
+    BrickLoader loader(store, std::move(overview), {.memory = least_memory, .threads = 1});
+    std::jthread one([&] { loader.wait_for({30, 30, 30}, 5); });
+    ASSERT_TRUE(comes_true([&] { return loader.status().wanted > 0; }));
+    const std::size_t wanted = loader.status().wanted;
+    std::jthread other([&] { loader.wait_for({300, 30, 30}, 5); });
+    ASSERT_TRUE(comes_true([&] { return loader.status().wanted > wanted; }));
+    const Interest hand{Vec3(150, 30, 30), Vec3(150, 30, 30)};
+    loader.look({&hand, 1});
+    may_read = true;
+    one.join();
+    other.join();
+    const Field field(loader.take()->samples);
+    EXPECT_TRUE(is_resident(field, {30, 30, 30}, 5));
+    EXPECT_TRUE(is_resident(field, {300, 30, 30}, 5));
+}
+
 TEST(BrickLoader, waits_for_all_that_an_update_may_look_at_and_refuses_what_does_not_fit) {
     const Volume volume = large_noise({1000, 400, 400}, 8);
     const auto store = store_in_pieces(volume, {64, 64, 64});

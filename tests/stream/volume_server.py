@@ -91,6 +91,12 @@ def in_folder(folder, path):
         return opened.read()
 
 
+def tag_of(folder, path):
+    """The version of a file, as servers tell it."""
+    status = os.stat(os.path.join(folder, path))
+    return f'"{status.st_ino}-{status.st_mtime_ns}"'
+
+
 def make_handler(options):
     volume = VirtualVolume(not options.raw)
     chance = random.Random(options.seed)
@@ -98,7 +104,8 @@ def make_handler(options):
     asked = {"levels": set(), "chunks": set()}
     together = {"levels": options.levels_together, "chunks": options.chunks_together}
     arrived = threading.Condition(lock)
-    counts = {"requests": 0, "at_once": 0, "most_at_once": 0, "failed": 0, "truncated": 0, "lied": 0}
+    counts = {"requests": 0, "at_once": 0, "most_at_once": 0, "failed": 0, "truncated": 0, "lied": 0,
+              "endless": 0}
 
     class Handler(BaseHTTPRequestHandler):
         protocol_version = "HTTP/1.1"
@@ -159,8 +166,13 @@ def make_handler(options):
             body = volume.get(path[len(name):]) if path.startswith(name) else (
                 in_folder(options.folder, path) if options.folder else None)
             if body is None:
-                return self.give(404)
+                return self.missing()
             status, body, headers = self.ranged(body)
+            if not path.startswith(name):
+                headers["ETag"] = tag_of(options.folder, path)
+            if options.gzip and status == 200:
+                body = gzip.compress(body)
+                headers["Content_Encoding"] = "gzip"
             if draw < options.truncated and body:
                 counts["truncated"] += 1
                 self.send_response(status)
@@ -177,11 +189,25 @@ def make_handler(options):
                 body = body[:at] + bytes([body[at] ^ 0x55]) + body[at + 1:]
             return self.give(status, body, **headers)
 
+        def missing(self):
+            if options.missing == "page":
+                return self.give(200, b"<!DOCTYPE html><title>Log in</title>")
+            if options.missing != "endless":
+                return self.give(int(options.missing))
+            self.send_response(404)
+            self.end_headers()
+            self.close_connection = True
+            while True:
+                self.wfile.write(bytes(1 << 16))
+                counts["endless"] += 1
+
         def ranged(self, body):
             wanted = self.headers.get("Range")
-            if not wanted or options.no_ranges:
+            if not wanted or options.no_ranges or (options.no_suffixes and "=-" in wanted):
                 return 200, body, {}
             first, last = wanted.split("=")[1].split("-")
+            if options.other_range and first not in ("", "0"):
+                first, last = str(int(first) - 1), str(int(last) - 1)
             begin = max(0, len(body) - int(last)) if first == "" else int(first)
             end = len(body) if first == "" else min(int(last) + 1, len(body))
             return 206, body[begin:end], {"Content_Range": f"bytes {begin}-{end - 1}/{len(body)}"}
@@ -204,6 +230,11 @@ def main():
     parser.add_argument("--truncated", type=float, default=0, help="share of bodies cut in half")
     parser.add_argument("--lies", type=float, default=0, help="share of chunks with a wrong byte")
     parser.add_argument("--no-ranges", action="store_true", help="whole files only")
+    parser.add_argument("--no-suffixes", action="store_true", help="no ranges from the end")
+    parser.add_argument("--other-range", action="store_true", help="a byte too early, and says so")
+    parser.add_argument("--gzip", action="store_true", help="Content-Encoding: gzip for whole files")
+    parser.add_argument("--missing", default="404",
+                        help="status of what is not there; 'page' with status 200, or 'endless'")
     parser.add_argument("--levels-together", type=int, default=0,
                         help="levels of the virtual volume that must be asked for before one is answered")
     parser.add_argument("--chunks-together", type=int, default=0, help="the same with chunks")

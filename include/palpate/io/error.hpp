@@ -2,6 +2,7 @@
 // what is wrong, what to do. Header only, so that every reader and writer can throw them.
 #pragma once
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 #include <system_error>
@@ -21,16 +22,37 @@ inline std::string one_line(std::string text) {
     return text;
 }
 
+/// Addresses in a text without what gives access: user and password, and the query, which may be a
+/// signature. "https://me:pw@host/a?sig=b" becomes "https://host/a?...".
+inline std::string without_secrets(std::string text) {
+    constexpr const char* ends = " \t\r\n'\"<>,;)";
+    for (std::size_t at = 0; (at = text.find("://", at)) != text.npos;) {
+        at += 3;
+        const std::size_t host_end = std::min(text.find_first_of("/?# \t\r\n", at), text.size());
+        const std::size_t sign = text.substr(at, host_end - at).rfind('@');
+        if (sign != text.npos) text.erase(at, sign + 1);
+        const std::size_t query = text.find('?', at);
+        if (query >= std::min(text.find_first_of(ends, at), text.size())) continue;
+        const std::size_t end = text.find_first_of(ends, query);
+        const std::size_t length = std::min(end, text.size()) - query - 1;
+        const bool ends_name = text[query + length] == ':';  // "ADDRESS: what is wrong"
+        text.replace(query + 1, length - (ends_name ? 1 : 0), "...");
+    }
+    return text;
+}
+
 /// Input could not be read or is not valid (exit status 3).
 class InputError : public std::runtime_error {
   public:
-    explicit InputError(const std::string& message) : std::runtime_error(one_line(message)) {}
+    explicit InputError(const std::string& message)
+        : std::runtime_error(one_line(without_secrets(message))) {}
 };
 
 /// Output could not be written (exit status 5). Nothing half-written is left behind.
 class OutputError : public std::runtime_error {
   public:
-    explicit OutputError(const std::string& message) : std::runtime_error(one_line(message)) {}
+    explicit OutputError(const std::string& message)
+        : std::runtime_error(one_line(without_secrets(message))) {}
 };
 
 /// The system's description of an errno.

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
+#include <list>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -22,10 +23,12 @@ class Blocks;
 class BrickMemory;
 class SmallThreads;
 
+inline constexpr std::int64_t overview_samples = std::int64_t{1} << 21;
+
 /// A volume of few samples that shows all of a store: its coarsest level that is fine enough, or
 /// single samples of a store without levels. At most `samples` of them, one at least. Blocks.
 /// Throws as Store::read().
-Volume overview_of(const Store& store, std::int64_t samples = std::int64_t{1} << 21,
+Volume overview_of(const Store& store, std::int64_t samples = overview_samples,
                    std::stop_token stop = {});
 
 /// The samples of a level before any of it is in memory. Throws std::invalid_argument for a level
@@ -163,13 +166,13 @@ class BrickLoader {
     std::map<Place, Clock::time_point> failed_;  // not tried again before
     std::vector<Index3> wanted_;                 // most urgent first
     std::array<std::size_t, 4> begun_{};  // of each of next_job()'s rounds: all before is there
-    std::vector<Index3> required_;        // by wait_for()
-    std::uint64_t waits_ = 0;             // calls of wait_for() so far
-    int first_ = 0, finest_ = 0;          // steps coarser that are read, coarse_first
-    double brick_s_ = 0;                  // that a brick lately took to come, 0: none yet
-    double speed_ = 0;                    // of the fastest hand [bricks/s]
-    Clock::time_point looked_{};          // when that was
-    std::uint64_t changes_ = 0;           // that may have made a job
+    std::list<std::vector<Index3>> required_;  // by each wait_for() that has not ended
+    std::uint64_t waits_ = 0;                  // calls of wait_for() so far
+    int first_ = 0, finest_ = 0;               // steps coarser that are read, coarse_first
+    double brick_s_ = 0;                       // that a brick lately took to come, 0: none yet
+    double speed_ = 0;                         // of the fastest hand [bricks/s]
+    Clock::time_point looked_{};               // when that was
+    std::uint64_t changes_ = 0;                // that may have made a job
     std::vector<BrickEvent> events_;
     std::uint64_t other_bytes_ = 0;    // leave_room()
     std::uint64_t process_bytes_ = 0;  // of the process, beyond bricks, pieces and edits

@@ -60,6 +60,12 @@ struct StoreOptions {
     int requests = 32;                        ///< most requests at a time to one host
     double timeout_s = 10;                    ///< of one request
     int attempts = 5;                         ///< of one request, with growing pauses
+    /// A chunk for which a server answers 403 counts as not stored: S3 says so to those who may not
+    /// list the bucket.
+    bool forbidden_is_missing = false;
+    /// [bytes] Most that chunks take while they are unpacked; one that takes more is an error.
+    /// 0: a quarter of this machine's memory.
+    std::uint64_t unpacking = 0;
 };
 
 /// Safe to use from several threads at a time.
@@ -95,9 +101,11 @@ bool is_store(const std::string& address, const StoreOptions& options = {});
 /// for.
 bool is_chunked(const std::string& address);
 
-/// Opens a file, a folder, or an http://, https:// or s3:// address. Reads headers only. Throws
-/// io::InputError: what is wrong and what to do, one line.
+/// Opens a file, a folder, or an http://, https:// or s3:// address. Reads headers only. This
+/// thread calls `progress`, which may throw to stop, all the time. Throws io::InputError: what is
+/// wrong and what to do, one line.
 std::shared_ptr<const Store> open_store(const std::string& address,
-                                        const StoreOptions& options = {});
+                                        const StoreOptions& options = {},
+                                        const io::Progress& progress = {});
 
 }  // namespace palpate::stream
