@@ -48,6 +48,12 @@ std::size_t ChunkedArray::samples_in_chunk() const {
     return product(chunk);
 }
 
+std::uint64_t ChunkedArray::bytes_to_read_chunk() const {
+    constexpr std::uint64_t index_entry = 3 * 16;  // as stored, unpacked, and as numbers
+    const std::uint64_t index = shards ? index_entry * product(shards->chunks) : 0;
+    return (codecs.empty() ? 1 : 2) * bytes_in_chunk() + index;
+}
+
 std::string key_of(const ChunkedArray& array, std::span<const std::int64_t> object) {
     std::string key = array.folder + (array.folder.empty() ? "" : "/") + array.prefix;
     for (std::size_t i = 0; i < object.size(); ++i) {

@@ -43,6 +43,8 @@ struct ChunkedArray {
     std::size_t axes() const { return shape.size(); }
     std::size_t samples_in_chunk() const;
     std::size_t bytes_in_chunk() const { return samples_in_chunk() * bytes.size(); }
+    /// [bytes] That reading a chunk takes: packed and unpacked, and the index of its shard.
+    std::uint64_t bytes_to_read_chunk() const;
 };
 
 /// The key of the object with a chunk, or with its shard if there are shards.

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cstring>
 
+#include "palpate/io/error.hpp"
+#include "stream/unpacking_room.hpp"
+
 namespace palpate::stream {
 namespace {
 
@@ -35,8 +38,9 @@ ChunkLayout layout_of(const ChunkedArray& array, const ChunkedVolume& volume) {
 
 class ChunkedStore : public Store {
   public:
-    ChunkedStore(std::shared_ptr<const Objects> objects, ChunkedVolume volume)
-        : objects_(std::move(objects)), volume_(std::move(volume)) {
+    ChunkedStore(std::shared_ptr<const Objects> objects, ChunkedVolume volume,
+                 std::uint64_t unpacking)
+        : objects_(std::move(objects)), volume_(std::move(volume)), room_(unpacking) {
         for (const ChunkedArray& array : volume_.arrays) {
             readers_.push_back(std::make_unique<ChunkReader>(objects_, array));
             layouts_.push_back(layout_of(array, volume_));
@@ -76,9 +80,21 @@ class ChunkedStore : public Store {
             part.high[a] = std::min<int>(box.high[a], corner[a] + (grid.chunk[a] - 1));
         }
         const ChunkReader& reader = *readers_[static_cast<std::size_t>(level)];
+        const std::uint64_t needed = reader.array().bytes_to_read_chunk();
+        if (needed > room_.most()) refuse(level, needed);
+        const UnpackingRoom::Share share(room_, needed, stop);
         const auto bytes = reader.chunk(index_of(reader.array(), chunk), stop);
         copy(reader.array(), bytes, layouts_[static_cast<std::size_t>(level)], corner, part, box,
              out);
+    }
+
+    [[noreturn]] void refuse(int level, std::uint64_t needed) const {
+        constexpr std::uint64_t megabyte = 1000000;
+        throw io::InputError(volume_.info.address + ": a chunk of level " + std::to_string(level) +
+                             " takes " + std::to_string(needed / megabyte + 1) +
+                             " MB to be read, and " + std::to_string(room_.most() / megabyte) +
+                             " MB may be used for that; allow more memory, or store it in smaller "
+                             "chunks");
     }
 
     std::vector<std::int64_t> index_of(const ChunkedArray& array, const Index3& chunk) const {
@@ -152,13 +168,14 @@ class ChunkedStore : public Store {
     ChunkedVolume volume_;
     std::vector<std::unique_ptr<ChunkReader>> readers_;
     std::vector<ChunkLayout> layouts_;
+    mutable UnpackingRoom room_;
 };
 
 }  // namespace
 
 std::shared_ptr<const Store> chunked_store(std::shared_ptr<const Objects> objects,
-                                           ChunkedVolume volume) {
-    return std::make_shared<ChunkedStore>(std::move(objects), std::move(volume));
+                                           ChunkedVolume volume, std::uint64_t unpacking) {
+    return std::make_shared<ChunkedStore>(std::move(objects), std::move(volume), unpacking);
 }
 
 }  // namespace palpate::stream

@@ -17,7 +17,8 @@ struct ChunkedVolume {
     std::vector<std::int64_t> fixed;          ///< the index along each other axis
 };
 
+/// `unpacking`: as in StoreOptions.
 std::shared_ptr<const Store> chunked_store(std::shared_ptr<const Objects> objects,
-                                           ChunkedVolume volume);
+                                           ChunkedVolume volume, std::uint64_t unpacking);
 
 }  // namespace palpate::stream

@@ -74,7 +74,7 @@ std::shared_ptr<const Store> open_located(const std::string& path, const StoreOp
     const io::ChunkedImage image = io::describe_image(file, options.channel, options.time);
     return about(path, [&] {
         return chunked_store(folder_objects(file.path.parent_path()),
-                             located_volume(image, file, options));
+                             located_volume(image, file, options), options.unpacking);
     });
 }
 
@@ -99,8 +99,9 @@ std::shared_ptr<const Store> open_located(std::shared_ptr<const Objects> folder,
     };
     const io::ChunkFile file{address, std::make_shared<io::Mirror>(address, *size, read)};
     const io::ChunkedImage image = io::describe_image(file, options.channel, options.time);
-    return about(address,
-                 [&] { return chunked_store(folder, located_volume(image, file, options)); });
+    return about(address, [&] {
+        return chunked_store(folder, located_volume(image, file, options), options.unpacking);
+    });
 }
 
 }  // namespace palpate::stream

@@ -140,7 +140,7 @@ std::shared_ptr<const Store> open_zarr(std::shared_ptr<const Objects> objects,
                                        const std::string& address, const StoreOptions& options) {
     return about(address, [&]() -> std::shared_ptr<const Store> {
         auto volume = Opening(*objects, "", options).volume(address);
-        return volume ? chunked_store(objects, *std::move(volume)) : nullptr;
+        return volume ? chunked_store(objects, *std::move(volume), options.unpacking) : nullptr;
     });
 }
 

@@ -1,0 +1,108 @@
+// What stores may cost, whatever their metadata say: memory while chunks are unpacked, and depth.
+#include <sys/resource.h>
+
+#include <atomic>
+#include <thread>
+
+#include "io/json_text.hpp"
+#include "palpate/stream/loader.hpp"
+#include "stream/store_support.hpp"
+#include "stream/unpacking_room.hpp"
+#include "support/random.hpp"
+#include "support/traced_process.hpp"
+
+namespace palpate::stream::test {
+namespace {
+
+namespace fs = std::filesystem;
+using support::contains;
+using support::message_of;
+using support::put_bytes;
+using support::ScratchFolder;
+
+constexpr std::uint64_t megabyte = 1'000'000;
+
+/// 1024^3 bytes in one chunk of 1 GiB, of which little is stored.
+void put_bomb(const fs::path& folder) {
+    fs::create_directories(folder);
+    put_bytes(folder / ".zarray",
+              R"({"zarr_format":2,"shape":[1024,1024,1024],"chunks":[1024,1024,1024],"dtype":"|u1",)"
+              R"("compressor":{"id":"gzip"},"fill_value":0,"order":"C","filters":null})");
+    put_bytes(folder / "0.0.0", "no gzip");
+}
+
+TEST(Bounds, a_chunk_that_takes_more_than_may_be_used_is_refused_by_name_and_costs_nothing) {
+    const ScratchFolder folder;
+    put_bomb(folder / "bomb.zarr");
+    StoreOptions options;
+    options.unpacking = 128 * megabyte;
+    const auto store = open_store(folder / "bomb.zarr", options);
+    const std::string message = message_of<io::InputError>([&] { (void)overview_of(*store); });
+    EXPECT_TRUE(contains(message, "bomb.zarr: a chunk of level 0 takes 2148 MB")) << message;
+    EXPECT_TRUE(contains(message, "128 MB")) << message;
+    if (support::is_slow_build) return;  // sanitizers need memory of their own
+    const auto work = [&] {
+        EXPECT_THROW((void)overview_of(*store), io::InputError);
+        rusage used{};
+        ::getrusage(RUSAGE_SELF, &used);
+        if (static_cast<std::uint64_t>(used.ru_maxrss) * 1024 > 320 * megabyte) {
+            throw std::runtime_error("too much memory");
+        }
+    };
+    EXPECT_EQ(support::end_of(support::start_process(work)), 0);
+}
+
+TEST(Bounds, threads_share_the_room_to_unpack_and_leave_the_queue_when_stopped) {
+    UnpackingRoom room(100);
+    EXPECT_GT(UnpackingRoom(0).most(), 100 * megabyte);
+    std::stop_source stopped;
+    stopped.request_stop();
+    {
+        const UnpackingRoom::Share one(room, 60, {});
+        EXPECT_THROW(UnpackingRoom::Share(room, 41, stopped.get_token()), Cancelled);
+        const UnpackingRoom::Share other(room, 40, {});
+    }
+    std::atomic<int> now{0}, most{0};
+    {
+        std::vector<std::jthread> threads;
+        for (int t = 0; t < 8; ++t) {
+            threads.emplace_back([&] {
+                for (int i = 0; i < 50; ++i) {
+                    const UnpackingRoom::Share share(room, 30, {});
+                    int seen = most;
+                    const int mine = ++now;
+                    while (mine > seen && !most.compare_exchange_weak(seen, mine)) {
+                    }
+                    --now;
+                }
+            });
+        }
+    }
+    EXPECT_LE(most, 3);
+}
+
+std::string nested(int depth) {
+    return std::string(static_cast<std::size_t>(depth), '[') +
+           std::string(static_cast<std::size_t>(depth), ']');
+}
+
+TEST(Bounds, json_that_is_nested_too_deeply_is_refused_before_it_is_parsed) {
+    EXPECT_NO_THROW((void)io::parsed_json(nested(io::deepest_json)));
+    EXPECT_THROW((void)io::parsed_json(nested(io::deepest_json + 1)), nlohmann::json::exception);
+    EXPECT_TRUE(io::parsed_or_discarded(nested(io::deepest_json + 1)).is_discarded());
+    const std::string brackets(100, '[');
+    EXPECT_EQ(io::parsed_json("\"\\\"" + brackets + "\""), "\"" + brackets);
+    EXPECT_EQ(io::parsed_json("1 // " + brackets + "\n/*" + brackets + "*/", true), 1);
+    EXPECT_THROW((void)io::parsed_json("\"" + brackets), nlohmann::json::exception);
+    EXPECT_THROW((void)io::parsed_json("/*" + brackets, true), nlohmann::json::exception);
+    const ScratchFolder folder;
+    for (const char* file : {"a.zarr/zarr.json", "b.zarr/.zattrs", "c.n5/attributes.json",
+                             "d.zarr/palpate-edits.json"}) {
+        fs::create_directories((folder / file).parent_path());
+        put_bytes(folder / file, R"({"a":)" + nested(100'000) + "}");
+        EXPECT_THROW((void)open_store((folder / file).parent_path()), io::InputError) << file;
+    }
+}
+
+}  // namespace
+}  // namespace palpate::stream::test
