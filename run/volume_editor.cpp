@@ -24,6 +24,12 @@ constexpr int attempts = 200;
 /// Of the memory of a volume that is read as it is felt: for edits, and for what undo needs.
 constexpr std::uint64_t edits_part = 4, history_part = 8;
 
+/// Samples that an edit needs have to be fetched first.
+struct NotFetched {};
+struct Lacking {
+    Edit edit;
+};
+
 std::uint64_t bytes_of_edits(const Samples& samples) {
     const Bricks* bricks = samples.bricks();
     return bricks ? bricks->size() * Bricks::per_brick * size_of(samples.type()) : 0;
@@ -111,9 +117,11 @@ void VolumeEditor::set_brush(const std::optional<HandBrush>& brush) {
 }
 
 void VolumeEditor::apply(const Edit& asked) {
-    const std::scoped_lock lock(mutex_);
-    edit(asked, EditStep::own);
-    new_step_ = true;
+    std::unique_lock lock(mutex_);
+    with_samples(lock, [&] {
+        edit(asked, EditStep::own);
+        new_step_ = true;
+    });
 }
 
 bool VolumeEditor::undo() {
@@ -149,7 +157,14 @@ std::uint64_t VolumeEditor::version_of(const std::shared_ptr<const Samples>& sam
 void VolumeEditor::edit(const Edit& asked, EditStep step) {
     const std::uint64_t from = version_of(editor_.samples());
     edited_bytes_ = bytes_of_edits(*editor_.samples());
-    if (editor_.apply(asked, step).empty()) return;
+    SampleBox changed;
+    try {
+        changed = editor_.apply(asked, step);
+    } catch (const NotFetched&) {
+        throw Lacking{asked};
+    }
+    fetched_.clear();
+    if (changed.empty()) return;
     const std::uint64_t number = streamer_ ? streamer_->next_version() : versions_.size();
     command::Samples made{editor_.samples(), number,
                           std::make_shared<const Recipe>(EditOf{from, asked})};
@@ -189,15 +204,63 @@ void VolumeEditor::send(const command::Samples& command) {
     if (refused) throw std::runtime_error("the session takes no commands");
 }
 
+/// Does work(), which makes edits, again and again until it lacks no samples. They are read without
+/// the lock: a network must hold nobody up who holds or needs it.
+template <class Work>
+void VolumeEditor::with_samples(std::unique_lock<std::mutex>& lock, Work&& work) {
+    while (true) {
+        try {
+            return work();
+        } catch (const Lacking& lacking) {
+            const std::shared_ptr<const Samples> samples = editor_.samples();
+            lock.unlock();
+            try {
+                fetch(samples, lacking.edit);
+            } catch (...) {
+                lock.lock();
+                fetched_.clear();
+                throw;
+            }
+            lock.lock();
+        }
+    }
+}
+
+/// Without the lock: all that an edit of these samples reads.
+void VolumeEditor::fetch(const std::shared_ptr<const Samples>& samples, const Edit& asked) {
+    (void)edited(samples, asked, [&](const SampleBox& box, std::span<std::byte> out) {
+        const std::array<int, 3> at{box.low[0], box.low[1], box.low[2]};
+        {
+            const std::scoped_lock lock(mutex_);
+            const auto found = fetched_.find(at);
+            if (found != fetched_.end() && found->second.size() == out.size()) {
+                std::ranges::copy(found->second, out.begin());
+                return;
+            }
+            count_edited();
+        }
+        streamer_->read(box, out, reading_.get_token());
+        const std::scoped_lock lock(mutex_);
+        fetched_[at].assign(out.begin(), out.end());
+    });
+}
+
 /// Samples of a brick that is edited for the first time.
 void VolumeEditor::read(const SampleBox& box, std::span<std::byte> out) {
+    const auto found = fetched_.find({box.low[0], box.low[1], box.low[2]});
+    if (found == fetched_.end() || found->second.size() != out.size()) throw NotFetched{};
+    count_edited();
+    std::ranges::copy(found->second, out.begin());
+}
+
+/// Needs the lock.
+void VolumeEditor::count_edited() {
     edited_bytes_ += Bricks::per_brick * size_of(editor_.samples()->type());
     if (edited_bytes_ > memory_ / edits_part) {
         throw std::invalid_argument(
             "the edits take more than " + std::to_string(memory_ / edits_part / 1000000) +
             " MB, a quarter of the memory: allow more, or save them and open what was saved");
     }
-    streamer_->read(box, out, reading_.get_token());
 }
 
 void VolumeEditor::run(const std::stop_token& stop) {
@@ -212,9 +275,11 @@ void VolumeEditor::run(const std::stop_token& stop) {
 }
 
 void VolumeEditor::step(std::chrono::steady_clock::time_point now) {
-    const std::scoped_lock lock(mutex_);
+    std::unique_lock lock(mutex_);
     try {
-        for (Hand& hand : hands_) brush(hand, now);
+        with_samples(lock, [&] {
+            for (Hand& hand : hands_) brush(hand, now);
+        });
     } catch (const stream::Cancelled&) {  // the editor ends
     } catch (const std::exception& e) {   // no commands taken, no memory, nothing to be read
         brush_.reset();

@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <thread>
 
 #include "palpate/io/error.hpp"
 #include "palpate/run/offline.hpp"
@@ -14,6 +16,8 @@
 #include "palpate/scenes/volumes.hpp"
 #include "palpate/stream/convert.hpp"
 #include "run/run_support.hpp"
+#include "stream/volumes_store.hpp"
+#include "support/eventually.hpp"
 #include "support/scratch_folder.hpp"
 #include "support/zarr_image.hpp"
 
@@ -183,6 +187,31 @@ TEST(Streamed, what_is_edited_is_felt_undone_recorded_and_repeats_bit_for_bit) {
     EXPECT_GT(expect_same_again(recording), 100);
     expect_same_again(later);
     EXPECT_GT(expect_same_again(last), 100);
+}
+
+TEST(Streamed, undo_and_brush_do_not_wait_for_the_samples_of_an_edit) {
+    const auto store = stream::store_in_pieces(scenes::make_volume("sphere:128x126x125").volume);
+    LoadedVolume loaded{.volume = stream::overview_of(*store), .source = {}, .name = "v"};
+    StoreSource source{.address = "v", .options = {}, .loader = {}};
+    source.loader.memory = std::uint64_t{200} << 20;
+    loaded.streamed = StreamedVolume{store, source.loader};
+    loaded.source.from = source;
+    Data data(loaded, {}, Pace::by_steps);
+    data.editor().apply(edit::Fill{{{1, 1, 1}, {5, 5, 5}}, 90});
+    std::atomic<bool> reads{false}, may_read{false};
+    store->before_read = [&](int, const SampleBox&, const std::stop_token& stop) {
+        reads = true;
+        while (!may_read && !stop.stop_requested()) std::this_thread::yield();
+    };
+    std::jthread other([&] { data.editor().apply(edit::Fill{{{90, 90, 90}, {99, 99, 99}}, 80}); });
+    ASSERT_TRUE(support::comes_true([&] { return reads.load(); }));
+    EXPECT_TRUE(data.editor().undo());
+    data.editor().set_brush(std::nullopt);
+    EXPECT_EQ(data.editor().state().undo_steps, 0U);
+    may_read = true;
+    other.join();
+    EXPECT_EQ(data.editor().state().samples->sample({95, 95, 95}), 80);
+    EXPECT_EQ(data.editor().state().undo_steps, 1U);
 }
 
 TEST(Streamed, edits_have_a_quarter_of_the_memory_and_say_so) {

@@ -2,9 +2,11 @@
 // undo and redo. The servos feel an edit within two ticks.
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <condition_variable>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -34,7 +36,9 @@ using StartServo =
 
 class Streamer;
 
-/// Any thread may call any function; state() does not wait for an edit.
+/// Any thread may call any function; state() does not wait for an edit. No function but apply()
+/// waits for samples of a volume that is read as it is felt: an edit that lacks some begins again
+/// when they are there, and others may come before it meanwhile.
 class VolumeEditor {
   public:
     explicit VolumeEditor(std::shared_ptr<const Samples> samples, Pace pace = Pace::own_thread);
@@ -96,7 +100,11 @@ class VolumeEditor {
 
     VolumeEditor(std::shared_ptr<const Samples> samples, Streamer* streamer, std::uint64_t memory,
                  Pace pace);
+    template <class Work>
+    void with_samples(std::unique_lock<std::mutex>& lock, Work&& work);
+    void fetch(const std::shared_ptr<const Samples>& samples, const Edit& edit);
     void read(const SampleBox& box, std::span<std::byte> out);
+    void count_edited();
     void run(const std::stop_token& stop);
     void brush(Hand& hand, std::chrono::steady_clock::time_point now);
     bool brush_from(const Touch& from, const Touch& to, Hand& hand, double isovalue);
@@ -109,13 +117,14 @@ class VolumeEditor {
     void set_problem(const std::string& problem);
     void publish();
 
-    mutable std::mutex mutex_;        // for as long as an edit takes
+    mutable std::mutex mutex_;        // for as long as an edit takes, not while it is read for
     mutable std::mutex state_mutex_;  // of state_; a moment
     EditState state_;
     Streamer* const streamer_;        // null: all samples are in memory
     const std::uint64_t memory_;      // [bytes] of a volume that is read as it is felt
     std::uint64_t edited_bytes_ = 0;  // of that, in the bricks that are edited now
     std::stop_source reading_;
+    std::map<std::array<int, 3>, std::vector<std::byte>> fetched_;  // by the low corner of the box
     Editor editor_;
     std::vector<Hand> hands_;
     std::optional<HandBrush> brush_;
