@@ -63,7 +63,8 @@ bool is_store(const std::string& address, const StoreOptions& options) {
     return options.raw && std::filesystem::is_regular_file(address, error);
 }
 
-std::shared_ptr<const Store> open_store(const std::string& address, const StoreOptions& options) {
+std::shared_ptr<const Store> open_store(const std::string& address, const StoreOptions& options,
+                                        const io::Progress&) {
     if (options.raw) return open_plain_file(address, options);
     throw io::InputError(address +
                          ": Palpate for Windows streams raw files only; convert it on Linux");
