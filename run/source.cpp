@@ -257,7 +257,7 @@ class Preparation {
 std::shared_ptr<const Samples> start_samples(const LoadedVolume& loaded) {
     if (!loaded.streamed) return std::make_shared<const Samples>(loaded.volume);
     return stream::empty_samples(*loaded.streamed->store, loaded.volume,
-                                 loaded.streamed->loader.level);
+                                 loaded.streamed->loader.level, loaded.streamed->loader.memory);
 }
 
 LoadedVolume load(const Source& source, const io::Progress& progress) {

@@ -59,10 +59,25 @@ std::array<int, 3> array_of(const Index3& at) {
     return {at[0], at[1], at[2]};
 }
 
+/// Of metadata of a kilobyte, a table of bricks can have gigabytes.
+void check_table(const Store& store, int level, std::uint64_t memory) {
+    constexpr double along = ResidentBricks::edge * 16, bytes = 16;  // of a page and its pointer
+    constexpr std::uint64_t table_part = 16;
+    const Index3& size = level_of(store, level).geometry.size;
+    const double table = bytes * (size.cast<double>() / along).array().ceil().prod();
+    if (table <= static_cast<double>(memory / table_part)) return;
+    throw io::InputError(store.info().address + ": level " + std::to_string(level) + " has " +
+                         std::to_string(size[0]) + " x " + std::to_string(size[1]) + " x " +
+                         std::to_string(size[2]) + " samples, too many to be felt with " +
+                         std::to_string(memory / 1000000) +
+                         " MB of memory; allow more, or take a coarser level");
+}
+
 }  // namespace
 
-std::shared_ptr<const Samples> empty_samples(const Store& store, const Volume& overview,
-                                             int level) {
+std::shared_ptr<const Samples> empty_samples(const Store& store, const Volume& overview, int level,
+                                             std::uint64_t memory) {
+    check_table(store, level, memory);
     const Geometry& geometry = level_of(store, level).geometry;
     const Range range = store.info().range.value_or(Range{overview.minimum(), overview.maximum()});
     return std::make_shared<const Samples>(overview, geometry, ResidentBricks(geometry.size),
@@ -74,7 +89,7 @@ BrickLoader::BrickLoader(std::shared_ptr<const Store> store, Volume overview,
     : store_(std::move(store)),
       settings_(settings),
       overview_(std::move(overview)),
-      empty_(empty_samples(*store_, overview_, settings.level)),
+      empty_(empty_samples(*store_, overview_, settings.level, settings.memory)),
       geometry_(empty_->geometry()),
       most_bricks_(most_bricks(*store_, settings.memory)),
       blocks_(std::make_unique<Blocks>(*store_, settings.memory / pieces_part)),

@@ -1,4 +1,5 @@
-// Memory for chunks while they are unpacked, which all threads of a store share. Private to stream/.
+// Memory for chunks while they are unpacked, which all threads of a store share. Private to
+// stream/.
 #pragma once
 
 #include <condition_variable>

@@ -1,5 +1,5 @@
-// Long work on a thread of its own, while the caller's thread reports progress and may stop it: also
-// where a server keeps everybody waiting. For the libraries and programs.
+// Long work on a thread of its own, while the caller's thread reports progress and may stop it:
+// also where a server keeps everybody waiting. For the libraries and programs.
 #pragma once
 
 #include <chrono>

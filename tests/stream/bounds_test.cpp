@@ -25,9 +25,10 @@ constexpr std::uint64_t megabyte = 1'000'000;
 /// 1024^3 bytes in one chunk of 1 GiB, of which little is stored.
 void put_bomb(const fs::path& folder) {
     fs::create_directories(folder);
-    put_bytes(folder / ".zarray",
-              R"({"zarr_format":2,"shape":[1024,1024,1024],"chunks":[1024,1024,1024],"dtype":"|u1",)"
-              R"("compressor":{"id":"gzip"},"fill_value":0,"order":"C","filters":null})");
+    put_bytes(
+        folder / ".zarray",
+        R"({"zarr_format":2,"shape":[1024,1024,1024],"chunks":[1024,1024,1024],"dtype":"|u1",)"
+        R"("compressor":{"id":"gzip"},"fill_value":0,"order":"C","filters":null})");
     put_bytes(folder / "0.0.0", "no gzip");
 }
 
@@ -50,6 +51,20 @@ TEST(Bounds, a_chunk_that_takes_more_than_may_be_used_is_refused_by_name_and_cos
         }
     };
     EXPECT_EQ(support::end_of(support::start_process(work)), 0);
+}
+
+TEST(Bounds, a_grid_whose_table_of_bricks_would_fill_the_memory_is_refused) {
+    const ScratchFolder folder;
+    fs::create_directories(folder / "a.zarr");
+    put_bytes(folder / "a.zarr/.zarray",
+              R"({"zarr_format":2,"shape":[400000,400000,400000],"chunks":[64,64,64],)"
+              R"("dtype":"|u1","compressor":null,"fill_value":0,"order":"C","filters":null})");
+    const auto store = open_store(folder / "a.zarr");
+    const Volume overview(Geometry{Index3::Constant(2)}, std::vector<std::uint8_t>(8));
+    const std::string message = message_of<io::InputError>(
+        [&] { (void)empty_samples(*store, overview, 0, 128 * megabyte); });
+    EXPECT_TRUE(contains(message, "400000 x 400000 x 400000 samples")) << message;
+    EXPECT_THROW(BrickLoader(store, overview, {.memory = 128 * megabyte}), io::InputError);
 }
 
 TEST(Bounds, threads_share_the_room_to_unpack_and_leave_the_queue_when_stopped) {

@@ -102,10 +102,10 @@ TEST(HttpAnswers, a_web_page_in_the_place_of_metadata_is_called_one) {
 TEST(HttpAnswers, of_an_endless_page_about_an_error_little_is_read) {
     const Served served({"--missing", "endless"});
     EXPECT_TRUE(contains(served.refusal("no.zarr"), "has no metadata"));
-    const std::string get =
-        std::string(PALPATE_ZARR_PYTHON) + " -c \"import json, urllib.request as u; print(json.loads(" +
-        "u.urlopen('" + served.server.address("counts") + "').read())['endless'])\" > " +
-        (served.folder / "pieces").string();
+    const std::string get = std::string(PALPATE_ZARR_PYTHON) +
+                            " -c \"import json, urllib.request as u; print(json.loads(" +
+                            "u.urlopen('" + served.server.address("counts") +
+                            "').read())['endless'])\" > " + (served.folder / "pieces").string();
     ASSERT_EQ(std::system(get.c_str()), 0);
     int pieces = 0;
     std::ifstream(served.folder / "pieces") >> pieces;
@@ -155,7 +155,8 @@ TEST(HttpAnswers, opening_a_store_of_a_silent_server_stops_when_asked_to) {
         const auto tell = [&](double) {
             if (++calls == 3) throw Impatient{};
         };
-        EXPECT_THROW((void)open_store(served.server.address(name), patient_once(), tell), Impatient);
+        EXPECT_THROW((void)open_store(served.server.address(name), patient_once(), tell),
+                     Impatient);
         // It would wait for 60 s.
         EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(30));
     }

@@ -31,10 +31,6 @@ inline constexpr std::int64_t overview_samples = std::int64_t{1} << 21;
 Volume overview_of(const Store& store, std::int64_t samples = overview_samples,
                    std::stop_token stop = {});
 
-/// The samples of a level before any of it is in memory. Throws std::invalid_argument for a level
-/// that the store does not have.
-std::shared_ptr<const Samples> empty_samples(const Store& store, const Volume& overview, int level);
-
 struct BrickLoaderSettings {
     int level = 0;                                  ///< of the store that is felt
     std::uint64_t memory = std::uint64_t{1} << 29;  ///< [bytes] most that bricks and pieces take
@@ -46,6 +42,12 @@ struct BrickLoaderSettings {
     /// has 64 bricks.
     bool whole_process = false;
 };
+
+/// The samples of a level before any of it is in memory. Throws std::invalid_argument for a level
+/// that the store does not have, io::InputError for one with so many samples that the table of its
+/// bricks alone takes more than a sixteenth of `memory` [bytes].
+std::shared_ptr<const Samples> empty_samples(const Store& store, const Volume& overview, int level,
+                                             std::uint64_t memory = BrickLoaderSettings{}.memory);
 
 /// A hand and where it goes. Points in mm, physical.
 struct Interest {
