@@ -14,6 +14,7 @@
 #include "io/helper_process.hpp"
 #include "io/json_text.hpp"
 #include "io/leftovers.hpp"
+#include "io/open_file.hpp"
 #include "io/own_names.hpp"
 #include "io/removal.hpp"
 #include "io/system.hpp"
@@ -70,12 +71,10 @@ std::string new_nonce() {
 }
 
 std::string text_of_marker(int folder) {
-    // O_NONBLOCK: a pipe of that name must not hold us up.
-    const Descriptor file(
-        ::openat(folder, growing_marker, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+    const Descriptor file(open_file_in(folder, growing_marker));
     struct stat about {};
-    if (file.number() < 0 || ::fstat(file.number(), &about) != 0 || !S_ISREG(about.st_mode) ||
-        about.st_uid != ::geteuid() || about.st_size > static_cast<off_t>(longest_marker)) {
+    if (file.number() < 0 || ::fstat(file.number(), &about) != 0 || about.st_uid != ::geteuid() ||
+        about.st_size > static_cast<off_t>(longest_marker)) {
         return "";
     }
     std::string text(static_cast<std::size_t>(about.st_size), '\0');

@@ -11,6 +11,8 @@
 #include <fstream>
 #include <new>
 
+#include "io/open_file.hpp"
+
 namespace palpate::io {
 
 std::uint64_t resident_memory() {
@@ -39,12 +41,23 @@ int why_unwritable(const std::filesystem::path& path) {
     return access(path.c_str(), W_OK) == 0 ? 0 : errno;
 }
 
+int open_file_in(int folder, const std::string& name, int flags) {
+    // O_NONBLOCK: the opening of a pipe would wait for its writer.
+    const int file =
+        ::openat(folder, name.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY | flags);
+    struct stat about {};
+    if (file < 0 || (::fstat(file, &about) == 0 && S_ISREG(about.st_mode))) return file;
+    ::close(file);
+    errno = S_ISDIR(about.st_mode) ? EISDIR : ENXIO;
+    return -1;
+}
+
 bool means_full(int error) noexcept {
     return error == ENOSPC || error == EDQUOT || error == EFBIG;
 }
 
 int open_to_read(const std::filesystem::path& path) {
-    return ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    return open_file_in(AT_FDCWD, path.string(), 0);
 }
 
 int open_to_write(const std::filesystem::path& path) {

@@ -27,6 +27,8 @@ bool means_full(int error) noexcept;
 
 // Descriptors; below 0 where one cannot be opened.
 
+/// A regular file. A pipe or a device holds nobody up: errno is EISDIR for a folder, ENXIO for all
+/// else that is no file. Everything that is not meant for streams opens files by this.
 int open_to_read(const std::filesystem::path& path);
 /// A file that is there, or a stream.
 int open_to_write(const std::filesystem::path& path);

@@ -13,6 +13,7 @@
 
 #include "io/helper_process.hpp"
 #include "io/leftovers.hpp"
+#include "io/open_file.hpp"
 
 namespace palpate::stream {
 namespace {
@@ -70,9 +71,7 @@ std::optional<Bytes> entry_of(int file, const std::string& name) {
     struct stat status {};
     EntryHead head;
     const EntryHead right;
-    if (fstat(file, &status) != 0 || !S_ISREG(status.st_mode) ||
-        !read_all(file, &head, sizeof head))
-        return std::nullopt;
+    if (fstat(file, &status) != 0 || !read_all(file, &head, sizeof head)) return std::nullopt;
     const auto size = static_cast<std::uint64_t>(status.st_size);
     if (head.magic != right.magic || head.name_bytes != name.size() || head.bytes > size ||
         size != sizeof head + head.name_bytes + head.bytes) {
@@ -126,7 +125,7 @@ std::vector<Entry> entries_in(const fs::path& folder) {
 
 /// Removes an entry, unless it does not begin as one does.
 void remove_entry(const fs::path& path) {
-    const io::Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
+    const io::Descriptor file(io::open_file_in(AT_FDCWD, path.string()));
     EntryHead head;
     if (read_all(file.number(), &head.magic, sizeof head.magic) &&
         head.magic == EntryHead{}.magic) {
@@ -152,8 +151,7 @@ fs::path DiskCache::path_of(const std::string& name) const {
 std::optional<Bytes> DiskCache::find(const std::string& name) const noexcept {
     try {
         const fs::path path = path_of(name);
-        const io::Descriptor file(
-            ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
+        const io::Descriptor file(io::open_file_in(AT_FDCWD, path.string()));
         if (file.number() < 0) return std::nullopt;
         auto bytes = entry_of(file.number(), name);
         if (bytes) {

@@ -1,5 +1,4 @@
 // Objects that are files in a folder.
-#include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -7,6 +6,7 @@
 #include <stdexcept>
 
 #include "io/helper_process.hpp"
+#include "io/system.hpp"
 #include "palpate/io/error.hpp"
 #include "stream/objects.hpp"
 
@@ -30,17 +30,14 @@ class FolderObjects : public Objects {
 
     std::optional<Bytes> get(const Wanted& wanted, std::stop_token stop) const override {
         if (stop.stop_requested()) throw Cancelled{};
-        // O_NONBLOCK: a pipe of that name must not hold us up.
-        const io::Descriptor file(
-            ::open((folder_ / wanted.key).c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+        const io::Descriptor file(io::open_to_read(folder_ / wanted.key));
         if (file.number() < 0) {
-            if (errno == ENOENT || errno == ENOTDIR) return std::nullopt;
+            if (errno == ENOENT || errno == ENOTDIR || errno == EISDIR) return std::nullopt;
+            if (errno == ENXIO) fail(wanted.key, "is no file; make the folder again");
             fail(wanted.key, io::reason(errno) + "; check its permissions");
         }
         struct stat status {};
         if (fstat(file.number(), &status) != 0) fail(wanted.key, io::reason(errno));
-        if (S_ISDIR(status.st_mode)) return std::nullopt;
-        if (!S_ISREG(status.st_mode)) fail(wanted.key, "is no file; make the folder again");
         const auto size = static_cast<std::uint64_t>(status.st_size);
         ByteRange range{0, size};
         if (wanted.range) range = *wanted.range;

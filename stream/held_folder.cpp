@@ -7,7 +7,7 @@
 
 #include <cerrno>
 
-#include "io/system.hpp"
+#include "io/open_file.hpp"
 #include "palpate/io/error.hpp"
 
 namespace palpate::stream {
@@ -89,13 +89,7 @@ void HeldFolder::put(const fs::path& name, std::span<const std::byte> bytes,
 }
 
 io::Descriptor HeldFolder::open(const fs::path& name) {
-    // O_NONBLOCK: a pipe of that name must not hold us up.
-    io::Descriptor file(
-        ::openat(held(), name.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
-    struct stat about {};
-    const bool is_file =
-        file.number() >= 0 && ::fstat(file.number(), &about) == 0 && S_ISREG(about.st_mode);
-    return is_file ? std::move(file) : io::Descriptor();
+    return io::Descriptor(io::open_file_in(held(), name.string()));
 }
 
 void fail_without(const fs::path& folder) {

@@ -8,9 +8,14 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
+
+#include "io/helper_process.hpp"
+#include "io/open_file.hpp"
 #include "io/own_names.hpp"
 #include "io/path_json.hpp"
 #include "io/removal.hpp"
+#include "io/system.hpp"
 #include "palpate/io/error.hpp"
 #include "support/scratch_folder.hpp"
 
@@ -40,6 +45,26 @@ TEST(Removal, takes_all_below_a_folder_and_nothing_that_a_link_points_to) {
     EXPECT_TRUE(remove_tree(folder / "not there"));
     EXPECT_EQ(folder.names(), Names{});
     EXPECT_EQ(bytes_of(precious / "thesis.txt"), "years");
+}
+
+TEST(OpenFile, opens_files_only_and_waits_for_no_pipe) {
+    const ScratchFolder folder;
+    put_bytes(folder / "file", "x");
+    fs::create_symlink("file", folder / "link");
+    ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+    const auto problem_of = [&](const fs::path& path, bool follows) {
+        errno = 0;
+        const Descriptor file(follows ? open_to_read(path) : open_file_in(AT_FDCWD, path.string()));
+        return file.number() >= 0 ? 0 : errno;
+    };
+    for (const bool follows : {true, false}) {
+        EXPECT_EQ(problem_of(folder / "file", follows), 0);
+        EXPECT_EQ(problem_of(folder / "pipe", follows), ENXIO);
+        EXPECT_EQ(problem_of(folder.path(), follows), EISDIR);
+        EXPECT_EQ(problem_of("/dev/zero", follows), ENXIO);
+        EXPECT_EQ(problem_of(folder / "nothing", follows), ENOENT);
+        EXPECT_EQ(problem_of(folder / "link", follows), follows ? 0 : ELOOP);
+    }
 }
 
 /// Runs work() in a process with mounts of its own, in which `at` shows what is in `from`. False if
