@@ -1,4 +1,5 @@
-// Any bytes are a TIFF file whose planes have a size, an order and a meaning, or a failure of one line.
+// Any bytes are a TIFF file whose planes have a size, an order and a meaning, or a failure of one
+// line.
 #include <sys/mman.h>
 #include <unistd.h>
 
