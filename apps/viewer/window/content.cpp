@@ -81,7 +81,7 @@ Content::OuterSurface Content::outer_surface() {
     if (levels_in(now) > 0) return {seen(felt()), now->layers.front().level};
     if (!have_surfaces(now)) return {seen(felt()), live_->isovalue()};
     OuterSurface labels{*now->labels, 0.5};
-    labels.field.show_labels(~1U);  // all but what is in no layer
+    labels.field.cover(now->labels, ~1U, 0, 1);  // all but what is in no layer
     return labels;
 }
 
