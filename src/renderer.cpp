@@ -142,7 +142,7 @@ Moved move_proxy(Renderer& renderer, const DeviceState& device, const Vec3& hip,
     if (part == 0 || (part < 1 && (settings.layers || settings.penetrability.on))) {
         return {wait_for_samples(renderer, hip), {}};
     }
-    Moved moved;
+    Moved moved{};
     if (settings.layers) {
         const DeviceTransform& transform = settings.transform;
         const LayerInput input{.method = settings.method,
@@ -167,7 +167,7 @@ Moved move_proxy(Renderer& renderer, const DeviceState& device, const Vec3& hip,
     }
     if (looked_beyond_memory(renderer, before, hip, moved.proxy.searched)) {
         forget_layers(renderer.layers, renderer.proxy, renderer.field);
-        return {wait_for_samples(renderer, hip), {}};
+        moved = {wait_for_samples(renderer, hip), {}};
     }
     return moved;
 }
