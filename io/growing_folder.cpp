@@ -338,7 +338,7 @@ bool GrowingFolder::replace_in_steps(const MayReplace& may_replace) {
     }
     try {
         may_replace(aside);  // it may have been replaced since it was looked at
-    } catch (const OutputError& e) {
+    } catch (const std::exception& e) {
         if (rename_new(aside, out_)) throw;
         refuse(aside, std::string("must not be replaced and cannot go back: ") + e.what());
     }

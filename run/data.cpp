@@ -5,6 +5,7 @@
 #include <random>
 #include <stdexcept>
 
+#include "palpate/io/error.hpp"
 #include "palpate/io/output.hpp"
 #include "palpate/io/raw_options.hpp"
 #include "palpate/io/written_formats.hpp"
@@ -176,7 +177,7 @@ std::string Data::save_edits(const std::filesystem::path& path, const io::Progre
     stream::save_edits(*loaded_.streamed->store, loaded_.streamed->opened, from.loader.level,
                        *edits, path, progress);
     editor_->set_saved(edits);
-    return "saved the edits of " + from.address + " as " + path.string() +
+    return "saved the edits of " + io::without_secrets(from.address) + " as " + path.string() +
            ": it opens as the edited volume while the original stays where it is";
 }
 

@@ -3,6 +3,7 @@
 
 #include "palpate/run/labels.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -70,6 +71,21 @@ struct Comparison {
         if (!found && !same(recorded, again)) found = {part, text_of(recorded), text_of(again)};
     }
 };
+
+/// In a session, a set that takes another one's place may share its labels. Read again they are
+/// another volume of the same samples; then the set gets those of the one before.
+std::shared_ptr<const Layers> like_before(std::shared_ptr<const Layers> layers,
+                                          const std::shared_ptr<const Layers>& before) {
+    if (!layers || !layers->labels || !before || !before->labels) return layers;
+    const Volume &now = layers->labels->volume(), &then = before->labels->volume();
+    if (!(now.geometry() == then.geometry()) ||
+        !std::ranges::equal(now.samples<std::uint8_t>(), then.samples<std::uint8_t>())) {
+        return layers;
+    }
+    Layers same = *layers;
+    same.labels = before->labels;
+    return std::make_shared<const Layers>(std::move(same));
+}
 
 }  // namespace
 
@@ -155,7 +171,8 @@ void Replay::carry_out(const Command& recorded) {
     try {
         Command command = samples_.whole(recorded);
         if (auto* layers = std::get_if<command::UseLayers>(&command)) {
-            layers->layers = with_labels(layers->layers, recording_);
+            layers->layers = like_before(with_labels(layers->layers, recording_),
+                                         session_.renderer.settings.layers);
         }
         if (const auto* limits = std::get_if<DeviceLimits>(&command)) {
             keep_within(session_, *limits);  // a device may have declared any

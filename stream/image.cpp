@@ -137,6 +137,7 @@ class Taking {
         } catch (const std::invalid_argument& e) {
             throw BadMetadata(std::string("its place in space is not possible (") + e.what() + ")");
         }
+        level.geometry = orthonormal(level.geometry);
         return level;
     }
 

@@ -10,6 +10,7 @@
 #include "apps/palpate/commands.hpp"
 #include "apps/palpate/outputs.hpp"
 #include "apps/palpate/progress.hpp"
+#include "palpate/io/error.hpp"
 #include "palpate/io/output.hpp"
 #include "palpate/io/written_formats.hpp"
 #include "palpate/stream/convert.hpp"
@@ -63,7 +64,8 @@ Taken opened(const ConvertWords& words) {
         }
         if (!words.source.quiet) {
             for (const std::string& note : store->info().notes) {
-                fmt::print(stderr, "palpate: note: {}: {}\n", from->address, note);
+                fmt::print(stderr, "palpate: note: {}: {}\n", io::without_secrets(from->address),
+                           note);
             }
         }
         return {std::move(store), from->loader.level};

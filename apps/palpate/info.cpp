@@ -12,6 +12,7 @@
 #include "apps/palpate/outputs.hpp"
 #include "apps/palpate/progress.hpp"
 #include "palpate/filters/dequantize.hpp"
+#include "palpate/io/error.hpp"
 #include "palpate/run/statistics.hpp"
 
 namespace palpate::app {
@@ -191,7 +192,7 @@ void print_text(const run::LoadedVolume& loaded, const run::Histogram& histogram
     const auto samples = run::start_samples(loaded);
     const Geometry& g = samples->geometry();
     const Vec3 extent = g.size.cast<double>().cwiseProduct(g.spacing);
-    fmt::print("{}\n", loaded.name);
+    fmt::print("{}\n", io::without_secrets(loaded.name));
     fmt::print("format       {}\n", loaded.format);
     fmt::print("size         {} x {} x {} samples, {}\n", g.size[0], g.size[1], g.size[2],
                name_of(samples->type()));

@@ -47,11 +47,11 @@ run::LoadedVolume load_for_terminal(const SourceOptions& options) {
 }
 
 run::LoadedVolume load_for_terminal(const run::Source& source, bool quiet) {
-    ProgressBar bar("reading " + name_of(source), quiet);
+    ProgressBar bar("reading " + io::without_secrets(name_of(source)), quiet);
     run::LoadedVolume loaded = run::load(source, [&](double fraction) { bar.at(fraction); });
     if (!quiet) {
         for (const std::string& note : loaded.notes) {
-            fmt::print(stderr, "palpate: note: {}: {}\n", loaded.name, note);
+            fmt::print(stderr, "palpate: note: {}: {}\n", io::without_secrets(loaded.name), note);
         }
     }
     return loaded;

@@ -268,6 +268,12 @@ std::string rescued(run::Data& data) {
     }
 }
 
+/// One more of the things that went wrong, if it is not empty.
+void add(std::string& problems, const std::string& problem) {
+    if (!problems.empty() && !problem.empty()) problems += "; ";
+    problems += problem;
+}
+
 /// `unsaved`: why a command could not save; empty: none failed. Edits that could not be saved where
 /// they should be go to another place. Returns what went wrong and where they are.
 std::string save_at_end(run::Data& data, const RunOptions& options, std::string unsaved) {
@@ -276,7 +282,7 @@ std::string save_at_end(run::Data& data, const RunOptions& options, std::string 
     } catch (const Interrupted&) {
         throw;
     } catch (const std::exception& e) {
-        unsaved += (unsaved.empty() ? "" : "; ") + std::string(e.what());
+        add(unsaved, e.what());
     }
     return unsaved.empty() ? unsaved : unsaved + rescued(data);
 }
@@ -389,13 +395,13 @@ void touch(const TouchOptions& options) {
         unsaved = feel(*run, options, std::move(requests), commands, remote.get());
         while (auto pushed = remote ? remote->take_pushed() : nullptr) {
             const std::string kept = rescued(*data);  // of what came after the last save
-            if (!kept.empty()) unsaved += data->loaded().name + " was replaced" + kept;
+            if (!kept.empty()) add(unsaved, data->loaded().name + " was replaced" + kept);
             data = std::move(pushed);
             run.reset();  // a device opens once
             run = std::make_unique<run::Run>(data, setup);
             commands = commands_for(*run);
             begin = std::chrono::steady_clock::now();
-            unsaved += feel(*run, options, {}, commands, remote.get());
+            add(unsaved, feel(*run, options, {}, commands, remote.get()));
         }
     } catch (...) {
         run.reset();  // no force while it is saved

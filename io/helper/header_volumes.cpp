@@ -86,6 +86,7 @@ PlainLayout samples_of(VolumeHeader header, const Request& request) {
     plain.about.notes = header.notes;
     if (request.spacing) plain.about.geometry.spacing = *request.spacing;
     check_geometry(plain.about.geometry);
+    plain.about.geometry = orthonormal(plain.about.geometry);
     return plain;
 }
 

@@ -181,13 +181,14 @@ std::vector<Life> lives() {
     return all;
 }
 
-std::string name_of(const testing::TestParamInfo<Life>& life) {
-    const std::array<std::string, 3> kinds{"levels", "labels", "both"};
-    const std::array<std::string, 4> data{"plain", "edited", "moments", "resident"};
-    return std::string(palpate::name_of(life.param.interpolation)) + "_" +
-           kinds[std::size_t(life.param.kind)] + "_" + data[std::size_t(life.param.data)];
+std::ostream& operator<<(std::ostream& out, const Life& life) {
+    const std::array<const char*, 3> kinds{"levels", "labels", "both"};
+    const std::array<const char*, 4> data{"plain", "edited", "moments", "resident"};
+    return out << name_of(life.interpolation) << "_" << kinds[std::size_t(life.kind)] << "_"
+               << data[std::size_t(life.data)];
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, LayerLives, testing::ValuesIn(lives()), name_of);
+INSTANTIATE_TEST_SUITE_P(Kinds, LayerLives, testing::ValuesIn(lives()),
+                         testing::PrintToStringParamName());
 
 }  // namespace

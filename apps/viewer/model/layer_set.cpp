@@ -73,7 +73,8 @@ void renumber(Layers& layers, const Layers& before) {
     const auto samples = volume.samples<std::uint8_t>();
     std::vector<std::uint8_t> numbers(samples.begin(), samples.end());
     for (std::uint8_t& number : numbers) number = to[number];
-    layers.labels = std::make_shared<const Field>(Volume(volume.geometry(), std::move(numbers)));
+    layers.labels = std::make_shared<const Field>(Volume(volume.geometry(), std::move(numbers)),
+                                                  Solid::above, 0.0);  // outside: no layer
 }
 
 Layer another(const Layers& layers, double level) {

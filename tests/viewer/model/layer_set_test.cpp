@@ -157,6 +157,16 @@ TEST(LayerSet, the_places_of_labels_follow_their_order) {
     EXPECT_NO_THROW(check(moved, Solid::above));
 }
 
+TEST(LayerSet, outside_of_labels_is_no_layer_although_every_sample_is_in_one) {
+    Layers layers = three_labels();
+    Geometry geometry;
+    geometry.size = {3, 1, 1};
+    layers.labels =
+        numbered_labels(Volume(geometry, std::vector<std::uint8_t>{2, 4, 9}), layers.layers);
+    EXPECT_EQ(layers.labels->background(), 0);
+    EXPECT_EQ(moved_layer(layers, 2, 0).labels->background(), 0);
+}
+
 TEST(LayerSet, labels_have_no_levels_to_see_and_do_not_nest) {
     const SharedLayers labels = shared(three_labels());
     EXPECT_TRUE(have_surfaces(labels));
