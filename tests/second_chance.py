@@ -2,9 +2,9 @@
 are appended to the file PALPATE_PASSED_AGAIN; without that variable nothing is run again. A program that ends
 before it has reported its cases, as with a sanitizer's finding or a crash, has failed for good.
 
-usage: second_chance.py PROGRAM [--without-paced] [ARGUMENT...]
+usage: second_chance.py PROGRAM [--without CASES] [ARGUMENT...]
 
-With --without-paced it leaves out the suites whose names begin with Paced, in addition to what GTEST_FILTER says."""
+With --without it leaves out CASES (patterns as --gtest_filter takes them), in addition to what GTEST_FILTER says."""
 
 import json
 import os
@@ -20,15 +20,16 @@ def failed_cases(report):
             for suite in report["testsuites"] for case in suite["testsuite"] if "failures" in case]
 
 
-def without_paced(wanted):
-    """A GoogleTest filter: what `wanted` selects except for the suites Paced*."""
-    return wanted + (":Paced*" if "-" in wanted else "-Paced*")
+def without(cases, wanted):
+    """A GoogleTest filter: what `wanted` selects except for `cases`."""
+    return f"{wanted}{':' if '-' in wanted else '-'}{cases}"
 
 
 def main(command):
-    if "--without-paced" in command:
-        command.remove("--without-paced")
-        os.environ["GTEST_FILTER"] = without_paced(os.environ.get("GTEST_FILTER", "*"))
+    if "--without" in command:
+        at = command.index("--without")
+        os.environ["GTEST_FILTER"] = without(command[at + 1], os.environ.get("GTEST_FILTER", "*"))
+        del command[at:at + 2]
     passed_again = os.environ.get("PALPATE_PASSED_AGAIN")
     if not passed_again:
         return subprocess.run(command, check=False).returncode
