@@ -30,7 +30,7 @@ RULES = {
     "per": ("write '30 ns per tetrahedron', not '30 ns a tetrahedron'",
             re.compile(rf"(?:\d[\w.,]*|\b(?:ns|us|µs|ms|MB|\w+seconds?|bytes?|[Oo]ne (?:row|{UNITS})|updates|ticks)) an? (?:{UNITS})\b")),
     "what": ("write a noun, not a what-clause: 'missing fields', not 'what a file lacks'",
-             re.compile(r"\b[Ww]hat (?=\w)(?!.*\?$)")),
+             re.compile(r"\b[Ww]hat (?!to\b|(?:\w+ ){0,1}\w+$)(?=\w)(?!.*\?$)")),
     "semicolons": ("split the sentence at the semicolon", re.compile(";")),
 }
 
