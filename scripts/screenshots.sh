@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Makes the pictures of viewer and demos in README and docs.
+# Makes the pictures of the viewer in README and docs.
 set -euo pipefail
 
 usage() {
@@ -7,8 +7,7 @@ usage() {
 usage: scripts/screenshots.sh DATA_FOLDER [BUILD_FOLDER]
 
 Opens the viewer of BUILD_FOLDER (build/dev) on a virtual display, on volumes of DATA_FOLDER
-(cthead_unc.nrrd, lobster.nrrd, daisy_pollen.nrrd, visible_human_head.nrrd), and writes
-docs/images/viewer-*.png. Also runs the demos of changing data and writes docs/images/demo-*.png.
+(cthead_unc.nrrd, lobster.nrrd, visible_human_head.nrrd), and writes docs/images/viewer-*.png.
 TEXT
 }
 
@@ -33,29 +32,15 @@ screenshot() {
         --window 1400x880 --screenshot "docs/images/viewer-$name.png" "$@"
 }
 
-echo "== demos"
-demos=$(mktemp -d)
 palpate=${program%/viewer/*}/palpate/palpate
-for demo in sculpt beating; do
-    "$palpate" demo "$demo" --pictures 14 --picture 300 --quiet --output "$demos/$demo"
-    cp "$demos/$demo/animation.png" "docs/images/demo-$demo.png"
-done
-rm -r "$demos"
-
-# This head was stored upside down.
-screenshot cthead 2.5 '"volume": {"volume": "DATA/cthead_unc.nrrd"}, "field": "cubic", "isovalue": 1150,
-    "device": "simulated:hand=press", "look": {"box": false},
-    "camera": {"focus": [127.5, 127.5, 112], "up": [0, 0, -1],
-        "towards_viewer": [-0.75, -0.65, -0.2], "half_height": 130}'
 screenshot lobster 2 '"volume": {"volume": "DATA/lobster.nrrd"}, "field": "cubic", "isovalue": 35,
     "device": "simulated:hand=slide,seed=4", "look": {"box": false},
     "camera": {"focus": [150, 175, 39], "up": [0, -1, 0],
         "towards_viewer": [0.25, 0.35, 0.9], "half_height": 170}'
-screenshot daisy 2 '"volume": {"volume": "DATA/daisy_pollen.nrrd"}, "field": "cubic", "isovalue": 60,
-    "device": "simulated:hand=slide", "look": {"surface": false, "volume": true}'
 echo "== viewer-layers.png"
 scripts/with_display.sh "$program" data/visible_human_head.nrrd --layers sample-head \
     --device simulated:hand=press --after 3 --window 1400x880 --screenshot docs/images/viewer-layers.png
+# This head was stored upside down.
 screenshot surfaces 2 '"volume": {"volume": "DATA/cthead_unc.nrrd"}, "field": "cubic", "isovalue": 500,
     "device": "simulated:hand=press", "look": {"box": false, "surface_opacity": 0.35,
         "surfaces": [{"level": 1150, "colour": [0.84, 0.37, 0.25], "opacity": 1, "shown": true}],

@@ -1,6 +1,6 @@
 // viewer_redraws: how soon the 3-D view shows what has changed. A carved ball of 20 voxels, from
 // the new version to the picture; a stroke of 33 versions a second; sequences that play. How to run
-// and read it: docs/viewer.md.
+// and read it: docs/viewer_internals.md.
 #include <QApplication>
 #include <QElapsedTimer>
 #include <QEventLoop>

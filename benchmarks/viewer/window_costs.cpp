@@ -1,5 +1,5 @@
 // viewer_costs: what the window costs: how soon a volume is seen, processor time at rest and
-// turning, memory of volumes that were closed. How to run and read it: docs/viewer.md.
+// turning, memory of volumes that were closed. How to run and read it: docs/viewer_internals.md.
 //
 //   viewer_costs VOLUME [OTHER...]    the others are opened in turn, ten times in all, before
 //   VOLUME

@@ -171,9 +171,11 @@ Figure hostile_figure(const Table& table) {
     figure.columns = 3;
     figure.height = 460;
     figure.caption =
-        "How deep the deepest point of a tool ever is, for tools of more and more points (the "
-        "scalpel has 500), in three scenes: with the penalty method, and certified (exact), where "
-        "it is 0 to rounding.";
+        "Depth of the deepest point of a tool, for tools of more and more points (the scalpel has "
+        "528), in three scenes: with the penalty method, and certified (exact). In noise and "
+        "salt, depths are cut off at 10 voxels. In the shell, depth counts from the ideal inner "
+        "radius, which the smooth field moves by up to 0.06 voxel. Certified points are nowhere "
+        "in the solid by more than 1e-9 of the range.";
     for (const std::string& scene : rows.distinct("scene")) {
         Panel panel;
         panel.title = scene;

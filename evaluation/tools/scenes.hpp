@@ -29,7 +29,7 @@ ToolScene hole_scene();
 
 /// A tool of about so many points, half a voxel apart.
 std::shared_ptr<const Tool> tool_of(int points);
-/// A scalpel: a thin blade of 500 points.
+/// A scalpel: a thin blade of 528 points.
 std::shared_ptr<const Tool> scalpel();
 
 /// Goes by up to 3 voxels and 0.02 rad a tick (3 m/s and 20 rad/s at 1 kHz), now slowly, now fast,

@@ -2,8 +2,8 @@
 //
 //   volume -> samples -> field -> lattice --+
 //      edit, editor --^     penetrability --+--> proxy -> force, layers -> device
-//                                 renderer: one call for proxy..force
-//                         tool -> tool_proxy: the same for a rigid body, without a renderer yet
+//                                 renderer: one call for proxy..force, with a point or a tool
+//                         tool -> tool_proxy: the proxy of a rigid body
 //
 // surface (the whole isosurface as a mesh) observes volume, field and lattice.
 #pragma once

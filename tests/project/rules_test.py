@@ -9,6 +9,7 @@ from pathlib import Path
 
 import globals as writable
 import includes
+import prose
 import style
 
 GOOD = {
@@ -197,6 +198,30 @@ class Globals(unittest.TestCase):
                        "namespace { int counter = 1; } int f() { return counter++; }"):
             found = self.problems(source)
             self.assertTrue(any("counter" in problem for problem in found), source)
+
+
+class Prose(unittest.TestCase):
+    BAD = {"long": "It " + "goes on and " * 12 + "ends.", "fronted": "Of a store, pictures are made.",
+           "is not": "It refuses a member that there is not.", "per": "It costs 30 ns a tetrahedron.",
+           "what": "It lists what a file lacks.", "semicolons": "It starts; it ends."}
+    GOOD = ("It costs 30 ns per tetrahedron, 1000 times a second.", "Where do I put a device?", "It says what is wrong.",
+            "`a; b` is code.", "[Of](of;it.md)")
+
+    def found(self, name, text):
+        with Tree({name: text}) as root:
+            return next(prose.found_in(parts)[0] for file, parts in prose.blocks(root) if file == name)
+
+    def test_every_pattern_is_found_with_its_line(self):
+        for rule, text in self.BAD.items():
+            for name, opening in (("docs/a.md", "# Of a page\n\nIt has\ntwo lines. "), ("src/force.cpp", "// It has.\n//\n// "),
+                                  ("include/palpate/force.hpp", "int a;\n\n// It has. "), ("docs/b.md", "|a|\n|-|\n| ")):
+                self.assertEqual(self.found(name, opening + text + "\n"), {rule: [(opening.count("\n") + 1, text)]}, name)
+
+    def test_good_sentences_code_and_headings_pass(self):
+        for text in self.GOOD:
+            self.assertEqual(self.found("docs/a.md", text + "\n"), {}, text)
+        self.assertEqual(self.found("docs/a.md", "# Of it; and it\n\n```\nOf a; b\n```\n\n    Of a; b\n"), {})
+        self.assertEqual(self.found("src/force.cpp", "// Forces.\n\n// Of another comment; not checked.\n"), {})
 
 
 if __name__ == "__main__":

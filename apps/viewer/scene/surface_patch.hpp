@@ -1,5 +1,5 @@
 // A surface whose part in a box is replaced by a finer one, where the data are an overview of a
-// store. See docs/viewer.md for how the two meet.
+// store. See docs/viewer_internals.md for how the two meet.
 #pragma once
 
 #include <map>
