@@ -10,7 +10,9 @@ namespace {
 struct MakeCommand {
     const Field& field;
     double isovalue;
+    const ForceSettings& usual;
 
+    Command operator()(const AskedForce& asked) const { return force_of(asked, usual); }
     Command operator()(const PressThrough& press) const {
         return penetrability_for(press, field, isovalue);
     }
@@ -36,8 +38,9 @@ void bind(py::module_& names, const char* name, const char* argument, Value C::*
 
 }  // namespace
 
-Command command_of(const Sent& sent, const Field& field, double isovalue) {
-    return std::visit(MakeCommand{field, isovalue}, sent);
+Command command_of(const Sent& sent, const Field& field, double isovalue,
+                   const ForceSettings& usual) {
+    return std::visit(MakeCommand{field, isovalue, usual}, sent);
 }
 
 void bind_commands(py::module_& module) {

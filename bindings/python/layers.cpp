@@ -81,7 +81,7 @@ void bind_layers_class(py::module_& module) {
             .property("closing", get(&Layers::closing), set(&Layers::closing),
                       "[mm, physical] a punctured surface closes behind the SCP")
             .property("needle", get(&Layers::needle), set(&Layers::needle), "Needle or None.")
-            .done_but_pickling();
+            .done();
     layers.def_property_readonly("by_label", get(&Layers::by_label),
                                  "Places come from a label volume.");
     layers.def_property_readonly(

@@ -4,6 +4,7 @@
 #include "bindings/python/arrays.hpp"
 #include "bindings/python/bindings.hpp"
 #include "bindings/python/progress.hpp"
+#include "bindings/python/setup.hpp"
 #include "bindings/python/trace_table.hpp"
 #include "palpate/io/trace.hpp"
 #include "palpate/run/replay.hpp"
@@ -14,14 +15,14 @@ namespace {
 namespace fs = std::filesystem;
 
 py::dict dict_of(const io::RecordingHead& head) {
-    return py::dict(py::arg("version") = head.version, py::arg("begun") = head.begun,
-                    py::arg("volume") = head.volume.options, py::arg("solid") = head.solid,
-                    py::arg("interpolation") = head.interpolation,
-                    py::arg("background") = head.background, py::arg("isovalue") = head.isovalue,
-                    py::arg("device") = head.device, py::arg("rate") = head.rate,
-                    py::arg("method") = head.method, py::arg("force") = head.settings.force,
-                    py::arg("limits") = head.settings.device,
-                    py::arg("transform") = head.settings.transform);
+    return py::dict(
+        py::arg("version") = head.version, py::arg("begun") = head.begun,
+        py::arg("volume") = head.volume.options, py::arg("solid") = head.solid,
+        py::arg("interpolation") = head.interpolation, py::arg("background") = head.background,
+        py::arg("isovalue") = head.isovalue, py::arg("device") = head.device,
+        py::arg("rate") = head.rate, py::arg("method") = head.method,
+        py::arg("force") = AskedForce(head.settings.force),
+        py::arg("limits") = head.settings.device, py::arg("transform") = head.settings.transform);
 }
 
 py::tuple read(const fs::path& path) {

@@ -53,7 +53,9 @@ void start_servo(const py::object& self) {
 }
 
 void send_to_servo(DeviceServo& s, const Sent& sent) {
-    if (!s.servo.send(command_of(sent, s.field, s.isovalue))) {
+    ForceSettings usual;
+    usual.limit = s.device->info().limits.maximum_force;
+    if (!s.servo.send(command_of(sent, s.field, s.isovalue, usual))) {
         const py::object type = py::module_::import("palpate.errors").attr("QueueFull");
         PyErr_SetString(type.ptr(), "no room for another command: send fewer");
         throw py::error_already_set();

@@ -155,3 +155,22 @@ def test_a_setting_that_there_is_not_is_a_type_error():
     scene = palpate.scene("torus:16x16x16")
     with pytest.raises(TypeError, match="no field stifness"):
         palpate.replay(palpate.Field(scene.volume), 0.5, [0.0], [[0, 0, 0]], stifness=1)
+
+
+def test_a_field_as_a_keyword_and_in_a_setup_give_the_same_ticks():
+    scene = palpate.scene("sphere:40x40x40", "float32")
+    field = palpate.Field(scene.volume)
+    time = numpy.arange(1000) / 1000
+    position = numpy.zeros((1000, 3))
+    top = field.cast_ray(scene.isovalue, (0, 0, 30), (0, 0, 0))[0][2]
+    position[:, 2] = top + 1 - 4 * time
+
+    def forces(**given):
+        return palpate.replay(field, scene.isovalue, time, position, **given).force
+    wanted = forces(stiffness=0.5)
+    assert numpy.count_nonzero(wanted[:, 2]) > 300
+    for setup in (palpate.RenderSetup(stiffness=0.5), palpate.RenderSetup.offline(),
+                  palpate.RenderSetup(force=palpate.ForceSettings(stiffness=0.5))):
+        assert numpy.array_equal(forces(setup=setup), wanted)
+    live = palpate.RenderSetup(force=palpate.ForceSettings(ramp=2))
+    assert not numpy.array_equal(forces(setup=live), wanted)

@@ -2,7 +2,7 @@
 module."""
 
 import dataclasses
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, ClassVar, Optional, Union, overload
 
@@ -121,23 +121,23 @@ class Fill:
 
 class ForceSettings:
     _fields: ClassVar[tuple[str, ...]]
-    def __init__(self, *, stiffness: float = 0.5, damping: float = 0.0, viscosity: float = 0.0,
-                 magnet: Magnet = ..., texture: Texture = ..., limit: float = 3.3,
-                 rate_limit: float = 2000.0, ramp: float = 0.25, stale_after: float = 0.02,
-                 start_below: float = ..., rotational_stiffness: float = 0.0,
+    def __init__(self, *, stiffness: Optional[float] = None, damping: float = 0.0, viscosity: float = 0.0,
+                 magnet: Magnet = ..., texture: Texture = ..., limit: Optional[float] = None,
+                 rate_limit: Optional[float] = None, ramp: Optional[float] = None, stale_after: float = 0.02,
+                 start_below: Optional[float] = None, rotational_stiffness: float = 0.0,
                  rotational_damping: float = 0.0, torque_limit: float = ...,
                  torque_rate_limit: float = 200000.0) -> None: ...
     def __copy__(self) -> Self: ...
-    stiffness: float
+    stiffness: Optional[float]
     damping: float
     viscosity: float
     magnet: Magnet
     texture: Texture
-    limit: float
-    rate_limit: float
-    ramp: float
+    limit: Optional[float]
+    rate_limit: Optional[float]
+    ramp: Optional[float]
     stale_after: float
-    start_below: float
+    start_below: Optional[float]
     rotational_stiffness: float
     rotational_damping: float
     torque_limit: float
@@ -179,26 +179,26 @@ class HandBrush:
 class Layer:
     _fields: ClassVar[tuple[str, ...]]
     def __init__(self, *, name: str = '', level: float = 0.0, colour: Sequence[float] = ...,
-                 opacity: float = 1.0, properties: dict[str, float] = ...) -> None: ...
+                 opacity: float = 1.0, properties: Mapping[str, float] = ...) -> None: ...
     def __copy__(self) -> Self: ...
     name: str
     level: float
-    colour: list[float]
+    colour: Sequence[float]
     opacity: float
-    properties: dict[str, float]
+    properties: Mapping[str, float]
 
 class Layers:
     _fields: ClassVar[tuple[str, ...]]
     def __init__(self, *, name: str = '', units: str = '', about: str = '',
                  layers: Sequence[Layer] = ...,
-                 curves: dict[str, tuple[Sequence[tuple[float, float]], Sequence[tuple[float, float]]]] = ...,
+                 curves: Mapping[str, tuple[Sequence[tuple[float, float]], Sequence[tuple[float, float]]]] = ...,
                  closing: float = 1.0, needle: Optional[Needle] = None) -> None: ...
     def __copy__(self) -> Self: ...
     name: str
     units: str
     about: str
-    layers: list[Layer]
-    curves: dict[str, tuple[list[tuple[float, float]], list[tuple[float, float]]]]
+    layers: Sequence[Layer]
+    curves: Mapping[str, tuple[Sequence[tuple[float, float]], Sequence[tuple[float, float]]]]
     closing: float
     needle: Optional[Needle]
     @property
@@ -281,7 +281,7 @@ class Penetrability:
     def __copy__(self) -> Self: ...
     threshold: float
     minimum: Optional[Union[float, str]]
-    ranges: list[tuple[Union[float, str], Union[float, str]]]
+    ranges: Sequence[tuple[Union[float, str], Union[float, str]]]
 
 class RawLayout:
     _fields: ClassVar[tuple[str, ...]]
@@ -301,7 +301,7 @@ class RenderSetup:
                  tool_spacing: Optional[float] = None, friction: Optional[Friction] = None,
                  force: ForceSettings = ..., limit: Optional[float] = None,
                  stiffness: Optional[float] = None, step_budget: Optional[int] = None,
-                 scale: Optional[float] = None, rate: float = 1000.0) -> None: ...
+                 scale: Optional[float] = None, rate: Optional[float] = None) -> None: ...
     def __copy__(self) -> Self: ...
     method: str
     penetrability: Optional[Penetrability]
@@ -314,7 +314,7 @@ class RenderSetup:
     stiffness: Optional[float]
     step_budget: Optional[int]
     scale: Optional[float]
-    rate: float
+    rate: Optional[float]
     @staticmethod
     def offline() -> RenderSetup: ...
 

@@ -80,7 +80,7 @@ def study(client: Client, source: str, isovalue: Union[float, str], time: Any, p
             raise ValueError(f"{name!r}: names of setups become names of files: letters, digits and _.+=,-")
     if "://" not in source and not source.startswith(("synthetic:", "live:")):
         source = os.path.abspath(source)
-    made = {name: setup if isinstance(setup, RenderSetup) else _setup_of(setup)
+    made = {name: setup if isinstance(setup, RenderSetup) else RenderSetup(**setup)
             for name, setup in setups.items()}
     motion = [numpy.ascontiguousarray(a, dtype=float) if a is not None else None
               for a in (time, position, orientation)]
@@ -99,12 +99,3 @@ def study(client: Client, source: str, isovalue: Union[float, str], time: Any, p
     one = functools.partial(_replay, source, options, isovalue, motion, folder)
     each_piece(client, "study", one, work, progress)
     return {name: _read(Path(folder) / f"{name}.npz")[1] for name in setups}
-
-
-def _setup_of(fields):
-    setup = RenderSetup.offline()
-    for name, value in fields.items():
-        if name not in RenderSetup._fields:
-            raise ValueError(f"no field {name}; there are {', '.join(RenderSetup._fields)}")
-        setattr(setup, name, value)
-    return setup

@@ -55,18 +55,13 @@ def replay(field, isovalue, time, position, orientation=None, *, setup=None, pat
 
     field: Field. isovalue: a number [data units] or '53%'. time [s], rising, shape (n,). position
     [mm, physical], shape (n, 3). orientation: w, x, y, z, shape (n, 4), of a tool. setup: a
-    RenderSetup; or its fields as keywords, over RenderSetup.offline(): method='paper',
-    tool='sphere:2', friction=Friction(...), stiffness=0.5. progress(fraction) may raise to stop.
+    RenderSetup; or its fields as keywords: method='paper', tool='sphere:2', friction=Friction(...), stiffness=0.5. progress(fraction) may raise to stop.
     Runs without the GIL. Returns a Trace.
     """
     if setup is not None and settings:
         raise TypeError("give a setup or its fields, not both")
     if setup is None:
-        setup = RenderSetup.offline()
-        for name, value in settings.items():
-            if name not in RenderSetup._fields:
-                raise TypeError(f"no field {name}; there are {', '.join(RenderSetup._fields)}")
-            setattr(setup, name, value)
+        setup = RenderSetup(**settings)
     return Trace(**_palpate._replay(field, isovalue, time, position, orientation, setup, path,
                                     poses, progress))
 
