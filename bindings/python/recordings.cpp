@@ -52,8 +52,7 @@ void compare(const run::Replay::Tick& tick, const std::string& recording) {
                          ", now " + differs->again);
 }
 
-py::dict validate(const fs::path& path, const std::string& volume,
-                  const ProgressFunction& progress) {
+py::dict validate(const fs::path& path, const fs::path& volume, const ProgressFunction& progress) {
     constexpr std::int64_t ticks_between_progress = 1024;
     const auto tell = progress_of(progress);
     std::int64_t ticks = 0, commands = 0;
@@ -61,7 +60,7 @@ py::dict validate(const fs::path& path, const std::string& volume,
     {
         const py::gil_scoped_release unlocked;
         const run::LoadedVolume loaded =
-            run::load(run::recorded_source(reader.head(), path, volume), tell);
+            run::load(run::recorded_source(reader.head(), path, volume.string()), tell);
         run::Replay replay(reader, loaded, path.string());
         while (const auto tick = replay.next()) {
             compare(*tick, path.string());

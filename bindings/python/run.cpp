@@ -137,9 +137,10 @@ void bind_run(py::module_& module) {
         module, "Run",
         "A live run: a servo with its device, data and recording. Use it as a context manager.\n"
         "By one thread at a time.");
-    live.def(py::init(&make), py::arg("loaded"), py::arg("setup") = py::none(),
-             "loaded: from load(), or a Volume. setup: Setup, by default Setup(). Opens the "
-             "device; nothing\nmoves before start(). Raises ValueError, InputError, DeviceError.")
+    live.def(
+            py::init(&make), py::arg("loaded"), py::arg("setup") = py::none(),
+            "loaded: from load(), a Volume or a Store. setup: Setup, by default Setup(). Opens the "
+            "device; nothing\nmoves before start(). Raises ValueError, InputError, DeviceError.")
         .def("start", &start, "Once.")
         .def("stop", &R::stop, Unlocked(), "Forces go to zero; for good.")
         .def("send", &send, py::arg("command"), Unlocked(),

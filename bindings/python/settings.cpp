@@ -146,8 +146,8 @@ LayersChoice layers_given(const RenderSetup& setup) {
 struct MakeLayers {
     std::optional<io::LayersFile> operator()(std::monostate) const { return std::nullopt; }
     std::optional<io::LayersFile> operator()(const io::LayersFile& file) const { return file; }
-    std::optional<io::LayersFile> operator()(const std::string& name) const {
-        return io::layers_named(name);
+    std::optional<io::LayersFile> operator()(const std::filesystem::path& name) const {
+        return io::layers_named(name.string());
     }
 };
 

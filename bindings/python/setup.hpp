@@ -1,6 +1,7 @@
 // How to feel, as Python gives it: run::RenderSetup with a tool by its text or as points.
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -28,7 +29,7 @@ struct AskedForce : ForceSettings {
 };
 
 using ToolChoice = std::variant<std::string, std::shared_ptr<Tool>>;
-using LayersChoice = std::variant<std::monostate, io::LayersFile, std::string>;
+using LayersChoice = std::variant<std::monostate, io::LayersFile, std::filesystem::path>;
 
 struct RenderSetup {
     run::RenderSetup given;  ///< but for force, tool and penetrability

@@ -312,6 +312,15 @@ def test_frames_pushed_from_a_python_thread_are_felt():
         source.join()
 
 
+def test_layers_that_are_the_same_surfaces_are_sent_as_such():
+    layers = palpate.layers_named("ct-needle")
+    assert not palpate.command.UseLayers(layers).same_surfaces
+    same = palpate.command.UseLayers(layers, same_surfaces=True)
+    assert same.same_surfaces
+    with palpate.Servo(renderer(), Still(50), real_time=False) as servo:
+        servo.send(same)
+
+
 def test_a_subject_of_the_experiments_is_felt_by_each_contestant():
     for contestant in palpate.contestants():
         subject = palpate.subject("synthetic:cylinder:30x30x30@53%", contestant)

@@ -7,6 +7,7 @@ changed: lists, dicts and arrays, and what a read-only property returns.
 """
 
 import copy
+import os
 import re
 import weakref
 
@@ -90,6 +91,8 @@ class _Nested:
     def __set__(self, owner, value):
         if "_frozen" in vars(owner):
             raise AttributeError(vars(owner)["_frozen"])
+        if isinstance(value, os.PathLike):
+            value = os.fspath(value)
         before = _kept(self.raw.__get__(owner))
         self.raw.__set__(owner, value)
         try:
