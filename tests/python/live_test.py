@@ -237,6 +237,19 @@ def test_a_run_with_the_simulated_device_records_what_validates(tmp_path):
             pytest.fail("an existing file was replaced")
 
 
+def test_a_limit_that_was_set_in_the_setup_is_the_limit_of_the_run(tmp_path):
+    setup = palpate.Setup(isovalue=0.3, device="simulated:touchx,hand=press,depth=4", real_time=False)
+    setup.render.force.limit = 0.5
+    run = palpate.Run(palpate.scene("sphere:40x40x40", "float32").volume, setup)
+    run.record(tmp_path / "session.csv")
+    with run:
+        until(lambda: run.snapshot() and numpy.linalg.norm(run.snapshot().tick.force) > 0.49)
+    run.stop_recording()
+    recording = palpate.read_recording(tmp_path / "session.csv")
+    assert recording.head["force"].limit == 0.5
+    assert numpy.linalg.norm(recording.trace.force, axis=1).max() <= 0.5 + 1e-12
+
+
 def test_a_numpy_array_is_felt_edited_and_recorded(tmp_path):
     array = numpy.ascontiguousarray(palpate.scene("sphere:32x32x32", "float32").volume.array)
     place = {"origin": (-15.5, -15.5, -15.5)}
