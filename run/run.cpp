@@ -7,6 +7,7 @@
 #include <cmath>
 #include <ctime>
 #include <stdexcept>
+#include <thread>
 #include <utility>
 
 #include "io/number.hpp"
@@ -51,6 +52,7 @@ std::unique_ptr<Device> open_for(const Field& field, double isovalue, const Setu
 }
 
 /// Of data and recording, with Pace::by_steps [s].
+constexpr std::chrono::milliseconds longest_stop{500};  // for a device that hangs
 constexpr double between_steps = 0.004;
 
 /// Puts what a run begins with into its recording. Waits while the queue is full; the servo does
@@ -126,8 +128,13 @@ void Run::step() {
 
 void Run::stop() {
     if (running_) stop_servo();
-    running_ = false;
     device_->stop();
+    // The zero is for the device's thread to send; until then its motors hold the last force.
+    const auto latest = std::chrono::steady_clock::now() + longest_stop;
+    while (running_ && device_->is_stopping() && std::chrono::steady_clock::now() < latest) {
+        std::this_thread::sleep_for(std::chrono::microseconds(100));
+    }
+    running_ = false;
 }
 
 void Run::hold(std::unique_ptr<Device> device) {

@@ -52,7 +52,7 @@ package_for_windows() {
         cmake --install "$build" --prefix "$stage" --component "$component" --strip >/dev/null
     done
     mkdir -p "$stage/examples"
-    cp examples/c/game_loop.c bindings/csharp/Palpate.cs "$stage/examples/"
+    cp examples/c/game_loop.c "$stage/examples/"
     cp docs/windows.md "$stage/README.md"
     licences "$stage/licences"
     (cd "$build" && cmake -E tar cf "$output/$name.zip" --format=zip "$name")

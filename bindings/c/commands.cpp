@@ -27,6 +27,15 @@ palpate_status send_force(palpate_run* run, Change&& change) noexcept {
     });
 }
 
+palpate_status send_layers(palpate_run* run, const char* layers, bool same_surfaces) noexcept {
+    return send(run, [&](const run::Run& now) {
+        if (!layers) return command::UseLayers{nullptr};
+        return command::UseLayers{std::make_shared<const Layers>(io::layers_for(
+                                      io::layers_named(layers), now.field().volume())),
+                                  same_surfaces};
+    });
+}
+
 }  // namespace
 
 extern "C" PALPATE_API palpate_status palpate_run_set_isovalue(palpate_run* run, double isovalue) {
@@ -95,11 +104,12 @@ extern "C" PALPATE_API palpate_status palpate_run_set_tool(palpate_run* run, con
 }
 
 extern "C" PALPATE_API palpate_status palpate_run_set_layers(palpate_run* run, const char* layers) {
-    return send(run, [&](const run::Run& now) {
-        if (!layers) return command::UseLayers{nullptr};
-        return command::UseLayers{std::make_shared<const Layers>(
-            io::layers_for(io::layers_named(layers), now.field().volume()))};
-    });
+    return send_layers(run, layers, false);
+}
+
+extern "C" PALPATE_API palpate_status palpate_run_change_layers(palpate_run* run,
+                                                                const char* layers) {
+    return send_layers(run, layers, true);
 }
 
 }  // namespace palpate::c

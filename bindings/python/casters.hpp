@@ -180,7 +180,7 @@ struct type_caster<palpate::io::Level> {
     }
     static handle cast(const palpate::io::Level& from, return_value_policy, handle) {
         if (const auto* part = std::get_if<palpate::io::PercentOfRange>(&from)) {
-            return (str(float_(part->percent)) + str("%")).release();
+            return (str(float_(part->percent)).attr("removesuffix")(".0") + str("%")).release();
         }
         return float_(std::get<double>(from)).release();
     }

@@ -10,7 +10,9 @@ namespace {
 struct MakeCommand {
     const Field& field;
     double isovalue;
+    const ForceSettings& usual;
 
+    Command operator()(const AskedForce& asked) const { return force_of(asked, usual); }
     Command operator()(const PressThrough& press) const {
         return penetrability_for(press, field, isovalue);
     }
@@ -36,8 +38,9 @@ void bind(py::module_& names, const char* name, const char* argument, Value C::*
 
 }  // namespace
 
-Command command_of(const Sent& sent, const Field& field, double isovalue) {
-    return std::visit(MakeCommand{field, isovalue}, sent);
+Command command_of(const Sent& sent, const Field& field, double isovalue,
+                   const ForceSettings& usual) {
+    return std::visit(MakeCommand{field, isovalue, usual}, sent);
 }
 
 void bind_commands(py::module_& module) {
@@ -58,16 +61,23 @@ void bind_commands(py::module_& module) {
              py::arg("samples").none(false), py::arg("version") = 0)
         .def_readonly("version", &command::Samples::version);
     py::class_<command::UseLayers>(names, "UseLayers", "Layers from the next tick on; None: none.")
-        .def(py::init([](const std::optional<io::LayersFile>& layers,
-                         const std::optional<Volume>& volume) {
-                 if (!layers) return command::UseLayers{};
-                 if (layers->units == "%" && !volume) {
-                     throw std::invalid_argument("layers in percent need the volume they are for");
-                 }
-                 return command::UseLayers{std::make_shared<const Layers>(
-                     volume ? io::layers_for(*layers, *volume) : layers->layers)};
-             }),
-             py::arg("layers"), py::arg("volume") = py::none());
+        .def(
+            py::init([](const std::optional<io::LayersFile>& layers,
+                        const std::optional<Volume>& volume, bool same_surfaces) {
+                if (!layers) return command::UseLayers{};
+                if (layers->units == "%" && !volume) {
+                    throw std::invalid_argument("layers in percent need the volume they are for");
+                }
+                return command::UseLayers{
+                    std::make_shared<const Layers>(volume ? io::layers_for(*layers, *volume)
+                                                          : layers->layers),
+                    same_surfaces};
+            }),
+            py::arg("layers"), py::arg("volume") = py::none(), py::kw_only(),
+            py::arg("same_surfaces") = false,
+            "volume: what levels in percent are of. same_surfaces: they are the surfaces that are\n"
+            "felt, with other levels or properties, so what was punctured stays open.")
+        .def_readonly("same_surfaces", &command::UseLayers::same_surfaces);
     py::class_<command::UseTool>(names, "UseTool", "Another tool; None: a point.")
         .def(py::init([](const std::shared_ptr<Tool>& tool) { return command::UseTool{tool}; }),
              py::arg("tool"));

@@ -48,6 +48,12 @@ run::Source source_of(const fs::path& name, const LoadOptions& options) {
 run::LoadedVolume load(const fs::path& name, const LoadOptions& options,
                        const ProgressFunction& progress) {
     const run::Source source = source_of(name, options);
+    const auto kind = name.extension();
+    if (run::is_web_address(name.string()) || kind == ".zarr" || kind == ".n5") {
+        throw io::InputError(io::without_secrets(name.string()) +
+                             ": is read by the box: open it with open_store(); read() gives a "
+                             "Volume, and Run(open_store(...)) feels it");
+    }
     const auto tell = progress_of(progress);
     const py::gil_scoped_release unlocked;
     return run::load(source, tell);
@@ -70,16 +76,18 @@ py::dict values_of(const run::LoadedVolume& loaded) {
                     py::arg("labels") = labels);
 }
 
+run::LoadedVolume loaded_as(const Volume& volume, const fs::path& name,
+                            std::optional<double> isovalue) {
+    run::LoadedVolume loaded{volume, run::source_named(name.string()), name.string()};
+    loaded.isovalue = isovalue;
+    return loaded;
+}
+
 void bind_loaded(py::module_& module) {
     py::class_<run::LoadedVolume>(module, "LoadedVolume",
                                   "A volume and what is known about it: from load().")
-        .def(py::init(
-                 [](const Volume& volume, const std::string& name, std::optional<double> isovalue) {
-                     run::LoadedVolume loaded{volume, run::source_named(name), name};
-                     loaded.isovalue = isovalue;
-                     return loaded;
-                 }),
-             py::arg("volume"), py::arg("name") = "array", py::arg("isovalue") = py::none(),
+        .def(py::init(&loaded_as), py::arg("volume"), py::arg("name") = "array",
+             py::arg("isovalue") = py::none(),
              "A volume of yours, for Run. name: what recordings call it; to validate them, write "
              "the\n"
              "volume to a file of that name. isovalue: a good one [data units].")

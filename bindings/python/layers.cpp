@@ -81,7 +81,7 @@ void bind_layers_class(py::module_& module) {
             .property("closing", get(&Layers::closing), set(&Layers::closing),
                       "[mm, physical] a punctured surface closes behind the SCP")
             .property("needle", get(&Layers::needle), set(&Layers::needle), "Needle or None.")
-            .done_but_pickling();
+            .done();
     layers.def_property_readonly("by_label", get(&Layers::by_label),
                                  "Places come from a label volume.");
     layers.def_property_readonly(
@@ -128,8 +128,10 @@ void bind_layers(py::module_& module) {
         .field("stick_speed", &Needle::stick_speed, "[mm/s] slower than this the shaft sticks")
         .done();
     bind_layers_class(module);
-    module.def("layers_named", &io::layers_named, py::arg("name"),
-               "Layers from a JSON file, or a built-in set by name. Raises InputError.");
+    module.def(
+        "layers_named",
+        [](const std::filesystem::path& name) { return io::layers_named(name.string()); },
+        py::arg("name"), "Layers from a JSON file, or a built-in set by name. Raises InputError.");
     module.def(
         "layers_from_text",
         [](const std::string& text) { return io::layers_from_text(text, "layers"); },

@@ -50,6 +50,72 @@ io::Trajectory trajectory_from(const Doubles& time, const Doubles& position,
                                   points_from(position, "position"), std::move(turns));
 }
 
+/// The columns of a palpate.Trace.
+class Table {
+  public:
+    explicit Table(py::dict columns)
+        : columns_(std::move(columns)), rows_(columns_["t"].cast<Doubles>().size()) {}
+
+    py::ssize_t rows() const { return rows_; }
+    /// Throws std::invalid_argument for another shape than (rows, width), or (rows,).
+    Doubles column(const char* name, py::ssize_t width) const {
+        auto array = columns_[name].cast<Doubles>();
+        if (array.size() != rows_ * width) {
+            throw std::invalid_argument(std::string(name) + ": the shape is " +
+                                        std::string(py::str(array.attr("shape"))) +
+                                        ", the trace has " + std::to_string(rows_) + " ticks");
+        }
+        return array;
+    }
+
+  private:
+    py::dict columns_;
+    py::ssize_t rows_;
+};
+
+void write_trace(const std::filesystem::path& path, const py::dict& columns,
+                 const std::vector<std::string>& layer_names, std::size_t nested_layers,
+                 bool tool) {
+    const Table table(columns);
+    const auto numbers = [&](const char* name) {
+        return [array = table.column(name, 1)](py::ssize_t i) { return array.data()[i]; };
+    };
+    const auto vectors = [&](const char* name) {
+        return
+            [array = table.column(name, 3)](py::ssize_t i) { return Vec3(array.data() + 3 * i); };
+    };
+    const auto turns = [&](const char* name) {
+        return [array = table.column(name, 4)](py::ssize_t i) {
+            const double* q = array.data() + 4 * i;
+            return Quaternion(q[0], q[1], q[2], q[3]);
+        };
+    };
+    const auto t = numbers("t"), density = numbers("density"), isovalue = numbers("isovalue"),
+               constrained = numbers("constrained"), tetrahedra = numbers("tetrahedra"),
+               update_ns = numbers("update_ns"), touched = numbers("layer"),
+               inside = numbers("inside"), contacts = numbers("contacts");
+    const auto hip = vectors("hip"), scp = vectors("scp"), force = vectors("force"),
+               torque = vectors("torque");
+    const auto hand = turns("hand_orientation"), proxy = turns("proxy_orientation");
+    io::TraceWriter writer(path, {}, {layer_names, nested_layers, tool});
+    for (py::ssize_t i = 0; i < table.rows(); ++i) {
+        io::TraceRow row{t(i), hip(i), scp(i), force(i), density(i), isovalue(i)};
+        row.constrained = constrained(i) != 0;
+        row.tetrahedra = static_cast<int>(tetrahedra(i));
+        row.update_ns = static_cast<std::int64_t>(update_ns(i));
+        row.layers.touched = static_cast<std::int8_t>(touched(i));
+        row.layers.inside = static_cast<std::int8_t>(inside(i));
+        const auto count = static_cast<int>(layer_names.size());
+        if (count > 0 && (row.layers.touched >= count || row.layers.inside > count)) {
+            throw std::invalid_argument("layer or inside is more than there are layer_names");
+        }
+        row.tool = {hand(i), proxy(i), static_cast<int>(contacts(i))};
+        row.torque = torque(i);
+        writer.add(row);
+    }
+    writer.commit();
+}
+
 /// A table with a column of ticks.
 template <class Value>
 struct OfTicks {
@@ -102,6 +168,7 @@ py::dict replay(const Field& field, const io::Level& isovalue, const Doubles& ti
         py::list names;
         for (const Layer& layer : renderer.settings.layers->layers) names.append(layer.name);
         table["layer_names"] = py::tuple(names);
+        table["nested_layers"] = level_count(*renderer.settings.layers);
     }
     table["has_tool"] = renderer.settings.tool != nullptr;
     if (path) {
@@ -135,6 +202,7 @@ void bind_offline(py::module_& module) {
                                   column(t.position, [](const Vec3& p) { return p; }), turns);
         },
         py::arg("path"));
+    module.def("_write_trace", &write_trace);
     module.def(
         "_read_trace",
         [](const std::filesystem::path& file) { return columns_of(io::read_trace(file)); },

@@ -4,6 +4,35 @@
 #include <chrono>
 
 namespace palpate::python {
+namespace {
+
+/// Throws std::invalid_argument for what is no reading.
+DeviceReading reading_from(const py::object& returned) {
+    const auto reading = returned_by<DeviceReading>("read()", returned);
+    for (const char* part : {"position", "orientation"}) {
+        const py::object numbers = returned.attr(part);
+        if (numbers.cast<Eigen::MatrixXd>().allFinite()) continue;
+        throw std::invalid_argument(std::string(part) + " is not finite: " +
+                                    std::string(py::str(numbers.attr("tolist")())));
+    }
+    return reading;
+}
+
+/// Empty, or the problem in one line: what the device's function raised.
+template <class Work>
+std::string tried(const std::string& function, Work&& work) {
+    try {
+        work();
+        return {};
+    } catch (const py::error_already_set& error) {
+        const std::string text = error.what();  // with a traceback
+        return "the device's " + function + " raised " + text.substr(0, text.find('\n'));
+    } catch (const std::exception& error) {
+        return "the device's " + function + ": " + error.what();
+    }
+}
+
+}  // namespace
 
 PythonDevice::PythonDevice(py::object self, DeviceInfo info, double rate)
     : self_(std::move(self)), info_(std::move(info)), rate_(rate) {
@@ -43,7 +72,8 @@ void PythonDevice::run() {
     using namespace std::chrono;
     const auto period = duration_cast<steady_clock::duration>(duration<double>(1 / rate_));
     auto next = steady_clock::now();
-    while (!ending_ && step()) {
+    while (!ending_) {
+        step();
         // Steps that are late are left out, not made up for.
         next = std::max(next + period, steady_clock::now());
         std::this_thread::sleep_until(next);
@@ -51,34 +81,43 @@ void PythonDevice::run() {
     end();
 }
 
-/// False once a function has raised: there is no force then.
-bool PythonDevice::step() {
+/// While one of the functions raises the device has a fault, so there is no force; afterwards it
+/// goes on.
+void PythonDevice::step() {
     const py::gil_scoped_acquire gil;
-    try {
-        const auto reading = self_.attr("read")().cast<DeviceReading>();
-        link_.report(reading, devices::monotonic_ns());
-        // Taken after the GIL was waited for, so that an old force is not sent.
-        const Wrench wrench = link_.wrench(devices::monotonic_ns());
-        if (py::hasattr(self_, "write")) self_.attr("write")(wrench.force, wrench.torque);
-        return true;
-    } catch (const std::exception& error) {
-        link_.stop();
-        link_.report(DeviceStatus::fault, devices::monotonic_ns());
-        set_problem(std::string("the device's function raised ") + error.what());
-        return false;
+    DeviceReading reading;
+    const std::string unread =
+        tried("read()", [&] { reading = reading_from(self_.attr("read")()); });
+    const std::int64_t now = devices::monotonic_ns();
+    if (unread.empty() && can_write_) {
+        link_.report(reading, now);
+    } else {
+        link_.report(DeviceStatus::fault, now);
     }
+    // Taken after the GIL was waited for, so that an old force is not sent.
+    const Wrench newest = link_.wrench(devices::monotonic_ns());
+    const std::string unwritten = write_to_device(unread.empty() ? newest : Wrench{});
+    can_write_ = unwritten.empty();
+    set_problem(unread.empty() ? unwritten : unread);
+}
+
+std::string PythonDevice::write_to_device(const Wrench& wrench) {
+    return tried("write()", [&] {
+        if (py::hasattr(self_, "write")) self_.attr("write")(wrench.force, wrench.torque);
+    });
 }
 
 void PythonDevice::end() {
+    constexpr int tries = 3;  // of a device that refuses its last zero
     const py::gil_scoped_acquire gil;
-    try {
-        const Vec3 none = Vec3::Zero();
-        if (py::hasattr(self_, "write")) self_.attr("write")(none, none);
-        for (int i = 0; i < 2; ++i) link_.wrench(devices::monotonic_ns());  // the zero is out
+    std::string problem = write_to_device({});
+    for (int i = 1; i < tries && !problem.empty(); ++i) problem = write_to_device({});
+    for (int i = 0; i < 2; ++i) link_.wrench(devices::monotonic_ns());  // the zero is out
+    const std::string open = tried("close()", [&] {
         if (py::hasattr(self_, "close")) self_.attr("close")();
-    } catch (const std::exception& error) {
-        set_problem(std::string("the device's function raised ") + error.what());
-    }
+    });
+    if (problem.empty()) problem = open;
+    if (!problem.empty()) set_problem(problem);
 }
 
 }  // namespace palpate::python

@@ -13,6 +13,15 @@
 
 namespace palpate::python {
 
+/// What a device's function returned. Throws std::invalid_argument for an object of another class.
+template <class T>
+T returned_by(const char* function, const py::object& returned) {
+    if (py::isinstance<T>(returned)) return returned.cast<T>();
+    throw std::invalid_argument(std::string(function) + " has to return a " +
+                                std::string(py::str(py::type::of<T>().attr("__name__"))) +
+                                ", not " + std::string(py::repr(returned)));
+}
+
 class PythonDevice final : public Device {
   public:
     /// `self` has read() and may have write(force, torque) and close(). Starts the thread, which
@@ -37,8 +46,10 @@ class PythonDevice final : public Device {
 
   private:
     void run();
-    bool step();
+    void step();
     void end();
+    /// Empty, or what write() raised.
+    std::string write_to_device(const Wrench& wrench);
     void set_problem(const std::string& problem);
 
     py::object self_;  // used with the GIL
@@ -47,6 +58,7 @@ class PythonDevice final : public Device {
     devices::Link link_;
     mutable std::mutex mutex_;  // of problem_
     std::string problem_;
+    bool can_write_ = true;  // the device's thread's, as of its last step
     std::atomic<bool> ending_{false};
     std::atomic<std::thread::id> asking_;  // the device's thread
     std::mutex finish_;

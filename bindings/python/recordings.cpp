@@ -4,6 +4,7 @@
 #include "bindings/python/arrays.hpp"
 #include "bindings/python/bindings.hpp"
 #include "bindings/python/progress.hpp"
+#include "bindings/python/setup.hpp"
 #include "bindings/python/trace_table.hpp"
 #include "palpate/io/trace.hpp"
 #include "palpate/run/replay.hpp"
@@ -14,14 +15,14 @@ namespace {
 namespace fs = std::filesystem;
 
 py::dict dict_of(const io::RecordingHead& head) {
-    return py::dict(py::arg("version") = head.version, py::arg("begun") = head.begun,
-                    py::arg("volume") = head.volume.options, py::arg("solid") = head.solid,
-                    py::arg("interpolation") = head.interpolation,
-                    py::arg("background") = head.background, py::arg("isovalue") = head.isovalue,
-                    py::arg("device") = head.device, py::arg("rate") = head.rate,
-                    py::arg("method") = head.method, py::arg("force") = head.settings.force,
-                    py::arg("limits") = head.settings.device,
-                    py::arg("transform") = head.settings.transform);
+    return py::dict(
+        py::arg("version") = head.version, py::arg("begun") = head.begun,
+        py::arg("volume") = head.volume.options, py::arg("solid") = head.solid,
+        py::arg("interpolation") = head.interpolation, py::arg("background") = head.background,
+        py::arg("isovalue") = head.isovalue, py::arg("device") = head.device,
+        py::arg("rate") = head.rate, py::arg("method") = head.method,
+        py::arg("force") = AskedForce(head.settings.force),
+        py::arg("limits") = head.settings.device, py::arg("transform") = head.settings.transform);
 }
 
 py::tuple read(const fs::path& path) {
@@ -51,8 +52,7 @@ void compare(const run::Replay::Tick& tick, const std::string& recording) {
                          ", now " + differs->again);
 }
 
-py::dict validate(const fs::path& path, const std::string& volume,
-                  const ProgressFunction& progress) {
+py::dict validate(const fs::path& path, const fs::path& volume, const ProgressFunction& progress) {
     constexpr std::int64_t ticks_between_progress = 1024;
     const auto tell = progress_of(progress);
     std::int64_t ticks = 0, commands = 0;
@@ -60,7 +60,7 @@ py::dict validate(const fs::path& path, const std::string& volume,
     {
         const py::gil_scoped_release unlocked;
         const run::LoadedVolume loaded =
-            run::load(run::recorded_source(reader.head(), path, volume), tell);
+            run::load(run::recorded_source(reader.head(), path, volume.string()), tell);
         run::Replay replay(reader, loaded, path.string());
         while (const auto tick = replay.next()) {
             compare(*tick, path.string());

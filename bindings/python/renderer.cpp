@@ -12,7 +12,10 @@ Renderer live_renderer(const Field& field, const io::Level& level, const RenderS
                        const DeviceLimits& limits,
                        const std::optional<DeviceTransform>& transform) {
     const double isovalue = io::level_in(field.volume(), level);
-    RendererSettings settings = run::render_settings(setup_of(setup), field, isovalue, limits);
+    ForceSettings usual;
+    usual.limit = limits.maximum_force;
+    RendererSettings settings =
+        run::render_settings(setup_of(setup, usual), field, isovalue, limits);
     if (const auto tool = tool_in(setup)) settings.tool = tool;
     if (transform) settings.transform = *transform;
     return make_renderer(field, isovalue, settings);
@@ -108,25 +111,27 @@ void bind_changes(py::class_<Renderer>& renderer) {
             },
             "Level felt [data units]; may be changed between ticks.")
         .def_property(
-            "force", [](const Renderer& r) { return r.settings.force; },
-            [](Renderer& r, const ForceSettings& force) {
-                change(r, [&](RendererSettings& s) { s.force = force; });
+            "force", [](const Renderer& r) { return AskedForce(r.settings.force); },
+            [](Renderer& r, const AskedForce& asked) {
+                ForceSettings usual;
+                usual.limit = r.settings.device.maximum_force;
+                change(r, [&](RendererSettings& s) { s.force = force_of(asked, usual); });
             },
-            "ForceSettings, a copy: assign it to change them.")
+            "ForceSettings; ValueError for what cannot be rendered, as of the next two.")
         .def_property(
             "friction", [](const Renderer& r) { return r.settings.proxy.friction; },
             [](Renderer& r, const Friction& friction) {
                 change(r, [&](RendererSettings& s) { s.proxy.friction = friction; });
             },
-            "Friction, a copy: assign it to change it.")
+            "Friction")
         .def_property(
             "transform", [](const Renderer& r) { return r.settings.transform; },
             [](Renderer& r, const DeviceTransform& transform) {
                 change(r, [&](RendererSettings& s) { s.transform = transform; });
             },
-            "DeviceTransform, a copy: assign it to change it.")
+            "DeviceTransform")
         .def_property_readonly(
-            "limits", [](const Renderer& r) { return r.settings.device; }, "DeviceLimits, a copy.")
+            "limits", [](const Renderer& r) { return r.settings.device; }, "DeviceLimits")
         .def_property(
             "forces_on", [](const Renderer& r) { return r.settings.forces_on; },
             [](Renderer& r, bool on) { r.settings.forces_on = on; });
@@ -136,7 +141,8 @@ void bind_changes(py::class_<Renderer>& renderer) {
 
 Renderer offline_renderer(const Field& field, const io::Level& level, const RenderSetup& setup) {
     const double isovalue = io::level_in(field.volume(), level);
-    RendererSettings settings = run::offline_settings(setup_of(setup), field, isovalue);
+    RendererSettings settings =
+        run::offline_settings(setup_of(setup, offline_force()), field, isovalue);
     if (const auto tool = tool_in(setup)) settings.tool = tool;
     return make_renderer(field, isovalue, settings);
 }
@@ -144,11 +150,13 @@ Renderer offline_renderer(const Field& field, const io::Level& level, const Rend
 void bind_renderer(py::module_& module) {
     bind_flags(module);
     bind_tick(module);
-    py::class_<Renderer> renderer(
-        module, "Renderer", "Renders ticks. A value: a copy goes on exactly as its original.");
+    py::class_<Renderer> renderer(module, "Renderer",
+                                  "Renders ticks. A value: a copy goes on exactly as its original.",
+                                  py::dynamic_attr());
     renderer
         .def(py::init(&live_renderer), py::arg("field"), py::arg("isovalue"),
-             py::arg("setup") = RenderSetup{}, py::arg("limits") = DeviceLimits{},
+             py::arg_v("setup", RenderSetup{}, "RenderSetup()"),
+             py::arg_v("limits", DeviceLimits{}, "DeviceLimits()"),
              py::arg("transform") = py::none(),
              "isovalue: a number [data units] or '53%'. transform: where the device's workspace\n"
              "lies; by default device axes are physical axes.")

@@ -28,22 +28,22 @@ struct Setup {
     bool real_time = true;
 };
 
+ForceSettings live_force() {
+    ForceSettings force;
+    force.start_below = run::live_start_below;
+    return force;
+}
+
 run::Setup live_setup(const Setup& given) {
     run::Setup setup;
     setup.field = {given.solid, given.background, given.isovalue, given.interpolation};
-    setup.render = setup_of(given.render);
+    setup.render = setup_of(given.render, live_force());
     setup.device = devices::parse_device(given.device);
     setup.facing = given.facing;
     if (given.clutch) setup.clutch = run::Button{*given.clutch};
     if (given.deadman) setup.deadman = run::Button{*given.deadman};
     setup.playback = {given.speed, {given.memory_bytes, given.loop}};
     setup.real_time = given.real_time;
-    return setup;
-}
-
-Setup usual_setup() {
-    Setup setup;
-    setup.render.given.force.start_below = run::live_start_below;
     return setup;
 }
 
@@ -64,12 +64,12 @@ void bind_setup(py::module_& module) {
         .field("memory_bytes", &S::memory_bytes, "For frames of a sequence.")
         .field("real_time", &S::real_time, "Ask for real-time priority.")
         .done()
-        .def_static("live", &usual_setup,
-                    "The usual one: forces begin when the wanted one is small.");
+        .def_static(
+            "live", [] { return Setup{}; }, "The same as Setup().");
 }
 
 std::shared_ptr<run::Run> make(const run::LoadedVolume& loaded, const std::optional<Setup>& given) {
-    const run::Setup setup = live_setup(given.value_or(usual_setup()));
+    const run::Setup setup = live_setup(given.value_or(Setup{}));
     std::shared_ptr<run::Data> data = made_without_gil<run::Data>(loaded, setup.playback);
     return made_without_gil<run::Run>(std::move(data), setup);
 }
@@ -123,7 +123,9 @@ void start(const py::object& self) {
 
 void send(run::Run& r, const Sent& sent) {
     const Field field = r.field_now();
-    r.send(command_of(sent, field, r.isovalue()));
+    ForceSettings usual = live_force();
+    usual.limit = r.device().limits.maximum_force;
+    r.send(command_of(sent, field, r.isovalue(), usual));
 }
 
 }  // namespace
@@ -135,11 +137,10 @@ void bind_run(py::module_& module) {
         module, "Run",
         "A live run: a servo with its device, data and recording. Use it as a context manager.\n"
         "By one thread at a time.");
-    live.def(py::init(&make), py::arg("loaded"), py::arg("setup") = py::none(),
-             "loaded: from load(), or a Volume. setup: Setup, by default Setup.live(). Opens the "
-             "device; "
-             "nothing\n"
-             "moves before start(). Raises ValueError, InputError, DeviceError.")
+    live.def(
+            py::init(&make), py::arg("loaded"), py::arg("setup") = py::none(),
+            "loaded: from load(), a Volume or a Store. setup: Setup, by default Setup(). Opens the "
+            "device; nothing\nmoves before start(). Raises ValueError, InputError, DeviceError.")
         .def("start", &start, "Once.")
         .def("stop", &R::stop, Unlocked(), "Forces go to zero; for good.")
         .def("send", &send, py::arg("command"), Unlocked(),

@@ -65,7 +65,7 @@ void bind_scenes(py::module_& module) {
         .field("seed", &M::seed, "Where from, which way, in which order.")
         .done();
     module.def("motion", &motion, py::arg("name"), py::arg("field"), py::arg("isovalue"),
-               py::arg("settings") = M{},
+               py::arg_v("settings", M{}, "MotionSettings()"),
                "A hand that looks for the surface itself: (time [s], shape (n,); position [mm,\n"
                "physical], shape (n, 3)). One of motion_names().");
     module.def("motion_names", &scenes::motion_names, "approach, press, slide, ...");

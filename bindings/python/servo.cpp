@@ -34,10 +34,10 @@ using Unlocked = py::call_guard<py::gil_scoped_release>;
 
 Held make_servo(const Renderer& renderer, const py::object& device, double rate, bool real_time,
                 double device_rate) {
-    const auto info = device.attr("info")().cast<DeviceInfo>();
-    if (!py::hasattr(device, "read")) {
+    if (!py::hasattr(device, "info") || !py::hasattr(device, "read")) {
         throw py::type_error("a device needs the functions info() and read()");
     }
+    const auto info = returned_by<DeviceInfo>("info()", device.attr("info")());
     ServoSettings settings;
     settings.rate = rate;
     settings.real_time = real_time;
@@ -53,7 +53,9 @@ void start_servo(const py::object& self) {
 }
 
 void send_to_servo(DeviceServo& s, const Sent& sent) {
-    if (!s.servo.send(command_of(sent, s.field, s.isovalue))) {
+    ForceSettings usual;
+    usual.limit = s.device->info().limits.maximum_force;
+    if (!s.servo.send(command_of(sent, s.field, s.isovalue, usual))) {
         const py::object type = py::module_::import("palpate.errors").attr("QueueFull");
         PyErr_SetString(type.ptr(), "no room for another command: send fewer");
         throw py::error_already_set();
@@ -92,7 +94,8 @@ void bind_servo(py::module_& module) {
             "A sentence for each privilege of real time. After start().")
         .def_property_readonly(
             "device_problem", [](const DeviceServo& s) { return s.device->problem(); },
-            "What the device's functions raised; usually empty.")
+            "What the device's functions raised or returned in place of what they have to, until\n"
+            "they do as they should; usually empty.")
         .def("__enter__",
              [](const py::object& self) {
                  start_servo(self);

@@ -9,11 +9,29 @@
 
 namespace palpate::python {
 
-RenderSetup offline_setup() {
-    RenderSetup setup;
-    setup.given.force.ramp = 0;
-    setup.given.force.rate_limit = std::numeric_limits<double>::infinity();
-    return setup;
+AskedForce::AskedForce(const ForceSettings& given)
+    : ForceSettings(given),
+      asked_stiffness(given.stiffness),
+      asked_limit(given.limit),
+      asked_rate_limit(given.rate_limit),
+      asked_ramp(given.ramp),
+      asked_start_below(given.start_below) {}
+
+ForceSettings offline_force() {
+    ForceSettings force;
+    force.ramp = 0;
+    force.rate_limit = std::numeric_limits<double>::infinity();
+    return force;
+}
+
+ForceSettings force_of(const AskedForce& asked, const ForceSettings& usual) {
+    ForceSettings force = asked;
+    force.stiffness = asked.asked_stiffness.value_or(usual.stiffness);
+    force.limit = asked.asked_limit.value_or(usual.limit);
+    force.rate_limit = asked.asked_rate_limit.value_or(usual.rate_limit);
+    force.ramp = asked.asked_ramp.value_or(usual.ramp);
+    force.start_below = asked.asked_start_below.value_or(usual.start_below);
+    return force;
 }
 
 std::shared_ptr<const Tool> tool_in(const RenderSetup& setup) {
@@ -21,8 +39,11 @@ std::shared_ptr<const Tool> tool_in(const RenderSetup& setup) {
     return tool ? *tool : nullptr;
 }
 
-run::RenderSetup setup_of(const RenderSetup& setup) {
+run::RenderSetup setup_of(const RenderSetup& setup, const ForceSettings& usual) {
     run::RenderSetup made = setup.given;
+    made.force = force_of(setup.force, usual);
+    made.limit = setup.force.asked_limit;
+    made.stiffness = setup.force.asked_stiffness;
     if (const std::shared_ptr<const Tool> tool = tool_in(setup)) {
         const auto points = tool->points();
         made.tool = io::PointsSpec{{points.begin(), points.end()}, tool->turns(), tool->shape()};
@@ -59,20 +80,24 @@ void bind_force(py::module_& module) {
         .field("amplitude", &Texture::amplitude, "[mm, physical] 0: off")
         .field("wavelength", &Texture::wavelength, "[mm, physical]")
         .done();
-    using F = ForceSettings;
+    using F = AskedForce;
     Record<F>(module, "ForceSettings",
-              "Force and torque from hand and proxy: f = stiffness (SCP - HIP), with limits.")
-        .field("stiffness", &F::stiffness, "[N/mm]")
+              "Force and torque from hand and proxy: f = stiffness (SCP - HIP), with limits.\n"
+              "What is None depends on use and device: each field says how.")
+        .field("stiffness", &F::asked_stiffness, "[N/mm] None: 0.5, or less if the device needs it")
         .field("damping", &F::damping, "[N s/mm] along the contact normal")
         .field("viscosity", &F::viscosity, "[N s/mm] of the medium")
         .field("magnet", &F::magnet, "Magnet")
         .field("texture", &F::texture, "Texture")
-        .field("limit", &F::limit, "[N] largest force")
-        .field("rate_limit", &F::rate_limit, "[N/s] largest change of force")
-        .field("ramp", &F::ramp, "[s] from zero to full force at the start")
+        .field("limit", &F::asked_limit, "[N] largest force; None: the device's; offline 3.3")
+        .field("rate_limit", &F::asked_rate_limit,
+               "[N/s] largest change of force; None: 2000; in replay() inf")
+        .field("ramp", &F::asked_ramp,
+               "[s] from zero to full force at the start; None: 0.25; in replay() 0")
         .field("stale_after", &F::stale_after, "[s] a longer time between two states is a pause")
-        .field("start_below", &F::start_below,
-               "[N] no force until the wanted one is at most this; inf: do not wait")
+        .field("start_below", &F::asked_start_below,
+               "[N] no force until the wanted one is at most this; inf: do not wait;\n"
+               "None: 0.3 in a Run, else inf")
         .field("rotational_stiffness", &F::rotational_stiffness,
                "[N mm/rad] of a tool; 0: stiffness times its gyration squared")
         .field("rotational_damping", &F::rotational_damping, "[N mm s/rad]")
@@ -121,8 +146,8 @@ LayersChoice layers_given(const RenderSetup& setup) {
 struct MakeLayers {
     std::optional<io::LayersFile> operator()(std::monostate) const { return std::nullopt; }
     std::optional<io::LayersFile> operator()(const io::LayersFile& file) const { return file; }
-    std::optional<io::LayersFile> operator()(const std::string& name) const {
-        return io::layers_named(name);
+    std::optional<io::LayersFile> operator()(const std::filesystem::path& name) const {
+        return io::layers_named(name.string());
     }
 };
 
@@ -147,11 +172,8 @@ void bind_render_setup(py::module_& module) {
     using R = run::RenderSetup;
     using S = RenderSetup;
     const auto own = [](auto member) { return std::pair(getter(member), setter(member)); };
-    const auto [get_force, set_force] = own(&R::force);
     const auto [get_friction, set_friction] = own(&R::friction);
     const auto [get_spacing, set_spacing] = own(&R::tool_spacing);
-    const auto [get_limit, set_limit] = own(&R::limit);
-    const auto [get_stiffness, set_stiffness] = own(&R::stiffness);
     const auto [get_budget, set_budget] = own(&R::step_budget);
     const auto [get_scale, set_scale] = own(&R::scale);
     const auto [get_rate, set_rate] = own(&R::rate);
@@ -180,19 +202,25 @@ void bind_render_setup(py::module_& module) {
         .property("tool_spacing", get_spacing, set_spacing,
                   "Of a tool's points [mm]; None: half a voxel.")
         .property("friction", get_friction, set_friction, "Friction or None.")
-        .property("force", get_force, set_force,
-                  "ForceSettings (a copy); limit and stiffness below go first.")
-        .property("limit", get_limit, set_limit, "[N] None: the device's.")
-        .property("stiffness", get_stiffness, set_stiffness, "[N/mm] None: the device's.")
+        .field("force", &S::force, "ForceSettings")
+        .alias("limit")
+        .alias("stiffness")
         .property("step_budget", get_budget, set_budget, "Pieces that an update may use.")
         .property("scale", get_scale, set_scale,
                   "physical mm per device mm; None: fits the workspace.")
         .property("rate", get_rate, set_rate,
                   "[Hz] None: 1000, live 250 with a device that renders no force.")
         .done()
-        .def_static("offline", &offline_setup,
-                    "The default for rendering without a device: no ramp and no limit on the\n"
-                    "change of force, as `palpate replay`.");
+        .def_static(
+            "offline",
+            [] {
+                RenderSetup setup;
+                setup.force.asked_ramp = offline_force().ramp;
+                setup.force.asked_rate_limit = offline_force().rate_limit;
+                return setup;
+            },
+            "For a Renderer that renders as replay() does: no ramp, and no limit on the change\n"
+            "of force.");
     module.def("methods", &baselines::method_names, "The names of all proxy methods.");
 }
 

@@ -1,6 +1,7 @@
 // How to feel, as Python gives it: run::RenderSetup with a tool by its text or as points.
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -18,19 +19,31 @@ struct PressThrough {
     std::vector<std::pair<io::Level, io::Level>> ranges;
 };
 
+/// ForceSettings of which the usual ones depend on use and device.
+struct AskedForce : ForceSettings {
+    AskedForce() = default;
+    explicit AskedForce(const ForceSettings& given);
+
+    std::optional<double> asked_stiffness, asked_limit, asked_rate_limit, asked_ramp,
+        asked_start_below;  ///< nothing: the usual one
+};
+
 using ToolChoice = std::variant<std::string, std::shared_ptr<Tool>>;
-using LayersChoice = std::variant<std::monostate, io::LayersFile, std::string>;
+using LayersChoice = std::variant<std::monostate, io::LayersFile, std::filesystem::path>;
 
 struct RenderSetup {
-    run::RenderSetup given;  ///< but for the tool and penetrability
+    run::RenderSetup given;  ///< but for force, tool and penetrability
+    AskedForce force;
     std::optional<PressThrough> penetrability;
     ToolChoice tool = "point";
 };
 
-/// The ramp and the limit on the change of force, which a live session has, are off.
-RenderSetup offline_setup();
+/// The usual ones of `palpate replay`: no ramp, no limit on the change of force.
+ForceSettings offline_force();
+/// `asked`, with what it leaves open as in `usual`.
+ForceSettings force_of(const AskedForce& asked, const ForceSettings& usual);
 /// Throws std::invalid_argument and io::InputError for a tool's text or file.
-run::RenderSetup setup_of(const RenderSetup& setup);
+run::RenderSetup setup_of(const RenderSetup& setup, const ForceSettings& usual = {});
 /// The tool as it was given, where it was given as points.
 std::shared_ptr<const Tool> tool_in(const RenderSetup& setup);
 /// Resolved for a field. Throws std::invalid_argument.

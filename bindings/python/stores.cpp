@@ -3,6 +3,7 @@
 #include "bindings/python/bindings.hpp"
 #include "bindings/python/progress.hpp"
 #include "palpate/io/error.hpp"
+#include "palpate/run/source.hpp"
 #include "palpate/stream/store.hpp"
 #include "stream/content.hpp"
 #include "stream/while_telling.hpp"
@@ -15,6 +16,8 @@ using Unlocked = py::call_guard<py::gil_scoped_release>;
 
 struct OpenStore {
     std::shared_ptr<const stream::Store> store;
+    std::string address;  ///< these two open it again
+    stream::StoreOptions options;
 
     const stream::StoreInfo& info() const { return store->info(); }
     const stream::Level& level(int number) const {
@@ -94,8 +97,8 @@ void bind_store(py::module_& module) {
 void bind_open_store(py::module_& module) {
     module.def(
         "open_store",
-        [](const std::string& address, std::optional<io::RawLayout> raw,
-           std::optional<Vec3> spacing, int channel, int time, const fs::path& cache) {
+        [](const fs::path& place, std::optional<io::RawLayout> raw, std::optional<Vec3> spacing,
+           int channel, int time, const fs::path& cache) {
             stream::StoreOptions options;
             options.raw = raw;
             options.spacing = spacing;
@@ -104,7 +107,9 @@ void bind_open_store(py::module_& module) {
             options.cache_folder = cache;
             if (!cache.empty()) options.cache_bytes = std::uint64_t{4} << 30;
             const ProgressFunction none;
-            return OpenStore{stream::open_store(address, options, progress_of(none))};
+            const std::string address = place.string();
+            return OpenStore{stream::open_store(address, options, progress_of(none)), address,
+                             options};
         },
         py::arg("address"), py::kw_only(), py::arg("raw") = py::none(),
         py::arg("spacing") = py::none(), py::arg("channel") = 0, py::arg("time") = 0,
@@ -122,11 +127,35 @@ void bind_open_store(py::module_& module) {
     module.def("_files_at", &stream::files_at, Unlocked());
 }
 
+/// A store as what a Run feels, which brings its samples into memory as they are needed.
+run::LoadedVolume loaded_from(const OpenStore& store, int level, std::uint64_t memory_bytes) {
+    store.level(level);
+    run::StoreSource from;
+    from.address = store.address;
+    from.options = store.options;
+    from.loader.level = level;
+    from.loader.memory = memory_bytes;
+    run::Source source;
+    source.from = from;
+    source.frame = from.options.time;
+    return run::load(source);
+}
+
+void bind_loaded_store(py::module_& module) {
+    py::class_<run::LoadedVolume>(module.attr("LoadedVolume"))
+        .def(py::init(&loaded_from), py::arg("store"), py::kw_only(), py::arg("level") = 0,
+             py::arg("memory_bytes") = stream::BrickLoaderSettings{}.memory, Unlocked(),
+             "A Store, for Run: felt at this level while it is read. memory_bytes: most that its\n"
+             "samples take.");
+    py::implicitly_convertible<OpenStore, run::LoadedVolume>();
+}
+
 }  // namespace
 
 void bind_stores(py::module_& module) {
     bind_store(module);
     bind_open_store(module);
+    bind_loaded_store(module);
 }
 
 }  // namespace palpate::python

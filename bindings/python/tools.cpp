@@ -14,9 +14,9 @@ Made made(Tool tool) {
     return std::make_shared<Tool>(std::move(tool));
 }
 
-Made from_text(const std::string& text, double spacing) {
+Made from_text(const std::filesystem::path& text, double spacing) {
     const py::gil_scoped_release unlocked;
-    const auto tool = io::make_tool(io::tool_spec_from(text), spacing);
+    const auto tool = io::make_tool(io::tool_spec_from(text.string()), spacing);
     return made(tool ? *tool : point_tool());
 }
 

@@ -4,6 +4,7 @@
 usage: feel_a_ct.py [VOLUME [ISOVALUE]]
 """
 
+import pathlib
 import sys
 
 import numpy
@@ -11,7 +12,7 @@ import numpy
 import palpate
 
 # 1. A volume: any file that Palpate reads, here the CT of a head that comes with it.
-path = sys.argv[1] if len(sys.argv) > 1 else palpate.sample_volume()
+path = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else palpate.sample_volume()
 loaded = palpate.load(path)
 print(loaded.volume)
 for note in loaded.notes:

@@ -6,11 +6,12 @@ distance of the SCP from the analytic surface is printed as CSV.
 """
 
 import numpy
+from numpy.typing import NDArray
 
 import palpate
 
 
-def distance_from_surface(scene, points):
+def distance_from_surface(scene: palpate.Scene, points: NDArray[numpy.float64]) -> NDArray[numpy.float64]:
     """|f - isovalue| over the slope of the analytic density: a distance in mm."""
     step = 1e-3
     slopes = []
@@ -19,10 +20,11 @@ def distance_from_surface(scene, points):
         aside[axis] = step
         slopes.append((scene.exact(points + aside) - scene.exact(points - aside)) / (2 * step))
     slope = numpy.linalg.norm(slopes, axis=0)
-    return numpy.abs(scene.exact(points) - scene.isovalue) / slope
+    distance: NDArray[numpy.float64] = numpy.abs(scene.exact(points) - scene.isovalue) / slope
+    return distance
 
 
-def feel(scene, interpolation):
+def feel(scene: palpate.Scene, interpolation: str) -> NDArray[numpy.float64]:
     """The places of the proxy while it touches [mm], shape (n, 3)."""
     field = palpate.Field(scene.volume, interpolation=interpolation)
     settings = palpate.MotionSettings(duration_s=4, depth_mm=1, seed=7)

@@ -8,6 +8,7 @@ for Python; where Python is late, there is no force.
 import time
 
 import numpy
+from numpy.typing import NDArray
 
 import palpate
 
@@ -17,15 +18,15 @@ class FallingMass:
 
     mass, damping = 0.1, 20.0  # kg, N s/m: it falls in oil, and so bears late forces
 
-    def __init__(self):
+    def __init__(self) -> None:
         self.height, self.speed, self.force = 8.0, 0.0, 0.0  # mm, m/s, N
         self.seen = time.monotonic()
 
-    def info(self):
+    def info(self) -> palpate.DeviceInfo:
         limits = palpate.DeviceLimits(maximum_force=20, physical_damping=0.02)
         return palpate.DeviceInfo(name="falling mass", limits=limits)
 
-    def read(self):
+    def read(self) -> palpate.DeviceReading:
         now = time.monotonic()
         left = min(now - self.seen, 0.05)
         self.seen = now
@@ -37,7 +38,7 @@ class FallingMass:
             left -= step
         return palpate.DeviceReading(position=(0, self.height, 0), status="ready")
 
-    def write(self, force, torque):
+    def write(self, force: NDArray[numpy.float64], torque: NDArray[numpy.float64]) -> None:
         self.force = force[1]
 
 

@@ -423,7 +423,8 @@ enum { PALPATE_TEXT_PROBLEM = 0, PALPATE_TEXT_PRIVILEGES = 1, PALPATE_TEXT_DEVIC
 PALPATE_API palpate_status palpate_run_create(palpate_data *data, const palpate_run_options *options,
                                               palpate_run **out);
 PALPATE_API palpate_status palpate_run_start(palpate_run *run);
-/* The force goes to zero and the servo ends, for good. */
+/* The force goes to zero and the servo ends, for good. Returns when the device, yours too, was given the
+ * zero; but after half a second where a callback does not return. */
 PALPATE_API palpate_status palpate_run_stop(palpate_run *run);
 /* Stops, finishes a recording, closes the device. */
 PALPATE_API void palpate_run_destroy(palpate_run *run);
@@ -455,6 +456,9 @@ PALPATE_API palpate_status palpate_run_set_penetration(palpate_run *run, double 
 /* As in palpate_render_options; null: none. */
 PALPATE_API palpate_status palpate_run_set_tool(palpate_run *run, const char *tool);
 PALPATE_API palpate_status palpate_run_set_layers(palpate_run *run, const char *layers);
+/* The same for the surfaces that are felt, with other levels or properties: what was punctured stays
+ * open. Since 0.3. */
+PALPATE_API palpate_status palpate_run_change_layers(palpate_run *run, const char *layers);
 
 /* Goes on with another device, and with everything that was asked for. */
 PALPATE_API palpate_status palpate_run_use_device(palpate_run *run, const char *device);

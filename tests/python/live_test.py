@@ -2,6 +2,7 @@
 
 import ctypes
 import os
+import re
 import subprocess
 import sys
 import threading
@@ -71,20 +72,56 @@ def test_a_device_in_python_is_asked_on_a_thread_of_its_own_and_feels_the_force(
     assert device.closed and not numpy.any(device.forces[-1])
 
 
-def test_a_device_that_raises_ends_its_force_and_says_what_it_raised():
-    class Broken(Still):
-        def read(self):
-            if len(self.forces) > 20:
-                raise RuntimeError("cable pulled")
-            return super().read()
+def raising(reading):
+    raise RuntimeError("cable pulled")
 
-    device = Broken(surface_height() - 0.5)
-    servo = palpate.Servo(renderer(), device, real_time=False)
-    with servo:
-        until(lambda: servo.snapshot() and servo.snapshot().device.status in ("fault", "stale"))
-        until(lambda: not numpy.any(servo.snapshot().tick.force))
-        assert "cable pulled" in servo.device_problem
-    assert not numpy.any(device.forces[-1])
+
+WRONG = {"raised RuntimeError: cable pulled": raising, "DeviceReading, not None": lambda reading: None,
+         r"DeviceReading, not \(1, 2, 3\)": lambda reading: (1, 2, 3),
+         r"position is not finite: \[0\.0, nan, 0\.0\]": lambda reading: palpate.DeviceReading(position=(0, numpy.nan, 0), status="ready")}
+
+
+@pytest.mark.parametrize("message", WRONG)
+def test_a_device_whose_read_goes_wrong_has_no_force_says_why_and_comes_back(message):
+    class Flaky(Still):
+        wrong = False
+
+        def read(self):
+            return WRONG[message](None) if self.wrong else super().read()
+
+    device = Flaky(surface_height() - 0.5)
+    with palpate.Servo(renderer(), device, real_time=False) as servo:
+        until(lambda: servo.snapshot() and servo.snapshot().tick.force[2] > 0.1)
+        device.wrong = True
+        until(lambda: servo.snapshot().device.status == "fault")
+        until(lambda: not numpy.any(servo.snapshot().tick.force) and not numpy.any(device.forces[-1]))
+        assert re.search(f"read.*{message}", servo.device_problem)
+        assert "\n" not in servo.device_problem
+        device.wrong = False
+        until(lambda: servo.snapshot().tick.force[2] > 0.1)
+        until(lambda: servo.device_problem == "" and device.forces[-1][2] > 0.1)
+    assert device.closed and not numpy.any(device.forces[-1])
+
+
+def test_a_device_whose_write_raises_is_tried_with_zero_and_closed():
+    class Stuck(Still):
+        tried = ()
+
+        def write(self, force, torque):
+            if len(self.forces) > 20 and numpy.any(force):
+                self.wrong = True
+            self.tried += (numpy.array(force),)
+            if getattr(self, "wrong", False):
+                raise OSError("bus off")
+            super().write(force, torque)
+
+    device = Stuck(surface_height() - 0.5)
+    with palpate.Servo(renderer(), device, real_time=False) as servo:
+        until(lambda: "write() raised OSError: bus off" in servo.device_problem)
+        until(lambda: not numpy.any(servo.snapshot().tick.force) and not numpy.any(device.tried[-1]))
+        device.wrong = False
+        until(lambda: device.wrong)  # there was force again
+    assert device.closed and not numpy.any(device.tried[-1])
 
 
 def test_a_program_that_ends_without_stopping_writes_zero_and_closes_the_device():
@@ -123,8 +160,12 @@ def test_a_device_may_stop_its_own_servo():
 
 
 def test_objects_that_are_no_device_are_refused():
-    with pytest.raises((TypeError, AttributeError)):
+    with pytest.raises(TypeError, match=r"info\(\) and read\(\)"):
         palpate.Servo(renderer(), object())
+    confused = Still(50)
+    confused.info = lambda: "a robot"
+    with pytest.raises(ValueError, match=r"info\(\) has to return a DeviceInfo, not 'a robot'"):
+        palpate.Servo(renderer(), confused)
     servo = palpate.Servo(renderer(), Still(50), real_time=False)
     with pytest.raises(ValueError, match="isovalue"):
         servo.send(palpate.command.Isovalue(numpy.nan))
@@ -194,6 +235,19 @@ def test_a_run_with_the_simulated_device_records_what_validates(tmp_path):
     with pytest.raises(palpate.OutputError):
         palpate.Run(loaded, palpate.Setup(real_time=False)).record(tmp_path / "session.csv") or \
             pytest.fail("an existing file was replaced")
+
+
+def test_a_limit_that_was_set_in_the_setup_is_the_limit_of_the_run(tmp_path):
+    setup = palpate.Setup(isovalue=0.3, device="simulated:touchx,hand=press,depth=4", real_time=False)
+    setup.render.force.limit = 0.5
+    run = palpate.Run(palpate.scene("sphere:40x40x40", "float32").volume, setup)
+    run.record(tmp_path / "session.csv")
+    with run:
+        until(lambda: run.snapshot() and numpy.linalg.norm(run.snapshot().tick.force) > 0.49)
+    run.stop_recording()
+    recording = palpate.read_recording(tmp_path / "session.csv")
+    assert recording.head["force"].limit == 0.5
+    assert numpy.linalg.norm(recording.trace.force, axis=1).max() <= 0.5 + 1e-12
 
 
 def test_a_numpy_array_is_felt_edited_and_recorded(tmp_path):
@@ -269,6 +323,15 @@ def test_frames_pushed_from_a_python_thread_are_felt():
         source.start()
         until(lambda: servo.snapshot() and servo.snapshot().version == 5)
         source.join()
+
+
+def test_layers_that_are_the_same_surfaces_are_sent_as_such():
+    layers = palpate.layers_named("ct-needle")
+    assert not palpate.command.UseLayers(layers).same_surfaces
+    same = palpate.command.UseLayers(layers, same_surfaces=True)
+    assert same.same_surfaces
+    with palpate.Servo(renderer(), Still(50), real_time=False) as servo:
+        servo.send(same)
 
 
 def test_a_subject_of_the_experiments_is_felt_by_each_contestant():

@@ -1,10 +1,14 @@
 """Replay in Python against the command line: the same bits, on synthetic and real volumes."""
 
+import base64
 import csv
 import os
+import re
+import struct
 import subprocess
 import threading
 import time
+from xml.etree import ElementTree
 
 import numpy
 import pytest
@@ -155,3 +159,102 @@ def test_a_setting_that_there_is_not_is_a_type_error():
     scene = palpate.scene("torus:16x16x16")
     with pytest.raises(TypeError, match="no field stifness"):
         palpate.replay(palpate.Field(scene.volume), 0.5, [0.0], [[0, 0, 0]], stifness=1)
+
+
+def test_a_field_as_a_keyword_and_in_a_setup_give_the_same_ticks():
+    scene = palpate.scene("sphere:40x40x40", "float32")
+    field = palpate.Field(scene.volume)
+    time = numpy.arange(1000) / 1000
+    position = numpy.zeros((1000, 3))
+    top = field.cast_ray(scene.isovalue, (0, 0, 30), (0, 0, 0))[0][2]
+    position[:, 2] = top + 0.05 - 4 * time  # it touches while a ramp would last
+
+    def forces(**given):
+        return palpate.replay(field, scene.isovalue, time, position, **given).force
+    wanted = forces(stiffness=0.5)
+    assert numpy.count_nonzero(wanted[:, 2]) > 300
+    for setup in (palpate.RenderSetup(stiffness=0.5), palpate.RenderSetup.offline(),
+                  palpate.RenderSetup(force=palpate.ForceSettings(stiffness=0.5))):
+        assert numpy.array_equal(forces(setup=setup), wanted)
+    live = palpate.RenderSetup(force=palpate.ForceSettings(ramp=2))
+    assert not numpy.array_equal(forces(setup=live), wanted)
+
+
+def pressed(**settings):
+    scene = palpate.scene("sphere:40x40x40", "float32")
+    field = palpate.Field(scene.volume)
+    top = field.cast_ray(scene.isovalue, (0, 0, 30), (0, 0, 0))[0]
+    time = numpy.arange(300) / 1000
+    position = top + numpy.outer(1 - 10 * time, (0, 0, 1))
+    return palpate.replay(field, scene.isovalue, time, position, **settings)
+
+
+@pytest.mark.parametrize("settings", [{}, {"tool": "sphere:1"}, {"layers": palpate.Layers(
+    layers=[palpate.Layer(name="outer, soft", level=0.3), palpate.Layer(name="inner", level=0.6)])}])
+def test_a_trace_is_written_and_read_back_bit_for_bit(settings, tmp_path):
+    trace = pressed(**settings)
+    trace.write(tmp_path / "trace.csv")
+    again = palpate.read_trace(tmp_path / "trace.csv")
+    for name in ("t", "hip", "scp", "force", "density", "isovalue", "constrained", "tetrahedra", "update_ns"):
+        assert numpy.array_equal(getattr(again, name), getattr(trace, name)), name
+    assert again.has_tool == trace.has_tool == ("tool" in settings)
+    if again.has_tool:
+        assert numpy.array_equal(again.proxy_orientation, trace.proxy_orientation)
+        assert numpy.array_equal(again.torque, trace.torque)
+    text = (tmp_path / "trace.csv").read_text()
+    assert ("outer_ soft" in text) == ("layers" in settings)
+    again.write(tmp_path / "again.csv")
+    assert settings or (tmp_path / "again.csv").read_text() == text
+    again.force = again.force[:-1]
+    with pytest.raises(ValueError, match="force: the shape is .*, the trace has 300 ticks"):
+        again.write(tmp_path / "short.csv")
+    with pytest.raises(palpate.OutputError):
+        trace.write(tmp_path / "none" / "trace.csv")
+
+
+def test_a_notebook_shows_facts_and_pictures():
+    trace = pressed()
+    volume = palpate.scene("torus:24x20x16", "uint8").volume
+    field = palpate.Field(volume)
+    mesh = palpate.extract(field, "50%")
+    for shown, facts in ((volume, ("24 x 20 x 16 uint8", "data:image/png;base64,")),
+                         (field, ("cubic", "data:image/png;base64,")),
+                         (mesh, (f">{len(mesh.vertices)}<", "mm³")),
+                         (trace, (">300<", "<polyline", f"{trace.summary['largest_force']:.3g} N"))):
+        text = shown._repr_html_()
+        assert all(fact in text for fact in facts), text
+        ElementTree.fromstring(text)
+    png = base64.b64decode(re.search("base64,([^']*)", volume._repr_html_()).group(1))
+    assert png.startswith(b"\x89PNG") and struct.unpack(">II", png[16:24]) == (24, 20)
+
+
+class Axes:
+    """Of Matplotlib, as far as plot() needs them."""
+
+    def __init__(self):
+        self.drawn, self.labels, self.shaded = [], set(), None
+
+    def plot(self, x, y):
+        self.drawn.append((x, y))
+
+    def set_ylabel(self, text):
+        self.labels.add(text)
+
+    set_xlabel = set_ylabel
+
+    def get_xaxis_transform(self):
+        return "in axes"
+
+    def fill_between(self, x, low, high, where, transform, **style):
+        self.shaded = where
+
+
+def test_a_trace_is_drawn_into_two_axes():
+    trace = pressed()
+    force, depth = trace.plot(axes=(Axes(), Axes()))
+    assert force.labels == {"force [N]"} and "time [s]" in depth.labels
+    for axes, values in ((force, trace.force), (depth, trace.scp - trace.hip)):
+        [(time_drawn, drawn)] = axes.drawn
+        assert numpy.array_equal(time_drawn, trace.t)
+        assert numpy.array_equal(drawn, numpy.linalg.norm(values, axis=1)) and drawn.max() > 0.5
+        assert axes.shaded.sum() > 100 and numpy.array_equal(axes.shaded, trace.constrained)

@@ -11,16 +11,6 @@ import palpate
 RECORDS = [kind for kind in vars(palpate).values() if isinstance(kind, type) and hasattr(kind, "_fields")]
 
 
-def same(a, b):
-    if isinstance(a, numpy.ndarray):
-        return numpy.array_equal(a, b)
-    if hasattr(type(a), "_fields"):
-        return all(same(getattr(a, name), getattr(b, name)) for name in type(a)._fields)
-    if isinstance(a, (list, tuple)):
-        return len(a) == len(b) and all(same(x, y) for x, y in zip(a, b))
-    return a == b
-
-
 def changed(kind):
     """An instance in which every number, bool and array differs."""
     made = kind()
@@ -44,9 +34,9 @@ def test_there_are_settings_to_test():
 @pytest.mark.parametrize("kind", RECORDS, ids=lambda kind: kind.__name__)
 def test_settings_survive_pickling_and_copying_bit_for_bit(kind):
     made = changed(kind)
-    assert not same(made, kind())
+    assert made != kind()
     for again in (pickle.loads(pickle.dumps(made)), copy.copy(made)):
-        assert same(made, again)
+        assert again == made
 
 
 @pytest.mark.parametrize("kind", RECORDS, ids=lambda kind: kind.__name__)
@@ -78,3 +68,181 @@ def test_names_that_there_are_not_are_refused_with_those_that_there_are():
         palpate.RenderSetup(tool="hammer")
     with pytest.raises(palpate.InputError):
         palpate.RenderSetup(layers="no-such-set")
+
+
+def renderer(setup=None, **limits):
+    scene = palpate.scene("sphere:40x40x40", "float32")
+    return palpate.Renderer(palpate.Field(scene.volume), scene.isovalue,
+                            setup or palpate.RenderSetup.offline(), palpate.DeviceLimits(**limits))
+
+
+def owners():
+    """An object of each class that can be set, with all that is optional."""
+    made = {kind.__name__: kind for kind in RECORDS}
+    layers = palpate.layers_named("ct-needle")
+    setup = palpate.RenderSetup(
+        penetrability=palpate.Penetrability(ranges=[(1, 2)]), layers=layers,
+        friction=palpate.Friction(static_coefficient=0.5, dynamic_coefficient=0.1))
+    made |= {"Layers": lambda: pickle.loads(pickle.dumps(layers)),
+             "RenderSetup": lambda: copy.copy(setup),
+             "Setup": lambda: palpate.Setup(render=setup),
+             "Renderer": lambda: renderer(palpate.RenderSetup(friction=setup.friction))}
+    return made
+
+
+def settable(owner):
+    return [name for name in dir(owner) if hasattr(getattr(type(owner), name, None), "__set__")
+            and not name.startswith("_") and getattr(getattr(type(owner), name), "fset", True)]
+
+
+def paths(owner):
+    """How each attribute is reached: names and numbers of elements."""
+    for name in settable(owner):
+        yield (name,)
+        value = getattr(owner, name)
+        for number, part in enumerate(value if isinstance(value, list) else [value]):
+            if hasattr(type(part), "_fields"):
+                first = (name, number) if isinstance(value, list) else (name,)
+                yield from (first + rest for rest in paths(part))
+
+
+def at(owner, path):
+    for step in path:
+        owner = owner[step] if isinstance(step, int) else getattr(owner, step)
+    return owner
+
+
+NAMES = {"solid": "below", "interpolation": "linear", "method": "paper", "kind": "add", "tool": "sphere:2",
+         "facing": "left", "type": "uint16", "status": "ready", "curves": {"drag": ([(0, 1)], [(0, 2)])},
+         "properties": {"drag": 0.5}, "ranges": [(3, "50%")], "background": 3.0, "isovalue": 0.5,
+         "minimum": 5.0, "clutch": 2, "deadman": 1, "step_budget": 77}
+
+
+def equal(one, other):
+    return numpy.array_equal(one, other) if isinstance(one, numpy.ndarray) else one == other
+
+
+def another(name, value):
+    """A value of the attribute that differs, and that can be rendered."""
+    if hasattr(type(value), "_fields"):
+        made, first = copy.copy(value), value._fields[0]
+        setattr(made, first, another(first, getattr(value, first)))
+        return made
+    if isinstance(value, bool):
+        return not value
+    if isinstance(value, numpy.ndarray):
+        return numpy.roll(value, 1, axis=0) if value.ndim == 2 else value + 1
+    if isinstance(value, list) and name == "layers":
+        return value[:-1]
+    if isinstance(value, list) and name == "colour":
+        return [0.5, 0.25, 0.125]
+    if name in NAMES:
+        return NAMES[name]
+    if isinstance(value, str):
+        return value + "x"
+    if isinstance(value, int):
+        return value + 1
+    return 0.9 * value if value and numpy.isfinite(value) else 0.001 if value == 0 else 0.25
+
+
+@pytest.mark.parametrize("name", owners())
+def test_what_is_set_by_any_path_is_what_the_owner_has(name):
+    make, tried = owners()[name], 0
+    for path in paths(make()):
+        owner = make()
+        value = another(path[-1], at(owner, path))
+        assert not equal(at(owner, path), value), path
+        setattr(at(owner, path[:-1]), path[-1], value)
+        for again in (owner, copy.copy(owner)):  # the copy is made of what C++ has
+            assert equal(at(again, path), value), path
+        tried += 1
+    assert tried >= {"RenderSetup": 60, "Setup": 73, "Renderer": 25}.get(name, 2)
+
+
+@pytest.mark.parametrize("name", owners())
+def test_what_can_have_no_effect_cannot_be_changed(name):
+    owner = owners()[name]()
+    for path in paths(owner):
+        value = at(owner, path)
+        if isinstance(value, numpy.ndarray):
+            with pytest.raises(ValueError, match="read-only"):
+                value[0] = 1
+        elif isinstance(value, (list, dict)):
+            with pytest.raises(TypeError, match="assign a whole new"):
+                value.clear()
+            with pytest.raises(TypeError, match="assign a whole new"):
+                value[0] = 1
+        elif hasattr(type(value), "_fields"):
+            with pytest.raises(AttributeError, match="there are"):
+                value.colour_of_hat = 1
+
+
+def test_settings_that_are_only_told_refuse_changes_and_their_copies_do_not():
+    volume = palpate.scene("torus:16x16x16").volume
+    for told in (volume.geometry, palpate.Field(volume).geometry, palpate.Samples(volume).geometry):
+        with pytest.raises(AttributeError, match="geometry of a .* cannot be changed"):
+            told.spacing = (2, 2, 2)
+        own = copy.copy(told)
+        own.spacing = (2, 2, 2)
+        assert list(own.spacing) == [2, 2, 2] and list(volume.geometry.spacing) != [2, 2, 2]
+    with pytest.raises(AttributeError, match="limits of a Renderer"):
+        renderer().limits.maximum_force = 1
+    run = palpate.Run(volume, palpate.Setup(isovalue="50%", real_time=False))
+    with pytest.raises(AttributeError, match="device of a Run"):
+        run.device.limits.maximum_force = 1
+
+
+def deepest_force(renderer):
+    scene_radius = 19.5
+    ticks = [renderer.render(i / 1000, (0, 0, scene_radius - 0.01 * i)) for i in range(1, 1500)]
+    return max(numpy.linalg.norm(tick.force) for tick in ticks)
+
+
+def test_a_limit_is_kept_wherever_it_is_set():
+    assert deepest_force(renderer()) > 3
+    setups = [palpate.RenderSetup.offline() for _ in range(3)]
+    setups[0].force.limit = 0.5
+    setups[1].limit = 0.5
+    setups[2].force = palpate.ForceSettings(limit=0.5)
+    live = palpate.Setup(render=palpate.RenderSetup.offline())
+    live.render.force.limit = 0.5
+    for setup in (*setups, live.render):
+        assert 0.49 < deepest_force(renderer(setup)) <= 0.5 + 1e-12
+        assert 3 < deepest_force(renderer(palpate.RenderSetup.offline(), maximum_force=8))
+    ready = renderer()
+    ready.force.limit = 0.5
+    assert deepest_force(ready) <= 0.5 + 1e-12
+    strong = palpate.DeviceLimits(maximum_force=8)
+    assert palpate.Renderer(ready.field, 0.5, limits=strong).force.limit == 8
+
+
+def test_what_a_renderer_cannot_render_is_refused_and_changes_nothing():
+    ready = renderer()
+    before = ready.force
+    for name, value in (("limit", -1), ("stiffness", numpy.nan), ("damping", 9)):
+        with pytest.raises(ValueError):
+            setattr(ready.force, name, value)
+    with pytest.raises(ValueError):
+        ready.force.texture.wavelength = 0
+    with pytest.raises(ValueError):
+        ready.transform.scale = 0
+    assert ready.force == before == renderer().force and ready.transform == renderer().transform
+    ready.force.stiffness = 0.25
+    assert copy.copy(ready).force.stiffness == 0.25
+
+
+def test_levels_of_layers_and_friction_are_felt_as_they_were_set():
+    volume = palpate.scene("sphere:40x40x40", "float32").volume  # 0 to 0.96
+    field = palpate.Field(volume)
+    setup = palpate.RenderSetup(layers=palpate.Layers(layers=[palpate.Layer(name="ball", level=0.3)]))
+    outer = palpate.Renderer(field, 0.5, setup)
+    setup.layers.layers[0].level = 0.6
+    inner = palpate.Renderer(field, 0.5, setup)
+    height = [abs(next(0.1 * i for i in range(300)
+                       if r.render(i / 1000 + 1, (0, 0, 30 - 0.1 * i)).mode == "constrained"))
+              for r in (outer, inner)]
+    assert height[1] > height[0] + 0.5
+    ready = renderer()
+    ready.friction.static_coefficient = 0.5
+    ready.friction.dynamic_coefficient = 0.4
+    assert ready.friction == palpate.Friction(static_coefficient=0.5, dynamic_coefficient=0.4)

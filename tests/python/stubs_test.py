@@ -2,8 +2,11 @@
 
 import ast
 import inspect
+import os
 import pathlib
 import re
+import subprocess
+import sys
 
 import palpate
 
@@ -35,7 +38,7 @@ def parameters_of(function):
         return [[name for name in names if name != "self"]]
     except (ValueError, TypeError):
         pass
-    found = re.findall(r"^(?:\d+\. )?\w+\((.*)\) -> ", function.__doc__ or "", re.MULTILINE)
+    found = re.findall(r"^(?:\d+\. )?\w+\((.*?)\) -> ", function.__doc__ or "", re.MULTILINE | re.DOTALL)
     lists = []
     for text in found:
         text = re.sub(r"\[[^\[\]]*(\[[^\[\]]*\])*[^\[\]]*\]", "", text)  # no commas but our own
@@ -93,6 +96,41 @@ def test_parameters_have_the_names_of_the_stub():
                 wrong.append((getattr(owner, "__name__", ""), name, told, there))
     assert compared > 60
     assert not wrong
+
+
+def test_the_stub_says_how_each_class_is_made():
+    silent = [name for name, nodes in stub_names(TREE.body).items() if isinstance(nodes[0], ast.ClassDef)
+              and "__init__(self" in (getattr(palpate, name, object).__init__.__doc__ or "")
+              and "__init__" not in stub_names(nodes[0].body)]
+    assert not silent
+
+
+def blocks_of(page):
+    """The Python of a page, in one program for each file that its blocks name, or for the page."""
+    text = page.read_text(encoding="utf-8")
+    return "\n".join(re.findall(r"^```python\n(.*?)^```", text, re.MULTILINE | re.DOTALL))
+
+
+def test_examples_tutorials_and_documentation_pass_a_strict_type_check(tmp_path):
+    source = pathlib.Path(os.environ["PALPATE_SOURCE"])
+    programs = list((source / "examples/python").glob("*.py"))
+    for page in (source / "docs/python.md", *(source / "docs/tutorials").glob("*.md")):
+        if blocks_of(page):
+            programs.append(tmp_path / f"{page.stem}_page.py")
+            programs[-1].write_text(blocks_of(page), encoding="utf-8")
+    assert len(programs) >= 6
+    wrong = tmp_path / "wrong.py"
+    wrong.write_text("import palpate\npalpate.Volume(palpate)\nforce: str = palpate.ForceSettings().ramp\n")
+    settings = tmp_path / "mypy.ini"
+    settings.write_text("[mypy]\nstrict = True\nfollow_imports = silent\nignore_missing_imports = True\n"
+                        "[mypy-distributed.*]\nfollow_imports = skip\n")  # it has few types
+    ran = subprocess.run(
+        [sys.executable, "-m", "mypy", "--config-file", settings, "--cache-dir", tmp_path / "cache",
+         *programs, wrong],
+        env={**os.environ, "MYPYPATH": str(STUB.parents[1])}, stdout=subprocess.PIPE, text=True)
+    complaints = [line for line in ran.stdout.splitlines() if ": error:" in line]
+    assert len([line for line in complaints if "wrong.py" in line]) == 2, ran.stdout
+    assert len(complaints) == 2, ran.stdout
 
 
 def test_what_is_public_has_a_docstring():

@@ -5,15 +5,19 @@ where it is said, in the device's axes (device mm). Arrays of samples are indexe
 points are x, y, z, orientations are unit quaternions w, x, y, z.
 """
 
+from . import _palpate, notebook, settings
 from ._palpate import *  # noqa: F401,F403
 from ._palpate import __version__, command
 from .arrays import as_volume
 from .errors import DeviceError, Error, InputError, OutputError, QueueFull, SeriesChoice
 from .trace import Recording, Trace, read_recording, read_trace, read_trajectory, replay
 
+settings.complete(_palpate)
+notebook.complete(_palpate)
 for _kind in (DeviceError, Error, InputError, OutputError, QueueFull, Recording, SeriesChoice,
               Trace, as_volume, read_recording, read_trace, read_trajectory, replay):
     _kind.__module__ = __name__
 
 __all__ = sorted(name for name in globals()
-                 if not name.startswith("_") and name not in ("arrays", "errors", "trace"))
+                 if not name.startswith("_") and name not in ("arrays", "errors", "notebook", "settings",
+                                                        "trace"))

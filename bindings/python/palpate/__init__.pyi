@@ -2,7 +2,7 @@
 module."""
 
 import dataclasses
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, ClassVar, Optional, Union, overload
 
@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from typing_extensions import Self
 
 __version__: str
+_Path = Union[str, Path]
 
 class Brush:
     _fields: ClassVar[tuple[str, ...]]
@@ -121,23 +122,23 @@ class Fill:
 
 class ForceSettings:
     _fields: ClassVar[tuple[str, ...]]
-    def __init__(self, *, stiffness: float = 0.5, damping: float = 0.0, viscosity: float = 0.0,
-                 magnet: Magnet = ..., texture: Texture = ..., limit: float = 3.3,
-                 rate_limit: float = 2000.0, ramp: float = 0.25, stale_after: float = 0.02,
-                 start_below: float = ..., rotational_stiffness: float = 0.0,
+    def __init__(self, *, stiffness: Optional[float] = None, damping: float = 0.0, viscosity: float = 0.0,
+                 magnet: Magnet = ..., texture: Texture = ..., limit: Optional[float] = None,
+                 rate_limit: Optional[float] = None, ramp: Optional[float] = None, stale_after: float = 0.02,
+                 start_below: Optional[float] = None, rotational_stiffness: float = 0.0,
                  rotational_damping: float = 0.0, torque_limit: float = ...,
                  torque_rate_limit: float = 200000.0) -> None: ...
     def __copy__(self) -> Self: ...
-    stiffness: float
+    stiffness: Optional[float]
     damping: float
     viscosity: float
     magnet: Magnet
     texture: Texture
-    limit: float
-    rate_limit: float
-    ramp: float
+    limit: Optional[float]
+    rate_limit: Optional[float]
+    ramp: Optional[float]
     stale_after: float
-    start_below: float
+    start_below: Optional[float]
     rotational_stiffness: float
     rotational_damping: float
     torque_limit: float
@@ -179,26 +180,26 @@ class HandBrush:
 class Layer:
     _fields: ClassVar[tuple[str, ...]]
     def __init__(self, *, name: str = '', level: float = 0.0, colour: Sequence[float] = ...,
-                 opacity: float = 1.0, properties: dict[str, float] = ...) -> None: ...
+                 opacity: float = 1.0, properties: Mapping[str, float] = ...) -> None: ...
     def __copy__(self) -> Self: ...
     name: str
     level: float
-    colour: list[float]
+    colour: Sequence[float]
     opacity: float
-    properties: dict[str, float]
+    properties: Mapping[str, float]
 
 class Layers:
     _fields: ClassVar[tuple[str, ...]]
     def __init__(self, *, name: str = '', units: str = '', about: str = '',
                  layers: Sequence[Layer] = ...,
-                 curves: dict[str, tuple[Sequence[tuple[float, float]], Sequence[tuple[float, float]]]] = ...,
+                 curves: Mapping[str, tuple[Sequence[tuple[float, float]], Sequence[tuple[float, float]]]] = ...,
                  closing: float = 1.0, needle: Optional[Needle] = None) -> None: ...
     def __copy__(self) -> Self: ...
     name: str
     units: str
     about: str
-    layers: list[Layer]
-    curves: dict[str, tuple[list[tuple[float, float]], list[tuple[float, float]]]]
+    layers: Sequence[Layer]
+    curves: Mapping[str, tuple[Sequence[tuple[float, float]], Sequence[tuple[float, float]]]]
     closing: float
     needle: Optional[Needle]
     @property
@@ -208,16 +209,19 @@ class Layers:
     def check(self, solid: str = 'above') -> None: ...
     @property
     def text(self) -> str: ...
-    def write(self, path: Union[str, Path]) -> None: ...
+    def write(self, path: _Path) -> None: ...
 
 class LiveWriter:
-    def __init__(self, path: Union[str, Path], geometry: Geometry, type: str, interval: float = 0.0,
+    def __init__(self, path: _Path, geometry: Geometry, type: str, interval: float = 0.0,
                  slots: int = 4) -> None: ...
     def push(self, volume: Volume, time: float) -> None: ...
 
 class LoadedVolume:
-    def __init__(self, volume: Volume, name: str = 'array',
+    @overload
+    def __init__(self, volume: Volume, name: _Path = 'array',
                  isovalue: Optional[float] = None) -> None: ...
+    @overload
+    def __init__(self, store: Store, *, level: int = 0, memory_bytes: int = 536870912) -> None: ...
     @property
     def volume(self) -> Volume: ...
     @property
@@ -252,7 +256,7 @@ class Mesh:
     def normals(self) -> NDArray[numpy.float64]: ...
     @property
     def enclosed_volume(self) -> float: ...
-    def write(self, path: Union[str, Path]) -> None: ...
+    def write(self, path: _Path) -> None: ...
 
 class MotionSettings:
     _fields: ClassVar[tuple[str, ...]]
@@ -281,7 +285,7 @@ class Penetrability:
     def __copy__(self) -> Self: ...
     threshold: float
     minimum: Optional[Union[float, str]]
-    ranges: list[tuple[Union[float, str], Union[float, str]]]
+    ranges: Sequence[tuple[Union[float, str], Union[float, str]]]
 
 class RawLayout:
     _fields: ClassVar[tuple[str, ...]]
@@ -297,16 +301,16 @@ class RawLayout:
 class RenderSetup:
     _fields: ClassVar[tuple[str, ...]]
     def __init__(self, *, method: str = 'exact', penetrability: Optional[Penetrability] = None,
-                 layers: Union[None, Layers, str] = None, tool: Union[str, Tool] = 'point',
+                 layers: Union[None, Layers, _Path] = None, tool: Union[_Path, Tool] = 'point',
                  tool_spacing: Optional[float] = None, friction: Optional[Friction] = None,
                  force: ForceSettings = ..., limit: Optional[float] = None,
                  stiffness: Optional[float] = None, step_budget: Optional[int] = None,
-                 scale: Optional[float] = None, rate: float = 1000.0) -> None: ...
+                 scale: Optional[float] = None, rate: Optional[float] = None) -> None: ...
     def __copy__(self) -> Self: ...
     method: str
     penetrability: Optional[Penetrability]
-    layers: Union[None, Layers, str]
-    tool: Union[str, Tool]
+    layers: Union[None, Layers, _Path]
+    tool: Union[_Path, Tool]
     tool_spacing: Optional[float]
     friction: Optional[Friction]
     force: ForceSettings
@@ -314,7 +318,7 @@ class RenderSetup:
     stiffness: Optional[float]
     step_budget: Optional[int]
     scale: Optional[float]
-    rate: float
+    rate: Optional[float]
     @staticmethod
     def offline() -> RenderSetup: ...
 
@@ -341,13 +345,14 @@ class Replace:
     def __init__(self, at: ArrayLike, samples: Volume) -> None: ...
 
 class Run:
-    def __init__(self, loaded: Union[LoadedVolume, Volume], setup: Optional[Setup] = None) -> None: ...
+    def __init__(self, loaded: Union[LoadedVolume, Volume, Store],
+                 setup: Optional[Setup] = None) -> None: ...
     def start(self) -> None: ...
     def stop(self) -> None: ...
     def send(self, command: _Command) -> None: ...
     def snapshot(self) -> Optional[Snapshot]: ...
     def report(self) -> ServoReport: ...
-    def record(self, path: Union[str, Path]) -> None: ...
+    def record(self, path: _Path) -> None: ...
     def stop_recording(self) -> int: ...
     def field(self) -> Field: ...
     @property
@@ -366,7 +371,7 @@ class Run:
     def undo(self) -> bool: ...
     def redo(self) -> bool: ...
     def set_brush(self, brush: Optional[HandBrush]) -> None: ...
-    def save(self, path: Union[str, Path]) -> str: ...
+    def save(self, path: _Path) -> str: ...
 SAMPLE_BONE: float
 SAMPLE_SKIN: float
 
@@ -581,7 +586,7 @@ class Tool:
     def __init__(self, points: ArrayLike, gyration: Optional[float] = None,
                  turns: bool = True) -> None: ...
     @staticmethod
-    def named(text: str, spacing: float) -> Tool: ...
+    def named(text: _Path, spacing: float) -> Tool: ...
     @property
     def points(self) -> NDArray[numpy.float64]: ...
     @property
@@ -592,6 +597,8 @@ class Tool:
     def turns(self) -> bool: ...
 
 class Volume:
+    def __init__(self, array: ArrayLike, spacing: ArrayLike = ..., origin: ArrayLike = ...,
+                 direction: ArrayLike = ..., copy: bool = False) -> None: ...
     @property
     def geometry(self) -> Geometry: ...
     @property
@@ -626,13 +633,13 @@ def layers_by_label(labels: LoadedVolume, like: Optional[Layers] = None) -> Laye
 
 def layers_from_text(text: str) -> Layers: ...
 
-def layers_named(name: str) -> Layers: ...
+def layers_named(name: _Path) -> Layers: ...
 
 def layers_presets() -> list[str]: ...
 
 def level_of(volume: Volume) -> Optional[float]: ...
 
-def load(source: Union[str, Path], *, raw: Optional[RawLayout] = None,
+def load(source: _Path, *, raw: Optional[RawLayout] = None,
          spacing: Optional[ArrayLike] = None, series: str = '', frame: Optional[int] = None,
          frame_interval: Optional[float] = None, smooth: int = 0, dequantize: int = 0,
          prefilter: bool = False,
@@ -645,10 +652,10 @@ def motion(name: str, field: Field, isovalue: Union[float, str],
 
 def motion_names() -> list[str]: ...
 
-def read_mesh(path: Union[str, Path]) -> Mesh: ...
+def read_mesh(path: _Path) -> Mesh: ...
 
-def open_store(address: str, *, raw: Optional[RawLayout] = None, spacing: Optional[ArrayLike] = None,
-               channel: int = 0, time: int = 0, cache: Union[str, Path] = '') -> Store: ...
+def open_store(address: _Path, *, raw: Optional[RawLayout] = None, spacing: Optional[ArrayLike] = None,
+               channel: int = 0, time: int = 0, cache: _Path = '') -> Store: ...
 
 def sample_volume() -> Path: ...
 
@@ -664,10 +671,10 @@ def subject(text: str, contestant: Optional[str] = None) -> Subject: ...
 
 def terraces_of(volume: Volume) -> Optional[Terraces]: ...
 
-def validate(path: Union[str, Path], volume: str = '',
+def validate(path: _Path, volume: _Path = '',
              progress: Optional[Callable[..., Any]] = None) -> dict[str, Any]: ...
 
-def write(volume: Volume, path: Union[str, Path], *, compress: bool = False,
+def write(volume: Volume, path: _Path, *, compress: bool = False,
           progress: Optional[Callable[..., Any]] = None) -> None: ...
 
 def written_extensions() -> list[str]: ...
@@ -708,7 +715,10 @@ class command:
         @property
         def version(self) -> int: ...
     class UseLayers:
-        def __init__(self, layers: Optional[Layers], volume: Optional[Volume] = None) -> None: ...
+        def __init__(self, layers: Optional[Layers], volume: Optional[Volume] = None, *,
+                     same_surfaces: bool = False) -> None: ...
+        @property
+        def same_surfaces(self) -> bool: ...
     class UseTool:
         def __init__(self, tool: Optional[Tool]) -> None: ...
 
@@ -743,13 +753,16 @@ class Trace:
     hand_orientation: NDArray[numpy.float64]
     proxy_orientation: NDArray[numpy.float64]
     contacts: NDArray[numpy.int32]
-    summary: Optional[dict[str, Any]] = None
+    summary: dict[str, Any] = ...
     layer_names: tuple[str, ...] = ()
+    nested_layers: int = 0
     has_tool: bool = False
     path: Optional[tuple[NDArray[numpy.int64], NDArray[numpy.float64]]] = None
     poses: Optional[tuple[NDArray[numpy.int64], NDArray[numpy.float64],
                           NDArray[numpy.float64]]] = None
     def __len__(self) -> int: ...
+    def write(self, path: _Path) -> None: ...
+    def plot(self, axes: Any = None) -> Any: ...
 
 @dataclasses.dataclass
 class Recording:
@@ -765,7 +778,7 @@ def replay(field: Field, isovalue: Union[float, str], time: ArrayLike, position:
            orientation: Optional[ArrayLike] = None, *, setup: Optional[RenderSetup] = None,
            path: bool = False, poses: bool = False,
            progress: Optional[Callable[[float], Any]] = None, **settings: Any) -> Trace: ...
-def read_trace(path: Union[str, Path]) -> Trace: ...
-def read_trajectory(path: Union[str, Path]) -> tuple[
+def read_trace(path: _Path) -> Trace: ...
+def read_trajectory(path: _Path) -> tuple[
     NDArray[numpy.float64], NDArray[numpy.float64], Optional[NDArray[numpy.float64]]]: ...
-def read_recording(path: Union[str, Path]) -> Recording: ...
+def read_recording(path: _Path) -> Recording: ...

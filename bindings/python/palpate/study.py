@@ -1,7 +1,6 @@
 """Studies on Dask: one motion of the hand under many settings, a trace for each, on all workers
 (docs/beyond_one_machine.md)."""
 
-import dataclasses
 import functools
 import hashlib
 import json
@@ -19,8 +18,7 @@ from distributed import Client
 
 from . import Field, RenderSetup, Trace, __version__, load, replay
 from .distributed import Progress, check_workers, each_piece, seen, writer
-
-_ARRAYS = [f.name for f in dataclasses.fields(Trace) if f.default is dataclasses.MISSING]
+from .trace import COLUMNS
 
 
 @functools.lru_cache(maxsize=1)
@@ -34,9 +32,9 @@ def _write(path, key, trace):
     """Whole or not at all; `key` says of what."""
     before = path.with_name(f"{path.name}.{writer()}")
     rest = json.dumps({"key": key, "summary": trace.summary, "layer_names": list(trace.layer_names),
-                       "has_tool": trace.has_tool})
+                       "nested_layers": trace.nested_layers, "has_tool": trace.has_tool})
     with before.open("wb") as file:
-        numpy.savez_compressed(file, rest=rest, **{name: getattr(trace, name) for name in _ARRAYS})
+        numpy.savez_compressed(file, rest=rest, **{name: getattr(trace, name) for name in COLUMNS})
     before.replace(path)
 
 
@@ -45,11 +43,12 @@ def _read(path):
     try:
         with numpy.load(path) as file:
             rest = json.loads(str(file["rest"]))
-            arrays = {name: file[name] for name in _ARRAYS}
+            arrays = {name: file[name] for name in COLUMNS}
     except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile, zlib.error):
         return None
     return rest["key"], Trace(**arrays, summary=rest["summary"], has_tool=rest["has_tool"],
-                              layer_names=tuple(rest["layer_names"]))
+                              layer_names=tuple(rest["layer_names"]),
+                              nested_layers=rest["nested_layers"])
 
 
 def _replay(source, options, isovalue, motion, folder, work):
@@ -80,7 +79,7 @@ def study(client: Client, source: str, isovalue: Union[float, str], time: Any, p
             raise ValueError(f"{name!r}: names of setups become names of files: letters, digits and _.+=,-")
     if "://" not in source and not source.startswith(("synthetic:", "live:")):
         source = os.path.abspath(source)
-    made = {name: setup if isinstance(setup, RenderSetup) else _setup_of(setup)
+    made = {name: setup if isinstance(setup, RenderSetup) else RenderSetup(**setup)
             for name, setup in setups.items()}
     motion = [numpy.ascontiguousarray(a, dtype=float) if a is not None else None
               for a in (time, position, orientation)]
@@ -99,12 +98,3 @@ def study(client: Client, source: str, isovalue: Union[float, str], time: Any, p
     one = functools.partial(_replay, source, options, isovalue, motion, folder)
     each_piece(client, "study", one, work, progress)
     return {name: _read(Path(folder) / f"{name}.npz")[1] for name in setups}
-
-
-def _setup_of(fields):
-    setup = RenderSetup.offline()
-    for name, value in fields.items():
-        if name not in RenderSetup._fields:
-            raise ValueError(f"no field {name}; there are {', '.join(RenderSetup._fields)}")
-        setattr(setup, name, value)
-    return setup

@@ -4,7 +4,7 @@ import dataclasses
 
 import numpy
 
-from . import _palpate
+from . import _palpate, notebook
 from ._palpate import RenderSetup
 
 
@@ -18,8 +18,9 @@ class Trace:
     none; inside: layers that the SCP is in; torque [N mm], (n, 3); hand_orientation and
     proxy_orientation: w, x, y, z, (n, 4); contacts: points of a tool that hold it.
 
-    summary: numbers about all ticks. path: (tick, corner [mm]) of the SCP's polyline. poses: (tick,
-    position [mm], orientation) of a tool's proxy. Both are None unless asked for.
+    summary: numbers about all ticks, of a replay. path: (tick, corner [mm]) of the SCP's polyline. poses: (tick,
+    position [mm], orientation) of a tool's proxy. The last two are None unless asked for. nested_layers: so
+    many of the layers, the first ones, are levels; the others are labels.
     """
     t: numpy.ndarray
     hip: numpy.ndarray
@@ -36,8 +37,9 @@ class Trace:
     hand_orientation: numpy.ndarray
     proxy_orientation: numpy.ndarray
     contacts: numpy.ndarray
-    summary: dict = None
+    summary: dict = dataclasses.field(default_factory=dict)
     layer_names: tuple = ()
+    nested_layers: int = 0
     has_tool: bool = False
     path: tuple = None
     poses: tuple = None
@@ -48,6 +50,35 @@ class Trace:
     def __repr__(self):
         return f"Trace({len(self)} ticks, {int(self.constrained.sum())} in contact)"
 
+    def _repr_html_(self):
+        return notebook.of_trace(self)
+
+    def write(self, path):
+        """Writes a CSV file, as `palpate replay` does, that read_trace() and other programs read.
+        Raises OutputError; ValueError for arrays of other lengths."""
+        columns = {name: getattr(self, name) for name in COLUMNS}
+        _palpate._write_trace(path, columns, self.layer_names, self.nested_layers, self.has_tool)
+
+    def plot(self, axes=None):
+        """Draws force and depth of the hand below the proxy over time, with contact shaded. Needs
+        Matplotlib. axes: two of it, else a new figure's. Returns them."""
+        if axes is None:
+            from matplotlib import pyplot
+            axes = pyplot.subplots(2, sharex=True)[1]
+        force, depth = axes
+        force.plot(self.t, numpy.linalg.norm(self.force, axis=1))
+        force.set_ylabel("force [N]")
+        depth.plot(self.t, numpy.linalg.norm(self.scp - self.hip, axis=1))
+        depth.set_ylabel("hand to proxy [mm]")
+        depth.set_xlabel("time [s]")
+        for one in axes:
+            one.fill_between(self.t, 0, 1, where=self.constrained, alpha=0.15,
+                             transform=one.get_xaxis_transform(), linewidth=0)
+        return axes
+
+
+COLUMNS = [field.name for field in dataclasses.fields(Trace) if field.type is numpy.ndarray]
+
 
 def replay(field, isovalue, time, position, orientation=None, *, setup=None, path=False,
            poses=False, progress=None, **settings):
@@ -55,25 +86,23 @@ def replay(field, isovalue, time, position, orientation=None, *, setup=None, pat
 
     field: Field. isovalue: a number [data units] or '53%'. time [s], rising, shape (n,). position
     [mm, physical], shape (n, 3). orientation: w, x, y, z, shape (n, 4), of a tool. setup: a
-    RenderSetup; or its fields as keywords, over RenderSetup.offline(): method='paper',
-    tool='sphere:2', friction=Friction(...), stiffness=0.5. progress(fraction) may raise to stop.
+    RenderSetup; or its fields as keywords: method='paper', tool='sphere:2', friction=Friction(...), stiffness=0.5. progress(fraction) may raise to stop.
     Runs without the GIL. Returns a Trace.
     """
     if setup is not None and settings:
         raise TypeError("give a setup or its fields, not both")
     if setup is None:
-        setup = RenderSetup.offline()
-        for name, value in settings.items():
-            if name not in RenderSetup._fields:
-                raise TypeError(f"no field {name}; there are {', '.join(RenderSetup._fields)}")
-            setattr(setup, name, value)
+        setup = RenderSetup(**settings)
     return Trace(**_palpate._replay(field, isovalue, time, position, orientation, setup, path,
                                     poses, progress))
 
 
 def read_trace(path):
-    """A trace file (CSV) as a Trace. Raises InputError."""
-    return Trace(**_palpate._read_trace(path))
+    """A trace file (CSV) as a Trace, without layers and the number of contacts. Raises InputError."""
+    columns = _palpate._read_trace(path)
+    with open(path, encoding="utf-8", errors="replace") as file:
+        head = next(line for line in file if not line.startswith("#"))
+    return Trace(**columns, has_tool="proxy_qw" in head)
 
 
 def read_trajectory(path):

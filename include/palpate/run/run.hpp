@@ -49,7 +49,8 @@ class Run {
     /// before start().
     void step();
     double period() const { return period_; }  ///< [s] of its ticks; from start() on
-    /// Forces go to zero and the servo ends, for good. What was seen of it stays.
+    /// Forces go to zero and the servo ends, for good. Waits until the device has sent the zero,
+    /// but no longer than half a second for one that hangs. What was seen of it stays.
     void stop();
 
     /// As the run began; field_now() has the edits, or the moment of a sequence.

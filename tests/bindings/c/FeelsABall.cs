@@ -1,5 +1,6 @@
 // A device written in C# feels a ball of 20 mm, while the garbage collector runs.
 using System;
+using System.IO;
 using System.Runtime.InteropServices;
 using System.Threading;
 using PalpateC;
@@ -9,9 +10,9 @@ static class FeelsABall
     const int Side = 64;
     static double depth = 30, force, largest;
     static volatile bool closed;
-    static readonly ReadDevice read = Read;
-    static readonly WriteDevice write = Write;
-    static readonly CloseDevice close = delegate { closed = true; };
+    static readonly OwnDeviceRead read = Read;
+    static readonly OwnDeviceWrite write = Write;
+    static readonly OwnDeviceClose close = delegate { closed = true; };
 
     static int Read(ref Reading reading, IntPtr context)
     {
@@ -38,13 +39,58 @@ static class FeelsABall
         }
         var geometry = new Geometry
         {
-            SizeOf = Native.SizeOf<Geometry>(), Size = new[] { Side, Side, Side },
-            Origin = new[] { -31.5, -31.5, -31.5 }, Spacing = new double[3], Direction = new double[9]
+            SizeOf = Native.SizeOf<Geometry>(), Size = new Index3(Side, Side, Side),
+            Origin = new Vector(-31.5, -31.5, -31.5)
         };
         IntPtr volume;
-        Native.Check(Native.palpate_volume_copy(ref geometry, 3, samples,
+        Native.Check(Native.palpate_volume_copy(ref geometry, Constants.Float32, samples,
                                                 (UIntPtr)(4 * samples.Length), out volume));
         return volume;
+    }
+
+    static void RenderATick(IntPtr volume)
+    {
+        IntPtr field, renderer;
+        Native.Check(Native.palpate_field_create(volume, IntPtr.Zero, out field));
+        var options = new RenderOptions
+        {
+            SizeOf = Native.SizeOf<RenderOptions>(), HasIsovalue = 1, Isovalue = 100,
+            StaticFriction = 0.3, DynamicFriction = 0.2, Tool = "sphere:1"
+        };
+        Native.Check(Native.palpate_renderer_create(field, ref options, IntPtr.Zero, out renderer));
+        var hand = new Hand { SizeOf = Native.SizeOf<Hand>(), Position = new Vector(0, 0, 25) };
+        var felt = new Felt { SizeOf = Native.SizeOf<Felt>() };
+        Native.Check(Native.palpate_renderer_render(renderer, ref hand, ref felt));
+        hand.Time = 0.001;
+        hand.Position.Z = 20;
+        Native.Check(Native.palpate_renderer_render(renderer, ref hand, ref felt));
+        Require(felt.Mode == Constants.Constrained && felt.Contacts > 0, "the tool touches");
+        Require(Math.Abs(felt.Scp.Z - 21) < 0.2, "it is a sphere of 1 mm");
+        Native.palpate_renderer_destroy(renderer);
+        options.Tool = "hämmer";
+        Require(Native.palpate_renderer_create(field, ref options, IntPtr.Zero, out renderer) != Status.Ok,
+                "no such tool");
+        Require(Native.LastError.Contains("hämmer"), "its name is UTF-8: " + Native.LastError);
+        Native.palpate_field_destroy(field);
+    }
+
+    static void ChangeWhatIsFelt(IntPtr run, IntPtr data)
+    {
+        Native.Check(Native.palpate_run_set_friction(run, 0.3, 0.2));
+        Native.Check(Native.palpate_run_set_layers(run, "ct-needle"));
+        Native.Check(Native.palpate_run_change_layers(run, "ct-needle"));
+        Native.Check(Native.palpate_run_set_layers(run, null));
+        Require(Native.RunText(run, Constants.TextDevice) == "gerät", "the device's model");
+        string folder = Path.Combine(Path.GetTempPath(), "palpate-größe-" + Guid.NewGuid());
+        Directory.CreateDirectory(folder);
+        string file = Path.Combine(folder, "kugel.mha");
+        Native.Check(Native.palpate_data_save(data, file));
+        Require(File.Exists(file), "a path is UTF-8");
+        IntPtr volume;
+        var options = new LoadOptions { SizeOf = Native.SizeOf<LoadOptions>() };
+        Native.Check(Native.palpate_volume_load(file, ref options, out volume));
+        Native.palpate_volume_destroy(volume);
+        Directory.Delete(folder, true);
     }
 
     static IntPtr Run(IntPtr data)
@@ -56,7 +102,7 @@ static class FeelsABall
         };
         var own = new OwnDevice
         {
-            SizeOf = Native.SizeOf<OwnDevice>(), Name = "csharp", MaximumForce = 2, Read = read,
+            SizeOf = Native.SizeOf<OwnDevice>(), Name = "csharp", Model = "gerät", MaximumForce = 2, Read = read,
             Write = write, Close = close, Rate = 500
         };
         using (var unmanagedRender = new Unmanaged<RenderOptions>(render))
@@ -80,7 +126,9 @@ static class FeelsABall
 
     static void Main()
     {
+        Marshal.PrelinkAll(typeof(Native)); // every function is in the library
         IntPtr volume = Ball(), data;
+        RenderATick(volume);
         Native.Check(Native.palpate_data_create(volume, out data));
         Native.palpate_volume_destroy(volume);
         IntPtr run = Run(data);
@@ -100,6 +148,7 @@ static class FeelsABall
         Require(Math.Abs(snapshot.Felt.Scp.Length - 20) < 0.2, "the proxy is on the ball");
         Require(snapshot.Transform.Scale == 1, "the scale");
         Require(Native.palpate_run_set_isovalue(run, double.NaN) == Status.Invalid, "a refusal");
+        ChangeWhatIsFelt(run, data);
         Native.palpate_run_destroy(run);
         Require(closed && force == 0, "the last force is zero, then the device is closed");
         Native.palpate_data_destroy(data);

@@ -8,6 +8,7 @@
 #include <functional>
 #include <thread>
 
+#include "palpate/io/recording.hpp"
 #include "support/eventually.hpp"
 #include "support/scratch_folder.hpp"
 #include "tests/bindings/c/ball.hpp"
@@ -119,6 +120,43 @@ TEST_F(CRun, an_own_device_feels_the_ball_within_its_limit_on_a_thread_of_its_ow
     run_ = nullptr;
     EXPECT_EQ(hand_.closes, 1);
     EXPECT_EQ(hand_.force, 0);
+}
+
+TEST_F(CRun, stopping_returns_when_a_slow_device_has_the_zero) {
+    palpate_own_device own = device_of(hand_);
+    own.rate = 100;
+    hand_.step = -0.25;
+    ASSERT_EQ(create(&own), PALPATE_OK) << palpate_last_error();
+    ASSERT_EQ(palpate_run_start(run_), PALPATE_OK) << palpate_last_error();
+    EXPECT_TRUE(comes_true([&] { return hand_.force > 0.5; }));
+    ASSERT_EQ(palpate_run_stop(run_), PALPATE_OK);
+    EXPECT_EQ(hand_.force, 0);
+    EXPECT_EQ(palpate_run_stop(run_), PALPATE_OK);
+}
+
+TEST_F(CRun, layers_that_are_the_same_surfaces_are_sent_as_such) {
+    palpate_own_device own = device_of(hand_);
+    ASSERT_EQ(create(&own), PALPATE_OK) << palpate_last_error();
+    EXPECT_EQ(palpate_run_change_layers(run_, "ct-needle"), PALPATE_WRONG_STATE);
+    const support::ScratchFolder folder;
+    const auto file = folder.path() / "session.csv";
+    ASSERT_EQ(palpate_run_record(run_, file.string().c_str()), PALPATE_OK) << palpate_last_error();
+    ASSERT_EQ(palpate_run_start(run_), PALPATE_OK) << palpate_last_error();
+    EXPECT_EQ(palpate_run_set_layers(run_, "ct-needle"), PALPATE_OK) << palpate_last_error();
+    EXPECT_EQ(palpate_run_change_layers(run_, "ct-needle"), PALPATE_OK) << palpate_last_error();
+    EXPECT_EQ(palpate_run_change_layers(run_, "no-such-set"), PALPATE_INPUT);
+    const std::int64_t sent = now().number;
+    EXPECT_TRUE(shows([&](const auto& s) { return s.number > sent + 5; }));
+    ASSERT_EQ(palpate_run_stop_recording(run_, nullptr), PALPATE_OK) << palpate_last_error();
+    std::vector<bool> same;
+    for (io::RecordingReader reader(file); const auto event = reader.next();) {
+        const auto* sent_command = std::get_if<Command>(&*event);
+        if (!sent_command) continue;
+        if (const auto* use = std::get_if<command::UseLayers>(sent_command)) {
+            same.push_back(use->same_surfaces);
+        }
+    }
+    EXPECT_EQ(same, (std::vector<bool>{false, true}));
 }
 
 TEST_F(CRun, a_device_that_reports_it_is_lost_gives_no_force_and_says_so_and_may_come_back) {

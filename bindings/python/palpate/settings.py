@@ -1,0 +1,198 @@
+"""Completes the classes of settings: keywords, repr, pickling, equality, and nested settings that are
+one with their owner: `setup.force.limit = 0.5` changes the setup.
+
+What a class in C++ holds are values. A nested object in Python is a copy that its owner keeps, and
+each change of it is handed to the owner, which may refuse it. What cannot be handed on refuses to be
+changed: lists, dicts and arrays, and what a read-only property returns.
+"""
+
+import copy
+import os
+import re
+import weakref
+
+import numpy
+
+
+def _refuse(self, *args, **keywords):
+    raise TypeError("this is a copy, changing it would have no effect: assign a whole new "
+                    f"{type(self).__name__}")
+
+
+class _List(list):
+    __setitem__ = __delitem__ = __iadd__ = __imul__ = append = clear = extend = insert = pop = _refuse
+    remove = reverse = sort = _refuse
+
+    def __reduce__(self):
+        return list, (list(self),)
+
+
+class _Dict(dict):
+    __setitem__ = __delitem__ = __ior__ = clear = pop = popitem = setdefault = update = _refuse
+
+    def __reduce__(self):
+        return dict, (dict(self),)
+
+
+_List.__name__, _Dict.__name__ = "list", "dict"
+
+
+def _kept(value):
+    """A value as a getter returns it."""
+    if hasattr(type(value), "_fields"):
+        return copy.copy(value)
+    if isinstance(value, numpy.ndarray):
+        value = value.copy()
+        value.flags.writeable = False
+    elif type(value) is list:
+        value = _List(map(_kept, value))
+    elif type(value) is tuple:
+        value = tuple(map(_kept, value))
+    elif type(value) is dict:
+        value = _Dict((key, _kept(one)) for key, one in value.items())
+    return value
+
+
+def _settings_in(value):
+    return [one for one in (value if isinstance(value, list) else [value])
+            if hasattr(type(one), "_fields")]
+
+
+def _frozen(value, why):
+    for one in _settings_in(value):
+        vars(one)["_frozen"] = why
+        for name in one._fields:
+            _frozen(getattr(one, name), why)
+    return value
+
+
+class _Nested:
+    """A settable property whose value, where it is settings, belongs to its object."""
+
+    def __init__(self, raw):
+        self.raw, self.__doc__ = raw, raw.__doc__
+
+    def __set_name__(self, kind, name):
+        self.name = name
+
+    def __get__(self, owner, kind=None):
+        if owner is None:
+            return self
+        if self.name in vars(owner):
+            return vars(owner)[self.name]
+        value = _kept(self.raw.__get__(owner))
+        children = _settings_in(value)
+        for child in children:
+            vars(child)["_owner"] = weakref.ref(owner), self
+        if children:
+            vars(owner)[self.name] = value
+        return value
+
+    def __set__(self, owner, value):
+        if "_frozen" in vars(owner):
+            raise AttributeError(vars(owner)["_frozen"])
+        if isinstance(value, os.PathLike):
+            value = os.fspath(value)
+        before = _kept(self.raw.__get__(owner))
+        self.raw.__set__(owner, value)
+        try:
+            _hand_on(owner)
+        except Exception:
+            self.raw.__set__(owner, before)
+            _hand_on(owner)
+            raise
+        for child in _settings_in(vars(owner).pop(self.name, None)):
+            del vars(child)["_owner"]
+
+
+def _hand_on(child):
+    """To the owner of these settings, and on to its owner."""
+    reference, nested = vars(child).get("_owner", (lambda: None, None))
+    owner = reference()
+    if owner is not None:
+        nested.raw.__set__(owner, vars(owner)[nested.name])
+        _hand_on(owner)
+
+
+def _set(self, name, value):
+    if not isinstance(getattr(type(self), name, None), (_Nested, property)):
+        settable = [name for name, one in vars(type(self)).items() if isinstance(one, _Nested)]
+        raise AttributeError(f"{type(self).__name__} has no {name}; there are {', '.join(settable)}")
+    object.__setattr__(self, name, value)
+
+
+def _same(one, other):
+    if isinstance(one, numpy.ndarray):
+        return numpy.array_equal(one, other)
+    return one == other
+
+
+class _Settings:
+    """What every class with `_fields` gets."""
+
+    def __repr__(self):
+        fields = ", ".join(f"{name}={getattr(self, name)!r}" for name in self._fields)
+        return f"{type(self).__name__}({fields})"
+
+    def __eq__(self, other):
+        if type(self) is not type(other):
+            return NotImplemented
+        return all(_same(getattr(self, name), getattr(other, name)) for name in self._fields)
+
+    __hash__ = None
+
+    def __reduce__(self):
+        return _made, (type(self), {name: getattr(self, name) for name in self._fields})
+
+
+def _made(kind, fields):
+    return kind(**fields)
+
+
+def _initializer(raw, fields):
+    def __init__(self, **given):
+        raw(self)
+        for name in given:
+            if name not in fields:
+                raise TypeError(f"no field {name}; there are {', '.join(fields)}")
+        for name in fields:
+            if name in given:
+                setattr(self, name, given[name])
+    return __init__
+
+
+def _alias(part, name, about):
+    """A field that is another name of one in a part."""
+    return property(lambda self: getattr(getattr(self, part), name),
+                    lambda self, value: setattr(getattr(self, part), name, value), doc=about)
+
+
+def _frozen_getter(raw, why):
+    return property(lambda self: _frozen(_kept(raw.__get__(self)), why), doc=raw.__doc__)
+
+
+def complete(module):
+    kinds = [kind for kind in vars(module).values() if isinstance(kind, type)]
+    names = "|".join(kind.__name__ for kind in kinds if hasattr(kind, "_fields"))
+    returns_settings = re.compile(rf"-> .*\b(?:{names})\b")
+    for kind in kinds:
+        for name, raw in list(vars(kind).items()):
+            if not isinstance(raw, property):
+                continue
+            if raw.fset:
+                nested = _Nested(raw)
+                nested.__set_name__(kind, name)
+                setattr(kind, name, nested)
+                kind.__setattr__ = _set
+            elif returns_settings.search(raw.fget.__doc__ or ""):
+                why = (f"{name} of a {kind.__name__} cannot be changed: change a copy of it, by "
+                       "copy.copy()")
+                setattr(kind, name, _frozen_getter(raw, why))
+        if hasattr(kind, "_fields"):
+            own = vars(kind)
+            for name in ("__repr__", "__eq__", "__hash__", "__reduce__"):
+                if name != "__reduce__" or "__getstate__" not in own:
+                    setattr(kind, name, vars(_Settings)[name])
+            kind.__init__ = _initializer(kind.__init__, kind._fields)
+    for name in ("limit", "stiffness"):
+        setattr(module.RenderSetup, name, _alias("force", name, f"The same as force.{name}."))
