@@ -1,4 +1,5 @@
-// The table of models. docs/devices/models.md gives the source of each figure: change both together.
+// The table of models. docs/devices/models.md gives the source of each figure: change both
+// together.
 #include "devices/models.hpp"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// What haptic devices can do, by their data sheets: one table for the backends and for the simulated
-// devices. docs/devices/models.md gives the sources.
+// What haptic devices can do, by their data sheets: one table for the backends and for the
+// simulated devices. docs/devices/models.md gives the sources.
 #pragma once
 
 #include <string_view>

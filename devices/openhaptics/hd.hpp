@@ -40,7 +40,11 @@ constexpr unsigned int output_dof = 0x2554;             // HD_OUTPUT_DOF, int, 6
 constexpr unsigned int calibration_style = 0x2555;      // HD_CALIBRATION_STYLE, int, bits
 constexpr unsigned int update_rate = 0x2600;            // HD_UPDATE_RATE, int [Hz]
 constexpr unsigned int nominal_max_stiffness = 0x2602;  // HD_NOMINAL_MAX_STIFFNESS, double [N/mm]
-constexpr unsigned int nominal_max_force = 0x2603;      // HD_NOMINAL_MAX_FORCE, double [N]
+// double [N]
+constexpr unsigned int continuous_force = 0x2604;  // HD_NOMINAL_MAX_CONTINUOUS_FORCE
+// double for each motor, 0: as the room, 1: too hot
+constexpr unsigned int motor_temperature = 0x2605;  // HD_MOTOR_TEMPERATURE
+constexpr unsigned int nominal_max_force = 0x2603;  // HD_NOMINAL_MAX_FORCE, double [N]
 // double [mN m]
 constexpr unsigned int nominal_max_torque = 0x2622;  // HD_NOMINAL_MAX_TORQUE_FORCE
 constexpr unsigned int force = 0x2700;               // HD_CURRENT_FORCE, 3 double [N]
@@ -58,6 +62,11 @@ constexpr unsigned int force_error = 0x204;          // HD_FORCE_ERROR
 constexpr unsigned int device_fault = 0x300;         // HD_DEVICE_FAULT
 constexpr unsigned int communication = 0x302;        // HD_COMM_ERROR
 constexpr unsigned int communication_setup = 0x303;  // HD_COMM_CONFIG_ERROR
+// The driver's servo loop has ended.
+constexpr unsigned int timer = 0x304;             // HD_TIMER_ERROR
+constexpr unsigned int invalid_priority = 0x500;  // HD_INVALID_PRIORITY
+constexpr unsigned int scheduler_full = 0x501;    // HD_SCHEDULER_FULL
+constexpr unsigned int invalid_license = 0x600;   // HD_INVALID_LICENSE
 }  // namespace error
 
 enum Calibration : unsigned int {
