@@ -31,6 +31,7 @@ constexpr Model models[] = {
     {"Falcon",                  8,   3,     80,  80,  80},
     {"Inverse3",               10,   1,    170, 170, 170},
     {"Inverse3 with VerseGrip", 10,  1,    170, 170, 170, true},
+    {"Minverse",                3.3, 0.5,  100, 100, 100},
     // The least of its kind, for models that are not listed.
     {"Force Dimension device",  8,   3,     80,  80,  80, false, false, 150},
 };
