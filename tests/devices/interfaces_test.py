@@ -104,5 +104,22 @@ class OpenHaptics(Interface, unittest.TestCase):
     header, loader = "devices/openhaptics/hd.hpp", "devices/openhaptics/hd.cpp"
 
 
+class Spacenavd(unittest.TestCase):
+    def test_the_numbers_are_those_of_the_page(self):
+        named = re.findall(r"= (\w+)[,;]\s*// ((?:UEV|REQ)_\w+)", source("devices/spacenav/puck.hpp"))
+        self.assertEqual({name: int(value, 0) for value, name in named}, constants_of_page("spacenavd"))
+
+
+class Haply(unittest.TestCase):
+    # What the messages and we ourselves say in words of the same form.
+    OTHERS = {"palpate", "inverse", "inverse3", "mount", "handedness", "basis", "preset", "transform"}
+
+    def test_the_members_are_those_of_the_page(self):
+        page = set(re.findall(r"`(\w+)`", section("Haply")))
+        used = set(re.findall(r'"([a-z_]+)"', source("devices/haply/protocol.cpp")))
+        self.assertEqual(page - used, set(), "on the page only")
+        self.assertEqual(used - page - self.OTHERS, set(), "in the source only")
+
+
 if __name__ == "__main__":
     unittest.main()
