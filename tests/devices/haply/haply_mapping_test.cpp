@@ -1,12 +1,12 @@
-// What other programs may change while we press, and what services understand: mount, preset, basis,
-// the key of the force, the lists of devices.
+// What other programs may change while we press, and what services understand: mount, preset,
+// basis, the key of the force, the lists of devices.
 #include "devices/haply/haply_fixture.hpp"
 
 namespace palpate::devices {
 namespace {
 
-/// A service of release 3.5 whose settings other programs change over HTTP. It tells them when it is
-/// asked for all.
+/// A service of release 3.5 whose settings other programs change over HTTP. It tells them when it
+/// is asked for all.
 class HaplyMapping : public HaplyTest {
   public:
     HaplyMapping() {
@@ -109,8 +109,10 @@ TEST_F(HaplyMapping, the_force_goes_under_the_key_that_the_service_renders) {
     }
     key = "values";  // though it looks like a service that takes the other one
     const auto device = open();
-    EXPECT_TRUE(within(150ms, [&] { return rendered > 3; }, [&] { press(*device); }));
-    EXPECT_TRUE(throughout(100ms, [&] { return rendered > 3; }, [&] { press(*device); }));
+    EXPECT_TRUE(within(
+        150ms, [&] { return rendered > 3; }, [&] { press(*device); }));
+    EXPECT_TRUE(throughout(
+        100ms, [&] { return rendered > 3; }, [&] { press(*device); }));
     key = "newtons";
     const auto neither = open();
     EXPECT_TRUE(within(
@@ -129,8 +131,10 @@ TEST_F(HaplyMapping, a_key_that_the_service_complains_of_is_left_at_once) {
         return FakeService::Reply{answer};
     });
     const auto device = open();
-    EXPECT_TRUE(within(30ms, [&] { return used == "vector"; }, [&] { press(*device); }));
-    EXPECT_TRUE(throughout(100ms, [&] { return used == "vector"; }, [&] { press(*device); }));
+    EXPECT_TRUE(within(
+        30ms, [&] { return used == "vector"; }, [&] { press(*device); }));
+    EXPECT_TRUE(throughout(
+        100ms, [&] { return used == "vector"; }, [&] { press(*device); }));
 }
 
 TEST_F(HaplyMapping, a_device_in_another_list_is_found_and_pressed) {
@@ -143,8 +147,7 @@ TEST_F(HaplyMapping, a_device_in_another_list_is_found_and_pressed) {
         felt, [&] { return service.forces().back() == Vec3(1, 0, 0); },
         [&] { device->write({Vec3(1, 0, 0)}, 0); }));
     EXPECT_EQ(service.last_message().find("\"inverse3\""), std::string::npos);
-    EXPECT_NE(service.last_message().find(R"("minverse":[{"device_id":"049D")"),
-              std::string::npos);
+    EXPECT_NE(service.last_message().find(R"("minverse":[{"device_id":"049D")"), std::string::npos);
 }
 
 }  // namespace

@@ -328,6 +328,7 @@ TEST_F(OpenHaptics, a_missing_licence_is_told_with_what_to_do) {
     ASSERT_TRUE(becomes(*device, DeviceStatus::fault));
     EXPECT_TRUE(contains(device->problem(), "License Manager")) << device->problem();
     EXPECT_TRUE(stays_at_zero(*device));
+    EXPECT_FALSE(within(2s, [&] { return device->read(0).status != DeviceStatus::fault; }));
 }
 
 /// [N] rendered after this force has been asked for so long.
